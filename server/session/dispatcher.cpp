@@ -30,6 +30,8 @@ void Dispatcher::Dispatch(Shard& shard, Peer& peer, std::span<const std::uint8_t
   }
 }
 
+// Counts a message that is not of this protocol. UDP senders get no answer: their address may be
+// forged, and an answer would turn the daemon into a reflector.
 void Dispatcher::RejectEnvelope(Shard& shard, Peer& peer, const protocol::MessageView& view,
                                 DecodeStatus status) {
   parts_.metrics->Add(Counter::kMessagesMalformed);
@@ -42,6 +44,8 @@ void Dispatcher::RejectEnvelope(Shard& shard, Peer& peer, const protocol::Messag
       "not a message of this protocol: " + std::string(DecodeStatusName(status)));
 }
 
+// Decodes the payload and calls `handler` if it is valid. Otherwise counts it and, except over UDP,
+// answers with an error.
 template <class Message, class Handler>
 void Dispatcher::Decode(Shard& shard, Peer& peer, const protocol::MessageView& view,
                         Message& message, const Handler& handler) {
@@ -53,12 +57,15 @@ void Dispatcher::Decode(Shard& shard, Peer& peer, const protocol::MessageView& v
   parts_.metrics->Add(view.kind == MessageKind::kPose ? Counter::kPosesInvalid
                                                       : Counter::kMessagesMalformed);
   if (peer.transport == Transport::kUdp) return;
+  // The answer must not overtake the frames of earlier poses.
   parts_.router->PublishGathered(shard);
   shard.context.messages.SendError(peer, view.header, ErrorCode::kMalformed,
                                    "invalid " + std::string(MessageKindName(view.kind)) +
                                        " message: " + std::string(DecodeStatusName(status)));
 }
 
+// Decodes into the shard's reused structs (Shard::Incoming), which only this thread uses, so poses
+// allocate nothing.
 // The messages that need no exclusive lock.
 void Dispatcher::DispatchVerified(Shard& shard, Peer& peer, const protocol::MessageView& view,
                                   Time now) {
@@ -67,6 +74,8 @@ void Dispatcher::DispatchVerified(Shard& shard, Peer& peer, const protocol::Mess
   switch (view.kind) {
     case MessageKind::kPose:
       return Decode(shard, peer, view, in.pose, [&] {
+        // A partial pose cannot be relayed as it came: a subscriber that lost the pose before it
+        // would complete it wrongly.
         const auto payload = in.pose.partial ? std::span<const std::uint8_t>() : view.payload;
         parts_.router->AcceptPose(shard, peer, header, in.pose, payload, now);
       });
@@ -78,12 +87,17 @@ void Dispatcher::DispatchVerified(Shard& shard, Peer& peer, const protocol::Mess
     case MessageKind::kPong:
       return Decode(shard, peer, view, in.pong, [] {});  // only proves that the peer is alive
     default: {
+      // `peer` and `view` stay valid while the lock changes hands: only this thread removes the
+      // peer or reuses the buffer of the message. Subjects may have left, so the handlers look them
+      // up again.
       const Shards::ExclusiveLock lock(*parts_.shards, shard.index);
       return DispatchExclusive(shard, peer, view, now);
     }
   }
 }
 
+// Messages of publishers and about the connection. The caller holds the exclusive lock, also for
+// the functions below.
 void Dispatcher::DispatchExclusive(Shard& shard, Peer& peer, const protocol::MessageView& view,
                                    Time now) {
   const protocol::Header& header = view.header;
@@ -134,6 +148,8 @@ template <class Request>
 void Dispatcher::Subscribe(Shard& shard, Peer& peer, const protocol::MessageView& view,
                            Request& request) {
   Decode(shard, peer, view, request, [&] {
+    // Only valid requests reach this point, so a draining daemon still reports a malformed one as
+    // such.
     if (refuses_subscriptions_) {
       return parts_.messages->SendError(peer, view.header, ErrorCode::kDraining,
                                         "the daemon is shutting down");
@@ -144,6 +160,8 @@ void Dispatcher::Subscribe(Shard& shard, Peer& peer, const protocol::MessageView
 
 void Dispatcher::OnHello(Peer& peer, const protocol::Header& header, const protocol::Hello& hello) {
   protocol::Welcome welcome{kServerName, 0};
+  // The token proves that the sender receives what is sent to its address (SendCredit). Until then,
+  // every Welcome repeats the same token, so that a lost datagram does no harm.
   if (peer.transport == Transport::kUdp) {
     const bool proves = hello.token != 0 && hello.token == peer.token;
     if (proves) peer.credit.Prove();
@@ -177,9 +195,11 @@ void Dispatcher::SendSubjectList(Peer& peer, const protocol::Header& request) {
   protocol::Subjects list;
   list.total = static_cast<std::uint32_t>(parts_.subjects->size());
   for (const auto& subject : parts_.subjects->all()) {
+    // `total` tells the client that the list is cut.
     if (list.names.size() == protocol::kMaxListedSubjects) break;
     list.names.push_back(subject->name);
   }
+  // The version counts additions and removals, so following a list costs one comparison per tick.
   peer.listed_version = parts_.subjects->version();
   parts_.messages->SendReply(peer, {.sequence = request.sequence}, list);
 }

@@ -19,6 +19,9 @@ constexpr Time kUdpLease = std::chrono::microseconds(protocol::kUdpLeaseMicrosec
 
 }  // namespace
 
+// The members point at each other, so their order in the class is the order of construction: what a
+// part uses comes before it. Publishers and Subscribers run under the exclusive lock, and therefore
+// share the one exclusive context; each shard has a context of its own.
 Hub::Hub(Parts parts)
     : limits_(parts.limits),
       metrics_(parts.metrics),
@@ -48,6 +51,8 @@ Hub::Hub(Parts parts)
       mocap_(limits_.idle_seconds, &shards_, &router_, metrics_) {}
 
 PeerId Hub::AddPeer(Transport transport, std::string name, Link* link, Time now, int shard) {
+  // An address book of one shard changes under its shard lock alone, so a new peer stops nobody
+  // else.
   const ShardLock lock(*this, shard);
   const TokenBucket bucket(limits_.packets_per_second, limits_.packet_burst);
   return shards_.at(shard).peers.Add(transport, std::move(name), link, bucket, now).id;
@@ -58,6 +63,8 @@ void Hub::RemovePeer(PeerId id) {
   const ShardLock lock(*this, shard.index);
   Peer* peer = shard.peers.Find(id);
   if (peer == nullptr) return;
+  // The pointer stays valid while the exclusive lock is being taken, although the shard is unlocked
+  // for a moment: only this thread removes peers of this shard.
   // Only peers that take part in the session need the exclusive lock. Evicting one of many forged
   // addresses must not stop the other shards.
   if (peer->publishes || peer->num_subscriptions > 0) {
@@ -69,6 +76,8 @@ void Hub::RemovePeer(PeerId id) {
 }
 
 void Hub::OnBytesReceived(PeerId id, std::size_t bytes, Time now) {
+  // Fragments count here and not in GatherMessage(), so that the credit of an address (SendCredit)
+  // covers every byte that it sent.
   if (Peer* peer = shards_.Of(id).peers.Find(id); peer != nullptr) {
     peer->credit.Received(bytes);
     peer->last_heard = now;
@@ -79,6 +88,7 @@ void Hub::OnMessage(PeerId id, std::span<const std::uint8_t> bytes, Time now) {
   Shard& shard = shards_.Of(id);
   const ShardLock lock(*this, shard.index);
   GatherMessage(id, bytes, now);
+  // The caller may reuse `bytes` afterwards, so a pose must not stay in the batch.
   router_.PublishGathered(shard);
 }
 
@@ -87,6 +97,7 @@ void Hub::GatherMessage(PeerId id, std::span<const std::uint8_t> bytes, Time now
   Peer* peer = shard.peers.Find(id);
   if (peer == nullptr) return;
   metrics_->Add(Counter::kMessagesReceived);
+  // Before anything is verified or decoded: a flood must cost less than the work that it asks for.
   if (!peer->bucket.Take(now)) {
     metrics_->Add(Counter::kMessagesThrottled);
     return;
@@ -130,6 +141,7 @@ bool Hub::IsIdle(PeerId id, Time now) {
 }
 
 bool Hub::ShouldEvictBefore(PeerId a, PeerId b) {
+  // Pairs compare the first member first: false (takes no part) before true, then the older time.
   const auto worth = [this](PeerId id) {
     const Peer* peer = shards_.Of(id).peers.Find(id);
     return std::pair(peer->publishes || peer->num_subscriptions > 0, peer->last_heard);
@@ -143,6 +155,9 @@ void Hub::OnPicture(const FinishedPicture& picture) {
 }
 
 void Hub::Tick(Time now) {
+  // The order matters. Subjects age first, so that owed frames carry the decayed weights. `stuck`
+  // is read by all shards, so it changes only here, under the exclusive lock. Owed frames come
+  // after that, so that a peer that reads again gets its newest pose in this tick.
   const ExclusiveLock lock(*this, 0);
   AgeSubjects(now);
   mocap_.ForgetRejected(now);
@@ -155,8 +170,10 @@ void Hub::Tick(Time now) {
 }
 
 void Hub::AgeSubjects(Time now) {
+  // Removal waits for the end of the loop, because it erases from the list that the loop walks.
   std::vector<Subject*> gone;
   for (const auto& subject : subjects_.all()) {
+    // Shard 0's thread runs the tick and may publish any subject, because all shards are locked.
     switch (publishers_.AgeSubject(*subject, now)) {
       case Publishers::Change::kNone: break;
       case Publishers::Change::kDecayed:
@@ -166,11 +183,13 @@ void Hub::AgeSubjects(Time now) {
     }
   }
   for (Subject* subject : gone) RemoveSubject(*subject);
+  // Subscriptions without a name fall back to the oldest subject that is left.
   if (!gone.empty()) subscribers_.BindWaiting();
 }
 
 void Hub::RemoveSubject(Subject& subject) {
   spdlog::info("subject '{}' has left", subject.name);
+  // Everything that refers to the subject lets go of it before the registry frees it.
   subscribers_.OnSubjectGone(subject);
   if (recording_ != nullptr) recording_->OnSubjectGone(subject);
   mocap_.ForgetSubject(subject.name);
@@ -180,6 +199,8 @@ void Hub::RemoveSubject(Subject& subject) {
 // A UDP address must be heard from regularly: it has no connection that could close.
 void Hub::ExpireUdpLease(Peer& peer, Time now) {
   if (peer.transport != Transport::kUdp || now - peer.last_heard < kUdpLease) return;
+  // Publishing needs no lease: silence ends a subject through Limits::loss_seconds and
+  // idle_seconds.
   if (peer.num_subscriptions > 0) {
     subscribers_.RemovePeer(peer, protocol::GoodbyeReason::kTimedOut);
   }
@@ -188,11 +209,13 @@ void Hub::ExpireUdpLease(Peer& peer, Time now) {
 
 void Hub::Drain() {
   const ExclusiveLock lock(*this, 0);
+  // Stop all frames before the goodbye, which must be the last message that a peer receives.
   draining_ = true;
   router_.StopFanOut();
   dispatcher_.RefuseSubscriptions();
   shards_.ForEachPeer([&](Peer& peer) {
     if (peer.transport == Transport::kMocap) return;
+    // Stream 0 addresses the whole peer, not one of its subscriptions.
     exclusive_context_.messages.SendReply(peer, {},
                                           protocol::Goodbye{protocol::GoodbyeReason::kDraining});
   });
@@ -201,12 +224,15 @@ void Hub::Drain() {
 Subject* Hub::RequireAllDrivers(std::string_view name) {
   Subject* subject = name.empty() ? subjects_.First() : subjects_.Find(name);
   if (subject == nullptr) return nullptr;
+  // Stays set, since clients of the API poll: a driver that is switched off and on again starts
+  // without the history of its filter.
   subject->needs_all_drivers = true;
   subject->pipeline->SetLevel(wrinkle::kAllDrivers);
   return subject;
 }
 
 std::string_view Hub::SourceOf(const Subject& subject) {
+  // A subject outlives its publisher while it decays, so the peer may be gone.
   const Peer* peer = shards_.Of(subject.owner.peer).peers.Find(subject.owner.peer);
   return peer == nullptr ? std::string_view() : std::string_view(peer->name);
 }
@@ -222,8 +248,10 @@ Status Hub::SetRig(std::shared_ptr<const wrinkle::Rig> rig, Time now) {
       definitions_.SetRig(former);
       return definition.status().At(subject->name);
     }
+    // Subjects with equal streams share the definition that the first of them made.
     bound.push_back(*std::move(definition));
   }
+  // From here on nothing can fail.
   for (std::size_t i = 0; i < bound.size(); ++i) {
     Subject& subject = *subjects_.all()[i];
     subject.pipeline->SetStream(std::move(bound[i]));

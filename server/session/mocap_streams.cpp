@@ -6,6 +6,7 @@
 namespace furrow::server {
 namespace {
 
+// VMC and Live Link Face have no authentication and name subjects freely. The limit bounds the map.
 constexpr std::size_t kMaxStreams = 64;
 constexpr Time kRetryInterval = std::chrono::seconds(1);
 
@@ -25,6 +26,8 @@ void MocapStreams::OnFrame(Shard& shard, Peer& peer, const protocol::mocap::Neut
                                 .stream = stream->number,
                                 .sequence = frame.sequence,
                                 .capture_time_us = frame.capture_time_us};
+  // Foreign wires have no offers, so the daemon makes one whenever the layout of the frames
+  // changes.
   const bool is_new = stream->offered == Time{0};
   const bool retry = stream->rejected && now - stream->offered >= kRetryInterval;
   if (is_new || stream->layout != frame.layout || retry) {
@@ -34,8 +37,11 @@ void MocapStreams::OnFrame(Shard& shard, Peer& peer, const protocol::mocap::Neut
     metrics_->Add(Counter::kMocapRefused);
     return;
   }
+  // From here on the frame takes the way of any other pose. It has no payload of this wire to
+  // relay, so subscribers of poses receive it encoded again.
   protocol::mocap::MakePose(frame, stream->offer, shard.in.pose);
   router_->AcceptPose(shard, peer, header, shard.in.pose, /*payload=*/{}, now);
+  // `frame` is reused by the adapter.
   router_->PublishGathered(shard);
 }
 
@@ -50,6 +56,8 @@ MocapStreams::Stream* MocapStreams::FindOrAdd(PeerId peer, const std::string& su
 
 void MocapStreams::Offer(Shard& shard, Peer& peer, const protocol::Header& header, Stream& stream,
                          const protocol::mocap::NeutralFrame& frame, Time now) {
+  // `stream` stays valid while the lock changes hands, because all mocap peers belong to this
+  // thread and Tick() runs on it, too.
   const Shards::ExclusiveLock lock(*shards_, shard.index);
   stream.layout = frame.layout;
   stream.offered = now;

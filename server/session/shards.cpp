@@ -14,12 +14,16 @@ void Shards::Flush(Shard& shard) {
   if (shard.buffered_sender != nullptr) shard.buffered_sender->Flush();
 }
 
+// The counters belong to the shard's thread, so reading them needs no lock. A shard lock inside an
+// exclusive one already has the mutex.
 Shards::Lock::Lock(Shards& shards, int index) : shards_(shards), shard_(shards.at(index)) {
   if (shard_.shard_locks++ == 0 && shard_.exclusive_locks == 0) {
     shards_.mutexes_.Lock(shard_.index);
   }
 }
 
+// Publishing comes before flushing, because it fills the sender, and both come before unlocking,
+// because they use the shard and its subjects.
 Shards::Lock::~Lock() {
   if (shard_.shard_locks == 1) {
     shards_.router_->PublishGathered(shard_);
@@ -32,9 +36,14 @@ Shards::Lock::~Lock() {
 
 Shards::ExclusiveLock::ExclusiveLock(Shards& shards, int index)
     : shards_(shards), shard_(shards.at(index)) {
+  // Outside of a shard lock nothing is gathered, so this touches the batch only under the lock.
   shards_.router_->PublishGathered(shard_);
+  // With one shard, one thread uses the hub (other threads post to its event loop), so there is
+  // nobody to lock out.
   if (shard_.exclusive_locks++ > 0 || shards_.size() == 1) return;
   if (shard_.shard_locks > 0) {
+    // Give up the own shard first: two threads that each held their shard and waited for all others
+    // would wait forever.
     // Another shard may publish the same subject as soon as this one is unlocked.
     Flush(shard_);
     shards_.mutexes_.Unlock(shard_.index);
@@ -46,6 +55,8 @@ Shards::ExclusiveLock::~ExclusiveLock() {
   if (--shard_.exclusive_locks > 0) return;
   const bool is_single = shards_.size() == 1;
   if (is_single && shard_.shard_locks > 0) return;  // the end of the shard lock flushes
+  // Replies under the exclusive lock go to the sender of the receiving peer's shard, so all may
+  // have messages.
   for (const auto& shard : shards_.shards_) Flush(*shard);
   if (is_single) return;
   if (shard_.shard_locks > 0) {

@@ -9,6 +9,7 @@
 namespace furrow::server {
 namespace {
 
+// Up to kMaxSpare buffers of at most kMaxSpareBytes stay with the outbox: 1 MiB per peer.
 // Pictures vary in size, so the memory of large messages is not kept.
 constexpr std::size_t kMaxSpareBytes = 16 * 1024;
 constexpr std::size_t kMaxSpare = 64;
@@ -18,6 +19,7 @@ constexpr std::size_t kMaxSpare = 64;
 void Outbox::Append(Queue& queue, std::uint64_t key, bool is_reply,
                     std::span<const std::uint8_t> bytes) {
   if (spare_.empty()) spare_.emplace_back();
+  // splice() moves the list node itself, so a steady stream allocates neither nodes nor bytes.
   Item& item = spare_.front();
   item.key = key;
   item.is_reply = is_reply;
@@ -45,6 +47,7 @@ void Outbox::Uncount(const Item& item) {
 
 bool Outbox::PushReply(std::span<const std::uint8_t> bytes) {
   if (num_replies_ >= max_replies_) return false;
+  // One reply always fits, whatever its size. Otherwise a large skeleton could never be sent.
   if (num_replies_ > 0 && reply_bytes_ + bytes.size() > max_reply_bytes_) return false;
   ++num_replies_;
   reply_bytes_ += bytes.size();
@@ -54,6 +57,8 @@ bool Outbox::PushReply(std::span<const std::uint8_t> bytes) {
 
 int Outbox::PushFrame(std::uint64_t key, std::span<const std::uint8_t> bytes, std::size_t keep) {
   if (keep == kKeepAll) {
+    // A client of every frame wants no gaps in what it already has, so the new frame is the one to
+    // drop. The limit is in bytes, because such a client may be far behind on purpose (a recorder).
     if (ordered_frame_bytes_ + bytes.size() > protocol::kMaxWaitingFrameBytes) return 1;
     ordered_frame_bytes_ += bytes.size();
     Append(ordered_, key, false, bytes);
@@ -61,6 +66,7 @@ int Outbox::PushFrame(std::uint64_t key, std::span<const std::uint8_t> bytes, st
   }
   const auto is_same = [key](const Item& frame) { return frame.key == key; };
   int dropped = 0;
+  // The count per key avoids a search through the queue in the usual case.
   if (const auto found = num_of_key_.find(key);
       found != num_of_key_.end() && found->second >= keep) {
     const auto oldest = std::ranges::find_if(frames_, is_same);
@@ -71,6 +77,7 @@ int Outbox::PushFrame(std::uint64_t key, std::span<const std::uint8_t> bytes, st
     DropFrame(oldest);
     dropped = 1;
   } else if (frames_.size() >= max_frames_) {
+    // Many subscriptions of one slow peer share this limit. The front has waited longest.
     DropFrame(frames_.begin());
     dropped = 1;
   }
@@ -86,12 +93,15 @@ void Outbox::DropFrame(Queue::iterator frame) {
 
 bool Outbox::Pop(std::vector<std::uint8_t>* out) {
   if (empty()) return false;
+  // Replies go before replaceable frames. A frame must not arrive before the reply that explains
+  // its names.
   Queue& queue = ordered_.empty() ? frames_ : ordered_;
   if (&queue == &ordered_) {
     Uncount(ordered_.front());
   } else {
     --num_of_key_[frames_.front().key];
   }
+  // The caller's old buffer takes the place of the message and is recycled with the item.
   out->swap(queue.front().bytes);
   Recycle(queue, queue.begin());
   return true;
@@ -105,6 +115,7 @@ void Outbox::DropFrames(std::uint64_t key) {
   for (auto item = frames_.begin(); item != frames_.end();) {
     item = item->key == key ? Recycle(frames_, item) : std::next(item);
   }
+  // Subscription uids never repeat, so counts of ended subscriptions would accumulate.
   num_of_key_.erase(key);
   for (auto item = ordered_.begin(); item != ordered_.end();) {
     if (item->is_reply || item->key != key) {

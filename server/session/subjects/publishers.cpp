@@ -12,6 +12,8 @@
 namespace furrow::server {
 namespace {
 
+// Weights of a lost subject change slowly, so a display's rate is enough whatever the tick's rate
+// is.
 constexpr Time kDecayInterval = FromSeconds(1.0 / 60.0);
 
 }  // namespace
@@ -24,6 +26,8 @@ Publishers::Publishers(const Limits& limits, StreamDefinitions* definitions,
       messages_(messages),
       metrics_(metrics) {}
 
+// Decides between four cases: a repeated offer, a sender that was replaced and does not know it,
+// too many subjects, and a stream that starts, restarts or takes over its subject.
 Subject* Publishers::OnOffer(Peer& peer, const protocol::Header& header,
                              const protocol::SkeletonOffer& offer, Time now) {
   metrics_->Add(Counter::kSkeletonsOffered);
@@ -34,6 +38,8 @@ Subject* Publishers::OnOffer(Peer& peer, const protocol::Header& header,
     subject->ended = false;  // a repeated offer, or the sender is back after its goodbye
   } else if (!is_owner && subject != nullptr && subjects_->IsRetired(key) && !subject->lost &&
              !subject->ended) {
+    // The newest sender wins a name. The one that it replaced keeps sending and would win the name
+    // back with its next offer, so a retired stream is refused while the present one is alive.
     Reject(peer, header, offer.skeleton_hash,
            "another sender has taken over '" + offer.subject + "'", now);
     return nullptr;
@@ -45,12 +51,15 @@ Subject* Publishers::OnOffer(Peer& peer, const protocol::Header& header,
              now);
       return nullptr;
     }
+    // Binding a skeleton to the rig takes milliseconds under the exclusive lock. Known skeletons
+    // are free; new ones need a token, or a flood of random offers would stop the daemon.
     auto definition =
         definitions_->Get(ToStreamOffer(offer), [&] { return new_skeletons_.Take(now); });
     if (!definition.ok()) {
       Reject(peer, header, offer.skeleton_hash, definition.status().ToString(), now);
       return nullptr;
     }
+    // No reply: senders repeat their offer until it is answered.
     if (*definition == nullptr) {
       metrics_->Add(Counter::kSkeletonsThrottled);
       return nullptr;
@@ -63,6 +72,7 @@ Subject* Publishers::OnOffer(Peer& peer, const protocol::Header& header,
   return subject;
 }
 
+// Makes the stream the owner of the subject `offer.subject`, with a new pipeline.
 Subject* Publishers::Accept(Peer& peer, const StreamKey& key, const protocol::SkeletonOffer& offer,
                             std::shared_ptr<const StreamDefinition> stream, Time now) {
   // A stream feeds one subject. A new name on the stream ends the old subject.
@@ -79,6 +89,7 @@ Subject* Publishers::Accept(Peer& peer, const StreamKey& key, const protocol::Sk
     metrics_->Add(Counter::kSubjectsRestarted);
     spdlog::info("{} has taken over subject '{}'", peer.name, offer.subject);
   }
+  // A new stream numbers its poses from anywhere.
   if (subject->owner != key) subject->window = {};
   subjects_->SetOwner(*subject, key);
   const bool has_neutral =
@@ -90,11 +101,15 @@ Subject* Publishers::Accept(Peer& peer, const StreamKey& key, const protocol::Sk
   peer.publishes = true;
   subject->skeleton_hash = offer.skeleton_hash;
   subject->offer = ShareOffer(offer);
+  // The time without poses counts from the offer, so that the subject is not lost before its first
+  // pose.
   subject->last_pose = subject->last_update = now;
   subject->ended = subject->lost = false;
   return subject;
 }
 
+// Subjects with equal skeletons share one copy of the offer, which has kilobytes of names. An equal
+// hash is no proof, so the whole offer is compared.
 std::shared_ptr<const protocol::SkeletonOffer> Publishers::ShareOffer(
     const protocol::SkeletonOffer& offer) {
   protocol::SkeletonOffer nameless = offer;
@@ -120,6 +135,7 @@ Subject* Publishers::FindSubject(const Peer& peer, const protocol::Header& heade
                                  const protocol::PoseFrame& pose) {
   metrics_->Add(Counter::kPosesReceived);
   Subject* subject = subjects_->Find(StreamKey{peer.id, header.session, header.stream});
+  // A pose of the skeleton before a change may arrive after the offer of the new one.
   return subject != nullptr && subject->skeleton_hash == pose.skeleton_hash ? subject : nullptr;
 }
 
@@ -134,6 +150,7 @@ bool Publishers::AcceptPose(Subject& subject, const protocol::Header& header,
     metrics_->Add(Counter::kPosesInvalid);
     return false;
   }
+  // After the check of the contents: an invalid pose must not use up its sequence number.
   if (!IsNew(subject, header)) return false;
   ApplyPose(pose, pipeline.stream(), pipeline.mutable_pose());
   return true;
@@ -167,6 +184,7 @@ void Publishers::OnUnknownStream(Peer& peer, const protocol::Header& header, std
                                  MessageSender& messages, Time now) {
   const bool retired = subjects_->IsRetired({peer.id, header.session, header.stream});
   metrics_->Add(retired ? Counter::kPosesRetiredSession : Counter::kPosesUnknownStream);
+  // Poses of an unknown stream arrive at the frame rate; a reply to each would amplify the traffic.
   if (!peer.skeleton_requests.Allow(header.session, header.stream, now)) return;
   protocol::SkeletonReply reply{hash, protocol::SkeletonStatus::kNeeded, {}};
   if (retired) {
@@ -183,11 +201,13 @@ void Publishers::OnGoodbye(const Peer& peer, const protocol::Header& header, Tim
   if (subject == nullptr) return;
   spdlog::info("subject '{}' ended its stream", subject->name);
   subject->ended = true;
+  // Decay() gets the time since the last update, which counts from the goodbye.
   subject->last_update = now;
 }
 
 Publishers::Change Publishers::AgeSubject(Subject& subject, Time now) {
   const Time silence = now - subject.last_pose;
+  // Also ends a subject that never sent a pose.
   if (silence > FromSeconds(limits_.idle_seconds)) return Change::kGone;
   SubjectPipeline& pipeline = *subject.pipeline;
   if (!pipeline.has_pose()) return subject.ended ? Change::kGone : Change::kNone;
@@ -197,6 +217,8 @@ Publishers::Change Publishers::AgeSubject(Subject& subject, Time now) {
     metrics_->Add(Counter::kSubjectsLost);
   }
   subject.lost = true;
+  // A lost subject stays until idle_seconds, because its sender may return. One that said goodbye
+  // leaves as soon as nothing is visible of it.
   if (pipeline.neutral()) return subject.ended ? Change::kGone : Change::kNone;
   if (now - subject.last_update < kDecayInterval) return Change::kNone;
   const bool decayed =

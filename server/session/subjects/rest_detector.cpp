@@ -36,11 +36,14 @@ void RestDetector::Update(const wrinkle::LocalPose& pose, std::span<const float>
                           Time now) {
   const std::size_t shapes = pose.blend_shapes.size();
   const auto near = [](const auto& a, const auto& b) { return IsNear(a, b); };
+  // The size differs after a new skeleton or rig, which counts as movement.
   const bool rests =
       values_.size() == shapes + wrinkle_weights.size() &&
       std::ranges::equal(pose.joints, joints_, near) &&
       std::ranges::equal(pose.blend_shapes, std::span(values_).first(shapes), near) &&
       std::ranges::equal(wrinkle_weights, std::span(values_).subspan(shapes), near);
+  // The reference stays the pose of the last movement. Replacing it each time would let slow drift
+  // pass.
   if (rests && moved_at_ != Time{0}) return;
   joints_ = pose.joints;
   values_ = pose.blend_shapes;

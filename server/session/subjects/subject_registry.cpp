@@ -9,6 +9,7 @@ namespace {
 
 constexpr std::size_t kMaxNamesShown = 8;
 
+// The subject under a key; null if there is none.
 template <class Map, class Key>
 Subject* Look(const Map& map, const Key& key) {
   const auto found = map.find(key);
@@ -33,7 +34,9 @@ Subject& SubjectRegistry::Add(std::string name, Time now) {
   auto subject = std::make_unique<Subject>();
   subject->id = next_id_++;
   subject->name = std::move(name);
+  // A subject that never sends a pose must go idle as any other.
   subject->last_pose = subject->last_update = now;
+  // The subject is on the heap, so its address and its name are stable while the list grows.
   Subject& added = *subject;
   by_name_.emplace(added.name, &added);
   subjects_.push_back(std::move(subject));
@@ -42,6 +45,7 @@ Subject& SubjectRegistry::Add(std::string name, Time now) {
 
 void SubjectRegistry::SetOwner(Subject& subject, const StreamKey& key) {
   if (subject.owner == key) return;
+  // Session 0 means that no stream feeds the subject: it is new or was released.
   if (subject.owner.session != 0) {
     by_stream_.erase(subject.owner);
     Retire(subject.owner, subject.id);
@@ -56,6 +60,7 @@ void SubjectRegistry::Retire(const StreamKey& key, SubjectId subject) {
   retired_[key] = {subject, ++num_retired_};
   retired_order_.emplace_back(key, num_retired_);
   if (retired_order_.size() <= kMaxRetired) return;
+  // The number tells a stale entry from a later retirement of the same stream.
   const auto& [oldest, number] = retired_order_.front();
   if (const auto known = retired_.find(oldest);
       known != retired_.end() && known->second.number == number) {
@@ -71,6 +76,7 @@ void SubjectRegistry::Release(Subject& subject) {
 
 void SubjectRegistry::Remove(SubjectId id) {
   ++version_;
+  // Without the subject there is nobody to protect, so its former senders may offer it again.
   std::erase_if(retired_, [id](const auto& entry) { return entry.second.subject == id; });
   std::erase_if(by_stream_, [id](const auto& entry) { return entry.second->id == id; });
   std::erase_if(by_name_, [id](const auto& entry) { return entry.second->id == id; });

@@ -15,6 +15,8 @@ constexpr double kSmoothing = 1.0 / 16.0;    // as in RFC 3550
 bool SubjectStats::IsSilent(Time now) const { return captured_ == 0 || now - arrival_ >= kWindow; }
 
 void SubjectStats::OnPose(std::uint32_t sequence, std::int64_t capture_time_us, Time now) {
+  // A capture time that goes back means a loop or a restart, and its jump in sequence numbers is
+  // not a loss.
   if (poses_ > 0 && capture_time_us >= capture_time_us_) CountLost(sequence);
   ++poses_;
   sequence_ = sequence;
@@ -56,6 +58,8 @@ void SubjectStats::MeasureJitter(double arrived, double captured) {
     captured_every_ = captured;
     return;
   }
+  // RFC 3550 compares intervals directly, which assumes that both clocks run at one speed. The
+  // ratio of the smoothed intervals removes a constant difference, as in slow motion.
   arrives_every_ += (arrived - arrives_every_) * kSmoothing;
   captured_every_ += (captured - captured_every_) * kSmoothing;
   const double difference = arrived - captured * (arrives_every_ / captured_every_);

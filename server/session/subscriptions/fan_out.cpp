@@ -10,13 +10,19 @@ namespace furrow::server {
 
 void FanOut::Publish(Subject& subject, std::span<const std::uint8_t> pose, std::int64_t age_us,
                      Time now, PublishContext* context) {
+  // Subscriptions change only under the exclusive lock, so the span is stable here. Their delivery
+  // state (gate, owed, flow) belongs to the subject's shard: a subscription has one subject, and a
+  // subject is published by one shard at a time.
   const std::span<Subscription* const> subscriptions = table_->Of(subject.id);
   if (subscriptions.empty()) return;
+  // What was encoded for the subject before this one must not be reused.
   context->encoded_key.reset();
   bool has_checked_rest = false;
   for (Subscription* subscription : subscriptions) {
+    // Without a new pose there is nothing to relay.
     if (age_us > 0 && std::holds_alternative<PoseRequest>(subscription->request)) continue;
     if (PictureRequest* viewer = PictureViews::FlowControlled(*subscription); viewer != nullptr) {
+      // Comparing whole poses is not free, so it happens once and only if a viewer needs it.
       if (!std::exchange(has_checked_rest, true)) {
         subject.rest.Update(subject.pipeline->pose(), subject.pipeline->wrinkle_weights(), now);
       }
@@ -33,6 +39,7 @@ void FanOut::Publish(Subject& subject, std::span<const std::uint8_t> pose, std::
       Deliver(*subscription, pose, age_us, now, context);
     }
   }
+  // After the loop, so that viewers with equal views share a job.
   pictures_->Submit(&context->jobs);
 }
 
@@ -49,6 +56,7 @@ void FanOut::SendOwed(Time now) {
 void FanOut::SendOwed(Subscription& subscription, Time now) {
   if (subscription.held_back && subscription.peer->stuck) return;
   subscription.held_back = false;
+  // Ask the flow control before the gate: Pass() spends the time slot even if nothing is sent.
   const PictureRequest* viewer = PictureViews::FlowControlled(subscription);
   if (viewer != nullptr && !viewer->flow->CanRequest(now)) return;
   if (!subscription.gate.Pass(now)) return;
@@ -56,6 +64,8 @@ void FanOut::SendOwed(Subscription& subscription, Time now) {
   const Subject& subject = *subscription.subject;
   if (!subject.pipeline->has_pose()) return;  // a new skeleton was offered in the meantime
   exclusive_context_->encoded_key.reset();
+  // A subject that is lost shows decayed weights, not those of its last pose. Age 0 means a new
+  // pose.
   const std::int64_t age_us = subject.lost ? ToMicroseconds(now - subject.last_pose) : 0;
   Deliver(subscription, {}, age_us, now, exclusive_context_);
   pictures_->Submit(&exclusive_context_->jobs);
@@ -64,6 +74,7 @@ void FanOut::SendOwed(Subscription& subscription, Time now) {
 // A stuck peer costs nothing: its queued frames are dropped once, nothing is encoded for it, and
 // the newest pose comes first when it reads again. Pictures have their own flow control.
 bool FanOut::HoldBack(Subscription& subscription) {
+  // A subscription to every frame must not be held back: its frames queue (kKeepAll).
   const bool can_wait =
       !subscription.every && !std::holds_alternative<PictureRequest>(subscription.request);
   if (!subscription.peer->stuck || !can_wait) return subscription.held_back = false;

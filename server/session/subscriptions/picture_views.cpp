@@ -20,9 +20,12 @@ constexpr std::size_t kMaxQueuedPictures = 1;
 // The space in a message of kMaxReplyBytes beside the envelope and the table.
 constexpr std::size_t kMaxPictureBytes = protocol::kMaxReplyBytes - 1024;
 
+// After this time without visible movement, a viewer gets the refined picture.
 constexpr Time kAtRestAfter = FromSeconds(0.1);
 constexpr int kTierQualities[ViewerFlow::kNumTiers] = {85, 65, 45};  // JPEG
 
+// The camera of a request: a preset, or free eye and target, which may follow the face's joint. The
+// coordinates come from the wire, so they are checked.
 Result<render::Camera> CameraOf(const protocol::SubscribePictures& request,
                                 const PictureSource& pictures) {
   if (!request.has_camera) {
@@ -82,15 +85,18 @@ Result<PictureRequest> PictureViews::MakeRequest(const protocol::SubscribePictur
                  .width = request.width,
                  .height = request.height,
                  .settings = *std::move(settings)};
+  // Kept as text, because the daemon's own settings below them may change (SetOwnSettings()).
   result.overrides = request.settings;
   const bool png = request.format == protocol::ImageFormat::kPng;
   result.encoding.format = png ? render::ImageFormat::kPng : render::ImageFormat::kJpeg;
+  // PNG has no quality. One value for all makes equal encodings compare equal.
   result.encoding.quality = png ? 0 : request.quality;
   return result;
 }
 
 void PictureViews::SetView(Subscription& subscription, PictureRequest view, Time now) {
   auto& request = std::get<PictureRequest>(subscription.request);
+  // The numbers of pictures and acknowledgements continue across a change of the view.
   view.flow = std::move(request.flow);
   request = std::move(view);
   MarkChanged(subscription, request, now);
@@ -136,6 +142,8 @@ bool PictureViews::NeedsStill(Subscription& subscription, Time now) {
 void PictureViews::AddJob(Subscription& subscription, PictureRequest& request, std::int64_t age_us,
                           Time now, std::vector<RenderJob>* jobs) {
   if (request.flow) return AddFlowControlledJob(subscription, request, age_us, now, jobs);
+  // The ticket names the subscription by uid, not by address: it may end while the job waits or
+  // renders on another thread.
   FindOrAddJob(subscription, request.spec, age_us, jobs)
       .tickets.push_back({.subscription = subscription.uid,
                           .encoding = request.encoding,
@@ -147,6 +155,7 @@ void PictureViews::AddFlowControlledJob(Subscription& subscription, PictureReque
                                         std::vector<RenderJob>* jobs) {
   ViewerFlow& flow = *request.flow;
   const bool at_rest = IsAtRest(subscription, request, now);
+  // FanOut sets `owed` before delivery if a limit forbids the frame; here the flow control decides.
   subscription.owed = false;
   // The viewer already has the refined picture of this pose and view.
   if (at_rest && flow.HasStill(UnchangedSince(subscription, request))) return;
@@ -160,6 +169,8 @@ void PictureViews::AddFlowControlledJob(Subscription& subscription, PictureReque
   PictureTicket ticket{.subscription = subscription.uid,
                        .encoding = request.encoding,
                        .view_request = request.view_request,
+                       // The tier travels with the picture, because the viewer's tier may change
+                       // while it is rendered.
                        .tier = static_cast<std::uint8_t>(flow.tier()),
                        .still = at_rest};
   if (request.encoding.format == render::ImageFormat::kJpeg) {
@@ -168,12 +179,14 @@ void PictureViews::AddFlowControlledJob(Subscription& subscription, PictureReque
   FindOrAddJob(subscription, request.spec, age_us, jobs).tickets.push_back(ticket);
 }
 
+// The mailbox keeps the newest snapshot per view, so this never waits for the renderer.
 void PictureViews::Submit(std::vector<RenderJob>* jobs) {
   for (RenderJob& job : *jobs) pictures_->Submit(std::move(job));
   jobs->clear();
 }
 
 void PictureViews::OnPicture(const FinishedPicture& picture) {
+  // A large PNG may exceed protocol::kMaxReplyBytes, which clients refuse.
   const bool too_large = picture.bytes.size() > kMaxPictureBytes;
   if (too_large) {
     metrics_->Add(Counter::kPicturesFailed, picture.tickets.size());
@@ -192,6 +205,7 @@ void PictureViews::OnPicture(const FinishedPicture& picture) {
     if (!failed) {
       SendPicture(*subscription, picture, ticket);
     } else if (PictureRequest* viewer = FlowControlled(*subscription); viewer != nullptr) {
+      // Ends the request; the tick asks again after ViewerFlow::kRetry.
       viewer->flow->Fail();
       subscription->owed = subscription->subject != nullptr;
     }
@@ -211,6 +225,8 @@ void PictureViews::FillImage(const FinishedPicture& picture) {
 
 void PictureViews::SendPicture(Subscription& subscription, const FinishedPicture& picture,
                                const PictureTicket& ticket) {
+  // `view_request` comes from the ticket: the viewer may have changed its view since, and tells by
+  // this number which view the picture shows.
   auto& request = std::get<PictureRequest>(subscription.request);
   image_.view_request = ticket.view_request;
   image_.tier = ticket.still ? 0 : ticket.tier;

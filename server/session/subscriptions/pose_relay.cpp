@@ -21,6 +21,7 @@ void PoseRelay::FillOffer(const Subject& subject) {
   offer_.subject = subject.name;  // the shared offer has no name
 }
 
+// The offer is encoded to measure it; names and alignment make its size hard to predict.
 bool PoseRelay::Fits(const Subject& subject, Transport transport) {
   if (transport != Transport::kUdp) return true;
   FillOffer(subject);
@@ -44,12 +45,16 @@ void PoseRelay::SendPose(Subscription& subscription, std::span<const std::uint8_
                                 .capture_time_us = pipeline.capture_time_us()};
   const std::size_t keep = subscription.every ? kKeepAll : kMaxQueuedPoses;
   Peer& peer = *subscription.peer;
+  // The usual case copies the bytes of the publisher under a new envelope: no decoding loss, and no
+  // cost per joint.
   if (!payload.empty()) {
     subscription.dropped += context->messages.SendEncodedFrame(peer, subscription.uid, header,
                                                                payload, Counter::kPosesRelayed,
                                                                Counter::kPosesDroppedSlow, keep);
     return;
   }
+  // A partial pose or a foreign wire. A whole pose needs nothing that the subscriber may have
+  // missed.
   ToWholePose(pipeline.pose(), pipeline.stream(), &context->pose);
   context->pose.skeleton_hash = subject.skeleton_hash;
   subscription.dropped +=
@@ -59,6 +64,7 @@ void PoseRelay::SendPose(Subscription& subscription, std::span<const std::uint8_
 
 void PoseRelay::ReportDropped(Subscription& subscription, Time now) {
   if (!subscription.every || subscription.dropped == subscription.reported_dropped) return;
+  // A report per dropped frame would add to the queue that is already too long.
   if (now - subscription.reported < kReportInterval) return;
   subscription.reported = now;
   subscription.reported_dropped = subscription.dropped;

@@ -23,6 +23,8 @@ std::string WhyTooLarge(const std::vector<std::string>& names, Transport transpo
   }
   constexpr std::size_t kPerName = 12;  // offset, length, terminator and padding
   std::size_t bytes = 0;
+  // An estimate from above, which saves encoding the reply twice. The reserve of 1,200 bytes covers
+  // the table, the envelope and the subject's name.
   for (const std::string& name : names) bytes += name.size() + kPerName;
   if (transport != Transport::kUdp || bytes + kPerName * 100 <= protocol::kMaxUdpMessageBytes) {
     return {};
@@ -57,12 +59,14 @@ void Subscribers::Subscribe(Peer& peer, const protocol::Header& header,
                                          .source = request.source,
                                          .indices = {},
                                          .names_hash = 0};
+  // Over UDP frames are lost anyway, and there is no queue that could hold them.
   subscription->every = request.every && peer.transport != Transport::kUdp;
   Add(peer, header, std::move(subscription));
 }
 
 void Subscribers::Subscribe(Peer& peer, const protocol::Header& header,
                             const protocol::SubscribePictures& request) {
+  // A picture may exceed protocol::kMaxUdpMessageBytes, and one lost fragment would lose it whole.
   if (peer.transport == Transport::kUdp) {
     return RefuseRequest(peer, header, ErrorCode::kNeedsTcp,
                          "pictures are available over TCP and WebSocket only");
@@ -81,6 +85,7 @@ void Subscribers::Subscribe(Peer& peer, const protocol::Header& header,
   subscription->wait = request.wait;
   subscription->gate = RateGate(request.max_rate_hz);
   pictures->view_request = header.sequence;
+  // A client that never acknowledges must not wait for its own acknowledgements.
   if (request.acknowledged) pictures->flow.emplace();
   subscription->request = *std::move(pictures);
   Add(peer, header, std::move(subscription));
@@ -100,11 +105,14 @@ void Subscribers::Subscribe(Peer& peer, const protocol::Header& header,
 
 // The checks that all kinds of request share. False: the request has been answered.
 bool Subscribers::CheckRequest(Peer& peer, const protocol::Header& header) {
+  // A subscription makes the daemon send far more than it received, so a forged address must not
+  // get one.
   if (peer.transport == Transport::kUdp && !peer.credit.proven()) {
     RefuseRequest(peer, header, ErrorCode::kUnprovenAddress,
                   "the address is not proven; send Hello with the token from Welcome first");
     return false;
   }
+  // Before the limit: repeating a request whose reply was lost creates nothing.
   if (Subscription* known = table_.FindRepeated(peer, header); known != nullptr) {
     ReplyAgain(*known);
     return false;
@@ -145,6 +153,8 @@ void Subscribers::Add(Peer& peer, const protocol::Header& header,
         (name.empty() ? "there is no subject" : "no subject '" + name + "'") +
             (known.empty() ? "; no subject is connected" : "; connected subjects: " + known));
   }
+  // The subscription is in the table before Bind(), because replies carry its id. Bind() erases it
+  // again if it must be refused.
   Subscription& added = table_.Add(peer, header, std::move(subscription));
   if (subject == nullptr) {
     Reply(added, {});
@@ -161,6 +171,7 @@ bool Subscribers::Bind(Subscription& subscription, Subject& subject) {
   }
   std::vector<std::string> names;
   if (auto* weights = std::get_if<WeightsRequest>(&subscription.request); weights != nullptr) {
+    // Also remembers the indices, so that frames need no look-up by name.
     names = weights->Bind(*subject.pipeline->stream().binding);
     if (names.empty()) {
       RefuseAndErase(subscription, ErrorCode::kNoMatch,
@@ -177,6 +188,8 @@ bool Subscribers::Bind(Subscription& subscription, Subject& subject) {
   return true;
 }
 
+// Sends the reply and then the skeleton, which the subscriber needs to read the poses. False: the
+// subscription was refused and erased.
 bool Subscribers::BindPoses(Subscription& subscription, PoseRequest& request, Subject& subject) {
   if (!poses_.Fits(subject, subscription.peer->transport)) {
     RefuseAndErase(
@@ -200,6 +213,8 @@ void Subscribers::Attach(Subscription& subscription, Subject& subject) {
 // Evaluates as few drivers as the subscriptions need. Levels count drivers from the rig's first.
 void Subscribers::UpdateDriverLevel(Subject& subject) {
   std::size_t needed = all_drivers_ || subject.needs_all_drivers ? wrinkle::kAllDrivers : 0;
+  // Poses are relayed unsolved and need no drivers. Pictures need all, because a shader reads any
+  // weight.
   for (const Subscription* subscription : table_.Of(subject.id)) {
     if (const auto* weights = std::get_if<WeightsRequest>(&subscription->request)) {
       needed = std::max(needed, weights->num_drivers);
@@ -273,6 +288,7 @@ void Subscribers::RefuseRequest(Peer& peer, const protocol::Header& header, Erro
 }
 
 void Subscribers::RefuseAndErase(Subscription& subscription, ErrorCode code, std::string why) {
+  // The header of the original request, so that the client can tell which one was refused.
   RefuseRequest(*subscription.peer,
                 {.stream = subscription.id, .sequence = subscription.request_sequence}, code,
                 std::move(why));
@@ -295,6 +311,7 @@ bool Subscribers::Unsubscribe(Peer& peer, std::uint16_t id) {
 void Subscribers::RemovePeer(Peer& peer) {
   // Peers without subscriptions are the usual case: a flood of forged addresses must stay cheap.
   if (peer.num_subscriptions == 0) return;
+  // Select() copies the pointers first, since Erase() changes the table.
   const auto is_of_peer = [&peer](const Subscription& each) { return each.peer == &peer; };
   for (Subscription* subscription : table_.Select(is_of_peer)) Erase(*subscription);
 }
@@ -311,6 +328,7 @@ void Subscribers::RemovePeer(Peer& peer, protocol::GoodbyeReason goodbye) {
 
 void Subscribers::OnSubjectReady(Subject& subject) {
   const auto needs_reply = [&subject](Subscription& subscription) {
+    // A waiting subscription: it accepts this subject by name, or any.
     if (subscription.subject == nullptr) {
       return subscription.subject_name.empty() || subscription.subject_name == subject.name;
     }
@@ -320,6 +338,7 @@ void Subscribers::OnSubjectReady(Subject& subject) {
     }
     auto* weights = std::get_if<WeightsRequest>(&subscription.request);
     if (weights == nullptr) return false;
+    // A restart with the same skeleton keeps the names. Then the client needs no new reply.
     const std::uint64_t before = weights->names_hash;
     weights->Bind(*subject.pipeline->stream().binding);  // the indices may change, too
     return weights->names_hash != before;
@@ -335,6 +354,7 @@ void Subscribers::OnSubjectGone(Subject& subject) {
     messages_->SendReply(*subscription->peer,
                          {.stream = subscription->id, .sequence = subscription->request_sequence},
                          protocol::Goodbye{protocol::GoodbyeReason::kSubjectGone});
+    // The subject is about to be freed. The subscription waits again, or ends.
     subscription->owed = false;
     if (auto* poses = std::get_if<PoseRequest>(&subscription->request)) *poses = {};
     if (!subscription->wait) Erase(*subscription);

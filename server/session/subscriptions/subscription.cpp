@@ -21,7 +21,9 @@ std::vector<std::string> WeightsRequest::Bind(const wrinkle::RigBinding& binding
     indices.push_back(static_cast<std::uint32_t>(i));
     chosen.push_back(all[i]);
   }
+  // Every weight frame carries this hash, so that a client notices frames of another list of names.
   names_hash = protocol::NamesHash(chosen);
+  // Drivers are evaluated from the rig's first up to a level, so one number says what is needed.
   num_drivers = source == protocol::WeightSource::kDriverValues
                     ? wrinkle::DriversOfValues(binding, indices)
                     : wrinkle::DriversOfWeights(binding, indices);

@@ -45,6 +45,7 @@ bool ViewerFlow::Acknowledge(std::uint32_t number) {
     acknowledged_ = number;
     return true;
   }
+  // Numbers ahead of `sent_` were never sent, which is an error of the viewer.
   return static_cast<std::int32_t>(number - sent_) < 0;  // a repeated acknowledgement
 }
 
@@ -54,6 +55,8 @@ void ViewerFlow::CountDue(Time now) {
     window_ = good_since_ = now;
   }
   if (now - window_ >= kWindow) EndWindow(now);
+  // A pose counts as missed only if two pictures are unacknowledged: then the viewer or its network
+  // is slow. A slow renderer is no reason to lower the quality.
   ++due_;
   if (under_way() < kMaxUnderWay) return;
   ++missed_;

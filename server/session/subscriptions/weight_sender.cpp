@@ -11,9 +11,12 @@ namespace {
 // Weight frames that may wait for a slow peer, unless it asked for every one.
 constexpr std::size_t kMaxQueuedWeights = 4;
 
+// Fills `context->encoded`, unless it already holds these values. The envelope in it is not used:
+// each peer's frame gets its own around the shared payload.
 void EncodeWeights(const SubjectPipeline& pipeline, const WeightsRequest& request,
                    std::int64_t age_us, PublishContext* context) {
   const PublishContext::EncodedWeightsKey key{request.names_hash, request.format, request.source};
+  // Equal name hashes mean equal lists of indices, because all come from one binding.
   if (context->encoded_key == key) return;
   context->encoded_key = key;
   const std::span<const float> values = request.source == protocol::WeightSource::kDriverValues
