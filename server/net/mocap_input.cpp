@@ -26,6 +26,7 @@ MocapInput::MocapInput(asio::io_context& io, std::string flag,
 
 Status MocapInput::Open(const udp::endpoint& endpoint) {
   asio::error_code error;
+  // No reuse_address: with it, a second program could take the port over unnoticed.
   socket_.open(endpoint.protocol(), error);
   if (!error) socket_.bind(endpoint, error);
   if (!error) return {};
@@ -41,6 +42,7 @@ std::uint16_t MocapInput::port() const {
 }
 
 void MocapInput::Start() {
+  // One peer for all senders of the port; `flag_` without its dashes is the name in the log.
   peer_ = hub_->AddPeer(Transport::kMocap, flag_.substr(2), &link_, ReadClock());
   StartCriticalTask(io_, Read());
 }
@@ -64,8 +66,11 @@ asio::awaitable<void> MocapInput::Read() {
 
 void MocapInput::OnDatagram(std::span<const std::uint8_t> bytes, const asio::ip::address& sender,
                             Time now) {
+  // Before parsing, so that rejected senders cost nothing and cannot change the adapter's state.
   if (!gate_.Admits(sender, now)) return Reject(sender);
+  // Half a frame of the former sender must not mix with the first of the new one.
   if (gate_.IsSuccessor(sender)) adapter_->Forget();
+  // Only a valid datagram lets its sender hold the port: a port scan must not lock a tracker out.
   const std::uint64_t malformed = adapter_->counters().malformed;
   adapter_->Push(bytes, ToMicroseconds(now),
                  [&](const auto& frame) { hub_->OnMocapFrame(peer_, frame, now); });
@@ -77,6 +82,7 @@ void MocapInput::OnDatagram(std::span<const std::uint8_t> bytes, const asio::ip:
   UpdateMetrics();
 }
 
+// A rejected sender keeps sending, so it is logged once until the port changes hands.
 void MocapInput::Reject(const asio::ip::address& sender) {
   metrics_->Add(Counter::kMocapLockedOut);
   if (std::exchange(has_logged_rejected_, true)) return;
@@ -84,12 +90,14 @@ void MocapInput::Reject(const asio::ip::address& sender) {
                flag_, sender.to_string());
 }
 
+// Some senders leave out the end-of-frame message. The adapter then completes a frame by time.
 void MocapInput::Tick(Time now) {
   adapter_->Tick(ToMicroseconds(now),
                  [&](const auto& frame) { hub_->OnMocapFrame(peer_, frame, now); });
   UpdateMetrics();
 }
 
+// Adapters know no metrics, so the differences are carried over after each call.
 void MocapInput::UpdateMetrics() {
   const protocol::mocap::AdapterCounters& counters = adapter_->counters();
   metrics_->Add(Counter::kMocapFrames, counters.accepted - counted_.accepted);

@@ -17,6 +17,8 @@ Status OscOutput::Open(const HostPort& destination, const std::string& prefix) {
   destination_ = {address, destination.port};
   prefix_ = "/" + prefix;
   if (!error) socket_.open(destination_.protocol(), error);
+  // Send() runs on a network thread under the shard's lock, which a full send buffer must not
+  // block.
   if (!error) socket_.non_blocking(true, error);
   if (!error) return {};
   return Status(StatusCode::kUnavailable,
@@ -24,12 +26,15 @@ Status OscOutput::Open(const HostPort& destination, const std::string& prefix) {
                 "check --osc-out");
 }
 
+// The writer of a subject, with the names of its present rig. Building the addresses is slow, so it
+// happens once per subject and rig.
 OscOutput::Writer& OscOutput::WriterOf(const Subject& subject) {
   if (writers_.size() >= kMaxWriters && !writers_.contains(subject.id)) writers_.clear();
   auto [entry, is_new] = writers_.try_emplace(
       subject.id,
       Writer{protocol::mocap::OscWeightWriter(protocol::mocap::OscProfile::kFurrow, prefix_)});
   const wrinkle::RigBinding* binding = subject.pipeline->stream().binding.get();
+  // Compares pointers, never dereferences the old one: SetRig() replaces the binding object.
   if (entry->second.named_for != binding) {
     entry->second.osc.SetNames(subject.name, binding->weight_names());
     entry->second.named_for = binding;

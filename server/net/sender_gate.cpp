@@ -23,6 +23,7 @@ SenderGate::SenderGate(std::span<const asio::ip::address> allowed, Policy policy
 bool SenderGate::Admits(const asio::ip::address& sender, Time now) const {
   const asio::ip::address plain = Plain(sender);
   if (!allowed_.empty() && std::ranges::find(allowed_, plain) == allowed_.end()) return false;
+  // A holder that has been silent for kRelease has lost its claim, although holder_ still names it.
   return !exclusive_ || !holder_ || *holder_ == plain || now - heard_ > kRelease;
 }
 

@@ -30,8 +30,10 @@ class RefusalLink : public Link {
     std::vector<std::uint8_t> frame(prefix.begin(), prefix.end());
     frame.insert(frame.end(), message.begin(), message.end());
     asio::error_code error;
+    // The acceptor waits for nobody: a client that does not read loses its reply.
     socket_->non_blocking(true, error);
     socket_->send(asio::buffer(frame), 0, error);
+    // Tells the client that nothing follows. The socket closes when Refuse() returns.
     socket_->shutdown(tcp::socket::shutdown_send, error);
   }
   int SendFrame(std::uint64_t, std::span<const std::uint8_t>, std::size_t, int) override {
@@ -71,6 +73,7 @@ void TcpServer::Start() { StartCriticalTask(io_, Accept()); }
 
 asio::awaitable<void> TcpServer::Accept() {
   while (acceptor_.is_open()) {
+    // Completes with an error when Drain() closes the acceptor.
     auto [error, socket] = co_await acceptor_.async_accept(kAwaitTuple);
     if (!acceptor_.is_open()) co_return;
     if (error) {
@@ -84,6 +87,8 @@ asio::awaitable<void> TcpServer::Accept() {
       metrics_->Add(Counter::kConnectionsAccepted);
       const auto session = std::make_shared<TcpSession>(
           std::move(socket), limits_, hub_, metrics_,
+          // Runs on this thread, in Close(). The server outlives its sessions: the daemon destroys
+          // it after the event loop has ended.
           [this](const std::shared_ptr<TcpSession>& closed) { sessions_.erase(closed); });
       sessions_.insert(session);
       session->Start();
@@ -100,6 +105,7 @@ void TcpServer::Refuse(tcp::socket socket) {
 void TcpServer::Drain() {
   asio::error_code error;
   acceptor_.close(error);
+  // CloseAfterFlush() never erases a session at once, so the loop may use the set.
   for (const auto& session : sessions_) session->CloseAfterFlush(/*linger=*/false);
 }
 

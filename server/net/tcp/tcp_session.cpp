@@ -27,11 +27,13 @@ constexpr std::size_t kWriteBytes = 16 * 1024;
 // Unsent bytes that the kernel may queue (TCP_NOTSENT_LOWAT). By default it queues megabytes, so a
 // slow reader would receive poses that are seconds old.
 constexpr int kUnsentBytes = 32 * 1024;
+// Replies that may wait for a client that does not read. It is then disconnected.
 constexpr std::size_t kMaxReplies = 1024;
 // A write takes microseconds unless the peer does not read.
 constexpr Time kStuckAfter = std::chrono::milliseconds(100);
 constexpr auto kWatchInterval = std::chrono::milliseconds(500);
 
+// The peer's name in the log: "tcp 127.0.0.1 port 50112".
 std::string NameOf(const asio::ip::tcp::socket& socket) {
   asio::error_code error;
   const auto endpoint = socket.remote_endpoint(error);
@@ -52,17 +54,23 @@ TcpSession::TcpSession(asio::ip::tcp::socket socket, const Limits& limits, Hub* 
       wake_(socket_.get_executor()),
       watch_(socket_.get_executor()),
       outbox_(kMaxReplies, static_cast<std::size_t>(limits.outbox_messages)),
+      // The reader checks a length before it allocates, so a client can make it hold this much at
+      // most.
       frames_(protocol::kMaxRequestBytes),
       in_(kReadBytes) {}
 
 void TcpSession::Start() {
   asio::error_code error;
+  // Nagle's algorithm would hold a small message back until the last one is acknowledged. The
+  // writer joins messages itself.
   socket_.set_option(asio::ip::tcp::no_delay(true), error);
   // Optional: without it, slow readers only receive older frames.
   setsockopt(socket_.native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &kUnsentBytes,
              sizeof(kUnsentBytes));
   thread_ = std::this_thread::get_id();
   peer_ = hub_->AddPeer(Transport::kTcp, NameOf(socket_), this, ReadClock());
+  // Each coroutine holds the session, which therefore lives until the last of them has ended,
+  // whatever Close() does. The hub has only a pointer to the Link, and RemovePeer() takes it back.
   const auto self = shared_from_this();
   const auto executor = socket_.get_executor();
   // An exception, such as out of memory, ends this connection only.
@@ -82,6 +90,7 @@ asio::awaitable<void> TcpSession::Read() {
     const auto [error, size] = co_await socket_.async_read_some(asio::buffer(in_), kAwaitTuple);
     if (error) break;
     if (state_ != State::kOpen) continue;  // ignore input; wait for the end of the stream
+    // Without a valid length the start of the next frame is unknown, so the stream cannot go on.
     if (!OnBytes({in_.data(), size}, ReadClock())) {
       metrics_->Add(Counter::kConnectionsMalformed);
       CloseAfterFlush(/*linger=*/true);
@@ -94,6 +103,7 @@ bool TcpSession::OnBytes(std::span<const std::uint8_t> bytes, Time now) {
   std::span<const std::uint8_t> frame;
   while (!bytes.empty() && state_ == State::kOpen) {
     switch (frames_.Push(bytes, frame)) {
+      // Push() has consumed all bytes, so the loop ends.
       case protocol::FrameStatus::kNeedMore: break;
       case protocol::FrameStatus::kFrame: hub_->OnMessage(peer_, frame, now); break;
       case protocol::FrameStatus::kBadLength: hub_->OnBadFrame(peer_); return false;
@@ -102,10 +112,13 @@ bool TcpSession::OnBytes(std::span<const std::uint8_t> bytes, Time now) {
   return true;
 }
 
+// Writes what is queued, sleeps while nothing is, and completes a graceful close: flush, shut down
+// the sending direction, and let the reader wait for the peer's end.
 asio::awaitable<void> TcpSession::Write() {
   while (state_ == State::kOpen || state_ == State::kFlushing) {
     if (FillWriteBuffer()) {
       write_started_ = ReadClock();
+      // While a write is in progress nobody has to wake the writer: it looks again afterwards.
       SetWriting(true);
       const auto [error, size] =
           co_await asio::async_write(socket_, asio::buffer(out_), kAwaitTuple);
@@ -120,6 +133,9 @@ asio::awaitable<void> TcpSession::Write() {
       asio::error_code error;
       socket_.shutdown(asio::ip::tcp::socket::shutdown_send, error);
     } else {
+      // A timer that never expires serves as a condition variable for coroutines. A message that
+      // another thread queues between FillWriteBuffer() and this wait is not missed: Wake() posts
+      // the cancellation to this executor, which runs it once this coroutine waits.
       wake_.expires_at(asio::steady_timer::time_point::max());
       co_await wake_.async_wait(kAwaitTuple);
     }
@@ -130,6 +146,8 @@ asio::awaitable<void> TcpSession::Write() {
 bool TcpSession::FillWriteBuffer() {
   out_.clear();
   const std::lock_guard lock(mutex_);
+  // Takes little at a time: what stays in the outbox can still be replaced by newer frames, what is
+  // in out_ cannot.
   while (out_.size() < kWriteBytes && outbox_.Pop(&message_)) {
     const auto prefix = protocol::FramePrefix(message_.size());
     out_.insert(out_.end(), prefix.begin(), prefix.end());
@@ -141,6 +159,7 @@ bool TcpSession::FillWriteBuffer() {
 
 asio::awaitable<void> TcpSession::Watch() {
   while (state_ != State::kClosed) {
+    // Polls instead of moving a deadline with every message, which would cost each of them a timer.
     watch_.expires_after(kWatchInterval);
     co_await watch_.async_wait(kAwaitTuple);
     if (state_ != State::kClosed && IsOverdue(ReadClock())) {
@@ -152,6 +171,8 @@ asio::awaitable<void> TcpSession::Watch() {
 
 // True for a peer that does not read, has gone idle, or does not close.
 bool TcpSession::IsOverdue(Time now) {
+  // `writing_` and `write_started_` are written on this thread only, so it may read them without
+  // the mutex.
   if (writing_ && now - write_started_ > FromSeconds(limits_.idle_seconds)) return true;
   if (state_ == State::kOpen) return hub_->IsIdle(peer_, now);
   return now - closing_since_ > FromSeconds(limits_.drain_seconds);
@@ -166,11 +187,15 @@ void TcpSession::CloseAfterFlush(bool linger) {
     state_ = State::kFlushing;
     outbox_.DropReplaceableFrames();
   }
+  // Outside of the mutex: the hub calls back into this Link, and takes its own locks first
+  // everywhere else.
   hub_->RemovePeer(peer_);
+  // The writer may be asleep with an empty outbox; it has to see kFlushing.
   wake_.cancel();
 }
 
 void TcpSession::Close() {
+  // Reader, writer and watchdog may each find a reason to close; the first one does it.
   if (state_ == State::kClosed) return;
   state_ = State::kClosed;
   hub_->RemovePeer(peer_);
@@ -178,6 +203,7 @@ void TcpSession::Close() {
   socket_.close(error);
   wake_.cancel();
   watch_.cancel();
+  // Last, because it may release the server's reference to this session.
   on_closed_(shared_from_this());
 }
 
@@ -185,6 +211,8 @@ void TcpSession::SendReply(std::span<const std::uint8_t> message) {
   if (state_ != State::kOpen) return;
   {
     const std::lock_guard lock(mutex_);
+    // A reply that is dropped would leave the client waiting for it, so a full queue ends the
+    // connection.
     if (outbox_.PushReply(message)) {
       if (!writing_) Wake();
       return;
@@ -211,10 +239,12 @@ void TcpSession::SetWriting(bool writing) {
 
 // Wakes the writer. Another thread posts at most one wake-up until the writer has run.
 void TcpSession::Wake() {
+  // Timers of Asio are not thread-safe; only the session's own thread may cancel one.
   if (std::this_thread::get_id() == thread_) {
     wake_.cancel();
   } else if (!woken_.exchange(true)) {
     asio::post(socket_.get_executor(), [self = shared_from_this()] {
+      // Before the cancellation: a message that is queued from here on posts a new wake-up.
       self->woken_ = false;
       self->wake_.cancel();
     });

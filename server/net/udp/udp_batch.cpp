@@ -17,18 +17,22 @@ UdpBatch::UdpBatch() : buffer_(kSize * kBufferBytes) {
 }
 
 std::size_t UdpBatch::Receive(int socket) {
+  // recvmmsg() overwrites both lengths, but only in the headers that it used.
   for (mmsghdr& header : std::span(headers_).first(used_)) {
     header.msg_hdr.msg_namelen = sizeof(sockaddr_storage);
     header.msg_hdr.msg_controllen = sizeof(Control);
   }
   int received = 0;
   do {
+    // MSG_DONTWAIT alone decides about waiting. The timeout of recvmmsg() is unreliable (see its
+    // manual page, BUGS).
     received = recvmmsg(socket, headers_.data(), kSize, MSG_DONTWAIT, nullptr);
   } while (received < 0 && errno == EINTR);
   // Other errors belong to an earlier send (ICMP). Reading them clears them; the socket still
   // works.
   used_ = received > 0 ? static_cast<std::size_t>(received) : 0;
   if (received <= 0) return 0;
+  // Each datagram carries the running total, so the last one has the newest.
   ReadDropped(&headers_[static_cast<std::size_t>(received) - 1].msg_hdr);
   return static_cast<std::size_t>(received);
 }
@@ -44,6 +48,7 @@ void UdpBatch::ReadDropped(msghdr* header) {
     if (item->cmsg_level != SOL_SOCKET || item->cmsg_type != SO_RXQ_OVFL) continue;
     std::uint32_t ever = 0;
     std::memcpy(&ever, CMSG_DATA(item), sizeof(ever));
+    // Unsigned 32-bit subtraction gives the right difference across the wrap.
     dropped_ += ever - std::exchange(dropped_ever_, ever);
   }
 }

@@ -17,6 +17,7 @@ namespace {
 
 constexpr auto kExpireInterval = std::chrono::seconds(1);
 
+// The kernel spreads senders by hash, so each shard gets about an equal part, rounded up.
 Limits LimitsOfShard(Limits limits, int shards) {
   limits.max_udp_peers = (limits.max_udp_peers + shards - 1) / shards;
   return limits;
@@ -29,12 +30,14 @@ UdpPort::UdpPort(asio::io_context& io, int shards, const Limits& limits, Hub* hu
     : io_(io) {
   std::vector<UdpServer*> by_shard;
   for (int shard = 0; shard < shards; ++shard) {
+    // The hint 1 tells Asio that one thread runs the loop.
     if (shard > 0) loops_.push_back(std::make_unique<asio::io_context>(1));
     servers_.push_back(std::make_unique<UdpServer>(LoopOf(static_cast<std::size_t>(shard)),
                                                    LimitsOfShard(limits, shards), hub, metrics,
                                                    recording, shard));
     by_shard.push_back(servers_.back().get());
   }
+  // After all servers exist: each may send through any other's buffer.
   for (UdpServer* server : by_shard) server->Join(by_shard);
 }
 
@@ -45,6 +48,8 @@ UdpPort::~UdpPort() { Close(); }
 Status UdpPort::Open(const asio::ip::udp::endpoint& endpoint) {
   FURROW_RETURN_IF_ERROR(servers_.front()->Open(endpoint));
   if (servers_.size() == 1) return {};
+  // SO_REUSEPORT takes effect at once for sockets that bind later, so setting it after bind() is
+  // what keeps a second daemon out and lets the other shards in.
   FURROW_RETURN_IF_ERROR(servers_.front()->Share());
   for (std::size_t shard = 1; shard < servers_.size(); ++shard) {
     const Status status =
@@ -63,6 +68,7 @@ void UdpPort::Start() {
     servers_[shard]->Start();
     StartCriticalTask(LoopOf(shard), ExpireLoop(shard));
   }
+  // Only after every server has its first operation pending: a loop without work would return.
   for (const auto& loop : loops_) threads_.emplace_back([this, &loop = *loop] { Run(loop); });
 }
 
@@ -85,6 +91,8 @@ asio::awaitable<void> UdpPort::ExpireLoop(std::size_t shard) {
 }
 
 void UdpPort::Close() {
+  // The sockets close after the threads have ended, since an Asio socket must not be closed on one
+  // thread while another uses it.
   for (const auto& loop : loops_) loop->stop();
   for (std::thread& thread : threads_) thread.join();
   threads_.clear();

@@ -24,10 +24,12 @@ void UdpSender::Open(int socket) {
   socket_ = socket;
   int size = 0;
   socklen_t length = sizeof(size);
+  // Kernels before 4.18 do not know the option.
   can_segment_ = getsockopt(socket, SOL_UDP, UDP_SEGMENT, &size, &length) == 0;
 }
 
 std::span<std::uint8_t> UdpSender::Prepare() {
+  // Every limit of the arrays is checked here, so that Commit() and Flush() need no checks.
   const bool is_full = num_items_ == kMaxItems || num_addresses_ == kMaxAddresses ||
                        used_ + protocol::kMaxDatagramBytes > kBufferBytes;
   if (is_full) Flush();
@@ -36,6 +38,8 @@ std::span<std::uint8_t> UdpSender::Prepare() {
 
 void UdpSender::Commit(std::uint64_t key, const asio::ip::udp::endpoint& to, std::size_t size,
                        Packing packing) {
+  // Items of one address form a linked list in order. Sorting by address happens in Flush() by
+  // walking the lists, without moving a byte.
   const auto index = static_cast<std::uint16_t>(num_items_++);
   items_[index] = {static_cast<std::uint32_t>(used_), static_cast<std::uint16_t>(size), kNone,
                    packing};
@@ -48,6 +52,7 @@ void UdpSender::Commit(std::uint64_t key, const asio::ip::udp::endpoint& to, std
 // An open-addressed hash table. Keys are consecutive peer ids, so collisions are rare.
 UdpSender::Address& UdpSender::FindOrAdd(std::uint64_t key, const asio::ip::udp::endpoint& to) {
   std::size_t slot = key % kSlots;
+  // Ends, because at most half of the slots are used.
   for (; slots_[slot] != 0; slot = (slot + 1) % kSlots) {
     Address& address = addresses_[slots_[slot] - 1u];
     if (address.key == key) return address;
@@ -67,6 +72,8 @@ void UdpSender::Pack(std::size_t address) {
         item.packing == Packing::kBundled &&
         datagrams_[num_datagrams_ - 1].size + item.size <= protocol::kMaxDatagramBytes;
     if (joins) {
+      // Sets a flag in the envelope of the message before, which tells the reader that another
+      // follows.
       protocol::MarkFollowed(std::span(buffer_).subspan(before->offset, before->size));
     } else {
       datagrams_[num_datagrams_++] = {address, num_slices_, num_slices_, 0, 0};
@@ -76,6 +83,7 @@ void UdpSender::Pack(std::size_t address) {
   }
 }
 
+// Adds an item to the last datagram. Items that lie side by side in the buffer share a slice.
 void UdpSender::Append(Datagram& datagram, const Item& item) {
   std::uint8_t* const bytes = buffer_.data() + item.offset;
   iovec* const last = datagram.items > 0 ? &slices_[num_slices_ - 1] : nullptr;
@@ -103,11 +111,14 @@ std::size_t UdpSender::EndOfRun(std::size_t first) const {
       break;
     }
     ++last;
+    // A smaller datagram joins the run, but ends it.
     if (next.size < head.size) break;
   }
   return last;
 }
 
+// Fills the header of one message from its run of datagrams. The kernel gathers the slices and cuts
+// the result into datagrams of `head.size` bytes (udp(7), UDP_SEGMENT).
 void UdpSender::Write(std::size_t message) {
   const auto [first, last] = messages_[message];
   const Datagram& head = datagrams_[first];
@@ -118,6 +129,7 @@ void UdpSender::Write(std::size_t message) {
   header.msg_namelen = static_cast<socklen_t>(address.to.size());
   header.msg_iov = &slices_[head.first];
   header.msg_iovlen = datagrams_[last - 1].last - head.first;
+  // A single datagram needs no segment size.
   if (last - first < 2) return;
   header.msg_control = &controls_[message];
   header.msg_controllen = sizeof(Control);
@@ -133,6 +145,7 @@ void UdpSender::Flush() {
   if (num_items_ == 0) return;
   for (std::size_t i = 0; i < num_addresses_; ++i) {
     Pack(i);
+    // Clears only what was used: the table is larger than what most flushes need.
     slots_[addresses_[i].slot] = 0;
   }
   for (std::size_t first = 0; first < num_datagrams_;) {
@@ -153,6 +166,8 @@ void UdpSender::Send(std::size_t num_messages) {
     ++counts_.calls;
     const int sent =
         sendmmsg(socket_, &headers_[at], static_cast<unsigned>(num_messages - at), MSG_DONTWAIT);
+    // sendmmsg() stops at the first message that fails. It returns the error only if that message
+    // is the first of the call, so the failed one is always headers_[at].
     if (sent < 0 && errno == EINTR) continue;
     for (int i = 0; i < sent; ++i, ++at) {
       const auto [first, last] = messages_[at];
@@ -171,6 +186,7 @@ bool UdpSender::Retry(std::size_t message) {
   const auto [first, last] = messages_[message];
   if (last - first < 2 || (errno != EIO && errno != EINVAL && errno != EOPNOTSUPP)) return false;
   can_segment_ = false;
+  // A copy: the headers after this one have not been sent yet.
   msghdr header = headers_[message].msg_hdr;
   header.msg_control = nullptr;
   header.msg_controllen = 0;

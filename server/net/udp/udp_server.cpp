@@ -26,6 +26,7 @@ constexpr int kReceiveBufferBytes = 4 * 1024 * 1024;
 constexpr int kMaxBatches = 8;
 constexpr int kEvictionCandidates = 16;
 
+// Sets SO_REUSEPORT, for which Asio has no option.
 asio::error_code AllowSharing(int socket) {
   const int yes = 1;
   if (setsockopt(socket, SOL_SOCKET, SO_REUSEPORT, &yes, sizeof(yes)) == 0) return {};
@@ -45,6 +46,10 @@ class UdpServer::UdpPeer : public Link {
   }
   int SendFrame(std::uint64_t, std::span<const std::uint8_t> message, std::size_t,
                 int shard) override {
+    // A frame leaves through the publishing shard's socket, whose lock the caller holds. Using the
+    // sender of the peer's own shard would need that shard's lock for every pose. A reply, and a
+    // frame that follows one, leaves through the peer's own socket, so that the two keep their
+    // order.
     UdpServer& by =
         shard == kExclusive ? *server_ : *server_->by_shard_[static_cast<std::size_t>(shard)];
     Send(message, by.sender_);
@@ -82,6 +87,7 @@ UdpServer::UdpServer(asio::io_context& io, const Limits& limits, Hub* hub, Metri
       metrics_(metrics),
       recording_(recording),
       shard_(shard),
+      // Enough for a server without Join(), as in tests.
       by_shard_(static_cast<std::size_t>(shard) + 1, this) {
   hub_->SetBufferedSender(shard_, this);
 }
@@ -134,14 +140,18 @@ void UdpServer::Close() {
 
 asio::awaitable<void> UdpServer::Read() {
   while (socket_.is_open()) {
+    // Asio only waits; recvmmsg() reads, because Asio receives one datagram per call.
     const auto [error] = co_await socket_.async_wait(udp::socket::wait_read, kAwaitTuple);
     if (error) co_return;
     bool is_drained = false;
     for (int batch = 0; batch < kMaxBatches && !is_drained; ++batch) {
       const std::size_t count = batch_.Receive(socket_.native_handle());
+      // One clock reading per batch. The datagrams of a batch waited for the same system call.
       const Time now = ReadClock();
       metrics_->Add(Counter::kDatagramsReceived, count);
       metrics_->Add(Counter::kDatagramsOverrun, batch_.TakeDropped());
+      // Held for a whole batch: its end solves the poses together and flushes the messages. Not
+      // held across co_await, which would let other coroutines of this thread run inside it.
       const Hub::ShardLock lock(*hub_, shard_);
       for (std::size_t i = 0; i < count; ++i) OnDatagram(batch_.bytes(i), batch_.sender(i), now);
       is_drained = count < UdpBatch::kSize;
@@ -162,12 +172,14 @@ void UdpServer::Flush() {
 void UdpServer::OnDatagram(std::span<const std::uint8_t> bytes, const udp::endpoint& sender,
                            Time now) {
   protocol::Envelope envelope;
+  // Receive() cuts larger datagrams to one byte more than the limit, so they show here.
   if (bytes.size() > protocol::kMaxDatagramBytes ||
       protocol::ReadEnvelope(bytes, envelope) != protocol::EnvelopeStatus::kOk) {
     metrics_->Add(Counter::kDatagramsMalformed);
     return;
   }
   if (recording_ != nullptr) recording_->OnDatagram(AddressOf(sender), bytes, now);
+  // After the envelope: a random datagram must not create state.
   UdpPeer* peer = FindOrAdd(sender, now);
   hub_->OnBytesReceived(peer->id, bytes.size(), now);
   std::span<const std::uint8_t> message;
@@ -198,17 +210,23 @@ UdpServer::UdpPeer* UdpServer::FindOrAdd(const udp::endpoint& sender, Time now) 
   const Address address = AddressOf(sender);
   auto found = peers_.find(address);
   if (found != peers_.end()) return found->second.get();
+  // A full table evicts instead of refusing: forged addresses must not lock real ones out for
+  // idle_seconds.
   if (peers_.size() >= static_cast<std::size_t>(limits_.max_udp_peers)) {
     // Compares only a few peers, so that a flood of forged addresses stays cheap.
+    // The first entries of a hash table are in no particular order, so they are a sample.
     auto victim = peers_.begin();
     int candidates = kEvictionCandidates;
     for (auto it = peers_.begin(); it != peers_.end() && candidates-- > 0; ++it) {
       if (hub_->ShouldEvictBefore(it->second->id, victim->second->id)) victim = it;
     }
+    // The hub first: it may use the Link until then. Messages that the sender still holds have
+    // their own copy of the address.
     hub_->RemovePeer(victim->second->id);
     reassembler_.ForgetPeer(victim->second->id);
     peers_.erase(victim);
   }
+  // On the heap, because the hub keeps its address while the map grows.
   auto peer = std::make_unique<UdpPeer>(this, sender);
   const std::string name =
       "udp " + sender.address().to_string() + " port " + std::to_string(sender.port());
@@ -217,6 +235,7 @@ UdpServer::UdpPeer* UdpServer::FindOrAdd(const udp::endpoint& sender, Time now) 
 }
 
 void UdpServer::Expire(Time now) {
+  // Shard locks nest, so the mutex is taken once and not once per peer.
   const Hub::ShardLock lock(*hub_, shard_);
   metrics_->Add(Counter::kFragmentsExpired, reassembler_.Expire(ToMicroseconds(now)));
   std::erase_if(peers_, [&](const auto& entry) {
