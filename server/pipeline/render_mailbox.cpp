@@ -9,6 +9,8 @@ namespace {
 
 constexpr int kStillQuality = 92;  // the encoder subsamples chroma below 90
 
+// Adds the recipients of `from` to the newer job `into`, which replaces it. A subscription in both
+// keeps its newer ticket. A still becomes a normal picture if the subject has moved since.
 void MergeTickets(const RenderJob& from, RenderJob* into) {
   const bool rests = from.moved_at == into->moved_at;
   for (PictureTicket ticket : from.tickets) {
@@ -19,6 +21,7 @@ void MergeTickets(const RenderJob& from, RenderJob* into) {
   }
 }
 
+// True if one picture serves both jobs; the pose may differ, since the newest wins.
 bool IsSamePicture(const RenderJob& a, const RenderJob& b) {
   return a.subject == b.subject && a.spec == b.spec;
 }
@@ -51,6 +54,7 @@ void RenderMailbox::DropOlderTickets(const RenderJob& job) {
     return std::ranges::find(job.tickets, ticket.subscription, &PictureTicket::subscription) !=
            job.tickets.end();
   };
+  // Also erases jobs that have lost their last ticket: nobody would see them.
   std::erase_if(jobs_, [&](RenderJob& other) {
     if (IsSamePicture(other, job)) return false;
     return std::erase_if(other.tickets, is_superseded) > 0 && other.tickets.empty();
@@ -61,10 +65,13 @@ RenderMailbox::PutResult RenderMailbox::Put(RenderJob&& job) {
   const std::lock_guard lock(mutex_);
   if (closed_) return PutResult::kFull;
   DropOlderTickets(job);
+  // At most `capacity` jobs wait, so a search is fast enough.
   const auto waiting = std::find_if(jobs_.begin(), jobs_.end(), [&](const RenderJob& other) {
     return IsSamePicture(other, job);
   });
   if (waiting != jobs_.end()) {
+    // The new job takes the old one's place in the queue. At the back, a subject that moves all the
+    // time would never be rendered.
     MergeTickets(*waiting, &job);
     *waiting = std::move(job);
     return PutResult::kReplaced;
@@ -80,8 +87,10 @@ std::optional<RenderJob> RenderMailbox::Take(bool wait) {
   std::unique_lock lock(mutex_);
   if (wait) changed_.wait(lock, [this] { return closed_ || !jobs_.empty(); });
   if (closed_ || jobs_.empty()) return std::nullopt;
+  // A still takes longer (more samples), and nothing moves in it, so it can wait.
   auto next = std::ranges::find_if_not(jobs_, &RenderJob::IsStill);
   if (next == jobs_.end() || passed_over_ >= kMaxPassedOver) next = jobs_.begin();
+  // Counts how often the oldest job was passed, so that a moving subject cannot starve stills.
   passed_over_ = next == jobs_.begin() ? 0 : passed_over_ + 1;
   RenderJob job = std::move(*next);
   jobs_.erase(next);
@@ -94,6 +103,7 @@ bool RenderMailbox::WithdrawStill(std::uint64_t subscription) {
     return ticket.still && ticket.subscription == subscription;
   };
   for (auto job = jobs_.begin(); job != jobs_.end(); ++job) {
+    // A subscription has at most one waiting ticket, so the search ends with the first.
     if (std::erase_if(job->tickets, is_still_of) == 0) continue;
     if (job->tickets.empty()) jobs_.erase(job);
     return true;
@@ -105,6 +115,7 @@ void RenderMailbox::Close() {
   const std::lock_guard lock(mutex_);
   closed_ = true;
   jobs_.clear();
+  // Take() returns without a job, and the render thread ends.
   changed_.notify_all();
 }
 

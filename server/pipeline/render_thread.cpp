@@ -10,6 +10,7 @@
 namespace furrow::server {
 namespace {
 
+// One job per subject and view, so the limit concerns the number of different views only.
 constexpr std::size_t kMaxWaitingJobs = 256;
 constexpr int kMaxReadBacks = 2;  // the limit of render::Renderer
 
@@ -20,9 +21,12 @@ Result<std::unique_ptr<RenderThread>> RenderThread::Start(const wrinkle::Skeleto
                                                           Deliver deliver) {
   std::unique_ptr<RenderThread> self(
       new RenderThread(skeleton, std::move(make_renderer), metrics, std::move(deliver)));
+  // EGL binds a context to the thread that makes it current, so the render thread creates the
+  // renderer and reports back.
   std::promise<Status> started;
   std::future<Status> status = started.get_future();
   self->thread_ = std::thread(&RenderThread::Run, self.get(), std::move(started));
+  // The thread has ended in this case; the destructor of `self` joins it.
   FURROW_RETURN_IF_ERROR(status.get());
   return self;
 }
@@ -45,6 +49,8 @@ void RenderThread::Submit(RenderJob job) {
     case RenderMailbox::PutResult::kQueued:
     case RenderMailbox::PutResult::kNotWanted: break;
     case RenderMailbox::PutResult::kReplaced: metrics_->Add(Counter::kSnapshotsReplaced); break;
+    // Put() leaves the job alone only in this case. Its viewers must hear of it, because they wait
+    // for an answer to every ticket.
     case RenderMailbox::PutResult::kFull: Fail(std::move(job)); break;
   }
 }
@@ -71,12 +77,17 @@ void RenderThread::Run(std::promise<Status> started) {
   if (status.ok()) {
     description_ = renderer_->description();
     for (const std::string_view name : render::CameraPresetNames()) {
+      // Preset() serves network threads from this copy; they must not call the renderer.
       if (auto camera = renderer_->Preset(name); camera.ok()) presets_.emplace_back(name, *camera);
     }
   }
+  // Everything above happens before Start() returns and is read-only afterwards, so it needs no
+  // lock.
   started.set_value(status);
   if (!status.ok()) return;
   while (!mailbox_.closed()) {
+    // Fills the read-backs before it waits for the oldest, so that the GPU draws one picture while
+    // this thread encodes another. Blocks in Take() only if nothing is in flight.
     while (static_cast<int>(in_flight_.size()) < kMaxReadBacks) {
       std::optional<RenderJob> job = mailbox_.Take(/*wait=*/in_flight_.empty());
       if (!job) break;
@@ -90,6 +101,7 @@ void RenderThread::Run(std::promise<Status> started) {
 void RenderThread::Draw(RenderJob job) {
   if (renderer_ == nullptr && !Revive()) return Fail(std::move(job));
   const Snapshot& snapshot = *job.snapshot;
+  // Retargeting runs here, not on the network thread: only poses that are drawn pay for it.
   if (drawn_.Run(*snapshot.retarget, *snapshot.blend_shape_pose, snapshot.joints,
                  snapshot.blend_shapes) != wrinkle::JobStatus::kOk) {
     return Fail(std::move(job));
@@ -101,6 +113,7 @@ void RenderThread::Draw(RenderJob job) {
   request.filtered_values = snapshot.filtered_values;
   if (job.spec.settings != nullptr) request.settings = *job.spec.settings;
   request.settings.view = job.spec.view;
+  // 0 leaves the number to the device; a number that the user set also holds for stills.
   if (int& samples = request.settings.anti_aliasing.samples; samples == 0 && job.IsStill()) {
     samples = kStillSamples;
   }
@@ -125,19 +138,23 @@ void RenderThread::Collect(bool wait) {
     return;
   }
   if (image->width == 0) return;
+  // A finished picture, not a created context, proves that rendering works again.
   next_skip_ = 0;
   metrics_->Add(Counter::kPicturesRendered);
+  // Read-backs finish in the order of Submit(), so the oldest job belongs to this image.
   const RenderJob job = std::move(in_flight_.front());
   in_flight_.pop_front();
   Finish(*image, job);
 }
 
+// Returns all tickets without a picture, so that the viewers' flow control does not wait forever.
 void RenderThread::Fail(RenderJob job) {
   metrics_->Add(Counter::kPicturesFailed);
   deliver_({.sequence = job.snapshot->sequence, .tickets = std::move(job.tickets)});
 }
 
 void RenderThread::Finish(const render::Image& image, const RenderJob& job) {
+  // Viewers with equal encodings share the bytes.
   std::vector<Encoding> done;
   for (const PictureTicket& first : job.tickets) {
     const Encoding encoding = EncodingOf(first);
@@ -147,6 +164,7 @@ void RenderThread::Finish(const render::Image& image, const RenderJob& job) {
     metrics_->Add(bytes.ok() ? Counter::kPicturesEncoded : Counter::kPicturesFailed);
     if (!bytes.ok()) {
       spdlog::warn("cannot encode a picture: {}", bytes.status().ToString());
+      // Without bytes the picture reports a failure to its viewers.
       bytes = std::vector<std::uint8_t>();
     }
     FinishedPicture picture{
@@ -166,6 +184,7 @@ void RenderThread::Finish(const render::Image& image, const RenderJob& job) {
   }
 }
 
+// Drops the context with everything in flight. The next job that may try creates it again.
 void RenderThread::Rebuild(const Status& reason) {
   spdlog::error("the renderer failed and will be created again: {}", reason.ToString());
   metrics_->Add(Counter::kRendererRestarts);
@@ -175,6 +194,7 @@ void RenderThread::Rebuild(const Status& reason) {
   BackOff();
 }
 
+// Tries to create the renderer for the present job. False: this job is skipped.
 bool RenderThread::Revive() {
   if (jobs_to_skip_ > 0) {
     --jobs_to_skip_;
@@ -189,6 +209,8 @@ bool RenderThread::Revive() {
   return true;
 }
 
+// 0, 1, 3, 7 ... jobs. Counting jobs instead of time needs no clock, and without viewers no attempt
+// is made.
 void RenderThread::BackOff() {
   jobs_to_skip_ = next_skip_;
   next_skip_ = std::min(2 * next_skip_ + 1, kMaxJobsSkipped);

@@ -13,6 +13,7 @@
 namespace furrow::server {
 namespace {
 
+// "a, b and 3 more". The names come from senders, so a log line has a limit.
 std::string Join(std::span<const std::string> names, std::size_t at_most = 12) {
   std::string text;
   for (std::size_t i = 0; i < names.size() && i < at_most; ++i) {
@@ -22,10 +23,12 @@ std::string Join(std::span<const std::string> names, std::size_t at_most = 12) {
   return text;
 }
 
+// The hash covers the sorted skeleton. Streams with other wire orders need their own joint_of_wire.
 bool SameOrder(const wrinkle::Skeleton& a, const wrinkle::Skeleton& b) {
   return std::ranges::equal(a.source_index(), b.source_index());
 }
 
+// True if a driver of the rig reads this blend shape. Trackers disagree about upper and lower case.
 bool Reads(const wrinkle::Rig& rig, const std::string& blend_shape) {
   return std::ranges::any_of(rig.drivers, [&](const wrinkle::Driver& driver) {
     return driver.kind == wrinkle::Driver::Kind::kBlendShape &&
@@ -49,11 +52,13 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Get(
 void StreamDefinitions::SetRig(std::shared_ptr<const wrinkle::Rig> rig) {
   rig_ = std::move(rig);
   rig_joints_ = wrinkle::JointsOf(*rig_);
+  // The definitions are bound to the old rig. Subjects that use one keep it alive until Rebind().
   known_.clear();
 }
 
 Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Rebind(
     const StreamDefinition& stream) {
+  // Not limited: the number of subjects bounds the work, and SetRig() must reach all of them.
   return FindOrMake(stream.skeleton, stream.blend_shapes, [] { return true; });
 }
 
@@ -66,6 +71,7 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::FindOrMake(
   };
   const auto known = std::find_if(known_.begin(), known_.end(), is_same);
   if (known != known_.end()) {
+    // To the front: the list is in the order of use.
     known_.splice(known_.begin(), known_, known);
     return known_.front();
   }
@@ -79,7 +85,9 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::FindOrMake(
 
 Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Make(
     wrinkle::Skeleton skeleton, std::vector<std::string> blend_shapes) {
+  // Finds the skeleton map whose joint names fit, and by it the joints of the rig.
   rig::SkeletonMatch match = matcher_.Match(skeleton, *rig_, character_);
+  // Live streams may lack joints and blend shapes. Their drivers rest, and Report() names them.
   auto binding = wrinkle::RigBinding::Create(*rig_, skeleton, blend_shapes,
                                              {.allow_missing = true, .aliases = match.aliases});
   FURROW_RETURN_IF_ERROR(binding);
@@ -89,6 +97,8 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Make(
     definition->joint_of_wire[static_cast<std::size_t>(skeleton.source_index()[joint])] =
         static_cast<std::int16_t>(joint);
   }
+  // The character has its own skeleton: the pose is carried over joint by joint, and the rig's
+  // blend shapes move it through BlendShapePose.
   if (character_ != nullptr) {
     definition->retarget =
         std::make_shared<const wrinkle::Retarget>(rig::MakeRetarget(match, skeleton, *character_));

@@ -13,6 +13,7 @@ SubjectPipeline::SubjectPipeline(std::shared_ptr<const StreamDefinition> stream)
 }
 
 wrinkle::JobStatus SubjectPipeline::Solve(std::uint32_t sequence, std::int64_t capture_time_us) {
+  // The same two steps as in a batch, so that one pose alone gives the same weights.
   const wrinkle::BatchUpdate update = Prepare(sequence, capture_time_us);
   return Finish(solver_.Update(*update.pose, update.dt));
 }
@@ -23,8 +24,11 @@ wrinkle::BatchUpdate SubjectPipeline::Prepare(std::uint32_t sequence,
   if (has_pose_ && capture_time_us >= capture_time_us_) {
     dt = static_cast<double>(capture_time_us - capture_time_us_) * 1e-6;
   } else if (has_pose_) {
+    // Time went back: a looping recording or a new clock. What the filter remembers is not the past
+    // of this pose.
     solver_.Reset();
   }
+  // Writes corrected_, which solved_pose() then returns.
   if (neutral_pose_) SubtractNeutral();
   next_sequence_ = sequence;
   next_capture_time_us_ = capture_time_us;
@@ -33,6 +37,7 @@ wrinkle::BatchUpdate SubjectPipeline::Prepare(std::uint32_t sequence,
 }
 
 wrinkle::JobStatus SubjectPipeline::Finish(wrinkle::JobStatus status) {
+  // A refused pose leaves sequence, time and weights at those of the last good one.
   waits_ = false;
   if (status != wrinkle::JobStatus::kOk) return status;
   sequence_ = next_sequence_;
@@ -48,9 +53,12 @@ void SubjectPipeline::SubtractNeutral() {
     const wrinkle::Transform& now = pose_.joints[joint];
     const wrinkle::Transform& neutral = neutral_pose_->joints[joint];
     wrinkle::Transform& out = corrected_.joints[joint];
+    // The turn from the neutral to the present pose, in the parent's space, applied to the rest
+    // pose.
     out.rotation =
         glm::normalize(now.rotation * glm::inverse(neutral.rotation) * rest[joint].rotation);
     out.translation = rest[joint].translation + (now.translation - neutral.translation);
+    // A neutral pose corrects rotations and translations only.
     out.scale = now.scale;
   }
   for (std::size_t shape = 0; shape < pose_.blend_shapes.size(); ++shape) {
@@ -64,6 +72,7 @@ bool SubjectPipeline::SetNeutral(std::optional<wrinkle::LocalPose> neutral) {
     return false;
   }
   neutral_pose_ = std::move(neutral);
+  // Also sizes it. SubtractNeutral() overwrites the values.
   corrected_ = pose_;
   SolveAgain();
   return true;
@@ -71,6 +80,7 @@ bool SubjectPipeline::SetNeutral(std::optional<wrinkle::LocalPose> neutral) {
 
 void SubjectPipeline::SetStream(std::shared_ptr<const StreamDefinition> stream) {
   stream_ = std::move(stream);
+  // The level starts at all drivers again; Subscribers::OnSubjectReady() lowers it.
   solver_ = wrinkle::SubjectSolver(stream_->binding);
   SolveAgain();
 }
@@ -101,6 +111,8 @@ std::shared_ptr<const Snapshot> SubjectPipeline::TakeSnapshot(std::int64_t age_u
                                                               std::int64_t received_us) const {
   const auto weights = solver_.wrinkle_weights();
   const auto filtered = solver_.filtered_values();
+  // A copy, not a view: the render thread reads it while this thread solves the next pose. What
+  // does not change per pose is shared.
   auto snapshot = std::make_shared<Snapshot>();
   snapshot->sequence = sequence_;
   snapshot->capture_time_us = capture_time_us_;

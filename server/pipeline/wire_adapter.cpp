@@ -21,6 +21,7 @@ glm::quat ToUnitQuat(const protocol::Quat& q) {
                                                                 : glm::normalize(rotation);
 }
 
+// Indices come from the network and address arrays.
 bool IndicesFit(std::span<const std::uint16_t> indices, std::size_t count) {
   return std::ranges::all_of(indices, [count](std::uint16_t index) { return index < count; });
 }
@@ -47,6 +48,7 @@ StreamOffer ToStreamOffer(const protocol::SkeletonOffer& offer) {
   for (const protocol::OfferedJoint& joint : offer.joints) {
     wrinkle::JointDesc desc;
     desc.name = joint.name;
+    // The codec has checked that each parent comes before its children.
     desc.parent = joint.parent < 0 ? wrinkle::kNoJoint : joint.parent;
     desc.rest.translation = ToVec(joint.rest_translation);
     desc.rest.rotation = ToUnitQuat(joint.rest_rotation);
@@ -72,6 +74,7 @@ bool PoseFits(const protocol::PoseFrame& frame, const StreamDefinition& stream) 
 void ApplyPose(const protocol::PoseFrame& frame, const StreamDefinition& stream,
                wrinkle::LocalPose* pose) {
   const std::span<const wrinkle::Transform> rest = stream.skeleton.rest_pose();
+  // A whole pose lists only what differs from rest, so everything else must return to rest.
   if (!frame.partial) {
     std::ranges::copy(rest, pose->joints.begin());
     std::ranges::fill(pose->blend_shapes, 0.0f);
@@ -84,6 +87,7 @@ void ApplyPose(const protocol::PoseFrame& frame, const StreamDefinition& stream,
   for (std::size_t i = 0; i < frame.translations.size(); ++i) {
     const auto joint =
         static_cast<std::size_t>(stream.joint_of_wire[IndexAt(frame.translation_joints, i)]);
+    // The wire carries translations as offsets from rest, which are 0 for most joints.
     pose->joints[joint].translation = rest[joint].translation + ToVec(frame.translations[i]);
   }
   for (std::size_t i = 0; i < frame.scales.size(); ++i) {
@@ -113,6 +117,7 @@ void ToWholePose(const wrinkle::LocalPose& pose, const StreamDefinition& stream,
     const auto joint = static_cast<std::size_t>(stream.joint_of_wire[i]);
     const wrinkle::Transform& local = pose.joints[joint];
     frame->rotations[i] = ToWire(local.rotation);
+    // Exact comparison: a value that came from rest is bit by bit the same.
     if (local.translation != rest[joint].translation) {
       frame->translation_joints.push_back(static_cast<std::uint16_t>(i));
       frame->translations.push_back(ToWire(local.translation - rest[joint].translation));
