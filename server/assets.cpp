@@ -29,6 +29,7 @@ fs::path RigOf(const fs::path& character, const fs::path& rig) {
   return fs::exists(beside, error) ? beside : fs::path();
 }
 
+// Sets `assets->rig` from a rig file, without any mesh.
 Status LoadRigAlone(const fs::path& path, const wrinkle::PoseSource& poses, Assets* assets) {
   auto rig = rig::LoadRig(path, poses);
   if (rig.ok()) assets->rig = std::make_shared<const wrinkle::Rig>(*std::move(rig));
@@ -46,6 +47,7 @@ Result<rig::SkeletonMatcher> LoadMatcher(const std::string& map) {
 }  // namespace
 
 Result<Assets> LoadAssets(const Config& config) {
+  // Rigs name the files and frames of their reference poses; each file is read once.
   const wrinkle::PoseSource poses = motion::CachedPoseSource();
   Assets assets;
   auto matcher = LoadMatcher(config.skeleton_map);
@@ -81,6 +83,7 @@ Result<Assets> LoadAssets(const Config& config) {
     return assets;
   }
   auto shared = std::make_shared<const character::Character>(*std::move(loaded));
+  // The aliasing constructor: the pointer to the rig keeps the whole character alive.
   assets.rig = std::shared_ptr<const wrinkle::Rig>(shared, &shared->rig);
   assets.character = std::move(shared);
   return assets;

@@ -42,6 +42,7 @@ namespace {
 
 constexpr auto kTick = std::chrono::milliseconds(10);
 constexpr auto kSecond = std::chrono::seconds(1);
+// How often a shutdown checks whether the peers have received everything.
 constexpr auto kDrainPoll = std::chrono::milliseconds(5);
 
 // Returns unpredictable numbers, never 0, for session numbers and the tokens that prove an address.
@@ -55,6 +56,7 @@ std::uint64_t RandomNumber() {
 // The parts of one daemon. Members are declared in the order of their dependencies.
 class Daemon {
  public:
+  // Keeps references to `config` and `options`, which outlive it.
   Daemon(const Config& config, const RunOptions& options, Assets assets)
       : config_(config),
         options_(options),
@@ -62,6 +64,7 @@ class Daemon {
         metrics_(options.metrics != nullptr ? options.metrics : &own_metrics_),
         signals_(io_) {}
 
+  // Call these in this order. Each leaves out what the configuration does not ask for.
   Status StartRendering();
   Status StartRecording();
   Status LoadPlayer();
@@ -108,6 +111,9 @@ Status Daemon::StartRendering() {
       },
       metrics_,
       [this](FinishedPicture picture) {
+        // Called on the render thread. The picture crosses to shard 0's thread by value, because
+        // only that thread may call OnPicture(). `hub_` does not exist yet while the renderer
+        // starts, but no picture is requested before.
         asio::post(io_, [this, picture = std::move(picture)] { hub_->OnPicture(picture); });
       });
   if (started.ok()) {
@@ -115,6 +121,7 @@ Status Daemon::StartRendering() {
     spdlog::info("rendering on {}", render_->description());
     return {};
   }
+  // Weights work without OpenGL, so the daemon serves them unless the user insists on pictures.
   if (config_.require_render) return started.status();
   spdlog::error("cannot render pictures: {}", started.status().ToString());
   return {};
@@ -144,6 +151,8 @@ void Daemon::MakeHub() {
   parts.limits = config_.limits;
   parts.session = session_ = RandomNumber();
   parts.rig = assets_.rig;
+  // Without a renderer no stream is retargeted to the character, which saves work for each
+  // skeleton.
   parts.character = render_ != nullptr ? &assets_.character->skeleton : nullptr;
   parts.skeletons = assets_.skeletons;
   parts.pictures = render_.get();
@@ -152,9 +161,11 @@ void Daemon::MakeHub() {
   parts.make_token = RandomNumber;
   if (config_.osc_out) {
     parts.on_weights = [this](const Subject& subject, int shard) {
+      // Each shard has a socket and buffers of its own, so the shards' threads need no lock here.
       osc_[static_cast<std::size_t>(shard)]->Send(subject);
     };
   }
+  // The recorder is declared before the hub and therefore outlives it.
   parts.recording = recorder_.get();
   parts.shards = config_.threads;
   hub_ = std::make_unique<Hub>(std::move(parts));
@@ -162,12 +173,14 @@ void Daemon::MakeHub() {
 
 Status Daemon::Listen() {
   MakeHub();
+  // ValidateConfig() has checked the address, so this does not throw.
   const auto address = asio::ip::make_address(config_.bind);
   tcp_ = std::make_unique<TcpServer>(io_, config_.limits, hub_.get(), metrics_);
   FURROW_RETURN_IF_ERROR(tcp_->Open({address, config_.tcp}));
   udp_ = std::make_unique<UdpPort>(io_, config_.threads, config_.limits, hub_.get(), metrics_,
                                    recorder_.get());
   FURROW_RETURN_IF_ERROR(udp_->Open({address, config_.udp}));
+  // Sockets open before any thread starts, so an error ends the daemon before it serves.
   for (int shard = 0; config_.osc_out && shard < config_.threads; ++shard) {
     osc_.push_back(std::make_unique<OscOutput>(io_, metrics_));
     FURROW_RETURN_IF_ERROR(osc_.back()->Open(*config_.osc_out, config_.osc_prefix));
@@ -198,6 +211,7 @@ Status Daemon::StartWeb() {
   parts.wants_pictures = config_.render && assets_.character != nullptr;
   if (render_ != nullptr) parts.renderer = render_->description();
   parts.player = player_.get();
+  // Called on the hub's thread while `http_` exists; the counters are atomic.
   parts.connections = [this] { return http_->connections(); };
   parts.viewers = [this] { return http_->viewers(); };
   api_ = std::make_unique<Api>(std::move(parts));
@@ -206,10 +220,13 @@ Status Daemon::StartWeb() {
        .bind = config_.bind,
        .post_to_hub =
            [this](std::function<void(Hub&, Time)> task) {
+             // The time is read when the task runs: it may have waited behind other work.
              asio::post(io_, [this, task = std::move(task)] { task(*hub_, ReadClock()); });
            },
        .answer =
            [this](const ApiRequest& request, Hub& hub, Time now) {
+             // Runs on shard 0's thread. The other shards wait until the reply is complete, so
+             // replies are quick.
              const Hub::ExclusiveLock lock(hub, 0);
              return api_->Answer(request, hub, now);
            },
@@ -238,6 +255,7 @@ void Daemon::Announce() const {
     line += " http=" + host + std::to_string(*ready.http);
   }
   std::printf("%s\n", line.c_str());
+  // Scripts wait for this line, and a pipe is buffered.
   std::fflush(stdout);
   if (options_.on_ready) options_.on_ready(ready);
 }
@@ -256,8 +274,10 @@ void Daemon::Serve() {
       if (!error) RequestDrain();
     });
   }
+  // Another thread may request the stop; only the event loop's thread may drain.
   const std::stop_callback on_stop(options_.stop,
                                    [this] { asio::post(io_, [this] { RequestDrain(); }); });
+  // After all parts have started: a client that reads the line may connect at once.
   Announce();
   io_.run();
   http_.reset();  // both post to io_, so they end first
@@ -268,6 +288,8 @@ asio::awaitable<void> Daemon::TickLoop() {
   asio::steady_timer timer(io_);
   auto due = std::chrono::steady_clock::now();
   while (true) {
+    // A fixed grid of deadlines does not drift. After a stall, missed ticks are left out, because a
+    // burst of ticks would delay the loop further.
     due = std::max(due + kTick, std::chrono::steady_clock::now());  // skip missed ticks
     timer.expires_at(due);
     co_await timer.async_wait(kAwaitTuple);
@@ -296,12 +318,14 @@ asio::awaitable<void> Daemon::PlayLoop() {
   player_->Start(hub_.get(), ReadClock());
   while (true) {
     const Time now = ReadClock();
+    // Advance() says when the next frame is due, so the loop wakes only for frames.
     timer.expires_after(player_->Advance(now) - now);
     co_await timer.async_wait(kAwaitTuple);
   }
 }
 
 void Daemon::RequestDrain() {
+  // A second SIGTERM must not start a second shutdown.
   if (std::exchange(draining_, true)) return;
   StartCriticalTask(io_, Drain());
 }
@@ -312,8 +336,11 @@ asio::awaitable<void> Daemon::Drain() {
   spdlog::info("shutting down");
   const Time deadline = ReadClock() + FromSeconds(config_.limits.drain_seconds);
   hub_->Drain();
+  // Joins the threads of the other shards: from here on only this thread uses the hub. The goodbyes
+  // have left already, at the end of the hub's exclusive lock.
   udp_->Close();
   mocap_.Close();
+  // Connections close by themselves once their queues are empty.
   tcp_->Drain();
   if (http_) http_->Drain();
   asio::steady_timer timer(io_);
@@ -324,6 +351,7 @@ asio::awaitable<void> Daemon::Drain() {
     timer.expires_after(kDrainPoll);
     co_await timer.async_wait(kAwaitTuple);
   }
+  // Clients that did not read until the deadline lose what is left.
   tcp_->CloseAll();
   io_.stop();
 }
@@ -334,6 +362,7 @@ ExitCode Fail(ExitCode code, const Status& status) {
 }
 
 ExitCode LoadAndServe(const Config& config, const RunOptions& options) {
+  // Tests and embedders call Run() without ParseCommandLine(), which has validated already.
   if (Status status = ValidateConfig(config); !status.ok()) return Fail(ExitCode::kUsage, status);
   Result<Assets> assets = LoadAssets(config);
   if (!assets.ok()) return Fail(ExitCode::kBadInput, assets.status());
@@ -369,6 +398,7 @@ ExitCode LoadAndServe(const Config& config, const RunOptions& options) {
 ExitCode Run(const Config& config, const RunOptions& options) {
   try {
     return LoadAndServe(config, options);
+  // Parts report errors as Status. Only the standard library and the event loop throw here.
   } catch (const std::exception& error) {  // such as out of memory or threads
     return Fail(ExitCode::kFailed, Status(StatusCode::kInternal, error.what(), "furrowd"));
   }

@@ -82,6 +82,7 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
   app->add_flag("--log-json", config->log_json, "Write log lines as JSON");
 }
 
+// Without a config: the program prints the text and ends.
 CommandLine Fail(ExitCode code, const std::string& text) { return {std::nullopt, code, text}; }
 
 // CLI11 parses a vector from its back.
@@ -102,6 +103,8 @@ CommandLine ParseCommandLine(std::span<const std::string> args) {
     first.parse(Reversed(args));
   } catch (const CLI::ParseError& error) {
     std::ostringstream out;
+    // CLI11 reports --help and --version as exceptions, too; exit() writes their text and returns
+    // 0.
     const bool failed = first.exit(error, out, out) != 0;
     return Fail(failed ? ExitCode::kUsage : ExitCode::kOk, out.str());
   }
@@ -113,6 +116,7 @@ CommandLine ParseCommandLine(std::span<const std::string> args) {
     }
     CLI::App second;
     Declare(&second, &config, &flags);
+    // Does not throw: the first pass has accepted the same arguments.
     second.parse(Reversed(args));
   }
   if (flags.no_render) config.render = false;
@@ -125,6 +129,7 @@ CommandLine ParseCommandLine(std::span<const std::string> args) {
     config.osc_out = *std::move(destination);
   }
   if (Status status = ValidateConfig(config); !status.ok()) {
+    // The values may come from either. With a file, the error names it.
     const bool by_file = !flags.config_file.empty();
     return Fail(by_file ? ExitCode::kBadInput : ExitCode::kUsage,
                 (by_file ? status.At(flags.config_file) : status).ToString() + "\n");

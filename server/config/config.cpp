@@ -12,6 +12,8 @@ namespace {
 
 Status Invalid(std::string what) { return Status(StatusCode::kInvalidArgument, std::move(what)); }
 
+// Values from a file are not trusted: zero would refuse everybody, and huge ones overflow durations
+// in nanoseconds.
 Status ValidateLimits(const Limits& limits) {
   const std::pair<const char*, int> counts[] = {
       {"max_connections", limits.max_connections},     {"max_udp_peers", limits.max_udp_peers},
@@ -33,6 +35,7 @@ Status ValidateLimits(const Limits& limits) {
       {"loss_seconds", limits.loss_seconds},
       {"drain_seconds", limits.drain_seconds}};
   for (const auto& [name, value] : numbers) {
+    // TOML has `nan` and `inf`. 1e9 s still fits into 64-bit nanoseconds.
     if (!std::isfinite(value) || value <= 0.0 || value > 1e9) {
       return Invalid(std::string("limits.") + name + " must be greater than 0 and at most 1e9");
     }
@@ -46,6 +49,7 @@ Status ValidatePorts(const Config& config) {
   const std::pair<const char*, std::optional<std::uint16_t>> ports[] = {
       {"--udp", config.udp}, {"--vmc", config.vmc}, {"--livelink-face", config.livelink_face}};
   for (const auto& [name, port] : ports) {
+    // Port 0 selects any free port, so several may have it.
     if (!port || *port == 0) continue;
     const auto [other, is_new] = taken.emplace(*port, name);
     if (!is_new) {
@@ -78,6 +82,7 @@ Status ValidateConfig(const Config& config) {
     return Invalid("--require-render and --no-render cannot be combined");
   }
   if (config.osc_prefix.empty() ||
+      // OSC 1.0 reserves these characters.
       config.osc_prefix.find_first_of(" #*,?[]{}") != std::string::npos) {
     return Invalid("osc.prefix '" + config.osc_prefix + "' is not valid in an OSC address");
   }

@@ -16,6 +16,7 @@
 namespace furrow::server {
 namespace {
 
+// Far above any real file. --config may name a device or a file of the wrong kind.
 constexpr std::uint64_t kMaxConfigBytes = 1 << 20;
 
 // One key of a table. `assign` stores the value and returns an error, or an empty string.
@@ -24,6 +25,8 @@ struct Key {
   std::function<std::string(const toml::node&)> assign;
 };
 
+// Each of these makes the key of one type. value_exact() converts nothing: 1.0 is no port, 1 no
+// flag.
 Key Text(std::string_view name, std::string* target) {
   return {name, [target](const toml::node& node) -> std::string {
             const auto value = node.value_exact<std::string>();
@@ -83,6 +86,8 @@ Key Count(std::string_view name, int* target) {
 
 Key Number(std::string_view name, double* target) {
   return {name, [target](const toml::node& node) -> std::string {
+            // Whole numbers are valid numbers, so value() converts them; is_number() rules out
+            // other types.
             const auto value = node.value<double>();
             if (!node.is_number() || !value) return "must be a number";
             *target = *value;
@@ -122,6 +127,8 @@ using Tables = std::vector<NamedKeys>;
 
 class Reader {
  public:
+  // Reads a parsed file into the targets of the keys. Unknown names are errors, so that a typing
+  // mistake is not silently ignored.
   Reader(std::string_view source_name) : source_name_(source_name) {}
 
   // Reads the top level, which is the first of `tables`, and then the other tables.
@@ -157,6 +164,7 @@ class Reader {
     return {};
   }
 
+  // `where` is file and line, as compilers write it.
   Status Error(StatusCode code, const toml::node& node, std::string what) const {
     return Status(code, std::move(what),
                   std::string(source_name_) + ":" + std::to_string(node.source().begin.line));
@@ -165,6 +173,7 @@ class Reader {
   std::string_view source_name_;
 };
 
+// The keys by table. Three functions, because the whole list is long.
 Tables InputTables(Config* config, const std::filesystem::path& folder) {
   return {{"",
            {Path("character", &config->character, folder), Path("rig", &config->rig, folder),
@@ -218,10 +227,12 @@ Status ParseConfig(std::string_view text, std::string_view source_name, Config* 
   toml::table root;
   try {
     root = toml::parse(text, source_name);
+  // The parser of toml++ throws; the rest of the daemon uses Status.
   } catch (const toml::parse_error& error) {
     return Status(StatusCode::kParse, std::string(error.description()),
                   std::string(source_name) + ":" + std::to_string(error.source().begin.line));
   }
+  // Reads into a copy, so that an error leaves `config` as it was.
   Config read = *config;
   // Paths in the file are relative to the file.
   const std::filesystem::path folder = std::filesystem::path(source_name).parent_path();

@@ -10,12 +10,14 @@ LimitedSink::~LimitedSink() { LogDropped(last_time_); }
 
 void LimitedSink::sink_it_(const spdlog::details::log_msg& message) {
   last_time_ = message.time;
+  // A clock that was set back gives no tokens until it catches up; errors still pass.
   const Time now = std::chrono::duration_cast<Time>(message.time.time_since_epoch());
   const bool passes = bucket_.Take(now);
   if (!passes && message.level < spdlog::level::err) {
     ++dropped_;
     return;
   }
+  // Before the line, so that the gap shows at its place.
   if (passes) LogDropped(message.time);
   below_->log(message);
 }

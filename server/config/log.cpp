@@ -15,6 +15,7 @@
 namespace furrow::server {
 namespace {
 
+// Lines that may wait for a slow reader of stderr; the oldest are overwritten.
 constexpr std::size_t kMaxWaitingLines = 4096;
 
 // Formats the message as the inside of a JSON string.
@@ -44,6 +45,7 @@ class JsonText : public spdlog::custom_flag_formatter {
 }  // namespace
 
 Log::Log(bool json) {
+  // One writer keeps the order of the lines.
   spdlog::init_thread_pool(kMaxWaitingLines, /*threads=*/1);
   auto logger = std::make_shared<spdlog::async_logger>(
       "furrowd",
@@ -61,6 +63,7 @@ Log::Log(bool json) {
   spdlog::set_default_logger(std::move(logger));
 }
 
+// Writes what is queued and joins the background thread.
 Log::~Log() { spdlog::shutdown(); }
 
 }  // namespace furrow::server

@@ -7,6 +7,7 @@
 namespace furrow::server {
 namespace {
 
+// Prometheus conventions: snake_case, and counters end with _total.
 struct CounterInfo {
   Counter counter;
   std::string_view name;
@@ -126,6 +127,7 @@ constexpr CounterInfo kCounters[] = {
      "Recordings ended by an error."},
 };
 
+// The look-ups below use a counter's value as the index.
 constexpr bool IsInOrder() {
   std::size_t index = 0;
   return std::ranges::all_of(kCounters, [&](const CounterInfo& info) {

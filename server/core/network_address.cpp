@@ -12,6 +12,8 @@ Result<HostPort> ParseHostPort(std::string_view text) {
   const Status error(StatusCode::kInvalidArgument,
                      "'" + std::string(text) + "' is not a numeric HOST:PORT", "",
                      "give an address and a port: 127.0.0.1:9000 or [::1]:9000");
+  // The last colon separates the port; an IPv6 address has more of them and therefore needs
+  // brackets.
   const std::size_t colon = text.rfind(':');
   if (colon == std::string_view::npos) return error;
   std::string_view host = text.substr(0, colon);
@@ -22,6 +24,7 @@ Result<HostPort> ParseHostPort(std::string_view text) {
     return error;
   }
   HostPort result{std::string(host), 0};
+  // from_chars() accepts no sign, no space and no value above 65,535 for this type.
   const auto [end, code] = std::from_chars(port.data(), port.data() + port.size(), result.port);
   if (code != std::errc() || end != port.data() + port.size() || result.port == 0 ||
       !IsNumericAddress(result.host)) {

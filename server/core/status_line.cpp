@@ -8,12 +8,14 @@
 namespace furrow::server {
 namespace {
 
+// Shown in each line, per second.
 constexpr std::pair<Counter, std::string_view> kRates[] = {
     {Counter::kPosesReceived, "poses"},
     {Counter::kWeightsSent, "weights"},
     {Counter::kPicturesSent, "pictures"},
 };
 
+// Shown only if they have changed since the last line.
 constexpr std::pair<Counter, std::string_view> kDrops[] = {
     {Counter::kDatagramsOverrun, "datagrams lost in the full socket buffer"},
     {Counter::kDatagramsMalformed, "malformed datagrams"},
@@ -55,6 +57,7 @@ std::string Count(std::size_t count, const char* noun) {
 
 }  // namespace
 
+// The increase since the last call for this counter.
 std::uint64_t StatusLine::CountSinceLastLine(Counter counter) {
   std::uint64_t& last = last_[static_cast<std::size_t>(counter)];
   const std::uint64_t value = metrics_->Get(counter);
@@ -62,6 +65,7 @@ std::uint64_t StatusLine::CountSinceLastLine(Counter counter) {
 }
 
 std::string StatusLine::Next(std::size_t subjects, std::size_t subscriptions, Time now) {
+  // The first line has no interval; the daemon prints it after about a second.
   const double seconds = last_time_ == Time{0} ? 1.0 : ToSeconds(now - last_time_);
   last_time_ = now;
   std::string line = Count(subjects, "subject") + ", " + Count(subscriptions, "subscription");

@@ -37,6 +37,8 @@ Result<std::unique_ptr<Player>> Player::Load(const std::filesystem::path& path) 
   if (clip->num_frames() == 0) {
     return Status(StatusCode::kInvalidArgument, "the recording has no frames", path.string());
   }
+  // The wire's limits (names, counts) hold for a file as for any sender. Checking them here gives
+  // an error at the start instead of a rejected offer later.
   clip->name = path.stem().string();
   auto player = std::make_unique<Player>(*std::move(clip), path.filename().string());
   if (std::string why = protocol::FindOfferProblem(player->offer_); !why.empty()) {
@@ -56,6 +58,7 @@ Player::Player(motion::Clip clip, std::string file)
 
 void Player::Start(Hub* hub, Time now) {
   hub_ = hub;
+  // kWeb: a peer without a socket of its own, whose messages come on the hub's thread.
   peer_ = hub->AddPeer(Transport::kWeb, "--play " + file_, this, now);
   Offer(now);
   MoveTo(0.0, now);
@@ -67,6 +70,7 @@ void Player::Offer(Time now) {
   hub_->OnMessage(peer_, offer_, now);
 }
 
+// The hub calls this while it holds its lock, so it only takes notes; Advance() acts on them.
 void Player::SendReply(std::span<const std::uint8_t> message) {
   protocol::MessageView view;
   protocol::SkeletonReply reply;
@@ -83,10 +87,12 @@ void Player::SendReply(std::span<const std::uint8_t> message) {
   }
 }
 
+// Computed from the time of the last change, not added up, so rounding does not accumulate.
 double Player::PositionAt(Time now) const {
   return playing_ ? anchor_ + ToSeconds(now - anchor_time_) * speed_ : anchor_;
 }
 
+// The last frame that begins at or before the position.
 int Player::FrameAt(double position) const {
   // Tolerates the rounding of a frame time that was converted to a position and back.
   constexpr double kRounding = 1e-6;
@@ -107,6 +113,8 @@ void Player::SendPose(int frame, Time now) {
   const std::uint64_t hash = pose_.skeleton_hash;
   recording::FillPose(clip_, frame, &pose_);
   pose_.skeleton_hash = hash;
+  // The capture time is that of the recording, whatever the speed: the filter then sees the same
+  // time steps as `furrow solve`.
   const double seconds = clip_.times[static_cast<std::size_t>(frame)] - clip_.times.front();
   encoder_.Encode({.session = kSession,
                    .stream = kStream,
@@ -123,6 +131,7 @@ Time Player::Advance(Time now) {
   // The last frame is shown for the average frame time.
   const double last = clip_.num_frames() > 1 ? end / (clip_.num_frames() - 1) : ToSeconds(kRepeat);
   if (playing_ && loop_ && position >= end + last) {
+    // Keeps the remainder, so that a late call does not shift the loop against the clock.
     MoveTo(std::fmod(position, end + last), now);
     position = anchor_;
   } else if (playing_ && !loop_ && position >= end) {
@@ -130,6 +139,7 @@ Time Player::Advance(Time now) {
     MoveTo(end, now);
     position = end;
   }
+  // Frames that fell between two calls are skipped, as in live capture.
   const int frame = FrameAt(position);
   if (frame != frame_ || now - sent_ >= kRepeat) SendPose(frame, now);
   if (!playing_) return sent_ + kRepeat;
@@ -142,6 +152,7 @@ Time Player::Advance(Time now) {
 }
 
 Status Player::Apply(const Change& change, Time now) {
+  // Written so that NaN is refused, too.
   if (change.speed && !(*change.speed >= kMinSpeed && *change.speed <= kMaxSpeed)) {
     return Status(StatusCode::kInvalidArgument, "must be 0.05 to 8", "speed");
   }
@@ -150,6 +161,7 @@ Status Player::Apply(const Change& change, Time now) {
   }
   double position = std::clamp(change.position.value_or(PositionAt(now)), 0.0, clip_.duration());
   const bool starts = change.playing.value_or(playing_) && !playing_;
+  // Play at the end of a recording starts it from the beginning.
   if (starts && !change.position && position >= clip_.duration()) position = 0.0;
   playing_ = change.playing.value_or(playing_);
   loop_ = change.loop.value_or(loop_);

@@ -31,6 +31,7 @@ struct Scratch {
   protocol::WeightFrame weights;
 };
 
+// Shards record at once. Memory per thread needs no lock and is reused for each message.
 Scratch& ScratchOfThread() {
   thread_local Scratch scratch;
   return scratch;
@@ -53,23 +54,28 @@ Recorder::Recorder(RecorderOptions options, std::unique_ptr<recording::TakeFolde
       metrics_(metrics),
       folder_(std::move(folder)),
       queue_(options_.queue_bytes),
+      // The last member: the thread may use everything above at once.
       thread_([this] { Write(); }) {}
 
 Recorder::~Recorder() {
+  // Write() takes what is left in the queue, completes the file and returns.
   queue_.Stop();
   thread_.join();
 }
 
+// Nanoseconds since 1970. The offset is constant, so recorded times never go back.
 std::uint64_t Recorder::LogTime(Time now) const {
   return static_cast<std::uint64_t>((now + options_.wall_offset).count());
 }
 
 void Recorder::PushEntry(const RecordingBatch::Entry& entry, std::string_view subject,
                          std::span<const std::uint8_t> payload) {
+  // A hint that saves copying. The recording thread checks it again.
   if (failed_.load(std::memory_order_relaxed)) return;
   if (!queue_.Push(entry, subject, payload)) metrics_->Add(Counter::kRecordingDropped);
 }
 
+// Queues a message of the subject, stamped with its publisher's session, sequence and capture time.
 void Recorder::Push(TakeKind kind, const Subject& subject, std::span<const std::uint8_t> payload,
                     Time now) {
   RecordingBatch::Entry entry;
@@ -101,11 +107,14 @@ void Recorder::OnOffer(const Subject& subject, const protocol::SkeletonOffer& of
   protocol::SubscribeReply declared;
   declared.subject = subject.name;
   declared.names.assign(names.begin(), names.end());
+  // OnWeights() reads the map on several threads. This is safe, because it changes only here and in
+  // OnSubjectGone(), both under the hub's exclusive lock.
   names_hashes_[subject.id] = protocol::NamesHash(names);
   PushEncoded(TakeKind::kNames, subject, declared, now);
 }
 
 void Recorder::OnPose(const Subject& subject, std::span<const std::uint8_t> payload, Time now) {
+  // The payload as it arrived: the recording has the bytes of the sender, not a copy with rounding.
   if (!payload.empty()) return Push(TakeKind::kPose, subject, payload, now);
   // Record a whole pose, so that playback can start anywhere.
   protocol::PoseFrame& pose = ScratchOfThread().pose;
@@ -138,9 +147,11 @@ void Recorder::OnDatagram(const recording::DatagramSender& sender,
   RecordingBatch::Entry entry;
   entry.event = RecordingBatch::Event::kDatagram;
   entry.stamp.log_time_ns = LogTime(now);
+  // The field of the subject's name carries the address, so that the queue needs one kind of entry.
   PushEntry(entry, {reinterpret_cast<const char*>(sender.data()), sender.size()}, bytes);
 }
 
+// Writes the events in order until one fails. Returns that error.
 Status Recorder::WriteBatch(const RecordingBatch& batch) {
   Status status;
   const int file = folder_->num_files();
@@ -162,6 +173,7 @@ Status Recorder::WriteBatch(const RecordingBatch& batch) {
     return status.ok();
   });
   metrics_->Add(Counter::kRecordingMessages, folder_->num_messages() - before);
+  // TakeFolder begins a new file by itself when the present one reaches its size or age.
   if (status.ok() && folder_->num_files() != file)
     spdlog::info("recording continues in {}", folder_->path().string());
   return status;
@@ -181,9 +193,13 @@ void Recorder::Write() {
   bool goes_on = true;
   while (goes_on) {
     goes_on = queue_.Take(&batch, kWait);
+    // The queue must still be emptied until Stop(), or it would hold its bytes for the life of the
+    // daemon.
     if (failed_) continue;  // drop what was queued before the error
     Status status = WriteBatch(batch);
     const Time now = ReadClock();
+    // Flushing ends an MCAP chunk. Each batch as a chunk would compress badly; none for long would
+    // lose more when the daemon is killed.
     if (status.ok() && now - flushed >= kFlushInterval) {
       status = folder_->Flush();
       flushed = now;
