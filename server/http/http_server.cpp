@@ -22,6 +22,7 @@ namespace {
 using net::ip::tcp;
 constexpr auto kAcceptPause = std::chrono::milliseconds(100);
 
+// The socket closes when it goes out of scope. The answer fits into a new socket's send buffer.
 // Answers with 429 and closes.
 void Refuse(tcp::socket socket) {
   static constexpr char kAnswer[] =
@@ -38,6 +39,7 @@ Result<PageFiles> LoadPage(const HttpConfig& config) {
   return PageFiles::Load(index->parent_path());
 }
 
+// An installation without the page still has the API, WebSockets and pictures.
 PageFiles PageOrNone(const HttpConfig& config) {
   Result<PageFiles> page = LoadPage(config);
   if (page.ok()) return *std::move(page);
@@ -55,6 +57,7 @@ struct HttpServer::Impl {
                 .post_to_hub = std::move(parts.post_to_hub),
                 .answer = std::move(parts.answer),
                 .metrics = parts.metrics} {
+    // Weak: tasks in the hub's queue may hold this function after the web server has gone.
     context.post_to_web = [weak = std::weak_ptr(loop)](std::function<void()> task) {
       if (const auto alive = weak.lock()) net::post(*alive, std::move(task));
     };
@@ -76,11 +79,14 @@ Status HttpServer::Impl::Listen(const std::string& bind, std::uint16_t wanted) {
   const tcp::endpoint endpoint(net::ip::make_address(bind), wanted);
   beast::error_code error;
   acceptor.open(endpoint.protocol(), error);
+  // Allows a port in TIME_WAIT, so that a restart does not fail. A port with a listener stays an
+  // error.
   if (!error) acceptor.set_option(tcp::acceptor::reuse_address(true), error);
   if (!error) acceptor.bind(endpoint, error);
   if (!error) acceptor.listen(net::socket_base::max_listen_connections, error);
   if (error) {
     beast::error_code ignored;
+    // Start() may call this again with another port.
     acceptor.close(ignored);
     return Status(StatusCode::kIo, "cannot listen: " + error.message(),
                   "http " + bind + " port " + std::to_string(wanted),
@@ -100,10 +106,13 @@ net::awaitable<void> HttpServer::Impl::Accept() {
       beast::error_code ignored;
       co_await pause.async_wait(Redirect(ignored));
     } else if (context.connections >= context.config.max_connections) {
+      // Each connection may hold a request of kMaxWebMessageBytes, so their number bounds the
+      // memory.
       context.metrics->Add(Counter::kConnectionsRefused);
       Refuse(std::move(socket));
     } else {
       context.metrics->Add(Counter::kHttpConnections);
+      // Detached is safe: Serve() lets no exception out, and the context outlives the loop.
       net::co_spawn(*loop, Serve(std::move(socket)), net::detached);
     }
   }
@@ -135,6 +144,8 @@ Result<std::unique_ptr<HttpServer>> HttpServer::Start(Parts parts) {
   const std::optional<std::uint16_t> asked = parts.config.port;
   auto impl = std::make_unique<Impl>(std::move(parts));
   Status status = impl->Listen(bind, asked.value_or(HttpConfig::kDefaultPort));
+  // Only the default port may be replaced. A port that the user asked for is an error if it is
+  // taken.
   if (!status.ok() && !asked) {
     spdlog::warn("{}: {}; using any free port", status.where(), status.what());
     status = impl->Listen(bind, 0);
@@ -143,6 +154,7 @@ Result<std::unique_ptr<HttpServer>> HttpServer::Start(Parts parts) {
   net::co_spawn(*impl->loop, impl->Accept(), [](const std::exception_ptr& failed) {
     if (failed) std::rethrow_exception(failed);
   });
+  // After co_spawn(), so that run() finds work and does not return at once.
   impl->thread = std::thread([impl = impl.get()] { impl->Run(); });
   return std::unique_ptr<HttpServer>(new HttpServer(std::move(impl)));
 }
@@ -150,6 +162,8 @@ Result<std::unique_ptr<HttpServer>> HttpServer::Start(Parts parts) {
 HttpServer::HttpServer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
 HttpServer::~HttpServer() {
+  // The coroutines do not end; they are destroyed with the loop. Their destructors call
+  // post_to_hub, so the hub's event loop must still exist.
   impl_->loop->stop();
   impl_->thread.join();
 }
@@ -159,6 +173,7 @@ int HttpServer::connections() const { return impl_->context.connections; }
 int HttpServer::viewers() const { return impl_->context.viewers; }
 
 void HttpServer::Drain() {
+  // An acceptor is not thread-safe, and Accept() uses it on the web thread.
   net::post(*impl_->loop, [this] {
     beast::error_code ignored;
     impl_->acceptor.close(ignored);

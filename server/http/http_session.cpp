@@ -23,6 +23,7 @@ namespace {
 
 // Asks the hub's thread for a reply, or replies with 503 after kWebDeadline.
 net::awaitable<ApiReply> AskHub(WebContext* context, ApiRequest request) {
+  // The timer is deadline and wake-up in one: the reply cancels it.
   struct Pending {
     net::steady_timer timer;
     std::optional<ApiReply> reply;
@@ -34,7 +35,9 @@ net::awaitable<ApiReply> AskHub(WebContext* context, ApiRequest request) {
   context->post_to_hub([weak = std::weak_ptr(pending), answer = context->answer,
                         post_to_web = context->post_to_web,
                         request = std::move(request)](Hub& hub, Time now) {
+    // On the hub's thread. Only the web thread may touch `pending`, so the reply is posted back.
     post_to_web([weak, reply = answer(request, hub, now)] {
+      // Late replies find nobody: the coroutine has answered with 503 and gone.
       if (const auto waiting = weak.lock()) {
         waiting->reply = reply;
         waiting->timer.cancel();
@@ -47,6 +50,8 @@ net::awaitable<ApiReply> AskHub(WebContext* context, ApiRequest request) {
   co_return ErrorReply(503, "unavailable", "", "the daemon did not answer within 10 s");
 }
 
+// Sends a file of the page from memory, compressed if the client accepts it. False: the connection
+// must close.
 net::awaitable<bool> WritePageFile(beast::tcp_stream& stream, const WebRequest& request,
                                    const PageFile& file) {
   const bool gzip = !file.gzip.empty() &&
@@ -58,10 +63,13 @@ net::awaitable<bool> WritePageFile(beast::tcp_stream& stream, const WebRequest& 
   SetCommonHeaders(file.type, &response);
   response.keep_alive(request.keep_alive());
   response.set(http::field::etag, file.etag);
+  // Caches must keep the two encodings apart (RFC 9110 section 12.5.5).
   response.set(http::field::vary, "Accept-Encoding");
+  // Names with a hash never change their content. The others are checked by their ETag each time.
   response.set(http::field::cache_control,
                file.immutable ? "public, max-age=31536000, immutable" : "no-cache");
   if (gzip) response.set(http::field::content_encoding, "gzip");
+  // A 304 has no body. HEAD sends the length of the body that GET would send.
   if (!known) response.content_length(bytes.size());
   if (!known && request.method() != http::verb::head) {
     response.body() = {bytes.data(), bytes.size()};
@@ -75,6 +83,7 @@ bool IsRead(const WebRequest& request) {
   return request.method() == http::verb::get || request.method() == http::verb::head;
 }
 
+// The reply for an unknown path. If even "/" is unknown, the page has not been built.
 ApiReply NotFound(const WebRequest& request, const std::string& path) {
   if (path == "/") {
     return {
@@ -88,6 +97,7 @@ ApiReply NotFound(const WebRequest& request, const std::string& path) {
                     std::string(ToView(request.target())) + " does not exist");
 }
 
+// One connection. All functions run on the web thread, in one coroutine.
 class HttpSession {
  public:
   HttpSession(beast::tcp_stream stream, WebContext* context)
@@ -99,6 +109,8 @@ class HttpSession {
       goes_on = co_await ReadRequest();
       if (goes_on) goes_on = co_await Answer();
     }
+    // After an upgrade the socket has moved to the WebSocket. Otherwise tell the client that no
+    // reply follows.
     if (stream_.socket().is_open()) {
       beast::error_code error;
       stream_.socket().shutdown(net::ip::tcp::socket::shutdown_send, error);
@@ -107,9 +119,13 @@ class HttpSession {
 
  private:
   net::awaitable<bool> ReadRequest() {
+    // A new parser for each request, because a parser cannot be reused.
     http::request_parser<http::string_body> parser;
+    // Beast stops reading at the limits, so a client cannot make the daemon hold more than this.
     parser.header_limit(kMaxWebHeaderBytes);
     parser.body_limit(kMaxWebMessageBytes);
+    // Covers the whole request: a client that sends one byte at a time (slowloris) is closed, too.
+    // It also ends idle connections.
     stream_.expires_after(kWebDeadline);
     beast::error_code error;
     co_await http::async_read(stream_, buffer_, parser, Redirect(error));
@@ -118,6 +134,8 @@ class HttpSession {
       context_->metrics->Add(Counter::kHttpRequests);
       co_return true;
     }
+    // Only errors of the HTTP syntax get an answer. For an end of the stream or a timeout there is
+    // nobody to read it.
     if (error.category() == http::make_error_code(http::error::bad_method).category() &&
         error != http::error::end_of_stream && error != http::error::partial_message) {
       co_await RejectBytes(error);
@@ -128,6 +146,8 @@ class HttpSession {
   // Replies to invalid bytes. The connection closes afterwards.
   net::awaitable<void> RejectBytes(beast::error_code error) {
     context_->metrics->Add(Counter::kHttpRefused);
+    // The request that could not be parsed is incomplete. The reply needs a version (1.1) and no
+    // more.
     request_ = WebRequest(http::verb::get, "/", 11);
     request_.keep_alive(false);
     if (error == http::error::body_limit) {
@@ -144,6 +164,7 @@ class HttpSession {
 
   // False: the connection must close.
   net::awaitable<bool> Answer() {
+    // First of all checks: a foreign web page must not reach any route, not even a WebSocket.
     const std::string why = context_->guard.Check(ToView(request_[http::field::host]),
                                                   ToView(request_[http::field::origin]));
     if (!why.empty()) {
@@ -158,6 +179,7 @@ class HttpSession {
     }
     if (url->path == "/ws") {
       if (beast::websocket::is_upgrade(request_)) {
+        // The session gives its socket away and ends with the WebSocket.
         co_await ServeWebSocket(std::move(stream_), context_, std::move(request_));
         co_return false;
       }
@@ -187,7 +209,10 @@ class HttpSession {
     }
     ApiRequest request{std::string(ToView(request_.method_string())), std::move(url),
                        std::move(request_.body())};
+    // The routes know GET only; WriteResponse() leaves the body out.
     if (request.method == "HEAD") request.method = "GET";
+    // Subjects, settings and rig belong to the hub's thread. The page's files do not, and are sent
+    // without asking it.
     ApiReply reply = co_await AskHub(context_, std::move(request));
     co_return co_await WriteReply(stream_, request_, std::move(reply));
   }

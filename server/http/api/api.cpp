@@ -60,7 +60,10 @@ Api::Api(Parts parts)
            [this](const ApiRequest&, Hub& hub, Time) { return status_.MetricsText(hub); }}} {}
 
 ApiReply Api::Answer(const ApiRequest& request, Hub& hub, Time now) {
+  // Collects the methods of a path while it looks for the right one: RFC 9110 requires Allow with
+  // 405.
   std::string allowed;
+  // Few routes, so a search is fast enough.
   for (const Route& route : routes_) {
     if (route.path != request.url.path) continue;
     if (route.method == request.method) return route.answer(request, hub, now);

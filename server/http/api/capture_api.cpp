@@ -16,11 +16,14 @@ namespace furrow::server {
 namespace {
 
 constexpr char kNeutral[] = "neutral";
+// Each entry may hold a whole rig, so the history is short; the oldest entry goes first.
 constexpr std::size_t kMaxUndo = 64;
+// The name becomes part of the rig file.
 constexpr std::size_t kMaxPoseName = 64;
 
 using Values = std::vector<float>;
 
+// The weights that subscribers see now, after the filter.
 Values WeightsOf(const Subject& subject) {
   const auto weights = subject.pipeline->wrinkle_weights();
   return {weights.begin(), weights.end()};
@@ -33,6 +36,7 @@ std::optional<Values> SolvePreview(std::shared_ptr<const StreamDefinition> strea
                                    const std::optional<wrinkle::LocalPose>& neutral) {
   SubjectPipeline trial(std::move(stream));
   *trial.mutable_pose() = pose;
+  // A new pipeline has an empty filter, so the result shows the pose alone.
   if (!trial.SetNeutral(neutral) || trial.Solve(0, 0) != wrinkle::JobStatus::kOk) return {};
   const auto weights = trial.wrinkle_weights();
   return Values(weights.begin(), weights.end());
@@ -64,6 +68,7 @@ Result<wrinkle::Rig> WithReferencePose(const wrinkle::Rig& rig, const Subject& s
       rig::ReferencePoseFromFrame(pose, {pipeline.stream().skeleton, pipeline.solved_pose()});
   FURROW_RETURN_IF_ERROR(captured);
   UseJointNamesOfRig(pipeline.stream(), &*captured);
+  // A copy: other subjects read the present rig until SetRig() replaces it.
   wrinkle::Rig changed = rig;
   const auto known =
       std::ranges::find(changed.reference_poses, pose, &wrinkle::ReferencePose::name);
@@ -76,6 +81,7 @@ Result<wrinkle::Rig> WithReferencePose(const wrinkle::Rig& rig, const Subject& s
   return changed;
 }
 
+// Letters, digits, '_' and '-'. The name comes from the network and goes into files and the log.
 bool IsPoseName(const std::string& name) {
   const auto is_plain = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
@@ -116,6 +122,7 @@ ApiReply CaptureApi::PostCapture(const ApiRequest& request, Hub& hub, Time now) 
     return ErrorReply(400, "schema", "pose",
                       "must be 'neutral' or a name of letters, digits, '_' and '-'");
   }
+  // The reply shows all weights, not only those that somebody subscribes to.
   Subject* subject = hub.RequireAllDrivers(subject_name.get<std::string>());
   if (subject == nullptr) return NoSuchSubject(hub, subject_name.get<std::string>());
   if (!subject->pipeline->has_pose()) {
@@ -129,10 +136,12 @@ ApiReply CaptureApi::CaptureNeutral(Hub& hub, Subject& subject, bool preview, Ti
   const SubjectPipeline& pipeline = *subject.pipeline;
   const Values before = WeightsOf(subject);
   const std::optional<Values> after =
+      // A pose measured from itself: what remains are the weights of a relaxed face.
       SolvePreview(pipeline.shared_stream(), pipeline.pose(), pipeline.pose());
   if (!after)
     return ErrorReply(500, "internal", "", "the solver refused the pose as its own neutral pose");
   if (!preview) {
+    // Taken before SetNeutral() replaces it; Undo() puts it back.
     std::optional<wrinkle::LocalPose> former = pipeline.neutral_pose();
     hub.SetNeutral(subject, pipeline.pose(), now);
     Remember({kNeutral, subject.name, subject.skeleton_hash, std::move(former), nullptr});
@@ -151,6 +160,7 @@ ApiReply CaptureApi::CapturePose(Hub& hub, Subject& subject, const std::string& 
   Result<wrinkle::Rig> changed = WithReferencePose(hub.rig(), subject, pose, &added);
   if (!changed.ok()) return ErrorReply(changed.status());
   const SubjectPipeline& pipeline = *subject.pipeline;
+  // Binding checks the changed rig before anything is replaced, and serves the preview.
   auto bound = wrinkle::RigBinding::Create(
       *changed, pipeline.stream().skeleton, pipeline.stream().blend_shapes,
       {.allow_missing = true, .aliases = pipeline.stream().aliases});
@@ -182,12 +192,14 @@ ApiReply CaptureApi::CapturePose(Hub& hub, Subject& subject, const std::string& 
 ApiReply CaptureApi::Undo(Hub& hub, Time now) {
   if (captures_.empty()) return ErrorReply(409, "conflict", "", "there is nothing to undo");
   const Capture& last = captures_.back();
+  // Entries are undone in reverse order, so the rig before this capture is the right one.
   if (last.rig != nullptr) {
     if (Status status = hub.SetRig(last.rig, now); !status.ok()) return ErrorReply(status);
   } else if (Subject* subject = hub.RequireAllDrivers(last.subject);
              subject != nullptr && subject->skeleton_hash == last.skeleton_hash) {
     hub.SetNeutral(*subject, last.neutral, now);
   }
+  // Also if the subject has left or has another skeleton: its neutral has gone with it.
   captures_.pop_back();
   return JsonReply({{"captures", History()}});
 }

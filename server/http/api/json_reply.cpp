@@ -8,6 +8,7 @@
 namespace furrow::server {
 
 ApiReply JsonReply(const Json& json) {
+  // Names come from senders. dump() would throw on bytes that are not UTF-8.
   return {.body = json.dump(-1, ' ', false, Json::error_handler_t::replace)};
 }
 
@@ -17,6 +18,7 @@ Result<Json> ParseObject(const ApiRequest& request) {
   bool is_deep = false;
   const auto keep = [&](int depth, Json::parse_event_t, const Json&) {
     is_deep = is_deep || depth > kMaxDepth;
+    // The parser drops what is below this depth instead of storing it.
     return !is_deep;
   };
   Json json = Json::parse(request.body, keep, /*allow_exceptions=*/false);

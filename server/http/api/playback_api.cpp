@@ -15,10 +15,13 @@ ApiReply NoPlayer() {
                     "start furrowd with --play FILE");
 }
 
+// The error for a value of the wrong type.
 Status MustBe(const char* what, const std::string& field) {
   return Status(StatusCode::kSchema, std::string("must be ") + what, field);
 }
 
+// Checks types and names; Player::Apply() checks the ranges. Unknown names are errors, because a
+// misspelt one would silently do nothing.
 Result<Player::Change> ParseChange(const Json& object) {
   Player::Change change;
   for (const auto& [name, value] : object.items()) {

@@ -33,17 +33,21 @@ std::string_view ModulationName(wrinkle::Modulation modulation) {
   return "";
 }
 
+// Where the wrinkles of a region show: a channel of a texture, the skin weights, or the side that a
+// ball joint bends to.
 Json MaskJson(const wrinkle::Mask& mask) {
   switch (mask.kind) {
     case wrinkle::Mask::Kind::kSkinning: return {{"kind", "skinning"}};
     case wrinkle::Mask::Kind::kSliding: return {{"kind", "sliding"}, {"ball", mask.ball}};
     case wrinkle::Mask::Kind::kTexture: break;
   }
+  // A rig may be made by hand; the index below must stay inside "rgba".
   const auto channel = static_cast<std::size_t>(std::clamp(mask.channel, 0, 3));
   return {
       {"kind", "texture"}, {"texture", mask.texture}, {"channel", std::string(1, "rgba"[channel])}};
 }
 
+// A region with its weights and what feeds each of them.
 Json RegionJson(const wrinkle::Region& region) {
   Json weights = Json::array();
   for (const wrinkle::Feed& feed : region.feeds) {
@@ -70,6 +74,8 @@ Json DriverJson(const Driver& driver, const wrinkle::Rig& rig) {
   const auto add = [&](const std::string& value, const Json& reference_pose) {
     const std::string name = driver.name + "." + value;
     const auto is_known = [&](const Json& known) { return known["name"] == name; };
+    // Several regions may use one value. Pose values come first, so that their reference pose is
+    // kept.
     if (std::ranges::none_of(values, is_known)) {
       values.push_back({{"name", name}, {"reference_pose", reference_pose}});
     }
@@ -88,12 +94,14 @@ Json DriverJson(const Driver& driver, const wrinkle::Rig& rig) {
       {"name", driver.name}, {"kind", DriverKindName(driver.kind)}, {"values", std::move(values)}};
 }
 
+// The driver of "driver.value"; null if the rig has none of that name.
 const Driver* FindDriver(const wrinkle::Rig& rig, std::string_view driver_value) {
   const std::string_view name = driver_value.substr(0, driver_value.rfind('.'));
   const auto found = std::ranges::find(rig.drivers, name, &Driver::name);
   return found == rig.drivers.end() ? nullptr : &*found;
 }
 
+// The reference pose behind "driver.value"; null for drivers that have none.
 Json ReferencePoseOf(const Driver& driver, std::string_view driver_value) {
   const std::string_view value = driver_value.substr(driver_value.rfind('.') + 1);
   for (const auto& known : driver.pose.values) {
@@ -102,6 +110,8 @@ Json ReferencePoseOf(const Driver& driver, std::string_view driver_value) {
   return nullptr;
 }
 
+// These three give the details of one kind of driver, or null for a driver of another kind, so that
+// all contributions have the same fields.
 Json PoseJson(const wrinkle::Explanation& explanation, const std::string& driver_value) {
   for (const auto& pose : explanation.pose_values) {
     if (pose.driver_value != driver_value) continue;
@@ -131,6 +141,7 @@ Json StrainJson(const wrinkle::Explanation& explanation, const std::string& driv
   return nullptr;
 }
 
+// One source of a weight: driver value times gain, and how the driver came to its value.
 Json ContributionJson(const wrinkle::Explanation& explanation, const wrinkle::Rig& rig,
                       const wrinkle::Explanation::Contribution& part) {
   const Driver* driver = FindDriver(rig, part.driver_value);
@@ -189,6 +200,8 @@ ApiReply RigApi::Explain(const ApiRequest& request, Hub& hub) const {
   }
   const auto index = static_cast<std::size_t>(found - names.begin());
   wrinkle::Explanation explanation;
+  // Explains the pose without the filter, while "live" is the filtered weight that subscribers
+  // receive.
   if (wrinkle::Explain(binding, pipeline.solved_pose(), &explanation) != wrinkle::JobStatus::kOk) {
     return ErrorReply(500, "internal", "", "the solver refused the pose");
   }

@@ -10,6 +10,7 @@ namespace {
 
 using Kind = render::SettingInfo::Kind;
 
+// The control that the page shows for a setting. A count with a fixed list is a choice.
 std::string_view SettingKindName(const render::SettingInfo& info) {
   switch (info.kind) {
     case Kind::kNumber: return "number";
@@ -22,6 +23,7 @@ std::string_view SettingKindName(const render::SettingInfo& info) {
   return "number";
 }
 
+// Only numbers have limits; elsewhere min and max are null.
 bool HasRange(const render::SettingInfo& info) {
   return info.kind == Kind::kNumber || info.kind == Kind::kColour ||
          (info.kind == Kind::kCount && info.choices.empty());
@@ -30,6 +32,7 @@ bool HasRange(const render::SettingInfo& info) {
 }  // namespace
 
 Json SettingJson(const render::SettingInfo& info, const std::string& value) {
+  // "skin.roughness" belongs to the group "skin".
   const std::size_t dot = info.name.find('.');
   Json json = {{"name", info.name},
                {"group", dot == std::string_view::npos ? "picture" : info.name.substr(0, dot)},

@@ -29,6 +29,7 @@ ApiReply SettingsApi::SettingsFile(const Hub& hub) const {
 ApiReply SettingsApi::PatchSettings(const ApiRequest& request, Hub& hub, Time now) {
   const Result<Json> object = ParseObject(request);
   if (!object.ok()) return ErrorReply(object.status());
+  // A copy that replaces the settings only if all values are valid.
   render::Settings settings = hub.own_settings();
   for (const auto& [name, value] : object->items()) {
     const Result<std::string> text = SettingText(name, value);
@@ -38,6 +39,7 @@ ApiReply SettingsApi::PatchSettings(const ApiRequest& request, Hub& hub, Time no
       return ErrorReply(400, "invalid_argument", name, status.what(), status.todo());
     }
   }
+  // SetSetting() parses; this checks the ranges of all of them.
   if (Status status = render::CheckSettings(settings); !status.ok()) return ErrorReply(status);
   hub.SetOwnSettings(settings, now);
   return Settings(hub);

@@ -15,6 +15,7 @@
 namespace furrow::server {
 namespace {
 
+// In order of precedence: a subject that said goodbye may be lost, too.
 std::string_view StateOf(const Subject& subject) {
   if (subject.ended) return "ended";
   if (!subject.pipeline->has_pose()) return "waiting";
@@ -23,6 +24,8 @@ std::string_view StateOf(const Subject& subject) {
 
 using prometheus::MetricType;
 
+// A family with one metric and no labels. Labels for subjects or peers would let senders create
+// series without end.
 prometheus::MetricFamily Family(std::string_view name, std::string_view help, MetricType type,
                                 double value) {
   prometheus::MetricFamily family;
@@ -88,6 +91,8 @@ ApiReply StatusApi::Ready(const Hub& hub) const {
 
 ApiReply StatusApi::MetricsText(const Hub& hub) const {
   std::vector<prometheus::MetricFamily> families;
+  // Counters are read one by one while other threads add; each is right, but they are not from one
+  // moment.
   for (int i = 0; i < static_cast<int>(Counter::kCount); ++i) {
     const auto counter = static_cast<Counter>(i);
     families.push_back(Family(CounterName(counter), CounterHelp(counter), MetricType::Counter,

@@ -13,6 +13,7 @@
 namespace furrow::server {
 namespace {
 
+// Parses a number in [low, high] into `target`. The comparison is written so that NaN fails.
 template <class Number, class Target>
 Status Read(const std::string& name, const std::string& text, Number low, Number high,
             Target* target) {
@@ -28,6 +29,7 @@ Status Read(const std::string& name, const std::string& text, Number low, Number
   return {};
 }
 
+// The error of another layer, with the name in the query as the field.
 Status AtName(const std::string& name, const Status& why) {
   return {StatusCode::kInvalidArgument, why.what(), name, why.todo()};
 }
@@ -45,11 +47,13 @@ Status CheckName(const std::string& name, const std::string& value) {
     return {StatusCode::kInvalidArgument, "no camera '" + value + "'", name,
             "one of: " + render::ListCameraPresets()};
   }
+  // Tried on default settings, so that the error comes before a subscription is made.
   render::Settings settings;
   const Status status = render::SetSetting(name, value, &settings);
   return status.ok() ? Status() : AtName(name, status);
 }
 
+// Stores one name and value. Names that are not listed are settings of the picture.
 Status Set(const std::string& name, const std::string& value, protocol::SubscribePictures* out) {
   using protocol::kMaxImageSize;
   using protocol::kMinImageSize;
@@ -79,6 +83,7 @@ Result<protocol::SubscribePictures> PicturesOf(const Url& url) {
   protocol::SubscribePictures pictures;
   pictures.width = pictures.height = 640;
   for (const auto& [name, value] : url.values) {
+    // The limits of the wire, because the result becomes a message: "name=value".
     if (name.size() + value.size() + 1 > protocol::kMaxNameBytes) {
       return Status(StatusCode::kInvalidArgument, "name and value exceed 255 bytes", name);
     }

@@ -26,6 +26,8 @@ constexpr char kSnapshotType[] = "image/png";
 constexpr int kSendBufferBytes = 128 * 1024;
 constexpr std::uint64_t kSession = 1;  // any number: the peer has only one session
 
+// The subscription behind one HTTP response. It is used on the web thread; its peer carries the
+// messages to and from the hub's thread.
 class PictureStream : public std::enable_shared_from_this<PictureStream> {
  public:
   PictureStream(beast::tcp_stream* stream, WebContext* context)
@@ -36,6 +38,8 @@ class PictureStream : public std::enable_shared_from_this<PictureStream> {
 
   void Open(const protocol::SubscribePictures& pictures) {
     waits_ = pictures.wait;
+    // The peer calls this on the hub's thread, and the timer belongs to the web thread, so it is
+    // posted. Weak, because the stream may have ended by then.
     auto wake = [weak = weak_from_this()] {
       if (const auto self = weak.lock()) self->wake_.cancel();
     };
@@ -52,9 +56,11 @@ class PictureStream : public std::enable_shared_from_this<PictureStream> {
   net::awaitable<Next> Wait(std::optional<std::chrono::steady_clock::time_point> deadline) {
     std::vector<std::uint8_t> message;
     while (true) {
+      // Takes everything that waits: one wake-up may stand for several messages.
       while (peer_->Pop(&message)) {
         if (std::optional<Next> next = Take(message); next) co_return *std::move(next);
       }
+      // After the queue, so that a picture that arrived in time is not refused.
       if (deadline && std::chrono::steady_clock::now() >= *deadline) {
         co_return Next{false, ErrorReply(503, "unavailable", "subject",
                                          "no picture within 10 s: no pose arrived, or the renderer "
@@ -62,6 +68,7 @@ class PictureStream : public std::enable_shared_from_this<PictureStream> {
                                          "try again")};
       }
       if (gone_) co_return Next{};
+      // Waits for a message or the deadline; both end the wait in the same way.
       wake_.expires_at(deadline.value_or(net::steady_timer::time_point::max()));
       beast::error_code ignored;
       co_await wake_.async_wait(Redirect(ignored));
@@ -89,6 +96,7 @@ class PictureStream : public std::enable_shared_from_this<PictureStream> {
     if (!peer_->Send(std::move(bytes))) gone_ = true;
   }
 
+  // What a message of the hub means for the response; nullopt: nothing, wait on.
   std::optional<Next> Take(const std::vector<std::uint8_t>& message) {
     protocol::MessageView view;
     if (protocol::OpenMessage(message, view, protocol::kMaxReplyBytes) !=
@@ -97,6 +105,7 @@ class PictureStream : public std::enable_shared_from_this<PictureStream> {
     }
     if (view.kind == protocol::MessageKind::kImage) {
       subscription_ = view.header.stream;
+      // image_ keeps its memory from picture to picture.
       const bool good = protocol::Decode(view, image_) == protocol::DecodeStatus::kOk;
       return good ? std::optional(Next{true, std::nullopt}) : std::nullopt;
     }
@@ -110,6 +119,7 @@ class PictureStream : public std::enable_shared_from_this<PictureStream> {
     return Next{false, Refusal(error)};
   }
 
+  // The HTTP error for an error of the hub.
   static ApiReply Refusal(const protocol::ErrorMessage& error) {
     using protocol::ErrorCode;
     switch (error.code) {
@@ -133,6 +143,7 @@ class PictureStream : public std::enable_shared_from_this<PictureStream> {
   bool gone_ = false;
 };
 
+// Writes the three parts with one gathered write. False: the client has gone or does not read.
 net::awaitable<bool> WriteAll(beast::tcp_stream* stream, std::string_view head,
                               const std::vector<std::uint8_t>& body, std::string_view tail) {
   const std::array<net::const_buffer, 3> parts = {net::buffer(head.data(), head.size()),
@@ -152,7 +163,9 @@ std::string PartHead(std::size_t bytes) {
 net::awaitable<bool> ServeMjpeg(beast::tcp_stream* stream, PictureStream* pictures,
                                 const WebRequest& request) {
   beast::error_code ignored;
+  // The kernel would otherwise buffer many pictures, and the client would see the past.
   stream->socket().set_option(net::socket_base::send_buffer_size(kSendBufferBytes), ignored);
+  // Written by hand: the body is endless, and Beast's serializer wants to know where it ends.
   const std::string head = std::string(
                                "HTTP/1.1 200 OK\r\nServer: furrowd\r\nCache-Control: no-store\r\n"
                                "Connection: close\r\nContent-Type: ") +
@@ -161,6 +174,7 @@ net::awaitable<bool> ServeMjpeg(beast::tcp_stream* stream, PictureStream* pictur
   pictures->WatchForEnd();
   while (true) {
     PictureStream::Next next = co_await pictures->Wait(std::nullopt);
+    // After the head it is too late for an error status; then the connection closes.
     if (next.refusal && !has_begun) {
       co_return co_await WriteReply(*stream, request, *std::move(next.refusal));
     }
@@ -168,6 +182,8 @@ net::awaitable<bool> ServeMjpeg(beast::tcp_stream* stream, PictureStream* pictur
     const std::string part = (has_begun ? "" : head) + PartHead(pictures->image().bytes.size());
     has_begun = true;
     if (!co_await WriteAll(stream, part, pictures->image().bytes, "\r\n")) co_return false;
+    // After the write has ended, so that the speed of the client limits how many pictures are
+    // requested.
     pictures->Acknowledge();
   }
 }
@@ -200,7 +216,9 @@ net::awaitable<bool> ServePictures(beast::tcp_stream* stream, WebContext* contex
   wanted->acknowledged = !once;
   wanted->wait = !once;
   if (once) wanted->format = protocol::ImageFormat::kPng;
+  // Waiting for a picture has its own deadline; each write sets one again.
   stream->expires_never();
+  // Shared only so that callbacks can hold it weakly. It ends with this coroutine.
   auto pictures = std::make_shared<PictureStream>(stream, context);
   pictures->Open(*wanted);
   if (once) co_return co_await ServeSnapshot(stream, pictures.get(), request);

@@ -13,6 +13,7 @@ struct CodeInfo {
   std::string_view name;
 };
 
+// HTTP status and error name for a code. Names are part of docs/HTTP-API.md.
 CodeInfo InfoOf(StatusCode code) {
   switch (code) {
     case StatusCode::kOk: return {200, "ok"};

@@ -41,6 +41,7 @@ std::string_view TypeOf(const fs::path& path) {
 // Empty if compression does not make the file smaller.
 std::string Gzip(const std::string& bytes) {
   z_stream stream{};
+  // The largest window, plus 16 for a gzip header (zlib.h, deflateInit2).
   constexpr int kGzipFormat = 15 + 16;
   if (deflateInit2(&stream, 9, Z_DEFLATED, kGzipFormat, 8, Z_DEFAULT_STRATEGY) != Z_OK) return {};
   std::string out(deflateBound(&stream, static_cast<uLong>(bytes.size())), '\0');
@@ -62,7 +63,9 @@ Result<PageFiles> PageFiles::Load(const fs::path& folder) {
   std::uintmax_t total = 0;
   for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end;
        entry.increment(error)) {
+    // Only what the folder holds can be requested, so a path such as "/../x" finds nothing.
     if (!entry->is_regular_file()) continue;
+    // All files stay in memory. The limit catches a --page that names the wrong folder.
     total += entry->file_size();
     if (total > kMaxBytes)
       return Status(StatusCode::kLimit, "the files of the page exceed 64 MiB", folder);
@@ -72,10 +75,12 @@ Result<PageFiles> PageFiles::Load(const fs::path& folder) {
     PageFile file;
     file.type = TypeOf(entry->path());
     file.gzip = Gzip(*bytes);
+    // A checksum finds changes; an ETag need not resist an attacker.
     file.etag = fmt::format(
         "\"{:08x}-{:x}\"",
         crc32(0, reinterpret_cast<const Bytef*>(bytes->data()), static_cast<uInt>(bytes->size())),
         bytes->size());
+    // The build names the files there after their content.
     file.immutable = name.starts_with("/assets/");
     file.bytes = *std::move(bytes);
     page.files_.emplace(name, std::move(file));

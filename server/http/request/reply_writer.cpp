@@ -18,6 +18,7 @@ void SetCommonHeaders(std::string_view content_type, http::fields* fields) {
   fields->set(http::field::server, "furrowd");
   fields->set(http::field::content_type,
               beast::string_view(content_type.data(), content_type.size()));
+  // A browser must not run a JSON or text reply as a script.
   fields->set("X-Content-Type-Options", "nosniff");
   fields->set("Referrer-Policy", "no-referrer");
   fields->set("Content-Security-Policy", kContentPolicy);
@@ -29,6 +30,7 @@ net::awaitable<bool> WriteReply(beast::tcp_stream& stream, const WebRequest& req
                                              request.version());
   SetCommonHeaders(reply.type, &response);
   response.keep_alive(request.keep_alive());
+  // Replies show the state of this moment.
   response.set(http::field::cache_control, "no-store");
   if (!reply.file_name.empty()) {
     response.set(http::field::content_disposition,

@@ -9,6 +9,7 @@
 namespace furrow::server {
 namespace {
 
+// Host names and origins ignore case (RFC 9110 section 4.2.3).
 bool Contains(const std::vector<std::string>& list, std::string_view text) {
   return std::ranges::any_of(list,
                              [&](const std::string& item) { return EqualsIgnoreCase(item, text); });
@@ -25,11 +26,13 @@ std::string_view HostName(std::string_view host) {
 }
 
 std::string RequestGuard::Check(std::string_view host, std::string_view origin) const {
+  // A numeric address cannot be rebound by DNS, and browsers resolve "localhost" to loopback.
   const std::string name(HostName(host));
   if (!IsNumericAddress(name) && !EqualsIgnoreCase(name, "localhost") && !Contains(hosts_, name)) {
     return "Host '" + name + "' is not allowed; add it to http.allow_hosts";
   }
   if (origin.empty() || Contains(origins_, origin)) return {};
+  // The page of this daemon: its Origin is the Host with a scheme in front.
   for (const std::string_view scheme : {"http://", "https://"}) {
     if (origin.starts_with(scheme) && EqualsIgnoreCase(origin.substr(scheme.size()), host))
       return {};

@@ -4,6 +4,7 @@
 namespace furrow::server {
 namespace {
 
+// The value of a hexadecimal digit; -1 for other characters.
 int HexDigit(char c) {
   if (c >= '0' && c <= '9') return c - '0';
   if (c >= 'a' && c <= 'f') return c - 'a' + 10;
@@ -11,6 +12,7 @@ int HexDigit(char c) {
   return -1;
 }
 
+// Decodes percent escapes; nullopt if one is cut or invalid. A plus is a space in queries only.
 std::optional<std::string> Decode(std::string_view text, bool plus_is_space) {
   std::string out;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -32,6 +34,7 @@ std::optional<std::string> Decode(std::string_view text, bool plus_is_space) {
 }  // namespace
 
 std::string_view Url::Value(std::string_view name) const {
+  // From the back: the last of several equal names wins.
   for (auto entry = values.rbegin(); entry != values.rend(); ++entry) {
     if (entry->first == name) return entry->second;
   }
@@ -40,13 +43,17 @@ std::string_view Url::Value(std::string_view name) const {
 
 std::optional<Url> ParseUrl(std::string_view target) {
   if (!target.starts_with('/')) return std::nullopt;
+  // Browsers do not send a fragment; other clients may.
   target = target.substr(0, target.find('#'));
   const std::size_t question = target.find('?');
+  // Decoded once. Later code sees only the decoded path, so an escaped character cannot pass a
+  // check and then change its meaning.
   const auto path = Decode(target.substr(0, question), false);
   if (!path) return std::nullopt;
   Url url{*path, {}};
   if (question == std::string_view::npos) return url;
   std::string_view query = target.substr(question + 1);
+  // The header limit bounds the number of values.
   while (!query.empty()) {
     const std::size_t end = query.find('&');
     const std::string_view item = query.substr(0, end);

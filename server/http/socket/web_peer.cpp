@@ -23,10 +23,13 @@ class WebPeer::Connection : public Link {
   bool Pop(std::vector<std::uint8_t>* out);
 
   PeerId id = 0;  // used by the hub's thread only
+  // Messages posted to the hub and not yet handled. Counted up on the web thread, down on the
+  // hub's.
   std::atomic<int> waiting = 0;
   std::atomic<bool> overrun = false;
 
  private:
+  // A client that leaves this many replies unread is disconnected.
   static constexpr std::size_t kMaxReplies = 256;
   static constexpr std::size_t kMaxFrames = 64;
 
@@ -40,8 +43,10 @@ void WebPeer::Connection::SendReply(std::span<const std::uint8_t> message) {
   {
     const std::lock_guard lock(mutex_);
     is_first = outbox_.empty();
+    // The hub is using this peer, so only a flag is set; the writer on the web thread closes.
     if (!outbox_.PushReply(message)) overrun = true;
   }
+  // Outside of the mutex. One wake-up is enough: the writer empties the outbox before it sleeps.
   if (is_first || overrun) wake_();
 }
 
@@ -72,15 +77,20 @@ WebPeer::WebPeer(PostToHub post_to_hub, std::string name, std::function<void()> 
     : post_to_hub_(std::move(post_to_hub)),
       connection_(std::make_shared<Connection>(std::move(wake))) {
   post_to_hub_([connection = connection_, name = std::move(name)](Hub& hub, Time now) {
+    // The id is set before any message of the peer is handled, because tasks run in the order of
+    // posting.
     connection->id = hub.AddPeer(Transport::kWeb, name, connection.get(), now);
   });
 }
 
 WebPeer::~WebPeer() {
+  // The task holds the connection, so the hub's pointer to the Link is valid until it has run.
   post_to_hub_([connection = connection_](Hub& hub, Time) { hub.RemovePeer(connection->id); });
 }
 
 bool WebPeer::Send(std::vector<std::uint8_t> message) {
+  // Bounds the hub's task queue per client. The count is not taken back on failure, because the
+  // caller then closes the connection.
   if (connection_->waiting.fetch_add(1, std::memory_order_relaxed) >= kMaxWaiting) return false;
   post_to_hub_([connection = connection_, message = std::move(message)](Hub& hub, Time now) {
     connection->waiting.fetch_sub(1, std::memory_order_relaxed);

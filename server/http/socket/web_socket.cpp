@@ -25,6 +25,8 @@ namespace websocket = beast::websocket;
 
 constexpr char kProtocol[] = "furrow.1";
 
+// One WebSocket: a reader and a writer coroutine on the web thread. Beast allows one read and one
+// write at a time, and each coroutine does only one of them.
 class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
  public:
   WebSocketSession(beast::tcp_stream stream, WebContext* context)
@@ -42,9 +44,13 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
     auto wake = [weak = weak_from_this()] {
       if (const auto self = weak.lock()) self->wake_.cancel();
     };
+    // Made before the peer, so that the writer ends and the hub forgets the peer whatever happens
+    // below.
     const AbortOnExit abort_on_exit{this};  // also after an exception
     peer_.emplace(context_->post_to_hub, name_,
                   [post_to_web = context_->post_to_web, wake] { post_to_web(wake); });
+    // The writer holds the session, which therefore outlives this function until the writer has
+    // seen closed_.
     net::co_spawn(
         socket_.get_executor(), [self = shared_from_this()] { return self->Write(); },
         [self = shared_from_this()](const std::exception_ptr& failed) {
@@ -58,6 +64,7 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
     WebSocketSession* session;
     ~AbortOnExit() {
       session->Abort();
+      // Write() uses the peer only while closed_ is false, and Abort() has just set it.
       session->peer_.reset();
     }
   };
@@ -67,17 +74,22 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
     auto& tcp = beast::get_lowest_layer(socket_);
     const auto remote = tcp.socket().remote_endpoint(ignored);
     name_ = "web " + remote.address().to_string() + " port " + std::to_string(remote.port());
+    // Weights are small messages that must not wait for an acknowledgement (Nagle's algorithm).
     tcp.socket().set_option(net::ip::tcp::no_delay(true), ignored);
     tcp.expires_never();  // the WebSocket has its own timeouts
     socket_.set_option(websocket::stream_base::timeout{kWebDeadline, kWebIdle, false});
     socket_.set_option(websocket::stream_base::decorator([&](websocket::response_type& response) {
       response.set(http::field::server, "furrowd");
       const beast::string_view offered = request[http::field::sec_websocket_protocol];
+      // A browser closes a connection if the server does not confirm one of the protocols that it
+      // offered.
       if (offered.find(kProtocol) != beast::string_view::npos) {
         response.set(http::field::sec_websocket_protocol, kProtocol);
       }
     }));
+    // Beast fails the read of a longer message instead of buffering it.
     socket_.read_message_max(kMaxWebMessageBytes);
+    // One message per frame: cutting pictures into small frames only adds work.
     socket_.auto_fragment(false);
     socket_.binary(true);
     beast::error_code error;
@@ -95,6 +107,7 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
       }
       if (error) co_return;
       const auto* bytes = static_cast<const std::uint8_t*>(buffer.cdata().data());
+      // A copy, which moves to the hub's thread; the buffer is used for the next message.
       std::vector<std::uint8_t> message(bytes, bytes + buffer.size());
       buffer.consume(buffer.size());
       if (const auto code = Refuse(message); code != websocket::close_code::none) {
@@ -102,6 +115,8 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
         co_await CloseWith(code);
         co_return;
       }
+      // The client sends faster than the hub reads. Waiting here instead would only fill the
+      // kernel's buffers.
       if (!peer_->Send(std::move(message))) {
         context_->metrics->Add(Counter::kConnectionsOverrun);
         co_await CloseWith(websocket::close_code::policy_error);
@@ -118,6 +133,7 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
   }
 
   net::awaitable<void> CloseWith(websocket::close_code code) {
+    // Reader and writer may both want to close; Beast allows one close.
     if (std::exchange(closing_, true)) co_return;
     WatchWrite();
     beast::error_code ignored;
@@ -127,6 +143,7 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
   net::awaitable<void> Write() {
     std::vector<std::uint8_t> out;
     while (!closed_) {
+      // The client has not read for a long time and would not read a close frame either.
       if (peer_->overrun()) {
         context_->metrics->Add(Counter::kConnectionsOverrun);
         Abort();
@@ -136,6 +153,8 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
         co_await socket_.async_write(net::buffer(out), Redirect(error));
         write_watch_.cancel();
         if (error) Abort();
+        // The last message before the daemon ends. Closing here lets the shutdown proceed before
+        // its deadline.
         if (IsFinalGoodbye(out)) {
           co_await CloseWith(websocket::close_code::going_away);
           co_return;
@@ -159,6 +178,7 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
   // Closes the connection if the client does not read a message within kWebDeadline.
   void WatchWrite() {
     write_watch_.expires_after(kWebDeadline);
+    // Weak: a waiting timer must not keep a closed session alive.
     write_watch_.async_wait([weak = weak_from_this()](beast::error_code error) {
       if (error) return;
       if (const auto self = weak.lock()) {
@@ -172,6 +192,7 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
   void Abort() {
     closed_ = true;
     beast::error_code ignored;
+    // Pending reads and writes complete with an error.
     beast::get_lowest_layer(socket_).socket().close(ignored);
     wake_.cancel();
     write_watch_.cancel();
