@@ -23,6 +23,7 @@ std::uint16_t Publisher::AddSubject(const protocol::SkeletonOffer& offer, std::i
   const auto number = static_cast<std::uint16_t>(streams_.size());
   Stream& stream = streams_.emplace_back();
   stream.skeleton_hash = protocol::SkeletonHash(offer);
+  // Encoded once and kept, because lost or unanswered offers are sent again.
   encoder_.Encode({.session = session_, .stream = number}, offer, stream.offer);
   // A daemon does not answer malformed datagrams, so check the offer here.
   stream.rejection = protocol::FindOfferProblem(stream.offer);
@@ -31,6 +32,7 @@ std::uint16_t Publisher::AddSubject(const protocol::SkeletonOffer& offer, std::i
 }
 
 void Publisher::SendOffer(Stream& stream, std::int64_t now_us) {
+  // Also after a failed send: the interval to the next attempt begins now.
   stream.offered_us = now_us;
   // Poll() repeats the offer until it is answered, so other send failures do not matter.
   if (transport_->Send(stream.offer) == IoStatus::kTooLarge) {
@@ -60,6 +62,7 @@ IoStatus Publisher::Poll(std::int64_t now_us, std::chrono::milliseconds wait) {
   IoStatus status = transport_->Receive(message, wait);
   while (status == IoStatus::kOk) {
     Handle(message, now_us);
+    // Reads all waiting answers. A timeout after the first one is not a timeout of this call.
     const IoStatus more = transport_->Receive(message, std::chrono::milliseconds(0));
     if (more == IoStatus::kTimeout) break;
     status = more;
@@ -79,12 +82,14 @@ void Publisher::Handle(std::span<const std::uint8_t> message, std::int64_t now_u
   if (view.header.stream >= streams_.size()) return;
   if (protocol::Decode(view, reply_) != DecodeStatus::kOk) return;
   Stream& stream = streams_[view.header.stream];
+  // A late answer to an earlier offer of this stream number.
   if (reply_.skeleton_hash != stream.skeleton_hash) return;
   switch (reply_.status) {
     case protocol::SkeletonStatus::kAccepted: stream.accepted = true; break;
     case protocol::SkeletonStatus::kRejected:
       stream.rejection = reply_.message.empty() ? "the daemon gave no reason" : reply_.message;
       break;
+    // The daemon has restarted or forgotten the stream.
     case protocol::SkeletonStatus::kNeeded:
       stream.accepted = false;
       SendOffer(stream, now_us);

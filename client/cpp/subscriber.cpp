@@ -30,6 +30,7 @@ Subscriber::Subscriber(std::unique_ptr<Transport> transport, std::string name)
   SendHello();
 }
 
+// Over UDP the first Hello asks for a token, and the second returns it. That proves the address.
 void Subscriber::SendHello() {
   const protocol::Hello hello{
       .client = name_, .token = token_, .bundles = transport_->takes_bundles()};
@@ -37,6 +38,8 @@ void Subscriber::SendHello() {
   (void)transport_->Send(bytes_);
 }
 
+// Stores the request until its subscription ends and sends it, over UDP only once the address is
+// proven. Returns its number.
 template <class Message>
 std::uint32_t Subscriber::Ask(const Message& message) {
   Request& request = requests_.emplace_back();
@@ -91,26 +94,31 @@ void Subscriber::ProveAgain() {
 void Subscriber::NoticeRestart(std::uint64_t server_session) {
   const bool restarted = server_session_ != 0 && server_session != server_session_;
   server_session_ = server_session;
+  // Over TCP a restart also closes the connection, so there is nothing to repeat on it.
   if (restarted && proven_ && transport_->kind() == TransportKind::kUdp) ProveAgain();
 }
 
 void Subscriber::Maintain(std::int64_t now_us) {
+  // The first call only learns the time: the constructor, which sent the Hello, has no clock.
   if (!started_) {
     started_ = true;
     last_sent_us_ = now_us;
     return;
   }
   const bool udp = transport_->kind() == TransportKind::kUdp;
+  // TCP does not lose requests, so only UDP repeats them.
   const bool asking = udp && std::ranges::any_of(requests_, &Request::waiting);
   const bool unsettled = !proven_ || asking;
   if (now_us - last_sent_us_ < (unsettled ? kResendMicroseconds : kRenewMicroseconds)) return;
   last_sent_us_ = now_us;
+  // Silence counts from the first unanswered send. A daemon that has nothing to say is not gone.
   if (!unanswered_since_us_) unanswered_since_us_ = now_us;
   if (!proven_) {
     SendHello();
   } else if (asking) {
     SendWaiting();
   } else {
+    // A ping renews the lease of a UDP address, and its pong shows that the daemon is alive.
     encoder_.Encode({.session = session_}, protocol::Ping{.time_us = now_us}, bytes_);
     (void)transport_->Send(bytes_);
   }
@@ -149,6 +157,7 @@ bool Subscriber::Handle(std::span<const std::uint8_t> message, Event& event) {
     ++malformed_;
     return false;
   }
+  // Every message carries the daemon's session number, so any message shows a restart.
   NoticeRestart(view.header.session);
   event.header = view.header;
   payload_ = view.payload;
@@ -209,6 +218,8 @@ bool Subscriber::HandleWelcome(const protocol::MessageView& view) {
   if (protocol::Decode(view, welcome) != DecodeStatus::kOk) {
     ++malformed_;
   } else if (!proven_) {
+    // A token means that the address is not proven yet; no token means that it is, or needs no
+    // proof.
     if (welcome.token != 0) {
       token_ = welcome.token;
       SendHello();
@@ -225,6 +236,7 @@ void Subscriber::OnReply(const protocol::Header& header) {
   if (found == requests_.end()) return;
   found->waiting = false;
   found->subscription = header.stream;
+  // Frames carry this hash. OnFrame() compares them.
   found->names_hash = reply_.names_hash;
 }
 

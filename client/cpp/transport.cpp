@@ -43,6 +43,7 @@ class ReadPump {
       error_ = error;
       bytes_ = bytes;
     };
+    // A datagram is received whole; a stream gives what has arrived.
     if constexpr (std::is_same_v<Socket, udp::socket>) {
       socket.async_receive(asio::buffer(buffer.data(), buffer.size()), on_read);
     } else {
@@ -53,8 +54,11 @@ class ReadPump {
   // Returns true when the read has completed; error() and bytes() then hold its result.
   bool Wait(asio::io_context& context, Clock::time_point deadline) {
     if (!done_) {
+      // A context without work stops, and a stopped context runs nothing.
       context.restart();
+      // Runs one handler at most: that of the read, or none until the deadline.
       context.run_one_until(deadline);
+      // With a deadline in the past nothing has run yet, although data may be waiting.
       if (!done_) context.poll();
     }
     return std::exchange(done_, false);
@@ -81,6 +85,7 @@ class TcpTransport : public Transport {
     tcp::resolver resolver(context_);
     const auto endpoints = resolver.resolve(host, std::to_string(port), error);
     if (error) return error;
+    // Stays if the handler does not run before the deadline.
     error = asio::error::timed_out;
     asio::async_connect(
         socket_, endpoints,
@@ -104,6 +109,7 @@ class TcpTransport : public Transport {
                       [&](const asio::error_code& error, std::size_t) { result = error; });
     const auto deadline = Clock::now() + send_timeout_;
     context_.restart();
+    // The pending read may complete first; the loop goes on until the write has.
     while (!result && context_.run_one_until(deadline) > 0) {
     }
     if (!result) Close();  // part of a frame may have been sent, so no other frame can follow
@@ -125,6 +131,8 @@ class TcpTransport : public Transport {
         }
       }
       pump_.Start(socket_, buffer_);
+      // After a timeout the read stays pending and keeps using buffer_, which therefore belongs to
+      // the transport.
       if (!pump_.Wait(context_, deadline)) return IoStatus::kTimeout;
       if (pump_.error()) return IoStatus::kClosed;
       unread_ = std::span<const std::uint8_t>(buffer_).first(pump_.bytes());
@@ -160,6 +168,7 @@ class UdpTransport : public Transport {
     if (error) return error;
     // Picks the first routable address, IPv4 first, because the daemon binds to IPv4 by default.
     for (const bool want_v4 : {true, false}) {
+      // A UDP connect sends nothing; it only fixes the peer. It fails if there is no route.
       for (const auto& entry : endpoints) {
         if (entry.endpoint().address().is_v4() != want_v4) continue;
         asio::error_code ignored;
@@ -197,6 +206,8 @@ class UdpTransport : public Transport {
     (void)reassembler_.Expire(Microseconds(Clock::now()));
     for (int piece = 0; piece < kMaxPieces; ++piece) {
       if (unbundler_.Next(message)) return IoStatus::kOk;
+      // The kernel reports a closed port once. If Send() has taken the report, it is passed on
+      // here.
       if (std::exchange(refused_, false)) return IoStatus::kNoConnection;
       pump_.Start(socket_, buffer_);
       if (!pump_.Wait(context_, deadline)) return IoStatus::kTimeout;

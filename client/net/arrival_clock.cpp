@@ -40,6 +40,8 @@ void ArrivalClock::Read() {
 }
 
 void ArrivalClock::Set(std::int64_t steady_ns, std::int64_t wall_ns) {
+  // The offset of the two clocks is nearly constant. A jump means that the wall clock was set, and
+  // stamps from before the jump cannot be converted.
   const std::int64_t ahead_ns = wall_ns - steady_ns;
   const std::int64_t slew_ns = kStepNs + (steady_ns - steady_ns_) / kSlewShare;
   was_set_ = ahead_ns_ && std::abs(ahead_ns - *ahead_ns_) > slew_ns;
@@ -49,6 +51,7 @@ void ArrivalClock::Set(std::int64_t steady_ns, std::int64_t wall_ns) {
 }
 
 std::int64_t ArrivalClock::FromWall(std::int64_t wall_ns) const {
+  // No stamp can lie after the read, so a negative difference counts as 0.
   if (was_set_) return steady_ns_;
   return steady_ns_ - std::max<std::int64_t>(wall_ns_ - wall_ns, 0);
 }

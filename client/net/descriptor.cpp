@@ -17,12 +17,14 @@ Descriptor::~Descriptor() {
 Descriptor::Descriptor(Descriptor&& other) noexcept : value_(std::exchange(other.value_, -1)) {}
 
 Descriptor& Descriptor::operator=(Descriptor&& other) noexcept {
+  // The destructor of `other` closes the former descriptor.
   std::swap(value_, other.value_);
   return *this;
 }
 
 bool WaitFor(int descriptor, short events, std::chrono::milliseconds timeout) {
   pollfd wanted{descriptor, events, 0};
+  // A signal also ends the wait. Callers then try their call again or report a timeout.
   return poll(&wanted, 1, static_cast<int>(timeout.count())) > 0;
 }
 

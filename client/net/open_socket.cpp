@@ -28,6 +28,7 @@ struct FreeAddresses {
 int Connect(int descriptor, const addrinfo& address) {
   if (connect(descriptor, address.ai_addr, address.ai_addrlen) == 0) return 0;
   if (errno != EINPROGRESS) return errno;
+  // A pending connect has ended when the socket is writable; SO_ERROR tells how (connect(2)).
   if (!WaitFor(descriptor, POLLOUT, kConnectTimeout)) return ETIMEDOUT;
   int error = 0;
   socklen_t size = sizeof(error);
@@ -41,6 +42,7 @@ int ConnectAny(const addrinfo* list, Descriptor* connected) {
   for (const int family : {AF_INET, AF_INET6}) {
     for (const addrinfo* entry = list; entry != nullptr; entry = entry->ai_next) {
       if (entry->ai_family != family) continue;
+      // CLOEXEC: programs that are started later must not inherit the connection.
       Descriptor made(socket(family, entry->ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
       error = made.get() < 0 ? errno : Connect(made.get(), *entry);
       if (error != 0) continue;

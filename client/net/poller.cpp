@@ -32,6 +32,7 @@ std::span<const epoll_event> Poller::Wait(std::int64_t timeout_ns) {
   if (calls_ == Calls::kOne) {
     ready = epoll_pwait2(epoll_.get(), events_.data(), static_cast<int>(events_.size()), &timeout,
                          nullptr);
+    // The kernel is asked once; glibc may know the call where the kernel does not.
     if (ready < 0 && errno == ENOSYS) calls_ = Calls::kTwo;
   }
   if (calls_ == Calls::kTwo) ready = WaitByTwoCalls(timeout);

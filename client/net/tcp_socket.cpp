@@ -24,15 +24,18 @@ constexpr std::chrono::milliseconds kSendTimeout{5000};
 TcpSocket::TcpSocket(Descriptor descriptor)
     : Socket(client::TransportKind::kTcp), descriptor_(std::move(descriptor)) {
   const int on = 1;
+  // Nagle's algorithm would hold a pose back until the one before is acknowledged.
   setsockopt(descriptor_.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
 }
 
 IoStatus TcpSocket::Send(std::span<const std::uint8_t> message) {
   if (message.size() > protocol::kMaxRequestBytes) return IoStatus::kTooLarge;
   const auto prefix = protocol::FramePrefix(message.size());
+  // Prefix and message in one buffer, so that they leave in one segment.
   outgoing_.assign(prefix.begin(), prefix.end());
   outgoing_.insert(outgoing_.end(), message.begin(), message.end());
   std::size_t sent = 0;
+  // MSG_NOSIGNAL: a closed connection is a result, not a SIGPIPE that kills the load test.
   while (sent < outgoing_.size()) {
     const ssize_t taken =
         send(descriptor_.get(), outgoing_.data() + sent, outgoing_.size() - sent, MSG_NOSIGNAL);
@@ -57,7 +60,10 @@ IoStatus TcpSocket::Receive(std::span<const std::uint8_t>& message,
         case protocol::FrameStatus::kNeedMore: break;
       }
     }
+    // The last read emptied the kernel's buffer. Saying so now saves a recv() that would find
+    // nothing.
     if (std::exchange(drained_, false)) return IoStatus::kTimeout;
+    // Only the first read waits. A frame that arrives in pieces must not extend the timeout.
     const IoStatus status = Fill(std::exchange(timeout, {}));
     if (status != IoStatus::kOk) return status;
   }

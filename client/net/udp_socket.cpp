@@ -18,6 +18,8 @@ UdpSocket::UdpSocket(Descriptor descriptor)
     : Socket(client::TransportKind::kUdp),
       descriptor_(std::move(descriptor)),
       buffer_(kBatch * kBufferBytes) {
+  // Bursts of many subjects must not overflow the buffers of the load generator itself, whose
+  // losses would look like the server's.
   const int bytes = 4 << 20;  // the system may grant less
   setsockopt(descriptor_.get(), SOL_SOCKET, SO_RCVBUF, &bytes, sizeof(bytes));
   setsockopt(descriptor_.get(), SOL_SOCKET, SO_SNDBUF, &bytes, sizeof(bytes));
@@ -34,6 +36,7 @@ UdpSocket::UdpSocket(Descriptor descriptor)
 
 IoStatus UdpSocket::Send(std::span<const std::uint8_t> message) {
   if (message.size() > protocol::kMaxUdpMessageBytes) return IoStatus::kTooLarge;
+  // The usual case: a whole message needs neither a fragment header nor a copy.
   if (message.size() <= protocol::kMaxDatagramBytes) return SendDatagram(message);
   const std::size_t count = protocol::NumDatagrams(message.size());
   const std::uint32_t id = next_message_id_++;
@@ -64,6 +67,7 @@ IoStatus UdpSocket::Receive(std::span<const std::uint8_t>& message,
       if (status != IoStatus::kOk) return status;
     }
     const std::size_t i = taken_++;
+    // The time at which the kernel received the datagram, however long it waited for this thread.
     arrived_ns_ = clock_.Arrival(&headers_[i].msg_hdr);
     const std::span datagram(buffer_.data() + i * kBufferBytes, headers_[i].msg_len);
     switch (reassembler_.Push(0, datagram, SteadyNanoseconds() / 1000, message)) {
@@ -83,6 +87,7 @@ IoStatus UdpSocket::Fill() {
   if (received <= 0) {
     return received < 0 && errno == ECONNREFUSED ? IoStatus::kNoConnection : IoStatus::kTimeout;
   }
+  // Directly after the batch: the stamps are converted by the clocks of this moment.
   clock_.Read();
   filled_ = static_cast<std::size_t>(received);
   drained_ = filled_ < kBatch;
