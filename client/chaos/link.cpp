@@ -12,6 +12,8 @@
 namespace furrow::chaos {
 namespace {
 
+// Turns a counter into independent random bits. Unlike a generator with a state, it gives packet i
+// the same fate whatever happened to the packets before it.
 // Steele, Lea and Flood, "Fast Splittable Pseudorandom Number Generators" (2014).
 std::uint64_t Mix(std::uint64_t value) {
   value += 0x9E3779B97F4A7C15ULL;
@@ -35,8 +37,10 @@ std::size_t NumDatagrams(std::span<const std::uint8_t> packet) {
 Result<BlackHole> ParseBlackHole(const std::string& text) {
   BlackHole hole;
   int used = 0;
+  // %n stores the number of characters read so far, which shows whether anything follows.
   const int fields = std::sscanf(text.c_str(), "%lf:%lf%n:%lf%n", &hole.start, &hole.length, &used,
                                  &hole.every, &used);
+  // The comparisons are written so that NaN fails.
   const bool whole = fields >= 2 && used == static_cast<int>(text.size());
   if (!whole || !(hole.start >= 0.0) || !(hole.length > 0.0) ||
       (fields == 3 && !(hole.every > hole.length))) {
@@ -68,10 +72,12 @@ void FaultCounts::Add(const FaultCounts& other) {
 }
 
 double Link::Roll(Dice dice) const {
+  // Chained, so that seed, link, packet and kind of fault all change the result.
   std::uint64_t bits = Mix(options_.seed);
   bits = Mix(bits ^ number_);
   bits = Mix(bits ^ counts_.packets);
   bits = Mix(bits ^ static_cast<std::uint64_t>(dice));
+  // The upper 53 bits fill the mantissa of a double exactly: uniform in [0, 1).
   return static_cast<double>(bits >> 11) * 0x1p-53;
 }
 
@@ -91,10 +97,12 @@ void Link::Push(std::span<const std::uint8_t> bytes, std::int64_t now_us) {
   } else {
     Take(bytes, now_us);
   }
+  // Last: Roll() uses the count as the number of the present packet.
   ++counts_.packets;
 }
 
 void Link::Take(std::span<const std::uint8_t> bytes, std::int64_t now_us) {
+  // Without tampering, datagrams pass as they are, also those that are not of this protocol.
   if (!options_.tampers()) return Handle(bytes, now_us);
   (void)gathered_.Expire(now_us);
   std::span<const std::uint8_t> message;
@@ -113,6 +121,7 @@ void Link::Handle(std::span<const std::uint8_t> bytes, std::int64_t now_us) {
   const std::int64_t due_us = DueUs(now_us);
   if (Hits(Dice::kDuplicate, options_.duplicate)) {
     ++counts_.duplicated;
+    // The copy is queued at once and takes no part in the faults below.
     waiting_.emplace(due_us, packet);
   }
   Send(std::move(packet), now_us, due_us);
@@ -120,11 +129,14 @@ void Link::Handle(std::span<const std::uint8_t> bytes, std::int64_t now_us) {
 
 // Queues the packet, or holds it back for the next packet.
 void Link::Send(std::vector<std::uint8_t> packet, std::int64_t now_us, std::int64_t due_us) {
+  // A packet waits for a partner of its kind. The first that fits swaps contents with it, and both
+  // leave.
   if (to_swap_ != waiting_.end() && SwapContents(&to_swap_->second, &packet)) {
     counts_.swapped += 2;
     Release(&to_swap_, due_us);
   } else if (to_swap_ == waiting_.end() && Hits(Dice::kSwap, options_.swap) &&
              IsTamperable(packet)) {
+    // Held packets wait in the same queue, so that they leave at the latest when the stream pauses.
     to_swap_ = waiting_.emplace(now_us + kLongestHoldUs, std::move(packet));
     return;
   }
@@ -140,6 +152,7 @@ void Link::Send(std::vector<std::uint8_t> packet, std::int64_t now_us, std::int6
 }
 
 void Link::Release(Waiting::iterator* held, std::int64_t due_us) {
+  // Changes the due time without copying the packet. Iterators to other packets stay valid.
   auto node = waiting_.extract(std::exchange(*held, waiting_.end()));
   node.key() = due_us;
   waiting_.insert(std::move(node));
@@ -147,6 +160,7 @@ void Link::Release(Waiting::iterator* held, std::int64_t due_us) {
 
 bool Link::Pop(std::int64_t now_us, std::vector<std::uint8_t>* packet) {
   if (num_left_ == num_datagrams_ && !TakeFirst(now_us)) return false;
+  // A message that was reassembled for tampering may need several datagrams again.
   if (num_datagrams_ == 1) {
     packet->swap(leaving_);
   } else {
@@ -160,6 +174,7 @@ bool Link::Pop(std::int64_t now_us, std::vector<std::uint8_t>* packet) {
 bool Link::TakeFirst(std::int64_t now_us) {
   const auto first = waiting_.begin();
   if (first == waiting_.end() || first->first > now_us) return false;
+  // The packet has waited too long for a partner and leaves as it is.
   if (first == to_swap_) to_swap_ = waiting_.end();
   if (first == to_reorder_) to_reorder_ = waiting_.end();
   leaving_ = std::move(first->second);

@@ -26,6 +26,7 @@ enum Token : std::uint64_t { kClients = 0, kListener = 1, kRelay = 2, kFlow = 3 
 
 std::int64_t NowUs() { return net::SteadyNanoseconds() / kMicrosecond; }
 
+// Numeric addresses only: the proxy must not wait for a name server.
 bool ParseAddress(const std::string& host, std::uint16_t port, sockaddr_storage* address,
                   socklen_t* size) {
   auto* const v4 = reinterpret_cast<sockaddr_in*>(address);
@@ -54,6 +55,7 @@ Status Bind(const std::string& host, int type, net::Descriptor* bound, std::uint
     return {StatusCode::kInvalidArgument, "not a numeric IP address", where};
   net::Descriptor made(socket(address.ss_family, type | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   const int on = 1;
+  // Not for UDP, where it would let two proxies share a port.
   if (type == SOCK_STREAM) setsockopt(made.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on));
   auto* const plain = reinterpret_cast<sockaddr*>(&address);
   if (made.get() < 0 || bind(made.get(), plain, size) != 0 ||
@@ -70,6 +72,7 @@ Status Bind(const std::string& host, int type, net::Descriptor* bound, std::uint
 
 }  // namespace
 
+// A socket of its own per client, because the server tells its peers apart by address and port.
 struct Proxy::Flow {
   sockaddr_storage client{};
   socklen_t client_size = 0;
@@ -78,6 +81,7 @@ struct Proxy::Flow {
   Link down;
 
   Flow(const ProxyOptions& options, std::uint64_t number, std::int64_t start_us)
+      // Different link numbers give the two directions different faults.
       : up(options.up, 2 * number, start_us), down(options.down, 2 * number + 1, start_us) {}
 };
 
@@ -88,6 +92,7 @@ Result<std::unique_ptr<Proxy>> Proxy::Open(const ProxyOptions& options) {
   std::unique_ptr<Proxy> proxy(new Proxy(options));
   FURROW_RETURN_IF_ERROR(proxy->Listen());
   FURROW_RETURN_IF_ERROR(
+      // Opened and closed again, so that an unknown host is an error before the first packet.
       net::OpenSocket(client::TransportKind::kUdp, options.to_host, options.to_udp));
   return proxy;
 }
@@ -111,6 +116,8 @@ void Proxy::Run(const std::function<bool()>& keep_going) {
   while (keep_going()) {
     for (const epoll_event& event : poller_.Wait(WaitNs(NowUs()))) {
       const std::uint64_t token = event.data.u64;
+      // Black holes count from the first packet, so a run does not depend on when its client
+      // starts.
       if (start_us_ < 0) start_us_ = NowUs();
       if (token == kClients) ReadClients(NowUs());
       if (token == kListener) Accept();
@@ -119,6 +126,8 @@ void Proxy::Run(const std::function<bool()>& keep_going) {
     const std::int64_t now_us = NowUs();
     ForwardDue(now_us);
     PumpRelays(now_us);
+    // After the events: their tokens are addresses of flows, which must exist until all are
+    // handled.
     while (flows_.size() > kMaxFlows) ForgetOldest();
   }
   while (!flows_.empty()) ForgetOldest();
@@ -139,12 +148,14 @@ void Proxy::ForgetRelay(const TcpRelay& relay) {
   down_relay_counts_.Add(relay.down_counts());
 }
 
+// Keeps the counts of a flow and closes it. Its waiting packets are lost.
 void Proxy::ForgetOldest() {
   up_counts_.Add(flows_.back()->up.counts());
   down_counts_.Add(flows_.back()->down.counts());
   flows_.pop_back();
 }
 
+// Time until the next packet is due or `keep_going` must be asked again.
 std::int64_t Proxy::WaitNs(std::int64_t now_us) const {
   std::int64_t wait_ns = kLongestWaitNs;
   const auto not_beyond = [&](std::int64_t due_us) {
@@ -159,6 +170,7 @@ std::int64_t Proxy::WaitNs(std::int64_t now_us) const {
 }
 
 void Proxy::ReadClients(std::int64_t now_us) {
+  // A flood from one side must not keep the other side, or due packets, waiting.
   constexpr int kAtOnce = 256;
   for (int i = 0; i < kAtOnce; ++i) {
     sockaddr_storage from{};
@@ -177,6 +189,8 @@ Proxy::Flow* Proxy::FindFlow(const sockaddr_storage& from, socklen_t size) {
     return flow->client_size == size && std::memcmp(&flow->client, &from, size) == 0;
   });
   if (found != flows_.end()) {
+    // To the front: the list is in the order of activity. The flow keeps its address, which is its
+    // token.
     flows_.splice(flows_.begin(), flows_, found);
     return flows_.front().get();
   }
@@ -203,6 +217,8 @@ void Proxy::ReadServer(Flow& flow, std::int64_t now_us) {
 
 void Proxy::ForwardDue(std::int64_t now_us) {
   for (const auto& flow : flows_) {
+    // A send that fails is a lost datagram, which UDP allows; it is not counted as an injected
+    // fault.
     while (flow->up.Pop(now_us, &packet_))
       (void)send(flow->server->descriptor(), packet_.data(), packet_.size(), MSG_DONTWAIT);
     while (flow->down.Pop(now_us, &packet_)) {

@@ -16,6 +16,7 @@ using furrow::Counted;
 struct Fault {
   const char* option;
   const char* done;
+  // Pointers to members, so that one list serves text, JSON and the check below.
   double Faults::*probability;
   std::uint64_t FaultCounts::*count;
 };
@@ -59,6 +60,7 @@ std::string ToText(const std::string& direction, const Outcome& outcome) {
          ", stalled for " + std::to_string(stream.still_us / 1000) + " ms";
 }
 
+// A fault that never struck makes a test pass without having tested anything.
 std::string NothingInjected(const Outcome& up, const Outcome& down) {
   std::string options;
   for (const Fault& fault : kFaults) {

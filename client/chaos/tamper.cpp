@@ -17,6 +17,7 @@ using protocol::MessageKind;
 using Bytes = std::vector<std::uint8_t>;
 
 // The message of a datagram, or the messages of a bundle.
+// Copies, because the callers change messages and put them together again.
 std::vector<Bytes> TakeApart(std::span<const std::uint8_t> datagram) {
   Bytes copy(datagram.begin(), datagram.end());
   protocol::Unbundler unbundler;
@@ -39,11 +40,13 @@ bool PutTogether(std::span<const Bytes> messages, Bytes* datagram) {
   return true;
 }
 
+// Opens a whole pose or weights message; false for all others.
 bool OpenTamperable(std::span<const std::uint8_t> message, protocol::MessageView* view) {
   return protocol::OpenMessage(message, *view) == DecodeStatus::kOk &&
          (view->kind == MessageKind::kPose || view->kind == MessageKind::kWeights);
 }
 
+// An index in [0, count) for a share in [0, 1).
 std::size_t Choose(std::size_t count, double share) {
   return static_cast<std::size_t>(share * static_cast<double>(count));
 }
@@ -61,6 +64,7 @@ bool FalsifyWeights(const protocol::MessageView& view, double share,
 }
 
 // Multiplies by a rotation of 120 degrees about x: (1/2 + sqrt(3)/2 i).
+// The result is still a unit quaternion, so the receiver's checks accept it.
 void FalsifyRotation(protocol::Quat* rotation) {
   constexpr float kCosine = 0.5f;
   constexpr float kSine = 0.86602540378f;
@@ -83,6 +87,7 @@ void WritePose(const protocol::MessageView& view, const protocol::PoseFrame& fra
   if (off(packed) < off(*out)) *out = std::move(packed);
 }
 
+// Changes one joint or one blend shape. False: the pose has neither.
 bool FalsifyPose(const protocol::MessageView& view, double share, std::vector<std::uint8_t>* out) {
   protocol::PoseFrame frame;
   if (protocol::Decode(view, frame) != DecodeStatus::kOk) return false;
@@ -108,6 +113,7 @@ bool FalsifyMessage(Bytes* message, double share) {
   return done;
 }
 
+// Exchanges payloads and keeps envelopes, so that only the weights themselves can reveal the swap.
 bool SwapMessages(Bytes* a, Bytes* b) {
   protocol::MessageView first;
   protocol::MessageView second;
@@ -134,6 +140,8 @@ bool IsTamperable(std::span<const std::uint8_t> datagram) {
 bool Falsify(Bytes* datagram, double share) {
   std::vector<Bytes> messages = TakeApart(*datagram);
   const std::size_t first = Choose(messages.size(), share);
+  // One random number chooses twice: the whole part of share * count the message, its fraction a
+  // number in it.
   const double rest = share * static_cast<double>(messages.size()) - static_cast<double>(first);
   for (std::size_t i = 0; i < messages.size(); ++i) {
     if (FalsifyMessage(&messages[(first + i) % messages.size()], rest))
@@ -149,6 +157,7 @@ bool SwapContents(Bytes* a, Bytes* b) {
     for (Bytes& second : of_b) {
       if (!SwapMessages(&first, &second)) continue;
       Bytes changed;
+      // `a` changes last: if one bundle became too large, both stay as they were.
       if (!PutTogether(of_a, &changed) || !PutTogether(of_b, b)) return false;
       *a = std::move(changed);
       return true;
