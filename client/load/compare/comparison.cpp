@@ -80,12 +80,14 @@ class Comparer {
   const RunTarget& run_;
   const ComparisonOptions& options_;
   const ComparisonHooks& hooks_;
+  // Start of the time limit, which covers searches and rounds together.
   double begin_;
   std::vector<Series> series_;
   std::size_t turn_ = 0;
   Comparison comparison_;
 };
 
+// Called before each run, never during one: a run that was cut short would not be comparable.
 bool Comparer::MayGoOn(double share) {
   if (!hooks_.keep_going() || !comparison_.failure.ok()) return false;
   const bool in_time = hooks_.seconds() - begin_ < share * options_.time_limit_seconds;
@@ -102,6 +104,7 @@ void Comparer::ReportProgress(const std::string& what) const {
                   (rest.size() < 2 ? "0" : "") + rest + " left");
 }
 
+// Runs a target, and once more if it cannot start: the machine may have been busy for a moment.
 std::optional<RunResult> Comparer::Attempt(const Target& target, const RunOptions& options) {
   auto result = run_(target, options);
   if (!result.ok() && hooks_.keep_going()) result = run_(target, options);
@@ -121,10 +124,13 @@ void Comparer::Rounds() {
       Series& series = series_[InTurn(i, turn, series_.size())];
       const auto result = Attempt(*series.target, options_.run);
       if (!result) return;
+      // A server that goes away in the middle gives no figures for this round.
       if (result->ended_early) {
         comparison_.failure = {StatusCode::kUnavailable, result->complaint};
         return;
       }
+      // A round without measurements keeps its place, so that ratios compare runs of the same
+      // round.
       const bool any = result->latency_ns.count() > 0;
       series.p50_us.push_back(any ? std::optional(result->p(50.0)) : std::nullopt);
       series.p90_us.push_back(any ? std::optional(result->p(90.0)) : std::nullopt);
@@ -140,6 +146,7 @@ void Comparer::Searches() {
 
 void Comparer::Search(double share) {
   constexpr int kTries = 2;
+  // All targets are searched alternately, so that a machine that slows down affects all of them.
   std::vector<RateSearch> searches(
       series_.size(), RateSearch(std::min(options_.search_start, options_.search_limit),
                                  options_.search_limit, kSearchPrecision, kTries));
@@ -169,8 +176,10 @@ void Comparer::EndSearch(const std::vector<RateSearch>& searches, bool done) {
 
 void Comparer::Probe(Series& series, RateSearch* search) {
   RunOptions run = options_.run;
+  // The search uses the rate of all subjects, the plan that of one.
   run.plan.rate = search->rate() / run.plan.subjects;
   run.plan.seconds = options_.probe_seconds;
+  // A probe that loses weights fails anyway, so it need not wait long for them.
   run.drain_seconds = 0.3;
   ReportProgress(std::string(series.target->echo ? "raw echo" : "daemon") + " at " +
                  Fixed(search->rate(), 0) + " poses per second");
@@ -180,6 +189,7 @@ void Comparer::Probe(Series& series, RateSearch* search) {
   const bool behind = !held && GeneratorFellBehind(*result, options_.p99_limit_us);
   const double rate = search->rate();
   search->Report(held);
+  // The search moves on after kTries failures. Only then does the rate count as failed.
   if (!held && search->rate() != rate) series.AddFailedRate(rate, behind);
   if (series.target->echo) return;
   const Tally& tally = result->tally;
@@ -195,6 +205,7 @@ void Comparer::Probe(Series& series, RateSearch* search) {
 
 void Comparer::AddFigure(const std::string& name, const std::string& unit,
                          Series::Values Series::*values) {
+  // Without the two echoes there is nothing to compare with.
   if (series_.size() < 3) return;
   const std::vector<double> server = Measured(series_[0].*values);
   if (server.empty()) return;

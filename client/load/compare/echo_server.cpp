@@ -23,6 +23,7 @@ Status SystemError(const char* what) {
   return {StatusCode::kIo, std::string(what) + ": " + std::strerror(errno), "echo server"};
 }
 
+// Runs in the child until it is killed, with system calls alone.
 [[noreturn]] void Serve(int socket) {
   std::array<char, 2048> buffer{};
   for (;;) {
@@ -52,14 +53,20 @@ Result<EchoServer> EchoServer::Start(std::optional<int> same_cores_as) {
   const int bytes = 4 << 20;
   setsockopt(socket.get(), SOL_SOCKET, SO_RCVBUF, &bytes, sizeof(bytes));
   setsockopt(socket.get(), SOL_SOCKET, SO_SNDBUF, &bytes, sizeof(bytes));
+  // The socket is bound before fork(), so the port is known and datagrams queue until the child
+  // reads.
   const int parent = getpid();
   const int pid = fork();
   if (pid < 0) return SystemError("cannot start a process");
   if (pid == 0) {
+    // The child must not outlive a load tester that crashes.
     prctl(PR_SET_PDEATHSIG, SIGKILL);
+    // The parent died before prctl(), so its signal will not come. _exit() runs no handlers of the
+    // parent.
     if (getppid() != parent) _exit(0);
     std::signal(SIGINT, SIG_IGN);  // Ctrl-C reaches all processes; the parent ends this one
     cpu_set_t cores;
+    // Both servers get the same cores, or the comparison would measure the cores.
     if (same_cores_as && sched_getaffinity(*same_cores_as, sizeof(cores), &cores) == 0)
       sched_setaffinity(0, sizeof(cores), &cores);
     Serve(socket.get());
@@ -73,6 +80,7 @@ EchoServer::EchoServer(EchoServer&& other) noexcept
 EchoServer::~EchoServer() {
   if (pid_ <= 0) return;
   kill(pid_, SIGKILL);
+  // Without the wait the child would stay as a zombie.
   waitpid(pid_, nullptr, 0);
 }
 

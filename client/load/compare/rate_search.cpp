@@ -28,6 +28,7 @@ void RateSearch::Next() {
     rate_ = worst_ / 2.0;
     done_ = rate_ < 1.0;
   } else {
+    // The geometric mean splits the interval evenly in ratio, as the precision is a ratio, too.
     done_ = worst_ / best_ <= precision_;
     rate_ = std::sqrt(best_ * worst_);
   }

@@ -20,6 +20,7 @@ constexpr float kExact = 1e-6f;
 
 }  // namespace
 
+// Allocates the flags of all poses in advance, so that the run itself seldom allocates.
 Checker::Checker(const Plan& plan, const ExpectedWeights* expected, const CheckOptions& options)
     : plan_(plan), expected_(expected), options_(options), windows_(kWindows) {
   const auto subjects = static_cast<std::size_t>(plan.num_subjects());
@@ -38,11 +39,13 @@ void Checker::OnDue(std::uint32_t subject, std::uint32_t pose, bool sent) {
   if (!sent) return;
   ++tally_.sent;
   tally_.expected += static_cast<std::uint64_t>(options_.watchers);
+  // Remembered per pose: a message for a pose that was not sent is an error of the server.
   sent_[subject][pose] = true;
 }
 
 void Checker::OnWeights(int watcher, std::uint32_t subject, std::uint32_t sequence,
                         std::span<const float> values, bool readable, std::int64_t now_us) {
+  // Both numbers come from the network.
   if (subject >= sent_.size() || sequence >= sent_[subject].size() || !sent_[subject][sequence]) {
     ++tally_.never_sent;
     return;
@@ -57,10 +60,13 @@ void Checker::OnWeights(int watcher, std::uint32_t subject, std::uint32_t sequen
   if (sequence < track.newest) ++tally_.reordered;
   track.newest = std::max<std::int64_t>(track.newest, sequence);
   const std::int64_t due_us = plan_.DueUs(subject, sequence);
+  // Coordinated omission: a tester that waits for a stalled server sends less, and measured from
+  // the send time the stall would hardly show. From the due time, every pose of the stall counts.
   const std::int64_t latency_us = now_us - due_us;
   if (latency_us > options_.late_us) ++tally_.late;
   if (latency_us < 0) ++tally_.early;
   latency_.Record(latency_us * 1000);
+  // By due time, so that a message that arrives late belongs to the moment that delayed it.
   const double share = static_cast<double>(due_us) * 1e-6 / options_.seconds;
   const auto window = static_cast<std::size_t>(share * static_cast<double>(kWindows));
   windows_[std::min(window, kWindows - 1)].Record(latency_us * 1000);
@@ -75,10 +81,12 @@ void Checker::Compare(Track& track, std::uint32_t subject, std::uint32_t pose,
                       std::span<const float> values) {
   const auto row = expected_->Row(plan_.phase_of(subject), pose);
   const float difference = Distance(values, row);
+  // The names agreed, so another number of values is wrong in any case.
   if (values.size() != row.size()) {
     ++tally_.checked;
     ++tally_.wrong;
   } else if (difference <= options_.tolerance) {
+    // The usual case: the server received every pose. One comparison decides.
     ++tally_.checked;
     tally_.largest_difference = std::max(tally_.largest_difference, difference);
   } else if (mismatch_values_.size() + values.size() > kMaxMismatchValues) {
@@ -102,6 +110,7 @@ void Checker::Classify(std::span<const float> values, float difference) {
   if (tally_.wrong > kMaxClassified) {
     ++tally_.unclassified;
   } else if (expected_->Find(values, options_.tolerance)) {
+    // The values are right for another pose or subject, so the contents were mixed up.
     ++tally_.swapped;
   }
 }
@@ -130,11 +139,13 @@ class Checker::MismatchResolver {
   }
 
  private:
+  // A replay with a filter in its initial state, from pose `first` on.
   [[nodiscard]] Replay Begin(std::uint32_t first) const {
     return {
         workload_, checker_.plan_, track_.subject, *checker_.expected_, checker_.options_.tolerance,
         first};
   }
+  // The first pose in [next_, end) whose weights did not arrive; `end` if there is none.
   [[nodiscard]] std::uint32_t NextGap(std::uint32_t end) const {
     std::uint32_t pose = next_;
     while (pose < end && track_.seen[pose]) ++pose;
@@ -146,6 +157,8 @@ class Checker::MismatchResolver {
   void Agree(std::uint32_t end) {
     const Plan& plan = checker_.plan_;
     const std::int64_t from_us = plan.CaptureUs(phase_, end) - kFilterMemoryUs;
+    // Solving a long run again for each mismatch would take longer than the run. The filter
+    // forgets, so its last seconds suffice, which the comparison with the table proves.
     if (forgets_ && from_us > plan.CaptureUs(phase_, next_)) {
       std::uint32_t pose = end;
       while (plan.CaptureUs(phase_, pose - 1) >= from_us) --pose;
@@ -156,6 +169,8 @@ class Checker::MismatchResolver {
         if (plan.CaptureUs(phase_, pose) > from_us + kFilterMemoryUs / 5 * 4)
           worst = std::max(worst, difference);
       }
+      // A very slow filter does not forget in time. Then all replays of this track are complete
+      // ones.
       forgets_ = worst <= kExact;
       if (forgets_) {
         replay_.emplace(std::move(late));
@@ -181,6 +196,7 @@ bool Checker::ResolveMismatches(const Workload& workload,
   std::size_t done = 0;
   for (Track& track : tracks_) {
     if (track.mismatches.empty()) continue;
+    // UDP may reorder messages; a replay must go through the poses in order.
     std::ranges::sort(track.mismatches, {}, &Mismatch::pose);
     // The values of these messages were not kept, so treat them as missing.
     for (const std::uint32_t pose : track.unfollowed) track.seen[pose] = false;

@@ -8,6 +8,7 @@
 namespace furrow::load {
 namespace {
 
+// Enough rounds for the filter to settle, and one more that stands for all later rounds.
 std::size_t RowsKept(const Plan& plan) {
   std::uint32_t longest = 0;
   for (int i = 0; i < plan.num_subjects(); ++i)
@@ -30,6 +31,7 @@ float Distance(std::span<const float> a, std::span<const float> b) {
 bool IsNear(std::span<const float> a, std::span<const float> b, float tolerance) {
   if (a.size() != b.size()) return false;
   for (std::size_t i = 0; i < a.size(); ++i) {
+    // Written so that NaN is a difference.
     if (!(std::abs(a[i] - b[i]) <= tolerance)) return false;
   }
   return true;
@@ -61,6 +63,7 @@ ExpectedWeights::ExpectedWeights(const Workload& workload, const Plan& plan,
 
 std::span<const float> ExpectedWeights::Row(int phase, std::uint32_t pose) const {
   std::size_t row = pose;
+  // Later rounds repeat the last one that is kept.
   if (row >= rows_) row = rows_ - frames_ + (pose - rows_) % frames_;
   return std::span(values_).subspan((static_cast<std::size_t>(phase) * rows_ + row) * width_,
                                     width_);

@@ -13,6 +13,7 @@ constexpr int kHalfBits = 10;  // log2 of the cells per doubling
 constexpr std::uint64_t kHalf = std::uint64_t{1} << kHalfBits;
 constexpr std::uint64_t kLinear = 2 * kHalf;  // each value below has its own cell
 
+// The mean value of a cell. Mean and deviation assume it for all values of the cell.
 double Middle(std::size_t cell) {
   const std::uint64_t low = cell == 0 ? 0 : Histogram::UpperEnd(cell - 1) + 1;
   return 0.5 * (static_cast<double>(low) + static_cast<double>(Histogram::UpperEnd(cell)));
@@ -22,10 +23,13 @@ double Middle(std::size_t cell) {
 
 std::size_t Histogram::Cell(std::uint64_t value) {
   if (value < kLinear) return value;
+  // Keeps the leading kHalfBits + 1 bits. The top one is always set, so each doubling has kHalf
+  // cells.
   const int shift = std::bit_width(value) - (kHalfBits + 1);
   return static_cast<std::size_t>(kHalf * static_cast<std::uint64_t>(shift) + (value >> shift));
 }
 
+// The inverse of Cell().
 std::uint64_t Histogram::UpperEnd(std::size_t cell) {
   if (cell < kLinear) return cell;
   const std::uint64_t shift = cell / kHalf - 1;
@@ -76,10 +80,12 @@ std::int64_t Histogram::Percentile(double percentile) const {
   constexpr double kRounding = 1e-12;
   const double exact = percentile / 100.0 * static_cast<double>(count_);
   const double wanted = std::ceil(exact * (1.0 - kRounding));
+  // Rank counts from 1: percentile 0 is the smallest value, 100 the largest.
   const auto rank = std::clamp<std::uint64_t>(static_cast<std::uint64_t>(wanted), 1, count_);
   std::uint64_t seen = 0;
   for (std::size_t i = 0; i < cells_.size(); ++i) {
     seen += cells_[i];
+    // The end of a cell may lie above the largest value, which is known exactly.
     if (seen >= rank) return std::min(static_cast<std::int64_t>(UpperEnd(i)), max_);
   }
   return max_;
@@ -107,6 +113,8 @@ void Histogram::WriteHgrm(std::ostream& out, double unit) const {
                     1.0 / (1.0 - share));
     }
     out << line;
+    // Rows that fall into one cell are written once. Steps halve with the remaining share, so that
+    // the tail has as many rows as the middle.
     while (seen < count_ && next <= share * 100.0) {
       const double halvings = std::floor(std::log2(100.0 / (100.0 - next))) + 1.0;
       next += 100.0 / (kStepsPerHalving * std::exp2(halvings));

@@ -33,16 +33,20 @@ void AddInodes(const fs::path& table, std::uint16_t port, bool listening,
   }
 }
 
+// True if a descriptor of the process is one of these sockets. Other users' processes are
+// unreadable.
 bool OwnsAny(const fs::path& process, const std::set<std::string>& inodes) {
   std::error_code error;
   for (fs::directory_iterator it(process / "fd", error), end; !error && it != end;
        it.increment(error)) {
+    // A descriptor may close between listing and reading; that is no error.
     std::error_code gone;
     if (inodes.contains(fs::read_symlink(it->path(), gone).string())) return true;
   }
   return false;
 }
 
+// The times in /proc/PID/stat count whole ticks of 10 ms, too coarse for a run of a second.
 // Processor time of one thread: the first number of schedstat, in nanoseconds.
 double ThreadSeconds(const fs::path& thread) {
   std::ifstream file(thread / "schedstat");
@@ -67,6 +71,7 @@ std::optional<ProcessUsage> ReadUsage(int pid, const fs::path& proc) {
   std::error_code error;
   for (fs::directory_iterator it(process / "task", error), end; !error && it != end;
        it.increment(error)) {
+    // The file of the process itself covers only its main thread.
     usage.cpu_seconds += ThreadSeconds(it->path());
   }
   return usage;

@@ -9,6 +9,7 @@ namespace furrow::load {
 Quartiles QuartilesOf(std::vector<double> values) {
   std::ranges::sort(values);
   const auto at = [&](double share) {
+    // Linear interpolation between the two nearest ranks (Hyndman and Fan 1996, type 7).
     const double place = share * static_cast<double>(values.size() - 1);
     const auto below = static_cast<std::size_t>(place);
     const std::size_t above = std::min(below + 1, values.size() - 1);
@@ -21,6 +22,8 @@ std::vector<double> Ratios(std::span<const std::optional<double>> a,
                            std::span<const std::optional<double>> b) {
   std::vector<double> ratios;
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+    // Ratios of paired runs, and their median later: a slow moment of the machine hits both runs of
+    // a pair, while the ratio of two medians would keep it.
     if (a[i] && b[i] && *b[i] > 0.0) ratios.push_back(*a[i] / *b[i]);
   }
   return ratios;

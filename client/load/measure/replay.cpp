@@ -29,6 +29,7 @@ Replay::Replay(const Workload& workload, const Plan& plan, std::uint32_t subject
   branches_.push_back({wrinkle::SubjectSolver(workload.binding), -1});
 }
 
+// The branch's server solves this pose. Its time step runs from the last pose that reached it.
 void Replay::Use(Branch& branch, std::uint32_t pose) {
   const std::int64_t now = plan_.CaptureUs(phase_, pose);
   const std::int64_t step = branch.last_us < 0 ? 0 : now - branch.last_us;
@@ -41,6 +42,7 @@ void Replay::Use(Branch& branch, std::uint32_t pose) {
 // all poses; it is followed through gaps of any length.
 void Replay::Missing(std::uint32_t pose) {
   const std::size_t before = branches_.size();
+  // Each missing pose doubles the possibilities, so a long gap would need too many of them.
   if (2 * before > kMaxBranches) {
     overflowed_ = true;
     return Use(branches_.back(), pose);
@@ -70,7 +72,9 @@ float Replay::Observe(std::uint32_t pose, std::span<const float> values) {
     distances.push_back(Distance(branch.solver.wrinkle_weights(), values));
     nearest = std::min(nearest, distances.back());
   }
+  // The true branch may be among those that were not followed, so this is no proof of an error.
   if (nearest > tolerance_ && overflowed_) unsettled_until_us_ = now + kForgottenUs;
+  // Only branches that explain what arrived stay.
   if (nearest <= tolerance_) {
     overflowed_ = false;
     std::size_t i = 0;
@@ -80,6 +84,7 @@ float Replay::Observe(std::uint32_t pose, std::span<const float> values) {
   return nearest;
 }
 
+// Branches with equal filters and times will stay equal, so one of them is enough.
 void Replay::Prune() {
   for (std::size_t i = 0; i < branches_.size(); ++i) {
     const auto same = [&](const Branch& other) {

@@ -16,6 +16,7 @@ std::string RangeText(const Quartiles& quartiles, int digits) {
   return Fixed(quartiles.low, digits) + " to " + Fixed(quartiles.high, digits);
 }
 
+// Figures without a pair have dashes instead of ratios.
 std::string TableOf(const Comparison& comparison) {
   report::Table table{comparison.rounds == 0 ? "Comparison with a raw UDP echo"
                                              : "Comparison with a raw UDP echo, " +
@@ -38,6 +39,7 @@ std::string TableOf(const Comparison& comparison) {
 
 std::string HighestRate(const Comparison& comparison) {
   const Quartiles rates = QuartilesOf(comparison.highest_rates);
+  // In these three cases something else than the server ended the search.
   const bool at_least =
       comparison.at_limit || comparison.unfinished || comparison.generator_behind_at.has_value();
   const std::string text =
@@ -110,6 +112,7 @@ nlohmann::json ToJson(const Comparison& comparison) {
   const auto quartiles = [](const Quartiles& value) {
     return nlohmann::json{{"median", value.median}, {"low", value.low}, {"high", value.high}};
   };
+  // null in JSON means that the rate does not exist; 0 would be a rate.
   const auto rate = [](const std::optional<double>& value) {
     return value ? nlohmann::json(*value) : nlohmann::json();
   };

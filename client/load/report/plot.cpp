@@ -22,6 +22,8 @@ LineChart ByPercentile(const RunResult& result) {
   for (const double nines : {50.0, 90.0, 99.0, 99.9, 99.99})
     chart.x.ticks.emplace_back(100.0 / (100.0 - nines), report::Fixed(nines, 2) + "%");
   const auto count = static_cast<double>(std::max<std::uint64_t>(result.latency_ns.count(), 1));
+  // The axis is 1 / (1 - percentile), which gives each further nine as much room as the one before.
+  // Beyond the number of samples there is nothing to show.
   for (double inverse = 1.0; inverse <= std::min(count, 1e4); inverse *= 1.1) {
     chart.series[0].points.emplace_back(inverse, result.p(100.0 - 100.0 / inverse) * 1e-3);
   }
@@ -37,6 +39,7 @@ LineChart OverTime(const RunResult& result) {
   for (std::size_t i = 0; i < result.windows.size(); ++i) {
     const Histogram& window = result.windows[i];
     if (window.count() == 0) continue;
+    // The middle of the window.
     const double at = result.planned_seconds * (static_cast<double>(i) + 0.5) /
                       static_cast<double>(result.windows.size());
     const double values[] = {static_cast<double>(window.Percentile(50.0)),
@@ -47,6 +50,7 @@ LineChart OverTime(const RunResult& result) {
   return chart;
 }
 
+// Searches try rates in no order, and a curve needs them ascending.
 std::vector<LineChart> ByRate(std::vector<RateStep> steps) {
   std::ranges::sort(steps, {}, &RateStep::rate);
   const Axis rate{.label = "poses per second", .logarithmic = false, .ticks = {}};

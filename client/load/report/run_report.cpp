@@ -17,6 +17,7 @@ using furrow::report::Table;
 
 std::string Count(std::uint64_t value) { return std::to_string(value); }
 
+// For people; the JSON report has bytes.
 std::string Mebibytes(std::uint64_t bytes) {
   return Fixed(static_cast<double>(bytes) / (1 << 20), 1) + " MiB";
 }
@@ -66,6 +67,7 @@ std::string RunRemarks(const RunResult& result, const RunOptions& options) {
         " arrived before the pose was due, according to this machine's clocks, which were set or "
         "disagree; their latency counts as 0 ms.");
   }
+  // A quarter of the latency: below that, the delay of the generator hardly changes the figures.
   const double behind_us = static_cast<double>(result.send_delay_ns.Percentile(99.0)) * 1e-3;
   if (behind_us > 0.25 * result.p(99.0)) {
     remark("The load generator sent poses up to " + Fixed(behind_us, 0) +
@@ -74,6 +76,7 @@ std::string RunRemarks(const RunResult& result, const RunOptions& options) {
   return text;
 }
 
+// The names are part of the JSON format; scripts read them.
 nlohmann::json CountsOf(const RunResult& result) {
   const Tally& tally = result.tally;
   return {{"offered", tally.offered},
@@ -123,6 +126,7 @@ std::string ToText(const RunResult& result, const RunOptions& options) {
   Table latency{"Latency (ms) from the due time of a pose to the arrival of its weights",
                 {"p50", "p90", "p99", "p99.9", "max", "send delay, p99"},
                 {{}}};
+  // Percentile 100 is the maximum.
   for (const double percentile : {50.0, 90.0, 99.0, 99.9, 100.0})
     latency.rows[0].push_back(Fixed(result.p(percentile) * 1e-3, 3));
   latency.rows[0].push_back(

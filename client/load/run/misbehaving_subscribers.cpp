@@ -16,6 +16,7 @@ constexpr std::int64_t kSlowIntervalUs = 1'000'000;  // also the interval of the
 constexpr std::int64_t kChurnIntervalUs = 500'000;
 
 // True if the peer closed the connection, even if unread data is still buffered.
+// POLLRDHUP reports the end of the stream without reading what is before it.
 bool IsCut(int descriptor) {
   pollfd wanted{descriptor, POLLRDHUP, 0};
   return poll(&wanted, 1, 0) > 0;
@@ -53,6 +54,7 @@ Status MisbehavingSubscribers::Connect(Member& member) {
   member.subscriber =
       std::make_unique<client::Subscriber>(*std::move(socket), "furrow load, misbehaving");
   for (int i = 0; i < subjects_; ++i) {
+    // Answers are not awaited: a stalled subscriber never reads them.
     (void)member.subscriber->Subscribe(protocol::SubscribeWeights{
         .subject = SubjectName(static_cast<std::uint32_t>(i)), .wait = true});
   }
@@ -82,6 +84,7 @@ void MisbehavingSubscribers::Churn(Member& member) {
 }
 
 void MisbehavingSubscribers::ReadLittle(Member& member, std::int64_t now_us) {
+  // The daemon may disconnect such a subscriber. Connecting again keeps up the load.
   if (member.subscriber && IsCut(member.descriptor)) {
     member.subscriber.reset();
     ++cut_;

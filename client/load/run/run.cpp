@@ -28,6 +28,7 @@ constexpr std::int64_t kLongestWaitNs = 20'000'000;
 constexpr std::int64_t kSecondNs = 1'000'000'000;
 constexpr std::uint64_t kWatcherToken = std::uint64_t{1} << 32;
 
+// Opens sockets to the target; with kBoth every second one uses TCP.
 SocketOpener Opener(const Target& target, Path path) {
   return [target, path](int i) -> Result<std::unique_ptr<net::Socket>> {
     const bool tcp = path == Path::kTcp || (path == Path::kBoth && i % 2 == 1);
@@ -47,6 +48,7 @@ SocketOpener ResolvedOpener(Target target, Path path) {
   };
 }
 
+// As many sockets as the daemon's message rate per peer requires, at most one per subject.
 int NumSockets(const Workload& workload, const Plan& plan, Path path) {
   const double datagrams =
       static_cast<double>(protocol::NumDatagrams(workload.messages.front().size()));
@@ -83,6 +85,8 @@ class Runner {
         plan_(workload.times, options.plan),
         slots_(plan_) {}
 
+  // Everything slow happens here, before the first pose is due: solving, names, connections,
+  // offers.
   Status Prepare();
   RunResult Go();
 
@@ -133,6 +137,7 @@ class Runner {
 };
 
 Status Runner::Prepare() {
+  // An echo returns poses, not weights, so only its latency is measured.
   if (options_.check_weights && workload_.binding && !target_.echo) {
     expected_.emplace(workload_, plan_, [this](double share) {
       hooks_.solving(share);
@@ -162,6 +167,7 @@ Status Runner::OpenSockets() {
   FURROW_RETURN_IF_ERROR(senders);
   senders_.emplace(*std::move(senders));
   if (target_.echo) return {};
+  // Subjects before watchers: a subscription to an unknown subject is refused.
   FURROW_RETURN_IF_ERROR(senders_->Offer(plan_.num_subjects(), hooks_.keep_going));
   const auto names =
       workload_.binding ? workload_.binding->weight_names() : std::span<const std::string>();
@@ -178,14 +184,18 @@ Status Runner::OpenSockets() {
 
 RunResult Runner::Go() {
   const auto before = target_.pid ? ReadUsage(*target_.pid) : std::nullopt;
+  // Slightly in the future, so that the first poses are not late before the loop begins.
   start_ns_ = net::SteadyNanoseconds() + kLongestWaitNs;
   last_arrival_ns_ = start_ns_;
   next_second_ns_ = start_ns_ + kSecondNs;
   capture_start_us_ = start_ns_ / 1000;
   for (std::int64_t now = net::SteadyNanoseconds(); !Over(now); now = net::SteadyNanoseconds()) {
+    // Sending comes first and reading fills the time that is left. Datagrams lose nothing by
+    // waiting, because the kernel has stamped their arrival.
     SendDue(now);
     for (int i = 0; i < kReadsAtOnce && ReadReady(&datagrams_, 0) && TimeLeft() > 0; ++i) {
     }
+    // Sleeps until TCP data arrives or the next pose is due.
     (void)ReadReady(&streams_, TimeLeft());
     EverySecond(now);
   }
@@ -207,6 +217,8 @@ bool Runner::Over(std::int64_t now_ns) {
     result_.interrupted = true;
     return true;
   }
+  // All poses are sent. The run ends when all weights are there, or none has come for
+  // drain_seconds.
   if (!slots_.done()) return false;
   const auto patience = std::llround(options_.drain_seconds * 1e9);
   return checker_->complete() || now_ns - std::max(last_arrival_ns_, last_due_ns_) > patience;
@@ -215,12 +227,16 @@ bool Runner::Over(std::int64_t now_ns) {
 void Runner::SendDue(std::int64_t now_ns) {
   for (int i = 0; i < kPosesAtOnce && !slots_.done() && NextDueNs() <= now_ns; ++i) {
     const Plan::Slot slot = slots_.next();
+    // Due times are fixed in advance. If this thread is late, it catches up and never skips or
+    // shifts a pose, or the load would follow the speed of the server (coordinated omission).
     last_due_ns_ = NextDueNs();
     const int phase = plan_.phase_of(slot.subject);
     const IoStatus status = senders_->Send(slot.subject, slot.pose, plan_.Frame(phase, slot.pose),
                                            capture_start_us_ + plan_.CaptureUs(phase, slot.pose));
+    // Read again: a send may take long, and poses may have become due in the meantime.
     now_ns = net::SteadyNanoseconds();
     result_.send_delay_ns.Record(now_ns - last_due_ns_);
+    // A full send buffer means a pose that was offered and not sent. It does not count as lost.
     checker_->OnDue(slot.subject, slot.pose, status == IoStatus::kOk);
     if (status == IoStatus::kNoConnection) refused_ns_ = now_ns;
     if (status == IoStatus::kClosed) return End("the daemon closed the connection");
@@ -249,6 +265,7 @@ bool Runner::ReadReady(net::Poller* poller, std::int64_t timeout_ns) {
 
 IoStatus Runner::ReadWatcher(std::size_t socket) {
   return watchers_->Read(socket, [this](const Watchers::Arrival& arrival) {
+    // The arrival at this machine, not the moment at which this loop got round to reading.
     last_arrival_ns_ = arrival.arrived_ns;
     checker_->OnWeights(arrival.watcher, arrival.subject, arrival.sequence, arrival.values,
                         arrival.readable, (last_arrival_ns_ - start_ns_) / 1000);

@@ -78,9 +78,11 @@ Status Watchers::WaitForReplies(Link& link, const std::function<bool()>& keep_go
 
 void Watchers::OnReply(Link& link, const protocol::Header& header) {
   const auto asked = link.asked.find(header.sequence);
+  // Requests are matched by number: answers may come in any order, and twice over UDP.
   if (asked == link.asked.end()) return;
   link.subscriptions[header.stream] = asked->second;
   const protocol::SubscribeReply& reply = link.subscriber->reply();
+  // Weights of another rig cannot be compared with the solver's.
   names_match_ = names_match_ && reply.names_hash == names_hash_;
   if (reply.subject != SubjectName(asked->second))
     complaint_ =
@@ -105,6 +107,7 @@ IoStatus Watchers::Read(std::size_t i, const std::function<void(const Arrival&)>
   constexpr int kMaxMessages = 256;  // a flood on one socket must not block the others
   Link& link = links_[i];
   const std::int64_t now_us = NowUs();
+  // What the socket has taken from the kernel must be read to the end: the poller does not see it.
   for (int n = 0; n < kMaxMessages || link.socket->holds(); ++n) {
     const Event event = link.subscriber->Next(now_us, milliseconds(0));
     switch (event.kind) {

@@ -12,6 +12,7 @@ namespace {
 // Seconds between poses of a recording with a single frame.
 constexpr double kRestInterval = 1.0 / 60.0;
 
+// The order of the heap: its front, the largest element in this order, is the earliest slot.
 bool IsLater(const Plan::Slot& a, const Plan::Slot& b) {
   return std::tie(a.due_us, a.subject) > std::tie(b.due_us, b.subject);
 }
@@ -22,17 +23,22 @@ Plan::Plan(std::span<const double> times, const PlanOptions& options)
     : phases_(std::clamp(options.phases, 1, static_cast<int>(times.size()))),
       seconds_(options.seconds) {
   const auto frames = static_cast<double>(times.size());
+  // The average interval of the recording, which also separates two rounds.
   const double own =
       times.size() > 1 ? (times.back() - times.front()) / (frames - 1.0) : kRestInterval;
   const double interval = options.rate > 0.0 ? 1.0 / options.rate : own;
   for (std::size_t i = 0; i < times.size(); ++i) {
     const double at =
         options.rate > 0.0 ? static_cast<double>(i) * interval : times[i] - times.front();
+    // Rounded once per frame and not per pose, so that every round has exactly the same steps, and
+    // the expected weights of one round hold for all.
     frame_us_.push_back(std::llround(at * 1e6));
   }
   round_us_ = std::max<std::int64_t>(frame_us_.back() + std::llround(interval * 1e6), 1);
   const std::int64_t end = std::llround(options.seconds * 1e6);
   for (int subject = 0; subject < options.subjects; ++subject) {
+    // Spread over one interval: a burst of all subjects at once would measure the queue, not the
+    // server.
     offset_us_.push_back(std::llround(interval * 1e6 * subject / options.subjects));
     counts_.push_back(CountBefore(static_cast<std::uint32_t>(subject), end));
     num_slots_ += counts_.back();
@@ -87,6 +93,7 @@ PlanSlots::PlanSlots(const Plan& plan) : plan_(&plan) {
 void PlanSlots::Pop() {
   std::ranges::pop_heap(heap_, IsLater);
   Plan::Slot& slot = heap_.back();
+  // The slot is replaced by the subject's next one, so the heap never grows.
   if (++slot.pose >= plan_->count(slot.subject)) return heap_.pop_back();
   slot.due_us = plan_->DueUs(slot.subject, slot.pose);
   std::ranges::push_heap(heap_, IsLater);
