@@ -31,6 +31,7 @@ class Replacement {
   Replacement(const fs::path& target, fs::path aside) : target_(target), aside_(std::move(aside)) {}
   ~Replacement() {
     std::error_code ignored;
+    // In reverse order. Errors are ignored: there is nothing better to do than to restore the rest.
     for (auto done = done_.rbegin(); done != done_.rend(); ++done) {
       if (done->is_new) {
         fs::remove(target_ / done->name, ignored);
@@ -54,6 +55,7 @@ class Replacement {
       if (!error) fs::rename(to, aside_ / name, error);
       if (error) return CannotWrite(to, error.message());
     }
+    // Noted before the file moves, so that a failure of the move is undone, too.
     done_.push_back({name, is_new});
     fs::rename(from, to, error);
     return error ? CannotWrite(to, error.message()) : Status();
@@ -82,6 +84,7 @@ Result<StagedFolder> StagedFolder::Create(const fs::path& target) {
   }
   fs::create_directories(folder.parent_path(), error);
   if (error) return CannotWrite(folder.parent_path(), error.message());
+  // Beside the target and not in /tmp, because rename() works within one file system only.
   std::string staging =
       (folder.parent_path() / ("." + folder.filename().string() + ".XXXXXX")).string();
   if (mkdtemp(staging.data()) == nullptr) return CannotWrite(folder, std::strerror(errno));
@@ -112,6 +115,8 @@ Status StagedFolder::Write(const std::string& name, std::string_view bytes) {
 
 Status StagedFolder::Commit() {
   std::error_code error;
+  // One rename replaces everything at once. It fails if the folder has files, which then stay
+  // beside the new ones.
   fs::rename(staging_, target_, error);  // also replaces an empty folder
   if (!error) {
     staging_.clear();

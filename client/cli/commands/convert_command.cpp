@@ -29,6 +29,7 @@ struct ConvertOptions {
   motion::LoadOptions load;
 };
 
+// True if the path has one of the extensions, in any case.
 bool HasExtension(const std::string& path, std::initializer_list<std::string_view> extensions) {
   const std::string extension = AsciiLower(std::filesystem::path(path).extension().string());
   return std::ranges::find(extensions, extension) != extensions.end();
@@ -48,6 +49,7 @@ Status CheckOut(const ConvertOptions& options) {
   std::string subject;
   recording::SplitTakePath(options.in, &in, &subject);
   std::error_code error;
+  // The same file by another name, such as a link, counts as well.
   if (std::filesystem::equivalent(in, options.out, error)) {
     return {StatusCode::kInvalidArgument,
             "the output is the input file, which must not be written over itself", options.out,

@@ -47,6 +47,7 @@ class PictureFiles {
                                    Flush::kNone);
     }
     if (!status.ok()) {
+      // The callback can only stop the loop, so it keeps the exit code.
       failure_ = Fail(status);
       return false;
     }
@@ -69,6 +70,7 @@ int Frames(const FramesOptions& options) {
     if (error) return Fail({StatusCode::kIo, error.message(), options.out});
   }
   int exit_code = kDone;
+  // Pictures need TCP.
   auto transport = OpenTransport(options.listen.host, client::TransportKind::kTcp, &exit_code);
   if (!transport) return exit_code;
   client::Subscriber subscriber(std::move(transport), "furrow frames " FURROW_VERSION);

@@ -25,6 +25,7 @@ int DescribeClip(const std::string& path) {
   double longest = 0.0;
   for (std::size_t i = 1; i < clip->times.size(); ++i)
     longest = std::max(longest, clip->times[i] - clip->times[i - 1]);
+  // The average rate; the longest gap shows whether the frames are even.
   const double rate =
       clip->duration() > 0.0 ? static_cast<double>(clip->num_frames() - 1) / clip->duration() : 0.0;
   std::printf("%s\n", path.c_str());
@@ -40,6 +41,7 @@ void PrintFile(const TakeReader& take) {
   const motion::mcap::Reader& file = take.file();
   std::map<std::string, int> compressions;
   for (const motion::mcap::ChunkInfo& chunk : file.chunks()) {
+    // Messages outside of chunks have no compression to count.
     if (chunk.compression != motion::mcap::kLooseMessages)
       ++compressions[chunk.compression.empty() ? "uncompressed" : chunk.compression];
   }

@@ -84,9 +84,11 @@ int PlayFile(const PlayOptions& options) {
   auto transport = OpenTransport(
       options.host, options.tcp ? TransportKind::kTcp : TransportKind::kUdp, &exit_code);
   if (!transport) return exit_code;
+  // After loading: until here Ctrl-C may end the program at once, from here on it must say goodbye.
   CatchInterrupts();
   client::Publisher publisher(std::move(transport));
   std::vector<SessionPlayer::Track> tracks;
+  // One offer at a time: the first rejection ends the command with its reason.
   for (const PlaySource& source : *sources) {
     const std::string& subject = options.subject.empty() ? source.subject() : options.subject;
     const std::uint16_t stream =
@@ -102,6 +104,7 @@ int PlayFile(const PlayOptions& options) {
        .loop = options.loop,
        .encoding = options.quantise ? protocol::PoseEncoding::Small() : protocol::PoseEncoding{}});
   exit_code = player.Run();
+  // Without the goodbye, subscribers would see the subjects hold and decay first.
   publisher.Close();
   return exit_code;
 }

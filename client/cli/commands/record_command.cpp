@@ -43,6 +43,7 @@ class RecordingLine {
     if (duration_us > 0) bar_.emplace("recording", duration_us);
   }
   ~RecordingLine() {
+    // Erases the line, so that the summary stands alone.
     if (shown_us_ > 0) std::fputs("\r\033[K", stderr);
   }
   RecordingLine(const RecordingLine&) = delete;
@@ -73,6 +74,7 @@ Result<recording::TakeFolderOptions> FolderOptions(const RecordOptions& options)
       .rotate_ns = static_cast<std::uint64_t>(options.rotate_seconds * 1e9),
       .rig_json = {}};
   if (options.rig.empty()) return folder;
+  // The rig travels with the take, so that its weights can be explained later.
   const auto rig = LoadRigArgument(options.rig);
   FURROW_RETURN_IF_ERROR(rig);
   folder.rig_json = rig::RigToJson(*rig);
@@ -114,6 +116,7 @@ int RecordInto(TakeRecorder& take, client::Subscriber& subscriber, const RecordO
   RecordingLine line(start, duration);
   Status status;
   StopConditions stop;
+  // Poses and weights are two subscriptions of each subject.
   stop.goodbyes = options.wait || all_subjects ? 0 : 2 * static_cast<int>(options.subjects.size());
   // A subject that is unavailable does not end the recording of the others.
   stop.survives_errors = [&] { return all_subjects && take.num_present(); };
@@ -132,6 +135,7 @@ int RecordInto(TakeRecorder& take, client::Subscriber& subscriber, const RecordO
         return status.ok();
       },
       stop);
+  // In any case, so that what was received is readable.
   const Status closed = take.Close();
   if (!status.ok()) return Fail(status);
   return closed.ok() ? exit_code : Fail(closed);
@@ -144,6 +148,7 @@ int Record(const RecordOptions& options) {
     return kUsage;
   }
   std::error_code error;
+  // A recording cannot be repeated, so it never overwrites a file.
   if (std::filesystem::exists(options.out, error)) {
     return Fail({StatusCode::kIo, "the file already exists", options.out.string(),
                  "choose another --out; takes are never overwritten"});
@@ -154,6 +159,7 @@ int Record(const RecordOptions& options) {
   auto transport = OpenTransport(options.host, client::TransportKind::kTcp, &exit_code);
   if (!transport) return exit_code;
   client::Subscriber subscriber(std::move(transport), "furrow record " FURROW_VERSION);
+  // The offset is read once: the time of the take does not jump if the system clock is set.
   TakeRecorder take(*std::move(folder), SystemMicroseconds() - SteadyMicroseconds());
   for (const std::string& subject : options.subjects)
     take.Subscribe(subscriber, subject, options.wait);

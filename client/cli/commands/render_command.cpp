@@ -58,6 +58,7 @@ bool ParseRange(const std::string& text, int* first, int* last) {
   return *first >= 0 && *first <= *last;
 }
 
+// A validator of CLI11: an empty text means that the value is valid.
 std::string CheckRange(std::string& text) {
   int first = 0;
   int last = 0;
@@ -91,6 +92,7 @@ class PictureSink {
       : renderer_(renderer), options_(options) {}
 
   Status Submit(const render::FrameRequest& request) {
+    // The limit of the renderer.
     if (renderer_.in_flight() >= 2) {
       FURROW_RETURN_IF_ERROR(WriteOldest());
     }
@@ -121,6 +123,7 @@ class PictureSink {
   const RenderOptions& options_;
 };
 
+// The median ignores single slow frames.
 double TakeMedian(std::vector<double>* values) {
   const auto middle = values->begin() + static_cast<std::ptrdiff_t>(values->size() / 2);
   std::nth_element(values->begin(), middle, values->end());
@@ -182,6 +185,7 @@ Status DrawFrames(const RenderOptions& options, const render::Settings& settings
                   render::Renderer& renderer) {
   PictureSink sink(renderer, options);
   Progress progress("rendering", frames.second + 1);
+  // From frame 0 in any case: the filter of the weights depends on all frames before.
   for (int frame = 0; frame <= frames.second; ++frame) {
     FURROW_RETURN_IF_ERROR(group.Advance(frame));
     progress.Set(frame + 1);

@@ -11,6 +11,7 @@ void AddSkeletonMap(CLI::App& command, std::string& value) {
                      "(default: the best match of the shipped maps)");
 }
 
+// The limits are those of the wire (protocol::kMinImageSize, kMaxImageSize).
 bool ParseSize(const std::string& text, int* width, int* height) {
   const char* const end = text.data() + text.size();
   const auto first = std::from_chars(text.data(), end, *width);
@@ -34,6 +35,7 @@ CLI::Validator Within(double least, double most) {
   const std::string range = CLI::Range(least, most).get_description();
   return {[=](std::string& text) {
             double number = 0.0;
+            // NaN fails both comparisons; CLI::Range would accept it.
             const bool is_number = CLI::detail::lexical_cast(text, number);
             if (is_number && number >= least && number <= most) return std::string();
             return "'" + text + "' is not in " + range;

@@ -10,6 +10,7 @@
 namespace furrow::cli {
 namespace {
 
+// The clock's time in whole microseconds.
 template <class Clock>
 std::int64_t Microseconds() {
   return std::chrono::duration_cast<std::chrono::microseconds>(Clock::now().time_since_epoch())
@@ -22,6 +23,7 @@ bool ParseEndpoint(const std::string& text, client::TransportKind kind, Endpoint
   const bool tcp = kind == client::TransportKind::kTcp;
   endpoint->port = tcp ? protocol::kDefaultTcpPort : protocol::kDefaultUdpPort;
   std::string port;
+  // Brackets separate the colons of an IPv6 address from that of the port (RFC 3986 section 3.2.2).
   if (text.starts_with('[')) {
     const std::size_t close = text.find(']');
     if (close == std::string::npos) return false;

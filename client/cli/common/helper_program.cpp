@@ -32,6 +32,7 @@ constexpr std::array kHelperCommands = {
     HelperCommand{"rig patch", "Cut a surface patch from a character: a strain driver for a rig",
                   kAuthorProgram}};
 
+// The entry of a command that is in the list.
 const HelperCommand& Get(std::string_view name) {
   return *std::ranges::find(kHelperCommands, name, &HelperCommand::name);
 }
@@ -49,6 +50,7 @@ void AddHelperEntry(CLI::App& parent, const std::string& name) {
 
 const HelperCommand* FindHelperCommand(int argc, const char* const* argv) {
   std::string words;
+  // A command has at most two words, and options come after them.
   for (int i = 1; i < std::min(argc, 3); ++i) {
     words += (i > 1 ? " " : "") + std::string(argv[i]);
     const auto found = std::ranges::find(kHelperCommands, words, &HelperCommand::name);
@@ -68,12 +70,14 @@ Result<fs::path> FindHelperProgram(const std::string& program, const fs::path& f
 
 int RunHelperProgram(const HelperCommand& command, const char* const* argv) {
   std::error_code error;
+  // Not argv[0], which the caller chooses and which may be a name on the PATH.
   const fs::path self = fs::read_symlink("/proc/self/exe", error);
   const auto program = FindHelperProgram(command.program, self.parent_path());
   if (!program.ok()) {
     (void)Fail(program.status());
     return kFailed;
   }
+  // exec instead of a child process: no signal, stream or exit code needs to be passed on.
   execv(program->c_str(), const_cast<char* const*>(argv));
   return Fail({StatusCode::kIo, std::string("cannot start the program: ") + std::strerror(errno),
                program->string()});

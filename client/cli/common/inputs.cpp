@@ -27,6 +27,8 @@ void PrintWarnings(const std::vector<std::string>& warnings) {
 
 recording::ReadProgress ReadingBar() {
   return
+      // Shared, because std::function copies its target. The bar appears with the first call and is
+      // erased with the last.
       [bar = std::make_shared<std::optional<Progress>>()](std::uint64_t done, std::uint64_t total) {
         if (done >= total) return bar->reset();
         if (!*bar) bar->emplace("reading", static_cast<std::int64_t>(total));
@@ -54,6 +56,7 @@ Result<motion::Clip> LoadClipArgument(const std::string& path, const motion::Loa
 
 fs::path ResolveRigPath(const std::string& argument) {
   std::error_code error;
+  // A slash says that a file is meant, so a misspelt path does not select a shipped rig.
   if (fs::exists(argument, error) || argument.find('/') != std::string::npos) return argument;
   const std::string file = argument.ends_with(".json") ? argument : argument + ".json";
   const auto shipped = furrow::FindDataFile("rigs/" + file);
@@ -67,6 +70,7 @@ Result<wrinkle::Rig> LoadRigArgument(const std::string& argument) {
 Result<rig::SkeletonMatcher> LoadSkeletonMatcher(const std::string& map) {
   auto matcher = rig::SkeletonMatcher::Create(map);
   if (matcher.ok()) return matcher;
+  // A map that the user asks for must exist; the shipped ones are optional.
   if (!map.empty()) return matcher.status().At("--skeleton-map");
   PrintWarnings({"joints are matched by equal names only: " + matcher.status().ToString()});
   return rig::SkeletonMatcher();
@@ -82,6 +86,7 @@ void WarnAboutMissing(const wrinkle::RigBinding& binding, const motion::Clip& cl
     PrintWarnings({text + (names.size() > kNamed ? ", ..." : "")});
   };
   warn(binding.missing_joints(), "joint");
+  // A body recording without blend shapes lacks all of them on purpose.
   if (!clip.blend_shape_names.empty()) warn(binding.missing_blend_shapes(), "blend shape");
 }
 

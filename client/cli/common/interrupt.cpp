@@ -12,6 +12,7 @@ static_assert(std::atomic<bool>::is_always_lock_free, "set in a signal handler")
 
 void OnSignal(int number) {
   g_interrupted.store(true);
+  // The next signal of this kind ends the process, if the command does not.
   std::signal(number, SIG_DFL);
 }
 

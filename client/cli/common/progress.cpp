@@ -15,6 +15,7 @@ Progress::Progress(std::string label, std::int64_t total)
       terminal_(isatty(STDERR_FILENO) == 1) {}
 
 Progress::~Progress() {
+  // Returns to the start of the line and erases it (ECMA-48, EL), so that nothing stays behind.
   if (terminal_ && shown_ >= 0) std::fputs("\r\033[K", stderr);
 }
 

@@ -9,10 +9,12 @@ namespace {
 
 using wrinkle::Explanation;
 
+// "knee_l" of "knee_l.flexed".
 std::string_view DriverOf(std::string_view driver_value) {
   return driver_value.substr(0, driver_value.rfind('.'));
 }
 
+// How the driver came to its value. At most one of the three lists has entries for a driver.
 void PrintGeometry(const Explanation& explanation, std::string_view driver_value, std::FILE* out) {
   for (const auto& pose : explanation.pose_values) {
     if (pose.driver_value != driver_value) continue;
@@ -43,6 +45,7 @@ void PrintWeight(const Explanation& explanation, const Explanation::Weight& weig
     if (part.value > 0.0f) PrintGeometry(explanation, part.driver_value, out);
   }
   for (const auto& conflict : weight.conflicts) {
+    // A factor of 1 changes nothing.
     if (conflict.factor == 1.0f) continue;
     std::fprintf(out, "    conflict with %s (%.3f): x %.3f\n", conflict.weight.c_str(),
                  double{conflict.other}, double{conflict.factor});
@@ -56,6 +59,7 @@ void PrintExplanation(const Explanation& explanation, float threshold, std::FILE
   for (const auto& weight : explanation.weights) {
     if (weight.result >= threshold) order.push_back(&weight);
   }
+  // Equal weights stay in the order of the rig.
   std::stable_sort(order.begin(), order.end(),
                    [](const auto* a, const auto* b) { return a->result > b->result; });
   for (const auto* weight : order) PrintWeight(explanation, *weight, out);

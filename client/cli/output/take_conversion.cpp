@@ -35,6 +35,7 @@ Result<std::span<const std::uint8_t>> Encoded(protocol::Encoder& encoder, const 
                 "the wire format cannot carry this: " + std::string(DecodeStatusName(status)));
 }
 
+// The format of `furrow solve`, so that the two can be compared line by line.
 void AddRow(std::uint32_t frame, double seconds, const std::vector<float>& values,
             std::string* csv) {
   char text[64];
@@ -72,6 +73,7 @@ class WeightTable {
   [[nodiscard]] std::size_t foreign() const { return foreign_; }
 
  private:
+  // The first list of names is the header. Frames with other names are skipped and counted.
   void AddNames(const TakeMessage& message) {
     if (!csv_.empty() || protocol::Decode(message.View(), names_) != DecodeStatus::kOk) return;
     csv_ = "frame,time";
@@ -83,6 +85,7 @@ class WeightTable {
         weights_.names_hash != names_.names_hash) {
       ++foreign_;
     } else if (weights_.age_us == 0) {
+      // Decayed weights belong to no pose.
       if (!first_us_) first_us_ = message.stamp.capture_time_us;
       AddRow(message.stamp.sequence,
              static_cast<double>(message.stamp.capture_time_us - *first_us_) * 1e-6,
@@ -106,6 +109,7 @@ Status SaveTake(const motion::Clip& clip, const std::filesystem::path& path) {
   protocol::Encoder encoder;
   std::vector<std::uint8_t> bytes;
   protocol::SkeletonOffer offer = recording::OfferOf(clip, subject, 1.0f);
+  // Before the file exists, so that a skeleton that the wire cannot carry leaves no file.
   const auto skeleton = Encoded(encoder, offer, &bytes);
   if (!skeleton.ok()) return skeleton.status().At(path.string() + ": skeleton");
   auto take = recording::TakeWriter::Create(path, {});

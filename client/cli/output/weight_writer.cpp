@@ -11,6 +11,8 @@
 namespace furrow::cli {
 namespace {
 
+// Each row is flushed, so that a reader of the pipe sees it live. False: the pipe is closed or the
+// disk is full.
 bool Flush() { return std::fflush(stdout) == 0 && std::ferror(stdout) == 0; }
 
 class CsvWriter : public WeightWriter {
@@ -29,6 +31,7 @@ class CsvWriter : public WeightWriter {
   }
 };
 
+// One JSON object per line, for programs that read a stream.
 class JsonlWriter : public WeightWriter {
  public:
   void Names(std::span<const std::string> names) override {
@@ -49,6 +52,7 @@ class JsonlWriter : public WeightWriter {
   std::vector<std::string> names_;
 };
 
+// The largest weights of each frame with bars, for people.
 class TableWriter : public WeightWriter {
  public:
   void Names(std::span<const std::string> names) override {
@@ -61,12 +65,14 @@ class TableWriter : public WeightWriter {
     constexpr int kBar = 30;
     const std::size_t count = std::min(kRows, std::min(order_.size(), values.size()));
     std::iota(order_.begin(), order_.end(), 0);
+    // Equal values stay in the order of the rig, so that rows do not jump.
     std::partial_sort(
         order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(count), order_.end(),
         [&](int a, int b) { return values[a] > values[b] || (values[a] == values[b] && a < b); });
     std::printf("frame %" PRId64 "  %.3f s\n", frame, seconds);
     for (std::size_t i = 0; i < count; ++i) {
       const float value = values[order_[i]];
+      // Too small to matter; the values are sorted, so all others are smaller.
       if (value < 0.005f) break;
       const std::string bar(static_cast<std::size_t>(value * kBar + 0.5f), '#');
       std::printf("  %-28s %.3f %s\n", names_[order_[i]].c_str(), static_cast<double>(value),

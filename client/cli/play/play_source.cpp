@@ -40,6 +40,7 @@ Result<std::vector<PlaySource>> PlaySource::Load(const std::string& path) {
 }
 
 double PlaySource::start() const {
+  // A clip has one subject, which starts the session.
   const auto* poses = std::get_if<TakePoses>(&poses_);
   return poses != nullptr ? poses->start() : 0.0;
 }
@@ -54,10 +55,12 @@ protocol::SkeletonOffer PlaySource::Offer(const std::string& subject, float metr
     return recording::OfferOf(*clip, subject, metres_per_unit);
   protocol::SkeletonOffer offer = std::get<TakePoses>(poses_).offer();
   offer.subject = subject;
+  // The take has a unit of its own, which --scale multiplies.
   offer.metres_per_unit *= metres_per_unit;
   return offer;
 }
 
+// Poses of a take are sent as recorded; those of a clip are made from its transforms.
 void PlaySource::Fill(int frame, protocol::PoseFrame* pose) const {
   if (const auto* clip = std::get_if<motion::Clip>(&poses_)) {
     recording::FillPose(*clip, frame, pose);

@@ -36,6 +36,8 @@ int SessionPlayer::Run() {
 }
 
 void SessionPlayer::Play() {
+  // Capture times are wall-clock times, which other machines can compare. Sending follows the
+  // steady clock, which nobody can set.
   const std::int64_t capture_start = SystemMicroseconds();
   const std::int64_t send_start = SteadyMicroseconds();
   Progress progress("playing", schedule_.count());
@@ -44,13 +46,16 @@ void SessionPlayer::Play() {
   while (const auto next = schedule_.Next()) {
     if (next->round > 0 && !options_.loop) break;
     const Track& track = tracks_[next->track];
+    // From the start, not from the last pose, so that delays do not add up.
     const std::int64_t due = send_start + std::llround(next->seconds * 1e6 / options_.speed);
     if (!WaitUntil(due)) break;
+    // Another sender may have taken over one subject; the others go on.
     if (!publisher_.rejection(track.stream).empty()) {
       schedule_.Drop(next->track);
       continue;
     }
     track.source->Fill(next->frame, &pose);
+    // The pacing error is measured before Send(), which may block over TCP.
     pacing_[next->track].Sent(due, SteadyMicroseconds());
     Note(publisher_.Send(track.stream, pose, capture_start + std::llround(next->seconds * 1e6),
                          options_.encoding));
@@ -78,6 +83,7 @@ bool SessionPlayer::WaitUntil(std::int64_t due_us) {
 
 void SessionPlayer::Note(IoStatus status) {
   closed_ = closed_ || status == IoStatus::kClosed || status == IoStatus::kMalformed;
+  // Over UDP the daemon may come back, so a closed port does not end the playback.
   if (status == IoStatus::kNoConnection) ++refused_;
 }
 

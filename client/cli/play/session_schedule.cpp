@@ -7,6 +7,7 @@
 namespace furrow::cli {
 
 SessionSchedule::SessionSchedule(std::span<const Track> tracks, double rate, double from) {
+  // The first pose that is played is at time 0, also after --from.
   double earliest = std::numeric_limits<double>::infinity();
   for (const Track& track : tracks) {
     Add(track, rate, from);
@@ -27,6 +28,7 @@ SessionSchedule::SessionSchedule(std::span<const Track> tracks, double rate, dou
 void SessionSchedule::Add(const Track& track, double rate, double from) {
   const auto& times = track.times;
   duration_ = std::max(duration_, track.start + times.back() - times.front());
+  // Tracks that end before `from` have no schedule and are never due.
   const auto first = from > track.start
                          ? std::ranges::lower_bound(times, times.front() + from - track.start)
                          : times.begin();
@@ -37,6 +39,8 @@ void SessionSchedule::Add(const Track& track, double rate, double from) {
   state.schedule.emplace(times.subspan(static_cast<std::size_t>(state.first)), rate);
 }
 
+// Queues the next pose of a track at its time. All tracks repeat with the length of the longest
+// one, so that they stay together.
 void SessionSchedule::Wait(std::size_t track) {
   const State& state = tracks_[track];
   const std::int64_t count = state.schedule->count();

@@ -20,6 +20,7 @@ const char* GoodbyeText(protocol::GoodbyeReason reason) {
   return "the subscription ended";
 }
 
+// The daemon never answered, or its port closed.
 int ReportNoConnection(client::Event::Kind kind) {
   std::fprintf(stderr, "furrow: %s\n",
                kind == client::Event::Kind::kNoConnection
@@ -48,6 +49,7 @@ int ReceiveEvents(client::Subscriber& subscriber,
   std::int64_t ends_at = 0;  // 0: not interrupted
   while (!stop.keep_going || stop.keep_going()) {
     const std::int64_t now = SteadyMicroseconds();
+    // Goes on for a moment, so that what is under way still arrives.
     if (Interrupted() && ends_at == 0) ends_at = now + stop.drain_us;
     if (ends_at != 0 && now >= ends_at) break;
     const client::Event event = subscriber.Next(now, std::chrono::milliseconds(100));
@@ -55,6 +57,8 @@ int ReceiveEvents(client::Subscriber& subscriber,
       case Kind::kTimeout:
       case Kind::kNoConnection:
         if (ends_at != 0) return exit_code;
+        // Once the daemon has answered, silence is normal. Before that, a daemon that is starting
+        // gets some seconds.
         if (heard ? event.kind == Kind::kTimeout : now - start < kFirstAnswerTimeoutUs) continue;
         return ReportNoConnection(event.kind);
       case Kind::kClosed:
@@ -68,6 +72,7 @@ int ReceiveEvents(client::Subscriber& subscriber,
         return exit_code;
       case Kind::kGoodbye: {
         const protocol::GoodbyeReason reason = subscriber.goodbye().reason;
+        // Each subscription gets its own goodbye; the last one ends the command.
         if (reason == protocol::GoodbyeReason::kSubjectGone && ++goodbyes != stop.goodbyes)
           continue;
         return OnGoodbye(reason);

@@ -18,6 +18,7 @@ constexpr std::int64_t kFlushMicroseconds = 400'000;
 
 void TakeRecorder::Subscribe(client::Subscriber& subscriber, const std::string& subject,
                              bool wait) {
+  // The list of subjects arrives again at each change, with subjects that are known already.
   if (!subscribed_.insert(subject).second) return;
   Source& source = sources_.emplace_back();
   // Subscribe to poses first, so that each pose precedes its weights in the file.
@@ -32,6 +33,7 @@ void TakeRecorder::SubscribeToAll(client::Subscriber& subscriber) {
 }
 
 Status TakeRecorder::Begin(std::int64_t now_us) {
+  // The file is created with the first answer, so that a wrong address leaves no empty take.
   if (folder_ != nullptr) return {};
   const auto now_ns = static_cast<std::uint64_t>((now_us + wall_offset_us_) * 1000);
   auto folder = recording::TakeFolder::Open(options_, now_ns);
@@ -51,6 +53,7 @@ Status TakeRecorder::OnEvent(const Event& event, client::Subscriber& subscriber,
   }
   if (event.kind == Event::Kind::kReply) return OnReply(event, subscriber, now_us);
   if (event.kind == Event::Kind::kDropped) {
+    // The message carries the total of the subscription, so a lost report does no harm.
     dropped_[event.header.stream] = subscriber.dropped().frames;
     return {};
   }
@@ -74,6 +77,7 @@ Status TakeRecorder::OnReply(const Event& event, const client::Subscriber& subsc
                              std::int64_t now_us) {
   FURROW_RETURN_IF_ERROR(Begin(now_us));
   const protocol::SubscribeReply& reply = subscriber.reply();
+  // Every source has two requests, first poses and then weights.
   const auto source = std::ranges::find_if(sources_, [&](const Source& each) {
     return std::ranges::count(each.requests, event.header.sequence) > 0;
   });

@@ -23,6 +23,7 @@ Result<std::unique_ptr<AnimatedSubject>> AnimatedSubject::Create(
   self->retarget_ = rig::MakeRetarget(match, take.skeleton, character.skeleton);
   self->blend_shape_pose_ =
       wrinkle::BlendShapePose::Create(character.rig, character.skeleton, take.blend_shape_names);
+  // Pictures would all show the rest pose.
   if (take.blend_shape_names.empty() &&
       self->retarget_.unmatched_source().size() == take.skeleton.joint_names().size()) {
     return Status(StatusCode::kNotFound, "the recording and the character have no joint in common",

@@ -12,6 +12,7 @@
 namespace furrow::cli {
 namespace {
 
+// Checks values while parsing, so that a typing mistake is an error of usage.
 CLI::Validator SettingValidator(std::string prefix) {
   return {[prefix = std::move(prefix)](std::string& value) {
             render::Settings unused;
@@ -78,6 +79,7 @@ Result<render::Settings> SettingsOf(const PictureOptions& options) {
   for (const std::string& file : options.files) {
     FURROW_RETURN_IF_ERROR(render::LoadSettings(file, &settings));
   }
+  // Later ones win: files, then --set, then the short options.
   for (const auto* assignments : {&options.set, &options.shorthands}) {
     for (const std::string& assignment : *assignments) {
       FURROW_RETURN_IF_ERROR(render::SetSetting(assignment, &settings));
