@@ -13,6 +13,7 @@ using svg::Colour;
 using svg::Rect;
 using svg::Text;
 
+// The layout in pixels.
 constexpr double kLabelWidth = 300.0;
 constexpr double kPlotWidth = 420.0;
 constexpr double kRightMargin = 90.0;
@@ -25,6 +26,8 @@ std::string Legend(const BarChart& chart) {
   double x = kLabelWidth;
   for (std::size_t i = 0; i < chart.series.size(); ++i) {
     svg += Rect(x, 34.0, 12.0, 12.0, Colour(i)) + Text(x + 18.0, 44.0, "start", chart.series[i]);
+    // About 7 pixels per character: the text is measured only by the program that shows the
+    // picture.
     x += 40.0 + 7.0 * static_cast<double>(chart.series[i].size());
   }
   return svg;
@@ -45,6 +48,7 @@ std::string ToSvg(const BarChart& chart) {
     const double height = kBar * static_cast<double>(group.values.size());
     body += Text(kLabelWidth - 8.0, y + 0.5 * height + 4.0, "end", group.label);
     for (std::size_t i = 0; i < group.values.size(); ++i) {
+      // A bar of 0 is still visible.
       const double width = std::max(group.values[i] * scale, 0.5);
       body += Rect(kLabelWidth, y, width, kBar - 2.0, Colour(i)) +
               Text(kLabelWidth + width + 6.0, y + 11.0, "start", svg::Short(group.values[i]));

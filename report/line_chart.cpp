@@ -10,6 +10,7 @@
 namespace furrow::report {
 namespace {
 
+// The layout of one chart in pixels; charts stand below each other.
 constexpr double kWidth = 760.0;
 constexpr double kHeight = 320.0;
 constexpr double kLeft = 80.0;
@@ -30,6 +31,7 @@ class Scale {
       : logarithmic_(axis.logarithmic), from_(from), to_(to) {
     low_ = logarithmic_ ? std::floor(std::log10(low)) : std::min(low, 0.0);
     high_ = logarithmic_ ? std::ceil(std::log10(high)) : high;
+    // A range of one value would divide by 0.
     if (high_ <= low_) high_ = low_ + 1.0;
   }
 
@@ -59,6 +61,8 @@ class Scale {
       }
     }
     const double first = std::ceil(low_ / step);
+    // Multiplies instead of adding the step up, so that ticks are exact. The tolerance keeps the
+    // last one.
     for (double i = first; i * step <= high_ + 1e-9 * step; i += 1.0)
       ticks.emplace_back(i * step, Fixed(i * step, DigitsOf(step)));
     return ticks;
@@ -83,6 +87,7 @@ struct Range {
   }
 };
 
+// The scale that shows all points of all series.
 Scale MakeScale(const LineChart& chart, const Axis& axis, bool is_x, double from, double to) {
   Range range;
   for (const LineChart::Series& series : chart.series) {
@@ -91,6 +96,7 @@ Scale MakeScale(const LineChart& chart, const Axis& axis, bool is_x, double from
       if (!axis.logarithmic || value > 0.0) range.Add(value);
     }
   }
+  // A chart without points still has axes.
   if (!range.any) range.Add(1.0);
   return {axis, range.low, range.high, from, to};
 }
@@ -110,6 +116,7 @@ std::string Grid(const LineChart& chart, const Scale& x, const Scale& y, double 
 
 std::string Draw(const LineChart& chart, double top) {
   const Scale x = MakeScale(chart, chart.x, true, kLeft, kRight);
+  // Pixels grow downwards, so the axis runs from the bottom up.
   const Scale y = MakeScale(chart, chart.y, false, top + kBottom, top + kTop);
   std::string svg =
       svg::Text(12.0, top + 20.0, "start", chart.title + " (" + chart.y.label + ")") +

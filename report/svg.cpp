@@ -10,6 +10,7 @@ namespace {
 
 constexpr const char* kColours[] = {"#2f6f9f", "#c8793a", "#5d8a4a", "#8a5a9a"};
 
+// Titles and names may contain markup. Text is never used in an attribute, so quotes may stay.
 std::string Escape(const std::string& text) {
   std::string escaped;
   for (const char c : text) {
@@ -24,6 +25,7 @@ std::string Escape(const std::string& text) {
   return escaped;
 }
 
+// An attribute value with one decimal, a tenth of a pixel.
 std::string Number(double value) { return "\"" + Fixed(value, 1) + "\""; }
 
 }  // namespace

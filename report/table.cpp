@@ -7,6 +7,7 @@
 namespace furrow::report {
 namespace {
 
+// One row, padded to the widths. Missing cells stay empty.
 std::string Line(const std::vector<std::string>& cells, const std::vector<std::size_t>& widths) {
   std::string line = "|";
   for (std::size_t i = 0; i < widths.size(); ++i) {
@@ -21,6 +22,7 @@ std::string Line(const std::vector<std::string>& cells, const std::vector<std::s
 std::string ToMarkdown(const Table& table) {
   std::vector<std::size_t> widths;
   for (const std::string& cell : table.header)
+    // Markdown needs at least three dashes below each header.
     widths.push_back(std::max<std::size_t>(cell.size(), 3));
   for (const auto& row : table.rows) {
     for (std::size_t i = 0; i < std::min(row.size(), widths.size()); ++i) {
