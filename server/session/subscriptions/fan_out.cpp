@@ -15,7 +15,7 @@ void FanOut::Publish(Subject& subject, std::span<const std::uint8_t> pose, std::
   // subject is published by one shard at a time.
   const std::span<Subscription* const> subscriptions = table_->Of(subject.id);
   if (subscriptions.empty()) return;
-  // What was encoded for the subject before this one must not be reused.
+  // The encoding of the subject before this one must not be reused.
   context->encoded_key.reset();
   bool has_checked_rest = false;
   for (Subscription* subscription : subscriptions) {
