@@ -398,8 +398,8 @@ ExitCode LoadAndServe(const Config& config, const RunOptions& options) {
 ExitCode Run(const Config& config, const RunOptions& options) {
   try {
     return LoadAndServe(config, options);
-  // Parts report errors as Status. Only the standard library and the event loop throw here.
   } catch (const std::exception& error) {  // such as out of memory or threads
+    // Parts report errors as Status. Only the standard library and the event loop throw here.
     return Fail(ExitCode::kFailed, Status(StatusCode::kInternal, error.what(), "furrowd"));
   }
 }

@@ -227,8 +227,8 @@ Status ParseConfig(std::string_view text, std::string_view source_name, Config* 
   toml::table root;
   try {
     root = toml::parse(text, source_name);
-  // The parser of toml++ throws; the rest of the daemon uses Status.
   } catch (const toml::parse_error& error) {
+    // The parser of toml++ throws; the rest of the daemon uses Status.
     return Status(StatusCode::kParse, std::string(error.description()),
                   std::string(source_name) + ":" + std::to_string(error.source().begin.line));
   }
