@@ -1,13 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
 # Makes clean builds faster. They spend most of their time on parsing the same headers again and again, so each
-# folder of a library is compiled as one translation unit, and test programs share a precompiled header.
-option(FURROW_UNITY "Compile each folder of a library as one unit, and precompile the tests' headers" ON)
+# folder of a library is compiled as one translation unit, and precompiled headers hold the standard library.
+option(FURROW_UNITY "Compile each folder of a library as one unit, and precompile common headers" ON)
 
 # Folders whose rooms share one unit, because all of them parse the same heavy headers (CLI11, Beast).
 set(FURROW_UNITY_SHARED client/cli server/http)
 
-# furrow_unity(TARGET): compiles the sources of each folder as one translation unit. Sources with the
-# property SKIP_UNITY_BUILD_INCLUSION are compiled separately.
+# Headers that most sources include. <regex>, <iostream> and the like are not among them.
+set(FURROW_STANDARD_HEADERS
+  <algorithm> <array> <atomic> <chrono> <cmath> <cstdint> <cstring> <filesystem> <fstream> <functional> <limits> <map>
+  <memory> <mutex> <numeric> <optional> <span> <sstream> <string> <string_view> <thread> <unordered_map>
+  <unordered_set> <utility> <variant> <vector>)
+
+# furrow_unity(TARGET): compiles the sources of each folder as one translation unit, and precompiles the
+# standard library and GLM once for all libraries. Sources with the property SKIP_UNITY_BUILD_INCLUSION are
+# compiled separately.
 function(furrow_unity target)
   if(NOT FURROW_UNITY)
     return()
@@ -30,6 +37,15 @@ function(furrow_unity target)
     endif()
   endforeach()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  # g++ takes the sources that a unit includes for headers, and warns about their anonymous namespaces.
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+  if(NOT TARGET furrow_library_headers)
+    file(WRITE "${CMAKE_BINARY_DIR}/library_headers.cpp" "// Carries the libraries' precompiled header.\n")
+    add_library(furrow_library_headers STATIC "${CMAKE_BINARY_DIR}/library_headers.cpp")
+    target_precompile_headers(furrow_library_headers PRIVATE
+      ${FURROW_STANDARD_HEADERS} <glm/glm.hpp> <glm/gtc/quaternion.hpp>)
+  endif()
+  target_precompile_headers(${target} REUSE_FROM furrow_library_headers)
 endfunction()
 
 # furrow_compile_alone(SOURCES...): compiles sources separately. Highway includes the source of a kernel once
@@ -49,8 +65,7 @@ function(furrow_precompile_tests target)
     add_executable(furrow_test_headers "${CMAKE_BINARY_DIR}/test_headers.cpp")
     target_link_libraries(furrow_test_headers PRIVATE GTest::gtest GTest::gmock)
     target_precompile_headers(furrow_test_headers PRIVATE
-      <gmock/gmock.h> <gtest/gtest.h> <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <map>
-      <memory> <optional> <span> <string> <string_view> <vector>)
+      <gmock/gmock.h> <gtest/gtest.h> ${FURROW_STANDARD_HEADERS})
   endif()
   target_precompile_headers(${target} REUSE_FROM furrow_test_headers)
 endfunction()

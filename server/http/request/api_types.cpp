@@ -33,9 +33,9 @@ ApiReply ErrorReply(int status, std::string_view code, std::string_view field,
                     std::string_view message, std::string_view hint) {
   const nlohmann::ordered_json json = {
       {"error", {{"code", code}, {"field", field}, {"message", message}, {"hint", hint}}}};
-  using Json = nlohmann::ordered_json;
   // The text may contain bytes from the client that are not UTF-8.
-  return {.status = status, .body = json.dump(-1, ' ', false, Json::error_handler_t::replace)};
+  constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;
+  return {.status = status, .body = json.dump(-1, ' ', false, kReplace)};
 }
 
 ApiReply ErrorReply(const Status& status) {
