@@ -48,6 +48,13 @@ function(furrow_unity target)
   target_precompile_headers(${target} REUSE_FROM furrow_library_headers)
 endfunction()
 
+# furrow_optimise(TARGET): compiles a library with -O2 in every build type, for code that the build itself runs.
+# It does without the precompiled header, because g++ 12 crashes on one of another optimisation level.
+function(furrow_optimise target)
+  target_compile_options(${target} PRIVATE -O2)
+  set_target_properties(${target} PROPERTIES DISABLE_PRECOMPILE_HEADERS ON)
+endfunction()
+
 # furrow_compile_alone(SOURCES...): compiles sources separately. Highway includes the source of a kernel once
 # per instruction set, so a kernel cannot share a unit. Call this before furrow_library().
 function(furrow_compile_alone)
