@@ -16,11 +16,13 @@
 
 namespace furrow::character {
 
-// A character that can be drawn and wrinkled: a verified .glb and a verified wrinkle rig.
+// A character that can be drawn and wrinkled: the contents of a verified .glb file and a verified
+// wrinkle rig. The rig is empty if the character has none.
 struct Character {
   std::string name;
   wrinkle::Skeleton skeleton;
-  std::vector<glm::mat4> inverse_bind_matrices;  // one per joint of the skeleton
+  // Model space in the rest pose to joint space; one per joint of the skeleton.
+  std::vector<glm::mat4> inverse_bind_matrices;
   std::vector<Mesh> meshes;
   std::vector<Material> materials;
   std::vector<Picture> pictures;
@@ -34,7 +36,8 @@ struct Character {
   // Where the reader deviated from the glTF file: "nodes[3].matrix: the matrix has shear, ...".
   std::vector<std::string> warnings;
 
-  [[nodiscard]] int FindRigPicture(std::string_view name) const;  // -1 if not loaded
+  // The index in `pictures` of a picture that the rig names; -1 if it is not in rig_pictures.
+  [[nodiscard]] int FindRigPicture(std::string_view name) const;
 };
 
 }  // namespace furrow::character

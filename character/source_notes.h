@@ -6,7 +6,7 @@
 
 namespace furrow::character {
 
-// The state of one mesh in its file, before it was completed for drawing.
+// What one mesh of a glTF file contained, before the reader computed missing data.
 struct MeshNotes {
   bool skinned = false;
   bool has_uvs = false;
@@ -16,13 +16,13 @@ struct MeshNotes {
   int unnormalised_vertices = 0;  // vertices whose weights miss a sum of 1 by more than 0.01
   float worst_sum = 1.0f;         // the sum furthest from 1
   int truncated_vertices = 0;     // vertices with more than four joints
-  int morph_targets = 0;          // blend shapes, which are not imported
+  int morph_targets = 0;          // morph targets in the file; they are not imported
 };
 
-// The state of a glTF file before it was completed for drawing, for importers and `furrow character
-// check`.
+// What a glTF file contained before the reader computed missing data. Used by importers and by
+// `furrow character check`.
 struct SourceNotes {
-  std::vector<MeshNotes> meshes;              // as Character::meshes
+  std::vector<MeshNotes> meshes;              // one per mesh of Character::meshes, in that order
   std::vector<std::string> missing_pictures;  // "name: reason"
   int nameless_joints = 0;  // joints without a name, which are now called "node_<number>"
 };
@@ -33,7 +33,7 @@ struct ReadOptions {
   // skin weights of the nearest skinned vertex along the mesh's edges, or the skin's first joint.
   // Materials lose pictures that are missing or cannot be decoded.
   bool lenient = false;
-  SourceNotes* notes = nullptr;  // filled when set
+  SourceNotes* notes = nullptr;  // receives the notes, unless null; the caller owns it
 };
 
 }  // namespace furrow::character

@@ -90,7 +90,11 @@ Result<std::vector<Picture>> ReadGltfPictures(const gltf::Document& document,
     pixels += static_cast<std::int64_t>(picture->width) * picture->height;
     // Small files can decode to huge pictures, so the sum is bounded too.
     if (pixels > 4 * kMaxPicturePixels) {
-      return Status(StatusCode::kLimit, "the pictures have too many pixels together", where);
+      return Status(StatusCode::kLimit,
+                    "the pictures up to this one have " + std::to_string(pixels) +
+                        " pixels; at most " + std::to_string(4 * kMaxPicturePixels) +
+                        " are accepted",
+                    where, "reduce the size of the pictures");
     }
     pictures.push_back(std::move(*picture));
   }

@@ -10,22 +10,25 @@
 
 namespace furrow::character {
 
-// The kind of a material by words in its name, for files that do not state it: "skin", "face",
-// "head" and "body" are skin; "eye" and "cornea" are eyes; "hair", "lash", "brow" and "beard" are
-// hair; "cloth", "suit", "shirt", "jeans" and similar words are cloth.
+// Guesses the kind of a material from words in its name, for files that do not state the kind:
+// "skin", "face", "head" and "body" are skin; "eye" and "cornea" are eyes; "hair", "lash", "brow"
+// and "beard" are hair; "cloth", "suit", "shirt", "jeans" and similar words are cloth. kOther if no
+// word matches.
 [[nodiscard]] Material::Kind GuessMaterialKind(std::string_view name);
-[[nodiscard]] std::string_view MaterialKindName(Material::Kind kind);  // "skin", "cloth", ...
+// The lowercase name: "skin", "cloth", "eye", "hair" or "other".
+[[nodiscard]] std::string_view MaterialKindName(Material::Kind kind);
 
-// All images of the file, decoded, in the file's order.
+// Decodes all images of the file, in the file's order.
 //
-// With options.lenient, an image that is missing or damaged is noted and has no pixels. Limits
-// still apply. Errors: gltf::LocateImage()'s, DecodePicture()'s, kLimit (too many pixels
-// together). `where` is "images[2]".
+// With options.lenient, an image that is missing or damaged is listed in the notes and becomes a
+// picture without pixels. Limits still apply. Errors: those of gltf::LocateImage() and
+// DecodePicture(), and kLimit (too many pixels together). `where` of errors is "images[2]".
 [[nodiscard]] Result<std::vector<Picture>> ReadGltfPictures(const gltf::Document& document,
                                                             const ReadOptions& options = {});
 
-// All materials. The kind is the extra "furrow_kind", or guessed from the name. Texture indices
-// refer to the pictures. Errors: gltf::ReadMaterials()'s.
+// Reads all materials, in the file's order. The kind is the glTF extra "furrow_kind", or guessed
+// from the name. Texture indices count the results of ReadGltfPictures(). Errors: those of
+// gltf::ReadMaterials().
 [[nodiscard]] Result<std::vector<Material>> ReadGltfMaterials(const gltf::Document& document);
 
 }  // namespace furrow::character

@@ -328,8 +328,10 @@ Result<std::vector<Mesh>> ReadGltfMeshes(const gltf::Document& document,
     }
     // Many nodes may share one mesh, so the sum needs a limit as well.
     if (vertices > gltf::kMaxVertices || indices > gltf::kMaxIndices) {
-      return Status(StatusCode::kLimit, "the meshes have too many vertices or indices together",
-                    "meshes");
+      return Status(StatusCode::kLimit,
+                    "the meshes have more than " + std::to_string(gltf::kMaxVertices) +
+                        " vertices or " + std::to_string(gltf::kMaxIndices) + " indices together",
+                    "meshes", "reduce the meshes, or the number of nodes that use them");
     }
   }
   if (meshes.empty()) return Status(StatusCode::kSchema, "no node has a mesh", "nodes");

@@ -11,8 +11,8 @@
 
 namespace furrow::character {
 
-// Every primitive of every node with a mesh, as one Mesh each. A mesh without a skin follows the
-// nearest joint at or above its node.
+// Reads every primitive of every node that has a mesh, as one Mesh each, in model space. A mesh
+// without a skin follows the nearest joint at or above its node.
 //
 // - Up to 16 influences per vertex are read; the strongest four are kept and normalised.
 // - Missing or degenerate normals and tangents are computed.

@@ -15,19 +15,23 @@ namespace furrow::character {
 // The nodes of a glTF file that move a character, as a skeleton.
 struct GltfSkeleton {
   wrinkle::Skeleton skeleton;
-  std::vector<glm::mat4> inverse_bind_matrices;  // one per joint of the skeleton
-  std::vector<std::vector<int>> skin_joints;     // per skin: its joints in `skeleton`
-  std::vector<int> joint_of_node;     // per node: the nearest joint at or above it; 0 for none
-  std::vector<glm::mat4> node_model;  // per node: to model space in the rest pose
-  int num_nameless_joints = 0;        // called "node_<index>"
+  // Model space in the rest pose to joint space; one per joint of the skeleton.
+  std::vector<glm::mat4> inverse_bind_matrices;
+  std::vector<std::vector<int>> skin_joints;  // per skin: indices of its joints in `skeleton`
+  // Per node of the file: index of the nearest joint at or above it; 0 if there is none.
+  std::vector<int> joint_of_node;
+  std::vector<glm::mat4> node_model;  // per node: its space to model space in the rest pose
+  int num_nameless_joints = 0;        // joints without a name, which get the name "node_<index>"
 };
 
-// The joints of all skins and the nodes above them; all nodes if there is no skin. A joint without
-// an inverse bind matrix gets the inverse of its rest pose (the identity if that is singular).
+// Makes a skeleton from the joints of all skins and the nodes above them, or from all nodes if the
+// file has no skin. A joint without an inverse bind matrix gets the inverse of its model matrix in
+// the rest pose, or the identity if that matrix is singular. `forest` describes the nodes of
+// `document`; neither is kept.
 //
-// Errors: gltf::ReadSkinJoints()'s, gltf::ReadInverseBindMatrices()'s, kSchema (no nodes), kLimit
-// (wrinkle::kMaxJoints), kUnsupported (two skins with different inverse bind matrices for one
-// joint). `where` is a field.
+// Errors: those of gltf::ReadSkinJoints() and gltf::ReadInverseBindMatrices(), kSchema (no nodes),
+// kLimit (more than wrinkle::kMaxJoints joints), kUnsupported (two skins with different inverse
+// bind matrices for one joint). `where` is a field.
 [[nodiscard]] Result<GltfSkeleton> ReadGltfSkeleton(gltf::Document* document,
                                                     const gltf::NodeForest& forest);
 

@@ -8,9 +8,9 @@
 
 namespace furrow::character {
 
-// Encodes skeleton, skin, meshes and textures as one .glb. Equal characters give equal bytes:
-// fields have a fixed order, and neither times nor paths are written. Errors: those of
-// EncodePicture().
+// Encodes skeleton, skin, meshes, materials and pictures as the bytes of a .glb file. The rig is
+// not written. Equal characters give equal bytes: fields have a fixed order, and neither times nor
+// paths are written. Errors: those of EncodePicture().
 [[nodiscard]] Result<std::string> CharacterGlb(const Character& character);
 
 }  // namespace furrow::character

@@ -16,33 +16,36 @@ struct Material {
   enum class Kind { kSkin, kCloth, kEye, kHair, kOther };
   std::string name;
   Kind kind = Kind::kOther;
-  glm::vec4 base_colour{1.0f};   // linear
-  int base_colour_texture = -1;  // index into Character::pictures; sRGB
-  int normal_texture = -1;       // tangent space, green up (glTF)
-  float roughness = 0.6f;
-  int roughness_texture = -1;  // green channel
-  // Thickness of translucent flesh in metres (KHR_materials_volume), 0 if not stated. It scales the
-  // green channel of thickness_texture, if there is one.
+  glm::vec4 base_colour{1.0f};  // linear RGBA in [0, 1]; multiplies the texture
+  // Textures are indices into Character::pictures; -1: none.
+  int base_colour_texture = -1;  // sRGB
+  int normal_texture = -1;       // tangent space; green points up in the image (glTF)
+  float roughness = 0.6f;        // [0, 1]: 0 mirror-like, 1 matte; multiplies the texture
+  int roughness_texture = -1;    // green channel
+  // Thickness of translucent flesh in metres (KHR_materials_volume); 0 if the file does not state
+  // it. Multiplies the green channel of thickness_texture, if there is one.
   float thickness = 0.0f;
   int thickness_texture = -1;
   bool double_sided = false;
-  float alpha_cutoff = 0.0f;  // 0 for opaque materials
+  float alpha_cutoff = 0.0f;  // texels with less alpha are not drawn; 0 for opaque materials
 };
 
+// Positions and directions are in model space, in the rest pose.
 struct Vertex {
-  glm::vec3 position{0.0f};                          // model space, rest pose, metres
-  glm::vec3 normal{0.0f, 0.0f, 1.0f};                // unit
-  glm::vec4 tangent{1.0f, 0.0f, 0.0f, 1.0f};         // w: handedness of the bitangent (glTF)
-  glm::vec2 uv{0.0f};                                // v down (glTF)
-  std::uint16_t joints[4] = {0, 0, 0, 0};            // indices into Character::skeleton
+  glm::vec3 position{0.0f};                   // metres
+  glm::vec3 normal{0.0f, 0.0f, 1.0f};         // unit
+  glm::vec4 tangent{1.0f, 0.0f, 0.0f, 1.0f};  // xyz: unit; w: 1 or -1, the bitangent's sign (glTF)
+  glm::vec2 uv{0.0f};                         // (0, 0): top left of the texture image (glTF)
+  std::uint16_t joints[4] = {0, 0, 0, 0};     // indices into Character::skeleton
   float skin_weights[4] = {1.0f, 0.0f, 0.0f, 0.0f};  // sum to 1
 };
 
+// One primitive of a glTF mesh: triangles of one material.
 struct Mesh {
   std::string name;
-  int material = -1;
+  int material = -1;  // index into Character::materials; -1: none
   std::vector<Vertex> vertices;
-  std::vector<std::uint32_t> indices;  // triangles, counter-clockwise from outside
+  std::vector<std::uint32_t> indices;  // three per triangle, counter-clockwise seen from outside
 };
 
 }  // namespace furrow::character

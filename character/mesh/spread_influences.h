@@ -7,10 +7,10 @@
 
 namespace furrow::character {
 
-// Gives each vertex flagged in `unskinned` (one flag per vertex) the influences of the skinned
-// vertex that is the fewest edges away. Without a connected skinned vertex, the influences of a
-// vertex at the same position are used, and otherwise `joint` alone. O(n log n) in the size of the
-// mesh.
+// Gives each vertex that is flagged in `unskinned` (one flag per vertex) the influences of the
+// skinned vertex that is the fewest edges away. Vertices at the same position count as one vertex.
+// A vertex that no path of edges connects to a skinned one follows `joint` (an index into the
+// skeleton) alone. O(n log n) for n vertices and indices.
 void SpreadInfluences(std::vector<bool> unskinned, int joint, Mesh* mesh);
 
 }  // namespace furrow::character

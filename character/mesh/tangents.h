@@ -8,14 +8,17 @@
 
 namespace furrow::character::paint {
 
-// Computes smooth normals: the area-weighted mean of the triangles around each vertex. A vertex
-// without a triangle of non-zero area gets +Z. `indices` holds three per triangle, all in range.
+// Sets each vertex's normal to the normalised, area-weighted mean of the normals of its triangles.
+// Normals point to the side from which the triangles appear counter-clockwise. A vertex without a
+// triangle of non-zero area gets +Z. `indices`: three vertex indices per triangle, all in range.
 void ComputeNormals(std::span<Vertex> vertices, std::span<const std::uint32_t> indices);
 
-// Computes tangents along increasing u from the UV gradients of the triangles around each vertex.
-// Precondition: unit normals. Tangents are orthogonal to them, and cross(normal, tangent) * w
-// points up the picture (decreasing v), as glTF's green-up normal maps require. A vertex whose UVs
-// have no area gets any unit vector perpendicular to the normal.
+// Sets each vertex's tangent: xyz is the unit direction in which u increases, perpendicular to the
+// normal; w is the handedness of the UVs, 1 or -1 (mirrored). cross(normal, xyz) * w is the
+// bitangent, which points up in the texture image (towards smaller v), as glTF's normal maps
+// require. Directions are averaged over the vertex's triangles, weighted by area. If their UVs have
+// no area, xyz is any unit vector perpendicular to the normal. `indices`: three per triangle, all
+// in range. Precondition: unit normals.
 void ComputeTangents(std::span<Vertex> vertices, std::span<const std::uint32_t> indices);
 
 }  // namespace furrow::character::paint

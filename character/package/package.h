@@ -16,10 +16,11 @@
 // Reading and writing character packages: a glTF file, its wrinkle rig and the rig's pictures.
 namespace furrow::character {
 
-// Reads a .glb or .gltf file and its rig. An empty `rig` means "<stem>.rig.json" beside the file,
-// if it exists.
+// Reads a .glb or .gltf file and its rig. An empty `rig` means "<stem>.rig.json" in the folder of
+// the file; if that does not exist, the character has no rig.
 //
-// - `poses` reads the reference poses that name a file (rig/rig_file.h).
+// - `poses` loads the reference poses that the rig takes from a file. If it is empty, a rig with
+//   such poses is kUnsupported.
 // - The file is untrusted: sizes are checked before allocation, then indices, finite numbers, skin
 //   weights (the strongest four, renormalised) and the skeleton's tree. Errors name the file and
 //   the field ("face.glb: meshes[0].primitives[0].attributes.JOINTS_0").
@@ -30,20 +31,25 @@ namespace furrow::character {
                                               const std::filesystem::path& rig = {},
                                               const wrinkle::PoseSource& poses = {});
 
-// As LoadCharacter() without a rig, from bytes in memory. `folder` holds the files of a .gltf. The
-// `where` of errors is the field alone; the character's name may be empty.
+// Reads a character without a rig from `bytes`, a whole .glb or .gltf file, with the checks of
+// LoadCharacter(). `folder`: holds the files that a .gltf names. `where` of errors is the field
+// without a file name. The character's name is empty if the file does not state one.
 [[nodiscard]] Result<Character> ParseCharacter(std::string_view bytes,
                                                const std::filesystem::path& folder,
                                                const ReadOptions& options = {});
 
-// Replaces a character's rig and loads the rig's pictures, searching `folder` first.
+// Replaces a character's rig and loads the rig's pictures, searching `folder` first. A picture that
+// does not exist is listed in Character::missing_rig_pictures. Errors: those of CheckAssetName()
+// and LoadPicture() (a damaged picture). After an error, the character has the new rig with only
+// some of its pictures.
 [[nodiscard]] Status AttachRig(wrinkle::Rig rig, const std::filesystem::path& folder,
                                Character* character);
 
 // The names of all pictures that a rig uses, masks first, without duplicates.
 [[nodiscard]] std::vector<std::string> RigPictureNames(const wrinkle::Rig& rig);
 
-// Writes the .glb with WriteFileAtomically().
+// Writes the character without its rig as a .glb file. Replaces the file only on success. Errors:
+// those of CharacterGlb(), and kIo.
 [[nodiscard]] Status SaveCharacterGlb(const Character& character, const std::filesystem::path& glb);
 
 }  // namespace furrow::character

@@ -100,7 +100,7 @@ class PatchCutter {
     if (!any) {
       return {StatusCode::kNotFound,
               options_.mesh.empty() ? "the character has neither skin nor cloth"
-                                    : "no mesh '" + options_.mesh + "'",
+                                    : "the character has no mesh '" + options_.mesh + "'",
               character_.name};
     }
     // Metres: even a small radius accepts a point within 2 cm of the surface.
@@ -264,7 +264,8 @@ Result<wrinkle::Driver> CutPatch(const Character& character, const PatchOptions&
 Result<glm::vec3> JointPosition(const Character& character, const std::string& joint) {
   const int index = character.skeleton.Find(joint);
   if (index == wrinkle::kNoJoint) {
-    return Status(StatusCode::kNotFound, "no joint '" + joint + "'", character.name);
+    return Status(StatusCode::kNotFound, "the skeleton has no joint '" + joint + "'",
+                  character.name);
   }
   return glm::vec3(character.skeleton.rest_model()[static_cast<std::size_t>(index)][3]);
 }
@@ -297,8 +298,8 @@ Result<glm::vec3> RegionPosition(const Character& character, const std::string& 
           return glm::distance(a, middle) < glm::distance(b, middle);
         });
     if (nearest != inside.end()) return *nearest;
-    return Status(StatusCode::kNotFound, "the mask of region '" + region + "' covers nothing",
-                  character.name);
+    return Status(StatusCode::kNotFound, "the mask of region '" + region + "' covers no vertex",
+                  character.name, "give the place with --around or --joint");
   }
   return Status(StatusCode::kNotFound, "the rig has no region '" + region + "'", character.name);
 }

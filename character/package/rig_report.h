@@ -23,14 +23,17 @@ struct RigReport {
   std::vector<std::string> warnings;                        // one sentence each
   // Whether the rig binds strictly to the skeleton, as in `furrow solve`; Ok without a skeleton.
   Status binding;
-  float skeleton_size = 0.0f;  // the unit of source_size and offset_size; 0 without a skeleton
+  // Sum of the skeleton's bone lengths at rest (wrinkle::SkeletonSize()), which rigs state as
+  // source_size; 0 without a skeleton.
+  float skeleton_size = 0.0f;
 };
 
 struct RigReportOptions {
-  // The skeleton to bind to, if any, and its blend shapes.
+  // The skeleton to bind to, and the names of its blend shapes. nullptr: do not bind.
   const wrinkle::Skeleton* skeleton = nullptr;
   std::span<const std::string> blend_shape_names;
-  // See BindOptions::aliases.
+  // Pairs (joint name in the rig, joint name in the skeleton), tried if the skeleton has no joint
+  // with the rig's name.
   std::span<const std::pair<std::string, std::string>> aliases;
   // The folder that is searched for the rig's pictures, before FURROW_ASSET_PATH. Pictures embedded
   // in a character are listed in `embedded_pictures`.
@@ -38,6 +41,8 @@ struct RigReportOptions {
   std::span<const std::string> embedded_pictures;
 };
 
+// Lists the contents of a rig and its likely mistakes. Reads no file; only looks whether the rig's
+// pictures exist.
 [[nodiscard]] RigReport ReportOnRig(const wrinkle::Rig& rig, const RigReportOptions& options = {});
 
 // Formats a report for a terminal: counts, names, warnings and the result of binding, one per line.

@@ -24,8 +24,8 @@ struct PictureStorage {
 // of resident memory, so the codec is a module, lib/furrow/furrow-pictures.so beside bin/, which is
 // loaded with the first picture. A daemon without pictures never loads it.
 struct PictureCodec {
-  // Fills `picture` except its name. On failure returns a code of DecodePicture(), except
-  // kNonFinite, and sets `why`.
+  // Fills `picture` except its name from a whole file. On failure returns kUnsupported, kLimit or
+  // kParse, and sets `why` to the message. No pointer may be null.
   StatusCode (*decode)(std::span<const std::uint8_t> bytes, Picture* picture, std::string* why);
   // Precondition: the number of pixels matches the size. On failure returns kInternal and sets
   // `why`.
@@ -33,7 +33,8 @@ struct PictureCodec {
                        std::string* why);
 };
 
-// The codec, loaded on the first call. Error: kUnavailable, with the module's path.
+// Returns the codec, which lives until the process ends. Loads it on the first call; safe on any
+// thread. Error: kUnavailable, with the module's path.
 [[nodiscard]] Result<const PictureCodec*> GetPictureCodec();
 
 }  // namespace furrow::character

@@ -34,7 +34,8 @@ Result<Picture> DecodePicture(std::string name, std::span<const std::uint8_t> by
   const StatusCode code = (*codec)->decode(bytes, &picture, &why);
   if (code != StatusCode::kOk) return Status(code, std::move(why));
   if (!wrinkle::AllFinite(picture.pixels_float)) {
-    return Status(StatusCode::kNonFinite, "the picture contains texels that are not finite");
+    return Status(StatusCode::kNonFinite, "the picture contains NaN or infinite values", {},
+                  "export it with finite values");
   }
   picture.name = std::move(name);
   return picture;
@@ -42,8 +43,13 @@ Result<Picture> DecodePicture(std::string name, std::span<const std::uint8_t> by
 
 Result<std::string> EncodePicture(const Picture& picture, const PictureStorage& storage) {
   if (!PixelsFit(picture)) {
+    const std::size_t values =
+        std::max({picture.pixels_float.size(), picture.pixels16.size(), picture.pixels.size()});
     return Status(StatusCode::kInvalidArgument,
-                  "the number of pixels of picture '" + picture.name + "' does not match its size");
+                  "picture '" + picture.name + "' has " + std::to_string(values) +
+                      " values, which do not match its size of " + std::to_string(picture.width) +
+                      " x " + std::to_string(picture.height) + " pixels with " +
+                      std::to_string(picture.channels) + " channels (1 to 4)");
   }
   const auto codec = GetPictureCodec();
   FURROW_RETURN_IF_ERROR(codec);

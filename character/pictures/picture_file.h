@@ -12,8 +12,8 @@
 
 namespace furrow::character {
 
-// Decodes a PNG, JPEG or OpenEXR picture with its own 1 to 4 channels. The first bytes decide the
-// format. Sizes are checked before memory is allocated.
+// Decodes a PNG, JPEG or OpenEXR picture of 1 to 4 channels from the bytes of a whole file. The
+// first bytes decide the format. Sizes are checked before memory is allocated.
 //
 // Errors: kUnsupported (another format, more channels), kLimit (too large), kParse (damaged),
 // kNonFinite (an EXR texel), kUnavailable (no codec module).
@@ -23,16 +23,18 @@ namespace furrow::character {
 // DecodePicture(), with the path as `where`.
 [[nodiscard]] Result<Picture> LoadPicture(std::string name, const std::filesystem::path& path);
 
-// Encodes a PNG. Equal pictures give equal bytes. Errors: kInvalidArgument (the number of pixels
-// does not match the size), kUnsupported (float pixels).
+// Encodes a PNG of 8 or 16 bits per channel, as the picture's pixels. Equal pictures give equal
+// bytes. Errors: kInvalidArgument (the number of pixels does not match the size), kUnsupported
+// (float pixels), kUnavailable (no codec module).
 [[nodiscard]] Result<std::string> EncodePng(const Picture& picture);
 
-// Encodes an OpenEXR with half floats (11 bits of precision, +-65504). Integer pixels are written
-// as [0, 1]. Errors: kInvalidArgument (the number of pixels does not match the size).
+// Encodes an OpenEXR with half floats (11 bits of precision, at most +-65504). Integer pixels are
+// written as [0, 1]. Errors: kInvalidArgument (the number of pixels does not match the size),
+// kUnavailable (no codec module).
 [[nodiscard]] Result<std::string> EncodeExr(const Picture& picture);
 
-// EncodePng() and EncodeExr() with every option. Errors: theirs, and kUnavailable (no codec
-// module).
+// Encodes a picture as `storage` says. Errors: kInvalidArgument (the number of pixels does not
+// match the size), kUnavailable (no codec module), kInternal (the library failed).
 [[nodiscard]] Result<std::string> EncodePicture(const Picture& picture,
                                                 const PictureStorage& storage);
 

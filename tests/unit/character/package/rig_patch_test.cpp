@@ -180,7 +180,7 @@ TEST(RigPatch, FindsJointsAndRegions) {
   EXPECT_NEAR(place->y, 0.05f, 1e-3f);
   EXPECT_EQ(RegionPosition(sheets, "right").status().code(), StatusCode::kNotFound);
   sheets.pictures[0].pixels = {0, 0};
-  EXPECT_THAT(RegionPosition(sheets, "left").status().what(), HasSubstr("covers nothing"));
+  EXPECT_THAT(RegionPosition(sheets, "left").status().what(), HasSubstr("covers no vertex"));
 }
 
 }  // namespace
