@@ -17,8 +17,8 @@
 // tables, with the checks of wire_fields.h. codec.cpp maps each struct to its table.
 namespace furrow::protocol {
 
-// The second decoding step, after OpenMessage(): verifies the payload, checks every field and
-// copies. On failure `message` is unspecified but safe to reuse.
+// Verifies the payload of a message that OpenMessage() accepted, checks every field, and copies
+// them to `message`. On failure `message` has unspecified values but may be reused.
 //
 // Never throws and never reads beyond the payload. The payload may have any alignment. PoseFrame,
 // WeightFrame and ImageFrame do not allocate once `message` has grown. Safe to call on any thread.
@@ -47,10 +47,10 @@ namespace furrow::protocol {
 // Encodes messages. Reuse one encoder per thread: it keeps its working memory, so repeated calls
 // stop allocating.
 //
-// Encode() replaces the content of `out` with envelope and payload. The result is one TCP frame or
-// one datagram, or is cut into fragments (fragment.h). Precondition: the message would pass
-// Decode(). A list of indices may be empty, which means "all, in order", if the values are as many
-// as the skeleton's joints or blend shapes.
+// Encode() replaces the content of `out` with one complete message: envelope and payload. Send it
+// as one TCP frame (tcp_framing.h), or as the datagrams that WriteDatagram() cuts (fragment.h).
+// Precondition: Decode() would accept the message. A pose's list of indices may be empty although
+// its list of values is not; the values then belong to all joints or blend shapes, in order.
 class Encoder {
  public:
   Encoder();

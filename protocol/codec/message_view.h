@@ -46,21 +46,23 @@ enum class MessageKind : std::uint8_t {
 // The four-character file identifier; nullptr for kUnknown.
 [[nodiscard]] const char* FileIdentifier(MessageKind kind);
 
-// A message with a valid envelope and an unchecked payload. Points into the caller's bytes.
+// A message with a valid envelope and an unchecked payload. `payload` points into the bytes given
+// to OpenMessage(), which must outlive the view.
 struct MessageView {
   Header header;
   MessageKind kind = MessageKind::kUnknown;
   std::span<const std::uint8_t> payload;
 };
 
-// The first of two decoding steps: checks the envelope and finds the kind. Cheap enough to reject
-// garbage as fast as it arrives. `bytes` is one whole message (a datagram, a reassembled message or
-// a TCP frame) of at most `max_bytes`. Decode() (codec.h) is the second step.
+// Checks the envelope of a message and finds the kind: the first of two decoding steps. Cheap
+// enough to reject garbage as fast as it arrives. `bytes` is one complete message (a datagram, a
+// reassembled message or a TCP frame); more than `max_bytes` is kBadLength. On kOk, pass `view` to
+// Decode() (codec.h). On kUnknownKind all of `view` is valid too; otherwise `view` is unspecified.
 [[nodiscard]] DecodeStatus OpenMessage(std::span<const std::uint8_t> bytes, MessageView& view,
                                        std::size_t max_bytes = kMaxRequestBytes);
 
-// Replaces the contents of `out` with an envelope and a payload that is already encoded: the same
-// bytes that Encoder::Encode() writes for the message.
+// Replaces the content of `out` with a complete message: the envelope for `header` and a copy of
+// `payload`, the FlatBuffers buffer of an encoded message.
 void WriteMessage(const Header& header, std::span<const std::uint8_t> payload,
                   std::vector<std::uint8_t>& out);
 

@@ -33,15 +33,16 @@ struct PayloadBuilder {
 
 enum class Presence : std::uint8_t { kMayBeEmpty, kRequired };
 
-// Copies text after checking it. An absent string reads as an empty one.
+// Copies a plain text (text.h) of at most `max_bytes` to `out`. An absent string (null) reads as an
+// empty one. kLimit, kBadText; kMissingField for an empty text that is kRequired.
 [[nodiscard]] DecodeStatus ReadText(const flatbuffers::String* text, int max_bytes,
                                     std::string& out, Presence presence = Presence::kMayBeEmpty);
 
 // Returns 0 (absent) for empty text.
 [[nodiscard]] TextOffset WriteText(PayloadBuilder& payload, std::string_view text);
 
-// Names must be unique, non-empty, plain text and within the limits. An absent vector reads as an
-// empty one.
+// Both check that names are unique, not empty, plain text, and within `max_names` and
+// kMaxNameBytes. An absent vector (null) reads as an empty one.
 [[nodiscard]] DecodeStatus CheckNames(const TextVector* names, int max_names);
 [[nodiscard]] DecodeStatus ReadNames(const TextVector* names, int max_names,
                                      std::vector<std::string>& out);
@@ -49,16 +50,17 @@ enum class Presence : std::uint8_t { kMayBeEmpty, kRequired };
 [[nodiscard]] flatbuffers::Offset<TextVector> WriteNames(PayloadBuilder& payload,
                                                          const std::vector<std::string>& names);
 
-// Finite, and at most kMaxMagnitude.
+// Checks that every component is finite and has a magnitude of at most kMaxMagnitude.
 [[nodiscard]] DecodeStatus CheckNumber(float value);
 [[nodiscard]] DecodeStatus CheckVector(const Vec3& value);
-// Finite, and of unit length within 1e-3.
+// Checks that the quaternion is finite and that its length is within 1e-3 of 1.
 [[nodiscard]] DecodeStatus CheckRotation(const Quat& value);
-// Frames per second in [0, kMaxRateHz].
+// Checks that a rate in frames per second is in [0, kMaxRateHz].
 [[nodiscard]] DecodeStatus CheckRate(float rate_hz);
 
-// Expands a mask of `n` bits to ascending indices. An absent mask means all `n`, or none if
-// `num_values` is 0. kBadCount unless there are `num_values` indices.
+// Expands a mask of `n` bits (bit i % 8 of byte i / 8 stands for index i) to the ascending indices
+// of the set bits. An absent mask (null) means all `n` indices, or none if `num_values` is 0.
+// kBadCount unless the result has `num_values` indices.
 [[nodiscard]] DecodeStatus ReadMask(const flatbuffers::Vector<std::uint8_t>* mask, std::size_t n,
                                     std::size_t num_values, std::vector<std::uint16_t>& indices);
 
@@ -71,7 +73,7 @@ inline Quat FromWire(const wire::Quat& q) { return {q.x(), q.y(), q.z(), q.w()};
 inline wire::Vec3 ToWire(const Vec3& v) { return {v.x, v.y, v.z}; }
 inline wire::Quat ToWire(const Quat& q) { return {q.x, q.y, q.z, q.w}; }
 
-// 0 for an absent vector.
+// The number of elements; 0 for an absent vector (null).
 template <class T>
 [[nodiscard]] std::size_t SizeOf(const flatbuffers::Vector<T>* vector) {
   return vector == nullptr ? 0 : vector->size();

@@ -19,18 +19,18 @@ namespace furrow::protocol {
 enum class BundleStatus : std::uint8_t {
   kOk = 0,
   kTooLarge,     // above kMaxDatagramBytes
-  kBadEnvelope,  // a later envelope is incomplete or has a bad magic, version, flags or session
+  kBadEnvelope,  // an envelope after the first is incomplete, or ReadEnvelope() rejects it
   kFragment,     // the bundle holds a fragment
   kBadSession,   // the messages belong to different sessions
   kBadLength,    // a payload is too short, exceeds the datagram or leaves bytes behind it
 };
 
-// Marks a message as followed by another one. `message` holds at least its envelope.
+// Sets kFlagFollowed in the envelope of `message`, which has at least kEnvelopeBytes.
 inline void MarkFollowed(std::span<std::uint8_t> message) { message[5] |= kFlagFollowed; }
 
-// Joins messages into one bundle. A single message is copied as it is. Returns false, with `out`
-// unspecified, if there are no messages or they exceed kMaxDatagramBytes. Precondition: whole
-// messages of one session.
+// Replaces the content of `out` with one bundle of all messages. A single message is copied
+// unchanged. Returns false, with `out` unspecified, if there are no messages or if they have more
+// than kMaxDatagramBytes together. Precondition: complete messages (Encode()) of one session.
 [[nodiscard]] bool WriteBundle(std::span<const std::vector<std::uint8_t>> messages,
                                std::vector<std::uint8_t>& out);
 
@@ -40,14 +40,14 @@ inline void MarkFollowed(std::span<std::uint8_t> message) { message[5] |= kFlagF
 //   while (unbundler.Next(message)) ...
 class Unbundler {
  public:
-  // Starts with `datagram`, which must outlive the last Next(). Clears the bundle flags in place,
-  // so Next() returns messages exactly as Encode() wrote them. Checks a whole bundle before Next()
-  // returns any message of it. Next() returns other datagrams unchecked and unchanged. That
-  // includes malformed bundles, which OpenMessage() then rejects because of their flags. Never
-  // reads beyond `datagram`.
+  // Checks a datagram and makes its messages available to Next(). `datagram` must outlive the last
+  // Next(), which clears kFlagFollowed in it, so that messages are exactly as Encode() wrote them.
+  // A datagram that is not a bundle (kOk), or a malformed bundle (any other status), is one message
+  // for Next(), unchanged; OpenMessage() rejects a malformed bundle. Never reads beyond `datagram`.
   BundleStatus Open(std::span<std::uint8_t> datagram);
 
-  // Gets the next message, in sending order. Returns false if there are no more.
+  // Sets `message` to the next message, a part of the datagram, in sending order. Returns false,
+  // with `message` unchanged, if there are no more.
   [[nodiscard]] bool Next(std::span<const std::uint8_t>& message);
   [[nodiscard]] bool has_more() const { return !rest_.empty(); }
 

@@ -12,25 +12,27 @@
 
 namespace furrow::protocol {
 
-// A fragment is the envelope of the message with kFlagFragment set, then u32 message id, u16 index,
-// u16 count, then a slice of the payload (STANDARD.md section 3). All slices but the last have
-// kFragmentPayloadBytes. Every size and position therefore follows from the envelope, and receivers
-// reject fragments that contradict it.
+// A fragment is one datagram of a message that is larger than kMaxDatagramBytes (STANDARD.md
+// section 3). It holds the message's envelope with kFlagFragment set, u32 message id, u16 index,
+// u16 count (all little-endian), and a slice of the payload. All slices except the last have
+// kFragmentPayloadBytes. Every size and position therefore follows from the payload size in the
+// envelope, and receivers reject fragments that contradict it.
 inline constexpr std::size_t kFragmentHeaderBytes = 8;
 inline constexpr std::size_t kFragmentPayloadBytes =
     kMaxDatagramBytes - kEnvelopeBytes - kFragmentHeaderBytes;
 
-// Number of datagrams for a message of this size, envelope included. 1 if it fits one datagram.
+// The number of datagrams that a message of `message_bytes` (with its envelope) needs, at least 1.
 [[nodiscard]] std::size_t NumDatagrams(std::size_t message_bytes);
 
-// Writes datagram `index` of `message` (a result of Encode() of at most kMaxUdpMessageBytes) and
-// returns its size. `message_id` must differ between the fragmented messages of a session; use a
-// counter. `out` must hold kMaxDatagramBytes.
+// Writes datagram `index` of a message to the start of `out` and returns its size. `message`: what
+// Encode() wrote, at most kMaxUdpMessageBytes. `index`: below NumDatagrams(message.size()).
+// `message_id` must differ between the fragmented messages of a session; use a counter. `out` must
+// have kMaxDatagramBytes. Nothing is checked.
 std::size_t WriteDatagram(std::span<const std::uint8_t> message, std::uint32_t message_id,
                           std::size_t index, std::span<std::uint8_t> out);
 
 struct ReassemblyLimits {
-  std::size_t max_message_bytes = kMaxUdpMessageBytes;
+  std::size_t max_message_bytes = kMaxUdpMessageBytes;  // of one message, envelope included
   std::size_t max_pending_per_peer = 4;           // unfinished messages; the oldest is dropped
   std::size_t max_total_bytes = 8 * 1024 * 1024;  // over all peers; the oldest are dropped
   std::int64_t max_age_us = 1'000'000;            // unfinished messages are dropped after this time
@@ -39,8 +41,8 @@ struct ReassemblyLimits {
 enum class FragmentStatus : std::uint8_t {
   kWhole = 0,  // not a fragment: the datagram is the message
   kComplete,   // the last missing fragment: `message` is whole
-  kPending,    // stored
-  kDuplicate,
+  kPending,    // the fragment was stored; others are missing
+  kDuplicate,  // dropped: this fragment was received before
   kMalformed,  // sizes contradict the envelope or earlier fragments
   kOverLimit,  // the message alone exceeds max_total_bytes
 };
@@ -52,14 +54,17 @@ class Reassembler {
   Reassembler(const Reassembler&) = delete;
   Reassembler& operator=(const Reassembler&) = delete;
 
-  // Takes one datagram. `peer` is a number the caller assigns to the source address. On kWhole and
-  // kComplete, `message` is a whole message for OpenMessage(), valid until the next call.
+  // Takes one datagram. `peer`: a number that the caller assigns to the source address. `now_us`:
+  // microseconds on any clock that never runs backwards. On kWhole and kComplete, `message` is a
+  // complete message for OpenMessage(); kWhole: it is `datagram` itself, kComplete: it is valid
+  // until the next call. Otherwise `message` is unchanged.
   [[nodiscard]] FragmentStatus Push(std::uint64_t peer, std::span<const std::uint8_t> datagram,
                                     std::int64_t now_us, std::span<const std::uint8_t>& message);
 
   // Drops unfinished messages above max_age_us. Returns the number of messages dropped since the
   // last call, for their age or for lack of memory. Call it about once per second.
   std::size_t Expire(std::int64_t now_us);
+  // Drops the unfinished messages of a peer.
   void ForgetPeer(std::uint64_t peer);
 
   [[nodiscard]] std::size_t pending_messages() const { return pending_.size(); }

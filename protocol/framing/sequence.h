@@ -8,25 +8,27 @@ namespace furrow::protocol {
 
 enum class SequenceStatus : std::uint8_t {
   kNewest = 0,  // use the pose
-  kRestart,     // use the pose and reset the state: it is the first of all or of a new session
+  kRestart,     // use the pose and reset the state: it is the stream's or a session's first pose
   kLate,        // drop the pose: a newer one was used
   kDuplicate,   // drop the pose: it was received before
   kOldSession,  // drop the pose: its session was replaced
 };
 
-// Decides which poses of one stream are new. Sequences wrap, so they are compared by subtraction.
+// Decides which poses of one stream are new. Sequences wrap at 2^32: `a` is newer than `b` if
+// a - b, as a signed 32-bit number, is above 0.
 class SequenceWindow {
  public:
-  // How far back duplicates can be distinguished from late poses.
+  // A duplicate at least this far behind the newest pose is reported as kLate.
   static constexpr std::uint32_t kWindow = 1024;
 
-  // Classifies a pose and records it.
+  // Classifies a pose by the session and sequence of its envelope, and records it.
   [[nodiscard]] SequenceStatus Accept(std::uint64_t session, std::uint32_t sequence);
 
+  // False until the first Accept(). session() and newest() are then 0.
   [[nodiscard]] bool started() const { return started_; }
   [[nodiscard]] std::uint64_t session() const { return session_; }
   [[nodiscard]] std::uint32_t newest() const { return newest_; }
-  // Number of skipped sequences, minus those that arrived late.
+  // Number of sequences skipped in all sessions, minus those that arrived late.
   [[nodiscard]] std::uint64_t lost() const { return lost_; }
 
  private:

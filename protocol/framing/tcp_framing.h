@@ -9,9 +9,11 @@
 
 namespace furrow::protocol {
 
-// On TCP the length in bytes, u32 little-endian, precedes every message.
+// On TCP, a frame is a message after its length in bytes (u32, little-endian). The length does not
+// count itself.
 inline constexpr std::size_t kFramePrefixBytes = 4;
 
+// The length prefix of a message of `message_bytes`, envelope included.
 [[nodiscard]] std::array<std::uint8_t, kFramePrefixBytes> FramePrefix(std::size_t message_bytes);
 
 enum class FrameStatus : std::uint8_t {
@@ -20,16 +22,17 @@ enum class FrameStatus : std::uint8_t {
   kBadLength,     // shorter than an envelope or above the limit: close the connection
 };
 
-// Splits a byte stream into frames. Memory grows with the bytes received, not with the claimed
-// length, and never exceeds `max_frame_bytes`.
+// Splits a byte stream into the messages of its frames. Memory grows with the bytes received, not
+// with the stated length. A message has at most `max_frame_bytes`.
 //
 //   while (!bytes.empty()) switch (reader.Push(bytes, frame)) { ... }
 class FrameReader {
  public:
   explicit FrameReader(std::size_t max_frame_bytes);
 
-  // Consumes `bytes` from the front until a frame is complete or no bytes are left. `frame` is
-  // 8-byte aligned and valid until the next call. After kBadLength all calls return kBadLength.
+  // Removes bytes from the front of `bytes` until a frame is complete or no bytes are left. On
+  // kFrame, `frame` is the message without its length: 8-byte aligned, valid until the next call.
+  // Otherwise `frame` is unchanged. After kBadLength all calls return kBadLength.
   [[nodiscard]] FrameStatus Push(std::span<const std::uint8_t>& bytes,
                                  std::span<const std::uint8_t>& frame);
 

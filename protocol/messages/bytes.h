@@ -7,7 +7,8 @@
 
 namespace furrow::protocol {
 
-// Integers in a stated byte order, at any address. Compilers turn each loop into a single move.
+// Read and write integers in little- or big-endian byte order. `bytes` has sizeof(T) bytes and may
+// have any alignment. Compilers turn each loop into a single move.
 template <class T>
 [[nodiscard]] T LoadLittle(const std::uint8_t* bytes) {
   std::make_unsigned_t<T> value = 0;

@@ -10,8 +10,9 @@
 
 namespace furrow::protocol {
 
-// 64-bit FNV-1a over bytes. Numbers are little-endian; a zero byte follows each string. The hash
-// tells skeletons and name lists apart. It does not protect against deliberate collisions.
+// Computes a 64-bit FNV-1a hash of the values added to it, in order. Numbers are hashed as
+// little-endian bytes, strings with a zero byte at the end. The hash tells skeletons and name lists
+// apart. It does not protect against deliberate collisions.
 class Hasher {
  public:
   void String(std::string_view text);
@@ -24,8 +25,9 @@ class Hasher {
   std::uint64_t value_ = 0xcbf29ce484222325ULL;
 };
 
-// Hashes everything that gives a pose its meaning: joints (name, parent, rest pose, tail), unit and
-// blend-shape names. The subject is not part of it. STANDARD.md section 6 states the byte order.
+// Hashes everything that gives a pose its meaning: joints (name, parent, rest pose, tail),
+// metres_per_unit and blend-shape names. The subject's name and offer.skeleton_hash are not part of
+// it. STANDARD.md section 6 states the order.
 [[nodiscard]] std::uint64_t SkeletonHash(const SkeletonOffer& offer);
 
 // Hashes the names in order. Returns 0 for an empty list.

@@ -10,6 +10,7 @@ namespace furrow::protocol {
 inline constexpr std::uint16_t kDefaultTcpPort = 7400;
 inline constexpr std::uint16_t kDefaultUdpPort = 7401;
 
+// Fits the smallest IPv6 link (1,280 bytes) with all headers, so that no router cuts a datagram.
 inline constexpr std::size_t kMaxDatagramBytes = 1200;
 inline constexpr std::size_t kMaxUdpMessageBytes = 128 * 1024;   // reassembled, envelope included
 inline constexpr std::size_t kMaxRequestBytes = 512 * 1024;      // TCP, client to server
@@ -28,13 +29,13 @@ inline constexpr int kMaxTextBytes = 1024;  // human-readable messages
 inline constexpr int kMaxImageSize = 4096;  // pixels per side
 inline constexpr int kMinImageSize = 16;
 inline constexpr float kMaxRateHz = 1000.0f;
-inline constexpr float kMaxMagnitude = 1e6f;  // of a coordinate, scale or coefficient
+inline constexpr float kMaxMagnitude = 1e6f;  // largest absolute coordinate, scale or coefficient
 
 // Minimum size of a Hello and maximum size of a Welcome. A reply is never larger than the request,
 // so the server cannot be used to amplify traffic.
 inline constexpr std::size_t kHelloBytes = 256;
 
-// Frames that wait on one connection for subscriptions with `every`.
+// Bytes of frames that may wait on one connection for subscriptions with `every`.
 inline constexpr std::size_t kMaxWaitingFrameBytes = 8 * 1024 * 1024;
 
 inline constexpr int kMaxVerifierDepth = 8;  // FlatBuffers nesting

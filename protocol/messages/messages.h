@@ -14,7 +14,7 @@
 // UTF-8. Spaces are right-handed, Y up, +Z forward.
 namespace furrow::protocol {
 
-struct Vec3 {
+struct Vec3 {  // metres unless stated otherwise
   float x = 0.0f, y = 0.0f, z = 0.0f;
   friend bool operator==(const Vec3&, const Vec3&) = default;
 };
@@ -51,6 +51,7 @@ struct Hello {
   bool bundles = false;  // UDP: accepts several messages per datagram (bundle.h)
 };
 
+// Server to client: the reply to Hello.
 struct Welcome {
   std::string server;       // program and version
   std::uint64_t token = 0;  // to be returned in Hello; 0 once the address is proven, and on TCP
@@ -61,6 +62,7 @@ struct Ping {
   std::int64_t time_us = 0;  // on the sender's clock
 };
 
+// The reply to Ping.
 struct Pong {
   std::int64_t time_us = 0;         // copied from Ping
   std::int64_t server_time_us = 0;  // on the replying side's clock
@@ -73,7 +75,8 @@ enum class GoodbyeReason : std::uint8_t {
   kTimedOut = 3,     // nothing was received for too long
 };
 
-// header.stream names what ends; stream 0 with kDraining means everything.
+// Announces the end of a stream or subscription: the one in header.stream. Stream 0 with kDraining
+// means all of the connection.
 struct Goodbye {
   GoodbyeReason reason = GoodbyeReason::kDone;
 };
@@ -94,7 +97,7 @@ enum class ErrorCode : std::uint16_t {
   kInternal = 13,
 };
 
-// header.sequence and header.stream: those of the request that failed.
+// Reports that a request failed. header.sequence and header.stream are those of the request.
 struct ErrorMessage {
   ErrorCode code = ErrorCode::kInternal;
   std::string message;  // one human-readable sentence: what went wrong and what to do
@@ -102,6 +105,7 @@ struct ErrorMessage {
 
 // --- Publishing ---------------------------------------------------------------------------------
 
+// A joint of a SkeletonOffer. Lengths are in the offer's unit (metres_per_unit).
 struct OfferedJoint {
   std::string name;          // unique in the skeleton, not empty
   std::int16_t parent = -1;  // index of an earlier joint; -1 for a root
@@ -109,17 +113,17 @@ struct OfferedJoint {
   Quat rest_rotation;
   Vec3 rest_scale{1.0f, 1.0f, 1.0f};
   bool has_tail = false;
-  Vec3 tail;  // local end of the joint if the source states one (End Site in BVH)
+  Vec3 tail;  // if has_tail: end of the joint in its local space (End Site in BVH)
   friend bool operator==(const OfferedJoint&, const OfferedJoint&) = default;
 };
 
 // Describes the skeleton of a stream, which gives its poses their meaning. A publisher sends it
 // before the first pose and repeats it until a SkeletonReply arrives.
 struct SkeletonOffer {
-  std::string subject;                         // name of the captured subject; not empty
-  std::uint64_t skeleton_hash = 0;             // SkeletonHash() of this offer (hash.h)
-  float metres_per_unit = 1.0f;                // of all translations
-  std::vector<OfferedJoint> joints;            // parents first; may be empty if there are shapes
+  std::string subject;               // name of the captured subject; not empty
+  std::uint64_t skeleton_hash = 0;   // SkeletonHash() of this offer (hash.h)
+  float metres_per_unit = 1.0f;      // unit of all translations and tails, also of poses
+  std::vector<OfferedJoint> joints;  // parents first; may be empty if there are blend shapes
   std::vector<std::string> blend_shape_names;  // unique
   friend bool operator==(const SkeletonOffer&, const SkeletonOffer&) = default;
 };
@@ -130,20 +134,22 @@ enum class SkeletonStatus : std::uint8_t {
   kNeeded = 2,    // the server does not know the hash of the poses: send the offer
 };
 
+// Server to publisher: what became of the skeleton with this hash.
 struct SkeletonReply {
   std::uint64_t skeleton_hash = 0;
   SkeletonStatus status = SkeletonStatus::kAccepted;
   std::string message;
 };
 
-// One pose. Lists of indices are strictly ascending and parallel to their values.
+// One pose. Each list of indices is strictly ascending; entry i belongs to entry i of the list of
+// values after it.
 //
 // Joints that are not listed are at rest and blend shapes that are not listed are 0. If `partial`,
 // both keep their value from the last accepted pose of the stream instead. Translations are
 // *offsets from the rest translation*, in the parent's space. Rotations and scales are complete
 // local values.
 struct PoseFrame {
-  std::uint64_t skeleton_hash = 0;
+  std::uint64_t skeleton_hash = 0;  // SkeletonHash() of the offer
   bool partial = false;
   std::uint16_t num_joints = 0;        // of the skeleton; 0 if it has only blend shapes
   std::uint16_t num_blend_shapes = 0;  // of the skeleton
@@ -169,8 +175,9 @@ enum class WeightSource : std::uint8_t {
   kDriverValues = 1,    // "<driver>.<value>", before modulation and filter
 };
 
-// A repeated request (same session and sequence) does not create a second subscription. The server
-// sends the SubscribeReply again. Clients repeat the request if the reply or its names were lost.
+// Requests the wrinkle weights or driver values of a subject. A repeated request (same session and
+// sequence) does not create a second subscription; the server sends the SubscribeReply again.
+// Clients repeat the request if the reply or its names were lost.
 struct SubscribeWeights {
   std::string subject;        // empty: the oldest live subject
   bool wait = false;          // true: wait for an absent subject instead of failing
@@ -178,13 +185,13 @@ struct SubscribeWeights {
   float max_rate_hz = 0.0f;   // 0: every pose
   WeightFormat format = WeightFormat::kF32;
   WeightSource source = WeightSource::kWrinkleWeights;
-  bool every = false;  // TCP: see SubscribePoses
+  bool every = false;  // TCP: send every frame; see SubscribePoses
 };
 
-// The server replies with SubscribeReply and the SkeletonOffer of the poses. It sends both again
-// before the first pose of another sender or another skeleton.
+// Requests the poses of a subject. The server replies with SubscribeReply and the SkeletonOffer of
+// the poses. It sends both again before the first pose of another sender or another skeleton.
 struct SubscribePoses {
-  std::string subject;  // as for weights
+  std::string subject;  // the first three as in SubscribeWeights
   bool wait = false;
   float max_rate_hz = 0.0f;
   // TCP: late frames queue instead of being replaced by newer ones. If more than 8 MiB queue on a
@@ -201,26 +208,28 @@ enum class ImageFormat : std::uint8_t {
 struct Camera {
   Vec3 eye{0.0f, 1.6f, 2.0f};
   Vec3 target{0.0f, 1.6f, 0.0f};
-  float vertical_fov_degrees = 30.0f;  // (1, 170)
+  float vertical_fov_degrees = 30.0f;  // above 1 and below 170
 };
 
+// Requests rendered pictures of a subject. TCP and WebSocket only.
 struct SubscribePictures {
-  std::string subject;  // as for weights
+  std::string subject;  // as in SubscribeWeights, like wait and max_rate_hz
   bool wait = false;
-  std::uint16_t width = 640;
+  std::uint16_t width = 640;  // pixels, [kMinImageSize, kMaxImageSize]; height too
   std::uint16_t height = 480;
   float max_rate_hz = 0.0f;
   ImageFormat format = ImageFormat::kJpeg;
   std::uint8_t quality = 80;   // JPEG, 1 to 100
-  std::string view = "final";  // final, normal, mask_dynamic, mask_texture, weights, wireframe
+  std::string view = "final";  // final, normal, mask_dynamic, ...: what the picture shows
   std::string camera_preset;   // empty: the server's default, unless has_camera
   bool has_camera = false;     // true: use `camera`; camera_preset must be empty
   Camera camera;
-  // Flow control: at most two pictures are unacknowledged at a time (STANDARD.md section 9).
+  // Flow control: the server sends a picture only while at most one earlier picture is without a
+  // FrameAck. False: as fast as the connection takes them.
   bool acknowledged = false;
   std::vector<std::string> settings;  // "name=value", override the server's settings
-  // As camera presets do: the explicit camera follows the subject, and its field of view spans the
-  // shorter side of the picture.
+  // The explicit camera moves with the subject, and its field of view applies to the shorter side
+  // of the picture, as with camera presets.
   bool camera_follows = false;
 };
 
@@ -230,16 +239,18 @@ struct UpdatePictures {
   SubscribePictures pictures;
 };
 
-// The client has shown this picture and all earlier ones. header.stream: the subscription.
+// Client to server: the client has shown this picture and all earlier ones. header.stream is the
+// subscription.
 struct FrameAck {
   std::uint32_t number = 0;  // ImageFrame::number, from 1
 };
 
-// header.stream: the subscription.
+// Ends the subscription in header.stream.
 struct Unsubscribe {};
 
-// header.stream: the id of the subscription; header.sequence: that of the request. The server sends
-// it again when the names change (another rig or skeleton), before the first frame that uses them.
+// Confirms a subscription. header.stream is the id of the subscription and header.sequence that of
+// the request. The server sends it again when the names change (another rig or skeleton), before
+// the first frame that uses them.
 struct SubscribeReply {
   std::string subject;             // the chosen subject; empty while waiting
   std::uint64_t names_hash = 0;    // NamesHash(names); 0 while unknown, and for pictures
@@ -253,38 +264,40 @@ struct ListSubjects {
   bool follow = false;  // true: send the list again whenever it changes
 };
 
-// header.sequence: that of the request.
+// The list of live subjects: the reply to ListSubjects. header.sequence is that of the request.
 struct Subjects {
   std::vector<std::string> names;  // in order of arrival; at most kMaxListedSubjects
   std::uint32_t total = 0;         // number of live subjects, including those not listed
 };
 
-// header.stream: a subscription with `every`. Sent at most once per second while the number grows.
+// Tells a subscription with `every` (header.stream) how many frames it has lost. Sent at most once
+// per second while the number grows.
 struct Dropped {
   std::uint64_t frames = 0;  // frames dropped since the subscription began
 };
 
-// header.stream: the subscription; header.sequence and capture_time_us: those of the pose.
+// The values of a weight subscription for one pose. header.stream is the subscription;
+// header.sequence and capture_time_us are those of the pose.
 struct WeightFrame {
   std::uint64_t names_hash = 0;  // the last SubscribeReply with this hash names the values
-  std::int64_t age_us = 0;       // time since the pose; > 0 while weights are held or decay
+  std::int64_t age_us = 0;       // 0 for a new pose; without new poses, time since the last one
   WeightFormat format = WeightFormat::kF32;
   std::vector<float> values;  // decoded to [0, 1] in both formats
 };
 
-// TCP and WebSocket only. The header is as for WeightFrame.
+// A picture of a subscription. TCP and WebSocket only. The header is as for WeightFrame.
 struct ImageFrame {
-  std::uint16_t width = 0;
+  std::uint16_t width = 0;  // pixels
   std::uint16_t height = 0;
   ImageFormat format = ImageFormat::kJpeg;
-  std::int64_t age_us = 0;
+  std::int64_t age_us = 0;          // as in WeightFrame
   std::vector<std::uint8_t> bytes;  // the encoded file
-  std::uint32_t number = 0;         // counts from 1 if acknowledged, otherwise 0
+  std::uint32_t number = 0;         // from 1, for subscriptions with acknowledged; otherwise 0
   std::uint8_t tier = 0;            // quality: 0 is best; below kNumPictureTiers
   bool still = false;               // the refined picture of a pose at rest
   std::uint32_t dropped = 0;        // poses not drawn so far because acknowledgements were missing
-  std::int64_t received_us = 0;     // arrival of the pose at the server, on the clock of Pong
-  std::uint32_t view_request = 0;   // sequence of the request that defined the view
+  std::int64_t received_us = 0;     // arrival of the pose, on the clock of Pong::server_time_us
+  std::uint32_t view_request = 0;   // sequence of the SubscribePictures or UpdatePictures it obeys
 };
 
 }  // namespace furrow::protocol

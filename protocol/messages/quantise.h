@@ -11,39 +11,44 @@ namespace furrow::protocol {
 // Which numbers of a pose the encoder quantises.
 struct PoseEncoding {
   bool quantise_rotations = false;     // 6 bytes per joint, error up to kMaxRotationError
-  bool quantise_translations = false;  // 6 bytes, error per axis up to largest offset / 65534
-  bool quantise_blend_shapes = false;  // 2 bytes, clamped to (-2, 2), error up to 1/32768
-  // Everything quantised.
+  bool quantise_translations = false;  // 6 bytes; error per axis up to (largest offset) / 65534
+  bool quantise_blend_shapes = false;  // 2 bytes; clamped to (-2, 2), error up to 1/32768
+  // The smallest encoding: everything quantised.
   [[nodiscard]] static PoseEncoding Small() { return {true, true, true}; }
 };
 
-// Rotations as the "smallest three" components in 48 bits (STANDARD.md section 5). The component of
-// largest magnitude is made positive by the sign of the quaternion and left out. The other three
-// lie in [-1/sqrt(2), 1/sqrt(2)] and take 15 bits each, 0 to 32766, so that 0 is exact.
+// The functions below store a rotation as its "smallest three" components in 48 bits (STANDARD.md
+// section 5). The component of largest magnitude is left out; q is negated first if it is negative.
+// The other three are in [-1/sqrt(2), 1/sqrt(2)] and take 15 bits each, as 0 to 32766, so that 0 is
+// exact.
 //
-// Error of a decoded rotation, in radians. With a quantisation step d, each stored component is off
-// by at most d/2 and the restored component by at most 3d. The quaternion is off by at most
-// sqrt(12) d and the angle, twice the distance of unit quaternions, by 4 sqrt(3) d = 1.495e-4.
+// kMaxRotationError bounds the error of a decoded rotation, in radians. A component is rounded to
+// steps of sqrt(2) / 32766, so each stored component is off by at most half a step, h = 2.158e-5.
+// The restored component is the largest, so it is off by at most 3 h, and the quaternion by at most
+// sqrt(3 + 9) h. The rotation's angle is off by twice that: 1.495e-4.
 inline constexpr float kMaxRotationError = 1.5e-4f;
 
 using PackedQuat = std::array<std::uint16_t, 3>;  // low word first
 
-// Precondition: unit length within 1e-2.
+// Packs a rotation and normalises it. Precondition: its length is within 1e-2 of 1.
 [[nodiscard]] PackedQuat PackQuat(const Quat& rotation);
-// Returns false and the identity if the bits are not a rotation: bit 47 set, a 15-bit value of
-// 32767, or a sum of squares above 1.
+// Unpacks a rotation of unit length. If the bits are not a rotation, returns false and sets
+// `rotation` to the identity: bit 47 is set, a 15-bit value is 32767, or the three components have
+// a sum of squares above 1.
 [[nodiscard]] bool UnpackQuat(const PackedQuat& packed, Quat& rotation);
 
-// Offsets in [-range, range] in 16 bits: value = range * i / 32767, clamped. Error: range / 65534.
+// Convert an offset in [-range, range] to and from a 16-bit integer i = round(32767 * value /
+// range). Other offsets are clamped. Error: at most range / 65534. A range of 0 gives 0.
 [[nodiscard]] std::int16_t PackOffset(float value, float range);
 [[nodiscard]] float UnpackOffset(std::int16_t packed, float range);
 
-// Blend shapes in (-2, 2) in 16 bits: value = i / 16384, clamped. 0 and 1 are exact. Error: at most
-// 1/32768.
+// Convert a coefficient in (-2, 2) to and from a 16-bit integer i = round(16384 * value). Other
+// coefficients are clamped. 0 and 1 are exact. Error: at most 1/32768.
 [[nodiscard]] std::int16_t PackBlendShape(float value);
 [[nodiscard]] float UnpackBlendShape(std::int16_t packed);
 
-// Weights in [0, 1] in 8 bits: value = i / 255, clamped. Error: at most 1/510.
+// Convert a weight in [0, 1] to and from an 8-bit integer i = round(255 * value). Other weights are
+// clamped. Error: at most 1/510.
 [[nodiscard]] std::uint8_t PackWeight(float value);
 [[nodiscard]] float UnpackWeight(std::uint8_t packed);
 

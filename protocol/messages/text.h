@@ -10,7 +10,8 @@ namespace furrow::protocol {
 // characters (below 0x20, and 0x7F).
 [[nodiscard]] bool IsPlainText(std::string_view text);
 
-// Returns the longest prefix of at most `max_bytes` that does not split a character of plain text.
+// Returns the longest prefix of at most `max_bytes` that does not split a UTF-8 character. The
+// result refers to `text`. Precondition: IsPlainText(text).
 [[nodiscard]] std::string_view PlainPrefix(std::string_view text, std::size_t max_bytes);
 
 }  // namespace furrow::protocol

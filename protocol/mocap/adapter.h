@@ -9,6 +9,7 @@
 
 namespace furrow::protocol::mocap {
 
+// Numbers of events since the adapter was made.
 struct AdapterCounters {
   std::uint64_t accepted = 0;    // frames passed to the sink
   std::uint64_t malformed = 0;   // datagrams or messages that violate the format
@@ -18,7 +19,7 @@ struct AdapterCounters {
   std::uint64_t ignored = 0;     // valid messages that are not used
 };
 
-// The adapter owns the frame, which is valid during the call.
+// Receives frames. The adapter owns the frame, which is valid during the call.
 using FrameSink = std::function<void(const NeutralFrame& frame)>;
 
 // Converts datagrams of a foreign mocap protocol to neutral frames. Uses no sockets, no clock and
@@ -27,13 +28,16 @@ class MocapAdapter {
  public:
   virtual ~MocapAdapter() = default;
 
-  // Takes one datagram of one sender. Calls `sink` once per frame that the datagram completes.
+  // Takes one datagram. Calls `sink` once per frame that the datagram completes. `now_us`: arrival
+  // in microseconds on any clock that never runs backwards; the same clock for Tick(). An adapter
+  // for a protocol that does not identify its senders takes the datagrams of one sender only.
   virtual void Push(std::span<const std::uint8_t> datagram, std::int64_t now_us,
                     const FrameSink& sink) = 0;
-  // Passes on a frame that has waited too long for its end. Call it about every 10 ms.
+  // Passes a frame to `sink` if it has waited too long for its end. Call it about every 10 ms.
   virtual void Tick(std::int64_t now_us, const FrameSink& sink) = 0;
-  // Discards the state of the current sender because another sender follows. The numbers of frames
-  // and layouts continue. Does nothing if the protocol identifies its senders.
+  // Discards the state of the current sender because another sender follows.
+  // NeutralFrame::sequence and ::layout continue to count. Does nothing if the protocol identifies
+  // its senders.
   virtual void Forget() {}
 
   [[nodiscard]] const AdapterCounters& counters() const { return counters_; }

@@ -10,16 +10,16 @@ namespace furrow::protocol::mocap {
 
 inline constexpr int kNumHumanoidJoints = 55;
 
-// The humanoid skeleton of Unity and VRM, with the proportions of an average adult.
+// A joint of the humanoid skeleton of Unity and VRM, with the proportions of an average adult.
 struct HumanoidJoint {
   std::string_view name;  // from Unity's HumanBodyBones
   int parent = -1;        // index of an earlier joint; -1 for Hips
   Vec3 rest_translation;  // local, metres: an adult of about 1.7 m in T-pose, left = +X
 };
 
-// Parents first.
+// The kNumHumanoidJoints joints, parents first. Valid for the life of the process.
 [[nodiscard]] std::span<const HumanoidJoint> HumanoidJoints();
-// Returns the index of the joint, or -1 if there is none with this name.
+// Returns the index of the joint with exactly this name in HumanoidJoints(), or -1.
 [[nodiscard]] int FindHumanoidJoint(std::string_view name);
 
 }  // namespace furrow::protocol::mocap

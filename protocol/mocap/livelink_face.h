@@ -15,7 +15,8 @@ inline constexpr int kNumLiveLinkFaceShapes = 61;
 // The 61 names in wire order, in Unreal's spelling ("EyeBlinkLeft" to "RightEyeRoll").
 [[nodiscard]] std::span<const std::string_view> LiveLinkFaceShapeNames();
 
-// Epic's Live Link Face (ARKit mode, packet version 6), several phones on one port.
+// Makes an adapter for Epic's Live Link Face app (ARKit mode, packet version 6). It takes the
+// datagrams of several phones on one port.
 //
 // - A frame has no joints and 61 blend shapes. 52 are in [0, 1]; the nine of head and eyes are
 //   small signed numbers. All are passed on unchanged.

@@ -9,6 +9,7 @@
 
 namespace furrow::protocol::mocap {
 
+// A joint of a NeutralFrame, with its pose in that frame.
 struct NeutralJoint {
   std::string name;       // in the sender's spelling
   int parent = -1;        // index of an earlier joint of the same frame; -1 for a root
@@ -40,8 +41,8 @@ struct NeutralFrame {
 // foreign protocols send none.
 [[nodiscard]] SkeletonOffer MakeOffer(const NeutralFrame& frame);
 
-// Makes the pose of a frame for an offer that MakeOffer() made from a frame of the same layout.
-// Reuses the memory of `pose`.
+// Converts a frame to a complete wire pose for `offer`, which MakeOffer() made from a frame of the
+// same subject and layout. Replaces the content of `pose` and reuses its memory.
 void MakePose(const NeutralFrame& frame, const SkeletonOffer& offer, PoseFrame& pose);
 
 }  // namespace furrow::protocol::mocap

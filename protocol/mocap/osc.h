@@ -14,15 +14,16 @@ namespace furrow::protocol::mocap {
 inline constexpr int kMaxOscDepth = 4;        // bundles in bundles
 inline constexpr int kMaxOscMessages = 4096;  // in one packet
 
-// One message of a checked packet. Points into the packet.
+// One message of a checked packet. Its members point into the packet, which must outlive them.
 struct OscMessage {
   std::string_view address;
   std::string_view tags;                    // type tags without the comma
   std::span<const std::uint8_t> arguments;  // their sizes agree with `tags`
 };
 
-// Reads arguments in order. A call returns false and consumes nothing if the next argument has
-// another type.
+// Reads the arguments of a message in order. If the next argument has another type than the called
+// function (or there is none), the function returns false, skips nothing and leaves `value`
+// unchanged.
 class OscArguments {
  public:
   explicit OscArguments(const OscMessage& message);
@@ -40,8 +41,8 @@ class OscArguments {
 enum class OscStatus : std::uint8_t {
   kOk = 0,
   kMalformed,  // sizes, padding or type tags violate OSC
-  kTooDeep,
-  kTooMany,
+  kTooDeep,    // more than kMaxOscDepth bundles in one another
+  kTooMany,    // more than kMaxOscMessages messages
 };
 
 using OscVisitor = std::function<void(const OscMessage& message)>;
@@ -51,7 +52,8 @@ using OscVisitor = std::function<void(const OscMessage& message)>;
 // malformed packet is visited.
 [[nodiscard]] OscStatus VisitOsc(std::span<const std::uint8_t> packet, const OscVisitor& visit);
 
-// Appends OSC to a byte vector.
+// Writes one OSC packet into a byte vector. Call one argument function per type tag, in order;
+// nothing is checked.
 //
 //   OscWriter writer(bytes);
 //   writer.BeginBundle();                       // optional, then any number of messages
@@ -75,7 +77,7 @@ class OscWriter {
   std::size_t size_at_ = 0;
 };
 
-// Size of an OSC string with its terminator and padding.
+// The size in bytes of an OSC string of `length` characters, with its terminator and padding.
 [[nodiscard]] constexpr std::size_t OscStringBytes(std::size_t length) {
   return (length / 4 + 1) * 4;
 }

@@ -10,13 +10,15 @@
 
 namespace furrow::protocol::mocap {
 
+// The form of the messages: address, type tags, arguments.
 enum class OscProfile : std::uint8_t {
   kFurrow = 0,  // /furrow/<subject>/<weight> ,f value ... /furrow/<subject>/frame ,ih sequence time
   kVmc,         // /VMC/Ext/Blend/Val ,sf name value ... /VMC/Ext/Blend/Apply ,
 };
 
-// Writes the weights of one subject as OSC bundles of at most 1,200 bytes. The last message of the
-// last bundle marks the end of the frame. Does not allocate after SetNames() and a first frame.
+// Writes the weights of one subject as OSC bundles of at most kMaxDatagramBytes, one per datagram.
+// The last message of the last bundle ("frame", "Apply") marks the end of the frame. Does not
+// allocate after SetNames() and a first frame.
 class OscWeightWriter {
  public:
   using Emit = std::function<void(std::span<const std::uint8_t> datagram)>;
@@ -25,11 +27,14 @@ class OscWeightWriter {
   explicit OscWeightWriter(OscProfile profile = OscProfile::kFurrow,
                            std::string prefix = "/furrow");
 
-  // Replaces the characters that OSC addresses forbid (space # * , / ? [ ] { } and control
-  // characters) by '_'. Keeps non-ASCII UTF-8, so subjects in other scripts stay distinct.
+  // Sets the subject and the names of the values that Write() receives. For kFurrow, replaces the
+  // characters that OSC addresses forbid (space # * , / ? [ ] { } and control characters) by '_'.
+  // Keeps non-ASCII UTF-8, so subjects in other scripts stay distinct.
   void SetNames(const std::string& subject, std::span<const std::string> names);
 
-  // Writes min(values, names) messages and the end mark. Calls `emit` once per datagram.
+  // Writes one message per value and the end mark. Surplus values or names are left out. Calls
+  // `emit` once per datagram, which is valid during the call. kVmc ignores the first two arguments,
+  // the pose's sequence and capture time.
   void Write(std::uint32_t sequence, std::int64_t capture_time_us, std::span<const float> values,
              const Emit& emit);
 

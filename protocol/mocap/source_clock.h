@@ -6,17 +6,18 @@
 
 namespace furrow::protocol::mocap {
 
-// Converts a sender's clock, which may restart or pass midnight, to a clock that never runs
-// backwards.
+// Converts times of a sender's clock, which may restart or pass midnight, to a time that never runs
+// backwards. All times are in microseconds; `now_us` is the receiver's clock.
 class SourceClock {
  public:
   enum class Order : std::uint8_t { kNewer, kNotNewer };
 
   // Takes the sender's time `source_us` of a frame that arrived at `now_us`.
-  // - At most `tolerance_us` behind the newest time, or equal: returns kNotNewer, a late frame.
-  // - Further behind, or ahead by more than `tolerance_us` plus the time that passed for the
-  //   receiver: the sender's clock was reset. The output advances by the receiver's time.
-  // - Otherwise the output advances by the sender's time.
+  // - Equal to the newest time or at most `tolerance_us` behind it: returns kNotNewer, a late
+  // frame.
+  // - Further behind, or ahead by more than `tolerance_us` plus the time that passed on the
+  //   receiver's clock: the sender's clock was reset. time_us() advances by the receiver's clock.
+  // - Otherwise time_us() advances by the sender's clock.
   [[nodiscard]] Order Advance(std::int64_t source_us, std::int64_t now_us,
                               std::int64_t tolerance_us) {
     const bool follows = started_ && has_source_;
@@ -36,7 +37,7 @@ class SourceClock {
     return Order::kNewer;
   }
 
-  // Takes a frame without a sender's time. The output advances by the receiver's time.
+  // Takes a frame without a sender's time. time_us() advances by the receiver's clock.
   void AdvanceByArrival(std::int64_t now_us) {
     time_us_ = started_ ? time_us_ + std::max<std::int64_t>(now_us - arrived_us_, 0) : now_us;
     started_ = true;
@@ -44,6 +45,7 @@ class SourceClock {
     arrived_us_ = now_us;
   }
 
+  // The time of the newest frame. Begins at the first frame's `source_us`, or at `now_us` without.
   [[nodiscard]] std::int64_t time_us() const { return time_us_; }
 
  private:

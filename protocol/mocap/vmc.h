@@ -12,14 +12,14 @@ inline constexpr std::uint16_t kVmcPort = 39539;
 
 struct VmcOptions {
   std::string subject = "vmc";       // the protocol does not name the subject
-  std::int64_t timeout_us = 50'000;  // passes on a frame without an end mark after this time
+  std::int64_t timeout_us = 50'000;  // a frame without an end mark ends this long after it began
 };
 
-// Virtual Motion Capture Protocol 3.1 in the role of a Marionette: converts OSC messages, bare or
-// in bundles, to frames.
+// Makes an adapter for the Virtual Motion Capture Protocol 3.1 in the role of a Marionette (the
+// receiver of a pose). It converts OSC messages, bare or in bundles, to frames of one sender.
 //
 // - A frame ends with /VMC/Ext/T if the sender sent one within the last second, otherwise with
-//   Blend/Apply, otherwise when a joint repeats, otherwise after `timeout_us`.
+//   /VMC/Ext/Blend/Apply, otherwise when a joint repeats, otherwise after `timeout_us`.
 // - The 55 humanoid joints have the hierarchy of Unity's HumanBodyBones. If the sender never sent
 //   the parent of a joint, the nearest ancestor that it did send becomes the parent. Joints with
 //   other names become children of Hips. The joint "Root" carries /VMC/Ext/Root/Pos. Locomotion may

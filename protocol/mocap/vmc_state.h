@@ -19,15 +19,19 @@ class VmcState {
   // Returns the slot of a joint by its name on the wire, or -1 if the name is unusable or there are
   // too many joints.
   [[nodiscard]] int FindOrAddJoint(std::string_view name);
+  // Returns the slot of the joint "Root", and adds it if necessary; -1 if there are too many
+  // joints.
   [[nodiscard]] int AddRoot();
-  // True if the joint was set since EndFrame().
+  // True if the joint in slot `joint` was set since the last EndFrame().
   [[nodiscard]] bool HasInFrame(int joint) const;
-  // Chooses the sign of the quaternion that is nearer to the previous rotation.
+  // Sets the pose of the joint in a slot (-1: does nothing), in Furrow's axes. Of `rotation` and
+  // its negative, stores the one nearer to the previous rotation, so that rotations interpolate.
   void SetJoint(int joint, const Vec3& translation, const Quat& rotation);
   // Returns false if the name is unusable or there are too many blend shapes.
   [[nodiscard]] bool SetBlendShape(std::string_view name, float value);
+  // Begins the next frame: HasInFrame() is then false for all joints. Values stay.
   void EndFrame();
-  // Discards all joints and blend shapes. The numbers of frames and layouts continue.
+  // Discards all joints and blend shapes. NeutralFrame::sequence and ::layout continue to count.
   void Clear();
 
   // Returns the current frame with the next sequence number. Valid until the next call.

@@ -7,7 +7,8 @@
 #include "protocol/messages/messages.h"
 #include "protocol/vectors/json.h"
 
-// Converts messages to the fields of the JSON file beside each example.
+// Converts messages to pairs (field name, value as JSON text), for the JSON file beside each
+// example message of protocol/vectors/.
 namespace furrow::protocol::vectors {
 
 inline Fields FieldsOf(const Hello& m) {

@@ -26,7 +26,7 @@ inline std::string Json(float value) {
   return text;
 }
 
-// As a string: many JSON readers keep only 53 bits of a number.
+// A string such as "0x00000000000000ff", because many JSON readers keep only 53 bits of a number.
 inline std::string JsonHex(std::uint64_t value) {
   char text[32];
   std::snprintf(text, sizeof text, "\"0x%016" PRIx64 "\"", value);
