@@ -31,8 +31,8 @@ class Pipeline {
     int height = 0;
   };
   // Adds the passes for one view. Requires SceneDraw::Update() with the same request. Returns an
-  // 8-bit picture of `view`, rows from the top. All views of one graph share the shadow maps: pass
-  // the same `*shadows`, initially none, to every call.
+  // 8-bit picture of `view`, `size` pixels, rows from the top. All views of one graph share the
+  // shadow maps: set `*shadows` to an empty handle before the first call and pass it to every call.
   [[nodiscard]] FrameGraph::Handle Add(FrameGraph* graph, const FrameRequest& request, View view,
                                        const Size& size, FrameGraph::Handle* shadows);
 

@@ -42,16 +42,18 @@ class Renderer {
   // kMaxSubjects, or more than the vertex buffers hold), kUnavailable (two pictures are in flight,
   // or the context is lost; create a new renderer), kInternal (a shader).
   [[nodiscard]] virtual Status Submit(const FrameRequest& request) = 0;
-  // Returns the oldest picture if it is ready. `wait`: blocks until it is. An image of width 0
-  // means that no picture is ready.
+  // Returns the oldest picture in flight if it is ready; otherwise an image of width 0. `wait`:
+  // blocks until it is ready. Error: kUnavailable (the context is lost; create a new renderer).
   [[nodiscard]] virtual Result<Image> Poll(bool wait) = 0;
+  // The number of pictures that were submitted and not yet returned, in [0, 2].
   [[nodiscard]] virtual int in_flight() const = 0;
-  // Submits and waits. Discards the pictures that are still in flight.
+  // Submits a request and waits for its picture. Discards the pictures that are still in flight.
+  // Errors: those of Submit() and Poll().
   [[nodiscard]] Result<Image> Render(const FrameRequest& request);
 
-  // Calls `observer` for every pass of later frames, with the renderer's context current
-  // (render/gl/pass_timer.h measures times this way). The observer must outlive the renderer or be
-  // removed with null.
+  // Calls `observer` before and after every pass of later frames, with the renderer's context
+  // current (PassTimer measures times this way). The caller owns the observer, which must live
+  // until it is removed with null or the renderer ends.
   virtual void SetObserver(FrameGraphObserver* observer) = 0;
 
   // Vendor, renderer and version of the OpenGL context, for the log.

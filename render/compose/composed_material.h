@@ -13,19 +13,20 @@
 
 namespace furrow::render {
 
-// A material's normal map with wrinkles painted into it, and also its base colour if wrinkle maps
-// have looks. Half floats; `size` is the size of the finest level.
+// Textures of one material with the wrinkles painted into them: the normal map (as slopes) and, if
+// wrinkle maps change colours, the base colour. Both have half floats and mip levels.
 //
 // The CPU paints the tiles where weights have changed. It paints into two copies in turn, so that
 // it never waits for a frame that is still being drawn.
 class ComposedMaterial {
  public:
-  // `gpu` and everything that `selection` points to must outlive this object.
+  // `gpu` and everything that `selection` points to must outlive this object. `size`: texels of the
+  // finest level. This and the functions that paint need a current context.
   ComposedMaterial(const GpuCharacter& gpu, ComposeSelection selection, glm::ivec2 size);
 
   struct Textures {
-    GLuint derivatives = 0;
-    GLuint colour = 0;  // base colour in rgb, cavity in alpha; 0: use the material's own
+    GLuint derivatives = 0;  // layout: ComposeJob::slopes
+    GLuint colour = 0;       // base colour in rgb, cavity in alpha; 0: use the material's texture
   };
   [[nodiscard]] const Textures& textures() const { return copies_[front_].textures; }
   [[nodiscard]] glm::ivec2 size() const { return size_; }
@@ -35,9 +36,11 @@ class ComposedMaterial {
   // What a picture needs from the textures.
   struct Needs {
     ComposeStrengths strengths;
-    // Per channel of the selection. Invisible channels may be outdated.
+    // Per channel of the selection: the picture shows its region. Other channels may be outdated.
     std::vector<bool> is_seen;
-    std::vector<int> first_levels;  // per visible channel: finest level that is sampled
+    // Per channel of the selection: the finest level that the picture samples, 0 for the finest of
+    // all. Meaningless for channels that are not seen.
+    std::vector<int> first_levels;
   };
   // Returns true if textures() already meet the needs.
   [[nodiscard]] bool IsPainted(const Needs& needs) const;
@@ -47,8 +50,8 @@ class ComposedMaterial {
   // takes milliseconds.
   void Paint(const Needs& needs);
 
-  // Returns true if the visible channels look the same with `from` and `to`. Invisibly small
-  // changes of weights do not count.
+  // Returns true if the channels that `to` shows look the same with the strengths `from` and with
+  // those of `to`. Invisibly small changes of weights do not count.
   [[nodiscard]] bool IsSame(const ComposeStrengths& from, const Needs& to) const;
 
  private:

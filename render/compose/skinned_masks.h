@@ -18,9 +18,10 @@ namespace furrow::render {
 
 // One material's masks by skin weight, rasterized into the space of its textures.
 //
-// - How much a vertex takes of a joint's influence (lambda of its skin weight) is the same in every
-//   pose. Each (joint, map) pair is therefore a channel, like a channel of a mask texture.
-//   Fragments interpolate the sum of channels times influences.
+// - The share of a joint's influence that a vertex takes (lambda of its skin weight) does not
+// depend
+//   on the pose. Each (joint, map) pair is therefore a channel, like a channel of a mask texture.
+//   The wrinkle weight at a point is the sum of its channels, each times the joint's influence.
 // - A texel beyond the edge of the surface gets the value of its nearest point, as far as filtering
 //   reaches.
 // - A texture cannot distinguish points that share a texel, for example those of two sleeves with
@@ -29,21 +30,21 @@ namespace furrow::render {
 //   picture.
 class SkinnedMasks {
  public:
-  // `meshes`: all meshes of the material; only used during construction. `shares`: what joints can
-  // raise on them.
+  // `meshes`: all meshes of the material `material`. `shares`: the (joint, map) pairs that can be
+  // above 0 in some pose. The arguments are only used during construction.
   SkinnedMasks(std::span<const character::Mesh> meshes, std::span<const SkinnedShare> shares,
                std::span<const glm::mat4> inverse_bind_matrices, int material);
 
   // The members of `shares` that affect at least one vertex. Requires is_unique().
   [[nodiscard]] std::span<const SkinnedShare> channels() const { return channels_; }
-  // One per channel.
+  // The part of the surface where each channel is above 0; one per channel.
   [[nodiscard]] std::span<const MaskRegion> regions() const { return regions_; }
   // False if two points of the surface share a texel and have different masks. channels() and
   // regions() are then empty.
   [[nodiscard]] bool is_unique() const { return is_unique_; }
 
-  // Adds the masks to the tiles of a level, which are in row order. The first channel gets the
-  // number `first_channel`. Requires is_unique().
+  // Adds the masks to ComposeTile::skinned of all tiles of a level of `size` texels. The first of
+  // channels() gets the channel number `first_channel`. Requires is_unique().
   void AddTo(glm::ivec2 size, std::size_t first_channel, std::vector<ComposeTile>* tiles) const;
 
  private:

@@ -36,28 +36,30 @@ class WrinkleCache {
   WrinkleCache(const GpuCharacter* gpu, const WrinkleTables* tables,
                std::span<const glm::mat4> inverse_bind_matrices, bool is_software);
 
-  // The view of the frame's only subject.
+  // How the camera sees the frame's only subject.
   struct View {
-    const PosedSubject* subject = nullptr;
-    glm::mat4 projection{1.0f};  // model space to clip space
-    float pixels = 0.0f;         // pixels per metre where clip space's w is 1
-    float picture = 0.0f;        // pixels of the whole picture
+    const PosedSubject* subject = nullptr;  // required, like `list`
+    glm::mat4 projection{1.0f};             // model space to clip space
+    float pixels = 0.0f;                    // pixels per metre where clip space's w is 1
+    float picture = 0.0f;                   // number of pixels of the picture: width * height
     const DrawList* list = nullptr;
   };
-  // Chooses what this frame composes.
+  // Chooses what this frame composes. `view` is only used during the call.
   void Plan(const Settings& settings, const View& view);
   // Composes nothing in this frame.
   void Disable();
 
-  // The textures that replace a material's own in this frame, and the part of the wrinkles that is
-  // left to fragments. No textures: nothing is composed.
+  // The textures that replace a material's textures in this frame, and the part of the wrinkles
+  // that the fragment shader must still evaluate. textures.derivatives is 0 if nothing is composed.
   struct Composed {
     ComposedMaterial::Textures textures;
     WrinklePart rest = WrinklePart::kAll;
   };
+  // `material`: index into Character::materials.
   [[nodiscard]] Composed Find(int material) const;
-  // Returns true if textures that Find() returns must be painted first.
+  // Returns true if Compose() must run before the textures that Find() returns are drawn.
   [[nodiscard]] bool is_stale() const;
+  // Paints what Plan() chose. Needs a current context.
   void Compose();
 
  private:

@@ -17,8 +17,9 @@ class GlDevice final : public FrameGraphDevice {
   [[nodiscard]] TextureId CreateTexture(const TextureDesc& desc) override;
   void DestroyTexture(TextureId texture) override;
 
-  // Returns a framebuffer that draws into `colours`, in order, with the depth texture `depth` (0:
-  // none). Framebuffers are cached until one of their textures is destroyed.
+  // Returns the name of a framebuffer that draws into the textures `colours`, in order, with the
+  // depth texture `depth` (0: none). The device owns and caches it until one of the textures is
+  // destroyed. This class needs a current context.
   [[nodiscard]] GLuint Framebuffer(std::span<const TextureId> colours, TextureId depth);
   [[nodiscard]] GLuint Framebuffer(TextureId colour, TextureId depth) {
     return Framebuffer(std::span(&colour, 1), depth);

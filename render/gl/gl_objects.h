@@ -65,16 +65,18 @@ using Shader = Object<ShaderKind>;
 using Program = Object<ProgramKind>;
 using Sampler = Object<SamplerKind>;
 
+// Create empty objects. These functions and Upload() need a current context.
 [[nodiscard]] Buffer MakeBuffer();
-// A buffer with immutable contents.
+// Creates a buffer with a copy of `bytes` bytes at `data`, which cannot be changed later.
 [[nodiscard]] Buffer MakeStaticBuffer(const void* data, std::size_t bytes);
 [[nodiscard]] Texture MakeTexture(GLenum target);
 [[nodiscard]] Framebuffer MakeFramebuffer();
 [[nodiscard]] VertexArray MakeVertexArray();
 [[nodiscard]] Sampler MakeSampler();
 
-// Replaces storage and contents. A frame in flight keeps the old storage, so the call does not wait
-// for it. An empty range becomes 16 zero bytes, because a uniform block must have storage.
+// Replaces a buffer's storage by a copy of `bytes` bytes at `data`. A frame in flight keeps the old
+// storage, so the call does not wait for it. 0 bytes become 16 zero bytes, because a uniform block
+// must have storage.
 void Upload(const Buffer& buffer, const void* data, std::size_t bytes);
 
 }  // namespace furrow::render::gl

@@ -11,11 +11,12 @@
 
 namespace furrow::render {
 
-// Copies pictures from the GPU to memory through a ring of pixel buffers, each with a fence.
-// Drawing the next frame does not wait for the pixels of the last one. First in, first out.
+// Copies pictures from the GPU to memory through a ring of pixel buffers, each with a fence, so
+// that drawing the next frame does not wait for the pixels of the last one. Needs a current
+// context.
 class ReadBack {
  public:
-  static constexpr int kCapacity = 2;
+  static constexpr int kCapacity = 2;  // one picture is read while the next one is drawn
 
   ReadBack() = default;
   ~ReadBack();
@@ -24,12 +25,14 @@ class ReadBack {
 
   [[nodiscard]] int in_flight() const { return count_; }
 
-  // Starts to copy the 8-bit RGBA colour of `framebuffer`. Precondition: in_flight() < kCapacity.
+  // Starts to copy the 8-bit RGBA colour of `framebuffer`, `width` x `height` pixels. `token` is
+  // returned in Image::token. Precondition: in_flight() < kCapacity.
   void Start(GLuint framebuffer, int width, int height, std::uint64_t token);
 
-  // Returns the oldest picture if its copy is complete. `wait`: blocks until it is. Rows keep the
-  // order in which OpenGL stores them, from y = 0 upwards; post/composite.frag.glsl has flipped the
-  // picture. kUnavailable: the driver gave up waiting because the context was lost.
+  // Returns the oldest picture in flight, without alpha, and ends its flight. nullopt if there is
+  // none, or if its copy is not complete; `wait` blocks until it is. Row 0 of the framebuffer,
+  // where composite.frag.glsl puts the top of the picture, comes first. Error: kUnavailable (the
+  // context was lost); the picture is then discarded.
   [[nodiscard]] Result<std::optional<Image>> Take(bool wait);
 
  private:

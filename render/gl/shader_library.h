@@ -19,8 +19,8 @@ namespace furrow::render {
 struct PoseShader {
   int num_joints = 0;      // of the character's skeleton
   bool dynamic = false;    // write the dynamic masks of each vertex
-  bool displaced = false;  // write the vertex's share of the heights
-  int map_slots = 1;       // as in SceneShader
+  bool displaced = false;  // write the share of the heights by which each vertex is moved
+  int map_slots = 1;       // MapSlots() of the rig's wrinkle maps
 
   friend auto operator<=>(const PoseShader&, const PoseShader&) = default;
 };
@@ -41,8 +41,7 @@ struct SceneShader {
   int active_maps = 0;  // active wrinkle maps on this surface
   int mask_layers = 1;
   std::uint32_t mask_bits = ~0u;  // mask layers with regions of this surface
-  int map_slots = 1;              // vec4s of dynamic masks per vertex: a quarter of the rig's maps,
-                                  // rounded up
+  int map_slots = 1;              // MapSlots(): vec4s of dynamic masks per vertex
   // The following are used by the skin pipeline only.
   character::Material::Kind material = character::Material::Kind::kSkin;
   ShadowFilter shadow_filter = ShadowFilter::kOff;
@@ -67,7 +66,7 @@ struct SceneShader {
   friend auto operator<=>(const SceneShader&, const SceneShader&) = default;
 };
 
-// "NAME VALUE" lines for ExpandShader().
+// The switches as "NAME VALUE" lines for ExpandShader().
 [[nodiscard]] std::vector<std::string> Defines(const SceneShader& shader);
 [[nodiscard]] std::vector<std::string> Defines(const PoseShader& shader);
 
@@ -76,17 +75,18 @@ inline constexpr int kBeckmannTableSize = 512;
 inline constexpr int kAlbedoTableSize = 32;
 inline constexpr int kPreintegratedTableSize = 48;
 
-// Compiles programs on first use and keeps them. Needs a current context.
-//
-// Errors: those of BuildProgram().
+// Compiles programs on first use and keeps them. The library owns the programs; their names are
+// valid as long as it is. Needs a current context. Errors of all Get...(): those of BuildProgram().
 class ShaderLibrary {
  public:
   [[nodiscard]] Result<GLuint> Get(const SceneShader& shader);
   // Vertex stage only, for transform feedback.
   [[nodiscard]] Result<GLuint> Get(const PoseShader& shader);
-  // shadow/shadow.{vert,frag}.glsl.
+  // The program that draws depth into shadow maps (shadow/shadow.{vert,frag}.glsl). `alpha_test`:
+  // leave out texels below the material's alpha cutoff.
   [[nodiscard]] Result<GLuint> GetShadow(bool alpha_test);
-  // A fragment shader that covers the whole picture: "skin/combine.frag.glsl", for example.
+  // The program of a pass that covers the whole picture. `fragment`: path below shaders/, such as
+  // "skin/combine.frag.glsl". `defines`: "NAME VALUE".
   [[nodiscard]] Result<GLuint> GetFullscreen(std::string_view fragment,
                                              const std::vector<std::string>& defines);
   [[nodiscard]] int num_programs() const {

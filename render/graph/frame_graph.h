@@ -28,7 +28,7 @@ struct TextureDesc {
 
 using TextureId = std::uint32_t;  // the device's name for a texture; 0: none
 
-// Creates and destroys textures.
+// Creates and destroys textures for a frame graph. The caller of CreateTexture() owns the texture.
 class FrameGraphDevice {
  public:
   virtual ~FrameGraphDevice() = default;
@@ -49,18 +49,22 @@ class FrameGraphObserver {
   virtual void AfterPass(std::string_view pass, const std::vector<Written>& written) = 0;
 };
 
-// Keeps released textures for reuse by later passes and frames that need the same TextureDesc.
+// Lends textures to passes, and keeps those that are given back for later passes and frames that
+// need the same TextureDesc.
 class TransientPool {
  public:
   static constexpr int kKeepFrames = 8;  // a texture unused for this many frames is destroyed
 
+  // `device` must outlive the pool.
   explicit TransientPool(FrameGraphDevice* device) : device_(device) {}
   ~TransientPool();
   TransientPool(const TransientPool&) = delete;
   TransientPool& operator=(const TransientPool&) = delete;
 
+  // Returns a texture that nobody else uses until Release(). Its contents are undefined.
   [[nodiscard]] TextureId Acquire(const TextureDesc& desc);
   void Release(TextureId texture);
+  // Call once per frame: destroys the textures that were unused for kKeepFrames frames.
   void EndFrame();
   [[nodiscard]] int num_textures() const { return static_cast<int>(entries_.size()); }
 
@@ -84,8 +88,9 @@ class TransientPool {
 //   lifetimes may share memory, so the contents are undefined before the first write.
 class FrameGraph {
  public:
+  // One version of a texture of this graph.
   struct Handle {
-    int version = -1;  // index of the version in the graph; -1: none
+    int version = -1;  // index in the graph; -1: an empty handle, which names no texture
   };
 
   // Gives a drawing pass access to the textures that it declared.
@@ -103,8 +108,10 @@ class FrameGraph {
   // Declares what a pass creates, reads and writes.
   class Builder {
    public:
+    // Declares a new transient texture. Its contents are undefined until Write().
     [[nodiscard]] Handle Create(std::string_view name, const TextureDesc& desc);
     void Read(Handle handle);
+    // Returns the version that the pass writes. `handle` is outdated from then on.
     [[nodiscard]] Handle Write(Handle handle);
     void SideEffect();  // never cull the pass: its result leaves the graph (read-back)
 
@@ -115,7 +122,8 @@ class FrameGraph {
     int pass_;
   };
 
-  // Adds a texture that outlives the frame. Passes may read its contents or write over them.
+  // Adds a texture of the caller that outlives the frame. Passes may read its contents or overwrite
+  // them.
   [[nodiscard]] Handle Import(std::string_view name, const TextureDesc& desc, TextureId texture);
 
   // Adds a pass. `setup(Builder&, Data&)` runs immediately and declares; `execute(const Resources&,
@@ -133,9 +141,11 @@ class FrameGraph {
     return *data;
   }
 
-  // kInternal: a pass reads a texture that no pass wrote, or a version that was overwritten.
+  // Checks the declarations, culls passes and computes lifetimes. Error: kInternal (a pass reads a
+  // texture that no pass wrote, or a version that was overwritten).
   [[nodiscard]] Status Compile();
-  // Runs the passes that were not culled, in order. Stops at the first failure. Requires Compile().
+  // Runs the passes that were not culled, in order. Stops at the first failure and returns it.
+  // Requires Compile(). `observer` may be null.
   [[nodiscard]] Status Execute(TransientPool* pool, FrameGraphObserver* observer = nullptr);
 
   [[nodiscard]] bool IsCulled(std::string_view pass) const;  // requires Compile(); false for

@@ -23,7 +23,8 @@ struct DisplacementPatches {
   float metres_per_uv = 1.0f;          // square root of (surface area / area in UV)
 };
 
-// Treats vertices that character::WeldVertices() merges as one point.
+// Makes the patches of a mesh. Vertices that character::WeldVertices() merges, such as those of a
+// UV seam, count as one point of the surface.
 [[nodiscard]] DisplacementPatches MakeDisplacementPatches(const character::Mesh& mesh);
 
 }  // namespace furrow::render

@@ -21,22 +21,22 @@ struct GpuMesh {
   JointBounds bounds;  // bounds of the posed mesh
   GLsizei num_vertices = 0;
   GLsizei num_indices = 0;
-  int material = 0;
+  int material = 0;           // index into Character::materials
   float mean_edge = 0.0f;     // mean edge length in metres, rest pose
-  float surface = 0.0f;       // square metres, rest pose
-  float uv_per_metre = 0.0f;  // MinUvPerMetre()
+  float surface = 0.0f;       // area in square metres, rest pose
+  float uv_per_metre = 0.0f;  // MinUvPerMetre(): UV distance per metre where stretched most
 
   // One level of detail: a range of `indices`. Level 0 is the whole mesh; each further level has
   // fewer triangles (render/mesh/mesh_levels.h).
   struct Level {
     GLsizei first = 0;
     GLsizei count = 0;
-    float error = 0.0f;  // metres
+    float error = 0.0f;  // RMS distance from the surface of level 0 in the rest pose, metres
   };
   std::vector<Level> levels;  // empty until AddLevels(): use the whole mesh
 };
 
-// The same surface as patches of DisplacementPatches::kCorners vertices, for tessellation.
+// The triangles of a GpuMesh as tessellation patches (DisplacementPatches) on the GPU.
 struct GpuPatches {
   gl::VertexArray vertex_array;
   gl::Buffer indices;
@@ -45,17 +45,17 @@ struct GpuPatches {
   float metres_per_uv = 1.0f;  // DisplacementPatches::metres_per_uv
 };
 
-// Uploads a validated mesh. This and the functions below need a current context.
+// Uploads a mesh whose indices are in range. This and the functions below need a current context.
 [[nodiscard]] GpuMesh MakeGpuMesh(const character::Mesh& mesh,
                                   std::span<const glm::mat4> inverse_bind_matrices);
-// Computes the mesh's levels of detail.
+// Computes the levels of detail (MakeMeshLevels()), uploads them and fills mesh->levels.
 void AddLevels(GpuMesh* mesh, Borders borders);
 // Reads the whole mesh back from the GPU, where its only copy is.
 [[nodiscard]] character::Mesh ReadMesh(const GpuMesh& mesh);
 // A copy of `mesh` without an index buffer, for the view wireframe: each triangle has three
 // vertices of its own.
 [[nodiscard]] GpuMesh MakeUnindexed(const GpuMesh& mesh);
-// Uses the vertices of `mesh`, which must outlive the patches.
+// Makes the patches of a mesh. They use the vertices of `mesh`, which must outlive them.
 [[nodiscard]] GpuPatches MakePatches(const GpuMesh& mesh);
 
 }  // namespace furrow::render

@@ -30,20 +30,22 @@ class JointBounds {
   struct Extent {
     glm::vec2 low{0.0f};  // normalised device coordinates; the picture is [-1, 1]
     glm::vec2 high{0.0f};
-    float nearest = 0.0f;  // clip space's w of the nearest corner, 0 if a corner is behind the
-                           // camera
+    float nearest = 0.0f;  // clip-space w of the nearest corner; 0, with low and high meaningless,
+                           // if a corner is behind the camera
+    // False only if no part of the boxes is in the picture.
 
     [[nodiscard]] bool is_seen() const {
       return nearest <= 0.0f || (low.x < 1.0f && high.x > -1.0f && low.y < 1.0f && high.y > -1.0f);
     }
   };
-  // Projects the boxes. `model`: a pose of the character's skeleton. `reach`: largest distance in
-  // metres between the drawn surface and the skinned one (displacement).
+  // Projects the boxes. `model`: joint matrices in model space, one per joint of the character's
+  // skeleton. `view_projection`: model space to clip space. `reach`: largest distance in metres
+  // between the drawn surface and the skinned one (displacement).
   [[nodiscard]] Extent Look(std::span<const glm::mat4> model, const glm::mat4& view_projection,
                             float reach = 0.0f) const;
 
-  // Returns the pixels that the boxes may cover: the whole picture if a box reaches behind the
-  // camera, and an empty rectangle if there are no boxes.
+  // Returns the pixels of a picture of `width` x `height` that the boxes may cover: the whole
+  // picture if a box reaches behind the camera, and an empty rectangle if there are no boxes.
   [[nodiscard]] ScreenRect Project(std::span<const glm::mat4> model,
                                    const glm::mat4& view_projection, int width, int height,
                                    float reach = 0.0f) const;

@@ -5,9 +5,9 @@
 
 namespace furrow::render {
 
-// UV distance per metre of surface where the texture is stretched most, in the rest pose. For each
-// triangle, the direction of the highest density counts. The most stretched twentieth of the
-// surface is ignored as outliers. 0: the mesh has no surface.
+// Returns the UV distance per metre of surface where the texture is stretched most, in the rest
+// pose; 0 for a mesh without surface. Of each triangle, the direction with the most UV distance per
+// metre counts. The most stretched twentieth of the surface is ignored as outliers.
 [[nodiscard]] float MinUvPerMetre(const character::Mesh& mesh);
 
 }  // namespace furrow::render

@@ -6,15 +6,17 @@
 
 namespace furrow::render {
 
-// Converts the result of a view to the 8-bit picture. Resolves samples. Light gets exposure, tone
-// map and the sRGB curve; colours get the sRGB curve only; data stays unchanged. Writes rows from
-// the top, as files and encoders expect.
+// Converts the result of a view to the 8-bit picture: averages the samples of each pixel and
+// encodes the values. Views of light get exposure, tone map and the sRGB curve; views of colours
+// get the sRGB curve only; views of data stay unchanged. Writes rows from the top, as files and
+// encoders expect.
 class CompositePass {
  public:
+  // `fullscreen` must outlive the pass.
   explicit CompositePass(Fullscreen* fullscreen) : fullscreen_(fullscreen) {}
 
-  // `shown`: linear, as `desc` describes it. `bloom`: the result of AddBloomPass(), or none.
-  // Returns the picture.
+  // Returns the 8-bit picture of settings.view. `shown`: linear values; `desc` describes it.
+  // `bloom`: the result of AddBloomPass(), or an empty handle.
   [[nodiscard]] FrameGraph::Handle Add(FrameGraph* graph, FrameGraph::Handle shown,
                                        const TextureDesc& desc, const Settings& settings,
                                        FrameGraph::Handle bloom);

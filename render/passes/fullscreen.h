@@ -20,19 +20,20 @@ struct FullscreenPass {
     TextureDesc desc;
   };
   std::string_view name;
-  std::string_view fragment;  // path below shaders/
-  std::vector<std::string> defines;
-  std::vector<FrameGraph::Handle> reads;  // bound to texture units from 0; handles without a
-                                          // version are skipped
-  std::vector<Target> writes;             // created by the pass, all of the same size
-  // The scene's depth buffer, of the same size as the targets. Restricts drawing to pixels with a
-  // surface. None: draws everywhere.
+  std::string_view fragment;         // path of the fragment shader below shaders/
+  std::vector<std::string> defines;  // "NAME VALUE" for the shader
+  // Entry i is bound to texture unit i. An empty handle leaves its unit without a texture.
+  std::vector<FrameGraph::Handle> reads;
+  std::vector<Target> writes;  // created by the pass, all of the same size
+  // The scene's depth buffer, of the same size as the targets: draws only pixels with a surface. An
+  // empty handle draws all pixels.
   FrameGraph::Handle surface_z = {};
 };
 
 // Runs the passes that cover the whole picture.
 class Fullscreen {
  public:
+  // Both arguments must outlive this object. Needs a current context.
   Fullscreen(ShaderLibrary* shaders, GlDevice* device)
       : shaders_(shaders), device_(device), no_attributes_(gl::MakeVertexArray()) {}
 
@@ -42,7 +43,7 @@ class Fullscreen {
   [[nodiscard]] std::vector<FrameGraph::Handle> AddPass(FrameGraph* graph,
                                                         const FullscreenPass& pass,
                                                         std::function<void()> draw);
-  // The same for a pass with one target.
+  // AddPass() for a pass with one target; returns it.
   [[nodiscard]] FrameGraph::Handle AddSimplePass(FrameGraph* graph, const FullscreenPass& pass,
                                                  std::function<void()> draw) {
     return AddPass(graph, pass, std::move(draw)).front();
@@ -51,7 +52,8 @@ class Fullscreen {
   // Call only from a pass's `draw`. Draws the whole target, or a rectangle of pixels.
   void Draw();
   void Draw(const ScreenRect& rect);
-  // Call only from a pass's `draw`. Fills a target with one value.
+  // Call only from a pass's `draw`. Fills target number `target` of FullscreenPass::writes with one
+  // value.
   void Clear(int target, float r, float g, float b, float a);
 
  private:

@@ -47,7 +47,7 @@ SkinTargets AddLightPass(FrameGraph* graph, const FacetTargets& facets, FrameGra
         glUniform4f(kLightLens, geometry.pixels_per_slope,
                     0.5f * static_cast<float>(geometry.width),
                     0.5f * static_cast<float>(geometry.height), 0.0f);
-        glUniform1f(kLightRange, OcclusionPass::RangeOf(settings.occlusion));
+        glUniform1f(kLightRange, OcclusionPass::BlurDepthLimit(settings.occlusion));
         fullscreen->Clear(0, 0.0f, 0.0f, 0.0f, kFarAway);
         fullscreen->Clear(1, back.r, back.g, back.b, 0.0f);
         fullscreen->Draw(geometry.bounds);

@@ -5,9 +5,13 @@
 
 namespace furrow::render {
 
-// Lights the facets of a scene with one sample per pixel. Each pixel is lit once, however small the
-// triangles are and however many surfaces overlap. Reduces the sky's light by `open`. `shadows` and
-// `open` may be empty handles. Returns the same targets as the lit scene pass.
+// Lights the stored facets (surface points) of a scene with one sample per pixel. Returns the
+// targets that ScenePass::AddSkin() would. Each pixel is lit once, however small the triangles are
+// and however many surfaces overlap.
+//
+// `shadows`: the result of ShadowPass; an empty handle: no shadows. `open`: the result of
+// OcclusionPass::Add(), which reduces the sky's light; an empty handle in it: no occlusion. `scene`
+// and `fullscreen` must outlive the graph.
 [[nodiscard]] SkinTargets AddLightPass(FrameGraph* graph, const FacetTargets& facets,
                                        FrameGraph::Handle shadows,
                                        const OcclusionPass::Openness& open,

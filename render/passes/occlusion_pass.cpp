@@ -68,7 +68,7 @@ FrameGraph::Handle OcclusionPass::AddBlur(FrameGraph* graph, FrameGraph::Handle 
                                      .reads = {open, depth},
                                      .writes = {{"occlusion", TargetOf(settings, geometry)}}},
                                     [this, settings, geometry] {
-                                      glUniform1f(kOcclusionRange, RangeOf(settings));
+                                      glUniform1f(kOcclusionRange, BlurDepthLimit(settings));
                                       DrawBounds(settings, geometry);
                                     });
 }
@@ -102,7 +102,7 @@ SkinTargets OcclusionPass::AddOcclude(FrameGraph* graph, const SkinTargets& lit,
        .reads = {lit.irradiance, lit.radiance, lit.albedo, open.target, lit.depth},
        .writes = {{"occluded irradiance", desc}, {"occluded radiance", desc}}},
       [this, settings, geometry] {
-        glUniform1f(kOcclusionRange, RangeOf(settings));
+        glUniform1f(kOcclusionRange, BlurDepthLimit(settings));
         const glm::vec3& back = geometry.background;
         // The same values as in the scene pass: no skin in the first target, the background in the
         // second.
@@ -116,7 +116,7 @@ SkinTargets OcclusionPass::AddOcclude(FrameGraph* graph, const SkinTargets& lit,
   return occluded;
 }
 
-float OcclusionPass::RangeOf(const OcclusionSettings& settings) {
+float OcclusionPass::BlurDepthLimit(const OcclusionSettings& settings) {
   return 0.001f * settings.radius_mm * kRangeOfRadius;
 }
 

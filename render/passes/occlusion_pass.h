@@ -11,33 +11,40 @@ namespace furrow::render {
 
 // The camera's geometry for ambient occlusion.
 struct OcclusionGeometry {
-  int width = 0;  // pixels
+  int width = 0;  // pixels of the scene
   int height = 0;
-  glm::mat3 view_rotation{1.0f};  // model space to view space
-  float pixels_per_slope = 1.0f;  // height / 2 * cot(fov / 2)
-  ScreenRect bounds;              // contains all surfaces
-  glm::vec3 background{0.0f};     // radiance outside the surfaces
+  glm::mat3 view_rotation{1.0f};  // model space to view space, in which the camera looks along -Z
+  // Pixels per unit of x / z or y / z in view space: height / 2 * cot(vertical field of view / 2).
+  float pixels_per_slope = 1.0f;
+  ScreenRect bounds;           // pixels outside show no surface; they are not computed
+  glm::vec3 background{0.0f};  // linear radiance of pixels without a surface
 };
 
-// Ambient occlusion: how much of the sky each pixel sees, and how much of the sky's light remains.
+// Ambient occlusion: computes how much of the sky each pixel sees, and removes the rest of the
+// sky's light.
 class OcclusionPass {
  public:
+  // `fullscreen` must outlive the pass.
   explicit OcclusionPass(Fullscreen* fullscreen) : fullscreen_(fullscreen) {}
 
+  // The share of the sky that each pixel sees.
   struct Openness {
-    FrameGraph::Handle target;  // [0, 1] in red; no handle if the method is off
-    int scale = 1;              // scene pixels per target pixel, along each axis
+    // In red: 0, all of the sky is hidden, to 1, all of it is visible. An empty handle if occlusion
+    // is off.
+    FrameGraph::Handle target;
+    int scale = 1;  // scene pixels per target pixel, along each axis: 1 or 2
   };
-  // Computes the openness of surfaces from their depth (metres along the camera's axis) and
-  // normals.
+  // Returns the openness of surfaces, blurred. `depth`: metres along the camera's axis. `normal`:
+  // unit, model space.
   [[nodiscard]] Openness Add(FrameGraph* graph, FrameGraph::Handle depth, FrameGraph::Handle normal,
                              const OcclusionSettings& settings, const OcclusionGeometry& geometry);
-  // Removes the occluded part of the sky's light from irradiance and radiance that are already lit.
+  // Returns `lit` with new irradiance and radiance, from which the hidden part of the sky's light
+  // is removed. Returns `lit` itself if `open` is empty. `open`: the result of Add().
   [[nodiscard]] SkinTargets AddOcclude(FrameGraph* graph, const SkinTargets& lit,
                                        const Openness& open, const OcclusionSettings& settings,
                                        const OcclusionGeometry& geometry);
-  // Largest depth difference in metres between pixels that share their openness in the blur.
-  [[nodiscard]] static float RangeOf(const OcclusionSettings& settings);
+  // The blur's depth limit in metres: pixels whose depths differ by more do not mix their openness.
+  [[nodiscard]] static float BlurDepthLimit(const OcclusionSettings& settings);
 
  private:
   [[nodiscard]] FrameGraph::Handle AddSearch(FrameGraph* graph, FrameGraph::Handle depth,
@@ -48,8 +55,8 @@ class OcclusionPass {
                                            FrameGraph::Handle depth,
                                            const OcclusionSettings& settings,
                                            const OcclusionGeometry& geometry);
-  // Call only while a pass runs. Draws the part that the character may cover and marks the rest as
-  // open.
+  // Call only while a pass runs. Draws the pixels of geometry.bounds and sets the others to 1
+  // (open).
   void DrawBounds(const OcclusionSettings& settings, const OcclusionGeometry& geometry);
 
   Fullscreen* fullscreen_;

@@ -7,8 +7,9 @@
 
 namespace furrow::render {
 
-// Starts the copy of the picture to memory. This is the side effect that keeps the passes before it
-// from being culled.
+// Adds a pass that starts the copy of `picture` (8-bit RGBA) to memory: ReadBack::Start() with
+// `token`. This side effect keeps the passes before it from being culled. `device` and `read_back`
+// must outlive the graph.
 void AddReadBackPass(FrameGraph* graph, FrameGraph::Handle picture, std::uint64_t token,
                      GlDevice* device, ReadBack* read_back);
 

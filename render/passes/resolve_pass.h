@@ -6,13 +6,14 @@
 
 namespace furrow::render {
 
-// Resolves the scene's samples to one per pixel (shaders/scene/resolve.frag.glsl). Returns
-// single-sample targets unchanged.
+// Resolves the samples of the scene's targets to one per pixel (shaders/scene/resolve.frag.glsl)
+// and returns the new targets. `desc` describes `scene`; targets of one sample are returned
+// unchanged. `fullscreen` must outlive the graph.
 [[nodiscard]] SkinTargets AddResolvePass(FrameGraph* graph, const SkinTargets& scene,
                                          const TextureDesc& desc, Fullscreen* fullscreen);
 
-// Returns linear radiance: scattered light times albedo, plus the light that did not scatter.
-// `bounds` contains all surfaces; outside, the result is `background`.
+// Returns linear radiance: `scattered` (the result of SubsurfacePass) times albedo, plus the light
+// of `scene` that did not scatter. Pixels outside `bounds` show no surface and get `background`.
 [[nodiscard]] FrameGraph::Handle AddCombinePass(FrameGraph* graph, FrameGraph::Handle scattered,
                                                 const SkinTargets& scene, const TextureDesc& desc,
                                                 const ScreenRect& bounds,

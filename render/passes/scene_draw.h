@@ -34,7 +34,8 @@ class SceneDraw {
   // afterwards. Errors: those of WrinkleTables::Update().
   [[nodiscard]] Status Update(const FrameRequest& request);
   [[nodiscard]] const FrameSetup& setup() const { return setup_; }
-  // Largest distance in metres between the drawn and the skinned surface in this frame.
+  // Upper bound, in metres, of the distance between the drawn and the skinned surface in this
+  // frame.
   [[nodiscard]] float displacement_reach() const { return displacement_reach_; }
 
   // Binds the look-up tables of the lighting. `shadows`: texture of all shadow maps; 0: none.
@@ -47,11 +48,13 @@ class SceneDraw {
   [[nodiscard]] static SceneShader LightShader(const Settings& settings);
   // Returns true if Compose() must run before a scene with these settings is drawn.
   [[nodiscard]] bool NeedsComposing(const Settings& settings) const;
+  // Paints the wrinkles that WrinkleCache composes into textures.
   void Compose() { cache_.Compose(); }
-  // Draws the depth of every mesh as lamp `light` sees it, into the viewport of the bound
-  // framebuffer.
+  // Draws the depth of every mesh as lamp `light`, in [0, kNumLights), sees it, into the viewport
+  // of the bound framebuffer. Errors: those of ShaderLibrary and PosedMeshes.
   [[nodiscard]] Status DrawShadow(const Settings& settings, int light);
-  // Draws every mesh in colour for the settings' view, or its facets, into one target or five.
+  // Draws every mesh for settings.view into the bound framebuffer, which has one target for kPlain
+  // and five for the other kinds. Errors: those of ShaderLibrary and PosedMeshes.
   [[nodiscard]] Status DrawScene(const Settings& settings, SceneKind kind);
 
  private:

@@ -7,18 +7,19 @@
 
 namespace furrow::render {
 
-// The skin pipeline's scene targets. See shaders/skin/skin.frag.glsl for their contents.
+// The lit scene of the skin pipeline (shaders/skin/skin.frag.glsl). Light on skin is kept apart,
+// because it scatters.
 struct SkinTargets {
-  FrameGraph::Handle irradiance;
-  FrameGraph::Handle radiance;
-  FrameGraph::Handle albedo;
-  FrameGraph::Handle normal;
-  FrameGraph::Handle depth;  // metres along the camera's axis
-  FrameGraph::Handle z;      // the depth buffer for FullscreenPass::surface_z; no handle for
-                             // multisampled targets
+  FrameGraph::Handle irradiance;  // light on skin; a: metres behind the focus, kFarAway: no skin
+  FrameGraph::Handle radiance;    // all other light; a: the sky's share of it
+  FrameGraph::Handle albedo;      // of skin; a: the sky's share of irradiance
+  FrameGraph::Handle normal;      // unit, model space; 0 without a surface
+  FrameGraph::Handle depth;       // metres along the camera's axis
+  FrameGraph::Handle z;  // the depth buffer, for FullscreenPass::surface_z; an empty handle if the
+                         // targets have several samples per pixel
 };
 
-// The scene's targets before lighting. See shaders/scene/stored_facet.glsl for their contents.
+// The scene's surface properties before lighting, encoded as in shaders/scene/stored_facet.glsl.
 struct FacetTargets {
   FrameGraph::Handle colour;
   FrameGraph::Handle normal;
@@ -28,9 +29,12 @@ struct FacetTargets {
   FrameGraph::Handle z;
 };
 
-inline constexpr float kFarAway = 60000.0f;  // FAR_AWAY of the shaders: no skin
+// Depth behind the focus, in metres, that means "no skin". FAR_AWAY of the shaders. A half float
+// can hold it.
+inline constexpr float kFarAway = 60000.0f;
 
-// Radiance where the skin pipeline sees no surface. Black in views of a single part of the light.
+// The linear radiance of pixels without a surface: the background, or black in views that show only
+// a part of the light.
 [[nodiscard]] glm::vec3 SkinBackground(const Settings& settings);
 
 // Clears the targets and draws the scene. Requires SceneDraw::Update() once per frame.
@@ -39,19 +43,19 @@ class ScenePass {
   struct Targets {
     int width = 0;
     int height = 0;
-    PixelFormat format = PixelFormat::kRgba16F;  // of the plain scene
-    int samples = 4;
+    PixelFormat format = PixelFormat::kRgba16F;  // AddPlain() only
+    int samples = 4;                             // per pixel
   };
 
   // Both arguments must outlive the pass.
   ScenePass(SceneDraw* scene, GlDevice* device) : scene_(scene), device_(device) {}
 
-  // Draws the scene with lamps without shadows into one target: linear colour or data, depending on
-  // the view (shaders/README.md).
+  // Draws the scene, lit without shadows, into one target: linear colour or data, depending on
+  // settings.view (shaders/README.md). Returns the target.
   [[nodiscard]] FrameGraph::Handle AddPlain(FrameGraph* graph, const Settings& settings,
                                             const Targets& targets);
-  // Draws the skin pipeline's lit scene into five targets. `shadows`: the result of ShadowPass, or
-  // none.
+  // Draws the skin pipeline's lit scene into five targets and returns them. `shadows`: the result
+  // of ShadowPass::Add(), or an empty handle.
   [[nodiscard]] SkinTargets AddSkin(FrameGraph* graph, const Settings& settings,
                                     const Targets& targets, FrameGraph::Handle shadows);
   // Draws the skin pipeline's scene without light into five targets, one sample per pixel.

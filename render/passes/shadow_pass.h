@@ -9,9 +9,9 @@
 
 namespace furrow::render {
 
-// The lamps' depth pictures, side by side in one texture of kNumLights squares. They are kept from
-// frame to frame and redrawn only when a lamp or a caster has moved. Changing other settings while
-// a pose is held does not redraw them.
+// Draws the shadow maps: the lamps' depth pictures, side by side in one texture of kNumLights
+// squares. They are kept from frame to frame and redrawn only when a lamp or a surface that casts
+// shadows has moved. Changing other settings while a pose is held does not redraw them.
 class ShadowPass {
  public:
   // Both arguments must outlive the pass.
@@ -20,8 +20,8 @@ class ShadowPass {
   ShadowPass(const ShadowPass&) = delete;
   ShadowPass& operator=(const ShadowPass&) = delete;
 
-  // Returns the maps. Only the first ShadowSettings::lamps of them have casters; the others are
-  // empty.
+  // Returns the texture of all maps. Linear depth: 0 is nearest to the lamp, 1 is empty. Only the
+  // first ShadowSettings::lamps maps are drawn; the others are empty.
   [[nodiscard]] FrameGraph::Handle Add(FrameGraph* graph, const FrameRequest& request);
 
  private:

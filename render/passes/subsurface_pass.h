@@ -11,22 +11,23 @@ namespace furrow::render {
 struct SkinGeometry {
   int width = 0;  // pixels
   int height = 0;
-  float focus_distance = 1.0f;   // metres; depths in the irradiance's alpha are relative to it
-  float pixels_per_mm = 1.0f;    // at the focus distance
-  ScreenRect bounds;             // contains all skin
+  float focus_distance = 1.0f;   // metres from the camera to its target
+  float pixels_per_mm = 1.0f;    // pixels per millimetre of a surface at the focus distance
+  ScreenRect bounds;             // pixels outside show no skin
   FrameGraph::Handle surface_z;  // FullscreenPass::surface_z
 };
 
-// Scatters the light on skin. `irradiance` holds light in rgb and, in alpha, metres behind the
-// focus or 60000 where there is no skin. Returns scattered light in the same layout, or
-// `irradiance` itself if the method does not scatter here.
+// Scatters the light on skin in screen space. SubsurfaceSettings::method chooses how:
 //
 // - gaussians: the thesis' six consecutive blurs, each along x and y, and their weighted sum.
 // - separable: one kernel along x and y. burley: one disc of taps.
-// - preintegrated: nothing to do; the lighting has already applied it.
+// - preintegrated and off: nothing; the lighting applies preintegrated scattering.
 class SubsurfacePass {
  public:
+  // `fullscreen` must outlive the pass.
   explicit SubsurfacePass(Fullscreen* fullscreen) : fullscreen_(fullscreen) {}
+  // Returns the scattered light, or `irradiance` itself if nothing scatters here. Both hold linear
+  // light in rgb and, in alpha, metres behind the focus, or kFarAway where there is no skin.
 
   [[nodiscard]] FrameGraph::Handle Add(FrameGraph* graph, FrameGraph::Handle irradiance,
                                        const SubsurfaceSettings& settings,

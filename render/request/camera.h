@@ -13,8 +13,9 @@ struct Camera {
   // Applies the angle to the picture's width where the picture is taller than wide, so that a
   // portrait format shows the whole width of a head. Head presets set this.
   bool fit_shorter_side = false;
-  // Joint that the camera and the lights follow: they move with the joint from its rest position
-  // and turn about +Y with the skeleton's root. -1: the camera stays where it is.
+  // Index of the joint of the character that camera and lights follow: they move with the joint
+  // from its rest position and turn about +Y with the skeleton's root. -1: the camera stays where
+  // it is.
   int follow_joint = -1;
 };
 

@@ -19,12 +19,13 @@ namespace furrow::render {
 // "face, three_quarter, ...", for help texts.
 [[nodiscard]] std::string ListCameraPresets();
 
-// All presets as (name, camera), in the order of CameraPresetNames(). They fit any character: the
-// cameras are computed from the bounds of its rest pose, its anchor joint and its joint names.
+// Computes the cameras of all presets for a character, as (name, camera) in the order of
+// CameraPresetNames(), from the bounds of its rest pose, its rig's anchor joint and its joint
+// names.
 [[nodiscard]] std::vector<std::pair<std::string, Camera>> CameraPresets(
     const character::Character& character);
 
-// kInvalidArgument for an unknown preset `name`. The error lists the valid names.
+// Makes the error for the unknown preset `name`: kInvalidArgument, with a list of the valid names.
 [[nodiscard]] Status UnknownPreset(std::string_view name);
 
 }  // namespace furrow::render

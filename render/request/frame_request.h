@@ -12,11 +12,12 @@
 
 namespace furrow::render {
 
-inline constexpr int kMaxSubjects = 256;  // per picture
+inline constexpr int kMaxSubjects = 256;  // of one picture, including the first
 inline constexpr int kMinSize = 16;       // width and height of a picture, pixels
 inline constexpr int kMaxSize = 4096;
 
-// One subject of a picture: the character in a pose, with its own wrinkles.
+// One subject of a picture: the character in a pose, with wrinkles. The caller owns what spans and
+// pointers refer to.
 struct PosedSubject {
   // Joint matrices in model space, one per joint of the character's skeleton. Joints that blend
   // shapes move must be moved already (wrinkle::BlendShapePose).
@@ -25,8 +26,8 @@ struct PosedSubject {
   const wrinkle::RigBinding* binding = nullptr;
   std::span<const float> wrinkle_weights;  // one per weight of the binding, [0, 1]
   std::span<const float> filtered_values;  // one per driver value of the binding, [0, 1]
-  // Takes model space to the subject's place in the picture: rotation, uniform scale, translation
-  // (metres).
+  // Maps the subject's model space to the model space that the camera and the lights use: rotation,
+  // uniform scale and translation (metres).
   glm::mat4 placement{1.0f};
 };
 

@@ -8,6 +8,7 @@
 
 namespace furrow::render {
 
+// A subject of a request, and its name for error messages.
 struct NamedSubject {
   const PosedSubject* subject = nullptr;
   std::string field;  // prefix of its fields in error messages: "", "others[3]."

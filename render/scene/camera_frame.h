@@ -15,11 +15,11 @@ namespace furrow::render {
 // A camera as the shaders need it, in the model space of the posed character. The camera looks
 // along the -Z axis of its view space.
 struct CameraFrame {
-  glm::mat4 view_projection{1.0f};
+  glm::mat4 view_projection{1.0f};  // model space to clip space
   glm::vec3 position{0.0f};
-  glm::mat4 view{1.0f};
+  glm::mat4 view{1.0f};       // model space to view space
   glm::vec3 target{0.0f};     // the point that the camera looks at
-  float cot_half_fov = 1.0f;  // half the vertical angle: scale from slope to [-1, 1]
+  float cot_half_fov = 1.0f;  // cot(vertical field of view / 2): scales y / -z to [-1, 1]
   float near_plane = 0.0f;    // metres
   float far_plane = 0.0f;     // metres
   // Rotation about +Y from "the camera looks along -Z" to its actual heading. The lights turn with
@@ -27,8 +27,8 @@ struct CameraFrame {
   glm::mat3 heading{1.0f};
 
   [[nodiscard]] float focus_distance() const { return glm::distance(position, target); }
-  // Height in pixels, in a picture of `height` pixels, of an object as tall as its distance from
-  // the camera.
+  // Pixels per unit of y / -z in view space: the height in pixels, in a picture `height` pixels
+  // high, of an object that is as tall as its distance from the camera.
   [[nodiscard]] float PixelsPerSlope(int height) const {
     return 0.5f * static_cast<float>(height) * cot_half_fov;
   }
@@ -39,9 +39,10 @@ struct CameraFrame {
   }
 };
 
-// The motion of the camera and lights with a subject: translation of the followed joint from its
-// rest position to its position in `model`, and rotation about +Y by the turn of its root. Identity
-// if the camera follows no joint.
+// Returns the motion of camera and lights with a subject, in model space: the translation of the
+// followed joint from its rest position to its position in `model`, and the rotation about +Y by
+// the turn of the skeleton's root. The identity if the camera follows no joint. `model`: joint
+// matrices in model space, one per joint of `skeleton`.
 [[nodiscard]] glm::mat4 FollowTransform(const Camera& camera, const wrinkle::Skeleton& skeleton,
                                         std::span<const glm::mat4> model);
 

@@ -28,14 +28,16 @@ class DrawList {
   };
   struct Tolerance {
     float reach = 0.0f;         // metres between the drawn and the skinned surface, at most
-    float error_pixels = 0.0f;  // allowed error of simplified meshes
-    float hair_shadow = 0.0f;   // metres; allowed error of hair in shadow maps
+    float error_pixels = 0.0f;  // allowed RMS error of simplified meshes, picture pixels
+    float hair_shadow = 0.0f;   // allowed RMS error of hair in shadow maps, metres
   };
 
+  // Replaces the list. `views`: those of the lamps, then the camera's. The other arguments are only
+  // used during the call.
   void Build(GpuCharacter* gpu, std::span<const NamedSubject> subjects,
              const std::array<View, kNumViews>& views, const Tolerance& tolerance);
 
-  // The subjects that any view sees of the mesh, in ascending order.
+  // The subjects of which any view sees the mesh, as ascending indices of Build()'s `subjects`.
   [[nodiscard]] std::span<const std::uint32_t> subjects(std::size_t mesh) const {
     return meshes_[mesh].subjects;
   }
@@ -52,7 +54,7 @@ class DrawList {
     float covered = 0.0f;  // upper bound of the covered share of the picture, [0, 1] per subject
   };
   [[nodiscard]] const Sight& sight(std::size_t mesh) const { return meshes_[mesh].sight; }
-  // The subjects that one view sees, as positions in subjects().
+  // The subjects of which view `view` sees the mesh, as positions in subjects(mesh).
   [[nodiscard]] std::span<const std::uint32_t> seen(int view, std::size_t mesh) const {
     return meshes_[mesh].seen[static_cast<std::size_t>(view)];
   }

@@ -15,17 +15,17 @@ namespace furrow::render {
 
 // Mirrors Light of shaders/common/frame.glsl (std140).
 struct LightBlock {
-  glm::vec4 position;   // xyz; w: 1, or 0 for a directional light
-  glm::vec4 direction;  // xyz: unit, towards the light; w: cosine at a spot's edge, -1: no spot
-  glm::vec4 radiance;   // rgb; w: squared distance for which rgb is given
-  glm::mat4 shadow_view;
-  glm::vec4 shadow;  // scale, near plane, 1 / range; w: 1 for a perspective projection
+  glm::vec4 position;     // xyz; w: 1, or 0 for a directional light
+  glm::vec4 direction;    // xyz: unit, towards the light; w: cosine at a spot's edge, -1: no spot
+  glm::vec4 radiance;     // rgb: linear; w: squared distance in metres at which rgb applies
+  glm::mat4 shadow_view;  // model space to the lamp's view space
+  glm::vec4 shadow;       // ShadowView's scale, near plane, 1 / range; w: 1 if it is perspective
 };
 
 // Mirrors Frame of shaders/common/frame.glsl (std140): the values that are constant within a frame.
 struct FrameBlock {
-  glm::mat4 view_projection;
-  glm::vec4 camera_position;  // xyz
+  glm::mat4 view_projection;  // model space to clip space
+  glm::vec4 camera_position;  // xyz, model space
   glm::vec4 camera_forward;   // xyz: unit; w: focus distance, metres
   std::array<LightBlock, kNumLights> lights;
   std::array<glm::vec4, 9> ambient;  // AmbientPolynomial() of the sky
@@ -33,7 +33,7 @@ struct FrameBlock {
   glm::vec4 sky_horizon;
   glm::vec4 sky_ground;
   glm::vec4 shadow_filter;  // metres: softness, lamp radius, normal offset; w: resolution
-  glm::vec4 specular;       // rho_s, scale of m, share of the second lobe; w: albedo mix
+  glm::vec4 specular;       // SpecularSettings: strength, roughness, second_lobe; w: albedo mix
   glm::vec4 translucency;   // strength, scale, shrink (metres); w: subsurface strength
   glm::vec4 wrinkle_maps;   // x: blood flow, y: cavity
   glm::vec4 displacement;   // metres per millimetre of height, FrameSetup::pixels_per_slope, edge
@@ -60,8 +60,11 @@ class AmbientCache {
   GradientSky sky_;
   SphericalHarmonics polynomial_{};
 };
+// Computes the setup of a valid request (CheckRequest()). `skeleton`: the character's. `cache`:
+// kept by the caller from frame to frame.
 [[nodiscard]] FrameSetup SetUpFrame(const FrameRequest& request, const wrinkle::Skeleton& skeleton,
                                     AmbientCache* cache);
+// Converts setup and settings to the block that the shaders read.
 [[nodiscard]] FrameBlock MakeFrameBlock(const FrameSetup& setup, const Settings& settings);
 
 }  // namespace furrow::render

@@ -15,22 +15,24 @@
 
 namespace furrow::render {
 
+// A material on the GPU. The textures belong to the GpuCharacter.
 struct GpuMaterial {
   gl::Buffer block;        // the Material block of shaders/scene/surface_frag.glsl
   GLuint base_colour = 0;  // texture names; 0: none
-  GLuint derivatives = 0;
+  GLuint derivatives = 0;  // slopes of the normal map
   GLuint roughness = 0;
   GLuint thickness = 0;
   character::Material::Kind kind = character::Material::Kind::kOther;
   WrinkleGroup group = WrinkleGroup::kNone;
-  float cavity_albedo = 0.0f;  // cavity() applies where the base colour's green is below this
+  float cavity_albedo = 0.0f;  // linear; base colours with less green are painted hollows
   bool alpha_test = false;
   bool double_sided = false;
 };
 
 // A character's meshes, materials and textures on the GPU. Normal maps become derivative maps in
-// half floats, whose mips are averaged from the derivatives. Masks and wrinkle maps become one
-// texture array each.
+// half floats, whose mip levels are averaged from the derivatives. Masks and wrinkle maps become
+// one texture array each. All functions need a current context. Returned names stay the
+// character's.
 class GpuCharacter {
  public:
   // Uploads `character` and keeps no reference to it. Errors: kInvalidArgument (a mesh or material
@@ -42,19 +44,21 @@ class GpuCharacter {
   [[nodiscard]] std::span<const GpuMesh> meshes() const { return meshes_; }
   [[nodiscard]] const GpuMaterial& material(int index) const { return materials_[index]; }
   [[nodiscard]] int num_materials() const { return static_cast<int>(materials_.size()); }
+  // Texture array of the rig's masks, one layer per picture.
   [[nodiscard]] GLuint masks() const { return masks_.name(); }
   // The regions of the surface where the painted masks are above 0.
   [[nodiscard]] std::span<const MaskRegion> mask_regions() const { return mask_regions_; }
+  // Texture array of the wrinkle maps' slopes; layers: WrinkleLayout::map_layers.
   [[nodiscard]] GLuint wrinkle_derivatives() const { return wrinkle_derivatives_.name(); }
   // Texture array of the wrinkle maps' colour and cavity, one layer per map that has them; 0: none.
   [[nodiscard]] GLuint wrinkle_looks() const { return wrinkle_looks_.name(); }
   [[nodiscard]] const WrinkleLayout& layout() const { return layout_; }
   // Heights of the wrinkle maps, in the order of WrinkleLayout::height_layers.
   [[nodiscard]] const WrinkleHeights& heights() const { return heights_; }
-  // The coarsest level of a mesh with an error of at most `metres`. Computes the mesh's levels the
-  // first time that a coarser level than the mesh itself may be used.
+  // Returns the index in GpuMesh::levels of the coarsest level of mesh `mesh` with an error of at
+  // most `metres`. Computes the mesh's levels the first time that a level above 0 may be used.
   [[nodiscard]] int Level(std::size_t mesh, float metres);
-  // Variants of a mesh, created on first use.
+  // Variants of mesh `mesh` (MakeUnindexed(), MakePatches()), created on first use.
   [[nodiscard]] const GpuMesh& Unindexed(std::size_t mesh);
   [[nodiscard]] const GpuPatches& Patches(std::size_t mesh);
 

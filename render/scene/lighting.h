@@ -15,13 +15,14 @@ inline constexpr int kNumLights = 3;
 
 enum class LightKind { kDirectional, kSpot, kPoint };
 
+// A lamp, in the model space of the posed character.
 struct LightSource {
   LightKind kind = LightKind::kDirectional;
-  glm::vec3 position{0.0f};  // model space; for spots and points
-  // Unit, towards the light. A spot shines in the opposite direction.
+  glm::vec3 position{0.0f};  // metres; for spots and points
+  // Unit, from the subject to the light. A spot shines in the opposite direction.
   glm::vec3 direction{0.0f, 0.0f, 1.0f};
-  // Linear. A white surface that faces the light reflects exactly this, at `reach` metres from a
-  // spot or point light.
+  // Linear radiance that a white surface facing the light reflects. For a spot or point light it
+  // holds at a distance of `reach` metres and falls with the squared distance.
   glm::vec3 radiance{0.0f};
   float reach = 1.0f;
   float cone_degrees = 180.0f;  // angle between a spot's axis and its edge
@@ -39,7 +40,8 @@ struct Stage {
   float radius = 0.2f;      // metres around the focus that the picture shows
 };
 
-// The lamps of a preset. They turn with the camera, so that every view is lit alike.
+// Makes the lamps and the sky of settings.preset around a stage. They turn with the camera, so that
+// every view is lit alike.
 //
 // - studio: a warm, soft key (spot) from the upper left, a cool fill (point) from the right, and a
 //   rim (directional) from behind on the right. The key comes in low from the side, which shows

@@ -5,8 +5,8 @@
 
 namespace furrow::render {
 
-// Look-up tables of the shaders as textures, created on first use. They do not depend on the
-// character or on settings.
+// Look-up tables of the shaders as textures, created on first use and owned by this object. They do
+// not depend on the character or on settings. Needs a current context.
 class LookupTables {
  public:
   // The Beckmann term PH of Kelemen and Szirmay-Kalos, R16 (render/skin/beckmann.h).

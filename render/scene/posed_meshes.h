@@ -21,6 +21,7 @@ class PosedMeshes {
   enum class Form { kIndexed, kUnindexed, kPatches };
   static constexpr std::size_t kMaxVertices = std::size_t{1} << 24;  // per mesh, over all subjects
 
+  // Both arguments must outlive this object.
   PosedMeshes(GpuCharacter* gpu, ShaderLibrary* shaders) : gpu_(gpu), shaders_(shaders) {}
 
   // Marks all posed vertices as outdated.
@@ -30,10 +31,12 @@ class PosedMeshes {
     GLuint vertex_array = 0;  // in the layout of scene.vert.glsl, one subject after another
     GLsizei per_subject = 0;
   };
-  // Returns a mesh in the poses of `subjects`, at least one. PoseShader::dynamic adds the dynamic
-  // masks of each vertex, for the maps of `part`. Repeated calls within a frame reuse the vertices
-  // unless they ask for other masks. Requires bound joints and dynamic masks; changes the current
-  // program. Errors: kLimit (kMaxVertices), kInternal (a shader).
+  // Returns the vertices of mesh `mesh` (an index of GpuCharacter::meshes()) in the poses of
+  // `subjects`, ascending numbers of the frame's subjects, at least one. With PoseShader::dynamic
+  // they have dynamic masks for the maps of `part`. Repeated calls within a frame reuse the
+  // vertices unless they ask for other masks. Requires that SceneBuffers has bound joints and
+  // dynamic masks; changes the current program. Errors: kLimit (kMaxVertices), kInternal (a
+  // shader).
   [[nodiscard]] Result<Vertices> Get(std::size_t mesh, Form form, const PoseShader& shader,
                                      WrinklePart part, std::span<const std::uint32_t> subjects);
 

@@ -18,10 +18,12 @@ class SceneBuffers {
   // Both arguments must outlive this object.
   SceneBuffers(std::span<const glm::mat4> inverse_bind_matrices, const WrinkleTables* tables);
 
+  // Replaces the contents of all buffers. `subjects` may be freed afterwards.
   void Upload(const FrameBlock& frame, std::span<const NamedSubject> subjects,
               const WrinkleLayout& layout);
   // Binds the buffers that all surfaces share.
   void Bind() const;
+  // Binds the buffers with the wrinkles of a group of surfaces, for the maps of `part`.
   void BindWrinkles(WrinkleGroup group, WrinklePart part = WrinklePart::kAll) const;
 
  private:

@@ -18,17 +18,20 @@ struct ShadowView {
   float texel = 0.0f;  // size of a texel in metres, at the centre of the stage
 };
 
-// The view as one matrix to clip space. Depth is left at 0.
+// The view as one matrix from model space to clip space, for tests of visibility. Clip-space depth
+// is always 0.
 [[nodiscard]] glm::mat4 FlatProjection(const ShadowView& view);
 
-// Texels per side of the shadow maps for a stage of `radius` metres in a picture whose pixels are
-// `pixel_metres` wide at the focus. Returns settings.resolution, or less with settings.fit: a texel
-// may be as large as a pixel, or as half the radius of the fixed-width filter, which blurs it
-// anyway. The result is a multiple of 128, so that it rarely changes while the camera moves.
+// Returns the number of texels per side of the shadow maps for a stage of `radius` metres.
+// `pixel_metres`: width of a picture pixel at the focus, metres. The result is settings.resolution,
+// or less with settings.fit: a texel may be as large as a pixel, or as half the radius of the
+// fixed-width filter (pcf), which blurs it anyway. It is a multiple of 128, so that it rarely
+// changes while the camera moves.
 [[nodiscard]] int ShadowResolution(const ShadowSettings& settings, float radius,
                                    float pixel_metres);
 
-// Fits a lamp's shadow map of `resolution` texels per side to the sphere of the stage.
+// Fits a lamp's shadow map of `resolution` texels per side to the stage: the sphere of `radius`
+// metres around `centre` (model space).
 //
 // - Directional lights: an orthographic view that moves by whole texels, so that shadow edges do
 //   not crawl. `radius` should stay constant from frame to frame.

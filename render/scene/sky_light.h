@@ -19,20 +19,21 @@ struct GradientSky {
   glm::vec3 ground{0.0f};
 };
 
-// `direction`: unit.
+// The radiance from a unit direction.
 [[nodiscard]] glm::vec3 SkyRadiance(const GradientSky& sky, const glm::vec3& direction);
 
-// Coefficients in the order 1; y, z, x; xy, yz, 3 z^2 - 1, xz, x^2 - y^2.
+// Nine coefficients, in the order of the basis functions 1; y, z, x; xy, yz, 3 z^2 - 1, xz,
+// x^2 - y^2.
 using SphericalHarmonics = std::array<glm::vec3, 9>;
 
 // The first nine coefficients of a function of direction (unit), by numerical integration.
 [[nodiscard]] SphericalHarmonics ProjectRadiance(
     const std::function<glm::vec3(const glm::vec3&)>& radiance);
 
-// The radiance that a white Lambertian surface of normal n reflects, as the polynomial c0 + c1 y +
-// c2 z + c3 x + c4 xy + c5 yz + c6 (3 z^2 - 1) + c7 xz + c8 (x^2 - y^2) of n. It is the sky's
-// radiance convolved with the clamped cosine over pi; the coefficients include the basis'
-// constants.
+// The radiance that a white Lambertian surface reflects, as a polynomial of its unit normal
+// (x, y, z): c0 + c1 y + c2 z + c3 x + c4 xy + c5 yz + c6 (3 z^2 - 1) + c7 xz + c8 (x^2 - y^2).
+// It is `radiance` convolved with max(cosine, 0) / pi. The coefficients c include the constant
+// factors of the basis functions; those of ProjectRadiance() do not.
 [[nodiscard]] SphericalHarmonics AmbientPolynomial(const SphericalHarmonics& radiance);
 
 // Evaluates the polynomial for a unit `normal`.

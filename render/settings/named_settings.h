@@ -17,8 +17,8 @@ struct SettingInfo {
   std::string_view name;  // "subsurface.method"
   std::string_view unit;  // "mm"; empty: none
   std::string_view help;
-  std::string allowed;        // "off, gaussians, separable, burley, preintegrated", "[0, 8]"
-  std::string default_value;  // as SetSetting() takes it
+  std::string allowed;        // valid values, for people: "off, pcf, pcss" or "[0, 8]"
+  std::string default_value;  // as text that SetSetting() accepts
   Kind kind = Kind::kNumber;
   float low = 0.0f;  // range of numbers, counts and colours
   float high = 0.0f;
@@ -34,10 +34,12 @@ struct SettingInfo {
 [[nodiscard]] Status SetSetting(std::string_view name, std::string_view value, Settings* settings);
 // Sets one setting from "name=value".
 [[nodiscard]] Status SetSetting(std::string_view assignment, Settings* settings);
-// The value as text that SetSetting() takes. Precondition: AllSettings() has the name.
+// The value of a setting as text that SetSetting() accepts. Precondition: AllSettings() lists
+// `name`.
 [[nodiscard]] std::string GetSetting(std::string_view name, const Settings& settings);
 
-// Checks every setting against its range. kInvalidArgument: `where` is "settings.<name>".
+// Checks every setting against its range. Error: kInvalidArgument for the first invalid one;
+// `where` is "settings.<name>".
 [[nodiscard]] Status CheckSettings(const Settings& settings);
 
 }  // namespace furrow::render

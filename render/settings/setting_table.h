@@ -13,9 +13,10 @@
 // this folder is derived from it. Private to render/settings/.
 namespace furrow::render {
 
+// In all fields, `of` returns the setting's member of a Settings.
 struct NumberField {
   float& (*of)(Settings&);
-  float low;
+  float low;  // the valid values: [low, high]
   float high;
   bool above_low = false;  // excludes `low` itself
 };
@@ -55,6 +56,7 @@ struct SettingEntry {
   std::variant<NumberField, CountField, SwitchField, ColourField, WordField, ViewsField> field;
 };
 
+// All settings, in the order of the members of Settings.
 [[nodiscard]] std::span<const SettingEntry> SettingTable();
 [[nodiscard]] const SettingEntry* FindSetting(std::string_view name);  // null: unknown name
 

@@ -15,7 +15,9 @@ namespace furrow::render {
 
 // How the slopes of wrinkle maps are added to the base normal (thesis 2.1 and 4.5).
 enum class NormalBlend { kPartialDerivative, kTangentSpace };
-enum class MaskMode { kRig, kDynamic, kTexture };  // as the rig says per region, or all of one kind
+// Which masks limit wrinkles: per region the kind that the rig states, skinning masks for all, or
+// painted masks for all.
+enum class MaskMode { kRig, kDynamic, kTexture };
 enum class Shading { kDiffuse, kSkin };
 enum class LightPreset { kStudio, kHard, kThesis };
 enum class ShadowFilter { kOff, kPcf, kPcss };
@@ -64,7 +66,9 @@ struct SubsurfaceSettings {
   float strength = 1.0f;  // share of the light that scatters, [0, 1]
   float gradient = 1.0f;  // beta of thesis 4.7: narrows the kernel on slanted surfaces, [0, 16]
   float depth_range_mm = 6.0f;  // largest depth difference of samples that mix, [0.1, 1000]
-  float mix = 0.5f;             // share of the albedo applied before scattering, [0, 1]
+  // Exponent: albedo^mix is applied before scattering and the rest after it. 0: all after, 1: all
+  // before; [0, 1].
+  float mix = 0.5f;
 };
 
 struct TranslucencySettings {
@@ -76,10 +80,10 @@ struct TranslucencySettings {
 
 struct SpecularSettings {
   SpecularMode mode = SpecularMode::kPhysical;
-  float strength = 1.0f;        // rho_s, [0, 4]; GPU Gems 3 uses 0.18 in mode gems
+  float strength = 1.0f;        // factor rho_s of the reflection, [0, 4]; GPU Gems 3 uses 0.18
   float roughness = 1.0f;       // scales the roughness m of every material, [0.25, 4]
   float second_lobe = 0.3f;     // share of a second lobe of roughness m / 2, [0, 1]
-  bool conserve_energy = true;  // subtract reflected light from the diffuse light (rho_dt)
+  bool conserve_energy = true;  // subtract reflected light from the diffuse light
   bool widen = true;            // enlarge m by the variance of the normal map's slopes
   bool table = false;           // look up the Beckmann term as in GPU Gems 3; off: compute it
 };
@@ -105,8 +109,9 @@ struct DetailSettings {
   // With several subjects, allowed surface error (RMS, pixels) of the simplified meshes of small
   // ones, [0, 8]. 0: always draw all triangles. A single subject always has all triangles.
   float error_pixels = 0.5f;
-  // Allowed error (RMS, shadow-map texels) of hair in shadow maps, [0, 4]; at most
-  // ShadowSettings::normal_offset_mm, which hides it. 0: the same mesh as the camera draws.
+  // Allowed error (RMS, shadow-map texels) of hair in shadow maps, [0, 4]. An error above
+  // ShadowSettings::normal_offset_mm, which hides smaller ones, is never allowed. 0: shadow maps
+  // use the mesh that the camera sees.
   float hair_shadow_texels = 0.5f;
 };
 

@@ -16,10 +16,11 @@ namespace furrow::render {
 // type), kInvalidArgument (value out of range). `where` is "file:line"; the message names the
 // setting.
 [[nodiscard]] Status LoadSettings(const std::filesystem::path& path, Settings* settings);
-// The same for text. `source_name` stands for the file in errors.
+// Reads TOML text as LoadSettings() reads a file. `source_name` replaces the file name in errors.
 [[nodiscard]] Status ParseSettings(std::string_view toml, std::string_view source_name,
                                    Settings* settings);
-// All settings as TOML, with help, range and unit as comments. ParseSettings() reads it back equal.
+// Writes all settings as TOML, with help, range and unit as comments. ParseSettings() reads back
+// equal settings.
 [[nodiscard]] std::string SettingsToToml(const Settings& settings);
 
 }  // namespace furrow::render

@@ -13,10 +13,10 @@ namespace furrow::render {
 // says.
 enum class View {
   kFinal,
-  kNormal,
-  kMaskDynamic,
-  kMaskTexture,
-  kWeights,
+  kNormal,       // 0.5 n + 0.5 in red, green and blue
+  kMaskDynamic,  // masks by skin weight, in the colours of the wrinkle maps
+  kMaskTexture,  // painted masks, in one colour per region
+  kWeights,      // wrinkle weight times mask, in the colours of the wrinkle maps
   kWireframe,
   kShadow,        // light that reaches the surface: the three lights in red, green and blue
   kIrradiance,    // diffuse light on skin before scattering, times albedo^mix

@@ -21,7 +21,7 @@ inline constexpr int kNumSkinGaussians = 6;
 // the fit to a multipole model of three-layered skin by d'Eon and Luebke (GPU Gems 3, chapter 14,
 // table 14-1).
 using SkinProfile = std::array<SkinGaussian, kNumSkinGaussians>;
-[[nodiscard]] const SkinProfile& HumanSkin();
+[[nodiscard]] const SkinProfile& HumanSkin();  // lives until the process ends
 
 // R(r): share of light per mm^2 that leaves at distance `r` (mm) from the point of entry.
 [[nodiscard]] glm::vec3 RadialProfile(const SkinProfile& profile, double r);
@@ -43,11 +43,13 @@ using SkinProfile = std::array<SkinGaussian, kNumSkinGaussians>;
 // Burley's normalised diffusion (Christensen and Burley 2015), R(r) = (exp(-r/d) + exp(-r/3d)) / (8
 // pi d r); `d` and `r` in mm.
 [[nodiscard]] double BurleyProfile(double d, double r);
-// Its share within distance r: 1 - exp(-r/d)/4 - 3 exp(-r/3d)/4.
+// Share of light of Burley's profile that leaves within distance `r`: 1 - exp(-r/d)/4 -
+// 3 exp(-r/3d)/4, in [0, 1).
 [[nodiscard]] double BurleyShare(double d, double r);
-// Inverse of BurleyShare for `share` in [0, 1), mm (Golubev 2018).
+// The distance r in mm with BurleyShare(d, r) = `share`, in [0, 1) (Golubev 2018).
 [[nodiscard]] double BurleyRadius(double d, double share);
-// Fits Burley's profile: the `d` of each channel by least squares of the shares over r, mm.
+// Fits Burley's profile to `profile`: the `d` in mm of each channel that minimises the squared
+// difference of the shares of light within r, over all r.
 [[nodiscard]] glm::vec3 FitBurley(const SkinProfile& profile);
 
 }  // namespace furrow::render

@@ -19,14 +19,15 @@ struct DiscTap {
 inline constexpr int kMaxDiscTaps = 64;
 
 // Burley's profile as a spiral of taps, starting at the centre. Radii follow by importance sampling
-// of the widest channel, angles by the golden angle. A tap's weight is each channel's share of its
-// ring. `d`: of each channel, mm. `taps`: clamped to [1, kMaxDiscTaps].
+// of the widest channel, angles by the golden angle. A tap's weight is each channel's share of the
+// light in the tap's ring. `d`: parameter of BurleyProfile() per channel, mm. `taps`: clamped to
+// [1, kMaxDiscTaps].
 [[nodiscard]] std::vector<DiscTap> BurleyDisc(const glm::vec3& d, int taps);
 
-// Light that leaves a sphere of `curvature` (1 / radius, 1/mm, at least 0). `cosine`: of the angle
-// between the surface normal and the direction of a distant light of irradiance 1 at normal
-// incidence. The profile is integrated numerically over the sphere by chord length and normalised,
-// as Penner and Borshukov (2011) do on a ring.
+// The diffuse light that leaves a point of a sphere of skin under a distant light of irradiance 1
+// at normal incidence. `cosine`: between the normal at the point and the direction to the light.
+// `curvature`: 1 / radius in 1/mm, at least 0. The profile is integrated numerically over the
+// sphere by chord length and normalised, as Penner and Borshukov (2011) do on a ring.
 [[nodiscard]] glm::vec3 SphereResponse(const SkinProfile& profile, double cosine, double curvature);
 
 // SphereResponse() as a table for the method preintegrated: `size` x `size`, columns are cosines

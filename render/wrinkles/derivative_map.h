@@ -7,7 +7,7 @@
 
 namespace furrow::render {
 
-// Largest absolute slope. Texels of a normal map that point to or below the horizon have none.
+// Largest absolute slope, of a surface 3.6 degrees from vertical; steeper slopes are clamped.
 inline constexpr float kMaxDerivative = 16.0f;
 
 // A map of two floats per texel, rows from the top: the derivatives n.xy / n.z of the tangent-space
@@ -29,16 +29,17 @@ struct DerivativeMap {
 [[nodiscard]] DerivativeMap DerivativesFromDerivativeMap(const character::Picture& picture,
                                                          float scale = 1.0f);
 
-// Four floats per texel: the derivative and its squares. The mips of the squares give the variance
-// of the derivative (LEAN mapping, Olano and Baker 2010).
+// Converts a map to four floats per texel: the derivatives x and y and their squares. The mip
+// levels of the squares give the variance of the derivatives (LEAN mapping, Olano and Baker 2010).
 [[nodiscard]] std::vector<float> WithMoments(const DerivativeMap& map);
 
-// Resamples bilinearly, with texel centres at halves and edges clamped, so that all maps of an
-// array have the same size.
+// Resamples a map bilinearly to `width` x `height` texels, so that all maps of a texture array have
+// the same size. Texel centres lie at halves; coordinates are clamped at the edges.
 [[nodiscard]] DerivativeMap Resample(const DerivativeMap& map, int width, int height);
 
-// One channel: [0, 1] for integer pictures of any depth, the value itself for float pictures. A
-// missing colour channel is 0, a missing alpha is 1.
+// One channel (from 0) of the texel in column `x` and row `y`, both within the picture: in [0, 1]
+// for integer pictures, the stored value for float pictures. A missing colour channel is 0, a
+// missing alpha is 1.
 [[nodiscard]] float Texel(const character::Picture& picture, int x, int y, int channel);
 
 // Converts any picture to 8-bit RGBA. Grey is copied to all colour channels; a missing alpha is

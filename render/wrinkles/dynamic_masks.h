@@ -17,14 +17,15 @@ namespace furrow::render {
 // A mask that the vertex shader evaluates. Mirrors DynamicMask of
 // shaders/wrinkles/wrinkles_vert.glsl (std430).
 struct DynamicMaskBlock {
-  std::int32_t slot = 0;     // position of its map in the active list
-  std::int32_t column = -1;  // column of the joints' influences; -1: a sliding mask
-  std::int32_t lambda = 0;
-  float smooth_width = 0.25f;
-  glm::vec4 origin{0.0f};   // w: the wrinkle weight
-  glm::vec4 towards{0.0f};  // w: cosine at which the mask reaches 0
-  glm::vec4 bone{0.0f};     // w: 1 / bone length, 1/m
-  glm::vec4 extent{0.0f};   // above, below, radius
+  std::int32_t slot = 0;       // position of its map in the active list
+  std::int32_t column = -1;    // column of the joints' influences; -1: a sliding mask
+  std::int32_t lambda = 0;     // wrinkle::LambdaMode, for columns
+  float smooth_width = 0.25f;  // of LambdaMode::kSmooth
+  // Sliding masks only; model space, rest pose.
+  glm::vec4 origin{0.0f};   // xyz: the ball joint, metres; w: the wrinkle weight
+  glm::vec4 towards{0.0f};  // xyz: unit direction of the bend; w: cosine at which the mask is 0
+  glm::vec4 bone{0.0f};     // xyz: unit direction of the bone; w: 1 / bone length, 1/m
+  glm::vec4 extent{0.0f};   // Mask's above, below and radius, in bone lengths
 };
 static_assert(sizeof(DynamicMaskBlock) == 80);
 
@@ -32,11 +33,11 @@ static_assert(sizeof(DynamicMaskBlock) == 80);
 [[nodiscard]] std::vector<std::uint8_t> DynamicMasksBlock(std::span<const DynamicMaskBlock> masks,
                                                           int num_columns);
 
-// A joint that can raise a column of dynamic masks.
+// A joint that can raise a column of dynamic masks above 0.
 struct SkinnedShare {
   int joint = 0;
-  int column = 0;
-  wrinkle::DynamicMask mask;
+  int column = 0;             // of DynamicMasks::influences()
+  wrinkle::DynamicMask mask;  // the column's map and lambda
 };
 
 // The vertex masks of one subject: masks by skin weight, and masks that slide around ball joints.
@@ -50,9 +51,10 @@ class DynamicMasks {
   // binding; both bindings have the same names.
   void Update(MaskMode mode, std::span<const float> values, std::span<const float> weights);
 
-  // Appends the masks of a rig's wrinkle map that are above 0. Their slot is set to the map.
+  // Appends the masks of wrinkle map `map` of the rig that are above 0 since the last Update().
+  // Their slot is set to `map`.
   void Append(int map, std::vector<DynamicMaskBlock>* masks) const;
-  // num_joints x num_columns(), joint-major.
+  // How strongly each joint raises each column, in [0, 1]: num_joints x num_columns(), joint-major.
   [[nodiscard]] std::span<const float> influences() const { return influences_; }
   [[nodiscard]] int num_columns() const { return static_cast<int>(columns_.size()); }
   // All (joint, column) pairs that can be above 0 in some pose.

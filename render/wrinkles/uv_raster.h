@@ -11,7 +11,7 @@
 
 namespace furrow::render {
 
-using UvTriangle = std::array<glm::vec2, 3>;
+using UvTriangle = std::array<glm::vec2, 3>;  // the UVs of a triangle's corners
 
 // A texel near a triangle, and the point of the triangle nearest to the texel's centre.
 struct UvTexel {
@@ -20,14 +20,14 @@ struct UvTexel {
   float distance_squared = 0.0f;  // squared distance in texels; 0: the centre is inside
 };
 
-// Calls `visit` for each texel with its centre within `reach` texels of a triangle. The texture has
-// `size` texels and repeats.
+// Calls `visit` for each texel with its centre within `reach` texels of the triangle. The texture
+// has `size` texels and repeats outside [0, 1].
 void ForTexels(const UvTriangle& triangle, glm::ivec2 size, float reach,
                const std::function<void(const UvTexel&)>& visit);
 
-// Returns false if the triangles must overlap in the texture because one of them, or their sum,
-// covers too much of it. Files can contain such triangles. Also false for corners that are not
-// finite.
+// Returns false if one of the triangles, or all together, cover so much of the texture that they
+// must overlap, which would take ForTexels() too long, or if a corner is not finite. Files can
+// contain such triangles.
 [[nodiscard]] bool IsAtlas(std::span<const UvTriangle> triangles);
 
 }  // namespace furrow::render

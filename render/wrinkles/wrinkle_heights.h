@@ -17,8 +17,8 @@ struct WrinkleHeights {
   float max_mm = 0.0f;      // largest displacement by one map of weight 1
 };
 
-// Needs a current context. Maps with missing pictures (Character::missing_rig_pictures) are left
-// out.
+// Makes the texture array. Needs a current context. Maps with missing pictures
+// (Character::missing_rig_pictures) have no layer.
 [[nodiscard]] WrinkleHeights MakeWrinkleHeights(const character::Character& character);
 
 }  // namespace furrow::render

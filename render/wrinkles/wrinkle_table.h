@@ -26,10 +26,10 @@ inline constexpr int kNumWrinkleGroups = 2;  // kNone has no table
 // A wrinkle map that the current frame needs. Mirrors ActiveMap of shaders/wrinkles/wrinkles.glsl
 // (std140).
 struct ActiveMap {
-  glm::vec4 colour{1.0f};  // rgb: colour in debug views; a: WrinkleMap::colour_scale
-  std::int32_t layer = 0;
-  std::int32_t map = 0;
-  float amplitude = 1.0f;
+  glm::vec4 colour{1.0f};          // rgb: colour in debug views; a: WrinkleMap::colour_scale
+  std::int32_t layer = 0;          // of the derivative array
+  std::int32_t map = 0;            // index in Rig::wrinkle_maps
+  float amplitude = 1.0f;          // factor of the map's slopes
   std::int32_t height_layer = -1;  // -1: the map has no heights
 };
 static_assert(sizeof(ActiveMap) == 32);
@@ -71,6 +71,7 @@ struct WrinkleLayout {
 // mask.
 enum class WrinklePart { kAll, kDynamic, kSliding };
 inline constexpr int kNumWrinkleParts = 3;
+// What the shaders need for a part of a table.
 struct WrinkleNeeds {
   std::size_t num_maps = 0;  // the first maps of the table
   bool uses_texture = false;
@@ -99,6 +100,7 @@ struct PartMasks {
 [[nodiscard]] std::vector<glm::vec4> SubjectWeights(const WrinkleTable& table, int num_maps,
                                                     const WrinkleLayout& layout);
 
+// The group of a material of `kind` on this character.
 [[nodiscard]] WrinkleGroup GroupOf(const character::Character& character,
                                    character::Material::Kind kind);
 
@@ -114,8 +116,8 @@ class WrinkleTables {
   [[nodiscard]] static Result<std::unique_ptr<WrinkleTables>> Create(
       const character::Character& character, WrinkleLayout layout);
 
-  // kInvalidArgument: a span of a subject is shorter than its binding's list of names; `where` is
-  // the field.
+  // Replaces the tables by those of a request. Error: kInvalidArgument (a span of a subject is
+  // shorter than its binding's list of names); `where` is the field.
   [[nodiscard]] Status Update(const FrameRequest& request);
 
   [[nodiscard]] const WrinkleTable& table(WrinkleGroup group) const {
