@@ -17,6 +17,7 @@ namespace furrow::wrinkle {
   return std::string(list) + "[" + std::to_string(i) + "]";
 }
 
+// kInvalidArgument for the field at the path `where`.
 [[nodiscard]] inline Status InvalidField(std::string what, std::string where,
                                          std::string todo = {}) {
   return {StatusCode::kInvalidArgument, std::move(what), std::move(where), std::move(todo)};

@@ -11,8 +11,12 @@
 // skeleton. rig/rig_file.h reads it from JSON. RigBinding (solver/rig_binding.h) binds it.
 namespace furrow::wrinkle {
 
-enum class Modulation { kLinear, kCosine, kCubic };   // 4.3, 4.4
-enum class Combine { kMax, kSum, kMean };             // the sum is clamped; gains weight the mean
+enum class Modulation { kLinear, kCosine, kCubic };  // thesis 4.3, 4.4
+enum class Combine {
+  kMax,
+  kSum,
+  kMean
+};  // of gain * value; the sum is clamped, gains weight the mean
 enum class LambdaMode { kSmooth, kBinary, kLinear };  // 4.2
 
 // The driver values that feed one wrinkle map of a region.
@@ -26,6 +30,7 @@ struct Feed {
   std::vector<Source> sources;
 };
 
+// Where a region's wrinkles are drawn.
 struct Mask {
   // kTexture: painted. kSkinning: the vertices that the driving joints move. kSliding: around a
   // ball joint, on the side it bends to (sliding_mask.h).
@@ -43,6 +48,7 @@ struct Mask {
   float radius = 0.5f;            // [0.001, 10]: reach from the bone's axis
 };
 
+// A part of the surface whose wrinkles have common weights.
 struct Region {
   std::string name;
   Mask mask;
@@ -73,6 +79,7 @@ struct WrinkleMap {
 // means (2 t - 1) * scale. A float picture (EXR) holds the derivative or the millimetres
 // themselves, and the scale is ignored.
 
+// Smoothing of driver values over time: One-Euro and a slew limit.
 struct Filter {
   bool enabled = true;
   float min_cutoff_hz = 4.0f;  // One-Euro (Casiez, Roussel and Vogel 2012)

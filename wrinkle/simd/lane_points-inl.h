@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Joints and points of one pose, one chain per lane: the same results as JointChains::Evaluate().
+// Computes points of one pose, one chain of joints per SIMD lane, with the results of
+// JointChains::Evaluate() to the bit.
 #if defined(FURROW_WRINKLE_LANE_POINTS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FURROW_WRINKLE_LANE_POINTS_INL_H_
 #undef FURROW_WRINKLE_LANE_POINTS_INL_H_
@@ -32,11 +33,13 @@ struct LanePose {
   const float* numbers;
 };
 
+// The translation and rotation of one joint per lane.
 struct JointLanes {
   Float3 translation;
   FloatQuat rotation;
 };
 
+// These load a part of the joint at each lane's place in `joints` (JointStep::joints).
 // The fourth column is the rotation's x, which is ignored.
 HWY_INLINE Float3 LoadTranslation(const float* numbers, const std::int32_t* joints) {
   const Columns columns = LoadColumns(numbers, joints);

@@ -30,8 +30,8 @@ struct PointRow {
   FloatRow offset[3];
   FloatRow rest[3];              // position in the rest pose; only pose drivers set it
   std::uint32_t first_step = 0;  // into PointPlan::steps
-  std::uint16_t num_up = 0;
-  std::uint16_t num_down = 0;
+  std::uint16_t num_up = 0;      // steps towards the root,
+  std::uint16_t num_down = 0;    // and then steps away from it
   bool is_origin = false;  // every point is its joint's origin: the first step needs no rotation
 };
 
@@ -67,8 +67,9 @@ struct SinglePoints : Block {
 
 // What drivers read besides the joints.
 struct DriverInput {
-  std::size_t num_values = 0;  // level of detail: drivers from this value on are skipped
-  std::span<const float> blend_shapes;
+  // Level of detail: blocks that begin at this driver value or later are skipped.
+  std::size_t num_values = 0;
+  std::span<const float> blend_shapes;  // the stream's coefficients
 };
 
 }  // namespace furrow::wrinkle

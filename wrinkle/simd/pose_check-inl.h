@@ -17,7 +17,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace furrow::wrinkle::HWY_NAMESPACE {
 
-// AllFinite() of finite.h.
+// Returns true if no number is NaN or infinite.
 HWY_INLINE bool AllFiniteLanes(std::span<const float> numbers) {
   const Floats d;
   // 0 times NaN or infinity is NaN, and NaN stays in the sum.
@@ -30,7 +30,7 @@ HWY_INLINE bool AllFiniteLanes(std::span<const float> numbers) {
 }
 
 struct PoseCheck {
-  bool is_finite;
+  bool is_finite;  // no number of the pose is NaN or infinite
   bool is_scaled;  // some scale is not exactly 1
 };
 

@@ -82,7 +82,7 @@ using JointRoles = std::vector<JointRole>;
 // The role with exactly this name; nullopt if there is none.
 [[nodiscard]] std::optional<JointRole> ParseJointRole(std::string_view name);
 
-// The role above it in VRM's tree; kNone for the hips.
+// The role above `role` in VRM's tree; kNone for the hips and kNone.
 [[nodiscard]] JointRole ParentOf(JointRole role);
 // The same role on the other side; roles in the middle of the body are their own mirror.
 [[nodiscard]] JointRole MirrorOf(JointRole role);

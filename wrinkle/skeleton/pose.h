@@ -22,6 +22,7 @@ struct LocalPose {
   std::vector<Transform> joints;    // num_joints, in the skeleton's order
   std::vector<float> blend_shapes;  // in the stream's order; empty if the stream has none
 
+  // Sets the joints to the skeleton's rest pose and the coefficients to 0.
   void SetRest(const Skeleton& skeleton);
 };
 

@@ -55,7 +55,9 @@ class Retarget {
   // The source joints without any effect.
   [[nodiscard]] std::span<const std::string> unmatched_source() const { return unmatched_; }
 
-  // `source` num_joints of the source, `target` of the target. Does not allocate.
+  // Writes the target's local pose to `target`. `source`: the source's local pose. Each has at
+  // least num_joints of its skeleton; kSizeMismatch otherwise. kNonFinite: `target` is unchanged.
+  // Does not allocate.
   [[nodiscard]] JobStatus Run(std::span<const Transform> source, std::span<Transform> target) const;
 
  private:

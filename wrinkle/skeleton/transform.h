@@ -21,6 +21,7 @@ struct Transform {
   glm::vec3 scale{1.0f};
 };
 
+// The matrix T * R * S, which maps the joint's space to its parent's space.
 [[nodiscard]] glm::mat4 ToMatrix(const Transform& transform);
 
 [[nodiscard]] inline bool AllFinite(std::span<const Transform> transforms) {

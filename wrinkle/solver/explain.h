@@ -38,7 +38,8 @@ struct Explanation : DriverExplanation {
   std::vector<Weight> weights;  // in the order of RigBinding::weight_names()
 };
 
-// Explains `pose` by itself, without filter and history. Leaves `explanation` unchanged on failure.
+// Explains `pose` by itself, without filter and history. Returns the failures of
+// SubjectSolver::Update(), and then leaves `explanation` unchanged.
 [[nodiscard]] JobStatus Explain(const RigBinding& binding, const LocalPose& pose,
                                 Explanation* explanation);
 

@@ -18,9 +18,11 @@ namespace furrow::wrinkle {
 //   influences on a map counts.
 struct JointInfluenceJob {
   const RigBinding* binding = nullptr;
-  std::span<const float> driver_values;  // filtered
+  std::span<const float> driver_values;  // SubjectSolver::filtered_values()
   std::span<float> influences;
 
+  // kNullPointer or kSizeMismatch; kNonFinite for a driver value. Run() validates first, and writes
+  // nothing on failure.
   [[nodiscard]] JobStatus Validate() const;
   [[nodiscard]] JobStatus Run() const;
 };

@@ -31,8 +31,10 @@ class RigBinding {
   [[nodiscard]] std::span<const std::string> weight_names() const;
   // "<driver>.<value>", in the order of the rig's drivers.
   [[nodiscard]] std::span<const std::string> driver_value_names() const;
-  // One per wrinkle map and lambda that skinning masks use, in the order of the rig's regions.
+  // The columns of JointInfluenceJob: one per wrinkle map and lambda that skinning masks use, in
+  // the order of the rig's regions.
   [[nodiscard]] std::span<const DynamicMask> dynamic_masks() const;
+  // Names of the rig that the skeleton or the stream lacks, if BindOptions allow that.
   [[nodiscard]] std::span<const std::string> missing_joints() const;
   [[nodiscard]] std::span<const std::string> missing_blend_shapes() const;
   // Drivers that bind but cannot do what was probably meant: a reference pose that moves none of

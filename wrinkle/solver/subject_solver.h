@@ -54,10 +54,12 @@ class SubjectSolver {
   // currently receives no poses, new drivers rest until it does. Returns the statuses of Update().
   [[nodiscard]] JobStatus SetLevel(const LocalPose& pose, std::size_t num_drivers);
 
+  // The result of the last call, in [0, 1] and in the order of RigBinding::weight_names().
   [[nodiscard]] std::span<const float> wrinkle_weights() const {
     return std::span(weights_).first(binding_->weight_names().size());
   }
-  // Driver values before the filter and after it.
+  // Driver values before the filter and after it, in [0, 1] and in the order of
+  // RigBinding::driver_value_names().
   [[nodiscard]] std::span<const float> driver_values() const {
     const RowList& values = is_apart_ ? raw_values_ : filter_context_.raw;
     return std::span(values).first(binding_->driver_value_names().size());

@@ -24,6 +24,7 @@ enum class FilterMove {
   kStart,   // the first input, or a disabled filter: the input passes unchanged
   kFollow,  // One-Euro and the slew limit
 };
+// How the filter treats the input `dt` seconds after the last one.
 [[nodiscard]] FilterMove MoveOn(const Filter& filter, const FilterContext& context, double dt);
 
 // Advances the filter by `dt` seconds (finite, >= 0) without input: holds for Filter::hold_seconds,

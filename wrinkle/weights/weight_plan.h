@@ -40,6 +40,7 @@ struct WeightPlan {
   }  // modulated weights and zeros
 };
 
+// Lays `table` out in blocks of sixteen weights.
 [[nodiscard]] WeightPlan MakeWeightPlan(const WeightTable& table);
 
 }  // namespace furrow::wrinkle

@@ -12,8 +12,10 @@
 namespace furrow::wrinkle {
 
 inline constexpr float kLeastProjection = 1e-6f;  // shorter projections have no direction
-inline constexpr float kThesisThreshold = 0.75f;  // cosine of BallMode::kThesis
+// BallMode::kThesis: a bend goes to front or back if the cosine of its direction exceeds this.
+inline constexpr float kThesisThreshold = 0.75f;
 
+// Up to sixteen ball drivers, one per lane; the fields are those of BallDriverSet::Entry.
 struct BallBlock : BoneBlock {
   FloatRow straight[3];
   IntRow has_straight;  // -1; 0: the upper bone's direction counts as straight
@@ -35,7 +37,7 @@ class BallDriverSet {
 
   [[nodiscard]] Status Bind(const std::string& name, const BallDriver& driver, int first_value,
                             BindContext* context);
-  // After the last Bind().
+  // Lays the drivers out in blocks. Call it once, after the last Bind().
   void Plan(LanePlanner* planner);
   // Adds the angle of the bend and its direction, from forward towards the subject's right.
   void Explain(const SolvedPose& pose, DriverExplanation* explanation) const;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ball drivers, one per lane: the bend of thesis 4.6, split by direction (docs/ALGORITHM.md).
+// Evaluates ball drivers, one driver per SIMD lane: how far the joint is bent (thesis 4.6), split
+// by direction (docs/ALGORITHM.md).
 #if defined(FURROW_WRINKLE_BALL_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FURROW_WRINKLE_BALL_LANES_INL_H_
 #undef FURROW_WRINKLE_BALL_LANES_INL_H_
@@ -13,9 +14,10 @@
 HWY_BEFORE_NAMESPACE();
 namespace furrow::wrinkle::HWY_NAMESPACE {
 
-// Stores the shares of a bend: front, back, left, right. `forward` and `right` are the lower bone's
-// projection across the straight direction; only psi = atan2(right, forward) counts. All shares are
-// 0 if the projection has no length.
+// Stores the shares of `bend` (in [0, 1]) to front, back, left and right in four rows from `values`
+// on. (`forward`, `right`) is the lower bone's projection onto the plane across the straight
+// direction. Only its angle psi = atan2(right, forward) counts. All shares are 0 if the projection
+// is shorter than kLeastProjection.
 //
 // - kSmooth: bend times the squares of the positive parts of cos(psi), -cos(psi), -sin(psi) and
 //   sin(psi). They sum to `bend` and are C1 in psi.
@@ -46,6 +48,10 @@ inline void StoreShares(BallMode mode, Float bend, Float forward, Float right, f
   StoreLanes(hn::IfThenZeroElse(is_left, beside), values + 3 * kRowLanes);
 }
 
+// Writes the four values of each driver of `drivers` to the scratch memory `rows` (kRowLanes floats
+// per row): row b.first_row + i of block b holds value i (StoreShares()), lane l that of its driver
+// l. The straight direction is the stated one, or that of the upper bone. Values are 0 if a bone
+// that counts has no length.
 template <bool kScaled>
 void EvaluateDrivers(const BallDriverSet& drivers, const PointPlan& plan, LanePose<kScaled> pose,
                      const DriverInput& input, float* rows) {

@@ -12,8 +12,9 @@
 
 namespace furrow::wrinkle {
 
+// Up to sixteen blend-shape drivers, one per lane.
 struct BlendShapeBlock : Block {
-  IntRow blend_shape;
+  IntRow blend_shape;  // index into the stream's coefficients
   FloatRow neutral;
   FloatRow range;  // full - neutral
 };
@@ -31,7 +32,7 @@ class BlendShapeDriverSet {
 
   [[nodiscard]] Status Bind(const std::string& name, const BlendShapeDriver& driver,
                             int first_value, BindContext* context);
-  // After the last Bind().
+  // Lays the drivers out in blocks. Call it once, after the last Bind().
   void Plan(LanePlanner* planner);
   // Adds nothing: a coefficient has no geometry.
   void Explain(const SolvedPose&, DriverExplanation*) const {}

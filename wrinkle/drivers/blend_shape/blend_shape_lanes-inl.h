@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Blend-shape drivers, one per lane.
+// Evaluates blend-shape drivers, one driver per SIMD lane.
 #if defined(FURROW_WRINKLE_BLEND_SHAPE_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FURROW_WRINKLE_BLEND_SHAPE_LANES_INL_H_
 #undef FURROW_WRINKLE_BLEND_SHAPE_LANES_INL_H_
@@ -13,7 +13,12 @@
 HWY_BEFORE_NAMESPACE();
 namespace furrow::wrinkle::HWY_NAMESPACE {
 
-// Coefficients past the end of the input count as 0.
+// Writes the value of each driver of `drivers` to the scratch memory `rows`:
+//   value = clamp((coefficient - neutral) / (full - neutral), 0, 1)
+//
+// `rows`: kRowLanes floats per row. Block b writes row b.first_row; lane l holds its driver l.
+// Coefficients past the end of input.blend_shapes count as 0. The kernel calls EvaluateDrivers() of
+// every kind alike; points and pose are unused because blend shapes read no joints.
 template <bool kScaled>
 void EvaluateDrivers(const BlendShapeDriverSet& drivers, const PointPlan&, LanePose<kScaled>,
                      const DriverInput& input, float* rows) {

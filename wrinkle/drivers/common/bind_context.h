@@ -37,8 +37,9 @@ class BindContext {
   // describe the reference in errors: "driver 'x'", "joint".
   [[nodiscard]] Result<int> Joint(std::string_view owner, std::string_view field,
                                   const std::string& name);
-  // The index of a blend shape, matched without case; -1 if it is missing and may be. A blend shape
-  // may also be missing if some driver reads joints and the stream has no blend shapes at all.
+  // The index of a blend shape, matched without case. -1 if it is missing, and BindOptions allow
+  // that, or some driver reads joints and the stream has no blend shapes at all. Otherwise a
+  // missing one is kNotFound.
   [[nodiscard]] Result<int> BlendShape(std::string_view owner, const std::string& name);
   // Reports a driver that cannot work on this skeleton, for example a bone without length: an
   // error, or Ok and a warning if BindOptions allow missing joints. The driver then rests at 0.

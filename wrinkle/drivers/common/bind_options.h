@@ -7,6 +7,7 @@
 
 namespace furrow::wrinkle {
 
+// How RigBinding::Create() treats names that the skeleton lacks.
 struct BindOptions {
   // false: a joint or blend shape that the skeleton lacks is an error. true (live streams): its
   // driver rests at 0 and RigBinding lists it as missing.

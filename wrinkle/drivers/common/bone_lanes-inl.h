@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bones and the bend of hinge and ball drivers (thesis 4.6), one driver per lane.
+// Computes the bones and the bend of hinge and ball drivers (thesis 4.6), one driver per SIMD lane.
 #if defined(FURROW_WRINKLE_BONE_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FURROW_WRINKLE_BONE_LANES_INL_H_
 #undef FURROW_WRINKLE_BONE_LANES_INL_H_
@@ -30,7 +30,8 @@ HWY_INLINE LaneDirection DirectionOf(Float3 v) {
           has_length};
 }
 
-// The upper and the lower bone (BonePair).
+// Unit directions of the upper bone (parent's origin to joint's origin) and the lower bone (joint's
+// origin to its end), in the parent's space.
 struct BoneLanes {
   LaneDirection upper, lower;
 };
@@ -42,8 +43,9 @@ HWY_INLINE BoneLanes EvaluateBones(const PointPlan& plan, const BoneBlock& block
   return {DirectionOf(joint), DirectionOf(end - joint)};
 }
 
-// Thesis 4.6: how far a joint is bent, in [0, 1], from the cosine between its bones. Straight (1)
-// gives 0; fully flexed (cos(180 - beta)) gives 1.
+// Thesis 4.6: how far a joint is bent, clamp((1 - cosine) * bend_scale, 0, 1). `cosine`: between
+// the directions of its bones; 1 (straight) gives 0, cos(180 - beta) (fully flexed) gives 1.
+// `bend_scale`: BendScale(beta).
 HWY_INLINE Float Bend(Float cosine, Float bend_scale) {
   return Saturate(hn::Mul(hn::Sub(Splat(1.0f), cosine), bend_scale));
 }

@@ -34,9 +34,10 @@ struct BonePair {
   [[nodiscard]] glm::vec3 Lower(std::span<const Transform> local, const JointChains& chains) const;
 };
 
-// Finds the joints of a hinge or ball driver. `usable` becomes false if a joint is missing and may
-// be, or if the driver cannot work on this skeleton (BindContext::Unusable()). An empty `end` means
-// the joint's tail. `need_upper`: the upper bone must have a length.
+// Finds the joints of a hinge or ball driver and fills `pair`. An empty `end` means the joint's
+// tail. `need_upper`: the upper bone must have a length. If BindOptions allow missing joints, sets
+// `usable` to false and returns Ok where it otherwise fails: a joint is missing, or the driver
+// cannot work on this skeleton.
 [[nodiscard]] Status BindBonePair(std::string_view owner, const std::string& parent,
                                   const std::string& joint, const std::string& end, bool need_upper,
                                   BindContext* context, BonePair* pair, bool* usable);
@@ -48,7 +49,7 @@ struct BoneEntry {
   float bend_scale = 0.0f;  // BendScale()
 };
 
-// Up to sixteen of them in lanes.
+// Up to sixteen hinges or balls, one per lane.
 struct BoneBlock : Block {
   std::uint32_t joint_point = 0;  // into PointPlan::points
   std::uint32_t end_point = 0;
@@ -59,7 +60,8 @@ struct BoneBlock : Block {
 void PlanBones(std::span<const BoneEntry> entries, std::size_t num_values, LanePlanner* planner,
                BoneBlock* block);
 
-// The length for InBlocks(): chains of one length share a block.
+// Returns the function `length` for InBlocks(): it sorts drivers by the number of joints in the
+// chain of their end point, so that chains of equal length share a block.
 template <class Entry>
 auto LengthOfBones(std::span<const Entry> entries, const JointChains& chains) {
   return [entries, &chains](int i) {

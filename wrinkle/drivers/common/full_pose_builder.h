@@ -43,9 +43,10 @@ class FullPoseBuilder {
   [[nodiscard]] ReferencePose Turned(const Limb& limb, const glm::vec3& target,
                                      const glm::vec3& side) const;
 
+  // Make errors that name the driver: kInvalidArgument with a reason, kNotFound for a joint, and
+  // kUnsupported for kinds that no pose of joints raises.
   [[nodiscard]] Status CannotPose(const std::string& why) const;
   [[nodiscard]] Status MissingJoint(const std::string& joint) const;
-  // For kinds that no pose of joints raises.
   [[nodiscard]] Status Unsupported() const;
 
  private:

@@ -14,6 +14,7 @@ namespace furrow::wrinkle {
 inline constexpr float kLeastSine = 1e-6f;     // bones closer to parallel define no plane
 inline constexpr float kFullAlongAxis = 0.5f;  // cosine to the axis above which a bend counts fully
 
+// Up to sixteen hinge drivers, one per lane.
 struct HingeBlock : BoneBlock {
   FloatRow axis[3];
   IntRow has_axis;  // -1 or 0
@@ -28,7 +29,7 @@ class HingeDriverSet {
 
   [[nodiscard]] Status Bind(const std::string& name, const HingeDriver& driver, int first_value,
                             BindContext* context);
-  // After the last Bind().
+  // Lays the drivers out in blocks. Call it once, after the last Bind().
   void Plan(LanePlanner* planner);
   // Adds the angle between the bones: 0 when straight, negative for a turn against the axis.
   void Explain(const SolvedPose& pose, DriverExplanation* explanation) const;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hinge drivers, one per lane: thesis 4.6 with a sign (docs/ALGORITHM.md).
+// Evaluates hinge drivers, one driver per SIMD lane: how far the joint is bent (thesis 4.6), with a
+// sign (docs/ALGORITHM.md).
 #if defined(FURROW_WRINKLE_HINGE_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FURROW_WRINKLE_HINGE_LANES_INL_H_
 #undef FURROW_WRINKLE_HINGE_LANES_INL_H_
@@ -13,8 +14,14 @@
 HWY_BEFORE_NAMESPACE();
 namespace furrow::wrinkle::HWY_NAMESPACE {
 
-// The bend counts fully while its plane is within 60 degrees of the hinge's, and fades from there
-// to 90 degrees. Hyperextension gives 0. Without an axis, bending either way counts.
+// Writes the values of each driver of `drivers` to the scratch memory `rows` (kRowLanes floats per
+// row), lane l for driver l of block b: row b.first_row is "flexed", the next is "extended" =
+// 1 - flexed.
+//
+// flexed = Bend() of the two bones, times smoothstep(0, 0.5, cosine between the axis and the normal
+// of the bones' plane): it counts fully up to 60 degrees from the hinge's plane and fades to 0 at
+// 90 degrees, so hyperextension gives 0. Without an axis, or for parallel bones, the factor is 1. A
+// bone without length gives flexed = 0.
 template <bool kScaled>
 void EvaluateDrivers(const HingeDriverSet& drivers, const PointPlan& plan, LanePose<kScaled> pose,
                      const DriverInput& input, float* rows) {

@@ -36,14 +36,16 @@ class PoseDriverSet {
   // Adds a driver with values that begin at `first_value` of the binding's driver values.
   [[nodiscard]] Status Bind(const std::string& name, const PoseDriver& driver, int first_value,
                             BindContext* context);
-  // After the last Bind().
+  // Lays the drivers out in blocks. Call it once, after the last Bind().
   void Plan(LanePlanner* planner);
+  // Adds the geometry of each value.
   void Explain(const SolvedPose& pose, DriverExplanation* explanation) const;
 
   // The nnls weights of an entry's reference poses, not clamped. `moved` holds each control point's
   // departure from rest, in anchor space.
   void SolveNnls(int entry, StackedPoints moved, std::span<float> along) const;
-  // |moved - sum of along * d|^2: what an nnls fit leaves over.
+  // The squared distance that an nnls fit leaves over: |moved - sum of along[k] d_k|^2, with d_k
+  // the Displacement() of value k.
   [[nodiscard]] float SquaredResidual(int entry, StackedPoints moved,
                                       std::span<const float> along) const;
 
@@ -53,7 +55,7 @@ class PoseDriverSet {
   [[nodiscard]] std::span<const MeasuredPoint> points(const Entry& entry) const {
     return std::span(points_).subspan(entry.first_point, entry.num_points);
   }
-  // d of a value, one vector per point.
+  // The displacement d of value `value`: from rest to its reference pose, one vector per point.
   [[nodiscard]] StackedPoints Displacement(const Entry& entry, int value) const;
   // |d|^2 of a value; 0 if its reference pose does not move the points.
   [[nodiscard]] float SquaredDisplacement(const Entry& entry, int value) const {

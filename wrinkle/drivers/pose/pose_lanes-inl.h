@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pose drivers, one per lane: thesis 4.1 with dot(d, d) in the denominator (docs/ALGORITHM.md).
-// Drivers that solve nnls have their points in lanes, and are solved one by one.
+// Evaluates pose drivers, one driver per SIMD lane: thesis 4.1 with dot(d, d) in the denominator
+// (docs/ALGORITHM.md). x is the displacement of a driver's control points from rest in this pose, d
+// their displacement in a reference pose. Drivers of PoseSolve::kNnls have their points in lanes
+// and are then solved one by one.
 #if defined(FURROW_WRINKLE_POSE_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FURROW_WRINKLE_POSE_LANES_INL_H_
 #undef FURROW_WRINKLE_POSE_LANES_INL_H_
@@ -17,14 +19,15 @@
 HWY_BEFORE_NAMESPACE();
 namespace furrow::wrinkle::HWY_NAMESPACE {
 
-// A control point's departure from rest.
+// x of a control point: its displacement from rest, in the anchor's space.
 template <bool kScaled>
 HWY_INLINE Float3 MovePoint(const PointPlan& plan, const PointRow& row, LanePose<kScaled> pose,
                             std::size_t lane) {
   return EvaluatePoint(plan, row, pose, lane) - LoadRows(row.rest, lane);
 }
 
-// The common case of one point without falloff: everything stays in registers.
+// Writes clamp(dot(x, d) / dot(d, d), 0, 1) of each value to consecutive rows from `values` on, for
+// drivers with one point and no falloff. Everything stays in registers.
 template <bool kScaled>
 void EvaluateOnePoint(const PosePlan& plan, const PointPlan& points, const PoseBlock& block,
                       LanePose<kScaled> pose, std::size_t lane, float* values) {
@@ -35,6 +38,7 @@ void EvaluateOnePoint(const PosePlan& plan, const PointPlan& points, const PoseB
   }
 }
 
+// Does what EvaluateOnePoint() does, for the drivers whose point is on a child joint of the anchor.
 // Loads the joints of the next block before it computes the values of this one, because processors
 // do not look that far ahead.
 template <bool kScaled>
@@ -69,8 +73,8 @@ void EvaluateLeaves(const PosePlan& plan, LanePose<kScaled> pose, std::size_t nu
   }
 }
 
-// exp(-|x - t d|^2 / (2 s^2 |d|^2)) with t = `along`. `rows`: the width 2 s^2 |d|^2, then each
-// point's displacement.
+// The falloff exp(-|x - t d|^2 / (2 s^2 |d|^2)) with t = `along` and the driver's `falloff` s.
+// `moved`: x, one vector per point. `rows`: the width 2 s^2 |d|^2, then three rows of d per point.
 inline Float Falloff(std::span<const Float3> moved, const FloatRow* rows, Float along,
                      std::size_t lane) {
   Float sum = hn::Zero(Floats());
@@ -81,7 +85,8 @@ inline Float Falloff(std::span<const Float3> moved, const FloatRow* rows, Float 
   return Exponential(hn::Div(hn::Neg(sum), LoadRow(*rows, lane)));
 }
 
-// The general case: several points, or a falloff. The points are measured once for all values.
+// Writes clamp(t, 0, 1) * falloff of each value to consecutive rows from `values` on, with
+// t = dot(x, d) / dot(d, d) over all points: the general case of several points, or a falloff.
 template <bool kScaled>
 void EvaluatePoints(const PosePlan& plan, const PointPlan& points, const PoseBlock& block,
                     LanePose<kScaled> pose, std::size_t lane, float* values) {
@@ -107,7 +112,8 @@ void EvaluatePoints(const PosePlan& plan, const PointPlan& points, const PoseBlo
   }
 }
 
-// Solves one driver by nnls from the points in `rows`. The driver's values then take the lanes.
+// Solves one driver of PoseSolve::kNnls from its points, which are in `rows` already, and writes
+// its values to `rows` from driver.first_number on, one after another.
 inline void EvaluateNnls(const PoseDriverSet& drivers, const NnlsDriver& driver, float* rows) {
   const PosePlan& plan = drivers.plan();
   std::array<glm::vec3, kMaxControlPoints> points;
@@ -136,6 +142,9 @@ inline void EvaluateNnls(const PoseDriverSet& drivers, const NnlsDriver& driver,
   }
 }
 
+// Writes the values of all drivers of `drivers` to the scratch memory `rows` (kRowLanes floats per
+// row): row b.first_row + k of block b holds value k, lane l that of its driver l. Values of nnls
+// drivers take consecutive floats instead.
 template <bool kScaled>
 void EvaluateDrivers(const PoseDriverSet& drivers, const PointPlan& points, LanePose<kScaled> pose,
                      const DriverInput& input, float* rows) {

@@ -80,11 +80,13 @@ struct PrincipalStretches {
   return {.x = u * m[0][0] + v * m[0][1], .y = u * m[1][0] + v * m[1][1]};
 }
 
+// The tensor F^T F of a deformation gradient.
 [[nodiscard]] inline CauchyGreen RightCauchyGreen(const DeformationGradient& f) {
   return {.xx = glm::dot(f.x, f.x), .xy = glm::dot(f.x, f.y), .yy = glm::dot(f.y, f.y)};
 }
 
-// Closed form. A tensor that is not finite gives the identity's stretches.
+// The principal stretches of a tensor: square roots of its eigenvalues, in closed form. A tensor
+// that is not finite gives the stretches of the identity (1).
 [[nodiscard]] PrincipalStretches Principal(const CauchyGreen& tensor);
 
 // Converts a direction in the rest axes to a vector in the rest triangle's space, and to a unit

@@ -31,7 +31,7 @@ class StrainDriverSet {
   static constexpr int kNumValues = 4;
   static constexpr std::size_t kFramePoints = 4;
 
-  // Maps any point of the patch to where a joint takes it.
+  // Maps a point of the patch at rest to where a joint takes it, in the base joint's space.
   using Frame = glm::mat4x3;
 
   struct Measured {
@@ -41,8 +41,9 @@ class StrainDriverSet {
 
   [[nodiscard]] Status Bind(const std::string& name, const StrainDriver& driver, int first_value,
                             BindContext* context);
-  // After the last Bind().
+  // Lays the drivers out in blocks. Call it once, after the last Bind().
   void Plan(LanePlanner* planner);
+  // Adds the principal stretches of each patch.
   void Explain(const SolvedPose& pose, DriverExplanation* explanation) const;
 
   [[nodiscard]] static Frame MakeFrame(std::span<const glm::vec3, kFramePoints> points);

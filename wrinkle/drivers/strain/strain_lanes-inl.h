@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Strain drivers: the joints' frames in lanes, then each driver by itself, because patches differ
-// too much in size to share lanes.
+// Evaluates strain drivers. The frames of the joints (four points each) are computed one joint per
+// SIMD lane, then each driver by itself, because patches differ too much in size to share lanes.
 #if defined(FURROW_WRINKLE_STRAIN_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FURROW_WRINKLE_STRAIN_LANES_INL_H_
 #undef FURROW_WRINKLE_STRAIN_LANES_INL_H_
@@ -16,7 +16,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace furrow::wrinkle::HWY_NAMESPACE {
 
-// The values of one driver, from the points in `rows`.
+// Writes the values of one driver to `rows` from driver.first_number on, one after another. The
+// points of its frames are in `rows` already.
 inline void EvaluateStrain(const StrainDriverSet& drivers, const SingleDriver& driver,
                            float* rows) {
   std::array<StrainDriverSet::Frame, kMaxPatchJoints> frames;
@@ -33,6 +34,8 @@ inline void EvaluateStrain(const StrainDriverSet& drivers, const SingleDriver& d
                          {rows + driver.first_number, driver.num_values});
 }
 
+// Writes the values of each driver of `drivers` to the scratch memory `rows` (kRowLanes floats per
+// row), four consecutive floats per driver: along, across, diagonal_left and diagonal_right.
 template <bool kScaled>
 void EvaluateDrivers(const StrainDriverSet& drivers, const PointPlan& plan, LanePose<kScaled> pose,
                      const DriverInput& input, float* rows) {

@@ -32,7 +32,7 @@ class TwistDriverSet {
     int first_value = 0;
     int first_joint = 0;  // into joints_
     int num_joints = 0;
-    float inverse_full = 0.0f;  // 1 / radians
+    float inverse_full = 0.0f;  // 1 / (angle of a full twist in radians)
   };
   struct TwistJoint {
     int joint = kNoJoint;
@@ -42,8 +42,9 @@ class TwistDriverSet {
 
   [[nodiscard]] Status Bind(const std::string& name, const TwistDriver& driver, int first_value,
                             BindContext* context);
-  // After the last Bind().
+  // Lays the drivers out in blocks. Call it once, after the last Bind().
   void Plan(LanePlanner* planner);
+  // Adds the summed twist angle of each driver.
   void Explain(const SolvedPose& pose, DriverExplanation* explanation) const;
 
   [[nodiscard]] std::span<const Entry> entries() const { return entries_; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Twist drivers, one per lane: the sum of the joints' twists away from rest (skeleton/twist.h).
+// Evaluates twist drivers, one driver per SIMD lane: the sum of the joints' twists away from rest.
 #if defined(FURROW_WRINKLE_TWIST_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FURROW_WRINKLE_TWIST_LANES_INL_H_
 #undef FURROW_WRINKLE_TWIST_LANES_INL_H_
@@ -27,9 +27,9 @@ HWY_INLINE FloatQuat Multiply(FloatQuat p, FloatQuat q) {
                   hn::Mul(p.z, q.z))};
 }
 
-// TwistAngle(), per lane.
-// q and -q are the same rotation. The one with a w of 0 or more has the shorter turn, and
-// ArcTangent() requires it.
+// The angle in radians by which the unit quaternion `q` turns about the unit vector `axis`:
+// TwistAngle() (skeleton/twist.h) per lane. q and -q are the same rotation. The one with a w of 0
+// or more has the shorter turn, and ArcTangent() requires it.
 HWY_INLINE Float TwistOf(FloatQuat q, Float3 axis) {
   const Float sine = Dot({q.x, q.y, q.z}, axis);
   const Float square = hn::Add(hn::Mul(sine, sine), hn::Mul(q.w, q.w));
@@ -38,6 +38,10 @@ HWY_INLINE Float TwistOf(FloatQuat q, Float3 axis) {
   return hn::IfThenElseZero(hn::Gt(square, Splat(kLeastTwistSquare)), hn::Add(angle, angle));
 }
 
+// Writes the values of each driver of `drivers` to the scratch memory `rows` (kRowLanes floats per
+// row), lane l for driver l of block b: row b.first_row is clamp(s, 0, 1) and the next row
+// clamp(-s, 0, 1), with s = (sum of twist angles) / (angle of a full twist). The points are unused
+// because twists need rotations only.
 template <bool kScaled>
 void EvaluateDrivers(const TwistDriverSet& drivers, const PointPlan&, LanePose<kScaled> pose,
                      const DriverInput& input, float* rows) {
