@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-// Case conversion of the letters A to Z, independent of the process's locale.
+// Case conversion of the letters A to Z, independent of the process's locale. Other bytes stay.
 namespace furrow {
 
 [[nodiscard]] inline constexpr char AsciiLower(char c) {

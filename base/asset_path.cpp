@@ -37,7 +37,9 @@ Status CheckAssetName(std::string_view name) {
   };
   if (name.empty()) return refuse("is empty");
   if (name.size() > kMaxNameBytes) {
-    return {StatusCode::kLimit, "a file name is longer than " + std::to_string(kMaxNameBytes)};
+    return {StatusCode::kLimit, "a file name has " + std::to_string(name.size()) +
+                                    " bytes; at most " + std::to_string(kMaxNameBytes) +
+                                    " are accepted"};
   }
   if (name.front() == '/') return refuse("is absolute");
   for (const char c : name) {

@@ -11,7 +11,8 @@
 
 namespace furrow {
 
-// A FlatBuffers schema for untrusted JSON.
+// A FlatBuffers schema for untrusted JSON. All strings are required and live as long as the
+// program.
 struct JsonSchema {
   const char* text = nullptr;  // the schema's source, with a root_type
   const char* root = nullptr;  // the root table's name, such as "Rig"
@@ -22,16 +23,18 @@ struct JsonSchema {
 // type. Errors name file, line and field: "face.rig.json:14: drivers[0].jont".
 class CheckedJson {
  public:
-  // `source` is the file name in errors. Errors: those of JsonIndex::Create(), and kSchema.
+  // Parses `json`, which is not kept. `source` is the file name in errors. Errors: those of
+  // JsonIndex::Create(), kSchema, and kInternal (the schema is invalid).
   [[nodiscard]] static Result<CheckedJson> Parse(std::string_view json, std::string_view source,
                                                  const JsonSchema& schema);
   CheckedJson(CheckedJson&&) noexcept;
   CheckedJson& operator=(CheckedJson&&) noexcept;
   ~CheckedJson();
 
-  // The root table: flatbuffers::GetRoot<T>(buffer()).
+  // The FlatBuffers buffer, owned by this object. flatbuffers::GetRoot<T>(buffer()) is the root
+  // table.
   [[nodiscard]] const std::uint8_t* buffer() const;
-  // Adds file and line to a failure whose `where` is a field path.
+  // Returns `status` with file and line added to its `where`, the path of a field. Ok stays Ok.
   [[nodiscard]] Status Located(const Status& status) const;
 
  private:

@@ -11,7 +11,7 @@
 
 namespace furrow {
 
-// A cap for text files whose format has no limit of its own (OBJ, BVH, name maps).
+// Size limit for text files whose format states none (OBJ, BVH, name maps): far above real files.
 inline constexpr std::uint64_t kMaxTextFileBytes = std::uint64_t{256} << 20;
 
 // Reads a whole regular file.
@@ -21,8 +21,9 @@ inline constexpr std::uint64_t kMaxTextFileBytes = std::uint64_t{256} << 20;
 [[nodiscard]] Result<std::string> ReadFile(const std::filesystem::path& path,
                                            std::uint64_t max_bytes);
 
-// Writes a temporary file beside `path`, flushes it to disk and renames it. A reader sees the old
-// file or the new one, never a part of either, and a failure (kIo) leaves nothing behind.
+// Replaces the content of the file `path` by `bytes` in one step: writes a temporary file beside
+// it, flushes that to disk and renames it. A reader sees the old file or the new one, never a part
+// of either. After an error (kIo) the old file is unchanged and no temporary file is left.
 //
 // A symbolic link is followed. A device or pipe is written to directly, because a rename would
 // replace it.
@@ -33,18 +34,19 @@ enum class Flush { kDisk, kNone };
 [[nodiscard]] Status WriteFileAtomically(const std::filesystem::path& path, std::string_view bytes,
                                          Flush flush = Flush::kDisk);
 
+// An argument of WriteFilesAtomically(). The caller owns `bytes`.
 struct FileToWrite {
   std::filesystem::path path;
   std::string_view bytes;
 };
 
-// As WriteFileAtomically() for several files: all temporary files are complete before the first
-// rename, so a full disk replaces none of the files.
+// Replaces several files as WriteFileAtomically() does one. All temporary files are complete before
+// the first rename, so a full disk replaces none of the files. Error: kIo.
 [[nodiscard]] Status WriteFilesAtomically(std::span<const FileToWrite> files,
                                           Flush flush = Flush::kDisk);
 
-// Checks that `path` can be written, before work that takes long. The file stays as it is. kIo
-// names the file and the reason.
+// Checks that `path` can be written, before work that takes long. The file stays as it is. Error:
+// kIo, with the path as `where` and the reason.
 [[nodiscard]] Status CheckWritable(const std::filesystem::path& path);
 
 }  // namespace furrow

@@ -65,7 +65,9 @@ class JsonScanner {
     index_->line_begins_ = {0};
     if (text_.size() > JsonIndex::kMaxBytes) {
       return {StatusCode::kLimit,
-              "the text has more than " + std::to_string(JsonIndex::kMaxBytes) + " bytes", "1"};
+              "the text has " + std::to_string(text_.size()) + " bytes; at most " +
+                  std::to_string(JsonIndex::kMaxBytes) + " are accepted",
+              "1"};
     }
     FURROW_RETURN_IF_ERROR(SkipSpace());
     // Element 0 is the root. Parents have smaller indices than their children.

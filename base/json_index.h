@@ -14,11 +14,12 @@ namespace furrow {
 // check of untrusted text: it enforces syntax and the limits below before another parser runs.
 //
 // Accepts RFC 8259 plus // and /* */ comments. A path looks like "drivers[3].hinge.axis"; the
-// root's path is "". The index refers to the text, which must outlive it.
+// root's path is "". Lines count from 1. The index refers to the text, which must outlive it.
 class JsonIndex {
  public:
+  // Far above any real rig, and small enough that hostile text cannot exhaust stack or memory.
   static constexpr std::size_t kMaxBytes = 16u << 20;
-  static constexpr int kMaxDepth = 24;
+  static constexpr int kMaxDepth = 24;  // objects and lists in one another
   static constexpr std::size_t kMaxElements = 400'000;
 
   // Errors: kParse (syntax), kLimit (size, depth, elements), kNonFinite (a number outside float's
@@ -30,7 +31,8 @@ class JsonIndex {
   // The path of the element that a parser has reached at `line` (from 1) and `column` (from 0), as
   // FlatBuffers counts them.
   [[nodiscard]] std::string PathAt(int line, int column) const;
-  // As PathAt(), for a parser that has just finished an object and is reading the next token.
+  // The path of the object that a parser has just finished, if it has reached the next token at
+  // `line` and `column`.
   [[nodiscard]] std::string PathClosedBefore(int line, int column) const;
 
  private:

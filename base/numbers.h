@@ -10,13 +10,15 @@
 // Numbers in text files. The decimal sign is a point, whatever the process's locale.
 namespace furrow {
 
-// Converts a whole token to a number: "1", "-.0083333", "+2.5e-3". Underflow gives 0.
+// Converts a whole token to a number: "1", "-.0083333", "+2.5e-3". Underflow gives 0. `where`, for
+// example "file:line", is the place in errors.
 //
-// Errors, with `where` ("file:line"): kNonFinite ("nan", "inf", MSVC's "1.#IND", or outside float's
-// range), kParse (not a number).
+// Errors: kNonFinite ("nan", "inf", MSVC's "1.#IND", or outside float's range), kParse (not a
+// number).
 [[nodiscard]] Result<double> ParseNumber(std::string_view token, std::string_view where);
 
-// As ParseNumber(), but returns false instead of building a message, for hot loops.
+// Does what ParseNumber() does, but returns false instead of building a message, for hot loops.
+// `value` is then unchanged.
 [[nodiscard]] bool TryParseNumber(std::string_view token, double* value);
 
 // Converts a whole word to a number; nullopt if it is not one. Unlike ParseNumber(), these accept

@@ -11,7 +11,8 @@ inline constexpr float kDegrees = kPi / 180.0f;  // radians per degree
   return x > 0.0f ? (x < 1.0f ? x : 1.0f) : 0.0f;
 }
 
-// GLSL's smoothstep. Precondition: `from` < `to`.
+// GLSL's smoothstep: 0 for x <= from, 1 for x >= to, and t^2 (3 - 2 t) with t = (x - from) /
+// (to - from) between them. Precondition: `from` < `to`.
 [[nodiscard]] inline constexpr float Smoothstep(float from, float to, float x) {
   const float t = Saturate((x - from) / (to - from));
   return t * t * (3.0f - 2.0f * t);
