@@ -9,12 +9,13 @@
 
 namespace furrow::motion {
 
-// A wrinkle::PoseSource over LoadClip(). It caches the last recording, so that a rig with sixty
-// frames of one file reads the file once. A file that changed on disk (size or time) is read again.
+// Loads frames of recordings with LoadClip(); a wrinkle::PoseSource. It caches the last recording,
+// so that a rig with sixty frames of one file reads the file once. A file that changed on disk
+// (size or time) is read again.
 //
-// - Copies share the cache. Not thread-safe.
-// - Errors: LoadClip()'s, kInvalidArgument (no such frame; the message says how many there are),
-//   kUnsupported (a recording without joints).
+// - `frame` counts from 0. Copies share the cache. Not thread-safe.
+// - Errors: those of LoadClip(), kInvalidArgument (no such frame; the message says how many there
+//   are), kUnsupported (a recording without joints).
 class CachedPoseSource {
  public:
   explicit CachedPoseSource(const LoadOptions& options = {});

@@ -11,13 +11,14 @@
 // MotionBuilder, 3ds Max, MakeHuman and the CMU conversions.
 namespace furrow::motion {
 
-// Reads a BVH text.
+// Reads a BVH text. `source_name`: the file name in errors. `report` receives warnings and may be
+// null, as in all functions of motion/.
 //
 // - Accepted: several ROOTs, keywords in any case, names with blanks, LF, CRLF or CR, tabs, lines
 //   of any length, a UTF-8 byte order mark. The locale has no effect.
 // - CHANNELS: 0 to 6 per joint, in the joint's own order. Rotations are in degrees and multiply in
 //   that order, R = R1 * R2 * R3 (column vectors). The rest pose is OFFSET without rotation.
-//   BvhPositions explains position channels.
+//   LoadOptions::bvh_positions says what position channels mean.
 // - `End Site` becomes the joint's tail. If a joint has several, the first counts.
 // - Consecutive rotations have quaternions of consistent sign.
 // - If `Frames:` differs from the number of lines, the lines count and `report` gets a warning.

@@ -17,6 +17,7 @@ struct ClipReport;
 // What one number of a frame's line means for its joint.
 enum class BvhChannel { kXPosition, kYPosition, kZPosition, kXRotation, kYRotation, kZRotation };
 
+// The first `count` entries are the channels of one joint, in the file's order.
 struct BvhJointChannels {
   std::array<BvhChannel, 6> channels{};
   int count = 0;
@@ -28,8 +29,8 @@ struct BvhHierarchy {
   std::size_t num_channels = 0;            // numbers per frame
 };
 
-// Reads from the start of the text through the word MOTION. Lengths keep the file's unit. Errors
-// are ParseBvh()'s.
+// Reads from `cursor`, at the start of the text, through the word MOTION. Lengths keep the file's
+// unit. `report` receives warnings and may be null. Errors: those of ParseBvh().
 [[nodiscard]] Result<BvhHierarchy> ParseBvhHierarchy(TextCursor* cursor, ClipReport* report);
 
 }  // namespace furrow::motion

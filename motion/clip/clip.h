@@ -17,7 +17,7 @@ struct Clip {
   wrinkle::Skeleton skeleton;  // may be empty: blend shapes alone
   std::vector<std::string> blend_shape_names;
   std::vector<double> times;               // seconds, strictly increasing, one per frame
-  std::vector<wrinkle::Transform> locals;  // num_frames x num_joints, frame-major
+  std::vector<wrinkle::Transform> locals;  // local transforms, num_frames x num_joints, frame-major
   std::vector<float> blend_shapes;         // num_frames x num names, frame-major
 
   [[nodiscard]] int num_frames() const { return static_cast<int>(times.size()); }
@@ -39,6 +39,7 @@ enum class BvhPositions { kReplace, kAdd };
 // kAuto. A loaded clip is always Y up and faces +Z.
 enum class UpAxis { kAuto, kY, kZ };
 
+// How a recording is read. Each reader uses the options of its format.
 struct LoadOptions {
   float scale = 1.0f;        // multiplies every length (BVH has no unit)
   double sample_rate = 0.0;  // Hz, for formats that store curves (glTF); 0: the file's own keys

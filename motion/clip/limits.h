@@ -4,9 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 
-// The limits on recordings from outside. A reader answers kLimit before it allocates more. Real
-// recordings stay far below: two hours of 100 joints at 30 Hz fit. gltf/limits.h has the limits on
-// glTF files, mcap/ its own.
+// The limits on recordings from outside. A reader returns kLimit before it allocates more. Two
+// hours of 100 joints at 30 Hz fit. gltf/limits.h limits glTF files, mcap::ReaderLimits MCAP files.
 namespace furrow::motion {
 
 inline constexpr std::uint64_t kMaxFileBytes = 512ull << 20;  // BVH and CSV

@@ -11,7 +11,7 @@ namespace furrow::motion {
 // `rate` is in Hz and greater than 0. A clip of fewer than two frames is returned unchanged.
 [[nodiscard]] Clip Resample(const Clip& clip, double rate);
 
-// Whether no frame deviates from even spacing by more than a hundredth of a step.
+// Returns true if every frame is within a hundredth of a step of even spacing.
 [[nodiscard]] bool IsEvenlySpaced(const Clip& clip);
 // The mean time between frames in seconds; 0 for fewer than two frames.
 [[nodiscard]] double MeanFrameTime(const Clip& clip);

@@ -15,7 +15,7 @@ namespace furrow::motion {
 // Turns a Z-up clip that faces -Y to Furrow's model space: Y up, facing +Z. Every joint's
 // translation and local axes turn, so joints without a rest rotation still have none.
 //
-// Errors: Skeleton::Create()'s, which a valid clip never causes.
+// Errors: those of Skeleton::Create(), which a valid clip never causes.
 [[nodiscard]] Status TurnZUpToYUp(Clip* clip);
 
 }  // namespace furrow::motion

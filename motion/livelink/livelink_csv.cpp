@@ -301,7 +301,8 @@ Result<std::string> LiveLinkCsvToText(const Clip& clip, ClipReport* report) {
   if (clip.num_frames() == 0) return Status(StatusCode::kInvalidArgument, "the clip has no frames");
   // The last second stays unused because a time may round up to midnight.
   if (clip.duration() >= kSecondsADay - 1.0)
-    return Status(StatusCode::kLimit, "the clip is longer than a day");
+    return Status(StatusCode::kLimit, "the clip has " + std::to_string(clip.duration()) +
+                                          " s; timecodes end before one day");
   if (clip.skeleton.num_joints() > 0 && report != nullptr) {
     report->warnings.emplace_back("a Live Link Face CSV has no joints: they are dropped");
   }

@@ -52,8 +52,8 @@ class ByteWriter {
   std::vector<std::uint8_t> bytes_;
 };
 
-// Reads the same values from bytes that may be hostile. Past the end, every value is zero or empty
-// and ok() stays false.
+// Reads the values that ByteWriter writes from bytes that may be hostile and must outlive the
+// reader. Past the end, every value is zero or empty and ok() stays false.
 class ByteReader {
  public:
   explicit ByteReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
@@ -93,6 +93,7 @@ class ByteReader {
 
   [[nodiscard]] bool ok() const { return ok_; }
   [[nodiscard]] bool at_end() const { return at_ == bytes_.size(); }
+  // The number of unread bytes.
   [[nodiscard]] std::uint64_t left() const { return bytes_.size() - at_; }
 
  private:

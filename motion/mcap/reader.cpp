@@ -278,7 +278,7 @@ bool Reader::AddChunkIndex(ByteReader content) {
   info.offset = content.Get<std::uint64_t>();
   info.length = content.Get<std::uint64_t>();
   (void)content.GetBytes(content.Get<std::uint32_t>());  // offsets of the message indexes
-  (void)content.Get<std::uint64_t>();                // their length
+  (void)content.Get<std::uint64_t>();                    // their length
   info.compression = content.GetText();
   info.compressed_bytes = content.Get<std::uint64_t>();
   info.uncompressed_bytes = content.Get<std::uint64_t>();
@@ -475,8 +475,9 @@ Result<Bytes> Reader::LoadChunk(const ChunkInfo& info) {
   const auto packed = content.GetBytes(content.Get<std::uint64_t>());
   if (!content.ok()) return Status(StatusCode::kParse, "its length fields are wrong");
   if (size > limits_.record_bytes)
-    return Status(StatusCode::kLimit,
-                  "its decompressed size of " + std::to_string(size) + " bytes exceeds the limit");
+    return Status(StatusCode::kLimit, "its decompressed size of " + std::to_string(size) +
+                                          " bytes exceeds the limit of " +
+                                          std::to_string(limits_.record_bytes));
   // `size` agrees with the index and is within the limit, so the output is bounded.
   auto records = Decompress(compression, packed, size);
   if (!records.ok()) return records;

@@ -17,7 +17,7 @@
 
 namespace furrow::motion::mcap {
 
-// ChunkInfo::compression of a run of messages outside chunks.
+// The value of ChunkInfo::compression for a run of messages that are not in a chunk.
 inline constexpr const char* kLooseMessages = "-";
 
 // Limits on what a file can make a reader allocate.
@@ -66,7 +66,7 @@ class Reader {
   [[nodiscard]] Status ForEach(const Range& range,
                                const std::function<bool(const Message&)>& visit);
 
-  // The data of an attachment. Errors: kIo, kParse (wrong checksum), kLimit.
+  // Reads the data of an entry of attachments(). Errors: kIo, kParse (wrong checksum), kLimit.
   [[nodiscard]] Result<std::vector<std::uint8_t>> ReadAttachment(const AttachmentInfo& info) const;
 
  private:

@@ -46,10 +46,12 @@ class Writer {
                                          std::uint16_t schema_id,
                                          const std::map<std::string, std::string>& metadata = {});
 
-  // `message.channel_id` is an id that AddChannel() returned.
+  // Adds a message to the current chunk. Errors: kInvalidArgument (message.channel_id is not an id
+  // that AddChannel() returned), kIo.
   [[nodiscard]] Status Write(const Message& message);
   // Finishes the current chunk and passes it to the operating system.
   [[nodiscard]] Status FlushChunk();
+  // Writes a file into the MCAP file. `time`: log and creation time, ns since the Unix epoch.
   [[nodiscard]] Status Attach(std::string_view name, std::string_view media_type,
                               std::uint64_t time, std::span<const std::uint8_t> data);
   [[nodiscard]] Status WriteMetadata(const Metadata& metadata);
