@@ -10,12 +10,14 @@
 
 namespace furrow::recording {
 
-// Converts poses to a clip. `scale` multiplies every length. A partial pose keeps the previous
-// values of joints and blend shapes that it leaves out. Errors: Skeleton::Create()'s, kLimit.
+// Converts poses to a clip. `scale` multiplies every length. Joints and blend shapes that a partial
+// pose leaves out keep their previous values. Errors: those of Skeleton::Create(), and kLimit
+// (motion/clip/limits.h).
 [[nodiscard]] Result<motion::Clip> ToClip(const TakePoses& poses, float scale = 1.0f);
 
 // Loads one subject of a take as a clip. `path` is "take.mcap" or "take.mcap#NAME" (see
-// SplitTakePath()). `progress` is optional. Errors: TakePoses::Load()'s and ToClip()'s.
+// SplitTakePath()). `report` may be null and `progress` empty. Errors: those of TakePoses::Load()
+// and ToClip().
 [[nodiscard]] Result<motion::Clip> LoadTakeClip(const std::string& path, float scale = 1.0f,
                                                 motion::ClipReport* report = nullptr,
                                                 ReadProgress progress = nullptr);

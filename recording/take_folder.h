@@ -35,6 +35,8 @@ class TakeFolder {
   [[nodiscard]] static Result<std::unique_ptr<TakeFolder>> Open(TakeFolderOptions options,
                                                                 std::uint64_t now_ns);
 
+  // Writes a message or datagram (see TakeWriter), first into a new file if a rotation is due by
+  // size or log time, or if the file is full.
   [[nodiscard]] Status Write(TakeKind kind, std::string_view subject, const TakeStamp& stamp,
                              std::span<const std::uint8_t> payload);
   [[nodiscard]] Status WriteDatagram(const DatagramSender& sender, std::uint64_t log_time_ns,
@@ -42,7 +44,9 @@ class TakeFolder {
   // Call it when a subject leaves: later files do not begin with its skeleton.
   void Forget(std::string_view subject);
 
+  // Passes all messages to the operating system.
   [[nodiscard]] Status Flush();
+  // Finishes the current file. Nothing can be written afterwards.
   [[nodiscard]] Status Close();
 
   // The current file.

@@ -40,9 +40,10 @@ inline constexpr char kDatagramEncoding[] = "furrow-datagram";
 inline constexpr char kDatagramTopic[] = "/raw/udp";
 inline constexpr char kRigAttachment[] = "rig.json";
 
-// The topic of a subject's messages of a kind.
+// The topic of a subject's messages of a kind, as listed at TakeKind.
 [[nodiscard]] std::string TopicOf(TakeKind kind, std::string_view subject);
-// Splits a topic into kind and subject, which may contain slashes. False for foreign topics.
+// Splits a topic into kind and subject, which may contain slashes. Returns false for topics of
+// other programs; the results are then unspecified.
 [[nodiscard]] bool ParseTopic(std::string_view topic, TakeKind* kind, std::string* subject);
 
 // The name of the FlatBuffers table and the binary schema (.bfbs) of a kind's messages. Both are
@@ -53,7 +54,7 @@ inline constexpr char kRigAttachment[] = "rig.json";
 // The wire message that a kind's payload holds; kUnknown for datagrams.
 [[nodiscard]] protocol::MessageKind MessageKindOf(TakeKind kind);
 
-// The maximum payload of a kind: the wire's limit for messages of publishers or of the daemon.
+// The maximum payload of a kind in bytes: the wire's limit for the messages of its sender.
 [[nodiscard]] std::size_t MaxPayloadBytes(TakeKind kind);
 
 // Converts the wire's microseconds to MCAP's nanoseconds and back. The value is stored as two's

@@ -22,7 +22,7 @@ class TakePoses {
   // poses of a skeleton other than the subject's first, are skipped with a warning in `report`.
   //
   // Errors: kNotFound (no such subject, or no poses), kInvalidArgument (`subject` is empty and the
-  // take has several; the message lists them), kLimit, TakeReader's.
+  // take has several; the message lists them), kLimit, and those of TakeReader::ForEach().
   [[nodiscard]] static Result<TakePoses> Load(TakeReader& take, std::string_view subject,
                                               motion::ClipReport* report);
   // Loads one subject, or all if `subject` is empty, in order of their first poses. The result has
@@ -62,7 +62,7 @@ class TakePoses {
   std::int64_t elapsed_us_ = 0;
 };
 
-// Whether a path has the extension of a take, ".mcap" in any case, with or without "#NAME".
+// Returns true if a path has the extension of a take, ".mcap" in any case, with or without "#NAME".
 [[nodiscard]] bool IsTakePath(const std::string& path);
 // Splits "take.mcap#ada" into file and subject. If a file with the whole name exists, `subject`
 // stays empty.

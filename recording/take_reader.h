@@ -34,11 +34,11 @@ struct TakeMessage {
 // equal, even if reading fails or stops early, so that a progress bar always ends.
 using ReadProgress = std::function<void(std::uint64_t done, std::uint64_t total)>;
 
-// Reads a take, whatever program wrote it. Foreign topics and encodings are ignored. mcap::Reader
-// defines what is read of a torn or damaged file.
+// Reads a take, whatever program wrote it. Foreign topics and encodings are ignored. Of a torn or
+// damaged file, everything readable is read (see mcap::Reader).
 class TakeReader {
  public:
-  // Errors: mcap::Reader's.
+  // Opens a file. Errors: those of mcap::Reader::Open().
   [[nodiscard]] static Result<std::unique_ptr<TakeReader>> Open(const std::filesystem::path& path);
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
@@ -47,7 +47,8 @@ class TakeReader {
   // Called by every ForEach().
   void set_progress(ReadProgress progress) { progress_ = std::move(progress); }
 
-  // Calls `visit` for every message in order of log time until it returns false.
+  // Calls `visit` for every message in order of log time until it returns false. Errors: those of
+  // mcap::Reader::ForEach().
   [[nodiscard]] Status ForEach(const std::function<bool(const TakeMessage&)>& visit);
 
  private:

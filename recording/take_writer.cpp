@@ -64,7 +64,10 @@ Status TakeWriter::AttachSkeleton(std::string_view subject, std::uint64_t log_ti
 
 Status TakeWriter::Write(TakeKind kind, std::string_view subject, const TakeStamp& stamp,
                          std::span<const std::uint8_t> payload) {
-  if (is_full()) return {StatusCode::kLimit, "the take has the maximum number of channels"};
+  if (is_full()) {
+    return {StatusCode::kLimit,
+            "the take has " + std::to_string(channels_.size()) + " channels, the maximum"};
+  }
   if (kind == TakeKind::kSkeleton) {
     FURROW_RETURN_IF_ERROR(AttachSkeleton(subject, stamp.log_time_ns, payload));
   }

@@ -33,17 +33,19 @@ class TakeWriter {
   // the subject's last one is also attached. Errors: kLimit (is_full()), kIo.
   [[nodiscard]] Status Write(TakeKind kind, std::string_view subject, const TakeStamp& stamp,
                              std::span<const std::uint8_t> payload);
+  // Writes a raw datagram as it arrived at `log_time_ns` since the Unix epoch. Errors: as Write().
   [[nodiscard]] Status WriteDatagram(const DatagramSender& sender, std::uint64_t log_time_ns,
                                      std::span<const std::uint8_t> bytes);
 
   // Finishes the current chunk and passes it to the operating system.
   [[nodiscard]] Status Flush() { return file_->FlushChunk(); }
+  // Finishes the file and flushes it to disk.
   [[nodiscard]] Status Close() { return file_->Close(); }
 
   // Bytes in the file, without the current chunk.
   [[nodiscard]] std::uint64_t bytes_written() const { return file_->bytes_written(); }
   [[nodiscard]] std::uint64_t num_messages() const { return file_->num_messages(); }
-  // Whether all 16-bit channel ids are used, so that the next message needs a new file.
+  // True if no channel can be added: continue in a new file.
   [[nodiscard]] bool is_full() const { return channels_.size() >= kMaxChannels; }
 
  private:

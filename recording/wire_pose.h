@@ -8,12 +8,14 @@
 
 namespace furrow::recording {
 
-// A clip's skeleton as a wire message. `metres_per_unit` is the clip's unit of length.
+// Makes the offer of a clip's skeleton and blend shapes. `metres_per_unit`: the clip's unit of
+// length.
 [[nodiscard]] protocol::SkeletonOffer OfferOf(const motion::Clip& clip, const std::string& subject,
                                               float metres_per_unit);
 
-// Converts a frame of a clip to a complete (not partial) wire pose: the rotations of all joints,
-// and the translations and scales that differ from the rest pose. Reuses `pose`'s memory.
+// Converts frame `frame`, in [0, clip.num_frames()), to a complete (not partial) wire pose: the
+// rotations of all joints, the translations and scales that differ from the rest pose, and the
+// blend shapes. Replaces the content of `pose` and reuses its memory.
 void FillPose(const motion::Clip& clip, int frame, protocol::PoseFrame* pose);
 
 }  // namespace furrow::recording
