@@ -96,7 +96,14 @@ Result<motion::Clip> ToClip(const TakePoses& poses, float scale) {
   // Before any allocation: a take of small partial poses expands to whole ones.
   if (poses.size() * std::max<std::size_t>(offer.joints.size(), 1) > motion::kMaxTransforms ||
       poses.size() * offer.blend_shape_names.size() > motion::kMaxBlendShapeValues) {
-    return Status(StatusCode::kLimit, "the take has too many poses for one clip");
+    return Status(StatusCode::kLimit,
+                  "the take has " + std::to_string(poses.size()) + " poses of " +
+                      std::to_string(offer.joints.size()) + " joints and " +
+                      std::to_string(offer.blend_shape_names.size()) +
+                      " blend shapes; a clip holds at most " +
+                      std::to_string(motion::kMaxTransforms) + " joint transforms and " +
+                      std::to_string(motion::kMaxBlendShapeValues) + " blend-shape values",
+                  {}, "record with --rotate-seconds for shorter files");
   }
   auto skeleton = ToSkeleton(offer, scale);
   FURROW_RETURN_IF_ERROR(skeleton);

@@ -50,7 +50,9 @@ Result<std::vector<std::uint8_t>> EncodePng(const Image& image) {
 Result<std::vector<std::uint8_t>> EncodeImage(const Image& image, ImageFormat format, int quality) {
   const std::size_t bytes = static_cast<std::size_t>(image.width) * image.height * 3;
   if (image.width < 1 || image.height < 1 || image.rgb.size() != bytes) {
-    return Status(StatusCode::kInvalidArgument, "the number of pixels does not match the size",
+    return Status(StatusCode::kInvalidArgument,
+                  std::to_string(image.rgb.size()) + " bytes of pixels do not match the size of " +
+                      std::to_string(image.width) + " x " + std::to_string(image.height),
                   "image");
   }
   if (format == ImageFormat::kPng) return EncodePng(image);

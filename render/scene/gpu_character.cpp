@@ -107,11 +107,17 @@ Status CheckPicture(const Picture& picture) {
   const std::string where = "picture '" + picture.name + "'";
   if (picture.width < 1 || picture.height < 1 || picture.channels < 1 ||
       picture.pixels.size() + picture.pixels16.size() + picture.pixels_float.size() != samples) {
-    return {StatusCode::kInvalidArgument, "the number of pixels does not match the size", where};
+    return {StatusCode::kInvalidArgument,
+            "the number of pixels does not match the size of " + std::to_string(picture.width) +
+                " x " + std::to_string(picture.height),
+            where};
   }
   if (std::max(picture.width, picture.height) > limit) {
     return {StatusCode::kLimit,
-            "larger than the driver's limit of " + std::to_string(limit) + " pixels", where};
+            "its size of " + std::to_string(picture.width) + " x " +
+                std::to_string(picture.height) + " exceeds the driver's limit of " +
+                std::to_string(limit) + " pixels per side",
+            where};
   }
   return {};
 }
@@ -145,7 +151,8 @@ Status CheckLayers(std::size_t layers, const char* what) {
   glGetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &limit);
   if (layers <= static_cast<std::size_t>(limit)) return {};
   return {StatusCode::kLimit,
-          std::string("more ") + what + " than the driver's limit of " + std::to_string(limit),
+          std::to_string(layers) + " " + what + " exceed the driver's limit of " +
+              std::to_string(limit),
           "wrinkle rig"};
 }
 
@@ -192,7 +199,9 @@ Status GpuCharacter::AddMaterials(const Character& character) {
     for (const int picture : {source.base_colour_texture, source.normal_texture,
                               source.roughness_texture, source.thickness_texture}) {
       if (picture >= num_pictures) {
-        return {StatusCode::kInvalidArgument, "refers to a missing picture",
+        return {StatusCode::kInvalidArgument,
+                "refers to picture " + std::to_string(picture) + " (the character has " +
+                    std::to_string(num_pictures) + ")",
                 "material '" + source.name + "'"};
       }
     }

@@ -24,7 +24,10 @@ std::string ShortDecimal(float value) {
 Status CheckLabel(std::string_view label, const std::string& where) {
   if (label.empty()) return InvalidField("the name is empty", where);
   if (label.size() > kMaxNameBytes) {
-    return {StatusCode::kLimit, "the name is longer than 255 bytes", where};
+    return {StatusCode::kLimit,
+            "the name has " + std::to_string(label.size()) + " bytes; at most " +
+                std::to_string(kMaxNameBytes) + " are accepted",
+            where};
   }
   const bool printable = std::all_of(label.begin(), label.end(), [](char c) {
     return static_cast<unsigned char>(c) >= 0x20 && c != 0x7f;

@@ -54,7 +54,7 @@ void CheckFeed(const Feed& feed, const std::string& at, Combine combine, FieldCh
 
 void CheckRegion(const Region& region, const std::string& at, FieldCheck* check) {
   check->Require(region.mask.channel >= 0 && region.mask.channel <= 3, at, ".mask.channel",
-                 "there is no such channel");
+                 "a picture has no such channel", "use 0, 1, 2 or 3 (red, green, blue or alpha)");
   check->Range(at, ".mask.smooth_width", region.mask.smooth_width, 1e-4f, 1.0f);
   check->Range(at, ".mask.spread_degrees", region.mask.spread_degrees, 1.0f, 180.0f);
   check->Range(at, ".mask.above", region.mask.above, 0.0f, 10.0f);

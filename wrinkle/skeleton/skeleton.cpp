@@ -76,15 +76,16 @@ Status CheckJoints(const std::vector<JointDesc>& joints) {
     }
     if (joint.name.size() > kMaxNameBytes) {
       return {StatusCode::kInvalidArgument,
-              "joint " + std::to_string(i) + " has a name longer than 255 bytes"};
+              "joint " + std::to_string(i) + " has a name of " + std::to_string(joint.name.size()) +
+                  " bytes; at most " + std::to_string(kMaxNameBytes) + " are accepted"};
     }
     if (!names.insert(joint.name).second) {
       return {StatusCode::kInvalidArgument, Quoted(joint.name) + " appears twice"};
     }
     if (joint.parent < kNoJoint || joint.parent >= static_cast<int>(joints.size())) {
-      return {StatusCode::kInvalidArgument, Quoted(joint.name) + " has parent " +
-                                                std::to_string(joint.parent) +
-                                                ", which is out of range"};
+      return {StatusCode::kInvalidArgument,
+              Quoted(joint.name) + " has parent " + std::to_string(joint.parent) +
+                  "; the skeleton has " + std::to_string(joints.size()) + " joints"};
     }
     FURROW_RETURN_IF_ERROR(CheckRest(joint));
   }

@@ -19,14 +19,15 @@ void CheckPatchVertex(const StrainDriver::Vertex& vertex, const std::string& at,
   check->Count(at, ".joints", vertex.joints.size(), StrainDriver::kMaxInfluences);
   check->Require(!vertex.joints.empty(), at, ".joints", "no joint moves the vertex");
   check->Require(vertex.joints.size() == vertex.skin_weights.size(), at, ".skin_weights",
-                 "a joint needs a skin weight each");
+                 "the lists of joints and skin weights differ in length",
+                 "give one skin weight per joint");
   float sum = 0.0f;
   for (const float skin_weight : vertex.skin_weights) {
     check->Range(at, ".skin_weights", skin_weight, 0.0f, 1.0f);
     sum += skin_weight;
   }
   check->Require(std::abs(sum - 1.0f) <= 0.01f, at, ".skin_weights",
-                 "the skin weights do not sum to 1");
+                 "the skin weights do not sum to 1 within 0.01");
   for (const int joint : vertex.joints) {
     check->Require(joint >= 0 && static_cast<std::size_t>(joint) < num_joints, at, ".joints",
                    "there is no such joint in the driver's list");
@@ -69,7 +70,7 @@ void CheckFields(const StrainDriver& driver, const std::string& at, FieldCheck* 
   for (const int vertex : driver.triangles) {
     in_range = in_range && vertex >= 0 && static_cast<std::size_t>(vertex) < driver.vertices.size();
   }
-  check->Require(in_range, at, ".triangles", "a number is not that of a vertex");
+  check->Require(in_range, at, ".triangles", "an index is not below the number of vertices");
   check->Direction(at, ".direction", driver.direction);
   check->Range(at, ".full_compression", driver.full_compression, 0.01f, 1.0f);
   check->Range(at, ".size", driver.size, 0.0f, kMaxSkeletonSize);
