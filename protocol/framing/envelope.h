@@ -45,8 +45,8 @@ struct Envelope {
   std::uint32_t payload_bytes = 0;  // of the complete message; every fragment carries this total
 };
 
-// Reads the envelope at the start of `bytes` and checks all of it but `payload_bytes`. Never reads
-// beyond `bytes`. `envelope` is unspecified unless the result is kOk.
+// Reads the envelope at the start of `bytes` and checks magic, version, flags and session. Never
+// reads beyond `bytes`. `envelope` is unspecified unless the result is kOk.
 [[nodiscard]] EnvelopeStatus ReadEnvelope(std::span<const std::uint8_t> bytes, Envelope& envelope);
 
 // Writes magic, kVersion and the fields of `envelope` to `out`. Does not check them.

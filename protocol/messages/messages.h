@@ -14,7 +14,7 @@
 // UTF-8. Spaces are right-handed, Y up, +Z forward.
 namespace furrow::protocol {
 
-struct Vec3 {  // metres unless stated otherwise
+struct Vec3 {
   float x = 0.0f, y = 0.0f, z = 0.0f;
   friend bool operator==(const Vec3&, const Vec3&) = default;
 };
