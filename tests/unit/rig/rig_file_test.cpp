@@ -262,6 +262,14 @@ INSTANTIATE_TEST_SUITE_P(
               "26: wrinkle_maps[0].derivative_scale"},
         Wrong{"\"axis\": [1, 0, 0]}}", "\"axis\": [1, 0, 0]}}, {\"name\": \"s\", \"strain\": {}}",
               kSchema, "15: drivers[2].strain.joint"},
+        Wrong{"\"axis\": [1, 0, 0]",
+              "\"axis\": [1, 0, 0]}}, {\"name\": \"b\", \"ball\": {"
+              "\"parent\": \"a\", \"joint\": \"b\", \"mode\": 2",
+              kInvalid, "15: drivers[2].ball.mode"},
+        Wrong{"[{\"joint\": \"brow\"}]", "[{\"joint\": \"a\"}, {\"joint\": \"b\", \"kind\": -1}]",
+              kInvalid, "11: drivers[0].pose.points[1].kind"},
+        Wrong{"\"points\": [{", "\"solve\": 2, \"points\": [{", kInvalid,
+              "11: drivers[0].pose.solve"},
         Wrong{"\"kind\": \"skinning\"", "\"kind\": 7", kInvalid, "23: regions[1].mask.kind"}));
 
 TEST(RigFile, RejectsTooManyValuesForNnls) {
