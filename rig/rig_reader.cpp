@@ -7,9 +7,11 @@
 #include <vector>
 
 #include "base/status.h"
-#include "rig/drivers/driver_json.h"
+#include "rig/json/described_table.h"
+#include "rig/json/field_reader.h"
 #include "rig/json/rig_tables.h"
 #include "rig/rig_pose_reader.h"
+#include "rig/rig_schema_text.h"
 
 namespace furrow::rig {
 namespace {
@@ -31,6 +33,11 @@ std::string ListOfKinds() {
   return list;
 }
 
+const SchemaTypes& RigTypes() {
+  static const SchemaTypes types(kRigSchemaText);
+  return types;
+}
+
 // A driver's kind is the one field that is present. FlatBuffers unions would need a second field in
 // the JSON.
 Status ReadDriver(const schema::Driver& from, const std::string& at, wrinkle::Driver* to) {
@@ -43,10 +50,11 @@ Status ReadDriver(const schema::Driver& from, const std::string& at, wrinkle::Dr
     return InvalidField(
         "a driver needs exactly one of " + ListOfKinds() + ", not " + std::to_string(kinds), at);
   }
-#define FURROW_KIND_READ(Name, field)                              \
-  if (from.field() != nullptr) {                                   \
-    to->kind = wrinkle::Driver::Kind::k##Name;                     \
-    return ReadFields(*from.field(), at + "." #field, &to->field); \
+#define FURROW_KIND_READ(Name, field)                                                         \
+  if (from.field() != nullptr) {                                                              \
+    to->kind = wrinkle::Driver::Kind::k##Name;                                                \
+    return ReadFields(RigTypes().Describe(from.field(), "furrow.rig.schema." #Name "Driver"), \
+                      at + "." #field, &to->field);                                           \
   }
   FURROW_DRIVER_KINDS(FURROW_KIND_READ)
 #undef FURROW_KIND_READ

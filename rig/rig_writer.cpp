@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "rig/drivers/driver_json.h"
+#include "rig/json/field_writer.h"
 #include "rig/json/json_object.h"
 #include "rig/rig_file.h"
 

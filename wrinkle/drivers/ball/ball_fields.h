@@ -29,6 +29,18 @@ struct BallDriver {
   glm::vec3 forward{0.0f, 0.0f, 1.0f};  // model axes in the rest pose
   float beta_degrees = 30.0f;           // angle between the bones when fully bent, [0, 179]
   BallMode mode = BallMode::kSmooth;
+
+  // The fields as ball.fbs names them, in the order in which they are written.
+  template <class Fields>
+  static void ListFields(Fields& fields) {
+    fields.Required("parent", &BallDriver::parent);
+    fields.Required("joint", &BallDriver::joint);
+    fields.Optional("end", &BallDriver::end);
+    fields.Optional("bone", &BallDriver::bone);
+    fields.Optional("forward", &BallDriver::forward);
+    fields.Optional("beta_degrees", &BallDriver::beta_degrees);
+    fields.Choice("mode", &BallDriver::mode, {"smooth", "thesis"});
+  }
 };
 
 [[nodiscard]] std::vector<std::string> DriverValueNames(const BallDriver& driver);

@@ -19,6 +19,14 @@ struct BlendShapeDriver {
   std::string blend_shape;  // matched without case
   float neutral = 0.0f;     // the coefficient that gives 0, [-1000, 1000]
   float full = 1.0f;        // the coefficient that gives 1; may be below `neutral`, but not equal
+
+  // The fields as blend_shape.fbs names them, in the order in which they are written.
+  template <class Fields>
+  static void ListFields(Fields& fields) {
+    fields.Required("blend_shape", &BlendShapeDriver::blend_shape);
+    fields.Optional("neutral", &BlendShapeDriver::neutral);
+    fields.Optional("full", &BlendShapeDriver::full);
+  }
 };
 
 [[nodiscard]] std::vector<std::string> DriverValueNames(const BlendShapeDriver& driver);

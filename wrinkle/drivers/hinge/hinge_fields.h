@@ -25,6 +25,16 @@ struct HingeDriver {
   std::optional<glm::vec3> axis;  // model axes in the rest pose; a right-handed turn about it
                                   // flexes. None: bending either way counts, as printed
   float beta_degrees = 30.0f;     // angle between the bones when fully flexed, [0, 179]
+
+  // The fields as hinge.fbs names them, in the order in which they are written.
+  template <class Fields>
+  static void ListFields(Fields& fields) {
+    fields.Required("parent", &HingeDriver::parent);
+    fields.Required("joint", &HingeDriver::joint);
+    fields.Optional("end", &HingeDriver::end);
+    fields.Optional("axis", &HingeDriver::axis);
+    fields.Optional("beta_degrees", &HingeDriver::beta_degrees);
+  }
 };
 
 [[nodiscard]] std::vector<std::string> DriverValueNames(const HingeDriver& driver);

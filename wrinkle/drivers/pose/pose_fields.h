@@ -23,6 +23,14 @@ struct ControlPoint {
   Kind kind = Kind::kTail;
   glm::vec3 offset{0.0f};    // for kOffset: in the joint's space, in units of `offset_size`
   float offset_size = 0.0f;  // SkeletonSize() the offset was measured on; 0: bound skeleton's units
+
+  template <class Fields>
+  static void ListFields(Fields& fields) {
+    fields.Required("joint", &ControlPoint::joint);
+    fields.Choice("kind", &ControlPoint::kind, {"tail", "origin", "offset"});
+    fields.Optional("offset", &ControlPoint::offset);
+    fields.Optional("offset_size", &ControlPoint::offset_size);
+  }
 };
 
 enum class PoseSolve { kProjection, kNnls };
@@ -37,11 +45,26 @@ struct PoseDriver {
   struct Value {
     std::string name;
     std::string reference_pose;
+
+    template <class Fields>
+    static void ListFields(Fields& fields) {
+      fields.Required("name", &Value::name);
+      fields.Required("reference_pose", &Value::reference_pose);
+    }
   };
   std::vector<ControlPoint> points;
   std::vector<Value> values;
   PoseSolve solve = PoseSolve::kProjection;
   float falloff = 0.0f;  // s of exp(-|perp|^2 / (2 s^2 |d|^2)), [0, 1000]; 0: no falloff
+
+  // The fields as pose.fbs names them, in the order in which they are written.
+  template <class Fields>
+  static void ListFields(Fields& fields) {
+    fields.Required("points", &PoseDriver::points);
+    fields.Required("values", &PoseDriver::values);
+    fields.Choice("solve", &PoseDriver::solve, {"projection", "nnls"});
+    fields.Optional("falloff", &PoseDriver::falloff);
+  }
 };
 
 // The names in `values`.

@@ -35,6 +35,13 @@ struct StrainDriver {
     glm::vec3 position{0.0f};         // rest pose, model axes, from the origin of `joint`
     std::vector<int> joints;          // into `joints` below, at most kMaxInfluences
     std::vector<float> skin_weights;  // one per joint, > 0, sum 1
+
+    template <class Fields>
+    static void ListFields(Fields& fields) {
+      fields.Required("position", &Vertex::position);
+      fields.Required("joints", &Vertex::joints);
+      fields.Required("skin_weights", &Vertex::skin_weights);
+    }
   };
   std::string joint;                // positions are measured from its origin
   std::vector<std::string> joints;  // the joints that move the patch
@@ -43,6 +50,18 @@ struct StrainDriver {
   glm::vec3 direction{1.0f, 0.0f, 0.0f};  // model axes, rest pose; projected into the surface
   float full_compression = 0.25f;         // the compression that gives 1, [0.01, 1]
   float size = 0.0f;  // SkeletonSize() the positions were measured on; 0: bound skeleton's units
+
+  // The fields as strain.fbs names them, in the order in which they are written.
+  template <class Fields>
+  static void ListFields(Fields& fields) {
+    fields.Required("joint", &StrainDriver::joint);
+    fields.Required("direction", &StrainDriver::direction);
+    fields.Optional("full_compression", &StrainDriver::full_compression);
+    fields.Optional("size", &StrainDriver::size);
+    fields.Required("joints", &StrainDriver::joints);
+    fields.Required("vertices", &StrainDriver::vertices);
+    fields.Required("triangles", &StrainDriver::triangles);
+  }
 };
 
 [[nodiscard]] std::vector<std::string> DriverValueNames(const StrainDriver& driver);

@@ -25,6 +25,15 @@ struct TwistDriver {
   float full_degrees = 90.0f;     // [1, 180]: the angle that gives 1
   std::vector<std::string>
       through;  // more joints, with twists that add up (neck01..03); at most 64
+
+  // The fields as twist.fbs names them, in the order in which they are written.
+  template <class Fields>
+  static void ListFields(Fields& fields) {
+    fields.Required("joint", &TwistDriver::joint);
+    fields.Optional("axis", &TwistDriver::axis);
+    fields.Optional("full_degrees", &TwistDriver::full_degrees);
+    fields.Optional("through", &TwistDriver::through);
+  }
 };
 
 [[nodiscard]] std::vector<std::string> DriverValueNames(const TwistDriver& driver);
