@@ -13,26 +13,32 @@ function(furrow_library name)
   furrow_unity(${name})
 endfunction()
 
-# furrow_flatbuffers(TARGET SCHEMAS...): generates headers, included as "<folder>/<name>_generated.h".
+# furrow_flatbuffers(TARGET SCHEMAS...): generates headers, included as "<folder>/<name>_generated.h". A schema is
+# in the source folder, or was itself generated as <build>/generated/<folder>/<name>.fbs (absolute path).
 function(furrow_flatbuffers target)
+  set(generated "${CMAKE_BINARY_DIR}/generated")
   set(outputs)
   foreach(schema IN LISTS ARGN)
-    get_filename_component(stem "${schema}" NAME_WE)
-    file(RELATIVE_PATH folder "${CMAKE_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}/${schema}")
-    get_filename_component(folder "${folder}" DIRECTORY)
-    set(output_dir "${CMAKE_BINARY_DIR}/generated/${folder}")
+    cmake_path(ABSOLUTE_PATH schema BASE_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}" NORMALIZE)
+    cmake_path(GET schema STEM stem)
+    cmake_path(GET schema PARENT_PATH output_dir)
+    cmake_path(IS_PREFIX generated "${schema}" is_generated)
+    if(NOT is_generated)
+      file(RELATIVE_PATH folder "${CMAKE_SOURCE_DIR}" "${output_dir}")
+      set(output_dir "${generated}/${folder}")
+    endif()
     set(output "${output_dir}/${stem}_generated.h")
     add_custom_command(
       OUTPUT "${output}"
       COMMAND "${FURROW_FLATC}" --cpp --scoped-enums --no-prefix --gen-compare
-              -I "${CMAKE_CURRENT_SOURCE_DIR}" -o "${output_dir}" "${CMAKE_CURRENT_SOURCE_DIR}/${schema}"
-      DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/${schema}" VERBATIM)
+              -I "${CMAKE_CURRENT_SOURCE_DIR}" -o "${output_dir}" "${schema}"
+      DEPENDS "${schema}" VERBATIM)
     list(APPEND outputs "${output}")
   endforeach()
   add_custom_target(${target}_schemas DEPENDS ${outputs})
   add_dependencies(${target} ${target}_schemas)
   target_sources(${target} PRIVATE ${outputs})
-  target_include_directories(${target} SYSTEM PRIVATE "${CMAKE_BINARY_DIR}/generated")
+  target_include_directories(${target} SYSTEM PRIVATE "${generated}")
 endfunction()
 
 # furrow_test(NAME SOURCES... LINK libs... [ONE_PROCESS] [LABEL l]): adds a GoogleTest program. Each test is

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Builds the documentation site with MkDocs.
 
-build_site.py --source DIR --bin DIR --out DIR
+build_site.py --source DIR --bin DIR --generated DIR --out DIR
 
 The site has three kinds of pages: those of docs/, those that live beside the code they describe
 (protocol/STANDARD.md and others, see OUTSIDE), and generated ones (cli_reference.py). This script
@@ -40,8 +40,9 @@ INCLUDE = re.compile(r"<!-- include: (\S+) (\w+) -->")
 class Site:
     """Source pages by their place in the repository, and where each goes."""
 
-    def __init__(self, source):
+    def __init__(self, source, generated):
         self.source = source
+        self.generated = generated
         self.places = {}  # "docs/RIG.md" -> "RIG.md"
         for path in sorted((source / "docs").rglob("*")):
             if path.suffix in COPIED and path.is_file():
@@ -72,8 +73,10 @@ class Site:
         return match[0]  # generated, or wrong: MkDocs decides
 
     def include(self, match):
-        """A file of the tree as a fenced block."""
-        return f"```{match[2]}\n{(self.source / match[1]).read_text().rstrip()}\n```"
+        """A file of the tree, or of the generated files ("generated/..."), as a fenced block."""
+        folder, _, rest = match[1].partition("/")
+        path = self.generated / rest if folder == "generated" else self.source / match[1]
+        return f"```{match[2]}\n{path.read_text().rstrip()}\n```"
 
     def stage(self, folder, bin_folder):
         """Collects all pages in `folder`, and deletes what was there."""
@@ -108,13 +111,15 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--source", type=pathlib.Path, required=True, help="root of the repository")
     parser.add_argument("--bin", type=pathlib.Path, required=True, help="folder with furrow and furrowd")
+    parser.add_argument("--generated", type=pathlib.Path, required=True,
+                        help="folder of the files that the build generates")
     parser.add_argument("--out", type=pathlib.Path, required=True, help="folder of the built site")
     args = parser.parse_args()
     mkdocs = find_mkdocs()
     if mkdocs is None:
         return SKIPPED
     staged = args.out.resolve().with_name(args.out.name + "-source")
-    Site(args.source.resolve()).stage(staged, args.bin.resolve())
+    Site(args.source.resolve(), args.generated.resolve()).stage(staged, args.bin.resolve())
     return subprocess.run(
         [mkdocs, "build", "--strict", "--config-file", str(args.source / "mkdocs.yml"),
          "--site-dir", str(args.out.resolve())],

@@ -12,7 +12,8 @@
 
 namespace furrow::rig {
 
-// The text of rig/rig.fbs. Rigs are checked against it.
+// The schema of a rig: the text of rig/rig.fbs with the tables of the driver kinds inserted. Rigs
+// are checked against it.
 [[nodiscard]] std::string_view RigSchemaText();
 
 // Reads a wrinkle rig (JSON, checked against rig/rig.fbs; docs/RIG.md is the manual).

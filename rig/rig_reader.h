@@ -13,9 +13,10 @@ namespace schema {
 struct Rig;
 }
 
-// Converts the schema's tables (rig.fbs) to wrinkle::Rig. Reference poses are read and mixed; poses
-// that only mixes use are still included. Checks enumerations and alternatives ("exactly one of");
-// CheckRig() checks everything else. The error's `where` is the path of the field.
+// Converts the schema's tables (RigSchemaText()) to wrinkle::Rig. Reference poses are read and
+// mixed; poses that only mixes use are still included. Checks enumerations and alternatives
+// ("exactly one of"); CheckRig() checks everything else. The error's `where` is the path of the
+// field.
 [[nodiscard]] Result<wrinkle::Rig> ReadRigTables(const schema::Rig& tables,
                                                  const std::filesystem::path& folder,
                                                  const wrinkle::PoseSource& poses);

@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of driver kinds: the only file outside the kinds' folders that names them in wrinkle/.
+// The table of driver kinds. A kind is one folder and its rows in this table; nothing else has to
+// change to read, write, check, solve and explain it.
 //
 // To add a kind "spread", write wrinkle/drivers/spread/ and add the kind to the four lists below:
+// - spread.fbs: the schema of the kind's fields, with the comments that rig authors read. It has a
+//   table SpreadDriver, and the tables and enumerations that SpreadDriver uses. The kinds share
+//   one namespace. The build inserts the file into the rig's schema (rig/rig.fbs).
 // - spread_fields.h: struct SpreadDriver, the kind's fields in a rig, with the constants
-//   kReadsJoints and kMeasuresFromAnchor, and the functions DriverValueNames(), CheckFields(),
-//   JointsRead(), JointsInfluenced() and FullPose().
+//   kReadsJoints and kMeasuresFromAnchor, the list of its fields for the reader and the writer of
+//   rig files, ListFields() (wrinkle/fields/field_list.h), and the functions DriverValueNames(),
+//   CheckFields(), JointsRead(), JointsInfluenced() and FullPose().
 // - spread_driver.h: class SpreadDriverSet, all bound drivers of the kind, with Bind(), Plan() and
 //   Explain().
 // - spread_lanes-inl.h: EvaluateDrivers(), compiled once per instruction set.
-// drivers/twist/ is a short example. rig/drivers/ reads and writes the kind's JSON.
+// drivers/twist/ is a short example.
 //
 // This file may be included several times. It always defines the fields and the list. The bound
 // drivers follow if FURROW_BOUND_DRIVERS is defined, and the SIMD code if FURROW_DRIVER_LANES is.
@@ -24,8 +29,8 @@
 #include "wrinkle/drivers/strain/strain_fields.h"
 #include "wrinkle/drivers/twist/twist_fields.h"
 
-// List 2: the kinds. KIND(Spread, spread) stands for SpreadDriver and for the field `spread` in
-// code and in JSON.
+// List 2: the kinds. KIND(Spread, spread) stands for SpreadDriver, for the field `spread` in code
+// and in JSON, and for spread/spread.fbs. CMake reads this list too (cmake/RigSchema.cmake).
 #define FURROW_DRIVER_KINDS(KIND) \
   KIND(Pose, pose)                \
   KIND(Hinge, hinge)              \
