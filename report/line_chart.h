@@ -10,12 +10,13 @@ namespace furrow::report {
 // The label, scale and ticks of an axis.
 struct Axis {
   std::string label;         // with its unit
-  bool logarithmic = false;  // steps of 10; values of 0 and below are left out
+  bool logarithmic = false;  // ticks at powers of 10; points at 0 and below are left out
   // Named ticks instead of round numbers: (value, name).
   std::vector<std::pair<double, std::string>> ticks;
 };
 
-// Curves over one pair of axes. A linear axis starts at 0 or below.
+// A chart of curves over one pair of axes. A linear axis starts at 0, or lower if there are
+// negative values.
 struct LineChart {
   std::string title;
   Axis x;

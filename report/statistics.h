@@ -5,7 +5,8 @@
 
 namespace furrow::report {
 
-// Median of at least one sample. For an even number of samples, the mean of the middle two.
+// Returns the median of `samples`: the middle one, or the mean of the middle two. Precondition: at
+// least one sample.
 [[nodiscard]] double Median(std::vector<double> samples);
 
 }  // namespace furrow::report

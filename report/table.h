@@ -6,7 +6,7 @@
 
 namespace furrow::report {
 
-// A table of text. All rows have as many cells as the header.
+// A table of text. Each row has one cell per column of the header; missing cells are left blank.
 struct Table {
   std::string title;
   std::vector<std::string> header;
