@@ -11,29 +11,33 @@
 
 namespace furrow::authoring {
 
+// The options of MakeDefaultCharacter().
 struct CharacterOptions {
   FaceParameters face;
   BodyParameters body;
-  int level = kDefaultLevel;  // level of detail of the head's mesh, 0 to 2
-  int texture_size =
-      1024;  // of skin, cloth and wrinkle maps, texels; masks, eyes and hair have half
+  int level = kDefaultLevel;  // level of detail of the head's mesh, 0 coarsest to 2 finest
+  // Width and height of the pictures of skin, cloth and wrinkles, texels. Masks, eyes and hair have
+  // half the size.
+  int texture_size = 1024;
 };
 
-// Makes the default character (CC0): a clothed body with a face on muscle joints. Textures and
-// masks are embedded pictures with the names that rig/rigs/default.json uses. The character holds
-// `rig`. AddWrinkleMaps() bakes its wrinkle maps. The same options always give the same bytes.
+// Makes the default character (CC0), without wrinkle maps: a clothed body with a face whose joints
+// follow the muscles. Its textures and masks are embedded pictures with the names that the rig
+// default.json uses. The character holds a copy of `rig`. Equal options give equal bytes.
 [[nodiscard]] character::Character MakeDefaultCharacter(const wrinkle::Rig& rig,
                                                         const CharacterOptions& options = {});
 
-// Makes a character, bakes its wrinkle maps, and writes it to `glb` with its rig beside it
-// (NAME.rig.json, a copy of default.json in `rigs`). Errors: those of reading, baking and writing.
+// Makes a character, bakes its wrinkle maps, and writes the file `glb`, then its rig beside it
+// (NAME.rig.json). `rigs`: the folder of default.json and default.strokes.json, which are read.
+// Errors: those of LoadRig(), LoadStrokes(), AddWrinkleMaps(), SaveCharacterGlb() and of writing
+// the rig; `glb` may exist then.
 [[nodiscard]] Status WriteCharacter(const std::filesystem::path& rigs,
                                     const CharacterOptions& options,
                                     const std::filesystem::path& glb);
 
 // Writes the contents of share/furrow: default.glb and elder.glb (a woman of 65) with their rigs, a
-// copy of `rigs` in rigs/, and recordings/*.bvh. Creates missing folders. Errors: those of reading,
-// baking and writing.
+// copy of the folder `rigs` in rigs/, and recordings/*.bvh. Creates missing folders. Errors: kIo,
+// and those of WriteCharacter(); files that were already written remain.
 [[nodiscard]] Status WriteShare(const std::filesystem::path& rigs,
                                 const std::filesystem::path& share);
 

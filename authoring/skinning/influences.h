@@ -14,20 +14,21 @@ struct Influences {
   std::uint16_t joints[4] = {0, 0, 0, 0};
   float weights[4] = {1.0f, 0.0f, 0.0f, 0.0f};
 
+  // Sets the joints and skin weights of `vertex`.
   void CopyTo(character::Vertex* vertex) const;
 };
 
-// Adds up weights of any number of joints and keeps the strongest four.
+// Adds up the weights of any number of joints and selects the strongest four.
 class InfluenceSum {
  public:
   // Ignores weights that are not positive.
   void Add(std::uint16_t joint, float weight);
-  // Adds all joints of `influences`, their weights scaled by `share`.
+  // Adds all joints of `influences`, with their weights multiplied by `share`.
   void Add(const Influences& influences, float share);
 
   [[nodiscard]] std::size_t num_joints() const { return sums_.size(); }
-  // The four strongest joints, normalised. Equal weights: the lower joint first. Without any
-  // weight: joint 0, the root.
+  // The four strongest joints, with weights scaled to sum to 1. Among equal weights, the lower
+  // joint index wins. Without any weight: joint 0, the root, with weight 1.
   [[nodiscard]] Influences Strongest() const;
 
  private:

@@ -6,9 +6,10 @@
 
 namespace furrow::authoring {
 
-// A stretched hand at rest, palm down, with its influences. Fingers and thumb are one surface with
-// the palm. `side`: +1 left, -1 right. The back of the hand is `panel`, the palm `panel` + 1; they
-// meet along the sides of hand and fingers. `level` as in BodyParameters.
+// Makes a stretched hand in the rest pose, palm down, with its influences. Fingers, thumb and palm
+// are one surface. `side`: +1 left, -1 right. The back of the hand is panel `panel`, the palm panel
+// `panel` + 1; they meet along the sides of hand and fingers. `level`: number of subdivisions, each
+// of which splits every quad into four, >= 0.
 [[nodiscard]] QuadNet MakeHand(const wrinkle::Skeleton& skeleton, float side, int panel, int level);
 
 }  // namespace furrow::authoring

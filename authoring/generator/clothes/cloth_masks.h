@@ -8,17 +8,19 @@
 
 namespace furrow::authoring {
 
-// The masks of the clothing's regions, four regions in each RGBA picture. Both sides of a joint
-// have a mask of their own:
-//   elbows     left inner, left outer, right inner, right outer
-//   knees      as elbows
-//   hips       left front, left back, right front, right back
-//   shoulders  as hips
-//   waist      front, back, left, right
-//   neck       left, right
+// Names of the pictures that PaintClothMasks() returns. Each RGBA picture holds up to four regions,
+// in the order of its channels:
+//   a  elbows     left inner, left outer, right inner, right outer
+//   b  knees      left inner, left outer, right inner, right outer
+//   c  hips       left front, left back, right front, right back
+//   d  shoulders  left front, left back, right front, right back
+//   e  waist      front, back, left, right
+//   f  neck       left, right
 inline constexpr std::array<const char*, 6> kClothMaskNames = {"cloth_masks_a", "cloth_masks_b",
                                                                "cloth_masks_c", "cloth_masks_d",
                                                                "cloth_masks_e", "cloth_masks_f"};
+// Paints the masks of the clothes' regions: 8 bits, 0 outside a
+// region, at most 255 inside, with soft borders.
 // `size`: width and height, texels.
 [[nodiscard]] std::array<character::Picture, 6> PaintClothMasks(const Clothes& clothes, int size);
 

@@ -6,15 +6,16 @@
 
 namespace furrow::authoring {
 
-// Pictures of the clothes' atlas, painted at rest. `size`: width and height, texels.
+// Pictures of shirt and trousers in their common UV atlas. `size`: width and height, texels.
 
-// Weave, placket and buttons, seams, pockets and wear. sRGB.
+// The colour, sRGB: weave, placket and buttons, seams, pockets and wear.
 [[nodiscard]] character::Picture PaintClothColour(const Clothes& clothes,
                                                   const BodyParameters& body, int size);
-// The relief of the same details, and permanent creases: gathers above belt and cuffs, the pressed
-// crease of the trousers. Tangent space, green up.
+// The tangent-space normal map, green up: weave, buttons, seams, pockets, and permanent creases
+// (gathers above belt and cuffs, the pressed crease of the trousers).
 [[nodiscard]] character::Picture PaintClothNormals(const Clothes& clothes, int size);
-// Roughness in the green channel. Shirting is smoother than twill, buttons are smoother still.
+// The roughness in the green channel, 0 smooth to 255 rough: trousers (twill) are roughest, the
+// shirt is smoother, buttons are smoothest.
 [[nodiscard]] character::Picture PaintClothRoughness(const Clothes& clothes, int size);
 
 }  // namespace furrow::authoring

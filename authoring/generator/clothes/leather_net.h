@@ -6,11 +6,12 @@
 
 namespace furrow::authoring {
 
-// A shoe at rest with its influences. `side`: +1 left, -1 right. The upper is `panel`, the sole
-// `panel` + 1.
+// Makes a shoe in the rest pose, with its influences. `side`: +1 left, -1 right. The upper is panel
+// `panel`, the sole panel `panel` + 1.
 [[nodiscard]] QuadNet MakeShoe(const BodyShape& shape, float side, int panel);
 
-// The belt (`panel`) and its buckle (`panel` + 1), around the waist of the trousers.
+// Makes the belt (panel `panel`) and its buckle (panel `panel` + 1), around the waist of the
+// trousers, in the rest pose.
 [[nodiscard]] QuadNet MakeBelt(const BodyShape& shape, int panel);
 
 }  // namespace furrow::authoring

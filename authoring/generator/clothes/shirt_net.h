@@ -6,9 +6,9 @@
 
 namespace furrow::authoring {
 
-// A tucked-in shirt with its influences, in the modelling pose (see BodyShape). Trunk and sleeves
-// are one surface with seams at the armholes, at the sides and along the inside of the arms. The
-// collar (collar_net.h) stands on the neckline.
+// Makes a tucked-in shirt with collar and influences, with the arms hanging 30 degrees away from
+// the sides (the modelling pose of `shape`). Trunk and sleeves are one surface with seams at the
+// armholes, at the sides and along the inside of the arms.
 [[nodiscard]] QuadNet MakeShirt(const BodyShape& shape);
 
 }  // namespace furrow::authoring

@@ -6,8 +6,9 @@
 
 namespace furrow::authoring {
 
-// Trousers with their influences, in the modelling pose (see BodyShape). Each leg is one panel from
-// the hem to the waist, with seams along the inside of the leg and the middle of front and back.
+// Makes trousers with their influences, in the modelling pose of `shape` (a T-pose with lowered
+// arms). Each leg is one panel from the hem to the waist, with seams along the inside of
+// the leg and the middle of front and back.
 [[nodiscard]] QuadNet MakeTrousers(const BodyShape& shape);
 
 }  // namespace furrow::authoring

@@ -6,7 +6,8 @@
 
 namespace furrow::authoring {
 
-// The hair: a thin cap over the scalp and cards of strands on it, one per lock (hair_style.h).
+// Makes the hair of a head: a thin cap over the scalp, and on it one textured strip ("card") per
+// lock of hair.
 [[nodiscard]] HeadMesh MakeHair(const HeadShape& shape = DefaultHead());
 
 }  // namespace furrow::authoring

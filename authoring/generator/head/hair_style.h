@@ -9,26 +9,27 @@
 
 namespace furrow::authoring {
 
-// A lock of hair: the points of its middle line from root to tip, the outward unit vector at each
-// point, and half the width. Head space, centimetres.
+// A lock of hair, in head space, centimetres.
 struct HairLock {
-  std::vector<glm::vec3> path;
-  std::vector<glm::vec3> out;
-  float width = 0.5f;
+  std::vector<glm::vec3> path;  // the middle line, from root to tip
+  std::vector<glm::vec3> out;   // unit vector away from the head, one per point of `path`
+  float width = 0.5f;           // half the width of the lock
 };
 
-// How far a point of the scalp lies inside the hairline, centimetres; negative: bare skin. `p`:
-// head space.
+// How far the point `p` of the scalp lies inside the hairline, centimetres; negative: outside, on
+// bare skin. `p`: head space, centimetres.
 [[nodiscard]] float InsideHairline(const glm::vec3& p);
 
-// Grows the lock with its root at `root`, a point of the scalp. A man's hair is short at the sides
-// and combed back from a parting; a woman's is drawn back into a knot; values between are mixtures.
-// `number` selects the variation. The path has `sections` + 1 points. It is empty where no hair
-// grows (under the knot).
+// Grows the lock with its root at `root`, a point of the scalp in head space, centimetres. Male
+// hair (FaceParameters::sex 1) is short at the sides and combed back from a parting; female hair
+// (-1) is drawn back into a knot; values in between blend. `number`: seed of the random variation
+// of the lock. `sections` >= 1: the path has `sections` + 1 points. It is empty where no hair grows
+// (under the knot).
 [[nodiscard]] HairLock GrowLock(const HeadShape& shape, const glm::vec3& root, int number,
                                 int sections);
 
-// The locks that form the knot at the back of the head; empty for a man.
+// The locks that form the knot at the back of the head; empty for a male head. `sections` >= 1:
+// every path has `sections` + 1 points.
 [[nodiscard]] std::vector<HairLock> WindKnot(const HeadShape& shape, int sections);
 
 }  // namespace furrow::authoring

@@ -15,33 +15,34 @@ inline constexpr int kCoarsestLevel = 0;  // about 3,000 triangles for the whole
 inline constexpr int kDefaultLevel = 1;
 inline constexpr int kFinestLevel = 2;
 
-// The grid of vertices over the head's chart at one level of detail. Around the eyes and the mouth
-// it is warped so that edges follow their outlines; cells inside the openings are left out. All
-// levels sample the finest one, so their vertices coincide.
+// The grid of a head's vertices at one level of detail. It covers the chart of the head (column
+// around the head, row from neck to crown; see head_chart.h). Around the eyes and the mouth the
+// grid is warped so that edges follow their outlines; cells inside the openings are left out.
+// Vertices of a coarser level are a subset of those of the finest level.
 class HeadGrid {
  public:
-  // `shape` must outlive it. `level` is clamped to the levels above.
+  // `shape` must outlive the grid. `level` is clamped to [kCoarsestLevel, kFinestLevel].
   explicit HeadGrid(const HeadShape& shape, int level = kDefaultLevel);
 
   [[nodiscard]] const HeadShape& shape() const { return *shape_; }
   [[nodiscard]] int level() const { return level_; }
-  [[nodiscard]] int num_columns() const {
-    return kHeadColumns * kFine / stride_;
-  }                                                                            // on either side
-  [[nodiscard]] int num_rows() const { return num_fine_rows_ / stride_ + 1; }  // of vertices
-  [[nodiscard]] int eye_row(int i) const {
-    return fine_eye_rows_[i] / stride_;
-  }  // i = 0: first, 1: last
+  // Columns on each side: vertices have columns [-num_columns(), num_columns()].
+  [[nodiscard]] int num_columns() const { return kHeadColumns * kFine / stride_; }
+  // Rows of vertices: [0, num_rows()).
+  [[nodiscard]] int num_rows() const { return num_fine_rows_ / stride_ + 1; }
+  // The first (`i` = 0) and the last (1) row of the opening of the eyes, and of the mouth.
+  [[nodiscard]] int eye_row(int i) const { return fine_eye_rows_[i] / stride_; }
   [[nodiscard]] int mouth_row(int i) const { return fine_mouth_rows_[i] / stride_; }
 
-  // The place of grid vertex (column, row) on the chart, before and after warping.
+  // The chart coordinates of the vertex (column, row), before and after warping.
   [[nodiscard]] glm::vec2 Plain(int column, int row) const;
   [[nodiscard]] glm::vec2 Warped(int column, int row) const;
-  // The surface point, head space.
+  // The surface point at chart coordinates, head space, centimetres.
   [[nodiscard]] glm::vec3 Surface(const glm::vec2& place) const {
     return HeadSurface(*shape_, place);
   }
-  // True if the cell with this low corner is inside the opening of an eye or the mouth.
+  // True if the cell between the vertices (column, row) and (column + 1, row + 1) is inside the
+  // opening of an eye or the mouth.
   [[nodiscard]] bool InOpening(int column, int row) const;
   // The outline of an opening as (column, row), counter-clockwise from outside: the left eye from
   // its inner corner, the mouth from the subject's left corner.

@@ -11,10 +11,11 @@
 
 namespace furrow::authoring {
 
+// The part of the head that a vertex belongs to.
 enum HeadPart { kFacePart = 0, kMouthInside, kEar, kEyeball, kHairCap, kLash, kTeeth };
 
-// What skinning needs to know about a vertex besides its position. The sides tell apart vertices
-// that share a position: closed lips touch each other, and so do closed lids.
+// The data of a vertex from which SkinHead() derives its skin weights. `mouth_side` and `eye_side`
+// distinguish vertices at the same position: closed lips touch each other, and so do closed lids.
 struct HeadVertex {
   glm::vec3 place{0.0f};    // head space, centimetres
   float mouth_side = 0.0f;  // +1 above the line of the lips, -1 below, 0 elsewhere
@@ -22,14 +23,13 @@ struct HeadVertex {
   int part = 0;             // HeadPart
 };
 
-// A mesh of the head in model space, with one HeadVertex per vertex. Skin weights are not set yet;
-// see skinning.h.
+// A mesh of the head in model space, metres, without skin weights until SkinHead() sets them.
 struct HeadMesh {
   character::Mesh mesh;
-  std::vector<HeadVertex> info;
+  std::vector<HeadVertex> info;  // one per vertex of `mesh`
 };
 
-// Appends a vertex and returns its index. Its model-space position follows from `info.place`.
+// Appends a vertex and returns its index. `info.place` gives its position; `uv`: v down.
 std::uint32_t AddHeadVertex(HeadMesh* head, const HeadVertex& info, const glm::vec2& uv);
 
 }  // namespace furrow::authoring

@@ -15,7 +15,8 @@ namespace furrow::authoring {
 // (p + kHeadOrigin) / 100 in model space, which is in metres.
 inline constexpr glm::vec3 kHeadOrigin{0.0f, 163.5f, 1.0f};
 
-// Landmarks on the left side, averaged over adult heads (docs/DEFAULT-CHARACTER.md).
+// Landmarks on the left side in head space, centimetres: means of adult heads
+// (docs/DEFAULT-CHARACTER.md). They are the same for every face.
 inline constexpr glm::vec3 kEyeCentre{3.2f, 0.0f, 7.22f};
 inline constexpr float kEyeRadius = 1.2f;
 inline constexpr float kInnerCanthusX = 1.72f;
@@ -23,17 +24,20 @@ inline constexpr float kOuterCanthusX = 4.66f;
 inline constexpr float kMouthCornerX = 2.52f;
 inline constexpr float kMouthY = -6.90f;
 
+// Convert a point from head space (centimetres) to model space (metres), and back.
 [[nodiscard]] glm::vec3 HeadToModel(const glm::vec3& p);
 [[nodiscard]] glm::vec3 ModelToHead(const glm::vec3& p);
 
-// The shape of one head as a signed distance, negative inside, with a gradient of about 1 per
-// centimetre: skull, face and neck in one piece, slightly asymmetric. The eyelids leave an
-// opening for each eye; the lips are closed. Ears, eyeballs and hair are separate meshes.
+// The shape of one head as a signed distance: skull, face and neck in one piece, slightly
+// asymmetric. The eyelids leave an opening for each eye; the lips are closed. Ears, eyeballs and
+// hair are separate meshes. All points are in head space, centimetres.
 class HeadShape {
  public:
   explicit HeadShape(const FaceParameters& face = {});
 
   [[nodiscard]] const FaceParameters& face() const { return face_; }
+  // The distance from `p` to the surface, centimetres; negative inside. Exact only near the
+  // surface.
   [[nodiscard]] float Distance(const glm::vec3& p) const;
   // Unit gradient of Distance().
   [[nodiscard]] glm::vec3 Normal(const glm::vec3& p) const;
@@ -50,8 +54,9 @@ class HeadShape {
   std::vector<Bulge> bulges_;
 };
 
-// The head of the default character.
+// The head of the default character, made on the first call. Thread-safe.
 [[nodiscard]] const HeadShape& DefaultHead();
+// Distance(), Normal() and Cast() of DefaultHead().
 [[nodiscard]] inline float HeadDistance(const glm::vec3& p) { return DefaultHead().Distance(p); }
 [[nodiscard]] inline glm::vec3 HeadNormal(const glm::vec3& p) { return DefaultHead().Normal(p); }
 [[nodiscard]] inline glm::vec3 CastOnHead(const glm::vec3& from, const glm::vec3& direction,

@@ -7,8 +7,8 @@
 
 namespace furrow::authoring {
 
-// Face, neck, lids, inside of the mouth and ears in one atlas: the head's grid above, the ears
-// below. `level` as in HeadGrid.
+// Makes the skin of a head: face, neck, lids, inside of the mouth, and ears. One UV atlas holds the
+// head above and the ears below. `level`: level of detail, kCoarsestLevel to kFinestLevel.
 [[nodiscard]] HeadMesh MakeHeadSkin(const HeadShape& shape = DefaultHead(),
                                     int level = kDefaultLevel);
 

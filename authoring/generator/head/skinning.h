@@ -7,9 +7,9 @@
 
 namespace furrow::authoring {
 
-// Sets the skin weights of the head: skull and jaw, the neck below, and a soft influence around
-// every muscle. `HeadVertex` separates the lips and the lids. At most four joints per vertex; the
-// weights sum to 1.
+// Sets the skin weights of a head: skull and jaw, the neck below, and a soft influence around every
+// muscle joint. Upper and lower lips (and lids) get different weights even where they touch. Each
+// vertex has at most four joints, and its weights sum to 1. `skeleton`: that of MakeSkeleton().
 void SkinHead(const wrinkle::Skeleton& skeleton, HeadMesh* head);
 
 }  // namespace furrow::authoring

@@ -21,7 +21,7 @@ void FinishSurface(character::Mesh* mesh);
 
 // One point (x, y) of a piecewise linear function; x increases.
 using Knot = std::pair<float, float>;
-// The function's value at `x`; constant beyond both ends.
+// The value at `x` of the function through `knots` (at least one); constant beyond both ends.
 [[nodiscard]] float Interpolate(std::span<const Knot> knots, float x);
 
 // A bell curve: exp(-(x / width)^2).

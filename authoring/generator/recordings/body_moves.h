@@ -3,10 +3,11 @@
 
 #include "authoring/generator/recordings/frame_pose.h"
 
-// Motions of the body in recordings. `t`: seconds.
+// Motions of the body in recordings. `t`: seconds since the start of the recording.
 namespace furrow::authoring {
 
-// Standing: hanging arms, relaxed fingers, breathing, and a head that drifts by a few degrees.
+// Poses a standing body: hanging arms, relaxed fingers, breathing, and a head that drifts by a few
+// degrees.
 void Stand(float t, FramePose* pose);
 
 // Adds a walk to Stand(): 1.04 m/s along +Z, two steps every 10/9 s. The standing foot does not

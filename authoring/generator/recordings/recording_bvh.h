@@ -8,9 +8,9 @@
 
 namespace furrow::authoring {
 
-// The recording as BVH text, in metres. The root and joints that translate have six channels, other
-// joints three; rotations are in the order Z Y X. Precondition: every rest rotation of the skeleton
-// is the identity.
+// Returns the recording as BVH text, in metres. The root and joints that translate have six
+// channels, other joints three; rotations are in the order Z Y X. Precondition: every rest rotation
+// of the skeleton is the identity.
 [[nodiscard]] std::string RecordingToBvh(const Recording& recording,
                                          const wrinkle::Skeleton& skeleton);
 

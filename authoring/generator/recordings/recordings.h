@@ -19,12 +19,13 @@ struct Recording {
 
 inline constexpr int kFramesPerSecond = 30;
 
-// "happiness", "anger", "sadness", "disgust", "performance", "conversation", "walk", "squat".
+// The names of all recordings: "happiness", "anger", "sadness", "disgust", "performance",
+// "conversation", "walk", "squat".
 [[nodiscard]] std::vector<std::string> RecordingNames();
 
-// Plays a script: the weights of the rig's reference poses (FACS action units) over time, with
-// onsets of 0.3 to 0.6 s, blinks every 3 to 5 s and slight motion of the head. Error: kNotFound (an
-// unknown name; a missing reference pose or joint).
+// Makes the recording `name` from the rig's reference poses (FACS action units): expressions appear
+// within 0.3 to 0.6 s, the eyes blink every 3 to 5 s, and the head moves slightly. Errors:
+// kNotFound (no recording of this name; a missing reference pose or joint).
 [[nodiscard]] Result<Recording> MakeRecording(std::string_view name, const wrinkle::Rig& rig,
                                               const wrinkle::Skeleton& skeleton);
 

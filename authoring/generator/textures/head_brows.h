@@ -7,7 +7,8 @@
 
 namespace furrow::authoring {
 
-// Fraction of a point that hairs of the brows cover, [0, 1]. `p`: head space, centimetres.
+// How much of the skin around the point `p` the hairs of the brows cover, 0 none to 1 all of it.
+// `p`: head space, centimetres.
 [[nodiscard]] float BrowShare(const glm::vec3& p, const FaceParameters& face);
 
 }  // namespace furrow::authoring

@@ -6,9 +6,9 @@
 
 namespace furrow::authoring {
 
-// The colour of the skin of head and hands, sRGB: skin, lips, brows, stubble, roots of the hair,
-// the inside of the mouth. Painted in model space at the surface point of each texel, so that UV
-// seams are invisible. `size`: width and height, texels.
+// Paints the colour of the skin of head and hands, sRGB: skin, lips, brows, stubble, roots of the
+// hair, the inside of the mouth. The colour of a texel depends on its surface point, so UV seams
+// are invisible. `size`: width and height, texels.
 [[nodiscard]] character::Picture PaintSkinColour(const character::Mesh& skin,
                                                  const HeadShape& shape, int size);
 

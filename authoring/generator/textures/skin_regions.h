@@ -9,13 +9,13 @@ namespace furrow::authoring {
 
 // Helpers to place features on the skin. Points are in head space, centimetres.
 
-// How much of a point is red of the lips, [0, 1].
+// How much the point `p` belongs to the red of the lips, 0 skin to 1 lips.
 [[nodiscard]] float LipShare(const glm::vec3& p);
-// A bell over an ellipsoid: 1 at the centre, 1/e at one radius.
+// A bell curve around `centre`: 1 there, 1/e on the ellipsoid with the radii `radii`.
 [[nodiscard]] float Spot(const glm::vec3& p, const glm::vec3& centre, const glm::vec3& radii);
-// The point itself or, from the right side, its mirror image on the left side (x >= 0).
+// Returns `p` mirrored to the left side: x becomes |x|.
 [[nodiscard]] glm::vec3 OnLeftSide(const glm::vec3& p);
-// Whether a texel of the skin shows a hand. Hands share the atlas of the head.
+// True if a texel of the skin shows a hand. Hands share the UV atlas of the head.
 [[nodiscard]] bool OnHand(const SurfaceTexel& texel);
 
 }  // namespace furrow::authoring

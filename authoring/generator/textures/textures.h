@@ -6,25 +6,26 @@
 
 namespace furrow::authoring {
 
-// All pictures are painted in model space at the surface point of each texel, so UV seams are
-// invisible. Colours are sRGB.
+// Pictures of eyes, lashes and hair, and the masks of the face. Colours are sRGB. Masks depend on
+// the surface point of a texel, so UV seams are invisible. `size`: width and height, texels.
 
-// Both eyes side by side (2 size x size): iris, pupil, limbus, veined white.
+// Both eyes side by side (width 2 * size, height size): iris, pupil, limbus, veined white.
 [[nodiscard]] character::Picture PaintEyes(int size);
-// The alpha of a lash's strip. Only a small part is opaque, so that small mip levels fall below
-// kStrandCutoff: a lash thinner than about a pixel disappears instead of becoming a row of dots.
-// The dark edge of the lid (PaintSkinColour) remains.
+// The alpha of the strip of one lash. Only a small part is opaque, so small mip levels fall below
+// the alpha cutoff of the material: a lash thinner than about a pixel disappears instead of
+// becoming a row of dots.
 [[nodiscard]] character::Picture PaintLash();
-// Strands with gaps (kStrandCutoff) above, the cap below, and the slopes of the strands.
+// The pictures of the hair. Strands with transparent gaps are above, the opaque cap below.
 struct HairPictures {
   character::Picture colour;
-  character::Picture normals;
+  character::Picture normals;  // tangent space: the slopes of the strands
 };
 [[nodiscard]] HairPictures PaintHair(const character::Mesh& hair, const FaceParameters& face,
                                      int size);
 
-// The masks of the eight facial regions: brow_l, brow_r, glabella, nose in the first picture,
-// eye_l, eye_r, mouth_l, mouth_r in the second. They are soft, and empty on ears and hands.
+// The masks of the eight facial regions, one per channel (red, green, blue, alpha): A holds brow_l,
+// brow_r, glabella and nose, B holds eye_l, eye_r, mouth_l and mouth_r. Masks are 0 outside a
+// region, on ears and on hands, and rise to at most 255 inside, with soft borders.
 [[nodiscard]] character::Picture PaintMasksA(const character::Mesh& skin, int size);
 [[nodiscard]] character::Picture PaintMasksB(const character::Mesh& skin, int size);
 

@@ -9,15 +9,17 @@
 
 namespace furrow::authoring {
 
-// How the skin and clothes of the default character fold, with the defaults of `furrow bake`. Skin
-// that folds deeper than at 30 years (`depth` above 1) also has fine lines.
+// The options that bake the wrinkle maps of a generated character. `size`: width and height of the
+// maps, texels. `depth`: multiplier for the height of skin folds, as WrinkleDepth() returns it;
+// above 1 (older than 30 years), the skin also gets fine lines. All others are the defaults of
+// BakeOptions.
 [[nodiscard]] BakeOptions WrinkleMapOptions(int size, float depth);
 
-// Bakes the wrinkle maps of the character's rig from its reference poses and from `strokes`
-// (rig/rigs/default.strokes.json). Adds the normals, heights, cavities and colours that the rig
-// names. `depth` scales the folds of skin (WrinkleDepth()).
+// Bakes the wrinkle maps of the character's rig from the rig's reference poses and from `strokes`,
+// and embeds the pictures that the rig names: normals, heights, cavities and colours. `size` and
+// `depth`: see WrinkleMapOptions().
 // Errors: those of CollectBakePoses(), Bake() and WrinkleMapPictures(); kNotFound (a baked map
-// without `normal` in the rig).
+// without `normal` in the rig). The character may have some of the pictures after an error.
 [[nodiscard]] Status AddWrinkleMaps(std::span<const BakeStroke> strokes, int size, float depth,
                                     character::Character* character);
 
