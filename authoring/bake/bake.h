@@ -14,13 +14,15 @@
 // length of the surface. docs/BAKE.md describes the method.
 namespace furrow::authoring {
 
-// Bakes every map that a pose or a stroke names.
+// Bakes every wrinkle map that a pose or a stroke names. `poses`: see CollectBakePoses();
+// `strokes`: lines drawn on the rest pose. Both refer to maps and regions of `character.rig` by
+// name.
 //
 // - A map is drawn on the meshes of the surface that the rig names for it. If the rig allows any
 //   surface, the map is drawn on skin, or on cloth if there is no skin. Meshes of one kind share
 //   one atlas. If no material is marked as skin, every mesh except cloth, eyes and hair is skin.
 // - `progress` (optional) is called repeatedly on the calling thread with the completed fraction,
-//   [0, 1]. It cancels the bake by returning false.
+//   [0, 1]. Returning false cancels the bake.
 // - The same input gives the same bytes for any number of threads.
 // Errors: kInvalidArgument (unknown map or region; count or option out of range; surface missing,
 // without UVs or without a triangle of nonzero area; stroke far from the surface), kNonFinite,

@@ -24,7 +24,7 @@ struct BakedFiles {
 
 struct PackageOptions {
   bool exr = false;    // write derivatives and heights as half floats instead of 16-bit PNG
-  bool masks = false;  // use the suggested masks in the rig's regions
+  bool masks = false;  // let the rig's regions use the suggested masks
 };
 
 // Packs the baked maps. A map `squash` becomes the pictures squash_derivative, squash_height,
@@ -35,9 +35,9 @@ struct PackageOptions {
 // - With `masks`, the mask pictures are named masks_skin_0, ..., and the rig's regions use them. A
 //   region that folds on both skin and cloth keeps its own mask, and a note says so.
 // - A file never takes the name of a picture that the rig still uses or that the character
-//   contains; it becomes squash_height_2 instead. Hand-edited masks therefore survive unless the
-//   bake replaces them.
-// - Baked maps lose their normal map, and their amplitude becomes 1. Picture files that the rig
+//   contains; it becomes squash_height_2 instead. Hand-edited masks therefore survive unless
+//   `masks` replaces them.
+// - In the new rig, baked maps have no normal map and the amplitude 1. Picture files that the rig
 //   still uses are copied from `character.folder`; embedded pictures stay in the character.
 //
 // Errors: kInvalidArgument (slopes beyond the limit of a rig, or another fault that CheckRig()
@@ -45,8 +45,8 @@ struct PackageOptions {
 [[nodiscard]] Result<BakedFiles> PackageMaps(const character::Character& character,
                                              const BakedMaps& maps, const PackageOptions& options);
 
-// The smallest round number, at least `least`, that is not below the magnitude of any value. Used
-// as the scale of a picture of integers.
+// The scale of a picture of integers: the larger of `least` and the largest magnitude in `values`,
+// rounded up to a multiple of 0.05 of its power of ten (0.25, 0.3, ...).
 [[nodiscard]] float RoundScale(const std::vector<float>& values, float least);
 
 }  // namespace furrow::authoring

@@ -19,9 +19,9 @@ struct CollectedPoses {
 };
 
 // Collects, for every region and wrinkle map of the character's rig, the poses that feed the map at
-// full strength (wrinkle/rig/full_pose.h). Skin matrices are model matrix times inverse bind
-// matrix. A source's gain, at most 1, becomes the weight of the pose. `maps`: names of the maps to
-// collect for; empty: all.
+// full strength. The skin matrix of a joint is its posed model matrix times its inverse bind
+// matrix. The gain of a source in the rig, limited to 1, becomes the weight of the pose. `maps`:
+// names of the maps to collect poses for; empty: all.
 //
 // Errors: kNotFound (no rig; a map that the rig lacks; a joint that the skeleton lacks),
 // kInvalidArgument (a reference pose equal to the rest pose, which cannot fold anything; a driver

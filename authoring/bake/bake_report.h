@@ -11,16 +11,17 @@
 
 namespace furrow::authoring {
 
-// What a report states besides the maps.
+// The facts that a report states besides the maps. The spans must stay valid until ReportHtml()
+// returns.
 struct ReportDetails {
-  std::string character;  // names of files, for people
-  std::string rig;
-  std::string strokes;  // empty: no strokes
+  std::string character;  // file name, as shown to people
+  std::string rig;        // file name
+  std::string strokes;    // file name; empty: no strokes
   std::span<const BakePose> poses;
   std::span<const std::string> notes;     // drivers that could not be baked
   std::span<const std::string> warnings;  // faults of the surfaces that do not prevent a bake
   BakeOptions options;
-  double seconds = 0.0;
+  double seconds = 0.0;  // duration of the bake
 };
 
 // The report of a bake as HTML (report.html). It shows the pictures of ReportPictures().

@@ -11,14 +11,16 @@
 
 namespace furrow::authoring {
 
-// Reads strokes from JSON. The schema is authoring/bake/strokes.fbs; docs/BAKE.md is the manual.
+// Reads strokes from a JSON file (schema: authoring/bake/strokes.fbs, manual: docs/BAKE.md).
 //
 // - `rig` defines the maps and regions that strokes may name. A stroke with `mirror` gives two
-//   strokes.
-// - Errors: as LoadRig(). `where` is "file:line: field": "face.strokes.json:7: strokes[2].taper".
+//   strokes, the second mirrored at the plane x = 0.
+// - Errors: kNotFound and kIo (the file), kParse, kSchema, kInvalidArgument, kNonFinite, kLimit.
+//   `where` is "file:line: field": "face.strokes.json:7: strokes[2].taper".
 [[nodiscard]] Result<std::vector<BakeStroke>> LoadStrokes(const std::filesystem::path& path,
                                                           const wrinkle::Rig& rig);
-// `source_name` replaces the file name in errors.
+// Parses the text of a strokes file. `source_name`: the file name in errors. Errors: those of
+// LoadStrokes() except kNotFound and kIo.
 [[nodiscard]] Result<std::vector<BakeStroke>> ParseStrokes(std::string_view json,
                                                            std::string_view source_name,
                                                            const wrinkle::Rig& rig);

@@ -12,10 +12,10 @@
 #include "authoring/paint/surface_texels.h"
 #include "character/character.h"
 
-// Pictures with 8 bits per channel for painters.
+// Functions that create and fill pictures with 8 bits per channel.
 namespace furrow::authoring {
 
-// Maps [0, 1] to [0, 255], clamped and rounded.
+// Converts a number in [0, 1] to a byte in [0, 255], clamped and rounded.
 [[nodiscard]] inline std::uint8_t ToByte(float value) {
   return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255.0f));
 }
@@ -40,14 +40,15 @@ namespace furrow::authoring {
                           static_cast<std::size_t>(picture->channels)];
 }
 
-// Writes `colour` to the channels of a texel. A picture with 3 channels ignores alpha.
+// Writes the first channels of `colour`, each in [0, 1], to a texel. Precondition: the texel is in
+// the picture, which has at most 4 channels.
 inline void SetTexel(character::Picture* picture, int x, int y, const glm::vec4& colour) {
   std::uint8_t* out = TexelAt(picture, x, y);
   for (int c = 0; c < picture->channels; ++c) out[c] = ToByte(colour[c]);
 }
 
-// A square picture with `colour(texel)` (a glm::vec4, [0, 1]) at each texel, dilated by a few
-// texels beyond the UV islands.
+// A picture of `size` x `size` texels, with `colour(texel)`, a glm::vec4 in [0, 1], at each of
+// `texels`. The colours continue 6 texels beyond the UV islands, which hides seams.
 template <typename Colour>
 [[nodiscard]] character::Picture FillPicture(const char* name,
                                              const std::vector<SurfaceTexel>& texels, int size,

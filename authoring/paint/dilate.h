@@ -9,8 +9,8 @@
 
 namespace furrow::authoring {
 
-// Grows covered texels over the uncovered texels around them, ring by ring. Filtering and mip
-// levels near a UV seam then find painted values instead of the background.
+// Spreads painted texels over the unpainted texels around them, ring by ring. Filtering and mip
+// levels near a UV seam then read painted values instead of the background.
 //
 // Each new texel is the mean of its neighbours (up to 8) that are covered or lie in an earlier
 // ring. The picture wraps around at its edges, like the sampler.
@@ -35,10 +35,12 @@ class Dilation {
   std::vector<std::vector<std::size_t>> texels_;  // of each ring
 };
 
-// Texels to grow beyond UV seams, for pictures that are seen through a few mip levels.
+// Rings for pictures that are drawn with mip maps: 16 texels cover a UV seam down to the fourth mip
+// level.
 inline constexpr int kSeamTexels = 16;
 
-// Dilates a picture of 8 or 16 bits per channel that was painted at `texels`.
+// Dilates a picture of 8 or 16 bits per channel that was painted at `texels`. `rings`: how many
+// texels to grow, [0, 254].
 void Dilate(character::Picture* picture, const std::vector<SurfaceTexel>& texels, int rings);
 
 }  // namespace furrow::authoring

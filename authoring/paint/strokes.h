@@ -12,24 +12,25 @@
 
 namespace furrow::authoring {
 
-// A fold along a line on a surface: a valley with a round ridge on either side. It tapers off at
-// both ends.
+// Folds along lines ("strokes"): a valley with a round ridge on either side, which fades at both
+// ends. The height is
 //
-//   height = depth * (ridge * exp(-(2 (x - 1))^2) - exp(-x^2) / (1 + 14 x^2)) * taper(s)
+//   depth * (ridge * exp(-(2 (x - 1))^2) - exp(-x^2) / (1 + 14 x^2)) * taper(s)
+//
 // x is the distance from the line in widths (valley to ridge), s in [0, 1] the position along the
 // line.
 
 // A stroke has no effect beyond this many widths from its line.
 inline constexpr float kStrokeReach = 2.5f;
 
-// A polyline that answers nearest-point queries.
+// A polyline that finds its nearest point to a position. Metres.
 class StrokeLine {
  public:
   explicit StrokeLine(std::vector<glm::vec3> points);  // at least two points
 
   struct Nearest {
     float distance = 0.0f;  // metres
-    float place = 0.0f;     // position along the line, [0, 1]
+    float place = 0.0f;     // position along the line, 0 start to 1 end
     glm::vec3 away{0.0f};   // unit vector from the line to the point; zero on the line
     glm::vec3 along{0.0f};  // the nearest segment, from its start to its end
   };
@@ -43,21 +44,23 @@ class StrokeLine {
   float length_ = 0.0f;
 };
 
-// 0 at both ends of a line, 1 between them. `taper`: fraction of the length over which the ends
-// fade, (0, 1].
+// The strength of a fold at `place`, [0, 1] along its line: 0 at both ends, 1 between them.
+// `taper`: fraction of the length over which the ends fade, (0, 1].
 [[nodiscard]] float StrokeTaper(float place, float taper);
 
-// The height of a fold in depths and its derivative by the distance in widths. `ridge`: height of
-// the ridges as a fraction of the depth, [0, 1].
+// The cross-section of a fold at one distance from its line.
 struct FoldShape {
-  float height = 0.0f;
-  float slope = 0.0f;
+  float height = 0.0f;  // as a fraction of the depth; about -1 at the line
+  float slope = 0.0f;   // derivative of `height` by the distance in widths
 };
+// `widths`: distance from the line, in widths, >= 0. `ridge`: height of the ridges as a fraction of
+// the depth, [0, 1].
 [[nodiscard]] FoldShape FoldShapeAt(float widths, float ridge);
 
-// Encodes slopes as a tangent-space normal map of width x height: 16 bits per channel, RGB = n *
-// 0.5 + 0.5, green up (glTF), dilated by kSeamTexels, flat elsewhere. 8 bits could not represent 0
-// and would show bands on smooth skin. `bits`: see RoundNormals().
+// Encodes slopes as a tangent-space normal map of `width` x `height` texels: 16 bits per channel,
+// RGB = n * 0.5 + 0.5, green up (glTF), dilated by kSeamTexels, flat elsewhere. `slopes`: one per
+// texel of `texels`, dh/d(tangent) and dh/d(bitangent). 8 bits could not represent 0 and would show
+// bands on smooth skin. `bits`: see RoundNormals().
 [[nodiscard]] character::Picture EncodeNormals(const std::vector<SurfaceTexel>& texels,
                                                std::span<const glm::vec2> slopes, int width,
                                                int height, int bits);

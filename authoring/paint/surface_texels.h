@@ -12,8 +12,8 @@ namespace furrow::authoring {
 
 // A texel that a mesh covers, and the surface point at its centre (model space, rest pose).
 struct SurfaceTexel {
-  int x = 0;
-  int y = 0;                   // rows from the top, as in Picture
+  int x = 0;                   // column from the left
+  int y = 0;                   // row from the top
   glm::vec3 position{0.0f};    // metres
   glm::vec3 normal{0.0f};      // unit
   glm::vec3 tangent{0.0f};     // unit, across `normal`
@@ -28,7 +28,7 @@ struct SurfaceTexel {
 // Painting by position instead of UV keeps features continuous across UV seams: fill a picture from
 // the texels, then Dilate() it.
 // - UVs outside [0, 1) wrap around like the sampler.
-// - `overlaps` (optional) receives the number of texels well inside more than one triangle.
+// - `overlaps` (may be null) receives the number of texels well inside more than one triangle.
 [[nodiscard]] std::vector<SurfaceTexel> RasterizeSurface(const character::Mesh& mesh, int width,
                                                          int height,
                                                          std::int64_t* overlaps = nullptr);

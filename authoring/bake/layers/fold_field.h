@@ -17,7 +17,7 @@ struct FoldParameters {
   glm::vec3 across{1.0f, 0.0f,
                    0.0f};  // direction of strongest compression; unit vector in the surface
   glm::vec3 along{0.0f, 1.0f, 0.0f};  // direction that folds run in; unit vector in the surface
-  float compression = 0.0f;           // along `across`
+  float compression = 0.0f;           // along `across`: 0 none, 1 to length zero
   float crossing = 0.0f;              // compression along `along`, at most `compression`
   float wavelength = 0.005f;          // metres
   float smallest = 0.0f;  // the shortest wavelength that the map's texels can show here, metres
@@ -32,8 +32,10 @@ class FoldField {
   FoldField(const Surface& surface, const StrokeLayer& strokes, std::vector<Tensor2> tensors,
             std::vector<float> wavelengths, std::vector<float> smallest);
 
+  // The parameters at a point, interpolated from the vertices and changed by the strokes.
   [[nodiscard]] FoldParameters At(const SurfacePoint& point) const;
-  // The strongest compression at the triangle's vertices; with `crossing`, the strongest across it.
+  // The strongest compression at the triangle's three vertices, [0, 1]. With `crossing`: the
+  // strongest compression perpendicular to it.
   [[nodiscard]] float Strongest(std::uint32_t triangle, bool crossing) const;
   // The wavelength times `scale`, but not below what texels can show. Metres.
   [[nodiscard]] float Wavelength(const SurfacePoint& point, float scale) const {

@@ -15,23 +15,26 @@
 
 namespace furrow::authoring {
 
-// One set of folds across the compression of a surface (with `crossing`: along it).
+// One set of folds. They run perpendicular to the direction of strongest compression, or along that
+// direction if `crossing` is set.
 class FoldLayer {
  public:
   struct Options {
     BakeMaterial material;
-    float wavelength_scale = 1.0f;
+    float wavelength_scale = 1.0f;  // multiplier for the wavelengths of the field, > 0
     bool crossing = false;
-    float height = 1.0f;  // scales the height
+    float height = 1.0f;  // multiplier for the height of the folds, >= 0
     std::uint32_t seed = 1;
   };
-  // `profile` must outlive the layer. Errors: those of KernelSet::Create().
+  // `profile` must outlive the layer; `field` need not. Errors: kLimit (the folds are too fine for
+  // the size of the surface), kUnavailable (cancelled by `progress`).
   [[nodiscard]] static Result<std::unique_ptr<FoldLayer>> Create(const FoldField& field,
                                                                  const FoldProfile& profile,
                                                                  const Options& options,
                                                                  BakeProgress* progress);
 
-  // Thread-safe. Zero where no fold reaches.
+  // The height and slope of the folds at a point; 0 where no fold reaches. `tangent`, `bitangent`:
+  // unit vectors along which the slope is measured. Thread-safe.
   [[nodiscard]] FoldSample At(const SurfacePoint& point, const glm::vec3& tangent,
                               const glm::vec3& bitangent) const;
 

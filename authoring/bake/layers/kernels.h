@@ -15,8 +15,8 @@
 
 namespace furrow::authoring {
 
-// A wave with limited reach around a point of the surface. Its phase near the point is `phase` +
-// dot(frequency, p - position).
+// A wave with limited reach around a point of the surface. Its phase at a nearby position p is
+// `phase` + dot(frequency, p - place.position), in radians; valleys are at phase 0.
 struct FoldKernel {
   SurfacePoint place;
   // Radians per metre, tangent to the surface and across the fold; the sign is arbitrary.
@@ -37,13 +37,13 @@ struct FoldKernel {
 class KernelSet {
  public:
   struct Options {
-    float wavelength_scale = 1.0f;  // factor of the field's wavelength
-    // If true, folds run along the field's `across`, as high as its weaker compression makes them.
+    float wavelength_scale = 1.0f;  // multiplier for the wavelengths of the field, > 0
+    // If true, folds run along FoldParameters::across, with the height for the weaker compression.
     bool crossing = false;
-    // Kernels are placed only where the compression is at least half of this, and within reach of
-    // such places.
+    // Kernels are placed where the compression is at least half of this, and within reach of such
+    // places.
     float threshold = 0.02f;
-    float variation = 0.0f;  // of the wavelength over the surface, as in BakeMaterial
+    float variation = 0.0f;  // local variation of the wavelength, [0, 0.5]
     std::uint32_t seed = 1;
   };
   // Half the height of a fold in metres, for a compression and a wavelength in metres.
@@ -57,6 +57,7 @@ class KernelSet {
 
   [[nodiscard]] std::vector<FoldKernel>& kernels() { return kernels_; }
   [[nodiscard]] std::span<const FoldKernel> kernels() const { return kernels_; }
+  // Indices of the kernels that reach a triangle.
   [[nodiscard]] std::span<const std::uint32_t> Reaching(std::uint32_t triangle) const {
     return std::span(lists_).subspan(starts_[triangle], starts_[triangle + 1] - starts_[triangle]);
   }

@@ -19,18 +19,22 @@
 
 namespace furrow::authoring {
 
-// Bakes one map of one surface: combines the strain of the poses, lays out strokes and folds, then
-// fills the texels.
+// Bakes one wrinkle map of one surface: combines the strain of the poses, places strokes and folds,
+// then fills the texels. Add all poses and strokes, then call Bake() once.
 class MapBaker {
  public:
-  // All references must outlive the baker.
+  // `map`: name of the map. `cloth`: `surface` is cloth, not skin. All references must outlive the
+  // baker.
   MapBaker(const character::Character& character, const BakeSurface& surface,
            const BakeOptions& options, std::string map, bool cloth);
 
+  // Adds the strain of a pose.
   void AddPose(const BakePose& pose);
+  // Adds a stroke, which must outlive the baker.
   void AddStroke(const BakeStroke& stroke);
 
-  // Reports progress from `from` to `to`. Errors: those of StrokeLayer and KernelSet.
+  // Reports progress from `from` to `to`, fractions of the whole bake in [0, 1]. Errors: those of
+  // StrokeLayer::Create() and KernelSet::Create().
   [[nodiscard]] Result<std::unique_ptr<BakedMap>> Bake(float from, float to,
                                                        BakeProgress* progress);
 

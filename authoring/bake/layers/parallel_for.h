@@ -8,8 +8,8 @@ namespace furrow::authoring {
 
 // Calls work(first, last) for consecutive ranges that together cover [0, count), on `threads`
 // threads including the calling one. Threads take ranges in any order, so `work` must write only
-// to its own range. `progress` (optional) is called on the calling thread with the completed
-// fraction, [0, 1]; it stops the loop by returning false. Returns false if stopped.
+// to entries of the range that it was given. `progress` (optional) is called on the calling thread
+// with the completed fraction, [0, 1]; returning false stops the loop. Returns false if stopped.
 [[nodiscard]] bool ParallelFor(std::size_t count, int threads,
                                const std::function<void(std::size_t, std::size_t)>& work,
                                const std::function<bool(float)>& progress);

@@ -9,8 +9,9 @@
 
 namespace furrow::authoring {
 
-// Aligns the waves of neighbouring kernels. Phases propagate outward from the strongest folds: each
-// kernel takes the phase that its already solved neighbours predict. Then all phases are relaxed.
+// Aligns the waves of neighbouring kernels, so that they form continuous folds. Phases propagate
+// outward from the strongest folds: each kernel takes the phase that its already solved neighbours
+// predict. Then all phases are relaxed.
 // Where neighbouring waves cannot be aligned, folds branch or end. Sources: phasor noise (Tricard
 // et al. 2019) and stripe patterns (Knoeppel et al. 2015).
 //
@@ -18,6 +19,7 @@ namespace furrow::authoring {
 // - Deterministic: ties are broken by the order of the kernels.
 class PhaseSolver {
  public:
+  // `set` must outlive the solver, which changes the kernels in it.
   PhaseSolver(const Surface& surface, KernelSet* set);
 
   // Stops early if `progress` is cancelled.

@@ -15,24 +15,23 @@
 
 namespace furrow::authoring {
 
-// The folds at one point: height above the rest surface in metres, its slope along tangent and
-// bitangent, and how open the point is to the sky.
+// The folds at one point of a surface.
 struct FoldSample {
-  float height = 0.0f;
+  float height = 0.0f;    // above the rest surface, metres; negative in a valley
   glm::vec2 slope{0.0f};  // dh/d(tangent), dh/d(bitangent)
-  float cavity = 1.0f;
+  float cavity = 1.0f;    // how open the point is to the sky, 0 closed to 1 open
 };
 
-// How open a valley is to the sky: the cosine of the angle of its walls. `height`: metres,
-// negative; `wavelength`: metres.
+// How open a valley is to the sky, (0, 1]: the cosine of the angle of its walls. `height`: of the
+// valley, metres, negative. `wavelength`: metres.
 [[nodiscard]] float CavityOf(float height, float wavelength);
 
-// The strokes of one map, projected onto a surface. A stroke affects only what is within reach over
-// the surface, so it does not leak from one lip or finger to the next.
+// The strokes of one map, projected onto a surface. Distances from a stroke are measured over the
+// surface, so a stroke does not leak from one lip or finger to the next.
 class StrokeLayer {
  public:
-  // `surface` and `strokes` must outlive the layer. `masks`: one per stroke, its strength at each
-  // welded vertex, [0, 1]; empty: 1 everywhere. `depth` scales heights.
+  // `surface` and `strokes` must outlive the layer. `masks`: for each stroke, its strength at each
+  // welded vertex, [0, 1]; an empty list means 1 everywhere. `depth`: multiplier for heights.
   // Errors: kInvalidArgument (a stroke more than 20 mm and four widths from the surface), kLimit
   // (strokes too long for their widths), kUnavailable (cancelled).
   [[nodiscard]] static Result<std::unique_ptr<StrokeLayer>> Create(
@@ -41,23 +40,24 @@ class StrokeLayer {
 
   // How strokes change the folds from strain at a point.
   struct Guidance {
-    glm::vec3 along{0.0f};    // direction for the folds; the length is its strength, [0, 1]
-    float keep = 1.0f;        // factor of the folds' height, [0, 1]
-    float wavelength = 0.0f;  // metres, valid if the share below is positive
-    float wavelength_share = 0.0f;
+    glm::vec3 along{0.0f};          // direction for the folds; the length is its strength, [0, 1]
+    float keep = 1.0f;              // multiplier for the height of the folds, [0, 1]
+    float wavelength = 0.0f;        // metres; valid if `wavelength_share` > 0
+    float wavelength_share = 0.0f;  // 0 the wavelength of the material to 1 `wavelength`
   };
   [[nodiscard]] Guidance GuidanceAt(const SurfacePoint& point) const;
 
-  // The folds that strokes draw, and the factor that remains of the folds from strain.
+  // The folds that strokes draw at a point, and their effect on the folds from strain.
   struct Sample {
     FoldSample fold;
-    float keep = 1.0f;
-    glm::vec2 keep_slope{0.0f};
+    float keep = 1.0f;           // multiplier for the folds from strain, [0, 1]
+    glm::vec2 keep_slope{0.0f};  // derivative of `keep` along tangent and bitangent, per metre
   };
   [[nodiscard]] Sample At(const SurfacePoint& point, const glm::vec3& tangent,
                           const glm::vec3& bitangent) const;
 
-  // Marks the fold strokes that affect a point. `seen`: one entry per stroke.
+  // Sets the entries of `seen` (one per stroke) to 1 for fold strokes that affect a point; leaves
+  // the others unchanged.
   void MarkFolds(const SurfacePoint& point, std::vector<char>* seen) const;
   [[nodiscard]] std::size_t num_strokes() const { return strokes_.size(); }
 

@@ -37,17 +37,18 @@ struct BakeStroke {
   Kind kind = Kind::kFold;
   std::string muscle;             // the muscle that causes the fold; a note for people, not used
   std::vector<std::string> maps;  // wrinkle maps that the stroke belongs to; at least one
-  std::string region;  // a region of the rig; the stroke fades with its mask. Empty: everywhere
+  std::string region;  // a region of the rig, whose mask limits the stroke; empty: everywhere
   // At least two points: metres, model space, rest pose. Each point is projected onto the surface.
   std::vector<glm::vec3> points;
-  bool smooth = true;  // a Catmull-Rom spline through the points instead of straight segments
+  bool smooth = true;  // true: a Catmull-Rom spline through the points; false: straight segments
   // kFold: distance from valley to ridge, half a wavelength. Other kinds: distance over which the
   // stroke's effect fades. (0, 200]
   float width_mm = 2.0f;
-  float depth_mm = 0.5f;       // kFold: depth of the valley, [-50, 50]; negative: a bulge
-  float ridge = 0.35f;         // kFold: height of the ridges as a fraction of the depth, [0, 1]
-  float taper = 0.6f;          // fraction of the length over which the ends fade, (0, 1]
-  float wavelength_mm = 0.0f;  // kDirection: wavelength of the folds near the line; 0: unchanged
+  float depth_mm = 0.5f;  // kFold: depth of the valley, [-50, 50]; negative: a bulge
+  float ridge = 0.35f;    // kFold: height of the ridges as a fraction of the depth, [0, 1]
+  float taper = 0.6f;     // fraction of the length over which the ends fade, (0, 1]
+  // kDirection: wavelength of the folds near the line, [0.2, 200]; 0: unchanged.
+  float wavelength_mm = 0.0f;
 };
 
 // How a material folds. Wavelengths are distances from valley to valley on the surface at rest.
@@ -56,25 +57,27 @@ struct BakeMaterial {
   float variation = 0.4f;         // local variation of wavelength and depth, [0, 0.5]
   float share = 0.3f;             // fraction of the compression that becomes folds; the rest
                                   // shortens the material. 1: arc length is preserved. [0, 1]
-  float max_compression = 0.45f;  // upper limit; a higher value is a skinning artefact, (0, 0.9]
+  float max_compression = 0.45f;  // larger compressions, artefacts of skinning, count as this;
+                                  // (0, 0.9]
   float threshold = 0.02f;        // compression below this makes no fold, [0, 0.5]
   float smoothing_mm = 6.0f;      // radius over which strain is averaged, [0, 200]
-  float sharpness = 0.7f;         // shape of the valleys: 0 a sine, 1 a crease between round ridges
-  float crossing = 0.15f;   // height of the second set of folds, which crosses the first where the
-                            // surface is compressed in both directions; fraction of full height,
-                            // [0, 1]
-  float depth = 1.0f;       // scales the height of strain folds and strokes (age), [0, 4]
+  float sharpness = 0.7f;         // shape of the valleys: 0 nearly a sine, 1 a narrow crease
+  float crossing = 0.15f;  // height of the second set of folds, which crosses the first where the
+                           // surface is compressed in both directions; fraction of full height,
+                           // [0, 1]
+  float depth = 1.0f;  // multiplier for the height of folds and strokes, [0, 4]; older skin: > 1
   float fine_lines = 0.0f;  // height of lines with a third of the wavelength (dry or old skin);
                             // fraction of full height, [0, 1]
 };
 
-// Wavelength inside a region's mask (skin is thinner around the eyes than at the brow). An entry
-// covers both sides: "brow" applies to brow_l and brow_r.
+// The wavelength inside the mask of a region, for skin that is thinner or thicker than elsewhere.
+// An entry covers both sides: "brow" applies to brow_l and brow_r.
 struct BakeRegionWavelength {
   std::string region;
-  float wavelength_mm = 5.0f;
+  float wavelength_mm = 5.0f;  // [0.2, 200]
 };
 
+// The options of a bake. CheckBake() checks the ranges.
 struct BakeOptions {
   int size = 2048;  // width and height of the maps, texels, [64, 4096]
   BakeMaterial skin;
@@ -88,15 +91,15 @@ struct BakeOptions {
                      .crossing = 0.3f};
   std::vector<BakeRegionWavelength> wavelengths = {
       {"brow", 8.0f}, {"glabella", 6.5f}, {"nose", 3.5f}, {"eye", 3.5f}, {"mouth", 5.5f}};
-  float depth = 1.0f;  // scales every height of both materials, [0, 4]
-  std::uint32_t seed = 1;
-  int threads = 2;  // [1, 64]; does not change the result
+  float depth = 1.0f;      // multiplier for every height of both materials, [0, 4]
+  std::uint32_t seed = 1;  // of the random variation; equal seeds give equal maps
+  int threads = 2;         // [1, 64]; does not change the result
 };
 
 // A fold needs at least this many texels per wavelength to be visible. Finer folds are widened.
 inline constexpr float kTexelsPerWave = 3.0f;
 
-// The material options of a map.
+// The material of a map: `options.cloth` if `cloth` is true, else `options.skin`.
 [[nodiscard]] inline const BakeMaterial& MaterialOf(const BakeOptions& options, bool cloth) {
   return cloth ? options.cloth : options.skin;
 }

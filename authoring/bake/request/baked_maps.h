@@ -8,7 +8,7 @@
 // The output of a bake.
 namespace furrow::authoring {
 
-// Where the poses of a region make folds: a suggestion for the region's mask.
+// A suggestion for the mask of a region: where the poses of the region make folds.
 struct BakedMask {
   std::string region;
   int width = 0;  // a quarter of the map's size, since masks are soft
@@ -26,7 +26,7 @@ struct BakedMap {
   std::vector<float> derivative;  // two per texel: n.xy / n.z = -dh/d(tangent), -dh/d(bitangent).
                                   // The bitangent points up the picture (glTF's green channel).
   std::vector<float> cavity;      // how open a valley is to the sky, [0, 1]; 1 on flat surface
-  std::vector<float> blood;       // blood per area relative to rest; see blood.h
+  std::vector<float> blood;       // blood per area relative to rest: 1 at rest, more if compressed
   std::vector<std::uint8_t> covered;  // 1 under a triangle; other texels hold dilated values
   std::vector<BakedMask> masks;       // one per region with poses that feed the map
 
@@ -49,6 +49,7 @@ struct BakedMap {
   } statistics;
 };
 
+// All maps of a bake.
 struct BakedMaps {
   // In the order of Character::rig.wrinkle_maps, without maps that have no pose and no stroke.
   std::vector<BakedMap> maps;

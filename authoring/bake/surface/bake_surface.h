@@ -18,18 +18,20 @@ namespace furrow::authoring {
 // The skin or the clothes of a character, with the data that all maps of this surface share.
 class BakeSurface {
  public:
-  // Errors: kInvalidArgument (no mesh of the kind, no UVs, no triangle with an area), kUnavailable
-  // (cancelled).
+  // `cloth`: true for the clothes, false for the skin. Errors: kInvalidArgument (the character has
+  // no such mesh, or the mesh has no UVs or no triangle with an area), kUnavailable (cancelled).
   [[nodiscard]] static Result<std::unique_ptr<BakeSurface>> Create(
       const character::Character& character, bool cloth, const BakeOptions& options,
       BakeProgress* progress);
 
   [[nodiscard]] const Surface& surface() const { return surface_; }
   [[nodiscard]] const CompressionSolver& solver() const { return solver_; }
+  // The texels that the surface covers.
   [[nodiscard]] const std::vector<SurfaceTexel>& texels() const { return texels_; }
+  // The number of texels inside several triangles.
   [[nodiscard]] std::int64_t overlaps() const { return overlaps_; }
-  // The side of a texel on the surface at each welded vertex, metres. It varies: a face gets more
-  // texels than a back.
+  // The length of a texel's side on the surface, metres, one per welded vertex. It varies because
+  // UV islands have different scales.
   [[nodiscard]] std::span<const float> texel_metres() const { return texel_metres_; }
 
   // A region's mask at the welded vertices, [0, 1]. Empty if the region has no texture mask, which
@@ -52,7 +54,8 @@ class BakeSurface {
 // The meshes of the skin or the clothes, as indices into Character::meshes.
 [[nodiscard]] std::vector<int> MeshesOn(const character::Character& character, bool cloth);
 
-// Whether a map is drawn on cloth; see Bake().
+// True if a map is drawn on cloth: the rig names cloth, or it allows any surface and the character
+// has cloth but no skin.
 [[nodiscard]] bool GoesOnCloth(const character::Character& character,
                                const wrinkle::WrinkleMap& map);
 

@@ -13,12 +13,13 @@
 
 namespace furrow::authoring {
 
-// The eigenvalues of a tensor and the direction of the larger one, in the tensor's axes.
+// The eigenvalues of a symmetric tensor, and the direction of the larger one in the tensor's axes.
 struct Principal2 {
   float large = 0.0f;
   float small = 0.0f;
   glm::vec2 direction{1.0f, 0.0f};  // unit vector, of either sign
 };
+// The eigenvalues and the principal direction of `tensor`.
 [[nodiscard]] Principal2 PrincipalOf(const Tensor2& tensor);
 
 // Computes how a pose compresses a surface at each vertex.
@@ -36,8 +37,9 @@ struct Principal2 {
 // memory grows only with the number of vertices.
 class CompressionSolver {
  public:
-  // `surface` must outlive the solver. `radius`: metres, >= 0 (0: only the triangles around the
-  // vertex). Incomplete if `progress` was cancelled.
+  // `surface` must outlive the solver. `radius`: of the average, metres, >= 0 (0: only the
+  // triangles around the vertex). If `progress` cancels, the solver is incomplete and must not be
+  // used.
   CompressionSolver(const Surface& surface, float radius, BakeProgress* progress);
 
   struct Field {
@@ -47,7 +49,8 @@ class CompressionSolver {
     std::vector<float> growth;  // one per welded vertex: area relative to rest, [0, (1 + limit)^2]
     float worst = 0.0f;         // largest compression of any triangle, before averaging
   };
-  // `skin_matrices`: one per joint of the skeleton. Compression above `limit` counts as `limit`.
+  // Solves one pose. `skin_matrices`: one per joint of the skeleton. `limit`: a larger compression
+  // counts as this, (0, 1).
   [[nodiscard]] Field Solve(std::span<const glm::mat4> skin_matrices, float limit) const;
 
   // The total number of triangles in the averages of all vertices.
@@ -82,8 +85,9 @@ class CompressionSolver {
 class CompressionSum {
  public:
   explicit CompressionSum(std::size_t vertices) : sums_(vertices) {}
-  // `weights`: one per vertex, [0, 1].
+  // Adds a pose. `tensors`: Field::tensors. `weights`: one per vertex, multipliers in [0, 1].
   void Add(std::span<const Tensor2> tensors, std::span<const float> weights);
+  // Returns the combined compression, one tensor per vertex, in the vertex's axes.
   [[nodiscard]] std::vector<Tensor2> Take() const;
 
  private:

@@ -35,6 +35,8 @@ struct PlaneRotation {
   float cosine = 1.0f;
   float sine = 0.0f;
 };
+// The rotation that carries directions from one tangent plane to another without twist: the turn
+// that remains in the plane after the normal of `from` has been rotated to that of `to`.
 [[nodiscard]] PlaneRotation Transport(const wrinkle::SurfaceAxes& from,
                                       const wrinkle::SurfaceAxes& to);
 // Converts a tensor from the axes `from` to the axes `to` of Transport().
@@ -43,14 +45,14 @@ struct PlaneRotation {
 // Orthonormal axes perpendicular to a unit normal. Their rotation about the normal is arbitrary.
 [[nodiscard]] wrinkle::SurfaceAxes AxesAcross(const glm::vec3& normal);
 
-// A point on a surface. Values at the triangle's corners are interpolated there.
+// A point on a surface, as barycentric coordinates in a triangle.
 struct SurfacePoint {
   std::uint32_t triangle = 0;
-  glm::vec3 corners{1.0f, 0.0f, 0.0f};  // barycentric
+  glm::vec3 corners{1.0f, 0.0f, 0.0f};  // barycentric coordinates
   glm::vec3 position{0.0f};             // metres
 };
 
-// Several meshes at rest as one surface that is continuous across UV seams.
+// Several meshes in the rest pose as one surface that is continuous across UV seams.
 //
 // - Vertices of one mesh are welded if they share a position and all skin weights. The two sides of
 //   a UV seam become one. Closed lips stay apart, since different joints move them.
@@ -94,6 +96,7 @@ class Surface {
   // in the axes of the point's triangle.
   [[nodiscard]] Tensor2 Interpolate(std::span<const Tensor2> tensors,
                                     const SurfacePoint& point) const;
+  // The positions of a triangle's corners, metres.
   [[nodiscard]] std::array<glm::vec3, 3> Corners(std::uint32_t triangle) const;
 
   // The nearest point of the surface. Degenerate triangles are ignored unless there are no others.
@@ -122,6 +125,7 @@ class Surface {
 // leak from one lip or finger to the next. Reuses its memory between searches. Not thread-safe.
 class SurfaceSearch {
  public:
+  // `surface` must outlive the search.
   explicit SurfaceSearch(const Surface& surface);
 
   // The triangles within `radius` metres of `centre` that are connected to `seeds` by a path not

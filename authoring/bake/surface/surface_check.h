@@ -9,8 +9,8 @@
 
 namespace furrow::authoring {
 
-// Checks whether the surfaces of the wrinkle maps can be baked. `maps`: names of the maps to check;
-// empty: all maps of the rig.
+// Checks whether the surfaces of wrinkle maps can be baked. `maps`: names of the maps to check;
+// empty: all maps of the rig. Appends to `warnings`, also before an error.
 //
 // - Errors (kInvalidArgument, `where` names the mesh): no mesh of the kind, no UVs, overlapping
 //   UVs, a missing inverse bind matrix, skin weights of a vertex that do not sum to 1.

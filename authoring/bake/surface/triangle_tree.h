@@ -22,12 +22,13 @@ namespace furrow::authoring {
 class TriangleTree {
  public:
   using Corners = std::array<glm::vec3, 3>;
-  // Corners in metres, finite. `names`: indices of the triangles to put into the tree.
+  // `triangles`: finite corners in metres. `names`: indices in `triangles` of those to put into the
+  // tree. Copies what it needs.
   TriangleTree(std::span<const Corners> triangles, std::vector<std::uint32_t> names);
 
   struct Nearest {
-    std::uint32_t triangle = 0;
-    glm::vec3 position{0.0f};
+    std::uint32_t triangle = 0;  // index in `triangles`
+    glm::vec3 position{0.0f};    // nearest point, metres
   };
   // The nearest triangle; of equally near ones the lowest index. Precondition: the tree is not
   // empty.
@@ -36,8 +37,9 @@ class TriangleTree {
  private:
   struct Node {
     glm::vec3 low{0.0f}, high{0.0f};
-    std::uint32_t first =
-        0;  // leaf: its first triangle; other: the second child (the first child is the next node)
+    // Leaf: index of its first triangle. Other: index of the second child; the first child follows
+    // the node.
+    std::uint32_t first = 0;
     std::uint32_t count = 0;  // 0: not a leaf
   };
   struct Best;

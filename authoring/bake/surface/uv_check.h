@@ -10,8 +10,8 @@
 
 namespace furrow::authoring {
 
-// Whether the meshes of one atlas have texels of their own everywhere. Wrinkle maps, masks and
-// other painted textures require that.
+// Faults of the UVs of meshes that share one atlas. Wrinkle maps, masks and other painted textures
+// require that every point of the surface has a texel that no other point uses.
 struct UvReport {
   // Two triangles that share texels, and a shared place (UV, v down).
   struct Overlap {
@@ -25,7 +25,7 @@ struct UvReport {
   int unmapped_triangles = 0;      // with area on the surface, but none in the atlas
   int outside_triangles = 0;       // with a corner outside [0, 1], where the sampler wraps around
   float covered = 0.0f;            // fraction of the atlas under at least one triangle, [0, 1]
-  float overlapping = 0.0f;        // fraction of that under several triangles, [0, 1]
+  float overlapping = 0.0f;        // fraction of the covered area under several triangles, [0, 1]
   std::optional<Overlap> example;  // the first overlap found
 
   // True if no triangle with an area has UVs.
@@ -34,10 +34,11 @@ struct UvReport {
   }
 };
 
-// A smaller overlap, as a fraction of the covered area, is a rounding error where islands touch.
+// The largest overlap that counts as a rounding error where islands touch: a fraction of the
+// covered area, as UvReport::overlapping.
 inline constexpr float kTolerableUvOverlap = 1e-3f;
 
-// Checks `meshes` (indices into character.meshes) as one atlas of `size` x `size` samples.
+// Checks `meshes` (indices into character.meshes) as one atlas, at `size` x `size` sample points.
 //
 // - Shared edges are exact: corners are rounded to 1/256 of a sample, and a sample on the edge of
 //   two triangles belongs to one of them (the top-left rule of rasterisers).
