@@ -51,9 +51,12 @@ Status CheckNames(const BakeStroke& stroke, const wrinkle::Rig& rig, const std::
 // metres.
 Status ReadPoints(const flatbuffers::Vector<const schema::Vec3*>& from, const std::string& at,
                   std::vector<glm::vec3>* points) {
-  if (from.size() < 2) return InvalidField("a stroke needs at least two points", at);
+  if (from.size() < 2) return InvalidField("a stroke needs at least 2 points", at);
   if (from.size() > kMaxPoints) {
-    return {StatusCode::kLimit, "more than " + std::to_string(kMaxPoints) + " points", at};
+    return {StatusCode::kLimit,
+            "has " + std::to_string(from.size()) + " points; the limit is " +
+                std::to_string(kMaxPoints),
+            at};
   }
   for (flatbuffers::uoffset_t i = 0; i < from.size(); ++i) {
     const schema::Vec3& point = *from.Get(i);

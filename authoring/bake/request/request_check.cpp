@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <string>
 
 #include "base/status.h"
@@ -22,6 +23,12 @@ bool HasMap(const wrinkle::Rig& rig, const std::string& name) {
 bool HasRegion(const wrinkle::Rig& rig, const std::string& name) {
   return std::any_of(rig.regions.begin(), rig.regions.end(),
                      [&](const wrinkle::Region& region) { return region.name == name; });
+}
+
+std::string Text(float value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%g", static_cast<double>(value));
+  return text;
 }
 
 // False for NaN.
@@ -46,11 +53,17 @@ Status CheckPose(const character::Character& character, const BakePose& pose,
                       std::to_string(joints) + " joints",
                   where);
   }
-  if (!In(pose.weight, 1e-6f, 1.0f)) return Refuse("the weight must lie in (0, 1]", where);
+  if (!In(pose.weight, 1e-6f, 1.0f)) {
+    return Refuse("the weight is " + Text(pose.weight) + "; it must be in (0, 1]", where);
+  }
   for (const glm::mat4& matrix : pose.skin_matrices) {
     for (int k = 0; k < 16; ++k) {
       if (!std::isfinite(matrix[k / 4][k % 4])) {
-        return Status(StatusCode::kNonFinite, "a skin matrix is not finite", where);
+        const auto joint = static_cast<std::size_t>(&matrix - pose.skin_matrices.data());
+        return Status(StatusCode::kNonFinite,
+                      "the skin matrix of joint '" + character.skeleton.joint_names()[joint] +
+                          "' is not finite",
+                      where);
       }
     }
   }
@@ -62,10 +75,11 @@ Status CheckStroke(const wrinkle::Rig& rig, const BakeStroke& stroke, const std:
   for (const std::string& map : stroke.maps) {
     FURROW_RETURN_IF_ERROR(CheckNames(rig, map, stroke.region, where));
   }
-  if (stroke.points.size() < 2) return Refuse("a stroke needs at least two points", where);
+  if (stroke.points.size() < 2) return Refuse("a stroke needs at least 2 points", where);
   for (const glm::vec3& p : stroke.points) {
     if (!std::isfinite(p.x + p.y + p.z)) {
-      return Status(StatusCode::kNonFinite, "a point is not finite", where);
+      return Status(StatusCode::kNonFinite,
+                    "point " + std::to_string(&p - stroke.points.data()) + " is not finite", where);
     }
   }
   return CheckStrokeNumbers(stroke, where);
@@ -87,7 +101,9 @@ Status CheckMaterial(const BakeMaterial& m, const std::string& where) {
                  {"fine_lines", m.fine_lines, 0.0f, 1.0f}};
   for (const auto& range : kRanges) {
     if (!In(range.value, range.low, range.high)) {
-      return Refuse(std::string(range.name) + " is out of range", where);
+      return Refuse(std::string(range.name) + " is " + Text(range.value) + "; it must be in [" +
+                        Text(range.low) + ", " + Text(range.high) + "]",
+                    where);
     }
   }
   return Status();
@@ -95,15 +111,20 @@ Status CheckMaterial(const BakeMaterial& m, const std::string& where) {
 
 Status CheckOptions(const BakeOptions& options) {
   if (options.size < 64 || options.size > 4096) {
-    return Refuse("the size of the maps must lie in [64, 4096]", "options");
+    return Refuse("size is " + std::to_string(options.size) + "; it must be in [64, 4096] texels",
+                  "options");
   }
-  if (!In(options.depth, 0.0f, 4.0f)) return Refuse("depth must lie in [0, 4]", "options");
+  if (!In(options.depth, 0.0f, 4.0f)) {
+    return Refuse("depth is " + Text(options.depth) + "; it must be in [0, 4]", "options");
+  }
   if (options.threads < 1 || options.threads > 64) {
-    return Refuse("threads must lie in [1, 64]", "options");
+    return Refuse("threads is " + std::to_string(options.threads) + "; it must be in [1, 64]",
+                  "options");
   }
   for (const BakeRegionWavelength& region : options.wavelengths) {
     if (!In(region.wavelength_mm, 0.2f, 200.0f)) {
-      return Refuse("the wavelength must lie in [0.2, 200] mm", "options, " + region.region);
+      return Refuse("wavelength_mm is " + Text(region.wavelength_mm) + "; it must be in [0.2, 200]",
+                    "options, region '" + region.region + "'");
     }
   }
   FURROW_RETURN_IF_ERROR(CheckMaterial(options.skin, "options.skin"));
@@ -132,7 +153,8 @@ Status CheckStrokeNumbers(const BakeStroke& stroke, const std::string& at) {
     if (!std::isfinite(range.value)) {
       return {StatusCode::kNonFinite, "the number is not finite", at + range.field};
     }
-    return Refuse("the number is not in " + std::string(range.interval), at + range.field);
+    return Refuse("the number " + Text(range.value) + " is not in " + range.interval,
+                  at + range.field);
   }
   const bool is_fold = stroke.kind == BakeStroke::Kind::kFold;
   if (is_fold && std::abs(stroke.depth_mm) > kDeepest * stroke.width_mm) {

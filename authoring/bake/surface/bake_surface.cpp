@@ -92,7 +92,7 @@ Result<std::unique_ptr<BakeSurface>> BakeSurface::Create(const character::Charac
                                   [](const auto& t) { return t.strain.has_value(); });
   if (!extent || made->texels_.empty()) {
     return Status(StatusCode::kInvalidArgument, "no triangle of the " + kind + " has any area",
-                  character.name);
+                  character.name, "check that the mesh and its UVs are not collapsed to a point");
   }
   return made;
 }

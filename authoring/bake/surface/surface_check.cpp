@@ -47,8 +47,11 @@ Status CheckSkin(const character::Character& character, int index) {
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     const float* w = mesh.vertices[v].skin_weights;
     if (std::abs(w[0] + w[1] + w[2] + w[3] - 1.0f) <= 0.01f) continue;
-    return Refuse("the skin weights of vertex " + std::to_string(v) + " do not sum to 1",
-                  MeshName(character, index), "bind every vertex to a joint");
+    char sum[32];
+    std::snprintf(sum, sizeof(sum), "%g", static_cast<double>(w[0] + w[1] + w[2] + w[3]));
+    return Refuse(
+        "the skin weights of vertex " + std::to_string(v) + " sum to " + sum + " instead of 1",
+        MeshName(character, index), "bind every vertex to a joint");
   }
   return {};
 }
@@ -92,7 +95,10 @@ Status CheckSurfaces(const character::Character& character, std::span<const std:
                      std::vector<std::string>* warnings) {
   if (character.inverse_bind_matrices.size() !=
       static_cast<std::size_t>(character.skeleton.num_joints())) {
-    return Refuse("a joint has no inverse bind matrix", character.name, "");
+    return Refuse(std::to_string(character.inverse_bind_matrices.size()) +
+                      " inverse bind matrices for " +
+                      std::to_string(character.skeleton.num_joints()) + " joints",
+                  character.name, "export the skin with the inverse bind matrices of all joints");
   }
   bool done[2] = {false, false};
   for (const wrinkle::WrinkleMap& map : character.rig.wrinkle_maps) {

@@ -33,12 +33,12 @@ Status FramePose::Apply(const std::string& pose, float weight) {
   const auto found = std::find_if(rig_.reference_poses.begin(), rig_.reference_poses.end(),
                                   [&](const wrinkle::ReferencePose& p) { return p.name == pose; });
   if (found == rig_.reference_poses.end()) {
-    return Status(StatusCode::kNotFound, "no reference pose is called \"" + pose + "\"");
+    return Status(StatusCode::kNotFound, "the rig has no reference pose '" + pose + "'");
   }
   for (const wrinkle::JointDelta& delta : found->joints) {
     const int joint = skeleton_.Find(delta.joint);
     if (joint == wrinkle::kNoJoint) {
-      return Status(StatusCode::kNotFound, "no joint is called \"" + delta.joint + "\"", pose);
+      return Status(StatusCode::kNotFound, "the skeleton has no joint '" + delta.joint + "'", pose);
     }
     frame_[joint].translation += delta.translation * weight;
     frame_[joint].rotation =

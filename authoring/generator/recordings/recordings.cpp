@@ -80,7 +80,7 @@ Result<Recording> MakeRecording(std::string_view name, const wrinkle::Rig& rig,
   const auto script = std::find_if(Scripts().begin(), Scripts().end(),
                                    [&](const Script& s) { return s.name == name; });
   if (script == Scripts().end()) {
-    return Status(StatusCode::kNotFound, "no recording is called \"" + std::string(name) + "\"");
+    return Status(StatusCode::kNotFound, "there is no recording '" + std::string(name) + "'");
   }
   Recording recording;
   recording.name = script->name;

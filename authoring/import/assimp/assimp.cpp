@@ -115,7 +115,8 @@ class SceneWriter {
       for (unsigned m = 0; m < node.mNumMeshes; ++m) instances_.emplace_back(node.mMeshes[m], i);
       for (unsigned c = 0; c < node.mNumChildren; ++c) {
         if (sources_.size() >= gltf::kMaxNodes) {
-          return {StatusCode::kLimit, "the file has too many nodes"};
+          return {StatusCode::kLimit,
+                  "the file has more than " + std::to_string(gltf::kMaxNodes) + " nodes"};
         }
         sources_.push_back({node.mChildren[c], static_cast<int>(i), sources_[i].model});
       }
@@ -196,7 +197,9 @@ class SceneWriter {
       vertices += scene_.mMeshes[mesh]->mNumVertices;
       indices += std::size_t{3} * scene_.mMeshes[mesh]->mNumFaces;
       if (vertices > gltf::kMaxVertices || indices > gltf::kMaxIndices) {
-        return {StatusCode::kLimit, "the file has too many vertices or triangles"};
+        return {StatusCode::kLimit, "the meshes have more than " +
+                                        std::to_string(gltf::kMaxVertices) + " vertices or " +
+                                        std::to_string(gltf::kMaxIndices / 3) + " triangles"};
       }
       AddMesh(*scene_.mMeshes[mesh], source);
     }
@@ -385,7 +388,9 @@ bool AssimpReads(std::string_view extension) {
 
 Result<ForeignModel> ReadWithAssimp(std::string_view bytes, const std::string& extension) {
   if (bytes.size() > kMaxForeignBytes) {
-    return Status(StatusCode::kLimit, "the file is longer than 512 MiB");
+    return Status(StatusCode::kLimit, "the file has " + std::to_string(bytes.size()) +
+                                          " bytes; the limit is " +
+                                          std::to_string(kMaxForeignBytes));
   }
   Result<std::string> message =
       RunInChildProcess({}, [&]() -> Result<std::string> { return Convert(bytes, extension); });

@@ -106,7 +106,9 @@ bool WriteAll(int pipe, std::string_view bytes) {
     const bool sent = WriteAll(pipe, message) && (!result.ok() || WriteAll(pipe, *result));
     _exit(sent ? 0 : 1);
   } catch (const std::bad_alloc&) {
-    message = ErrorMessage({StatusCode::kLimit, "reading the file takes too much memory"});
+    message = ErrorMessage({StatusCode::kLimit, "reading the file takes more than " +
+                                                    std::to_string(limits.max_memory_bytes >> 20) +
+                                                    " MiB of memory"});
   } catch (const std::exception& exception) {
     message = ErrorMessage({StatusCode::kParse, exception.what()});
   }
@@ -126,11 +128,13 @@ bool ReadAll(int pipe, std::size_t max_bytes, std::string* bytes) {
 }
 
 // Why a child ended without a result. The kernel sends SIGXCPU at the limit of CPU time.
-Status EndOf(int exit_status) {
+Status EndOf(int exit_status, const ChildProcessLimits& limits) {
   if (WIFSIGNALED(exit_status)) {
     const int signal = WTERMSIG(exit_status);
     if (signal == SIGXCPU || signal == SIGKILL) {
-      return {StatusCode::kLimit, "reading the file takes too long or too much memory"};
+      return {StatusCode::kLimit, "reading the file takes more than " +
+                                      std::to_string(limits.max_cpu_seconds) +
+                                      " s of processor time or too much memory"};
     }
     return {StatusCode::kParse, "reading the file crashed (signal " + std::to_string(signal) +
                                     "): the file is damaged"};
@@ -162,8 +166,10 @@ Result<std::string> RunInChildProcess(const ChildProcessLimits& limits,
   int exit_status = 0;
   while (waitpid(child, &exit_status, 0) < 0 && errno == EINTR) {
   }
-  if (!fits) return Status(StatusCode::kLimit, "the converted model is too large");
-  if (exit_status != 0 || message.empty()) return EndOf(exit_status);
+  if (!fits)
+    return Status(StatusCode::kLimit, "the converted model has more than " +
+                                          std::to_string(limits.max_result_bytes >> 20) + " MiB");
+  if (exit_status != 0 || message.empty()) return EndOf(exit_status, limits);
   if (message.front() != '\0') return ParseError(message);
   message.erase(0, 1);
   return message;

@@ -46,7 +46,9 @@ class MakeHumanImport {
 
   Result<character::Character> Run(ImportReport* report) {
     if (options_.texture_size < 64 || options_.texture_size > 4096)
-      return Status(StatusCode::kInvalidArgument, "texture_size must be in [64, 4096]");
+      return Status(StatusCode::kInvalidArgument, "texture_size is " +
+                                                      std::to_string(options_.texture_size) +
+                                                      "; it must be in [64, 4096]");
     character_.name = "makehuman";
     using Step = Status (MakeHumanImport::*)();
     for (const Step step : {&MakeHumanImport::ReadBase, &MakeHumanImport::ReadGarment,
@@ -102,7 +104,7 @@ class MakeHumanImport {
   Status PlaceBase(const fs::path& path) {
     const std::vector<std::uint32_t> body = FacesOf(base_.obj, "body");
     if (body.empty())
-      return Status(StatusCode::kSchema, "has no group 'body'", path.string(),
+      return Status(StatusCode::kSchema, "the mesh has no group 'body'", path.string(),
                     "use MakeHuman's base mesh");
     float ground = base_.obj.positions[base_.obj.corners[0].position].y;
     for (const std::uint32_t f : body) {

@@ -29,9 +29,10 @@ class MhcloParser {
       FURROW_RETURN_IF_ERROR(Statement());
     }
     if (garment_.obj_file.empty())
-      return Status(StatusCode::kSchema, "has no obj_file", std::string(source_));
+      return Status(StatusCode::kSchema, "the file has no line 'obj_file'", std::string(source_));
     if (garment_.vertices.empty())
-      return Status(StatusCode::kSchema, "has no verts", std::string(source_));
+      return Status(StatusCode::kSchema, "the file lists no vertices after 'verts'",
+                    std::string(source_));
     return std::move(garment_);
   }
 
@@ -45,7 +46,8 @@ class MhcloParser {
     const bool number = ToFloat(word).has_value();
     if (number && section_ == Section::kVertices) return Vertex();
     if (number && section_ == Section::kDeleted) return Deleted();
-    if (number) return Error(StatusCode::kParse, "numbers before 'verts'");
+    if (number)
+      return Error(StatusCode::kParse, "expected a keyword such as 'verts', found a number");
     section_ = Section::kHeader;
     return Keyword(word);
   }
@@ -72,7 +74,7 @@ class MhcloParser {
   Status ObjFile() {
     if (words_.size() != 2 || words_[1].find_first_of("/\\") != std::string_view::npos ||
         words_[1] == "..")
-      return Error(StatusCode::kSchema, "obj_file must be a file name without folders");
+      return Error(StatusCode::kSchema, "obj_file must be one file name without a folder");
     garment_.obj_file = std::string(words_[1]);
     return {};
   }
@@ -81,9 +83,9 @@ class MhcloParser {
     const std::optional<long> value = ToInteger(word);
     if (!value) return Error(StatusCode::kParse, Quoted(word) + " is not a vertex index");
     if (*value < 0 || static_cast<std::size_t>(*value) >= num_base_)
-      return Error(StatusCode::kInvalidArgument, "base vertex " + std::string(word) +
-                                                     " is out of range (the base mesh has " +
-                                                     std::to_string(num_base_) + ")");
+      return Error(StatusCode::kInvalidArgument, "vertex index " + std::string(word) +
+                                                     " is out of range; the base mesh has " +
+                                                     Counted(num_base_, "vertex", "vertices"));
     *index = static_cast<std::uint32_t>(*value);
     return {};
   }
@@ -99,14 +101,15 @@ class MhcloParser {
 
   Status Scale(std::size_t axis) {
     if (words_.size() < 4)
-      return Error(StatusCode::kParse, "a scale needs two vertices and a length");
+      return Error(StatusCode::kParse, "a scale needs two vertex indices and a length");
     Mhclo::Scale scale;
     FURROW_RETURN_IF_ERROR(BaseIndex(words_[1], &scale.first));
     FURROW_RETURN_IF_ERROR(BaseIndex(words_[2], &scale.second));
     FURROW_RETURN_IF_ERROR(Number(words_[3], &scale.extent));
     // FitGarment() divides by it.
     if (!(std::abs(scale.extent) > 1e-6f))
-      return Error(StatusCode::kSchema, "a scale's length must not be zero");
+      return Error(StatusCode::kSchema,
+                   "the length of a scale must be more than 0.000001 or less than -0.000001");
     garment_.scales[axis] = scale;
     return {};
   }
@@ -115,7 +118,8 @@ class MhcloParser {
   Status Vertex() {
     Mhclo::GarmentVertex vertex;
     if (words_.size() != 1 && words_.size() < 9)
-      return Error(StatusCode::kParse, "a vertex needs 1 or 9 numbers");
+      return Error(StatusCode::kParse,
+                   "a vertex needs 1 or 9 numbers; the line has " + std::to_string(words_.size()));
     FURROW_RETURN_IF_ERROR(BaseIndex(words_[0], &vertex.base[0]));
     if (words_.size() == 1) {
       vertex.base[1] = vertex.base[2] = vertex.base[0];
@@ -142,10 +146,14 @@ class MhcloParser {
       FURROW_RETURN_IF_ERROR(BaseIndex(words_[i], &first));
       std::uint32_t last = first;
       if (i + 1 < words_.size() && words_[i + 1] == "-") {
-        if (i + 2 >= words_.size()) return Error(StatusCode::kParse, "a range has no end");
+        if (i + 2 >= words_.size())
+          return Error(StatusCode::kParse,
+                       "the range that starts at " + std::to_string(first) + " has no end");
         FURROW_RETURN_IF_ERROR(BaseIndex(words_[i + 2], &last));
         if (last < first)
-          return Error(StatusCode::kInvalidArgument, "a range ends before it starts");
+          return Error(StatusCode::kInvalidArgument, "the range " + std::to_string(first) + " - " +
+                                                         std::to_string(last) +
+                                                         " ends before it starts");
         i += 2;
       }
       for (std::uint32_t vertex = first; vertex <= last; ++vertex) garment_.deleted[vertex] = true;

@@ -24,9 +24,10 @@ Result<Json> ParseJson(std::string_view text, std::string_view source) {
     return Json::parse(text.begin(), text.end());
   } catch (const Json::parse_error& error) {
     const std::size_t line = LineOf(text, error.byte == 0 ? 0 : error.byte - 1);
-    return Status(StatusCode::kParse, "broken JSON", Where(source, line));
+    return Status(StatusCode::kParse, "invalid JSON", Where(source, line));
   } catch (const Json::exception&) {  // number out of range
-    return Status(StatusCode::kParse, "a number out of range", std::string(source));
+    return Status(StatusCode::kParse, "the JSON has a number that is too large",
+                  std::string(source));
   }
 }
 
@@ -41,7 +42,8 @@ Result<const Json*> Member(const Json& object, const char* name, Json::value_t t
   if (it == object.end()) return SchemaError(source, field, "is missing");
   if (it->type() != type)
     return SchemaError(source, field,
-                       std::string("is of the wrong type (") + it->type_name() + ")");
+                       std::string("must be of type ") + Json(type).type_name() +
+                           ", but is of type " + it->type_name());
   return &*it;
 }
 
@@ -49,13 +51,15 @@ Result<const Json*> Member(const Json& object, const char* name, Json::value_t t
 Status ReadVertices(const Json& list, std::string_view source, const std::string& field,
                     std::vector<std::uint32_t>* vertices) {
   if (!list.is_array() || list.empty())
-    return SchemaError(source, field, "is not a list of vertices");
+    return SchemaError(source, field, "must be a list of at least one vertex index");
   if (list.size() > kMaxJointVertices)
-    return Status(StatusCode::kLimit, "more than 65,536 vertices",
+    return Status(StatusCode::kLimit,
+                  "lists " + std::to_string(list.size()) + " vertices; the limit is 65536",
                   std::string(source) + ": " + field);
   for (const Json& item : list) {
     if (!item.is_number_unsigned() || item.get<std::uint64_t>() > UINT32_MAX)
-      return SchemaError(source, field, "contains an invalid vertex index");
+      return SchemaError(source, field,
+                         "contains " + Quoted(item.dump()) + ", which is not a vertex index");
     vertices->push_back(item.get<std::uint32_t>());
   }
   return {};
@@ -83,8 +87,8 @@ Result<glm::vec3> MeanOf(std::span<const std::uint32_t> vertices,
   for (const std::uint32_t vertex : vertices) {
     if (vertex >= positions.size())
       return Status(StatusCode::kInvalidArgument,
-                    "vertex " + std::to_string(vertex) + " is out of range (the mesh has " +
-                        std::to_string(positions.size()) + ")",
+                    "vertex index " + std::to_string(vertex) + " is out of range; the mesh has " +
+                        Counted(positions.size(), "vertex", "vertices"),
                     std::string(source) + ": " + joint, "use the skeleton of this base mesh");
     sum += glm::dvec3(positions[vertex]);
   }
@@ -95,10 +99,12 @@ Status ReadWeight(const Json& item, std::string_view source, const std::string& 
                   std::pair<std::uint32_t, float>* out) {
   if (!item.is_array() || item.size() != 2 || !item[0].is_number_unsigned() ||
       !item[1].is_number() || item[0].get<std::uint64_t>() > UINT32_MAX)
-    return SchemaError(source, field, "contains an entry other than [vertex, weight]");
+    return SchemaError(source, field,
+                       "contains " + Quoted(item.dump()) + ", which is not [vertex index, weight]");
   const double weight = item[1].get<double>();
   if (!(weight >= 0.0 && weight <= 1.0))
-    return Status(StatusCode::kInvalidArgument, "contains a weight outside [0, 1]",
+    return Status(StatusCode::kInvalidArgument,
+                  "contains the weight " + item[1].dump() + ", which is not in [0, 1]",
                   std::string(source) + ": " + field);
   *out = {item[0].get<std::uint32_t>(), static_cast<float>(weight)};
   return {};
@@ -109,22 +115,25 @@ Status ReadWeight(const Json& item, std::string_view source, const std::string& 
 Result<MhSkeleton> ParseMhskel(std::string_view text, std::string_view source) {
   const Result<Json> json = ParseJson(text, source);
   FURROW_RETURN_IF_ERROR(json);
-  if (!json->is_object()) return SchemaError(source, "(whole file)", "is not an object");
+  if (!json->is_object()) return SchemaError(source, "(whole file)", "must be a JSON object");
   const auto bones = Member(*json, "bones", Json::value_t::object, source, "bones");
   FURROW_RETURN_IF_ERROR(bones);
   const auto positions = Member(*json, "joints", Json::value_t::object, source, "joints");
   FURROW_RETURN_IF_ERROR(positions);
   if ((*bones)->size() > wrinkle::kMaxJoints)
-    return Status(StatusCode::kLimit, "more than 1,024 bones", std::string(source));
+    return Status(StatusCode::kLimit,
+                  "the file has " + std::to_string((*bones)->size()) + " bones; the limit is " +
+                      std::to_string(wrinkle::kMaxJoints),
+                  std::string(source));
   MhSkeleton skeleton;
   for (const auto& [name, bone] : (*bones)->items()) {
     const std::string field = "bones." + name;
-    if (!bone.is_object()) return SchemaError(source, field, "is not an object");
+    if (!bone.is_object()) return SchemaError(source, field, "must be a JSON object");
     MhSkeleton::Joint joint;
     joint.name = name;
     const auto parent = bone.find("parent");
     if (parent == bone.end() || !(parent->is_null() || parent->is_string()))
-      return SchemaError(source, field + ".parent", "is neither a name nor null");
+      return SchemaError(source, field + ".parent", "must be the name of a bone, or null");
     if (parent->is_string()) joint.parent = parent->get<std::string>();
     if (Status status = ReadEnd(bone, "head", **positions, source, field, &joint.head);
         !status.ok())
@@ -140,17 +149,18 @@ Result<MhSkeleton> ParseMhskel(std::string_view text, std::string_view source) {
 Result<MhWeights> ParseMhw(std::string_view text, std::string_view source) {
   const Result<Json> json = ParseJson(text, source);
   FURROW_RETURN_IF_ERROR(json);
-  if (!json->is_object()) return SchemaError(source, "(whole file)", "is not an object");
+  if (!json->is_object()) return SchemaError(source, "(whole file)", "must be a JSON object");
   const auto lists = Member(*json, "weights", Json::value_t::object, source, "weights");
   FURROW_RETURN_IF_ERROR(lists);
   MhWeights weights;
   std::size_t total = 0;
   for (const auto& [name, list] : (*lists)->items()) {
     const std::string field = "weights." + name;
-    if (!list.is_array()) return SchemaError(source, field, "is not a list");
+    if (!list.is_array()) return SchemaError(source, field, "must be a list");
     total += list.size();
     if (total > kMaxWeights)
-      return Status(StatusCode::kLimit, "more than 8 million weights", std::string(source));
+      return Status(StatusCode::kLimit, "the file has more than 8000000 weights",
+                    std::string(source));
     MhWeights::Joint joint;
     joint.name = name;
     joint.vertices.reserve(list.size());

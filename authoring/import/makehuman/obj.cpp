@@ -38,7 +38,7 @@ class ObjParser {
       FURROW_RETURN_IF_ERROR(Statement());
     }
     if (mesh_.faces.empty())
-      return Status(StatusCode::kParse, "has no faces", std::string(source_),
+      return Status(StatusCode::kParse, "the file has no faces", std::string(source_),
                     "check that the file is an .obj");
     return std::move(mesh_);
   }
@@ -59,15 +59,16 @@ class ObjParser {
 
   Status Numbers(std::size_t count, float* out) const {
     if (words_.size() < count + 1)
-      return Error(StatusCode::kParse,
-                   "'" + std::string(words_[0]) + "' needs " + std::to_string(count) + " numbers");
+      return Error(StatusCode::kParse, "'" + std::string(words_[0]) + "' needs " +
+                                           std::to_string(count) + " numbers; the line has " +
+                                           std::to_string(words_.size() - 1));
     for (std::size_t i = 0; i < count; ++i) {
       const std::optional<float> value = ToFloat(words_[i + 1]);
       if (!value) return Error(StatusCode::kParse, Quoted(words_[i + 1]) + " is not a number");
       if (!std::isfinite(*value))
         return Error(StatusCode::kNonFinite, Quoted(words_[i + 1]) + " is not finite");
       if (std::abs(*value) > kMaxCoordinate)
-        return Error(StatusCode::kLimit, Quoted(words_[i + 1]) + " is larger than one million");
+        return Error(StatusCode::kLimit, Quoted(words_[i + 1]) + " is not in [-1000000, 1000000]");
       out[i] = *value;
     }
     return {};
@@ -75,7 +76,7 @@ class ObjParser {
 
   Status Position() {
     if (mesh_.positions.size() >= kMaxElements)
-      return Error(StatusCode::kLimit, "more than 4 million positions");
+      return Error(StatusCode::kLimit, "the file has more than 4000000 vertices");
     float xyz[3];
     FURROW_RETURN_IF_ERROR(Numbers(3, xyz));
     mesh_.positions.emplace_back(xyz[0], xyz[1], xyz[2]);
@@ -84,7 +85,7 @@ class ObjParser {
 
   Status Uv() {
     if (mesh_.uvs.size() >= kMaxElements)
-      return Error(StatusCode::kLimit, "more than 4 million UVs");
+      return Error(StatusCode::kLimit, "the file has more than 4000000 UVs");
     float uv[2];
     FURROW_RETURN_IF_ERROR(Numbers(2, uv));
     mesh_.uvs.emplace_back(uv[0], uv[1]);
@@ -96,7 +97,7 @@ class ObjParser {
     const auto [it, added] = group_index_.emplace(name, mesh_.groups.size());
     if (added) {
       if (mesh_.groups.size() >= kMaxGroups)
-        return Error(StatusCode::kLimit, "more than 65,535 groups");
+        return Error(StatusCode::kLimit, "the file has more than 65535 groups");
       mesh_.groups.push_back(name);
     }
     group_ = static_cast<std::uint16_t>(it->second);
@@ -104,15 +105,15 @@ class ObjParser {
   }
 
   // One index of a corner: 1 or more, or negative to count back from the latest.
-  Status Index(std::string_view word, std::size_t count, std::string_view kind,
-               std::int64_t* index) const {
+  Status Index(std::string_view word, std::size_t count, const std::string& kind,
+               const std::string& plural, std::int64_t* index) const {
     const std::optional<long> value = ToInteger(word);
-    if (!value) return Error(StatusCode::kParse, Quoted(word) + " is not an index");
+    if (!value) return Error(StatusCode::kParse, Quoted(word) + " is not the index of a " + kind);
     *index = *value < 0 ? static_cast<std::int64_t>(count) + *value : *value - 1;
     if (*index < 0 || *index >= static_cast<std::int64_t>(count))
-      return Error(StatusCode::kInvalidArgument, std::string(kind) + " index " + std::string(word) +
-                                                     " is out of range (there are " +
-                                                     std::to_string(count) + ")");
+      return Error(StatusCode::kInvalidArgument,
+                   kind + " index " + std::string(word) + " is out of range; the file has " +
+                       Counted(count, kind, plural) + " up to this line");
     return {};
   }
 
@@ -121,14 +122,14 @@ class ObjParser {
     std::int64_t position = 0;
     std::int64_t uv = -1;
     if (const Status status =
-            Index(word.substr(0, slash), mesh_.positions.size(), "vertex", &position);
+            Index(word.substr(0, slash), mesh_.positions.size(), "vertex", "vertices", &position);
         !status.ok())
       return status;
     if (slash != std::string_view::npos) {
       const std::string_view rest = word.substr(slash + 1);
       const std::string_view uv_word = rest.substr(0, rest.find('/'));
       if (!uv_word.empty()) {
-        FURROW_RETURN_IF_ERROR(Index(uv_word, mesh_.uvs.size(), "UV", &uv));
+        FURROW_RETURN_IF_ERROR(Index(uv_word, mesh_.uvs.size(), "UV", "UVs", &uv));
       }
     }
     mesh_.corners.push_back({static_cast<std::uint32_t>(position), static_cast<std::int32_t>(uv)});
@@ -139,9 +140,9 @@ class ObjParser {
     const std::size_t corners = words_.size() - 1;
     if (corners < 3 || corners > kMaxCorners)
       return Error(StatusCode::kParse,
-                   "a face of " + std::to_string(corners) + " corners (3 to 64 are allowed)");
+                   "the face has " + Counted(corners, "corner") + "; a face needs 3 to 64");
     if (mesh_.corners.size() + corners > kMaxElements)
-      return Error(StatusCode::kLimit, "more than 4 million face corners");
+      return Error(StatusCode::kLimit, "the faces have more than 4000000 corners");
     const auto first = static_cast<std::uint32_t>(mesh_.corners.size());
     for (std::size_t i = 1; i < words_.size(); ++i) {
       FURROW_RETURN_IF_ERROR(AddCorner(words_[i]));

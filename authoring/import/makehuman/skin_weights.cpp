@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <string>
 
+#include "base/text.h"
+
 namespace furrow::authoring {
 namespace {
 
@@ -23,13 +25,13 @@ Result<SkinWeights> BindBaseMesh(const MhWeights& weights, const wrinkle::Skelet
   for (const MhWeights::Joint& joint : weights.joints) {
     const int index = skeleton.Find(joint.name);
     if (index == wrinkle::kNoJoint)
-      return Status(StatusCode::kNotFound, "the skeleton lacks this joint",
+      return Status(StatusCode::kNotFound, "the skeleton has no joint " + Quoted(joint.name),
                     std::string(source) + ": weights." + joint.name);
     for (const auto& [vertex, weight] : joint.vertices) {
       if (vertex >= num_vertices)
         return Status(StatusCode::kInvalidArgument,
-                      "vertex " + std::to_string(vertex) + " is out of range (the mesh has " +
-                          std::to_string(num_vertices) + ")",
+                      "vertex index " + std::to_string(vertex) + " is out of range; the mesh has " +
+                          Counted(num_vertices, "vertex", "vertices"),
                       std::string(source) + ": weights." + joint.name);
       by_vertex[vertex].Add(static_cast<std::uint16_t>(index), weight);
     }
