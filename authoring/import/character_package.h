@@ -11,7 +11,8 @@ namespace furrow::authoring {
 // Writes a character as two files that together are the whole package: `glb`, with all pictures
 // embedded, and "<stem>.rig.json" beside it, with all reference poses inline.
 //
-// On an error neither file is written. Errors: those of CheckRig() and of writing glTF, kIo.
+// On an error neither file is written. Errors: those of CheckRig(), errors of encoding the glTF,
+// kIo.
 [[nodiscard]] Status WriteCharacterPackage(const character::Character& character,
                                            const std::filesystem::path& glb);
 

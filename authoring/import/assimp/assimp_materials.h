@@ -23,12 +23,12 @@ namespace furrow::authoring {
 // normals, double-sidedness.
 class AssimpMaterials {
  public:
-  // Both arguments must outlive the object. Materials, textures and images are appended to the
-  // builder's root, materials in the scene's order.
+  // Both arguments must outlive the object.
   AssimpMaterials(const aiScene& scene, gltf::Builder* builder)
       : scene_(scene), builder_(*builder), root_(builder->root()) {}
 
-  // Appends a remark for each picture that cannot be converted.
+  // Appends the materials, in the scene's order, with their textures and images to the builder's
+  // root. Appends one sentence to `remarks` for each picture that cannot be converted.
   void Run(std::vector<std::string>* remarks);
 
  private:

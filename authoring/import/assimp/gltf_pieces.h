@@ -14,16 +14,19 @@ namespace furrow::authoring {
 
 using GltfJson = gltf::Builder::Json;
 
-// gltf::Decompose() with every scale at least 1e-9 in size, so that the result can be inverted.
+// Splits a matrix into translation, rotation and scale. Scales smaller than 1e-9 become 1e-9, so
+// the result can be inverted.
 [[nodiscard]] gltf::Transform InvertibleTransform(const glm::mat4& m);
 
+// One joint that moves a vertex.
 struct Influence {
   std::size_t joint;  // index in the skin
-  float weight;
+  float weight;       // [0, 1]
 };
 
-// Adds JOINTS_n and WEIGHTS_n, with enough sets of four for the vertex with the most influences.
-// `influences` has one list per vertex.
+// Adds the attributes JOINTS_n and WEIGHTS_n to `attributes` and their data to `builder`, with
+// enough sets of four for the vertex with the most influences. `influences` has one list per
+// vertex.
 void AddInfluences(const std::vector<std::vector<Influence>>& influences, gltf::Builder* builder,
                    GltfJson* attributes);
 

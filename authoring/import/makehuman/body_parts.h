@@ -17,34 +17,36 @@
 
 namespace furrow::authoring {
 
-// MakeHuman's base mesh, fitted and skinned. The parts of the character are cut from it.
+// MakeHuman's base mesh with skin weights. The parts of the character are cut from it. It contains
+// the body and "helpers", invisible groups that clothes, eyes and teeth are fitted to.
 struct BaseMesh {
   ObjMesh obj;
-  std::vector<glm::vec3> positions;  // metres, feet on y = 0; all vertices, including helpers
-  SkinWeights skin;
+  std::vector<glm::vec3> positions;  // metres, feet on y = 0; one per position of `obj`
+  SkinWeights skin;                  // one entry per position of `obj`
 };
 
-// The faces of a group of `obj`; empty if there is no such group.
+// Indices in `obj.faces` of the faces of a group; empty if there is no such group.
 [[nodiscard]] std::vector<std::uint32_t> FacesOf(const ObjMesh& obj, std::string_view group);
 
-// The skin: the group "body" without faces that are fully hidden. `deleted`: by base vertex,
-// whether clothes hide it (may be empty). UV islands are rearranged so that the face, which needs
-// the most detail, fills three quarters of the picture.
+// Builds the skin: the group "body" without faces that clothes hide. `deleted`: for each base
+// vertex, whether clothes hide it; empty: none. `material`: index of the material. `hidden_faces`
+// receives the number of omitted faces. UV islands are rearranged so that the face, which needs the
+// most detail, fills three quarters of the picture.
 [[nodiscard]] character::Mesh BuildSkin(const BaseMesh& base, const wrinkle::Skeleton& skeleton,
                                         const std::vector<bool>& deleted, int material,
                                         int* hidden_faces);
 
-// A group of helpers without changes (the tongue).
+// Builds a mesh from a group of helpers without changes (the tongue).
 [[nodiscard]] character::Mesh BuildHelper(const BaseMesh& base, std::string_view group,
                                           int material);
 
-// A row of teeth (authoring/paint/teeth.h) in place of the group's coarse box, with its skin
-// weights.
+// Builds a row of teeth in place of the group's coarse box, with the skin weights of the box.
+// `upper`: the upper row, else the lower.
 [[nodiscard]] character::Mesh BuildTeeth(const BaseMesh& base, std::string_view group, bool upper,
                                          int material);
 
-// A smooth eyeball with a slight cornea in place of the group's coarse ball. It follows `joint` and
-// looks along the unit vector `forward`. UVs fit PaintEye().
+// Builds a smooth eyeball with a slight cornea in place of the group's coarse ball. It follows the
+// joint with index `joint` and looks along the unit vector `forward`. UVs fit PaintEye().
 [[nodiscard]] character::Mesh BuildEye(const BaseMesh& base, std::string_view group, int joint,
                                        const glm::vec3& forward, int material);
 

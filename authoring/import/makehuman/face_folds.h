@@ -9,9 +9,10 @@
 
 namespace furrow::authoring {
 
-// The folds of a face, placed by its landmarks. They run across the pull of the muscle that causes
-// them (FACS action units), and the bake prefers them to folds from strain. `texels` cover the
-// skin; the points of the strokes lie on their surface.
+// Returns the folds of a face as strokes for Bake(), placed by the face's landmarks. They run
+// across the pull of the muscle that causes them (FACS action units). Near a stroke, the bake draws
+// it instead of folds from strain. `texels` cover the skin; the points of the strokes are moved
+// onto their surface.
 //
 // - Map "stretch" (raised brows, lowered corners of the mouth): horizontal furrows of the forehead,
 //   marionette lines, the crease under the lip, a pebbled chin.

@@ -9,7 +9,8 @@
 namespace furrow::authoring {
 
 // The positions of facial features (model space, metres, rest pose), taken from MakeHuman's muscle
-// joints. Colours, masks and folds are placed by them, so that they fit every shape of the mesh.
+// joints. Colours, masks and folds are placed relative to them, so they fit every shape of the
+// mesh.
 struct FaceLandmarks {
   struct Side {
     glm::vec3 brow_inner;  // above the inner corner of the eye
@@ -26,7 +27,7 @@ struct FaceLandmarks {
     glm::vec3 chin_side;
     glm::vec3 cheek;
   };
-  Side sides[2];  // left (+X), right
+  Side sides[2];  // 0: the subject's left (+X), 1: right
   glm::vec3 nose_bridge;
   glm::vec3 nose_tip;
   glm::vec3 upper_lip;  // its fullest point
@@ -37,11 +38,12 @@ struct FaceLandmarks {
   glm::vec3 crown;
   float scale = 1.0f;  // size of the face; 1: pupils 62 mm apart
 
+  // Metres on this face for `mm` millimetres on a face with `scale` 1.
   [[nodiscard]] float Millimetres(float mm) const { return mm * 0.001f * scale; }
 };
 
-// Errors: kNotFound (names the joint that the skeleton lacks), kInvalidArgument (both eyes at the
-// same position).
+// Finds the landmarks in a skeleton of MakeHuman's default rig. Errors: kNotFound (names the joint
+// that the skeleton lacks), kInvalidArgument (both eyes at the same position).
 [[nodiscard]] Result<FaceLandmarks> FindFaceLandmarks(const wrinkle::Skeleton& skeleton);
 
 }  // namespace furrow::authoring

@@ -9,24 +9,29 @@
 
 namespace furrow::authoring {
 
-// Short hair: locks that grow from the scalp (ScalpAmount()), combed away from the whorl of the
-// crown, a few millimetres long at the nape and four centimetres on top. The result is always the
-// same. Each lock follows the joints of its root. UVs fit PaintMakeHumanHair().
+// Builds short hair: locks that grow from the scalp, combed away from the whorl of the crown, a few
+// millimetres long at the nape and four centimetres on top. Each lock follows the joints of the
+// skin at its root. Equal inputs give equal meshes. `material`: index of the material. UVs fit
+// PaintMakeHumanHair().
 [[nodiscard]] character::Mesh BuildMakeHumanHair(const character::Mesh& skin,
                                                  const FaceLandmarks& face, int material);
 
-// A group of lashes around the eye at `eye`. u runs along the lid, v from the tips (0) to the lid.
-// The lashes use the fraction `reach` of the group's strip, (0, 1].
+// Builds the lashes of one lid from a group of the base mesh. `eye`: centre of the eyeball, metres.
+// `reach`: length of the lashes as a fraction of the width of the group's strip, (0, 1]. u runs
+// along the lid, v from the tips (0) to the lid (1).
 [[nodiscard]] character::Mesh BuildLashes(const BaseMesh& base, std::string_view group,
                                           const glm::vec3& eye, float reach, int material);
 
-// The colour of the hair, 8-bit sRGB. Strands run from the tips (top) to the roots.
+// The colour of the hair, 8-bit sRGB. Strands run from the tips (top) to the roots (bottom).
+// `size`: width and height, texels.
 [[nodiscard]] character::Picture PaintMakeHumanHair(int size);
 
-// For Material::alpha_cutoff: keeps a fringe where distant lashes are finer than texels.
+// Alpha below which a lash is not drawn, for Material::alpha_cutoff. 0.4 keeps a fringe where
+// distant lashes are finer than texels.
 inline constexpr float kLashCutoff = 0.4f;
 
-// The colour and alpha of the lashes, 8-bit sRGB: dark, tapered, of uneven length.
+// The colour and alpha of the lashes, 8-bit sRGB: dark, tapered, of uneven length. `size`: width
+// and height, texels.
 [[nodiscard]] character::Picture PaintLashes(int size);
 
 }  // namespace furrow::authoring

@@ -12,16 +12,21 @@
 
 namespace furrow::authoring {
 
+// The options of ImportMakeHuman().
 struct ImportOptions {
   // The garment: a folder in <folder>/clothes. Empty: the first by name, if there is one.
   std::string clothes;
-  // The wrinkle rig to embed. Empty: makehuman.json of the data folder (data_dir.h).
+  // The wrinkle rig to embed. Empty: makehuman.json of Furrow's data folder.
   std::filesystem::path rig;
-  // Reads the frames of <folder>/poseunits that the rig names (motion::CachedPoseSource).
+  // Reads the frames of <folder>/poseunits that the rig names, for example
+  // motion::CachedPoseSource.
   wrinkle::PoseSource poses;
-  int texture_size =
-      1024;  // width and height, texels, [64, 4096]; wrinkle maps: the next power of two below
-  std::function<bool(float)> progress;  // of the bake, as in Bake(); optional
+  // Width and height of pictures, texels, [64, 4096]. Wrinkle maps use the largest power of two
+  // that is not larger.
+  int texture_size = 1024;
+  // Receives the completed fraction of the bake, [0, 1], on the calling thread; returning false
+  // cancels. Optional.
+  std::function<bool(float)> progress;
 };
 
 // The result in numbers, printed by `furrow character import`.
@@ -31,7 +36,7 @@ struct ImportReport {
   int triangles = 0;
   int hidden_faces = 0;         // faces of the body under the clothes
   int unweighted_vertices = 0;  // vertices without weights, drawn or not; they follow the root
-  int truncated_vertices = 0;   // vertices with more than four joints
+  int truncated_vertices = 0;   // vertices with more than four joints; the weakest were dropped
   std::vector<std::string> warnings;
 };
 
@@ -42,12 +47,13 @@ struct ImportReport {
 //
 // - Decimetres become metres. The lowest point of the body is at y = 0.
 // - Joints keep MakeHuman's names. Their axes are parallel to the model's in the rest pose.
-// - Colours, pores and masks are painted (skin_paint.h, prop_paint.h). Wrinkle maps are baked from
-//   the rig's poses and the folds of the face (face_folds.h).
+// - Colours, pores and masks are painted. Wrinkle maps are baked from the rig's poses and from
+//   strokes at the usual folds of a face.
 // - The rig is bound to the skeleton once, which detects a rig that does not fit the folder.
 //
-// Errors name the file and the line or field: kNotFound (a file, a joint), kParse, kSchema,
-// kNonFinite, kInvalidArgument (an index or option out of range), kLimit, kIo.
+// `report` (may be null) is set on success only. Errors name the file and the line or field:
+// kNotFound (a file, a joint), kParse, kSchema, kNonFinite, kInvalidArgument (an index or option
+// out of range), kLimit, kIo, and those of Bake().
 [[nodiscard]] Result<character::Character> ImportMakeHuman(const std::filesystem::path& folder,
                                                            const ImportOptions& options = {},
                                                            ImportReport* report = nullptr);

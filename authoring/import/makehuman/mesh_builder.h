@@ -15,7 +15,7 @@
 
 namespace furrow::authoring {
 
-// Maps a rectangle of UV space (v up, as in .obj) to another. A whole UV island is moved at once.
+// Moves a UV island: maps one rectangle of UV space (v up, as in .obj) to another.
 struct UvMove {
   glm::vec2 from_low{0.0f};
   glm::vec2 from_high{1.0f};
@@ -25,30 +25,32 @@ struct UvMove {
   [[nodiscard]] glm::vec2 Apply(glm::vec2 uv) const;
 };
 
-// The input of BuildMesh(). Spans have the indices of `obj`'s positions.
+// The input of BuildMesh(). All pointers and spans must stay valid during the call. Each span has
+// one entry per position of `obj`.
 struct MeshSource {
   const ObjMesh* obj = nullptr;
   std::span<const glm::vec3> positions;  // metres, model space
   std::span<const glm::vec3> normals;    // unit; see SmoothNormals()
   std::span<const Influences> influences;
   std::vector<std::uint32_t> faces;  // faces to draw, indices into obj->faces
-  std::vector<int> uv_move;          // by uv of obj: index into uv_moves, or -1; empty: UVs stay
+  std::vector<int> uv_move;  // per UV of `obj`: index into uv_moves, or -1; empty: none move
   std::vector<UvMove> uv_moves;
 };
 
-// Smooth normals, weighted by the corners' angles. They are computed before vertices are split, so
-// that UV seams are invisible, and hidden faces count too, so that borders do not bend.
+// Returns one smooth unit normal per position, weighted by the corners' angles. `faces`: indices in
+// `obj.faces` of the faces to use. Call it before BuildMesh() splits vertices, so that UV seams are
+// invisible, and include hidden faces, so that normals at borders do not bend.
 [[nodiscard]] std::vector<glm::vec3> SmoothNormals(const ObjMesh& obj,
                                                    std::span<const glm::vec3> positions,
                                                    std::span<const std::uint32_t> faces);
 
-// Builds triangles with one vertex per (position, UV) in use. v is flipped to point down. Tangents
-// follow from the UVs (glTF: the bitangent points up the picture).
+// Builds a mesh of triangles with one vertex per (position, UV) in use. v is flipped to point down.
+// Tangents follow from the UVs; as in glTF, the bitangent points up the picture.
 [[nodiscard]] character::Mesh BuildMesh(const std::string& name, int material,
                                         const MeshSource& source);
 
-// The connected pieces of UV space of `faces`: by uv of obj, the index of its island, or -1 if
-// unused.
+// Finds the UV islands (connected pieces of UV space) of `faces`. Returns for each UV of `obj` the
+// index of its island, or -1 if no face uses it. `num_islands` receives their number.
 [[nodiscard]] std::vector<int> UvIslands(const ObjMesh& obj, std::span<const std::uint32_t> faces,
                                          int* num_islands);
 

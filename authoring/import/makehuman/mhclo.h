@@ -15,7 +15,7 @@
 
 namespace furrow::authoring {
 
-// MakeHuman's .mhclo file: how a garment is attached to the base mesh.
+// The content of MakeHuman's .mhclo file, which attaches a garment to the base mesh.
 struct Mhclo {
   // A garment vertex: `weights` of three base vertices, plus an offset along the model's axes in
   // units of the scales below.
@@ -24,22 +24,22 @@ struct Mhclo {
     std::array<float, 3> weights{};
     glm::vec3 offset{0.0f};
   };
-  // The scale of one axis: the distance of two base vertices along the axis, divided by their
-  // distance on the author's mesh.
+  // The scale of one axis: the distance of two base vertices along the axis, divided by `extent`.
   struct Scale {
-    std::uint32_t first = 0;
-    std::uint32_t second = 0;
-    float extent = 1.0f;
+    std::uint32_t first = 0;   // base vertex
+    std::uint32_t second = 0;  // base vertex
+    float extent = 1.0f;       // their distance on the mesh of the garment's author; not 0
   };
 
   std::string name;
   std::string obj_file;                        // file beside the .mhclo, without folders
   std::array<std::optional<Scale>, 3> scales;  // x, y, z; empty: 1
   std::vector<GarmentVertex> vertices;         // in the order of the .obj
-  std::vector<bool> deleted;                   // by base vertex: hidden by this garment
+  std::vector<bool> deleted;                   // per base vertex: the garment hides it
 };
 
-// Parses a .mhclo file. `num_base_vertices`: size of the base mesh; every index is checked.
+// Parses a .mhclo file. `source`: the file name in errors. `num_base_vertices`: number of vertices
+// of the base mesh, against which every index is checked.
 //
 // Errors name "source:line": kParse, kInvalidArgument (index out of range, a range that ends before
 // it starts), kNonFinite, kSchema (missing obj_file or verts, a scale of length zero, a file name
@@ -47,7 +47,8 @@ struct Mhclo {
 [[nodiscard]] Result<Mhclo> ParseMhclo(std::string_view text, std::string_view source,
                                        std::size_t num_base_vertices);
 
-// The positions of the garment's vertices on `base`, in its units.
+// Returns the positions of the garment's vertices, in the order of its .obj. `base`: the positions
+// of the base mesh; the result has the same unit.
 [[nodiscard]] std::vector<glm::vec3> FitGarment(const Mhclo& garment,
                                                 std::span<const glm::vec3> base);
 

@@ -13,8 +13,8 @@
 
 namespace furrow::authoring {
 
-// A Wavefront .obj file with the statements that MakeHuman uses: v, vt, f and g (or o). Units as in
-// the file.
+// The mesh of a Wavefront .obj file, from the statements that MakeHuman uses: v, vt, f and g (or
+// o). Lengths keep the unit of the file.
 struct ObjMesh {
   struct Corner {
     std::uint32_t position = 0;  // into positions
@@ -33,15 +33,16 @@ struct ObjMesh {
   std::vector<Face> faces;
   std::vector<std::string> groups;  // groups[0] is "", for faces before the first g
 
-  [[nodiscard]] int FindGroup(std::string_view name) const;  // -1 if there is none
+  // The index of the group `name`, or -1 if there is none.
+  [[nodiscard]] int FindGroup(std::string_view name) const;
 };
 
-// Parses a .obj file. Other statements (vn, s, usemtl, ...) are skipped; normals are computed
-// later. Negative indices count back from the latest element.
+// Parses a .obj file. `source`: the file name in errors. Other statements (vn, s, usemtl, ...) are
+// skipped; SmoothNormals() computes normals. Negative indices count back from the latest element.
 //
 // Errors name "source:line": kParse (an invalid number or face, fewer than 3 or more than 64
-// corners), kInvalidArgument (index out of range), kNonFinite, kLimit (a number above one million,
-// more than 4 million positions, UVs or corners, more than 65,535 groups).
+// corners), kInvalidArgument (index out of range), kNonFinite, kLimit (a number
+// outside [-1e6, 1e6], more than 4 million positions, UVs or corners, more than 65,535 groups).
 [[nodiscard]] Result<ObjMesh> ParseObj(std::string_view text, std::string_view source);
 
 }  // namespace furrow::authoring

@@ -12,7 +12,7 @@
 
 namespace furrow::authoring {
 
-// The distance of `p` from a polyline of at least two points.
+// The distance of `p` from the polyline through `line`, which has at least two points.
 [[nodiscard]] inline float DistanceToLine(const glm::vec3& p,
                                           std::initializer_list<glm::vec3> line) {
   float nearest = std::numeric_limits<float>::max();
@@ -25,7 +25,7 @@ namespace furrow::authoring {
   return nearest;
 }
 
-// 1 up to the distance `inner`, 0 from `outer` on, smooth between.
+// 1 up to the distance `inner`, 0 from the distance `outer` on, smooth in between.
 [[nodiscard]] inline float FadeOut(float distance, float inner, float outer) {
   return Smoothstep(outer, inner, distance);
 }

@@ -8,13 +8,16 @@
 
 namespace furrow::authoring {
 
-// An eyeball seen from the front, 8-bit sRGB. The pupil is in the centre of the picture. The
-// distance from it is the angle from the line of sight; half the picture's width is
-// kEyePictureAngle.
-inline constexpr float kEyePictureAngle = 1.75f;  // radians
+// The angle from the line of sight to the edge of the picture of PaintEye(), radians. 1.75 is just
+// over a quarter turn, so the picture covers the visible half of the eyeball.
+inline constexpr float kEyePictureAngle = 1.75f;
+// An eyeball seen from the front, 8-bit sRGB, with the pupil in the centre of the picture. The
+// distance of a texel from the centre is proportional to the angle from the line of sight. `size`:
+// width and height, texels.
 [[nodiscard]] character::Picture PaintEye(int size);
 
-// Cloth, 8-bit sRGB: trousers below `waist` (model space, metres), a shirt above, a subtle weave.
+// Cloth, 8-bit sRGB: trousers below the height `waist` (model space, metres), a shirt above, and a
+// subtle weave. `texels`: those that the garment covers.
 [[nodiscard]] character::Picture PaintCloth(const std::vector<SurfaceTexel>& texels, float waist,
                                             int size);
 

@@ -9,19 +9,18 @@
 
 namespace furrow::authoring {
 
-// How much hair grows at a point of the head, [0, 1]. The hairline is high above the brows and
-// lower at the temples; ears are free of hair.
+// How much hair grows at the point `p` of the head: 0 none to 1 full. `p`: model space, metres. The
+// hairline is high above the brows and lower at the temples; ears are free of hair.
 [[nodiscard]] float ScalpAmount(const glm::vec3& p, const FaceLandmarks& face);
 
-// MakeHuman's own pictures are not read. These functions paint the skin by position, from the
-// landmarks.
-
-// The colour, 8-bit sRGB: regional hues (cheeks, nose and ears redder, chin and forehead yellower),
-// lips, brows, a shaved scalp, and blotches at two scales.
+// Paints the colour of the skin, 8-bit sRGB, by the position of each texel relative to the
+// landmarks (MakeHuman's pictures are not read). `texels`: those that the skin covers. `size`:
+// width and height, texels. The colour has regional hues (cheeks, nose and ears redder, chin and
+// forehead yellower), lips, brows, a shaved scalp, and blotches at two scales.
 [[nodiscard]] character::Picture PaintMakeHumanSkin(const std::vector<SurfaceTexel>& texels,
                                                     const FaceLandmarks& face, int size);
 
-// Pores and fine furrows as a tangent-space normal map, 8 bits, green up.
+// Paints pores and fine furrows as a tangent-space normal map, 8 bits, green up.
 [[nodiscard]] character::Picture PaintMakeHumanSkinNormals(const std::vector<SurfaceTexel>& texels,
                                                            const FaceLandmarks& face, int size);
 
@@ -32,6 +31,7 @@ struct FaceMasks {
   character::Picture first;
   character::Picture second;
 };
+// Paints the masks. `texels`: those that the skin covers. `size`: width and height, texels.
 [[nodiscard]] FaceMasks PaintFaceMasks(const std::vector<SurfaceTexel>& texels,
                                        const FaceLandmarks& face, int size);
 

@@ -24,8 +24,8 @@ struct Finding {
   Severity severity = Severity::kNote;
   std::string code;   // stable, for scripts: "uv-overlap"
   std::string where;  // "mesh 'skin'"; empty: the whole character
-  std::string what;
-  std::string todo;
+  std::string what;   // one sentence
+  std::string todo;   // how to mend it; may be empty
 };
 
 // The state of a character with respect to wrinkles.
@@ -40,10 +40,9 @@ struct CharacterReport {
   [[nodiscard]] std::size_t Count(Severity severity) const;
 };
 
-// Checks a character that was read leniently, together with the notes of its reader.
-//
-// `rig_given`: the caller attached Character::rig. Without it, a missing rig is a note, not an
-// error.
+// Checks a character that was read leniently, together with the notes of its reader. `maps`:
+// skeleton maps that give joints their roles by name. `rig_given`: the character has a rig to
+// check; else the report has the note no-rig.
 //
 // Codes
 //   errors    no-skin, uv-missing, unskinned-vertices, degenerate-triangles, rig-binding
@@ -57,7 +56,7 @@ struct CharacterReport {
 
 // Counts triangles without area: coinciding corners or corners on one line.
 [[nodiscard]] std::size_t CountDegenerateTriangles(const character::Mesh& mesh);
-// Removes them and returns their number. The mesh may end up without triangles.
+// Removes the triangles without area and returns their number. The mesh may be empty afterwards.
 std::size_t DropDegenerateTriangles(character::Mesh* mesh);
 
 }  // namespace furrow::authoring

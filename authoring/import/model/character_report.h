@@ -7,9 +7,9 @@
 
 namespace furrow::authoring {
 
-// The report as text for a terminal.
+// Returns the report as text for a terminal.
 [[nodiscard]] std::string ToText(const CharacterReport& report);
-// The report as one JSON object with the fields of CharacterReport.
+// Returns the report as one JSON object with the fields of CharacterReport.
 [[nodiscard]] std::string ToJson(const CharacterReport& report);
 
 }  // namespace furrow::authoring

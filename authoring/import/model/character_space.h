@@ -26,13 +26,14 @@ struct CharacterSpace {
 [[nodiscard]] CharacterSpace FindCharacterSpace(const character::Character& character,
                                                 const FoundJoints& joints);
 
-// Rotates and scales a character: skeleton, meshes and inverse bind matrices.
+// Rotates a character, then multiplies all lengths by `scale`: skeleton, meshes and inverse bind
+// matrices. Errors: those of Skeleton::Create().
 [[nodiscard]] Status MoveToSpace(const glm::mat3& rotation, float scale,
                                  character::Character* character);
 
 // Moves vertices to the skeleton's rest pose and removes scales from the joints, so that inverse
-// bind matrices are the inverses of the rest pose. A character that already meets this stays
-// exactly as it is.
+// bind matrices are the inverses of the rest pose. A character with this property stays unchanged.
+// Errors: those of Skeleton::Create().
 [[nodiscard]] Status BringToRestPose(character::Character* character);
 
 }  // namespace furrow::authoring

@@ -13,17 +13,18 @@ namespace furrow::authoring {
 
 // The correspondence between the joints of two faces.
 struct FaceMatch {
-  std::vector<int> joint;     // by joint of the model: the target's joint, or kNoJoint
-  std::vector<bool> by_tail;  // whether the tail of that joint matches instead of its origin
+  std::vector<int> joint;     // per joint of the model: the target's joint, or kNoJoint
+  std::vector<bool> by_tail;  // per joint of the model: the target's tail matches, not its origin
 
-  // The target's joint; kNoJoint for kNoJoint.
+  // The target's joint for a joint of the model; kNoJoint if there is none, and for kNoJoint.
   [[nodiscard]] int Of(int model_joint) const;
 };
 
-// Matches the joints below the heads of two skeletons. Both must be upright (+Y) and face +Z.
+// Matches the joints below the heads of two skeletons, the model and the target. Both must be
+// upright
+// (+Y) and face +Z.
 //
-// - `model_points`: the position that counts for each joint of the model (its control point), model
-//   space.
+// - `model_points`: for each joint of the model, the position to match, model space.
 // - Positions are relative to the point between the eyes, in units of the distance between the
 //   eyes. For the target's joints, origins and the tails of leaves are candidates.
 // - Two joints match if each is the nearest to the other, within two fifths of the distance between
@@ -34,7 +35,7 @@ struct FaceMatch {
                                    const wrinkle::Skeleton& target,
                                    const FoundJoints& target_joints);
 
-// The joints below the head, without eyes and jaw.
+// Indices of the joints below the head, without eyes and jaw.
 [[nodiscard]] std::vector<int> FaceJoints(const wrinkle::Skeleton& skeleton,
                                           const FoundJoints& joints);
 

@@ -18,30 +18,32 @@ namespace furrow::authoring {
 struct OpenedModel {
   character::Character character;  // in the rest pose (BringToRestPose), otherwise as in the file
   character::SourceNotes notes;
-  std::vector<std::string> remarks;  // from the conversion
+  std::vector<std::string> remarks;  // what the conversion to glTF changed or lost
 };
 
-// Opens any skinned model leniently: glTF 2.0 (.glb, .gltf, .vrm, or detected by its first bytes)
-// with the reader of characters, other formats with assimp. Only the file and the pictures that it
-// names are read.
+// Opens any skinned model and accepts faults that CheckCharacter() can report. Reads glTF 2.0
+// (.glb, .gltf, .vrm, or detected by its first bytes), and other formats with assimp. Only the file
+// and the pictures that it names are read.
 //
 // Errors (`where` starts with the path): kNotFound, kIo, kLimit, kParse, kSchema, kNonFinite,
 // kCyclic, kUnsupported (unknown extension).
 [[nodiscard]] Result<OpenedModel> OpenModel(const std::filesystem::path& path);
 
+// The options of ImportModel().
 struct ModelOptions {
   bool repair = false;         // removes degenerate triangles and binds unskinned vertices
   std::optional<float> scale;  // metres per unit of the file; empty: derived from the height
 };
 
+// A model that is ready for drawing.
 struct ImportedModel {
   character::Character character;    // metres, +Y up, facing +Z; without a rig
   std::vector<std::string> remarks;  // what was changed, and what was lost
   std::vector<std::string> warnings;
 };
 
-// Opens a model with OpenModel() and prepares it for drawing: rotates, scales, and repairs it as
-// `options` say.
+// Opens a model with OpenModel() and prepares it for drawing: rotates and scales it, and repairs it
+// if `options` ask for it. `maps`: skeleton maps that give joints their roles by name.
 //
 // Errors: those of OpenModel(), and kUnsupported for the first error of CheckCharacter() (no skin,
 // no UVs, unskinned vertices, degenerate triangles).

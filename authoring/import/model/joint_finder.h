@@ -15,14 +15,15 @@ struct FoundJoints {
   std::string map;            // the skeleton map that matched the names; empty: from the hierarchy
   int num_roles = 0;          // number of different roles
 
-  // The topmost or the lowest joint of a role; kNoJoint if there is none.
+  // The index of the first or the last joint of a role, in the skeleton's order (parents first);
+  // kNoJoint if no joint has the role.
   [[nodiscard]] int First(wrinkle::JointRole role) const;
   [[nodiscard]] int Last(wrinkle::JointRole role) const;
 };
 
 // Determines roles from names that `maps` contain. If no map fits, roles follow from the hierarchy:
 // one fork with two legs and a spine, another with two arms and a neck, and the direction of the
-// toes for the sides. That is a guess which a person should check.
+// toes for the sides. The result from the hierarchy is a guess that a person should check.
 [[nodiscard]] FoundJoints FindJoints(const wrinkle::Skeleton& skeleton,
                                      const rig::SkeletonMaps& maps);
 

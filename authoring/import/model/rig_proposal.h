@@ -11,19 +11,21 @@
 
 namespace furrow::authoring {
 
-// A skeleton with the roles of its joints.
+// A skeleton with the roles of its joints. Both pointers are not null and must stay valid during
+// the call.
 struct KnownSkeleton {
   const wrinkle::Skeleton* skeleton = nullptr;
   const FoundJoints* joints = nullptr;
 };
 
+// A proposed rig.
 struct RigProposal {
   wrinkle::Rig rig;
-  std::vector<std::string>
-      remarks;  // what was transferred to which joint, what was not, what to edit
+  // One sentence each: what was transferred to which joint, what was not, and what to edit.
+  std::vector<std::string> remarks;
 };
 
-// Proposes a wrinkle rig for `target` from a rig that works on another skeleton.
+// Proposes a wrinkle rig for the skeleton `target` from `rig`, which works on the skeleton `model`.
 //
 // - Clothing: hinges, balls and twists move to the joints with the same roles. The axis of a hinge
 //   follows from the target's rest pose: knees bend backward, elbows forward and up. Angles stay as
@@ -33,7 +35,7 @@ struct RigProposal {
 // - Regions keep the feeds that still have drivers. Masks become skin weights (kind `skinning`),
 //   since painted masks belong to one mesh. Wrinkle maps lose their pictures, which `furrow bake`
 //   makes again.
-// - The target must be upright (+Y) and face +Z (character_space.h).
+// - The target must be upright (+Y) and face +Z; FindCharacterSpace() gives the rotation.
 // Errors: kNotFound (no joint has a role, so nothing can be transferred).
 [[nodiscard]] Result<RigProposal> ProposeRig(const wrinkle::Rig& rig, const KnownSkeleton& model,
                                              const KnownSkeleton& target);
