@@ -12,7 +12,7 @@
 
 namespace furrow::chaos {
 
-// An outage: a time in which no packet passes, once or periodically.
+// An outage: a time span in which no packet passes, once or periodically.
 struct BlackHole {
   double start = 0.0;   // seconds since the start of the link
   double length = 0.0;  // seconds
@@ -28,16 +28,17 @@ struct BlackHole {
 // The faults to inject. Each fault is drawn independently per packet; probabilities are in [0, 1].
 struct Faults {
   std::uint64_t seed = 1;
-  double loss = 0.0;
-  double reorder = 0.0;    // held back until the next packet has passed
-  double duplicate = 0.0;  // sent twice
-  double delay = 0.0;      // held back for `delay_ms`
+  double loss = 0.0;       // drop
+  double reorder = 0.0;    // hold back until the next packet has passed
+  double duplicate = 0.0;  // send twice
+  double delay = 0.0;      // hold back for `delay_ms`
   double delay_ms = 1000.0;
-  double jitter_ms = 0.0;  // each packet is held back for a random time up to this
-  double falsify = 0.0;    // one number of a pose or weights message is changed
-  double swap = 0.0;       // two messages of one kind exchange their contents
+  double jitter_ms = 0.0;  // hold back each packet for a random time of up to this
+  double falsify = 0.0;    // change one number of a pose or weights message
+  double swap = 0.0;       // exchange the contents of two messages of one kind
   std::vector<BlackHole> black_holes;
 
+  // True if any fault is requested.
   [[nodiscard]] bool any() const {
     return loss > 0.0 || reorder > 0.0 || duplicate > 0.0 || delay > 0.0 || jitter_ms > 0.0 ||
            tampers() || !black_holes.empty();
@@ -67,7 +68,8 @@ struct FaultCounts {
 // way out. Loss and black holes then apply to fragments, and all other faults apply to the message
 // when its last fragment arrives. A message that lost a fragment is not forwarded.
 //
-// No I/O and no clock: time is a parameter, in microseconds of any monotonic clock.
+// No I/O and no clock: time is a parameter, in microseconds of any monotonic clock. Used by one
+// thread at a time.
 class Link {
  public:
   // A packet that waits for the next packet is released after this time at the latest.

@@ -19,15 +19,16 @@
 
 namespace furrow::chaos {
 
+// The addresses and faults of a proxy.
 struct ProxyOptions {
   std::string listen_host = "127.0.0.1";  // numeric address
   std::uint16_t listen_port = 0;          // UDP; 0: any free port
   std::uint16_t listen_tcp_port = 0;      // 0: any free port
-  std::string to_host;
-  std::uint16_t to_udp = 0;
-  std::uint16_t to_tcp = 0;  // 0: do not proxy TCP
-  Faults up;                 // client to server; TCP honours jitter and black holes only
-  Faults down;               // server to client
+  std::string to_host;                    // the server: a name or a numeric address
+  std::uint16_t to_udp = 0;               // the server's UDP port
+  std::uint16_t to_tcp = 0;               // the server's TCP port; 0: do not forward TCP
+  Faults up;    // client to server; TCP honours jitter and black holes only
+  Faults down;  // server to client
 };
 
 // Forwards traffic between clients and a server and injects faults. Datagrams pass through a Link
@@ -36,11 +37,12 @@ struct ProxyOptions {
 // Single-threaded. Memory is bounded by the delayed packets and by 1,024 client addresses.
 class Proxy {
  public:
-  // Binds the ports. Errors: kInvalidArgument (`listen_host` is not a numeric address), kIo (cannot
-  // bind), kUnavailable (the server's name does not resolve).
+  // Binds the ports and resolves the server's name. Errors: kInvalidArgument (`listen_host` is not
+  // a numeric address), kIo (cannot bind), kUnavailable (the server's name does not resolve).
   [[nodiscard]] static Result<std::unique_ptr<Proxy>> Open(const ProxyOptions& options);
   ~Proxy();
 
+  // The ports that the proxy listens on.
   [[nodiscard]] std::uint16_t udp_port() const { return udp_port_; }
   [[nodiscard]] std::uint16_t tcp_port() const { return tcp_port_; }
 

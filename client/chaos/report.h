@@ -14,22 +14,24 @@ namespace furrow::chaos {
 struct Outcome {
   Faults options;
   FaultCounts counts;
-  RelayCounts stream_counts;
+  RelayCounts stream_counts;  // of TCP
 };
 
-// "up: 1000 datagrams, lost 3, ..." with a count for each requested fault. If there were TCP
-// connections, a second line follows: "up over TCP: 2 connections, 5000 bytes, ...".
+// Returns "up: 1000 datagrams, lost 3, ...", with a count for each requested fault. `direction`:
+// the word before the colon. If there were TCP connections, a second line follows: "up over TCP: 2
+// connections, 5000 bytes, ...".
 [[nodiscard]] std::string ToText(const std::string& direction, const Outcome& outcome);
 
-// A line about requested faults that were injected nowhere, in either direction; empty if there is
-// none. Jitter applies to every packet and is never listed.
+// Returns a line that lists the requested faults that were injected in neither direction; empty if
+// there are none. Jitter applies to every packet and is never listed.
 [[nodiscard]] std::string NothingInjected(const Outcome& up, const Outcome& down);
 
 // The requested faults that apply to datagrams only, as command-line options: "--loss, --swap".
 [[nodiscard]] std::string DatagramFaults(const Faults& options);
 
+// Returns the requested faults as a JSON object.
 [[nodiscard]] nlohmann::json ToJson(const Faults& options);
-// The counts only.
+// Returns the counts, without the requested faults, as a JSON object.
 [[nodiscard]] nlohmann::json ToJson(const Outcome& outcome);
 
 }  // namespace furrow::chaos

@@ -7,7 +7,8 @@
 
 namespace furrow::chaos {
 
-// In all functions a `datagram` may be larger than the wire allows: a reassembled message.
+// Functions that change the contents of protocol messages. A `datagram` is the bytes of one
+// datagram, or of a message that was reassembled from fragments and may be larger than a datagram.
 
 // True if `datagram` is a whole Pose or Weights message, or a bundle that contains one. The
 // functions below change such messages so that they stay valid and only their numbers are wrong.

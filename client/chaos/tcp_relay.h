@@ -10,7 +10,7 @@
 
 namespace furrow::chaos {
 
-// What happened to the bytes of one direction of TCP connections.
+// Counts of the traffic in one direction of TCP connections.
 struct RelayCounts {
   std::uint64_t connections = 0;
   std::uint64_t bytes = 0;    // forwarded
@@ -25,11 +25,14 @@ struct RelayCounts {
 // addition to the system's buffers.
 class TcpRelay {
  public:
-  // `start_us`: time 0 of the black holes.
+  // `client`, `server`: connected sockets. `up`: faults from client to server; `down`: back.
+  // `number` makes links with the same seed differ. `start_us`: time 0 of the black holes, on the
+  // clock of Pump().
   TcpRelay(net::Descriptor client, net::Descriptor server, const Faults& up, const Faults& down,
            std::uint64_t number, std::int64_t start_us);
 
-  // Forwards what is due, without blocking. Returns false when the connection has ended.
+  // Forwards what is due, without blocking. Returns false when the connection has ended. `now_us`:
+  // microseconds of a monotonic clock.
   [[nodiscard]] bool Pump(std::int64_t now_us);
 
   // Time of the next Pump() if no data arrives; -1: none is needed. Call it after Pump().

@@ -3,8 +3,8 @@
 
 namespace furrow::cli {
 
-// The program `furrow`: runs the command that the arguments name and returns the exit code. Helper
-// commands replace the process (common/helper_program.h). Never throws.
+// Runs the program `furrow`: the command that the arguments name. Returns the exit code. Commands
+// of a helper program (furrow-load, furrow-author) replace this process by it. Never throws.
 int Run(int argc, const char* const* argv);
 
 }  // namespace furrow::cli

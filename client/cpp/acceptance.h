@@ -20,14 +20,14 @@ struct Acceptance {
     kCancelled,     // `keep_going` returned false
   };
   Kind kind = Kind::kNoAnswer;
-  std::string reason;
+  std::string reason;  // for people; empty unless kRefused or kError
 };
 
 // Polls `publisher` until the daemon answers the offer of `stream`, for 5 seconds at most.
 //
-// A refused connection is tried again, because the daemon may be starting. `now_us` is the clock
-// that the publisher is used with, in microseconds. `keep_going` is called about 50 times per
-// second; it cancels the wait by returning false.
+// If the port is closed, polls on, because the daemon may be starting. `now_us` returns the time on
+// the clock that the publisher is used with, microseconds. `keep_going` is called about 50 times
+// per second; returning false cancels the wait.
 [[nodiscard]] Acceptance WaitUntilAccepted(Publisher& publisher, std::uint16_t stream,
                                            const std::function<std::int64_t()>& now_us,
                                            const std::function<bool()>& keep_going);

@@ -22,13 +22,17 @@ namespace furrow::client {
 // used on one thread.
 class Publisher {
  public:
+  // `transport`: not null.
   explicit Publisher(std::unique_ptr<Transport> transport);
 
   // Offers a subject and returns its stream number. Poll() repeats the offer until the daemon
   // answers, and again whenever the daemon asks for it, for example after a restart.
   std::uint16_t AddSubject(const protocol::SkeletonOffer& offer, std::int64_t now_us);
 
-  // Sends one pose. Poses are numbered from 0 per stream. Sets `pose.skeleton_hash`.
+  // Sends one pose of a stream that AddSubject() returned. Poses are numbered from 0 per stream.
+  // Sets `pose.skeleton_hash`. `capture_time_us`: when the pose was captured, microseconds of any
+  // clock that the sender uses for all of its poses. Before the daemon accepts the stream, it drops
+  // poses.
   [[nodiscard]] IoStatus Send(std::uint16_t stream, protocol::PoseFrame& pose,
                               std::int64_t capture_time_us,
                               const protocol::PoseEncoding& encoding = {});
@@ -40,12 +44,14 @@ class Publisher {
   // Sends a goodbye for every stream, so that subscribers learn at once that the subjects left.
   void Close();
 
+  // True if the daemon has accepted the offer of the stream.
   [[nodiscard]] bool accepted(std::uint16_t stream) const;
   // Why the daemon rejected the stream, or why the offer could not be sent; empty if neither
   // happened.
   [[nodiscard]] const std::string& rejection(std::uint16_t stream) const;
   // The last error message of the daemon; empty if there was none.
   [[nodiscard]] const std::string& last_error() const { return last_error_; }
+  // The random session number in every message of this publisher.
   [[nodiscard]] std::uint64_t session() const { return session_; }
 
  private:

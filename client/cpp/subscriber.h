@@ -46,19 +46,25 @@ struct Event {
 // used on one thread.
 class Subscriber {
  public:
+  // `transport`: not null. `name`: of this program, for the daemon's log.
   Subscriber(std::unique_ptr<Transport> transport, std::string name);
 
-  // Each returns the number of the request; the answer repeats the number in header.sequence.
+  // Sends a request for weights, pictures or poses. Returns the number of the request; the answer
+  // repeats the number in header.sequence.
   std::uint32_t Subscribe(const protocol::SubscribeWeights& request);
   std::uint32_t Subscribe(const protocol::SubscribePictures& request);
   std::uint32_t Subscribe(const protocol::SubscribePoses& request);
+  // Ends a subscription, named by header.stream of its events.
   void Unsubscribe(std::uint16_t subscription);
   // Requests the list of subjects. With `follow` the daemon sends the list again at every change.
   // Needs TCP: over UDP the daemon answers with an error.
   std::uint32_t ListSubjects(bool follow);
 
+  // Waits up to `wait` for the next message and returns what it is; kTimeout if nothing arrived.
+  // Also keeps the connection alive, so call it at least once per second.
   [[nodiscard]] Event Next(std::int64_t now_us, std::chrono::milliseconds wait);
 
+  // The message of the last event, each valid only if Event::Kind names it, until the next Next().
   [[nodiscard]] const protocol::SubscribeReply& reply() const { return reply_; }
   [[nodiscard]] const protocol::WeightFrame& weights() const { return weights_; }
   [[nodiscard]] const protocol::ImageFrame& picture() const { return picture_; }

@@ -12,9 +12,10 @@
 
 namespace furrow::client {
 
+// The network protocol below a transport.
 enum class TransportKind { kUdp, kTcp };
 
-// Outcome of one send or receive. A bare enum, because this is the packet path.
+// The outcome of one send or receive.
 enum class IoStatus {
   kOk = 0,
   kTimeout,       // nothing arrived in time
@@ -36,7 +37,7 @@ class Transport {
   // Connects to `host`, a name or a numeric address. `timeout` limits the connect, and over TCP
   // each later Send() to a slow peer. UDP has no handshake: Receive() reports a missing server.
   //
-  // kUnavailable: the name does not resolve, or the peer does not accept the connection.
+  // Errors: kUnavailable (the name does not resolve, or the peer does not accept the connection).
   [[nodiscard]] static Result<std::unique_ptr<Transport>> Open(TransportKind kind,
                                                                const std::string& host,
                                                                std::uint16_t port,
@@ -47,8 +48,8 @@ class Transport {
   // longer than the timeout; the connection is then closed.
   [[nodiscard]] virtual IoStatus Send(std::span<const std::uint8_t> message) = 0;
 
-  // Waits up to `timeout` for one whole message (0: does not wait). `message` points into the
-  // transport and is valid until the next call.
+  // Waits up to `timeout` for one whole message (0: does not wait). On kOk, `message` points into
+  // the transport and is valid until the next call; otherwise it is unspecified.
   [[nodiscard]] virtual IoStatus Receive(std::span<const std::uint8_t>& message,
                                          std::chrono::milliseconds timeout) = 0;
 

@@ -23,7 +23,8 @@ class Descriptor {
 // connected.
 [[nodiscard]] std::string PeerHost(int descriptor);
 
-// Waits until `descriptor` has one of poll()'s `events`. Returns false on timeout.
+// Waits until `descriptor` has one of poll()'s `events` (POLLIN, POLLOUT). Returns false on
+// timeout.
 bool WaitFor(int descriptor, short events, std::chrono::milliseconds timeout);
 
 }  // namespace furrow::net

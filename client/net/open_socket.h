@@ -11,14 +11,15 @@
 
 namespace furrow::net {
 
-// Connects a non-blocking socket. TCP connections time out after 3 seconds. IPv4 addresses are
-// tried before IPv6 addresses, because the daemon binds to IPv4 by default.
+// Connects a non-blocking socket to `host`, a name or a numeric address. TCP connections time out
+// after 3 seconds. IPv4 addresses are tried before IPv6 addresses, because the daemon binds to IPv4
+// by default.
 //
-// kUnavailable: the name does not resolve, or no address accepts the connection.
+// Errors: kUnavailable (the name does not resolve, or no address accepts the connection).
 [[nodiscard]] Result<Descriptor> OpenDescriptor(client::TransportKind kind, const std::string& host,
                                                 std::uint16_t port);
 
-// Connects a Socket. Errors: as OpenDescriptor().
+// Connects a TcpSocket or a UdpSocket. Errors: those of OpenDescriptor().
 [[nodiscard]] Result<std::unique_ptr<Socket>> OpenSocket(client::TransportKind kind,
                                                          const std::string& host,
                                                          std::uint16_t port);

@@ -13,7 +13,7 @@
 
 namespace furrow::net {
 
-// Waits for many descriptors at once, with a resolution of microseconds.
+// Waits for many descriptors at once, with a resolution of microseconds. Used by one thread.
 class Poller {
  public:
   // kOne waits with epoll_pwait2(). kTwo is for Linux before 5.11, which lacks that call: it waits
@@ -28,6 +28,7 @@ class Poller {
   // Wait() reports `token` when the descriptor is readable or closed: every time while that is so
   // (kLevel), or once per arrival of new data (kEdge).
   enum class When { kLevel, kEdge };
+  // Starts waiting for `descriptor`, which must stay open until Remove().
   void Add(int descriptor, std::uint64_t token, When when = When::kLevel);
   void Remove(int descriptor);
 

@@ -15,16 +15,18 @@ namespace furrow::net {
 // datagrams that its own full buffer dropped.
 class Socket : public client::Transport {
  public:
-  // Readable, level-triggered, when Receive() without a timeout has something to return.
+  // The descriptor of the socket, owned by this object. It is readable when data has arrived that
+  // Receive() has not read yet.
   [[nodiscard]] virtual int descriptor() const = 0;
-  // True if Receive() has data left that the descriptor no longer reports.
+  // True if Receive() can return messages that were already read from the descriptor, which
+  // therefore does not report them.
   [[nodiscard]] virtual bool holds() const = 0;
   // Arrival time of the message that Receive() returned last, on the clock of SteadyNanoseconds().
   // UDP uses the kernel's time stamp, so a late read does not change it. TCP uses the time of the
   // read.
   [[nodiscard]] virtual std::int64_t arrived_ns() const = 0;
-  // Datagrams that arrived here and were dropped because the receive buffer was full. The server is
-  // not to blame for these.
+  // Number of datagrams that arrived at this machine and were dropped because the receive buffer
+  // was full. The server sent them, so they are not its losses.
   [[nodiscard]] virtual std::uint64_t overrun() const { return 0; }
 
  protected:

@@ -6,13 +6,15 @@
 
 namespace furrow::cli {
 
-// The subcommands of `furrow character`. Each has its own source file.
+// Each function adds one subcommand to `group`, the command `furrow character`. When the command
+// line names the subcommand, parsing sets `action`.
 void AddCharacterImport(CLI::App& group, Action& action);
 void AddCharacterCheck(CLI::App& group, Action& action);
 void AddProposeRig(CLI::App& group, Action& action);
 
-// Proposes a rig for `skeleton` from the default character's rig. `map`: skeleton map of the joint
-// names, by file or name; empty: the best match.
+// Proposes a rig for `skeleton` from the default character's rig. `map`: the skeleton map of the
+// joint names, by file or by name of a shipped map; empty: the best match. Errors: those of loading
+// the default character and the map, and of ProposeRig().
 [[nodiscard]] Result<authoring::RigProposal> ProposeFromDefault(const wrinkle::Skeleton& skeleton,
                                                                 const std::string& map);
 

@@ -10,7 +10,7 @@
 namespace furrow::cli {
 
 // An output folder that receives all of its files or none. Files are written to a temporary folder
-// beside it and moved at the end. Uncommitted files are removed with the object.
+// beside it and moved by Commit(). The destructor removes files that were not committed.
 class StagedFolder {
  public:
   // Creates the temporary folder and the parents of `target`, so that an unwritable place is
@@ -20,7 +20,8 @@ class StagedFolder {
   StagedFolder(StagedFolder&& other) noexcept;
   StagedFolder& operator=(StagedFolder&&) = delete;
 
-  // Writes a file. `name` may contain folders: "report/squash_lit.png".
+  // Writes a file to the temporary folder. `name` may contain folders: "report/squash_lit.png".
+  // Errors: kIo.
   [[nodiscard]] Status Write(const std::string& name, std::string_view bytes);
   // Moves all files into `target`, in one step if it is missing or empty, otherwise file by file.
   // Files of the same name are replaced; other files stay. An error leaves `target` unchanged. Only

@@ -5,8 +5,8 @@
 
 namespace furrow::cli {
 
-// Each function adds one subcommand to `app`. When the command line names the subcommand, parsing
-// sets `action`. Every command has its own source file.
+// The commands of the program `furrow`. Each function adds one subcommand to `app`. When the
+// command line names the subcommand, parsing sets `action`.
 void AddConvert(CLI::App& app, Action& action);
 void AddFrames(CLI::App& app, Action& action);
 void AddInfo(CLI::App& app, Action& action);

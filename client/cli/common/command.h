@@ -13,8 +13,8 @@ namespace furrow::cli {
 // checked the whole command line.
 using Action = std::function<int()>;
 
-// Adds an option that takes one of a set of words, in any case. Help shows "csv|jsonl|table" and
-// the default, which is the initial `value`.
+// Adds an option that takes one of a set of words, in upper or lower case. Help shows the words
+// ("csv|jsonl|table") and the default, which is the initial `value`. `value` must outlive parsing.
 template <class T>
 CLI::Option* AddChoice(CLI::App& app, const std::string& name, T& value,
                        const std::map<std::string, T>& choices, const std::string& help) {
@@ -39,10 +39,11 @@ CLI::Option* AddChoice(CLI::App& app, const std::string& name, T& value,
 // A validator for numbers in [least, most]. Unlike CLI::Range it rejects NaN.
 [[nodiscard]] CLI::Validator Within(double least, double most);
 
-// Adds --skeleton-map. `value` receives the argument of LoadSkeletonMatcher().
+// Adds --skeleton-map. `value` receives its argument, a name or a file, for LoadSkeletonMatcher().
 void AddSkeletonMap(CLI::App& command, std::string& value);
 
-// Parses "WxH", both in [16, 4096].
+// Parses a picture size such as "640x480", both numbers in [16, 4096] pixels. Returns false and
+// leaves the outputs unspecified if `text` is not one.
 [[nodiscard]] bool ParseSize(const std::string& text, int* width, int* height);
 // The validator of ParseSize().
 [[nodiscard]] CLI::Validator SizeValidator();

@@ -10,8 +10,8 @@
 
 namespace furrow::cli {
 
-// A command of `furrow` that a separate program implements. Helper programs keep the load tester
-// and the authoring tools out of `furrow`, so that a build may leave them out.
+// A command of `furrow` that a separate program, its helper program, implements. The load tester
+// and the authoring tools are helper programs, so that a build may omit them.
 struct HelperCommand {
   const char* name;     // "load", or "rig patch" for a command in a group
   const char* help;     // one line, as `furrow --help` lists it
@@ -36,9 +36,9 @@ void AddHelperEntry(CLI::App& parent, const std::string& name);
 [[nodiscard]] Result<std::filesystem::path> FindHelperProgram(const std::string& program,
                                                               const std::filesystem::path& folder);
 
-// Replaces this process by the helper program of `command`, with unchanged arguments. Signals,
-// standard streams and the exit code are then those of the helper. Returns only on failure: prints
-// why and returns an exit code.
+// Replaces this process by the helper program of `command`, with unchanged arguments, which keeps
+// the process id and the standard streams. Returns only on failure: prints the reason and returns
+// an exit code.
 [[nodiscard]] int RunHelperProgram(const HelperCommand& command, const char* const* argv);
 
 }  // namespace furrow::cli

@@ -16,12 +16,12 @@
 
 namespace furrow::cli {
 
-// Loads a recording. "take.mcap#NAME" selects a subject of a take with several subjects. Prints the
-// reader's warnings to standard error.
+// Loads the recording in file `path`. "take.mcap#NAME" selects a subject of a take with several
+// subjects. Prints the reader's warnings to standard error. Errors: those of motion::LoadClip().
 [[nodiscard]] Result<motion::Clip> LoadClipArgument(const std::string& path,
                                                     const motion::LoadOptions& options = {});
 
-// A progress bar for reading takes, erased at the end of each read.
+// Returns a callback that shows a progress bar while a take is read. The end of the read erases it.
 [[nodiscard]] recording::ReadProgress ReadingBar();
 
 // Opens a take, "take.mcap" or "take.mcap#NAME", with a progress bar. Sets `subject` to NAME, or to
@@ -29,7 +29,7 @@ namespace furrow::cli {
 [[nodiscard]] Result<std::unique_ptr<recording::TakeReader>> OpenTakeArgument(
     const std::string& path, std::string* subject);
 
-// Prints "furrow: warning: <text>" for each warning.
+// Prints "furrow: warning: <text>" to standard error for each warning.
 void PrintWarnings(const std::vector<std::string>& warnings);
 
 // Resolves a --rig argument: an existing path, else the path of the shipped rig of this name. An
@@ -49,8 +49,9 @@ void PrintWarnings(const std::vector<std::string>& warnings);
 // gives no warning about blend shapes.
 void WarnAboutMissing(const wrinkle::RigBinding& binding, const motion::Clip& clip);
 
-// Loads a character package (empty `glb`: the default character) with a rig as LoadRigArgument()
-// takes it (empty `rig`: the package's own).
+// Loads a character package. `glb`: its file; empty: the default character. `rig`: a rig that
+// replaces the rig of the package, by path or name of a shipped rig; empty: keep the rig of the
+// package.
 [[nodiscard]] Result<character::Character> LoadCharacterArgument(const std::string& glb,
                                                                  const std::string& rig);
 

@@ -7,8 +7,8 @@
 
 namespace furrow::cli {
 
-// Parses the command line of `furrow`, runs the chosen command and returns the exit code. Never
-// throws. `furrow` and its helper programs differ only in `add_commands`.
+// Runs `furrow` or one of its helper programs: parses the command line, runs the chosen command and
+// returns the exit code. `add_commands` adds the commands of the program. Never throws.
 int RunProgram(int argc, const char* const* argv,
                const std::function<void(CLI::App& app, Action& action)>& add_commands);
 

@@ -10,11 +10,13 @@ namespace furrow::cli {
 // percentage changes, so Set() is cheap enough to call per frame.
 class Progress {
  public:
+  // `label`: text before the bar. `total`: the value of Set() at 100%.
   Progress(std::string label, std::int64_t total);
   ~Progress();  // erases the bar
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
+  // Sets the completed part, [0, total].
   void Set(std::int64_t done);
 
  private:

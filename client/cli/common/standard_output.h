@@ -8,7 +8,7 @@
 
 namespace furrow::cli {
 
-// Writes to standard output and flushes it. Errors: kIo.
+// Writes all of `bytes` to standard output and flushes it. Errors: kIo.
 [[nodiscard]] Status WriteStandardOutput(std::span<const std::uint8_t> bytes);
 
 // Returns the exit code after a failed write to standard output; call it while errno is unchanged.

@@ -20,9 +20,11 @@ struct ChaosFlags {
   ChaosWay way = ChaosWay::kBoth;
 };
 
+// Adds the fault options to `command`. `flags` must outlive parsing.
 void AddChaosFlags(CLI::App& command, ChaosFlags& flags);
 
-// Sets the faults of each direction, with parsed black holes.
+// Sets `up` and `down` to the faults of each direction: those of `flags`, or none if `flags.way`
+// excludes the direction.
 void ReadChaosFlags(const ChaosFlags& flags, chaos::Faults* up, chaos::Faults* down);
 
 }  // namespace furrow::cli

@@ -5,7 +5,8 @@
 
 namespace furrow::cli {
 
-// The commands of the program `furrow-load`. Each function adds one subcommand to `app`.
+// The commands of the program `furrow-load`. Each function adds one subcommand to `app`. When the
+// command line names the subcommand, parsing sets `action`.
 void AddLoad(CLI::App& app, Action& action);
 void AddChaos(CLI::App& app, Action& action);
 

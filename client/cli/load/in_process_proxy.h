@@ -26,8 +26,8 @@ class InProcessProxy {
   InProcessProxy& operator=(const InProcessProxy&) = delete;
   ~InProcessProxy() { (void)Stop(); }
 
-  // If `up` or `down` requests faults, starts the proxy and redirects `target` to it. Errors: those
-  // of chaos::Proxy::Open().
+  // If `up` or `down` requests faults, starts the proxy and changes the address in `target` to the
+  // proxy's. Errors: those of chaos::Proxy::Open(); `target` is unchanged then.
   [[nodiscard]] Status Start(const chaos::Faults& up, const chaos::Faults& down,
                              load::Target* target);
 

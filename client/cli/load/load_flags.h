@@ -13,7 +13,7 @@
 
 namespace furrow::cli {
 
-// The parsed options of `load`.
+// The parsed options of `furrow load`.
 struct LoadFlags {
   std::string host;
   LoadInput input;
@@ -22,9 +22,9 @@ struct LoadFlags {
   bool udp = false;  // the default, so the value is not read
   bool tcp = false;
   bool both = false;
-  std::uint16_t other_port = 0;
-  double late_ms = 1000.0 / 60.0;
-  int pid = 0;
+  std::uint16_t other_port = 0;    // port of the transport that `host` does not name; 0: default
+  double late_ms = 1000.0 / 60.0;  // latency limit: one frame at 60 Hz
+  int pid = 0;                     // process of the daemon; 0: find it by its port
   bool find_max = false;
   bool baseline = false;
   bool strict = false;
@@ -32,11 +32,12 @@ struct LoadFlags {
   double round_seconds = 3.0;
   double time_limit_minutes = 7.0;
   ChaosFlags chaos;
-  std::string json;
+  std::string json;  // files to write; empty: none
   std::string hgrm;
   std::string plot;
 };
 
+// Adds the options to `command`. `flags` must outlive parsing.
 void AddLoadFlags(CLI::App& command, LoadFlags& flags);
 
 // An error message about options that are valid alone and contradict each other; empty if there is

@@ -11,11 +11,11 @@ namespace furrow::cli {
 
 // The recording that a load test sends and the rig that checks the weights.
 struct LoadInput {
-  std::string file;
-  std::string rig;  // argument of LoadRigArgument(); empty: the default character's rig
-  std::string skeleton_map;
-  bool quantise = false;  // send packed poses
-  float scale = 1.0f;     // metres per unit of the recording
+  std::string file;          // the recording
+  std::string rig;           // file or name of a shipped rig; empty: the default character's rig
+  std::string skeleton_map;  // file or name of a shipped map; empty: the best match
+  bool quantise = false;     // send packed poses
+  float scale = 1.0f;        // metres per unit of the recording
 };
 
 // Loads the recording, binds the rig to it and encodes all poses. Prints warnings about joints and

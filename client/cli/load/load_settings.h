@@ -7,9 +7,9 @@
 
 namespace furrow::cli {
 
-// All settings that the figures of a load test depend on, so that its JSON report is complete and
-// the test can be repeated. `flags` must contain the values of the run, with defaults filled in.
-// Settings that the recording or the default character decides are null.
+// Returns all settings on which the figures of a load test depend, as JSON, so that the test can be
+// repeated. `flags` must contain the values of the run, with defaults filled in. A setting is null
+// if the recording or the default character decides it.
 [[nodiscard]] nlohmann::json SettingsOf(const LoadFlags& flags);
 
 }  // namespace furrow::cli

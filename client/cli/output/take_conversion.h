@@ -10,8 +10,8 @@
 
 namespace furrow::cli {
 
-// Writes a clip as a take with one subject, the name of the clip: skeleton and poses, no weights.
-// Log times start at 0, so that equal clips give equal files. Errors: kIo (also if the file
+// Writes a clip as a take with one subject, which has the name of the clip: skeleton and poses, no
+// weights. Log times start at 0, so equal clips give equal files. Errors: kIo (also if the file
 // exists), kInvalidArgument (the wire format cannot carry the clip: too many joints, or a name too
 // long).
 [[nodiscard]] Status SaveTake(const motion::Clip& clip, const std::filesystem::path& path);

@@ -9,6 +9,7 @@
 
 namespace furrow::cli {
 
+// The formats of rows of weights.
 enum class TableFormat { kTable, kCsv, kJsonl };
 
 // Writes rows of named numbers to standard output; used by `solve` and `watch`.
@@ -18,13 +19,15 @@ enum class TableFormat { kTable, kCsv, kJsonl };
 // - Table, for people: the eight largest weights of each frame as bars.
 class WeightWriter {
  public:
+  // Never returns null.
   static std::unique_ptr<WeightWriter> Create(TableFormat format);
   virtual ~WeightWriter() = default;
 
   // Sets the names. Call it before the first row, and again when a new rig or skeleton changes
   // them.
   virtual void Names(std::span<const std::string> names) = 0;
-  // Writes a row. Returns false if standard output is closed; the caller then stops.
+  // Writes a row: `values` has one value per name, `seconds` is the column "time". Returns false if
+  // standard output is closed; the caller then stops.
   [[nodiscard]] virtual bool Row(std::int64_t frame, double seconds,
                                  std::span<const float> values) = 0;
 };

@@ -7,8 +7,8 @@
 
 namespace furrow::cli {
 
-// The accuracy of the intervals between poses. The error of an interval is its actual length minus
-// its intended length.
+// Statistics of how precisely poses were sent in time. The error of an interval between two poses
+// is the magnitude of its actual minus its intended length.
 class PacingError {
  public:
   // Adds a pose that was due at `due_us` and sent at `sent_us`.
@@ -29,7 +29,9 @@ class PacingError {
     total_us_ += other.total_us_;
     largest_us_ = std::max(largest_us_, other.largest_us_);
   }
+  // The number of poses.
   [[nodiscard]] std::int64_t count() const { return count_; }
+  // The mean and the largest error of an interval, milliseconds; 0 without intervals.
   [[nodiscard]] double mean_ms() const {
     return intervals_ > 0 ? static_cast<double>(total_us_) / static_cast<double>(intervals_) * 1e-3
                           : 0.0;

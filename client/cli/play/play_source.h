@@ -16,7 +16,7 @@ namespace furrow::cli {
 // One subject to play: the frames of a clip, or the recorded poses of a take, unchanged.
 class PlaySource {
  public:
-  // Loads all subjects of a recording, or the one that `file` names ("take.mcap#ada"). Prints
+  // Loads all subjects of a recording, or the subject that `file` names ("take.mcap#ada"). Prints
   // warnings. Errors: those of LoadClipArgument() and TakePoses::LoadAll(); kInvalidArgument (no
   // frames).
   [[nodiscard]] static Result<std::vector<PlaySource>> Load(const std::string& file);
@@ -27,9 +27,11 @@ class PlaySource {
   [[nodiscard]] double start() const;
   // The recorded name of the subject, or the name of the file without extension.
   [[nodiscard]] const std::string& subject() const { return subject_; }
-  // The skeleton offer. `metres_per_unit` multiplies the unit of a take.
+  // The skeleton offer under the name `subject`. `metres_per_unit`: metres per unit of the
+  // recording; multiplies the unit that a take states.
   [[nodiscard]] protocol::SkeletonOffer Offer(const std::string& subject,
                                               float metres_per_unit) const;
+  // Sets `pose` to frame `frame`, which is an index into times().
   void Fill(int frame, protocol::PoseFrame* pose) const;
 
  private:

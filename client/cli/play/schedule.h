@@ -6,8 +6,9 @@
 
 namespace furrow::cli {
 
-// The frame and time of the i-th pose of a recording that repeats. A new round starts one frame
-// interval after the last frame; pose numbers continue.
+// Computes the frame and the time of each pose of a recording that repeats. A round is one pass
+// through the recording. The next round starts one frame interval after the last frame. Poses are
+// numbered from 0 and keep counting over all rounds.
 class Schedule {
  public:
   // `rate`: poses per second of recording, each with the newest frame at its time; 0: every frame.
@@ -16,6 +17,7 @@ class Schedule {
 
   // Number of poses per round.
   [[nodiscard]] std::int64_t count() const { return count_; }
+  // The frame of a pose, an index into `times`.
   [[nodiscard]] int Frame(std::int64_t pose) const;
   // Time of a pose in seconds since the start of the recording, over all rounds.
   [[nodiscard]] double Seconds(std::int64_t pose) const;

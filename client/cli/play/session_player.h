@@ -15,15 +15,16 @@ namespace furrow::cli {
 class SessionPlayer {
  public:
   struct Track {
-    std::uint16_t stream = 0;
-    const PlaySource* source = nullptr;
+    std::uint16_t stream = 0;            // from Publisher::AddSubject()
+    const PlaySource* source = nullptr;  // not null
   };
   struct Options {
-    double speed = 1.0;
-    bool loop = false;
+    double speed = 1.0;  // factor of the recorded speed, > 0
+    bool loop = false;   // repeat until an interrupt
     protocol::PoseEncoding encoding;
   };
-  // `tracks`: the tracks of the schedule, in the same order.
+  // `publisher` and the sources of `tracks` must outlive the player. `tracks`: one per track of
+  // `schedule`, in the order of its tracks.
   SessionPlayer(client::Publisher& publisher, std::vector<Track> tracks, SessionSchedule schedule,
                 const Options& options);
 

@@ -27,8 +27,8 @@ class SessionSchedule {
     std::int64_t round = 0;
   };
 
-  // `rate`: as for Schedule. `from`: seconds of the session to skip. Precondition: at least one
-  // track.
+  // `rate`: poses per second and track, each with the newest frame at its time; 0: every frame.
+  // `from`: seconds of the session to skip. Precondition: at least one track.
   SessionSchedule(std::span<const Track> tracks, double rate, double from);
 
   // Number of poses per round; 0: the session ends before `from`.

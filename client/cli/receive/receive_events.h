@@ -11,10 +11,10 @@
 
 namespace furrow::cli {
 
-// Options common to all subscribing commands.
+// The options of all commands that subscribe.
 struct SubscriptionOptions {
-  std::string host;
-  std::int64_t frames = 0;  // stop after this number; 0: when the subject leaves
+  std::string host;         // argument of ParseEndpoint()
+  std::int64_t frames = 0;  // stop after this number of frames; 0: when the subject leaves
 };
 
 // Adds HOST, --subject, --wait, --rate and --frames to `command`. `Request` is SubscribeWeights or
@@ -52,11 +52,10 @@ struct StopConditions {
   std::int64_t drain_us = 0;
 };
 
-// The event loop of `watch`, `frames` and `record`. Calls `on_event` for each message; returning
-// false stops successfully. Prints the reason of every other end and returns the exit code.
-//
-// It also stops on SIGINT and SIGTERM, on a goodbye, on an error of the daemon, and with
-// kNoConnection if nothing arrives within five seconds of the start.
+// Runs the event loop of `watch`, `frames` and `record`: calls `on_event` for each message until it
+// returns false (success), SIGINT or SIGTERM arrives (success), the subject says goodbye, the
+// daemon reports an error, or nothing arrives within 5 seconds of the start (kNoConnection). Prints
+// the reason of an unsuccessful end to standard error. Returns the exit code.
 int ReceiveEvents(client::Subscriber& subscriber,
                   const std::function<bool(const client::Event&)>& on_event,
                   const StopConditions& stop = {});

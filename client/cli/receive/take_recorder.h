@@ -26,17 +26,19 @@ class TakeRecorder {
   TakeRecorder(recording::TakeFolderOptions options, std::int64_t wall_offset_us)
       : options_(std::move(options)), wall_offset_us_(wall_offset_us) {}
 
-  // Subscribes to poses and weights of `subject`.
+  // Subscribes to poses and weights of `subject`; empty: the oldest live subject. `wait`: wait for
+  // the subject if it is not connected yet.
   void Subscribe(client::Subscriber& subscriber, const std::string& subject, bool wait);
   // Subscribes to all present and future subjects.
   void SubscribeToAll(client::Subscriber& subscriber);
 
-  // Records one event. Errors: those of TakeFolder.
+  // Records one event. `subscriber`: as passed to Subscribe(). `now_us`: monotonic clock. Errors:
+  // those of TakeFolder.
   [[nodiscard]] Status OnEvent(const client::Event& event, client::Subscriber& subscriber,
                                std::int64_t now_us);
   // Flushes buffered data if the flush interval has passed. Call it several times per second.
   [[nodiscard]] Status Flush(std::int64_t now_us);
-  // Completes the file, if there is one.
+  // Completes the file, if there is one. Errors: those of TakeFolder.
   [[nodiscard]] Status Close();
 
   [[nodiscard]] std::uint64_t num_poses() const { return num_poses_; }
@@ -47,6 +49,7 @@ class TakeRecorder {
   [[nodiscard]] std::optional<std::uint32_t> num_present() const { return num_present_; }
   // Names of the recorded subjects: "ada, bob".
   [[nodiscard]] std::string SubjectNames() const;
+  // The files being written; null before the daemon's first answer.
   [[nodiscard]] const recording::TakeFolder* folder() const { return folder_.get(); }
 
  private:

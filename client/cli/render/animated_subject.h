@@ -25,10 +25,10 @@ class AnimatedSubject {
       const rig::SkeletonMatcher& matcher, const std::string& file);
 
   [[nodiscard]] int num_frames() const { return clip_->num_frames(); }
-  // Solves frame `frame` in [0, num_frames). The filter has a memory, so call it for consecutive
-  // frames; after the last frame continue with 0.
+  // Solves frame `frame` in [0, num_frames). The filter of the weights depends on earlier frames,
+  // so call it for consecutive frames; after the last frame continue with 0. Errors: kInternal.
   [[nodiscard]] Status Advance(int frame);
-  // The last solved frame. Its spans point into this object.
+  // The last solved frame. Its spans point into this object and are valid until the next Advance().
   [[nodiscard]] render::PosedSubject subject() const;
 
  private:

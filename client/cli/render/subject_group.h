@@ -9,29 +9,32 @@
 
 namespace furrow::cli {
 
+// The options of a picture with several subjects.
 struct GroupOptions {
   int subjects = 0;        // 0: one per recording
   float spacing = 0.0f;    // metres between neighbours; 0: chosen from the camera's field of view
   int offset_frames = -1;  // lead of each subject over the previous one; -1: spread evenly
 };
 
-// Positions of subjects in a group picture: rows on rising steps, each row in the gaps of the row
-// in front. Metres, as a camera in front sees them: x to the right, y up, z towards the camera. The
-// middle of the first row is the origin.
+// Returns the positions of subjects in a group picture: rows on rising steps, each row in the gaps
+// of the row in front. Metres, as a camera in front sees them: x to the right, y up, z towards the
+// camera. The middle of the first row is the origin.
 //
-// `around`: visible metres around each subject. `aspect`: width / height of the picture. The number
-// of subjects per row makes the subjects as large as possible in the picture.
+// `spacing`: metres between neighbours. `around`: how many metres around each subject are visible,
+// in width and in height. `aspect`: width / height of the picture. The number of subjects per row
+// is the one that makes the subjects as large as possible in the picture.
 [[nodiscard]] std::vector<glm::vec3> ArrangeGroup(int subjects, float spacing, float around,
                                                   float aspect);
 
-// Returns `camera`, levelled and moved sideways and back until it shows as much around every
-// position in `spots` as it showed of its single subject. The result does not follow a joint.
+// Returns a camera for a group: `camera` turned horizontal, and moved sideways and back until it
+// shows as much around every position in `spots` as `camera` shows of its single subject. The
+// result does not follow a joint.
 [[nodiscard]] render::Camera FrameGroup(const render::Camera& camera,
                                         const std::vector<glm::vec3>& spots, float aspect);
 
-// One or more animated subjects in one picture, all with the same character. The camera follows a
-// single subject. Several subjects stay at their positions, each as the camera would have followed
-// it.
+// One or more animated subjects in one picture, all with one character. The camera follows a single
+// subject. With several subjects, the camera stands still, and every subject stays at its position
+// in the group.
 class SubjectGroup {
  public:
   // `character` must outlive this object. Subjects take the clips in turn; a clip that is shorter
@@ -46,7 +49,8 @@ class SubjectGroup {
   [[nodiscard]] int num_frames() const;
   // Arranges the subjects for a camera that frames a single subject.
   void FrameBy(const render::Camera& camera, float aspect);
-  // As AnimatedSubject::Advance(), from 0 on.
+  // Solves frame `frame` of all subjects. Call it for consecutive frames, starting with 0. Errors:
+  // kInternal.
   [[nodiscard]] Status Advance(int frame);
   // The subjects and the camera of the last solved frame. Spans point into this object.
   [[nodiscard]] render::FrameRequest Request();

@@ -8,13 +8,14 @@
 
 namespace furrow::load {
 
-// A minimal UDP server as a baseline for measurements: a child process that returns every datagram
-// with one recvfrom() and one sendto(), on a free port of 127.0.0.1. The process ends with this
-// object or with the process that created it.
+// A minimal UDP server, the baseline of comparisons: a child process that returns every datagram
+// with one recvfrom() and one sendto(), on a free port of 127.0.0.1. The child ends when this
+// object is destroyed or when the process that created it ends.
 class EchoServer {
  public:
-  // Starts the process on the same cores as process `same_cores_as`. It forks, so call it while
-  // this process has a single thread. Errors: kIo.
+  // Starts the child process. `same_cores_as`: the process (pid) whose CPU affinity it copies;
+  // empty: that of this process. It forks, so call it while this process has a single thread.
+  // Errors: kIo.
   [[nodiscard]] static Result<EchoServer> Start(std::optional<int> same_cores_as);
   ~EchoServer();
   EchoServer(EchoServer&& other) noexcept;

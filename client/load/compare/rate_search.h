@@ -19,7 +19,7 @@ class RateSearch {
       : rate_(start), limit_(limit), precision_(precision), tries_(tries) {}
 
   [[nodiscard]] bool done() const { return done_; }
-  // The rate to try next.
+  // The rate to try next, in the unit of the constructor's arguments. Valid unless done().
   [[nodiscard]] double rate() const { return rate_; }
   // The highest rate sustained so far; 0 for none.
   [[nodiscard]] double best() const { return best_; }

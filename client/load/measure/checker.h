@@ -36,10 +36,11 @@ struct Tally {
   [[nodiscard]] std::uint64_t falsified() const { return wrong - swapped - unclassified; }
 };
 
+// The options of a check.
 struct CheckOptions {
   int watchers = 1;          // each receives every subject
   float tolerance = 1e-4f;   // largest accepted difference of a weight
-  std::int64_t late_us = 0;  // latency limit
+  std::int64_t late_us = 0;  // latency limit, microseconds
   double seconds = 10.0;     // length of the run, for the time windows
 };
 
@@ -51,15 +52,16 @@ struct CheckOptions {
 // due, so an `early` message means that clocks disagree; its latency counts as 0.
 class Checker {
  public:
+  // Number of windows(): enough for a curve over time.
   static constexpr std::size_t kWindows = 50;
 
-  // `expected` null: do not check values. All arguments must outlive the checker.
+  // `expected`: null to not check values. `plan` and `expected` must outlive the checker.
   Checker(const Plan& plan, const ExpectedWeights* expected, const CheckOptions& options);
 
-  // A pose was due. `sent`: it was sent successfully.
+  // Records that a pose was due. `sent`: it was sent successfully.
   void OnDue(std::uint32_t subject, std::uint32_t pose, bool sent);
-  // Weights arrived at `now_us` since the start of the run. `readable`: their names equal the
-  // solver's.
+  // Records weights that arrived `now_us` microseconds after the start of the run. `watcher`: in
+  // [0, CheckOptions::watchers). `readable`: the names of the weights equal the solver's.
   void OnWeights(int watcher, std::uint32_t subject, std::uint32_t sequence,
                  std::span<const float> values, bool readable, std::int64_t now_us);
 
@@ -71,9 +73,11 @@ class Checker {
                                        const std::function<bool(double share)>& progress);
 
   [[nodiscard]] const Tally& tally() const { return tally_; }
+  // Latency of all received messages, nanoseconds.
   [[nodiscard]] const Histogram& latency_ns() const { return latency_; }
-  // Latency in equal parts of the run, by due time.
+  // Latency in kWindows equal parts of the run, by due time, nanoseconds.
   [[nodiscard]] std::span<const Histogram> windows() const { return windows_; }
+  // True if all expected messages have arrived.
   [[nodiscard]] bool complete() const { return tally_.received == tally_.expected; }
 
  private:

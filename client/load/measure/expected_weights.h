@@ -13,13 +13,13 @@
 
 namespace furrow::load {
 
-// The largest difference of two rows of values; infinity if their lengths differ.
+// The largest absolute difference between two rows of values; infinity if their lengths differ.
 [[nodiscard]] float Distance(std::span<const float> a, std::span<const float> b);
 // True if Distance() is at most `tolerance`. Stops at the first larger difference.
 [[nodiscard]] bool IsNear(std::span<const float> a, std::span<const float> b, float tolerance);
 
-// Time without gaps after which the state of a filter no longer depends on its start, unless the
-// filter is very slow.
+// Time without gaps, microseconds, after which the state of a filter no longer depends on its
+// start, unless the filter is very slow.
 inline constexpr std::int64_t kFilterMemoryUs = 5'000'000;
 
 // The weights of a server that receives every pose of a plan. They are solved before the run, so
@@ -35,9 +35,11 @@ class ExpectedWeights {
                   const std::function<bool(double)>& progress);
 
   [[nodiscard]] bool interrupted() const { return interrupted_; }
+  // The weights after pose `pose` of a subject with start phase `phase`. Valid as long as the
+  // table.
   [[nodiscard]] std::span<const float> Row(int phase, std::uint32_t pose) const;
 
-  // Finds a row of the table within `tolerance` of `values`.
+  // Finds a row of the table within `tolerance` of `values`; nothing if there is none.
   struct Place {
     int phase = 0;
     std::uint32_t pose = 0;

@@ -15,6 +15,7 @@ namespace furrow::load {
 // value, up to 440 KB. Record() allocates only when a value exceeds all previous values.
 class Histogram {
  public:
+  // Adds one value.
   void Record(std::int64_t value);
   // Adds all values of `other`.
   void Add(const Histogram& other);
@@ -22,6 +23,7 @@ class Histogram {
   [[nodiscard]] std::uint64_t count() const { return count_; }
   [[nodiscard]] std::int64_t max() const { return max_; }  // exact; 0 when empty
   [[nodiscard]] std::int64_t min() const { return count_ == 0 ? 0 : min_; }
+  // Both from the middles of the cells; 0 when empty.
   [[nodiscard]] double Mean() const;
   [[nodiscard]] double StandardDeviation() const;
 
@@ -33,7 +35,7 @@ class Histogram {
   // `unit`.
   void WriteHgrm(std::ostream& out, double unit) const;
 
-  // The cell that counts a value, and the largest value of a cell.
+  // The index of the cell that counts `value`, and the largest value that a cell counts.
   [[nodiscard]] static std::size_t Cell(std::uint64_t value);
   [[nodiscard]] static std::uint64_t UpperEnd(std::size_t cell);
 

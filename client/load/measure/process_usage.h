@@ -14,7 +14,8 @@ struct ProcessUsage {
   std::uint64_t peak_resident_bytes = 0;
 };
 
-// Returns nothing if the process does not exist or is not readable.
+// Reads the usage of process `pid`. Returns nothing if the process does not exist or is not
+// readable. `proc`: the mount point of procfs.
 [[nodiscard]] std::optional<ProcessUsage> ReadUsage(int pid,
                                                     const std::filesystem::path& proc = "/proc");
 

@@ -14,14 +14,14 @@ struct Quartiles {
   double high = 0.0;  // third quartile
 };
 
-// Interpolates linearly between samples. Precondition: at least one value.
+// Returns the quartiles of `values`, interpolated linearly. Precondition: at least one value.
 [[nodiscard]] Quartiles QuartilesOf(std::vector<double> values);
 
-// The ratios a[i] / b[i] of all rounds i in which both were measured and b is positive.
+// Returns the ratios a[i] / b[i] of all rounds i in which both were measured and b[i] is positive.
 [[nodiscard]] std::vector<double> Ratios(std::span<const std::optional<double>> a,
                                          std::span<const std::optional<double>> b);
 
-// The values of all rounds that measured one.
+// Returns the values of all rounds that have one.
 [[nodiscard]] std::vector<double> Measured(std::span<const std::optional<double>> values);
 
 }  // namespace furrow::load

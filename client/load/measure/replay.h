@@ -22,7 +22,9 @@ namespace furrow::load {
 // Report the poses in order, each once, by one of the three functions.
 class Replay {
  public:
-  // `first`: the pose to start with, with a filter in its initial state.
+  // `first`: the pose to start with, before which the filter is in its initial state. `tolerance`:
+  // largest accepted difference of a weight. `workload`, `plan` and `expected` must outlive the
+  // replay.
   Replay(const Workload& workload, const Plan& plan, std::uint32_t subject,
          const ExpectedWeights& expected, float tolerance, std::uint32_t first = 0);
 

@@ -9,9 +9,10 @@
 
 namespace furrow::load {
 
-// A Markdown table of the figures, the highest rate, and remarks about anything that limits what
-// they mean.
+// Returns Markdown: a table of the figures, the highest rate, and remarks about anything that makes
+// the figures less reliable.
 [[nodiscard]] std::string ToText(const Comparison& comparison);
+// Returns all measurements as a JSON object.
 [[nodiscard]] nlohmann::json ToJson(const Comparison& comparison);
 
 }  // namespace furrow::load

@@ -9,8 +9,8 @@
 
 namespace furrow::load {
 
-// Draws charts as one SVG picture: latency by percentile and over time if anything was received,
-// and latency and loss by rate if there are steps.
+// Returns charts as one SVG picture: latency by percentile and over time if anything was received,
+// and latency and loss by rate if `steps` is not empty.
 [[nodiscard]] std::string Plot(const RunResult& result, const std::vector<RateStep>& steps);
 
 }  // namespace furrow::load

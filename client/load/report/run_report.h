@@ -11,13 +11,14 @@
 
 namespace furrow::load {
 
-// One status line for a run in progress.
+// Returns one status line for a run in progress. `seconds`: since the start of the run.
 [[nodiscard]] std::string LiveLine(double seconds, const Tally& tally, const Histogram& latency_ns);
 
-// Markdown tables of the counts, the latency and the server's resource use, followed by remarks
-// about anything that limits what the figures mean.
+// Returns Markdown: tables of the counts, the latency and the server's resource use, followed by
+// remarks about anything that makes the figures less reliable.
 [[nodiscard]] std::string ToText(const RunResult& result, const RunOptions& options);
 
+// Returns the counts, the latency and the resource use as a JSON object.
 [[nodiscard]] nlohmann::json ToJson(const RunResult& result);
 
 }  // namespace furrow::load

@@ -20,18 +20,20 @@ struct MisbehaviorOptions {
   [[nodiscard]] int total() const { return slow + stalled + churn; }
 };
 
-// Subscribers that are not measured and put stress on the server. Each subscribes to up to 64
-// subjects. Subscribers that the server disconnects connect again.
+// Subscribers that behave badly to put stress on the server; they are not measured. Each subscribes
+// to up to 64 subjects. A subscriber connects again after the server disconnects it.
 //
 // Tick() does not block, except for one round trip when a subscriber connects again.
 class MisbehavingSubscribers {
  public:
-  // Errors: those of `open`.
+  // Opens the subscribers. `open(i)` opens the TCP socket of subscriber i. `subjects`: number of
+  // subjects of the run. Errors: those of `open`.
   [[nodiscard]] static Result<MisbehavingSubscribers> Open(SocketOpener open,
                                                            const MisbehaviorOptions& options,
                                                            int subjects);
 
-  // Lets each subscriber do what is due. Call it often.
+  // Performs the actions of all subscribers that are due. Call it several times per second.
+  // `now_us`: microseconds of a monotonic clock.
   void Tick(std::int64_t now_us);
 
   // Number of times that a churning subscriber connected again.

@@ -30,12 +30,13 @@ struct Target {
   std::optional<int> pid;  // process of the server, if it is known and on this machine
 };
 
+// The options of a run.
 struct RunOptions {
   Path path = Path::kUdp;
   PlanOptions plan;
   int watchers = 1;  // each receives all subjects
   MisbehaviorOptions misbehavior;
-  std::int64_t late_us = 16'667;  // latency limit: one frame at 60 Hz
+  std::int64_t late_us = 16'667;  // latency limit, microseconds: one frame at 60 Hz
   float tolerance = 1e-4f;        // largest accepted difference of a weight
   double drain_seconds = 1.0;     // after this time without weights the missing ones count as lost
   bool check_weights = true;
@@ -47,9 +48,10 @@ struct RunHooks {
   std::function<void(double share)> solving;    // progress in [0, 1] before the start
   std::function<void(double share)> resolving;  // progress in [0, 1] of ResolveMismatches()
   std::function<void(double seconds, const Tally&, const Histogram& latency_ns)>
-      second;  // per second
+      second;  // called once per second of the run
 };
 
+// The measurements of a run.
 struct RunResult {
   Tally tally;
   Histogram latency_ns;            // from the due time of a pose to net::Socket::arrived_ns()
@@ -70,8 +72,9 @@ struct RunResult {
   bool interrupted = false;           // stopped by the caller
   bool ended_early = false;           // the daemon went away; `complaint` says how
 
+  // The latency at `percentile` (in [0, 100]), microseconds.
   [[nodiscard]] double p(double percentile) const {
-    return static_cast<double>(latency_ns.Percentile(percentile)) * 1e-3;  // microseconds
+    return static_cast<double>(latency_ns.Percentile(percentile)) * 1e-3;
   }
   // The target's processor time per sent pose, in microseconds.
   [[nodiscard]] std::optional<double> cpu_us_per_pose() const;

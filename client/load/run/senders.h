@@ -16,7 +16,7 @@
 
 namespace furrow::load {
 
-// Opens the i-th socket of a set.
+// Opens the i-th socket of a set; i counts from 0.
 using SocketOpener = std::function<Result<std::unique_ptr<net::Socket>>(int i)>;
 
 // The name of a subject: "load-000017".
@@ -35,7 +35,8 @@ class Senders {
   // kInvalidArgument (rejected, with the reason).
   [[nodiscard]] Status Offer(int count, const std::function<bool()>& keep_going);
 
-  // Sends one pose. kTimeout: the send buffer is full.
+  // Sends frame `frame` of the recording as pose number `pose` of a subject. kTimeout: the send
+  // buffer is full and the pose was not sent.
   [[nodiscard]] client::IoStatus Send(std::uint32_t subject, std::uint32_t pose, int frame,
                                       std::int64_t capture_time_us);
 
@@ -46,6 +47,7 @@ class Senders {
   void Close();
 
   [[nodiscard]] std::size_t num_sockets() const { return senders_.size(); }
+  // Socket `i`, in [0, num_sockets()); owned by this object.
   [[nodiscard]] net::Socket& socket(std::size_t i) { return *senders_[i].socket; }
   // The subject of stream `stream` of socket `i`.
   [[nodiscard]] std::uint32_t subject(std::size_t i, std::uint16_t stream) const {

@@ -6,11 +6,12 @@
 namespace furrow::load {
 
 // True if the server sustained the rate of a run: every due pose was sent, no weights were lost,
-// wrong or invented, the run completed, and p99 is below the limit.
+// wrong or invented, the run completed, and the 99th percentile of the latency is below
+// `p99_limit_us` microseconds.
 [[nodiscard]] bool IsSustained(const RunResult& result, double p99_limit_us);
 
-// True if a run has no defect, as --strict demands: as IsSustained() without the percentile, and in
-// addition nothing was late or malformed and all weights were checked.
+// True if a run has no defect, as --strict demands: every due pose was sent, no weights were lost,
+// wrong, invented, late or malformed, all weights were checked, and the run completed.
 [[nodiscard]] bool IsClean(const RunResult& result);
 
 // True if the load generator was too slow: it did not send all due poses, lost datagrams in its own

@@ -30,12 +30,14 @@ class Watchers {
     bool readable = false;
   };
 
-  // Opens the sockets. `names`: the expected weight names. Errors: those of `open`.
+  // Opens the sockets of `watchers` watchers, each for all of `subjects` subjects. `names`: the
+  // expected weight names. Errors: those of `open`.
   [[nodiscard]] static Result<Watchers> Open(const SocketOpener& open, int watchers, int subjects,
                                              std::span<const std::string> names);
 
-  // Subscribes to all subjects and waits for the answers. Errors: kUnavailable (no answer),
-  // kInvalidArgument (rejected, with the reason).
+  // Subscribes to all subjects and waits for the answers; `keep_going` cancels the wait by
+  // returning false. Errors: kUnavailable (no answer), kInvalidArgument (rejected, with the
+  // reason).
   [[nodiscard]] Status Subscribe(const std::function<bool()>& keep_going);
 
   // Reads the messages of socket `i` and calls `use` for each weights message. It also renews
@@ -47,6 +49,7 @@ class Watchers {
   [[nodiscard]] net::Socket& socket(std::size_t i) { return *links_[i].socket; }
   // True if the daemon's weight names equal the expected names.
   [[nodiscard]] bool names_match() const { return names_match_; }
+  // Number of messages that could not be decoded.
   [[nodiscard]] std::uint64_t malformed() const;
   // The last error reported by the daemon; empty if there is none.
   [[nodiscard]] const std::string& complaint() const { return complaint_; }

@@ -7,15 +7,15 @@
 
 namespace furrow::load {
 
-// How many subjects send a recording, repeated in rounds.
+// The size of a load test: subjects that all send one recording, repeated in rounds.
 struct PlanOptions {
   int subjects = 1;
-  int phases = 1;         // number of different start frames
+  int phases = 1;         // number of different start frames, >= 1
   double rate = 0.0;      // poses per second and subject; 0: the recording's own spacing
   double seconds = 10.0;  // length of the run
 };
 
-// The due time of every pose of every subject, fixed before the first pose is sent. A slow server
+// The due times of all poses of all subjects, fixed before the first pose is sent. A slow server
 // therefore does not slow down the load: this is an open-loop test without coordinated omission
 // (Tene, "How NOT to Measure Latency").
 //
@@ -40,16 +40,18 @@ class Plan {
   [[nodiscard]] std::uint32_t count(std::uint32_t subject) const { return counts_[subject]; }
   [[nodiscard]] int num_frames() const { return static_cast<int>(frame_us_.size()); }
   [[nodiscard]] int num_phases() const { return phases_; }
+  // The start phase of a subject, in [0, num_phases()).
   [[nodiscard]] int phase_of(std::uint32_t subject) const {
     return static_cast<int>(subject) % phases_;
   }
   // The frame that is sent as pose `pose` of a subject with start `phase`.
   [[nodiscard]] int Frame(int phase, std::uint32_t pose) const;
-  // Capture time of that pose, in microseconds since the subject's first pose.
+  // Capture time of pose `pose` of a subject with start `phase`, in microseconds since the
+  // subject's first pose.
   [[nodiscard]] std::int64_t CaptureUs(int phase, std::uint32_t pose) const;
   // Due time in microseconds since the start of the run.
   [[nodiscard]] std::int64_t DueUs(std::uint32_t subject, std::uint32_t pose) const;
-  // Average rate of all subjects together.
+  // Average rate of all subjects together, poses per second.
   [[nodiscard]] double poses_per_second() const;
 
  private:

@@ -18,8 +18,9 @@ struct Workload {
   protocol::SkeletonOffer offer;                    // each subject replaces the name
   std::vector<double> times;                        // of the frames: seconds, increasing
   std::vector<std::vector<std::uint8_t>> messages;  // one whole Pose message per frame
-  std::function<void(int frame, wrinkle::LocalPose* pose)> pose;  // the pose in that message
-  std::shared_ptr<const wrinkle::RigBinding> binding;             // null: do not check weights
+  std::function<void(int frame, wrinkle::LocalPose* pose)>
+      pose;                                            // sets `pose` to that of a message
+  std::shared_ptr<const wrinkle::RigBinding> binding;  // null: do not check weights
 };
 
 }  // namespace furrow::load
