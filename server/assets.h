@@ -12,17 +12,17 @@
 
 namespace furrow::server {
 
-// The files that a daemon works with.
+// The contents of the files that a daemon works with.
 struct Assets {
   std::shared_ptr<const wrinkle::Rig> rig;
   std::shared_ptr<const character::Character> character;  // null: weights only
-  rig::SkeletonMatcher skeletons;
-  render::Settings settings;  // defaults for all pictures
+  rig::SkeletonMatcher skeletons;                         // finds the rig's joints by other names
+  render::Settings settings;                              // defaults for all pictures
 };
 
-// Loads the files that `config` names, or the default character. With rendering off, loads only the
-// rig if there is one. Missing shipped skeleton maps cause a warning; joints are then matched by
-// equal names only.
+// Loads the files that `config` names, or the default character. Loads a rig and no character if
+// `config` names only a rig, or if rendering is off and there is a rig. If the shipped skeleton
+// maps are missing, logs a warning, and joints are then matched by equal names only.
 //
 // Errors: those of LoadCharacter(), LoadRig() and render::LoadSettings(), and of
 // SkeletonMatcher::Create() if `config` names a skeleton map; kNotFound if there is no default

@@ -22,6 +22,7 @@ struct Ready {
   bool render = false;  // a renderer is running
 };
 
+// The options of Run() that are not part of the configuration.
 struct RunOptions {
   std::stop_token stop;         // requests a shutdown, as SIGTERM does
   bool handle_signals = false;  // shut down on SIGTERM and SIGINT

@@ -26,6 +26,7 @@ struct RecordConfig {
   friend bool operator==(const RecordConfig&, const RecordConfig&) = default;
 };
 
+// Maximum of Config::threads; also the largest number of shards of a hub.
 inline constexpr int kMaxThreads = 64;
 
 // The whole configuration of furrowd, from flags or a TOML file (furrow.example.toml lists every
@@ -40,24 +41,25 @@ struct Config {
   std::uint16_t udp = 7401;
   int threads = 1;  // threads that receive UDP, [1, kMaxThreads]; see docs/CAPACITY.md
   bool render = true;
-  bool require_render = false;            // fail if OpenGL is unavailable
-  std::string render_device;              // see render::RendererOptions::device
-  std::filesystem::path render_settings;  // TOML (render::LoadSettings); empty: the defaults
-  std::optional<std::uint16_t> vmc;
-  std::optional<std::uint16_t> livelink_face;
-  std::vector<std::string> mocap_allow;  // numeric sender addresses; empty: any sender
-  std::optional<HostPort> osc_out;
-  std::string osc_prefix = "furrow";  // /<prefix>/<subject>/<wrinkle weight>
+  bool require_render = false;                 // fail if OpenGL is unavailable
+  std::string render_device;                   // see render::RendererOptions::device
+  std::filesystem::path render_settings;       // TOML (render::LoadSettings); empty: the defaults
+  std::optional<std::uint16_t> vmc;            // UDP port; absent: off
+  std::optional<std::uint16_t> livelink_face;  // UDP port; absent: off
+  std::vector<std::string> mocap_allow;        // numeric sender addresses; empty: any sender
+  std::optional<HostPort> osc_out;             // absent: off
+  std::string osc_prefix = "furrow";           // /<prefix>/<subject>/<wrinkle weight>
   RecordConfig record;
   HttpConfig http;
   std::filesystem::path play;  // recording to play inside the daemon; empty: none
   bool verbose = false;        // print a status line every second
-  bool log_json = false;
+  bool log_json = false;       // log JSON objects instead of text
   Limits limits;
   friend bool operator==(const Config&, const Config&) = default;
 };
 
-// Reads a TOML file into `config`. Keys that the file does not set keep their values.
+// Reads a TOML file, or the text of one, into `config`. Keys that it does not set keep their
+// values. `source_name`: the file name in errors. After an error `config` may be partly changed.
 //
 // Errors: kNotFound, kIo, kParse, kSchema (unknown key, wrong type), kInvalidArgument (out of
 // range); `where` is "file:line", the message names the key.
@@ -77,8 +79,8 @@ struct CommandLine {
   std::string text;
 };
 
-// Flags override the file of --config, and the file overrides the defaults. `args`: without the
-// program name.
+// Parses the command line of furrowd and the file of --config. Flags override the file, and the
+// file overrides the defaults. `args`: without the program name.
 [[nodiscard]] CommandLine ParseCommandLine(std::span<const std::string> args);
 
 }  // namespace furrow::server

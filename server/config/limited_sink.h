@@ -15,12 +15,14 @@ namespace furrow::server {
 
 // Limits log lines to kLinesPerSecond on average and kBurst at once, so that no peer can fill a
 // disk with log lines. The next line that passes is preceded by the number of dropped lines. Errors
-// always pass. Time comes from the messages.
+// always pass. The times of the messages are the clock, so tests choose it.
 class LimitedSink : public spdlog::sinks::base_sink<std::mutex> {
  public:
+  // 100 lines of 100 bytes per second fill less than 1 GB per day.
   static constexpr double kLinesPerSecond = 100.0;
   static constexpr double kBurst = 1000.0;
 
+  // `below`: receives the lines that pass; not null.
   explicit LimitedSink(spdlog::sink_ptr below) : below_(std::move(below)) {}
   ~LimitedSink() override;
 

@@ -9,8 +9,8 @@
 
 namespace furrow::server {
 
-// Everything that the daemon counts, in particular every kind of drop. CounterHelp() says what each
-// one means. Counters only grow and have no labels for subjects or peers.
+// The counters of a daemon, in particular one for every kind of drop. CounterHelp() describes each
+// counter. Counters only grow and have no labels for subjects or peers.
 enum class Counter {
   kDatagramsReceived,
   kDatagramsSent,
@@ -85,14 +85,16 @@ enum class Counter {
 
 // The counters of one daemon. Any thread may add and read at any time.
 //
-// Each thread adds to a cache line of its own (up to kSlots threads) and Get() sums the slots. A
-// shared counter would move between processor caches at every pose.
+// Up to kSlots threads each add to a separate slot, and Get() sums the slots: one shared counter
+// would move between processor caches at every pose. Further threads share slots.
 class Metrics {
  public:
+  // Adds `count` to a counter. Never blocks.
   void Add(Counter counter, std::uint64_t count = 1) {
     slots_[SlotOfThread()].values[static_cast<std::size_t>(counter)].fetch_add(
         count, std::memory_order_relaxed);
   }
+  // The value of a counter since the start.
   [[nodiscard]] std::uint64_t Get(Counter counter) const {
     std::uint64_t sum = 0;
     for (const Slot& slot : slots_) {

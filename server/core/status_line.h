@@ -11,13 +11,15 @@
 
 namespace furrow::server {
 
-// Makes the line that --verbose prints every second: rates since the last line, and drop counts.
+// Composes the line that --verbose prints every second: rates since the last line, and drop counts.
 class StatusLine {
  public:
+  // `metrics`: not null; must outlive this object.
   explicit StatusLine(const Metrics* metrics) : metrics_(metrics) {}
 
-  // For example "2 subjects, 3 subscriptions, 60 poses/s, 180 weights/s, 30 pictures/s; dropped: 4
-  // late poses". Counters that did not change are left out of the second part.
+  // Returns the next line, for example "2 subjects, 3 subscriptions, 60 poses/s, 180 weights/s, 30
+  // pictures/s; dropped: 4 late poses". Counters that did not change are left out of the second
+  // part.
   [[nodiscard]] std::string Next(std::size_t subjects, std::size_t subscriptions, Time now);
 
  private:

@@ -10,6 +10,7 @@ namespace furrow::server {
 // other code receives the time as a `now` argument, so tests choose it.
 using Time = std::chrono::nanoseconds;
 
+// Conversions; fractions of a nanosecond or microsecond are truncated.
 [[nodiscard]] constexpr double ToSeconds(Time time) {
   return std::chrono::duration<double>(time).count();
 }

@@ -11,6 +11,7 @@ namespace furrow::server {
 // bucket starts full.
 class TokenBucket {
  public:
+  // `rate`: tokens per second, > 0. `burst`: capacity in tokens, > 0.
   TokenBucket(double rate, double burst) : rate_(rate), burst_(burst), tokens_(burst) {}
 
   // Takes `cost` tokens and returns true, or returns false if there are too few. A `now` earlier

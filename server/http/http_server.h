@@ -18,10 +18,10 @@ class HttpServer {
  public:
   struct Parts {
     HttpConfig config;
-    std::string bind;  // numeric
+    std::string bind;  // numeric address
     PostToHub post_to_hub;
-    AnswerApi answer;  // called on the hub's thread
-    Metrics* metrics = nullptr;
+    AnswerApi answer;            // called on the hub's thread
+    Metrics* metrics = nullptr;  // not null; outlives the server
   };
   // Starts listening. Errors: kIo, naming the address and the port. A missing page is only logged;
   // everything else works without it.
@@ -32,10 +32,12 @@ class HttpServer {
   HttpServer(const HttpServer&) = delete;
   HttpServer& operator=(const HttpServer&) = delete;
 
+  // The port that it listens on.
   [[nodiscard]] std::uint16_t port() const;
+  // The open connections, and those of them that are WebSockets or picture streams. Thread-safe.
   [[nodiscard]] int connections() const;
   [[nodiscard]] int viewers() const;
-  // Stops accepting connections.
+  // Stops accepting connections; open ones continue.
   void Drain();
 
  private:

@@ -6,8 +6,8 @@
 
 namespace furrow::server {
 
-// The completion token of asynchronous calls: `co_await` returns a tuple that begins with the error
-// code instead of throwing.
+// The completion token of asynchronous calls in the daemon: `co_await` returns a tuple that begins
+// with the error code, and does not throw.
 inline constexpr auto kAwaitTuple = asio::experimental::as_tuple(asio::use_awaitable);
 
 }  // namespace furrow::server

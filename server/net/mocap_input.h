@@ -19,12 +19,14 @@
 
 namespace furrow::server {
 
-// A UDP port for a foreign mocap wire. An adapter turns datagrams into frames, and the hub receives
-// them as frames of a peer without replies. A SenderGate decides who may send; rejected datagrams
-// are counted and logged once per holder of the port.
+// A UDP port for a foreign motion-capture protocol (VMC, Live Link Face). An adapter turns
+// datagrams into frames, and the hub receives them as frames of a peer to which it never replies. A
+// SenderGate decides who may send; rejected datagrams are counted, and logged once per holder of
+// the port. Runs on the thread of `io`, shard 0.
 class MocapInput {
  public:
-  // `flag`: names the port in messages, for example "--vmc".
+  // `flag`: names the port in messages, for example "--vmc". `hub` and `metrics` must outlive this
+  // object.
   MocapInput(asio::io_context& io, std::string flag,
              std::unique_ptr<protocol::mocap::MocapAdapter> adapter, SenderGate gate, Hub* hub,
              Metrics* metrics);
@@ -32,7 +34,9 @@ class MocapInput {
   // Errors: kUnavailable, naming address and port.
   [[nodiscard]] Status Open(const asio::ip::udp::endpoint& endpoint);
   [[nodiscard]] std::uint16_t port() const;
+  // Starts reading. Precondition: Open() succeeded.
   void Start();
+  // Stops reading and closes the port.
   void Close();
   // Completes frames without an end-of-frame mark. Call it about every 10 ms.
   void Tick(Time now);

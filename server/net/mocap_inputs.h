@@ -26,7 +26,8 @@ class MocapInputs {
     std::vector<std::string> allow;              // numeric sender addresses; empty: any sender
   };
 
-  // Errors: those of MocapInput::Open().
+  // Opens the ports of `options`. `io`, `hub` and `metrics` must outlive this object. Errors: those
+  // of MocapInput::Open().
   [[nodiscard]] Status Open(const Options& options, asio::io_context& io, Hub* hub,
                             Metrics* metrics);
   void Start();

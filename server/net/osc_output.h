@@ -17,14 +17,15 @@
 
 namespace furrow::server {
 
-// Sends the weights of all subjects as OSC to one address (--osc-out), with every pose. One object
-// serves one network thread.
+// Sends the wrinkle weights of all subjects as OSC to one UDP address (--osc-out), with every pose.
+// One object serves one network thread.
 class OscOutput {
  public:
   OscOutput(asio::io_context& io, Metrics* metrics) : socket_(io), metrics_(metrics) {}
 
-  // `prefix`: without slashes. Errors: kUnavailable.
+  // `prefix`: first part of the OSC addresses, without slashes. Errors: kUnavailable.
   [[nodiscard]] Status Open(const HostPort& destination, const std::string& prefix);
+  // Sends the current weights of a subject. Never blocks; a message that cannot be sent is counted.
   void Send(const Subject& subject);
 
  private:

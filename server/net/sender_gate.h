@@ -12,10 +12,10 @@
 
 namespace furrow::server {
 
-// Decides which sender may use a mocap port. Foreign wires have no authentication and most of them
-// do not identify the sender, so two senders at once would mix into one performance. The first
-// sender with valid datagrams holds the port until it has been silent for kRelease. Senders are
-// told apart by address, not by port, because they change ports freely.
+// Decides which sender may use a motion-capture port. Most foreign protocols neither authenticate
+// nor identify the sender, so two senders at once would mix into one performance. The first sender
+// with valid datagrams therefore holds the port until it has sent nothing for kRelease. Senders are
+// distinguished by address, not by port, because they may change ports at any time.
 class SenderGate {
  public:
   static constexpr Time kRelease = std::chrono::seconds(3);

@@ -12,21 +12,21 @@
 
 namespace furrow::server {
 
-// A rendered and encoded picture with its recipients. Empty `bytes`: rendering failed.
+// A rendered and encoded picture with its recipients.
 struct FinishedPicture {
-  std::uint32_t sequence = 0;
-  std::int64_t capture_time_us = 0;
-  std::int64_t age_us = 0;
-  std::int64_t received_us = 0;
-  int width = 0;
+  std::uint32_t sequence = 0;        // of the pose
+  std::int64_t capture_time_us = 0;  // of the pose, on the sender's clock
+  std::int64_t age_us = 0;           // > 0: time since the pose, while weights decay
+  std::int64_t received_us = 0;      // arrival of the pose, on the daemon's clock
+  int width = 0;                     // pixels
   int height = 0;
   Encoding encoding;
-  std::vector<std::uint8_t> bytes;
-  std::vector<PictureTicket> tickets;
+  std::vector<std::uint8_t> bytes;     // the encoded picture; empty: rendering failed
+  std::vector<PictureTicket> tickets;  // the recipients
 };
 
-// The renderer as the session sees it. Submit() requests a picture; a FinishedPicture comes back
-// later through the session's own thread. RenderThread implements it.
+// The interface of the renderer for the session. Submit() requests a picture; its FinishedPicture
+// reaches Hub::OnPicture() later, on the thread of shard 0. RenderThread implements it.
 class PictureSource {
  public:
   virtual ~PictureSource() = default;

@@ -20,7 +20,7 @@ namespace furrow::server {
 struct PictureSpec {
   render::View view = render::View::kFinal;
   render::Camera camera;
-  int width = 640;
+  int width = 640;  // pixels
   int height = 640;
   // All settings except the view; null: the renderer's defaults. Compared by address, because
   // ViewSettings shares equal settings.
@@ -70,16 +70,18 @@ class RenderMailbox {
  public:
   explicit RenderMailbox(std::size_t capacity) : capacity_(capacity) {}
 
+  // How many jobs of moving subjects may pass a waiting still, so that stills are not starved.
   static constexpr int kMaxPassedOver = 8;
 
   enum class PutResult { kQueued, kReplaced, kFull, kNotWanted };
   // Adds a job. Waiting tickets of the same subscriptions for other pictures are removed, and so
   // are jobs without tickets.
   // - kQueued: a new job waits.
-  // - kReplaced: the job replaced one of the same subject and spec and took over its tickets. If the
+  // - kReplaced: the job replaced one of the same subject and spec and took over its tickets. If
+  // the
   //   subject has moved, tickets for stills become normal ones.
   // - kNotWanted: the job has no tickets and there was no job to refresh.
-  // - kFull: `capacity` jobs wait, or the mailbox is closed. Only then `job` is left unchanged.
+  // - kFull: `capacity` jobs wait, or the mailbox is closed. Only in this case is `job` unchanged.
   PutResult Put(RenderJob&& job);
 
   // Removes and returns the oldest job. Moving subjects go before stills, but at most

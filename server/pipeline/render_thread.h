@@ -26,8 +26,9 @@ namespace furrow::server {
 // in flight, encodes each picture once per encoding, and passes the results to `deliver`. Without
 // viewers it sleeps.
 //
-// Stills use kStillSamples per pixel if the settings leave the number to the device: hair and
-// lashes speckle at one sample, which shows once they stop moving.
+// Stills (refined pictures of a subject at rest) use kStillSamples samples per pixel if the
+// settings leave the number to the device: with one sample, hair and lashes show specks that are
+// noticeable once they stop moving.
 //
 // A lost context is created again for the next job. While that fails, jobs are dropped and counted,
 // twice as many before each new attempt (up to kMaxJobsSkipped), so that a missing GPU does not
@@ -38,7 +39,8 @@ class RenderThread : public PictureSource {
   static constexpr int kStillSamples = 4;
 
   // Receives finished pictures. Called on the render thread, or on the submitting thread if the
-  // mailbox is full. Must not block. Every ticket of every job comes back, with or without bytes.
+  // mailbox is full. Must not block. Every ticket of every job is returned, in a picture with bytes
+  // or, after a failure, without.
   using Deliver = std::function<void(FinishedPicture)>;
 
   // Creates the renderer, at the start and after each loss. Called on the render thread.
@@ -57,6 +59,7 @@ class RenderThread : public PictureSource {
     return mailbox_.WithdrawStill(subscription);
   }
   [[nodiscard]] Result<render::Camera> Preset(std::string_view name) const override;
+  // The renderer and its device, for people.
   [[nodiscard]] const std::string& description() const { return description_; }
 
  private:

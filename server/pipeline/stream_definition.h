@@ -35,13 +35,13 @@ struct StreamDefinition {
   // Pairs of (joint name in the rig, joint name in the stream) that a skeleton map has matched.
   std::vector<std::pair<std::string, std::string>> aliases;
   std::shared_ptr<const wrinkle::RigBinding> binding;
-  // Move the character; null if nothing is rendered.
+  // These two move the character by the stream's poses; null if nothing is rendered.
   std::shared_ptr<const wrinkle::Retarget> retarget;
   std::shared_ptr<const wrinkle::BlendShapePose> blend_shape_pose;
 };
 
 // Creates stream definitions and keeps the `capacity` most recently used ones, so that a sender
-// that restarts, or another one with the same skeleton, costs nothing.
+// that restarts, or several senders with equal skeletons, share one.
 class StreamDefinitions {
  public:
   // `character`: outlives this object; null: nothing is rendered. `matcher` finds the joints of

@@ -26,14 +26,16 @@ class SubjectPipeline {
   [[nodiscard]] wrinkle::LocalPose* mutable_pose() { return &pose_; }
 
   [[nodiscard]] const wrinkle::LocalPose& pose() const { return pose_; }
-  // What the weights are made from: the pose, measured from the neutral where there is one.
+  // The pose from which weights are solved: pose(), or with a neutral pose, the difference of
+  // pose() from it, applied to the rest pose.
   [[nodiscard]] const wrinkle::LocalPose& solved_pose() const {
     return neutral_pose_ ? corrected_ : pose_;
   }
 
-  // Measures weights from this pose (a performer's own neutral face) instead of the skeleton's rest
+  // Measures weights from `neutral` (the performer's relaxed face) instead of the skeleton's rest
   // pose; nullopt: from the rest pose. Pictures show the pose unchanged. Solves the current pose
-  // again. False: the counts differ from the stream's; nothing has changed.
+  // again. False: the counts of joints or blend shapes differ from the stream's; nothing has
+  // changed.
   bool SetNeutral(std::optional<wrinkle::LocalPose> neutral);
   [[nodiscard]] const std::optional<wrinkle::LocalPose>& neutral_pose() const {
     return neutral_pose_;
@@ -59,11 +61,13 @@ class SubjectPipeline {
   void SetLevel(std::size_t num_drivers);
   [[nodiscard]] std::size_t level() const { return solver_.num_drivers(); }
 
-  // No pose arrived for `dt` more seconds: weights hold, then decay to neutral. The pose stays.
+  // Advances the weights by `dt` seconds without a new pose: they hold, then decay to neutral. The
+  // pose stays.
   [[nodiscard]] wrinkle::JobStatus Decay(double dt);
-  // True if every weight has decayed below what is visible or sent.
+  // True if every weight has decayed so far that it is neither visible nor sent.
   [[nodiscard]] bool neutral() const;
 
+  // True after the first solved pose. The next two describe the last solved pose.
   [[nodiscard]] bool has_pose() const { return has_pose_; }
   [[nodiscard]] std::uint32_t sequence() const { return sequence_; }
   [[nodiscard]] std::int64_t capture_time_us() const { return capture_time_us_; }
@@ -72,6 +76,8 @@ class SubjectPipeline {
   [[nodiscard]] const StreamDefinition& stream() const { return *stream_; }
   [[nodiscard]] std::shared_ptr<const StreamDefinition> shared_stream() const { return stream_; }
 
+  // Copies the current state. `age_us`: time since the pose, > 0 while weights decay.
+  // `received_us`: arrival of the pose on the daemon's clock.
   [[nodiscard]] std::shared_ptr<const Snapshot> TakeSnapshot(std::int64_t age_us,
                                                              std::int64_t received_us = 0) const;
 

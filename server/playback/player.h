@@ -19,8 +19,8 @@ namespace furrow::server {
 // Poses carry the capture times of the recording, so from its start and at any speed the weights
 // equal those of `furrow solve`. Going back restarts the filter. While paused, the player repeats
 // the current frame, so that the subject does not count as lost. If another sender takes over the
-// subject, playback continues without effect, is logged once, and regains the subject when that
-// sender leaves.
+// subject, playback continues without effect, which is logged once, and regains the subject when
+// that sender leaves. All functions run on the thread of shard 0.
 class Player : public Link {
  public:
   struct State {
@@ -35,12 +35,12 @@ class Player : public Link {
     bool loop = true;
     double speed = 1.0;
   };
-  // A change of the timeline. Absent members stay as they are.
+  // A change of the timeline. An absent member leaves its value unchanged.
   struct Change {
     std::optional<bool> playing;
     std::optional<bool> loop;
     std::optional<double> speed;     // [kMinSpeed, kMaxSpeed]
-    std::optional<double> position;  // clamped to the recording
+    std::optional<double> position;  // seconds from the first frame; clamped to the recording
   };
   static constexpr double kMinSpeed = 0.05;
   static constexpr double kMaxSpeed = 8.0;
@@ -49,14 +49,17 @@ class Player : public Link {
   // kInvalidArgument for a recording without frames or one that the wire cannot carry (too many
   // blend shapes, names that are not UTF-8).
   [[nodiscard]] static Result<std::unique_ptr<Player>> Load(const std::filesystem::path& path);
+  // `file`: name of the recording, for State.
   explicit Player(motion::Clip clip, std::string file);
 
-  // Offers the subject and sends its first frame. The hub outlives this.
+  // Offers the subject and sends its first frame. `hub` must outlive the player.
   void Start(Hub* hub, Time now);
   // Sends a frame if one is due. Returns when to call it next.
   Time Advance(Time now);
-  // Errors: kInvalidArgument, with the field as `where`; nothing has changed then.
+  // Changes the timeline. Errors: kInvalidArgument, with the field as `where`; nothing has changed
+  // then.
   [[nodiscard]] Status Apply(const Change& change, Time now);
+  // The state of the timeline at `now`.
   [[nodiscard]] State state(Time now) const;
 
   // Link: receives the replies to a publisher.

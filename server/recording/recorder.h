@@ -18,6 +18,7 @@
 
 namespace furrow::server {
 
+// The options of a recorder.
 struct RecorderOptions {
   recording::TakeFolderOptions folder;
   bool datagrams = true;                            // also record the datagrams as received
@@ -25,15 +26,16 @@ struct RecorderOptions {
   std::size_t queue_bytes = std::size_t{64} << 20;  // maximum of bytes that wait for the disk
 };
 
-// Writes everything that the hub uses to MCAP files (docs/RECORDING.md). The network threads only
-// copy bytes into a queue; a background thread writes them.
+// Records skeletons, poses, weights and datagrams of a hub in MCAP files (docs/RECORDING.md). The
+// network threads only copy bytes into a queue; a background thread writes them.
 //
 // - Data is flushed as a whole chunk within a second, so a killed daemon loses at most that second.
 // - If the disk is too slow, messages are missing from the recording; they are counted and logged.
 //   Live poses are not affected. A write error ends the recording, and the daemon continues.
 class Recorder : public RecordingTap {
  public:
-  // Errors: those of TakeFolder::Open().
+  // Opens the folder and starts the thread. `metrics` must outlive the recorder. Errors: those of
+  // TakeFolder::Open().
   [[nodiscard]] static Result<std::unique_ptr<Recorder>> Start(RecorderOptions options, Time now,
                                                                Metrics* metrics);
   ~Recorder() override;  // writes the queue and completes the file

@@ -14,7 +14,7 @@
 
 namespace furrow::server {
 
-// A sequence of events. All their bytes are in one block of memory, which is reused.
+// A sequence of events to record. Their bytes share one block of memory, which Clear() keeps.
 class RecordingBatch {
  public:
   enum class Event : std::uint8_t {
@@ -30,6 +30,7 @@ class RecordingBatch {
     std::size_t payload_bytes = 0;
   };
 
+  // Appends an event with copies of its texts; sets the sizes in `entry`.
   void Add(Entry entry, std::string_view subject, std::span<const std::uint8_t> payload);
   void Clear();
   [[nodiscard]] std::size_t size() const { return entries_.size(); }
@@ -68,7 +69,7 @@ class RecordingQueue {
   // Replaces `batch` with all queued events. Returns at once if 512 KiB are queued or the queue is
   // stopped, otherwise after `wait`. False: the queue is stopped and this was the last batch.
   [[nodiscard]] bool Take(RecordingBatch* batch, std::chrono::milliseconds wait);
-  // Refuses further events and ends Take().
+  // Rejects further events. Take() returns false after the queued ones.
   void Stop();
 
  private:

@@ -21,14 +21,15 @@
 
 namespace furrow::server {
 
-// The JSON routes of docs/HTTP-API.md, /healthz, /readyz and /metrics. Routes requests by path and
-// method. Runs on the hub's thread; every reply is quick.
+// Answers the JSON routes (docs/HTTP-API.md), /healthz, /readyz and /metrics, by path and method.
+// All functions run on the hub's thread and never wait for I/O or rendering.
 class Api {
  public:
+  // Pointers must outlive the Api.
   struct Parts {
-    std::uint64_t session = 0;
-    Time started{0};
-    const Metrics* metrics = nullptr;
+    std::uint64_t session = 0;          // the daemon's random session number
+    Time started{0};                    // when the daemon started
+    const Metrics* metrics = nullptr;   // not null
     PictureSource* pictures = nullptr;  // null: the daemon renders nothing
     bool wants_pictures = false;        // the configuration asks for pictures
     std::string renderer;               // description of the renderer, for people
@@ -40,7 +41,8 @@ class Api {
   Api(const Api&) = delete;
   Api& operator=(const Api&) = delete;
 
-  // Requires the hub's exclusive lock.
+  // Answers one request; an unknown path or method gives an error reply (404, 405). Requires the
+  // hub's exclusive lock.
   [[nodiscard]] ApiReply Answer(const ApiRequest& request, Hub& hub, Time now);
 
  private:

@@ -20,6 +20,7 @@ namespace furrow::server {
 // undoes captures: POST /api/capture and /api/capture/undo.
 class CaptureApi {
  public:
+  // Both require the hub's exclusive lock. After an error reply nothing has changed.
   [[nodiscard]] ApiReply PostCapture(const ApiRequest& request, Hub& hub, Time now);
   [[nodiscard]] ApiReply Undo(Hub& hub, Time now);
 

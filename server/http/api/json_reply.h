@@ -13,13 +13,15 @@ namespace furrow::server {
 
 using Json = nlohmann::ordered_json;
 
-// A reply with status 200 and a document. Invalid UTF-8 is shown with replacement characters.
+// Returns a reply with status 200 and the document `json`. Invalid UTF-8 in it becomes replacement
+// characters.
 [[nodiscard]] ApiReply JsonReply(const Json& json);
 
 // Parses the JSON object in the body of a request. Errors: kParse, kSchema; `where` is "body".
 [[nodiscard]] Result<Json> ParseObject(const ApiRequest& request);
 
-// Status 404 with a hint that lists the connected subjects. Requires the hub's exclusive lock.
+// Returns a reply with status 404 and a hint that lists the connected subjects. `name`: the
+// requested subject; empty: any. Requires the hub's exclusive lock.
 [[nodiscard]] ApiReply NoSuchSubject(const Hub& hub, std::string_view name);
 
 }  // namespace furrow::server

@@ -13,7 +13,9 @@ class PlaybackApi {
   // `player`: null without --play; every request is then answered with 409.
   explicit PlaybackApi(Player* player) : player_(player) {}
 
+  // The state of the timeline.
   [[nodiscard]] ApiReply Show(Time now) const;
+  // Changes the members that the body names, or none if one is invalid. Returns the new state.
   [[nodiscard]] ApiReply Patch(const ApiRequest& request, Time now);
 
  private:

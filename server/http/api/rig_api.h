@@ -10,10 +10,13 @@ namespace furrow::server {
 // Shows the rig in use and explains wrinkle weights: /api/rig, /api/rig.json and /api/explain.
 class RigApi {
  public:
-  // `captures`: provides the undo history that /api/rig shows.
+  // `captures`: provides the undo history that /api/rig shows; must outlive this object.
   explicit RigApi(const CaptureApi* captures) : captures_(captures) {}
 
+  // All functions require the hub's exclusive lock.
+  // A summary of the rig: regions, maps, drivers.
   [[nodiscard]] ApiReply ShowRig(const Hub& hub) const;
+  // The rig as a file to save.
   [[nodiscard]] ApiReply RigFile(const Hub& hub) const;
   // Explains one weight of a subject's current pose. Evaluates the subject in full from now on.
   [[nodiscard]] ApiReply Explain(const ApiRequest& request, Hub& hub) const;

@@ -10,7 +10,7 @@
 
 namespace furrow::server {
 
-// One entry of GET /api/settings.
+// Returns one entry of GET /api/settings: the description of a setting and its current `value`.
 [[nodiscard]] nlohmann::ordered_json SettingJson(const render::SettingInfo& info,
                                                  const std::string& value);
 

@@ -8,16 +8,19 @@
 
 namespace furrow::server {
 
-// Shows and changes what pictures look like: /api/settings, /api/settings.toml and /api/cameras.
+// Shows and changes the settings of pictures: /api/settings, /api/settings.toml and /api/cameras.
+// All functions with a Hub require its exclusive lock.
 class SettingsApi {
  public:
   // `pictures`: null if the daemon renders nothing.
   explicit SettingsApi(PictureSource* pictures) : pictures_(pictures) {}
 
+  // All settings as JSON, and as a TOML file to save.
   [[nodiscard]] ApiReply Settings(const Hub& hub) const;
   [[nodiscard]] ApiReply SettingsFile(const Hub& hub) const;
   // Changes all settings in the body, or none if one is invalid.
   [[nodiscard]] ApiReply PatchSettings(const ApiRequest& request, Hub& hub, Time now);
+  // The camera presets of the character.
   [[nodiscard]] ApiReply Cameras() const;
 
  private:

@@ -29,12 +29,16 @@ class StatusApi {
   };
   explicit StatusApi(Parts parts) : parts_(std::move(parts)) {}
 
+  // All functions with a Hub require its exclusive lock.
+  // The connected subjects with the statistics of their streams.
   [[nodiscard]] ApiReply Subjects(Hub& hub, Time now) const;
+  // The version, uptime, counts and renderer of the daemon.
   [[nodiscard]] ApiReply ShowStatus(const Hub& hub, Time now) const;
-  // The reply itself shows that the hub's event loop runs.
+  // Always 200: a reply shows that the hub's event loop runs.
   [[nodiscard]] ApiReply Health() const;
+  // 200, or 503 while the daemon shuts down or lacks the renderer that its configuration asks for.
   [[nodiscard]] ApiReply Ready(const Hub& hub) const;
-  // Prometheus' text format.
+  // All counters in Prometheus' text format.
   [[nodiscard]] ApiReply MetricsText(const Hub& hub) const;
 
  private:

@@ -9,13 +9,14 @@
 
 namespace furrow::server {
 
-// A request to the API and its reply, independent of HTTP syntax.
+// A request to the API, independent of HTTP syntax.
 struct ApiRequest {
   std::string method;  // "GET", "PATCH"
   Url url;
   std::string body;
 };
 
+// The reply to a request.
 struct ApiReply {
   int status = 200;
   std::string type = "application/json";
@@ -24,12 +25,13 @@ struct ApiReply {
   std::string allow;      // status 405: the allowed methods, "GET, PATCH"
 };
 
-// The error object of docs/HTTP-API.md. The overload derives the HTTP status from the code and the
-// field from `where`.
+// Returns a reply with an error object: {"error": {"code", "field", "message", "hint"}}. `status`:
+// the HTTP status. `field`: the invalid field of the request; may be empty. `hint`: what to do. The
+// overload derives the HTTP status from the status code, and the field from `where`.
 [[nodiscard]] ApiReply ErrorReply(int status, std::string_view code, std::string_view field,
                                   std::string_view message, std::string_view hint = {});
 [[nodiscard]] ApiReply ErrorReply(const Status& status);
-// 405 Method Not Allowed. `allow`: the methods of the path, "GET, HEAD".
+// Returns 405 Method Not Allowed. `allow`: the methods of the path, "GET, HEAD".
 [[nodiscard]] ApiReply MethodReply(std::string_view method, std::string_view path,
                                    std::string allow);
 

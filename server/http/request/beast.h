@@ -26,9 +26,10 @@ namespace http = boost::beast::http;
 [[nodiscard]] inline auto Redirect(beast::error_code& error) {
   return net::redirect_error(net::use_awaitable, error);
 }
-inline constexpr auto kWebDeadline =
-    std::chrono::seconds(10);  // to send a request, or to read a response
-inline constexpr auto kWebIdle = std::chrono::seconds(30);  // a silent WebSocket
+// The time that a client has to send a request, or to read a response.
+inline constexpr auto kWebDeadline = std::chrono::seconds(10);
+// The time after which a silent WebSocket is closed.
+inline constexpr auto kWebIdle = std::chrono::seconds(30);
 
 using WebRequest = http::request<http::string_body>;
 

@@ -10,10 +10,11 @@
 
 namespace furrow::server {
 
+// One file of the web page.
 struct PageFile {
   std::string_view type;  // "text/html; charset=utf-8"
   std::string bytes;
-  std::string gzip;        // empty if it would not be smaller
+  std::string gzip;        // `bytes` compressed; empty if that is not smaller
   std::string etag;        // with quotation marks
   bool immutable = false;  // the name contains a hash of the content
 };
@@ -27,7 +28,7 @@ class PageFiles {
   // folder or no index.html), kIo, kLimit.
   [[nodiscard]] static Result<PageFiles> Load(const std::filesystem::path& folder);
 
-  // Null: there is no such file.
+  // The file at `path` ("/app.js"), owned by this object; null if there is none.
   [[nodiscard]] const PageFile* Find(std::string_view path) const;
 
  private:

@@ -11,6 +11,7 @@
 
 namespace furrow::server {
 
+// Converts Beast's string view to the standard one.
 [[nodiscard]] inline std::string_view ToView(beast::string_view text) {
   return {text.data(), text.size()};
 }
@@ -35,7 +36,7 @@ template <class Body>
   co_return !error && response.keep_alive();
 }
 
-// Sends a whole reply. Returns as WriteResponse().
+// Sends a whole reply. False: the connection must close, as for WriteResponse().
 [[nodiscard]] net::awaitable<bool> WriteReply(beast::tcp_stream& stream, const WebRequest& request,
                                               ApiReply reply);
 

@@ -18,7 +18,8 @@ struct Url {
   [[nodiscard]] std::string_view Value(std::string_view name) const;
 };
 
-// Parses "/mjpeg?subject=ann&camera=eyes". nullopt: not a path, or an invalid percent escape.
+// Parses a request target such as "/mjpeg?subject=ann&camera=eyes" and decodes percent escapes.
+// nullopt: it is not a path, or has an invalid escape.
 [[nodiscard]] std::optional<Url> ParseUrl(std::string_view target);
 
 }  // namespace furrow::server

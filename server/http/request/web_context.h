@@ -17,7 +17,8 @@ namespace furrow::server {
 // Answers the JSON routes, /metrics, /healthz and /readyz. Called on the hub's thread.
 using AnswerApi = std::function<ApiReply(const ApiRequest& request, Hub& hub, Time now)>;
 
-// The state that all connections of the web server share. Outlives them.
+// The state that all connections of the web server share. It outlives the connections. The web
+// thread uses it; other threads only read `connections` and `viewers`.
 struct WebContext {
   HttpConfig config;
   RequestGuard guard;
@@ -30,7 +31,9 @@ struct WebContext {
   std::atomic<int> viewers = 0;  // WebSockets and picture streams
 };
 
+// Largest request body and largest WebSocket message from a client.
 inline constexpr std::size_t kMaxWebMessageBytes = 64 * 1024;
+// Largest header of a request.
 inline constexpr std::size_t kMaxWebHeaderBytes = 8 * 1024;
 
 }  // namespace furrow::server

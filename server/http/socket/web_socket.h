@@ -6,8 +6,9 @@
 
 namespace furrow::server {
 
-// Accepts the upgrade and carries messages between the client and the hub until one of them closes,
-// or the client violates docs/HTTP-API.md.
+// Accepts the WebSocket upgrade in `request` and carries messages between the client and the hub
+// until one of them closes, or the client violates the protocol. `context` must outlive the
+// coroutine, which runs on the web thread.
 [[nodiscard]] net::awaitable<void> ServeWebSocket(beast::tcp_stream stream, WebContext* context,
                                                   WebRequest request);
 

@@ -24,11 +24,14 @@ class TcpServer {
 
   // Errors: kUnavailable; the message names the address and the port.
   [[nodiscard]] Status Open(const asio::ip::tcp::endpoint& endpoint);
+  // The port that it listens on.
   [[nodiscard]] std::uint16_t port() const;
+  // Starts accepting.
   void Start();
 
   // Stops accepting. Open connections send what is queued and close.
   void Drain();
+  // Closes all connections immediately.
   void CloseAll();
   [[nodiscard]] std::size_t num_sessions() const { return sessions_.size(); }
 

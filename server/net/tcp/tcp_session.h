@@ -23,13 +23,15 @@
 namespace furrow::server {
 
 // One TCP connection: a reader, a writer and a watchdog coroutine, and a bounded outbox between the
-// hub and the writer. Runs on one thread, except for the Link functions.
+// hub and the writer. Runs on the thread of the socket's event loop, except for the functions of
+// Link, which any network thread may call.
 class TcpSession : public Link, public std::enable_shared_from_this<TcpSession> {
  public:
   // `on_closed`: called once, after the connection has closed.
   TcpSession(asio::ip::tcp::socket socket, const Limits& limits, Hub* hub, Metrics* metrics,
              std::function<void(const std::shared_ptr<TcpSession>&)> on_closed);
 
+  // Adds the peer to the hub and starts the coroutines, which keep this object alive.
   void Start();
   // Sends what is queued, then closes. `linger`: first reads and ignores input until the peer
   // closes, because closing with unread input would reset the connection and lose the last reply.

@@ -30,12 +30,13 @@ class UdpBatch {
   // Fills the batch from a non-blocking socket. Returns the number of datagrams; 0: none is
   // waiting.
   std::size_t Receive(int socket);
-  // Datagrams that the kernel lost since the last call.
+  // The number of datagrams that the kernel lost since the last call, for lack of buffer space.
   std::uint64_t TakeDropped() { return std::exchange(dropped_, 0); }
 
   // Datagram `i` of the last Receive(). A datagram above the limit of the wire is cut to
   // kMaxDatagramBytes + 1 bytes.
   [[nodiscard]] std::span<const std::uint8_t> bytes(std::size_t i) const;
+  // The address that sent datagram `i`.
   [[nodiscard]] asio::ip::udp::endpoint sender(std::size_t i) const;
 
  private:

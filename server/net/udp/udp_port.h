@@ -24,7 +24,9 @@ namespace furrow::server {
 // sender to the same socket, so a sender stays in one shard.
 class UdpPort {
  public:
-  // `shards`: the number of shards of the hub, which divide Limits::max_udp_peers among them.
+  // `shards`: the number of shards of the hub; each may have an equal part of
+  // Limits::max_udp_peers. `recording`: optional; receives every datagram with a valid envelope.
+  // All pointers must outlive the port.
   UdpPort(asio::io_context& io, int shards, const Limits& limits, Hub* hub, Metrics* metrics,
           RecordingTap* recording);
   ~UdpPort();
@@ -34,8 +36,9 @@ class UdpPort {
   // Errors: kUnavailable; the message names the address and the port.
   [[nodiscard]] Status Open(const asio::ip::udp::endpoint& endpoint);
   [[nodiscard]] std::uint16_t port() const { return servers_.front()->port(); }
+  // Starts reading, and the threads of shards 1 and above.
   void Start();
-  // Joins the threads.
+  // Stops reading and joins the threads.
   void Close();
 
  private:

@@ -27,8 +27,8 @@ namespace furrow::server {
 // The UDP socket of one shard: receives and sends datagrams in batches, reassembles fragments, and
 // keeps one peer per address.
 //
-// An address becomes a peer only with a valid envelope, so garbage costs one look at 32 bytes. At
-// most Limits::max_udp_peers peers are remembered.
+// An address becomes a peer only after a datagram with a valid envelope, so an invalid datagram
+// costs only a check of its first 32 bytes. At most Limits::max_udp_peers peers are remembered.
 class UdpServer : public BufferedSender {
  public:
   // `recording`: optional; receives every datagram with a valid envelope.
@@ -38,7 +38,7 @@ class UdpServer : public BufferedSender {
   UdpServer(const UdpServer&) = delete;
   UdpServer& operator=(const UdpServer&) = delete;
 
-  // kOwn: only this socket uses the port. kShared: other sockets of this daemon use it, too, and
+  // kOwn: only this socket uses the port. kShared: several sockets of this daemon use the port, and
   // the kernel assigns each sender to one of them (SO_REUSEPORT).
   enum class Port { kOwn, kShared };
   // Errors: kUnavailable; the message names the address and the port. A kShared port must not be in
