@@ -30,12 +30,14 @@ class MocapInputs {
   // of MocapInput::Open().
   [[nodiscard]] Status Open(const Options& options, asio::io_context& io, Hub* hub,
                             Metrics* metrics);
+  // Starts reading all open ports.
   void Start();
-  // Call it about every 10 ms.
+  // Completes frames without an end-of-frame mark. Call it about every 10 ms.
   void Tick(Time now);
+  // Stops reading and closes the ports.
   void Close();
 
-  // Absent: the port is off.
+  // The port that the input listens on; absent if it is off.
   [[nodiscard]] std::optional<std::uint16_t> vmc_port() const { return PortOf(vmc_.get()); }
   [[nodiscard]] std::optional<std::uint16_t> livelink_face_port() const {
     return PortOf(livelink_face_.get());

@@ -24,7 +24,7 @@ struct Snapshot {
   std::shared_ptr<const wrinkle::BlendShapePose> blend_shape_pose;
   std::vector<wrinkle::Transform> joints;  // local transforms, stream's skeleton
   std::vector<float> blend_shapes;         // in the stream's order
-  std::vector<float> wrinkle_weights;      // [0, 1], in the order of the binding
+  std::vector<float> wrinkle_weights;      // in the order of the binding
   std::vector<float> filtered_values;
 };
 

@@ -26,8 +26,7 @@ class SubjectPipeline {
   [[nodiscard]] wrinkle::LocalPose* mutable_pose() { return &pose_; }
 
   [[nodiscard]] const wrinkle::LocalPose& pose() const { return pose_; }
-  // The pose from which weights are solved: pose(), or with a neutral pose, the difference of
-  // pose() from it, applied to the rest pose.
+  // The pose from which weights are solved: pose(), relative to the neutral pose if one is set.
   [[nodiscard]] const wrinkle::LocalPose& solved_pose() const {
     return neutral_pose_ ? corrected_ : pose_;
   }

@@ -69,7 +69,7 @@ class RecordingQueue {
   // Replaces `batch` with all queued events. Returns at once if 512 KiB are queued or the queue is
   // stopped, otherwise after `wait`. False: the queue is stopped and this was the last batch.
   [[nodiscard]] bool Take(RecordingBatch* batch, std::chrono::milliseconds wait);
-  // Rejects further events. Take() returns false after the queued ones.
+  // Rejects further events. Take() then returns the queued events and false.
   void Stop();
 
  private:

@@ -25,6 +25,7 @@ namespace furrow::server {
 // Ping, ListSubjects). Invalid messages are counted and, except over UDP, answered with an error.
 class Dispatcher {
  public:
+  // All pointers are not null and outlive the dispatcher.
   struct Parts {
     Shards* shards = nullptr;
     StreamRouter* router = nullptr;
@@ -42,9 +43,11 @@ class Dispatcher {
   // so `bytes` must stay valid until StreamRouter::PublishGathered().
   void Dispatch(Shard& shard, Peer& peer, std::span<const std::uint8_t> bytes, Time now);
 
-  // Sends a list of the subjects to a peer that follows it, if the list has changed since.
+  // Sends the list of subjects to a peer that follows it, if the list has changed since the last
+  // one. Requires the exclusive lock.
   void UpdateSubjectList(Peer& peer);
-  // Refuses all further subscriptions because the daemon shuts down.
+  // Makes the dispatcher refuse all further subscriptions, because the daemon shuts down. Requires
+  // the exclusive lock.
   void RefuseSubscriptions() { refuses_subscriptions_ = true; }
 
  private:

@@ -31,9 +31,9 @@
 
 namespace furrow::server {
 
-// The session of a daemon: its peers, subjects and subscriptions. Messages come in through
-// OnMessage() and leave through each peer's Link. The hub has no sockets and no clock; every call
-// brings the time, so tests run a session without waiting.
+// The session of a daemon: its peers, subjects and subscriptions. Messages arrive through
+// OnMessage() and leave through each peer's Link. The hub has no sockets and no clock: the time is
+// an argument of each call, so tests run a session without waiting.
 //
 // Several network threads may share a hub. Each has its own shard: a peer belongs to the shard
 // whose thread reads its messages, and only that thread calls functions for the peer. Poses need
@@ -79,17 +79,18 @@ class Hub {
   // Called by the shard's thread, like all functions with a PeerId. `link` outlives the peer.
   // `name` appears in the log.
   PeerId AddPeer(Transport transport, std::string name, Link* link, Time now, int shard = 0);
+  // Ends the peer's streams and subscriptions and forgets the peer.
   void RemovePeer(PeerId id);
 
   // Handles one whole message: a TCP frame, a datagram or a reassembled message. Errors are counted
   // and, if the transport allows it, answered.
   void OnMessage(PeerId id, std::span<const std::uint8_t> bytes, Time now);
-  // The same for one message of a batch. A pose may wait, so that many are solved together, until
-  // the shard lock ends; `bytes` must stay valid until then. Output and its order are those of
-  // OnMessage(). Requires the shard's lock.
+  // Handles one message of a batch. Unlike OnMessage(), it may delay a pose until the shard lock
+  // ends, so that many poses are solved together; `bytes` must stay valid until then. The output
+  // and its order are those of OnMessage(). Requires the shard's lock.
   void GatherMessage(PeerId id, std::span<const std::uint8_t> bytes, Time now);
-  // UDP: adds to the credit of an unproven address. Counts fragments, too. Requires the shard's
-  // lock.
+  // UDP: records that `bytes` bytes arrived, fragments included, so that as many may be sent to an
+  // address that is not proven yet. Requires the shard's lock.
   void OnBytesReceived(PeerId id, std::size_t bytes, Time now);
   // True if the peer may be forgotten: no subscriptions, and silent for Limits::idle_seconds.
   [[nodiscard]] bool IsIdle(PeerId id, Time now);
@@ -100,11 +101,13 @@ class Hub {
   void OnBadFrame(PeerId id);
   // TCP: answers a connection beyond Limits::max_connections, which never becomes a peer.
   void RefuseConnection(Link* link);
-  // A frame of a foreign mocap wire. The peer was added to shard 0 as Transport::kMocap.
+  // Handles a frame of a foreign motion-capture protocol. The peer was added to shard 0 as
+  // Transport::kMocap.
   void OnMocapFrame(PeerId id, const protocol::mocap::NeutralFrame& frame, Time now);
 
-  // Shard 0's thread calls the remaining functions.
+  // Only the thread of shard 0 calls the functions from here on.
 
+  // Sends a finished picture to its viewers.
   void OnPicture(const FinishedPicture& picture);
   // Handles lost and decaying subjects, leases, and frames held back by rates. Call it about every
   // 10 ms.
@@ -112,7 +115,8 @@ class Hub {
   // Says goodbye to all peers and refuses new subscriptions. Call it on SIGTERM.
   void Drain();
 
-  // The functions below require the exclusive lock, and so do the objects that they return.
+  // The functions below require the exclusive lock, and so does every use of the objects that they
+  // return.
 
   [[nodiscard]] const SubjectRegistry& subjects() const { return subjects_; }
   // Finds a subject by name (empty: the oldest) and evaluates all of its drivers from now on. Null:
@@ -121,6 +125,7 @@ class Hub {
   // The name of the peer that publishes the subject, for people; empty if the peer has left.
   [[nodiscard]] std::string_view SourceOf(const Subject& subject);
   [[nodiscard]] const render::Settings& own_settings() const { return subscribers_.own_settings(); }
+  // Replaces the daemon's settings for pictures and sends every changed view again.
   void SetOwnSettings(const render::Settings& settings, Time now) {
     subscribers_.SetOwnSettings(settings, now);
   }

@@ -17,8 +17,8 @@
 
 namespace furrow::server {
 
-// Turns the frames of foreign mocap wires (VMC, Live Link Face) into streams: offers a skeleton
-// when a subject appears or changes its layout, then routes its poses.
+// Converts the frames of foreign motion-capture protocols (VMC, Live Link Face) to streams: offers
+// a skeleton when a subject appears or changes its joints or blend shapes, then routes its poses.
 //
 // All mocap peers belong to shard 0, so shard 0's lock guards this object.
 class MocapStreams {
@@ -27,11 +27,12 @@ class MocapStreams {
   MocapStreams(double idle_seconds, Shards* shards, StreamRouter* router, Metrics* metrics)
       : idle_seconds_(idle_seconds), shards_(shards), router_(router), metrics_(metrics) {}
 
-  // Precondition: the caller holds the shard's lock. Frames of a rejected subject, and of more than
-  // 64 subjects, are counted as Counter::kMocapRefused.
+  // Handles one frame. Requires the lock of `shard`. Frames of a rejected subject, and of subjects
+  // beyond the first 64, are dropped and counted as Counter::kMocapRefused.
   void OnFrame(Shard& shard, Peer& peer, const protocol::mocap::NeutralFrame& frame, Time now);
 
-  // The subject has left: its next frame offers it again. Requires the exclusive lock.
+  // Records that the hub has removed a subject, so its next frame offers it again. Requires the
+  // exclusive lock.
   void ForgetSubject(const std::string& name);
   // Forgets rejected streams that have gone idle. Requires the exclusive lock.
   void ForgetRejected(Time now);

@@ -11,7 +11,8 @@
 
 namespace furrow::server {
 
-// Holds back messages so that many leave in one system call. Flush() sends them.
+// An interface of senders that collect messages, so that one system call sends many of them.
+// Flush() sends the collected messages.
 class BufferedSender {
  public:
   virtual ~BufferedSender() = default;

@@ -15,11 +15,13 @@ namespace furrow::server {
 // shards cannot starve it. The mutexes are not recursive.
 class ShardMutexes {
  public:
+  // `num_shards` >= 1.
   explicit ShardMutexes(int num_shards) : gates_(static_cast<std::size_t>(num_shards)) {}
 
+  // Locks one shard, in [0, num_shards). Blocks while another thread holds or awaits all shards.
   void Lock(int shard);
   void Unlock(int shard) { gates_[static_cast<std::size_t>(shard)].mutex.unlock(); }
-  // The caller must not hold a shard.
+  // Locks all shards. The caller must not hold a shard.
   void LockAll();
   void UnlockAll();
   // Gives up exclusive access but keeps one shard locked.

@@ -40,11 +40,13 @@ class StreamRouter {
   bool OnOffer(Peer& peer, const protocol::Header& header, const protocol::SkeletonOffer& offer,
                Time now);
 
-  // Takes a pose up to its subject's local pose. The pose waits in the shard's batch for
-  // PublishGathered(), so `payload` must stay valid until then. `payload`: see GatheredPose.
+  // Copies a pose into its subject's pipeline and adds it to the shard's batch, where it waits for
+  // PublishGathered(). `payload`: the FlatBuffers buffer of the pose, valid until then; empty if
+  // the pose is partial. Requires the lock of `shard`.
   void AcceptPose(Shard& shard, Peer& peer, const protocol::Header& header,
                   const protocol::PoseFrame& pose, std::span<const std::uint8_t> payload, Time now);
-  // Solves the waiting poses of a shard together and publishes them in order of arrival.
+  // Solves the waiting poses of a shard together and publishes them in order of arrival. Requires
+  // the lock of `shard`.
   void PublishGathered(Shard& shard);
 
   // Publishes weights that changed without a new pose. `age_us`: time since the last pose, > 0.

@@ -20,9 +20,10 @@ namespace furrow::server {
 // Accepts TCP connections, at most Limits::max_connections at a time, and owns their sessions.
 class TcpServer {
  public:
+  // `io`, `hub` and `metrics` must outlive the server. All functions run on the thread of `io`.
   TcpServer(asio::io_context& io, const Limits& limits, Hub* hub, Metrics* metrics);
 
-  // Errors: kUnavailable; the message names the address and the port.
+  // Listens at `endpoint`. Errors: kUnavailable; the message names the address and the port.
   [[nodiscard]] Status Open(const asio::ip::tcp::endpoint& endpoint);
   // The port that it listens on.
   [[nodiscard]] std::uint16_t port() const;

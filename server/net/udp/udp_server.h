@@ -54,6 +54,7 @@ class UdpServer : public BufferedSender {
   void DropWaiting();
   // Starts reading. Fatal errors propagate out of the event loop.
   void Start();
+  // Stops reading and closes the socket.
   void Close();
 
   // Sends the shard's messages to UDP peers.

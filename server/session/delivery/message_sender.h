@@ -13,15 +13,17 @@
 
 namespace furrow::server {
 
-// Encodes messages and sends them to peers. Holds one encoder and one buffer, so each thread needs
-// its own. Every message carries the daemon's session number. Messages that exceed the credit of an
-// unproven UDP address are dropped and counted.
+// Encodes messages and sends them to peers. It has one encoder and one buffer, so two threads must
+// not share a sender. Every message carries the daemon's session number. Messages that exceed the
+// credit of an unproven UDP address are dropped and counted.
 class MessageSender {
  public:
-  // `shard`: passed on to Link::SendFrame().
+  // `session`: of the daemon. `metrics`: not null; outlives this object. `shard`: of the calling
+  // thread, or Link::kExclusive; passed on to Link::SendFrame().
   MessageSender(std::uint64_t session, Metrics* metrics, int shard = 0)
       : session_(session), metrics_(metrics), shard_(shard) {}
 
+  // Sends a reply. `header`: see ReplyHeader(); its session number is replaced by the daemon's.
   template <class Message>
   void SendReply(Peer& peer, protocol::Header header, const Message& message) {
     if (!Encode(peer, header, message)) return;
@@ -35,7 +37,7 @@ class MessageSender {
     if (!Encode(peer, header, message)) return 0;
     return Push(peer, key, sent, dropped, keep);
   }
-  // The same for a payload that is already encoded.
+  // Sends one frame as SendFrame() does, from a FlatBuffers payload that is already encoded.
   std::uint64_t SendEncodedFrame(Peer& peer, std::uint64_t key, protocol::Header header,
                                  std::span<const std::uint8_t> payload, Counter sent,
                                  Counter dropped, std::size_t keep) {

@@ -12,15 +12,15 @@
 
 namespace furrow::server {
 
-// What one thread needs to publish a subject's frames: a message sender and reused buffers, so that
-// a pose allocates nothing.
+// The message sender and the buffers with which one thread publishes the frames of subjects. The
+// buffers are reused, so that a pose allocates nothing.
 struct PublishContext {
   PublishContext(std::uint64_t session, Metrics* metrics, int shard)
       : messages(session, metrics, shard) {}
 
   MessageSender messages;
 
-  // What `encoded` holds. Subscriptions with equal keys share one encoding.
+  // Identifies the content of `encoded`. Subscriptions with equal keys share one encoding.
   struct EncodedWeightsKey {
     std::uint64_t names_hash = 0;
     protocol::WeightFormat format = protocol::WeightFormat::kF32;

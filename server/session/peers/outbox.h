@@ -16,13 +16,15 @@ namespace furrow::server {
 //
 // - Replies are never dropped. A peer with `max_replies` or `max_reply_bytes` of queued replies is
 //   not reading; the caller closes it.
-// - Frames have a key, their subscription. At most `keep` frames of a key are queued; a new frame
+// - Frames have a key, which is their subscription. At most `keep` frames of a key are queued; a
+// new frame
 //   then replaces the oldest. Pictures keep 1; weights keep a few, so that a burst of poses is not
 //   lost to a peer that keeps up.
 // - At most `max_frames` frames of all keys are queued; a new frame then replaces the oldest one.
 // - Frames with kKeepAll queue behind the replies, in order. At most kMaxWaitingFrameBytes of them
 //   are queued; further frames are dropped.
-// - Sent messages leave their memory to new ones. Does not allocate in the long run.
+// - New messages reuse the memory of sent ones, so the outbox stops allocating after a while. Not
+//   thread-safe.
 class Outbox {
  public:
   Outbox(std::size_t max_replies, std::size_t max_frames,

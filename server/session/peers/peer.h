@@ -22,21 +22,23 @@ using PeerId = std::uint64_t;  // unique for the life of the daemon; 0: no peer
 // and if the queue is full the new frame is dropped.
 inline constexpr std::size_t kKeepAll = std::numeric_limits<std::size_t>::max();
 
+// How a peer is connected. kMocap: a foreign motion-capture protocol; kWeb: WebSocket or HTTP.
 enum class Transport { kTcp, kUdp, kMocap, kWeb };
 
 // Carries messages to one peer. The network layer implements it.
 //
-// The hub calls it under the exclusive lock. SendReply() is also called under the lock of the peer's
-// own shard; SendFrame() and DropFrames() under the lock of any shard, by several at once.
+// The hub calls all functions under its exclusive lock. In addition, it calls SendReply() under the
+// lock of the peer's shard, and SendFrame() and DropFrames() under the lock of any shard, so
+// several threads may call those two at once.
 class Link {
  public:
   virtual ~Link() = default;
   // Queues a reply. Replies keep their order and are never dropped for newer messages.
   virtual void SendReply(std::span<const std::uint8_t> message) = 0;
   // Queues a frame of weights, a pose or a picture. If the peer is slow, only the newest `keep`
-  // frames of a `key` stay queued. Returns the number of dropped frames. `shard`: of the calling
-  // thread; kExclusive: the caller holds the exclusive lock and the frame must follow the replies
-  // sent before it, so that no frame overtakes the reply that explains it.
+  // frames of a `key` stay queued. Returns the number of dropped frames. `shard`: that of the
+  // calling thread, or kExclusive if the caller holds the exclusive lock. A kExclusive frame leaves
+  // after all earlier replies, so that it cannot overtake the reply that explains it.
   static constexpr int kExclusive = -1;
   virtual int SendFrame(std::uint64_t key, std::span<const std::uint8_t> message, std::size_t keep,
                         int shard) = 0;
@@ -44,7 +46,7 @@ class Link {
   virtual void SetTakesBundles(bool /*takes_bundles*/) {}
   // Drops the queued frames of a key.
   virtual void DropFrames(std::uint64_t key) = 0;
-  // True if the peer has not read a byte for a while. Sending more would only displace what waits.
+  // True if the peer has stopped reading, so that new frames would only replace queued ones.
   [[nodiscard]] virtual bool IsStuck(Time /*now*/) const { return false; }
 };
 
@@ -52,8 +54,8 @@ class Link {
 struct Peer {
   PeerId id = 0;
   Transport transport = Transport::kTcp;
-  std::string name;  // for the log: "udp 127.0.0.1 port 50112"
-  Link* link = nullptr;
+  std::string name;              // for the log: "udp 127.0.0.1 port 50112"
+  Link* link = nullptr;          // not null; outlives the peer
   TokenBucket bucket{1.0, 1.0};  // limits incoming messages
   SendCredit credit;             // UDP: bytes that may be sent before the address is proven
   std::uint64_t token = 0;       // UDP: Hello must return it to prove the address; 0: none sent

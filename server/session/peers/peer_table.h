@@ -12,16 +12,17 @@
 
 namespace furrow::server {
 
-// The peers of one shard. The address of a Peer is stable until Remove(). Table `table` of `tables`
-// assigns only ids with id % tables == table, so that an id names its table.
+// The peers of one shard. The address of a Peer is stable until Remove(). Table number `table` of
+// `tables` tables assigns only ids with id % tables == table, so that an id identifies its table.
 class PeerTable {
  public:
   explicit PeerTable(int table = 0, int tables = 1)
       : step_(static_cast<PeerId>(tables)), next_id_(step_ + static_cast<PeerId>(table)) {}
 
-  // The table that assigned the id.
+  // The number of the table that assigned the id.
   [[nodiscard]] static std::size_t TableOf(PeerId id, std::size_t tables) { return id % tables; }
 
+  // Adds a peer with the next id. `link` must outlive the peer.
   Peer& Add(Transport transport, std::string name, Link* link, TokenBucket bucket, Time now) {
     auto peer = std::make_unique<Peer>();
     peer->id = std::exchange(next_id_, next_id_ + step_);
@@ -34,6 +35,7 @@ class PeerTable {
     peers_.emplace(added.id, std::move(peer));
     return added;
   }
+  // Null if there is no peer with this id.
   [[nodiscard]] Peer* Find(PeerId id) {
     const auto found = peers_.find(id);
     return found == peers_.end() ? nullptr : found->second.get();

@@ -5,11 +5,14 @@
 
 namespace furrow::server {
 
-// Prevents amplification attacks with forged source addresses: until a UDP address has proved that
-// it receives our messages, it is sent at most as many bytes as it has sent.
+// Limits the bytes that the daemon sends to a UDP address, which prevents amplification attacks
+// with forged source addresses: until the address has proved that it receives messages, the daemon
+// sends at most as many bytes to it as it has received from it.
 class SendCredit {
  public:
+  // Adds credit for bytes that arrived from the address.
   void Received(std::uint64_t bytes) { received_ += bytes; }
+  // The address is proven: sending is unlimited from now on.
   void Prove() { proven_ = true; }
   [[nodiscard]] bool proven() const { return proven_; }
 

@@ -17,7 +17,7 @@ namespace furrow::server {
 // wait for the next interval.
 class SkeletonRequestLimiter {
  public:
-  static constexpr std::size_t kMaxStreams = 256;
+  static constexpr std::size_t kMaxStreams = 256;  // bounds the memory per peer
   static constexpr Time kInterval = std::chrono::microseconds(protocol::kNeedSkeletonMicroseconds);
 
   // True if the caller may send a request for the stream now. Records the request.

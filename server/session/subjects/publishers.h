@@ -41,11 +41,11 @@ class Publishers {
   // The subject of the pose; null if no accepted offer matches (see OnUnknownStream()).
   [[nodiscard]] Subject* FindSubject(const Peer& peer, const protocol::Header& header,
                                      const protocol::PoseFrame& pose);
-  // Copies the pose into the subject's pipeline. False: the pose is late, duplicate or does not fit
-  // the skeleton; it is counted.
+  // Copies the pose into the subject's pipeline. False: the pose was dropped and counted, because
+  // it is late, duplicate or does not fit the skeleton.
   [[nodiscard]] bool AcceptPose(Subject& subject, const protocol::Header& header,
                                 const protocol::PoseFrame& pose);
-  // Completes a solved pose. False: the solver refused it; it is counted.
+  // Completes a solved pose. False: the solver rejected the pose, which is counted.
   [[nodiscard]] bool OnSolved(const GatheredPose& pose);
   // Asks the sender of a pose for its skeleton, or, if another sender has taken over the subject,
   // rejects the stream. Replies at most once per stream and interval.

@@ -13,6 +13,7 @@ namespace furrow::server {
 // movement, not with the previous pose, so slow drift counts as movement.
 class RestDetector {
  public:
+  // Compares a new pose and its weights, which arrived at `now`, with the last movement.
   void Update(const wrinkle::LocalPose& pose, std::span<const float> wrinkle_weights, Time now);
   // Arrival time of the last pose that moved; 0 before the first Update().
   [[nodiscard]] Time moved_at() const { return moved_at_; }

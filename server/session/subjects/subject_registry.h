@@ -64,8 +64,10 @@ struct Subject {
 // All subjects of a daemon, by name and by the stream that feeds them, in order of arrival.
 class SubjectRegistry {
  public:
-  static constexpr std::size_t kMaxRetired = 4096;
+  static constexpr std::size_t kMaxRetired = 4096;  // bounds the memory that reconnecting peers use
 
+  // The subject with this name, id or stream; null if there is none. Its address is stable until
+  // Remove().
   [[nodiscard]] Subject* Find(std::string_view name);
   [[nodiscard]] Subject* Find(SubjectId id);
   [[nodiscard]] Subject* Find(const StreamKey& key);
@@ -79,7 +81,7 @@ class SubjectRegistry {
   // True if the stream fed a subject until another stream took over. The last kMaxRetired streams
   // are remembered.
   [[nodiscard]] bool IsRetired(const StreamKey& key) const { return retired_.contains(key); }
-  // Detaches the subject from its stream.
+  // Detaches the subject from its stream; the subject stays.
   void Release(Subject& subject);
 
   void Remove(SubjectId id);

@@ -14,7 +14,8 @@ namespace furrow::server {
 // jitter are 0 and start again.
 class SubjectStats {
  public:
-  // Counts a pose that was used. `capture_time_us` 0: the pose has no capture time.
+  // Counts a pose that was solved. `capture_time_us`: on the sender's clock; 0: none. `now`:
+  // arrival.
   void OnPose(std::uint32_t sequence, std::int64_t capture_time_us, Time now);
   // Counts a late or duplicate pose.
   void OnLate() { ++late_; }

@@ -40,8 +40,9 @@ class FanOut {
   // Sends the poses that a rate limit or a stuck peer held back, so that the last pose of a
   // movement always arrives. Requires exclusive access to the hub.
   void SendOwed(Time now);
-  // The same for one subscription, if its rate and its flow control allow it now. Precondition: it
-  // is bound to a subject.
+  // Sends the pose that was held back from one subscription, if its rate and its flow control allow
+  // it now. Precondition: the subscription is bound to a subject. Requires exclusive access to the
+  // hub.
   void SendOwed(Subscription& subscription, Time now);
 
  private:

@@ -17,9 +17,9 @@
 
 namespace furrow::server {
 
-// The picture half of the subscriptions: what each viewer wants to see, which pictures to render
-// for a pose, and the way of a finished picture to its viewers (STANDARD.md section 9). Equal views
-// of a subject share one picture.
+// Manages the subscriptions to pictures (STANDARD.md section 9): checks what each viewer requests,
+// requests pictures from the renderer for each pose, and sends finished pictures to their viewers.
+// Equal views of a subject share one picture.
 //
 // AddJob() and Submit() may run on several threads for different subjects; all other functions
 // require exclusive access to the hub.
@@ -53,7 +53,7 @@ class PictureViews {
   [[nodiscard]] static bool NeedsStill(Subscription& subscription, Time now);
 
   // Adds a picture of the subject's pose to `jobs`, which belong to one subject. With flow control,
-  // does so only if the viewer may receive one now; otherwise the subscription stays owed.
+  // does so only if the viewer may receive one now; otherwise Subscription::owed stays true.
   void AddJob(Subscription& subscription, PictureRequest& request, std::int64_t age_us, Time now,
               std::vector<RenderJob>* jobs);
   // Hands the jobs to the renderer and empties the list.

@@ -49,12 +49,12 @@ class Subscribers {
   // request, with an error.
   void UpdatePictures(Peer& peer, const protocol::Header& header,
                       const protocol::SubscribePictures& request, Time now);
-  // The viewer has shown picture `number`.
+  // Handles the acknowledgement that the viewer has shown picture `number`.
   void Acknowledge(Peer& peer, const protocol::Header& header, std::uint32_t number, Time now);
   // False: the peer has no such subscription.
   bool Unsubscribe(Peer& peer, std::uint16_t id);
 
-  // Ends all subscriptions of a peer; the second form sends it a goodbye for each.
+  // Ends all subscriptions of a peer; the second form sends the peer a goodbye for each.
   void RemovePeer(Peer& peer);
   void RemovePeer(Peer& peer, protocol::GoodbyeReason goodbye);
 

@@ -19,16 +19,16 @@ namespace furrow::server {
 // Peer::num_subscriptions up to date. The address of a subscription is stable until Erase().
 class SubscriptionTable {
  public:
-  // Gives the subscription its peer, uid and id.
+  // Adds a subscription and sets its peer, uid and id. `request`: the header of the message.
   Subscription& Add(Peer& peer, const protocol::Header& request,
                     std::unique_ptr<Subscription> subscription);
-  // Also drops the frames that are queued for it.
+  // Destroys a subscription and drops its queued frames.
   void Erase(Subscription& subscription);
 
   // Null: no such subscription.
   [[nodiscard]] Subscription* Find(std::uint64_t uid) const;
   [[nodiscard]] Subscription* Find(const Peer& peer, std::uint16_t id) const;
-  // The subscription that this very request has created before.
+  // The subscription that an earlier copy of this request created; null if there is none.
   [[nodiscard]] Subscription* FindRepeated(const Peer& peer, const protocol::Header& request) const;
 
   // Binds a subscription to a subject. Binding twice changes nothing.
@@ -49,7 +49,7 @@ class SubscriptionTable {
     SortByRequest(&selected);
     return selected;
   }
-  // In no particular order. `function` must not add or erase.
+  // Calls `function` for all subscriptions, in no particular order. It must not add or erase any.
   template <class Function>
   void ForEach(const Function& function) const {
     for (const auto& [uid, subscription] : by_uid_) function(*subscription);

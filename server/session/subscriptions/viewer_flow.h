@@ -15,10 +15,12 @@ namespace furrow::server {
 // Only one picture is requested from the renderer at a time. The caller supplies the time.
 class ViewerFlow {
  public:
+  // Unacknowledged pictures at a time (STANDARD.md section 9).
   static constexpr std::uint32_t kMaxUnderWay = 2;
   static constexpr int kNumTiers = 3;
   static constexpr Time kRetry = FromSeconds(0.25);  // delay after a failed picture
 
+  // True if the viewer may receive another picture and none is requested.
   [[nodiscard]] bool CanRequest(Time now) const;
   // True between Request() and Send(), Fail() or Withdraw().
   [[nodiscard]] bool is_pending() const { return pending_; }
@@ -40,6 +42,7 @@ class ViewerFlow {
   [[nodiscard]] bool HasStill(Time since) const { return has_still_ && requested_at_ >= since; }
   // The quality tier: 0 is best, kNumTiers - 1 is worst.
   [[nodiscard]] int tier() const { return tier_; }
+  // Number of sent pictures that are not acknowledged.
   [[nodiscard]] std::uint32_t under_way() const { return sent_ - acknowledged_; }
   // Poses that were skipped because two pictures were unacknowledged.
   [[nodiscard]] std::uint32_t dropped() const { return dropped_; }

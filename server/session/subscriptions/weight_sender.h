@@ -8,9 +8,9 @@
 
 namespace furrow::server {
 
-// Sends the weights that the subscription selects, with their age (0: from a new pose). Reuses the
-// encoding in `context` if another subscription of the same subject asked for the same values. Does
-// not allocate in the long run.
+// Sends the weights that `request`, the content of `subscription`, selects. `age_us`: time since
+// the last pose; 0: from a new pose. If another subscription to this subject has just selected
+// equal values, reuses their encoding in `context`. Stops allocating after a while.
 void SendWeights(Subscription& subscription, const WeightsRequest& request, std::int64_t age_us,
                  PublishContext* context);
 
