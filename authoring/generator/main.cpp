@@ -33,7 +33,8 @@ int main(int argc, char** argv) {
   app.add_option("RIGS", rigs, "Folder of rig files (default: the shipped folder)");
   app.add_option("SHARE", share, "Output folder for the shipped characters, rigs and recordings");
   app.add_option("--out", out, "Output FILE.glb of one character; also writes FILE.rig.json");
-  app.add_option("--sex", options.face.sex, "Sex: -1 a woman, 0 neutral, 1 a man")
+  app.add_option("--sex", options.face.sex,
+                 "Sex: -1 female, 0 neutral, 1 male; values in between blend")
       ->check(CLI::Range(-1.0f, 1.0f))
       ->capture_default_str();
   app.add_option("--age", options.face.age,
@@ -41,7 +42,7 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(18.0f, 90.0f))
       ->capture_default_str();
   app.add_option("--grey", options.face.grey,
-                 "Fraction of grey hair, 0 to 1 (default: depends on the age)")
+                 "Fraction of grey hair, 0 to 1 (default: derived from the age)")
       ->check(CLI::Range(0.0f, 1.0f));
   app.add_option("--level", options.level,
                  "Level of detail of the head, 0 (about 3,000 triangles) to 2")

@@ -42,8 +42,10 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
   app->add_option("--bind", config->bind, "Listen on this address (default: 127.0.0.1)");
   app->add_option("--tcp", config->tcp, "TCP port for poses, weights and pictures (default: 7400)");
   app->add_option("--udp", config->udp, "UDP port for poses and weights (default: 7401)");
-  app->add_option("--threads", config->threads,
-                  "Number of threads that receive UDP; senders are spread over them (default: 1)")
+  app->add_option(
+         "--threads", config->threads,
+         "Number of threads that receive UDP, 1 to 64; each sender is served by one of them\n"
+         "(default: 1)")
       ->type_name("N");
   app->add_option("--http", config->http.port,
                   "Port of the web page (default: 7480, or any free port if it is in use)");

@@ -2,6 +2,7 @@
 #include "server/config/config.h"
 
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <utility>
 
@@ -12,21 +13,30 @@ namespace {
 
 Status Invalid(std::string what) { return Status(StatusCode::kInvalidArgument, std::move(what)); }
 
+std::string NumberText(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%g", value);
+  return text;
+}
+
 // Values from a file are not trusted: zero would refuse everybody, and huge ones overflow durations
 // in nanoseconds.
 Status ValidateLimits(const Limits& limits) {
-  const std::pair<const char*, int> counts[] = {
-      {"max_connections", limits.max_connections},     {"max_udp_peers", limits.max_udp_peers},
-      {"max_subjects", limits.max_subjects},           {"max_skeletons", limits.max_skeletons},
-      {"outbox_messages", limits.outbox_messages}};
+  const std::pair<const char*, int> counts[] = {{"max_connections", limits.max_connections},
+                                                {"max_udp_peers", limits.max_udp_peers},
+                                                {"max_subjects", limits.max_subjects},
+                                                {"max_skeletons", limits.max_skeletons},
+                                                {"outbox_messages", limits.outbox_messages}};
   for (const auto& [name, value] : counts) {
     if (value < 1 || value > 1'000'000) {
-      return Invalid(std::string("limits.") + name + " must be 1 to 1000000");
+      return Invalid(std::string("limits.") + name + " is " + std::to_string(value) +
+                     "; it must be 1 to 1000000");
     }
   }
   // A peer's subscription ids are 16 bits and not 0.
   if (limits.max_subscriptions < 1 || limits.max_subscriptions > 65'535) {
-    return Invalid("limits.max_subscriptions must be 1 to 65535");
+    return Invalid("limits.max_subscriptions is " + std::to_string(limits.max_subscriptions) +
+                   "; it must be 1 to 65535");
   }
   const std::pair<const char*, double> numbers[] = {
       {"packets_per_second", limits.packets_per_second},
@@ -37,7 +47,8 @@ Status ValidateLimits(const Limits& limits) {
   for (const auto& [name, value] : numbers) {
     // TOML has `nan` and `inf`. 1e9 s still fits into 64-bit nanoseconds.
     if (!std::isfinite(value) || value <= 0.0 || value > 1e9) {
-      return Invalid(std::string("limits.") + name + " must be greater than 0 and at most 1e9");
+      return Invalid(std::string("limits.") + name + " is " + NumberText(value) +
+                     "; it must be greater than 0 and at most 1e9");
     }
   }
   return {};
@@ -76,7 +87,8 @@ Status ValidateConfig(const Config& config) {
     }
   }
   if (config.threads < 1 || config.threads > kMaxThreads) {
-    return Invalid("--threads must be 1 to " + std::to_string(kMaxThreads));
+    return Invalid("--threads is " + std::to_string(config.threads) + "; it must be 1 to " +
+                   std::to_string(kMaxThreads));
   }
   if (config.require_render && !config.render) {
     return Invalid("--require-render and --no-render cannot be combined");
@@ -84,14 +96,19 @@ Status ValidateConfig(const Config& config) {
   if (config.osc_prefix.empty() ||
       // OSC 1.0 reserves these characters.
       config.osc_prefix.find_first_of(" #*,?[]{}") != std::string::npos) {
-    return Invalid("osc.prefix '" + config.osc_prefix + "' is not valid in an OSC address");
+    return Invalid("osc.prefix '" + config.osc_prefix +
+                   "' must not be empty or contain blanks or any of #*,?[]{}");
   }
-  for (const double limit : {config.record.rotate_megabytes, config.record.rotate_seconds}) {
+  const std::pair<const char*, double> limits[] = {
+      {"record.rotate_megabytes", config.record.rotate_megabytes},
+      {"record.rotate_seconds", config.record.rotate_seconds}};
+  for (const auto& [name, limit] : limits) {
     if (!std::isfinite(limit) || limit < 0.0 || limit > 1e9)
-      return Invalid("record.rotate_megabytes and record.rotate_seconds must be 0 to 1e9");
+      return Invalid(std::string(name) + " is " + NumberText(limit) + "; it must be 0 to 1e9");
   }
   if (config.http.max_connections < 1 || config.http.max_connections > 1'000'000) {
-    return Invalid("http.max_connections must be 1 to 1000000");
+    return Invalid("http.max_connections is " + std::to_string(config.http.max_connections) +
+                   "; it must be 1 to 1000000");
   }
   if (config.http.enabled && config.http.port && *config.http.port != 0 &&
       *config.http.port == config.tcp) {

@@ -209,7 +209,7 @@ void AddMaterialOptions(CLI::App& command, authoring::BakeOptions& options) {
       ->check(Within(0.0, 1.0));
   command
       .add_option("--skin-wavelength", options.skin.wavelength_mm,
-                  "Distance between folds on skin, in millimetres, unless a region sets its own")
+                  "Distance between folds on skin, in millimetres, unless a region sets another")
       ->check(Within(0.2, 200.0))
       ->capture_default_str();
   command

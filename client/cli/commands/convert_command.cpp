@@ -119,7 +119,7 @@ void AddConvert(CLI::App& app, Action& action) {
   command
       ->add_option(
           "--sample-rate", options->load.sample_rate,
-          "Sample rate in Hz for formats that store curves; 0 uses the file's own key times")
+          "Sample rate in Hz for formats that store curves; 0 uses the key times of the file")
       ->check(Within(0.0, 1000.0))
       ->capture_default_str();
   const std::map<std::string, motion::BvhPositions> positions{

@@ -269,7 +269,7 @@ void AddRender(CLI::App& app, Action& action) {
   command->add_option("--character", options->character,
                       "Character package, .glb (default: the default character)");
   command->add_option("--rig", options->rig,
-                      "Wrinkle rig, by file or shipped name (default: the package's own)");
+                      "Wrinkle rig, by file or shipped name (default: the rig of the package)");
   AddSkeletonMap(*command, options->skeleton_map);
   command
       ->add_option("--frames", options->frames,

@@ -27,7 +27,7 @@ void AddTrafficOptions(CLI::App& command, LoadFlags& options) {
       ->check(CLI::Range(1, 65535));
   command
       .add_option("--rate", options.run.plan.rate,
-                  "Poses per second for each subject (default: the recording's own rate)")
+                  "Poses per second for each subject (default: the rate of the recording)")
       ->check(Within(0.01, 100000.0));
   command.add_option("--duration", options.run.plan.seconds, "Length of the run, in seconds")
       ->check(Within(0.01, 1e6))

@@ -22,7 +22,11 @@ Result<Json> ParseObject(const ApiRequest& request) {
     return !is_deep;
   };
   Json json = Json::parse(request.body, keep, /*allow_exceptions=*/false);
-  if (is_deep) return Status(StatusCode::kSchema, "the body is nested too deeply", "body");
+  if (is_deep) {
+    return Status(StatusCode::kSchema,
+                  "the body is nested deeper than " + std::to_string(kMaxDepth) + " levels",
+                  "body");
+  }
   if (json.is_discarded()) return Status(StatusCode::kParse, "the body is not valid JSON", "body");
   if (!json.is_object()) {
     return Status(StatusCode::kSchema, "the body must be a JSON object", "body");

@@ -85,12 +85,16 @@ Result<protocol::SubscribePictures> PicturesOf(const Url& url) {
   for (const auto& [name, value] : url.values) {
     // The limits of the wire, because the result becomes a message: "name=value".
     if (name.size() + value.size() + 1 > protocol::kMaxNameBytes) {
-      return Status(StatusCode::kInvalidArgument, "name and value exceed 255 bytes", name);
+      return Status(StatusCode::kInvalidArgument,
+                    "name and value have " + std::to_string(name.size() + value.size() + 1) +
+                        " bytes with '='; the limit is 255",
+                    name);
     }
     FURROW_RETURN_IF_ERROR(Set(name, value, &pictures));
   }
   if (pictures.settings.size() > protocol::kMaxPictureSettings) {
-    return Status(StatusCode::kInvalidArgument, "more than 128 settings");
+    return Status(StatusCode::kInvalidArgument,
+                  std::to_string(pictures.settings.size()) + " settings; the limit is 128");
   }
   return pictures;
 }
