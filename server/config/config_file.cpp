@@ -25,8 +25,8 @@ struct Key {
   std::function<std::string(const toml::node&)> assign;
 };
 
-// Each of these makes the key of one type. value_exact() converts nothing: 1.0 is no port, 1 no
-// flag.
+// Each of these makes the key of one type. value_exact() converts nothing: 1.0 is not a port, and 1 is
+// not a flag.
 Key Text(std::string_view name, std::string* target) {
   return {name, [target](const toml::node& node) -> std::string {
             const auto value = node.value_exact<std::string>();

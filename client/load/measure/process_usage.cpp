@@ -39,7 +39,7 @@ bool OwnsAny(const fs::path& process, const std::set<std::string>& inodes) {
   std::error_code error;
   for (fs::directory_iterator it(process / "fd", error), end; !error && it != end;
        it.increment(error)) {
-    // A descriptor may close between listing and reading; that is no error.
+    // A descriptor may close between listing and reading; which is not an error.
     std::error_code gone;
     if (inodes.contains(fs::read_symlink(it->path(), gone).string())) return true;
   }

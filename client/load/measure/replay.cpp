@@ -72,7 +72,7 @@ float Replay::Observe(std::uint32_t pose, std::span<const float> values) {
     distances.push_back(Distance(branch.solver.wrinkle_weights(), values));
     nearest = std::min(nearest, distances.back());
   }
-  // The true branch may be among those that were not followed, so this is no proof of an error.
+  // The true branch may be among those that were not followed, so this does not prove an error.
   if (nearest > tolerance_ && overflowed_) unsettled_until_us_ = now + kForgottenUs;
   // Only branches that explain what arrived stay.
   if (nearest <= tolerance_) {

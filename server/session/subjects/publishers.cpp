@@ -109,7 +109,7 @@ Subject* Publishers::Accept(Peer& peer, const StreamKey& key, const protocol::Sk
 }
 
 // Subjects with equal skeletons share one copy of the offer, which has kilobytes of names. An equal
-// hash is no proof, so the whole offer is compared.
+// hash proves nothing, so the whole offer is compared.
 std::shared_ptr<const protocol::SkeletonOffer> Publishers::ShareOffer(
     const protocol::SkeletonOffer& offer) {
   protocol::SkeletonOffer nameless = offer;

@@ -56,7 +56,7 @@ void ViewerFlow::CountDue(Time now) {
   }
   if (now - window_ >= kWindow) EndWindow(now);
   // A pose counts as missed only if two pictures are unacknowledged: then the viewer or its network
-  // is slow. A slow renderer is no reason to lower the quality.
+  // is slow. A slow renderer does not justify lowering the quality.
   ++due_;
   if (under_way() < kMaxUnderWay) return;
   ++missed_;
