@@ -79,7 +79,8 @@ class Hub {
   // Called by the shard's thread, like all functions with a PeerId. `link` outlives the peer.
   // `name` appears in the log.
   PeerId AddPeer(Transport transport, std::string name, Link* link, Time now, int shard = 0);
-  // Ends the peer's streams and subscriptions and forgets the peer.
+  // Ends the peer's subscriptions and forgets the peer. Subjects that it publishes are not removed
+  // at once: without poses they decay, then leave.
   void RemovePeer(PeerId id);
 
   // Handles one whole message: a TCP frame, a datagram or a reassembled message. Errors are counted

@@ -53,9 +53,11 @@ struct StopConditions {
 };
 
 // Runs the event loop of `watch`, `frames` and `record`: calls `on_event` for each message until it
-// returns false (success), SIGINT or SIGTERM arrives (success), the subject says goodbye, the
-// daemon reports an error, or nothing arrives within 5 seconds of the start (kNoConnection). Prints
-// the reason of an unsuccessful end to standard error. Returns the exit code.
+// returns false, `stop` applies, or SIGINT or SIGTERM arrives. Then returns kDone, or kFailed if
+// the daemon reported an error before. Prints the reason of every other end to standard error and
+// returns its exit code: a goodbye (kDone, or kNoConnection if the daemon timed out), an error
+// of the daemon (kFailed), a closed connection or no message within 5 seconds of the start
+// (kNoConnection).
 int ReceiveEvents(client::Subscriber& subscriber,
                   const std::function<bool(const client::Event&)>& on_event,
                   const StopConditions& stop = {});
