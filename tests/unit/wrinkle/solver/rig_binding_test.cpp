@@ -134,7 +134,7 @@ const Fault kNumberFaults[] = {
     {"dotted_driver", [](Rig* r) { r->drivers[0].name = "brow.l"; }, StatusCode::kInvalidArgument,
      "drivers[0].name: the name 'brow.l' holds"},
     {"long_region", [](Rig* r) { r->regions[0].name.assign(256, 'r'); }, StatusCode::kLimit,
-     "regions[0].name: the name is longer"},
+     "regions[0].name: the name has 256 bytes"},
     {"control_byte", [](Rig* r) { r->drivers[0].pose.points[0].joint = "brow\n"; },
      StatusCode::kInvalidArgument, "drivers[0].pose.points[0].joint: the name holds a control"},
     {"unnamed_driver", [](Rig* r) { r->drivers[0].name.clear(); }, StatusCode::kInvalidArgument,
@@ -249,7 +249,7 @@ const Fault kPatchFaults[] = {
      },
      StatusCode::kLimit, "vertices[0].joints"},
     {"patch_weight_missing", [](Rig* r) { Patch(r).vertices[3].skin_weights.pop_back(); },
-     StatusCode::kInvalidArgument, "vertices[3].skin_weights: a joint needs"},
+     StatusCode::kInvalidArgument, "vertices[3].skin_weights: the lists of joints"},
     {"patch_weights_sum",
      [](Rig* r) {
        Patch(r).vertices[3].skin_weights = {0.5f, 0.6f};
@@ -258,7 +258,7 @@ const Fault kPatchFaults[] = {
     {"patch_position", [](Rig* r) { Patch(r).vertices[8].position.z = kNan; },
      StatusCode::kNonFinite, "vertices[8].position"},
     {"patch_triangle", [](Rig* r) { Patch(r).triangles.back() = 9; }, StatusCode::kInvalidArgument,
-     "strain.triangles: a number is not"},
+     "strain.triangles: an index is not"},
     {"patch_two_corners", [](Rig* r) { Patch(r).triangles.pop_back(); },
      StatusCode::kInvalidArgument, "strain.triangles: a triangle has three"},
     {"patch_empty", [](Rig* r) { Patch(r).triangles.clear(); }, StatusCode::kInvalidArgument,
