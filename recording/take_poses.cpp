@@ -178,7 +178,7 @@ Result<std::vector<TakePoses>> TakePoses::LoadOf(TakeReader& take, std::string_v
   if (loader.is_ambiguous()) {
     return Status(StatusCode::kInvalidArgument, "the take has several subjects: " + Join(names),
                   take.path().string(),
-                  "choose one: " + take.path().filename().string() + "#" + *names.begin());
+                  "choose one, for example " + take.path().filename().string() + "#" + *names.begin());
   }
   std::vector<TakePoses> all = loader.Finish(take, report);
   for (const std::string& text : take.file().warnings())

@@ -12,11 +12,11 @@
 
 namespace furrow::server {
 
-// The ports of a running daemon.
+// What a running daemon serves. A port that is absent: the service is off.
 struct Ready {
   std::uint16_t tcp = 0;
   std::uint16_t udp = 0;
-  std::optional<std::uint16_t> vmc;  // absent: off
+  std::optional<std::uint16_t> vmc;
   std::optional<std::uint16_t> livelink_face;
   std::optional<std::uint16_t> http;
   bool render = false;  // a renderer is running
@@ -27,16 +27,17 @@ struct RunOptions {
   std::stop_token stop;         // requests a shutdown, as SIGTERM does
   bool handle_signals = false;  // shut down on SIGTERM and SIGINT
   std::function<void(const Ready&)>
-      on_ready;                // called on the calling thread when the daemon serves
+      on_ready;                // called on the calling thread once the daemon serves
   Metrics* metrics = nullptr;  // used instead of the daemon's own; optional
 };
 
 // Runs a daemon: loads its files, listens, prints 'furrowd ready ...' on stdout, serves until it is
-// asked to stop, and drains. Errors are logged before the function returns.
+// asked to stop, then sends what is still queued and closes the connections. Errors are logged
+// before the function returns.
 //
-// The calling thread becomes the network thread of shard 0. Further threads: Config::threads - 1
-// that receive UDP, one that renders, one for the web server, one for the recorder. Several daemons
-// may run in one process.
+// The calling thread becomes the network thread of shard 0 (a shard is one network thread's share
+// of the subjects). Further threads: Config::threads - 1 that receive UDP, one that renders, one
+// for the web server, one for the recorder. Several daemons may run in one process.
 [[nodiscard]] ExitCode Run(const Config& config, const RunOptions& options = {});
 
 }  // namespace furrow::server

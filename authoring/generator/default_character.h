@@ -16,14 +16,15 @@ struct CharacterOptions {
   FaceParameters face;
   BodyParameters body;
   int level = kDefaultLevel;  // level of detail of the head's mesh, 0 coarsest to 2 finest
-  // Width and height of the pictures of skin, cloth and wrinkles, texels. Masks, eyes and hair have
-  // half the size.
+  // Width and height of the pictures of skin, cloth and wrinkles, texels. Those of masks,
+  // eyes and hair are half as wide and high.
   int texture_size = 1024;
 };
 
 // Makes the default character (CC0), without wrinkle maps: a clothed body with a face whose joints
 // follow the muscles. Its textures and masks are embedded pictures with the names that the rig
-// default.json uses. The character holds a copy of `rig`. Equal options give equal bytes.
+// default.json uses. The character holds a copy of `rig`. The same rig and options always
+// give the same bytes.
 [[nodiscard]] character::Character MakeDefaultCharacter(const wrinkle::Rig& rig,
                                                         const CharacterOptions& options = {});
 

@@ -95,7 +95,7 @@ class PrimitiveReader {
       FURROW_RETURN_IF_ERROR(
           Attribute("WEIGHTS" + suffix, ElementType::kVec4, joints.has_value(), &weights));
       if (joints && !joints->is_unsigned()) {
-        return {StatusCode::kSchema, "expected unsigned integers", Field("JOINTS" + suffix)};
+        return {StatusCode::kSchema, "expected an array of unsigned integers", Field("JOINTS" + suffix)};
       }
       if (!joints) {
         sets.pop_back();
@@ -201,7 +201,7 @@ class PrimitiveReader {
           Accessor::Create(document_, primitive_.indices, ElementType::kScalar, where);
       FURROW_RETURN_IF_ERROR(indices);
       if (!indices->is_unsigned())
-        return {StatusCode::kSchema, "expected unsigned integers", where};
+        return {StatusCode::kSchema, "expected an array of unsigned integers", where};
       if (indices->size() > gltf::kMaxIndices)
         return {StatusCode::kLimit, "too many indices", where};
       mesh_->indices.resize(indices->size());

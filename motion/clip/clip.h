@@ -31,8 +31,8 @@ struct Clip {
 
 // The meaning of a BVH joint's position channels, which the format does not define. Most tools
 // replace the joint's OFFSET; some add to it. In both cases, an axis without a channel keeps the
-// OFFSET. LoadClip() also keeps the offset of a root whose position is 0 in every frame, as
-// MakeHuman writes it.
+// OFFSET. Even with kReplace, LoadClip() keeps the OFFSET of a root whose position is 0 in every
+// frame; MakeHuman writes such files.
 enum class BvhPositions { kReplace, kAdd };
 
 // The axis that points up in a BVH file, which the format does not define. FindUpAxis() implements
@@ -41,7 +41,7 @@ enum class UpAxis { kAuto, kY, kZ };
 
 // How a recording is read. Each reader uses the options of its format.
 struct LoadOptions {
-  float scale = 1.0f;        // multiplies every length (BVH has no unit)
+  float scale = 1.0f;        // multiplies every length, to convert it to metres
   double sample_rate = 0.0;  // Hz, for formats that store curves (glTF); 0: the file's own keys
   BvhPositions bvh_positions = BvhPositions::kReplace;
   UpAxis up_axis = UpAxis::kAuto;  // BVH only

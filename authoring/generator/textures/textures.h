@@ -6,16 +6,18 @@
 
 namespace furrow::authoring {
 
-// Pictures of eyes, lashes and hair, and the masks of the face. Colours are sRGB. Masks depend on
-// the surface point of a texel, so UV seams are invisible. `size`: width and height, texels.
+// Pictures of eyes, lashes and hair, and the masks of the face. Colours are sRGB. Masks are
+// computed from the 3D position of a texel, not from its UV, so UV seams are invisible. `size`:
+// width and height, texels.
 
 // Both eyes side by side (width 2 * size, height size): iris, pupil, limbus, veined white.
 [[nodiscard]] character::Picture PaintEyes(int size);
-// The alpha of the strip of one lash. Only a small part is opaque, so small mip levels fall below
-// the alpha cutoff of the material: a lash thinner than about a pixel disappears instead of
-// becoming a row of dots.
+// The alpha texture of the strip of geometry that is one lash. Only a small part is opaque, so
+// small mip levels fall below the alpha cutoff of the material: a lash thinner than about a pixel
+// disappears instead of becoming a row of dots.
 [[nodiscard]] character::Picture PaintLash();
-// The pictures of the hair. Strands with transparent gaps are above, the opaque cap below.
+// The pictures of the hair. The upper part shows strands with transparent gaps, the lower part the
+// opaque cap of the scalp.
 struct HairPictures {
   character::Picture colour;
   character::Picture normals;  // tangent space: the slopes of the strands
