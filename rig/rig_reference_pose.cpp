@@ -2,6 +2,7 @@
 #include "rig/rig_reference_pose.h"
 
 #include <cmath>
+#include <span>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -79,17 +80,16 @@ Result<ReferencePose> ReferencePoseFromFrame(std::string name, const PoseFrame& 
   pose.name = std::move(name);
   pose.source_size = wrinkle::SkeletonSize(skeleton);
 
-  // Model rotations of the rest pose. Parents precede their children.
-  std::vector<glm::quat> model(static_cast<std::size_t>(skeleton.num_joints()));
+  const std::span<const glm::quat> axes = skeleton.rest_model_rotations();
   for (int j = 0; j < skeleton.num_joints(); ++j) {
     const Transform& still = rest != nullptr ? rest->pose.joints[j] : skeleton.rest_pose()[j];
     const Transform& moved = frame.pose.joints[j];
     const int parent = skeleton.joint_parents()[j];
-    const glm::quat above = parent < 0 ? glm::quat(1, 0, 0, 0) : model[parent];
-    // With G, the joint's model rotation at rest, the departure in model axes is G * inverse(rest)
-    // * moved * inverse(G).
-    const glm::quat g = glm::normalize(above * still.rotation);
-    model[j] = g;
+    const glm::quat above = parent < 0 ? glm::quat(1, 0, 0, 0) : axes[parent];
+    // The departure in the joint's own axes, expressed in model axes of the skeleton's rest pose,
+    // as JointDelta defines them. The rotations of `rest` must not enter here: they contain the
+    // performer's heading and the tilt of the head.
+    const glm::quat& g = axes[j];
     JointDelta delta;
     delta.joint = skeleton.joint_names()[j];
     delta.rotation = ShorterWay(

@@ -16,6 +16,8 @@ namespace furrow::rig {
 // Converts a frame of a recording to departures from rest, in model axes (see wrinkle::JointDelta).
 //
 // - `rest`: the rest pose, a frame on the same skeleton; null: the skeleton's own rest pose.
+// - Each joint is compared with itself at rest, in its own axes. The performer's place, heading and
+//   posture therefore do not enter the pose of a face, neither in the frame nor in `rest`.
 // - Joints that move by less than 1e-5 radians and by less than 1e-6 of the skeleton's size are
 //   omitted.
 // - Errors: kInvalidArgument (a pose does not fit the skeleton), kNonFinite (names the joint).

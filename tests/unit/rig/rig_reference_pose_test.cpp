@@ -3,8 +3,12 @@
 
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <random>
 
 #include <gtest/gtest.h>
+
+#include "wrinkle/solver/subject_solver.h"
 
 namespace furrow::rig {
 namespace {
@@ -62,6 +66,96 @@ TEST(RigReferencePose, AcceptsAnotherFrameAsRest) {
   ASSERT_TRUE(pose.ok());
   ASSERT_EQ(pose->joints.size(), 1u);
   EXPECT_NEAR(pose->joints[0].rotation.w, std::cos(7.5f * kPi / 180.0f), 1e-6);
+}
+
+// Hips, neck, head and a brow, all with local frames of their own.
+class Performer : public testing::Test {
+ protected:
+  PoseFrame Rest() const {
+    PoseFrame frame{skeleton_, {}};
+    frame.pose.SetRest(skeleton_);
+    return frame;
+  }
+  // The brow raised by `strength`.
+  PoseFrame Raised(float strength) const {
+    PoseFrame frame = Rest();
+    wrinkle::Transform& brow = frame.pose.joints[3];
+    brow.rotation = brow.rotation * Turn(-20.0f * strength, {1, 0, 0});
+    brow.translation += strength * glm::vec3(0.001f, 0.004f, -0.002f);
+    return frame;
+  }
+  glm::quat RandomTurn() {
+    std::normal_distribution<float> normal;
+    return glm::normalize(
+        glm::quat(normal(random_), normal(random_), normal(random_), normal(random_)));
+  }
+  // Moves and turns the whole character, and tilts the head.
+  void MoveAround(PoseFrame* frame) {
+    std::uniform_real_distribution<float> place(-50.0f, 50.0f);
+    wrinkle::Transform& hips = frame->pose.joints[0];
+    hips.rotation = RandomTurn() * hips.rotation;
+    hips.translation += glm::vec3(place(random_), place(random_), place(random_));
+    for (int joint : {1, 2}) frame->pose.joints[joint].rotation = RandomTurn();
+  }
+  // The value of `live`, with the reference pose taken from `frame` and `rest`.
+  float Value(const PoseFrame& frame, const PoseFrame* rest, const PoseFrame& live) const {
+    wrinkle::Rig rig;
+    rig.anchor = "head";
+    rig.reference_poses = {*ReferencePoseFromFrame("up", frame, rest)};
+    rig.drivers.resize(1);
+    rig.drivers[0].name = "brow";
+    rig.drivers[0].pose.points = {{.joint = "brow"}};
+    rig.drivers[0].pose.values = {{"up", "up"}};
+    auto binding = wrinkle::RigBinding::Create(rig, skeleton_, {});
+    EXPECT_TRUE(binding.ok()) << binding.status().ToString();
+    wrinkle::SubjectSolver solver(
+        std::make_shared<const wrinkle::RigBinding>(*std::move(binding)), false);
+    EXPECT_EQ(solver.Update(live.pose, 0.0), wrinkle::JobStatus::kOk);
+    return solver.driver_values()[0];
+  }
+
+  std::mt19937 random_{21};
+  wrinkle::Skeleton skeleton_ = *wrinkle::Skeleton::Create(
+      {{"hips", -1, {{0, 1, 0}, Turn(25, {0.6f, 0.8f, 0})}, {}},
+       {"neck", 0, {{0, 0.5f, 0}, Turn(-40, {0, 0, 1})}, {}},
+       {"head", 1, {{0, 0.1f, 0}, Turn(70, {1, 0, 0})}, {}},
+       {"brow", 2, {{0.03f, 0.1f, 0.08f}, Turn(100, {0, 1, 0})}, glm::vec3(0, 0.01f, 0.05f)}});
+};
+
+TEST_F(Performer, RigidMotionOfReferenceRestOrLivePoseChangesNothing) {
+  for (const float strength : {0.3f, 0.7f, 1.0f}) {
+    const PoseFrame neutral = Rest();
+    const float expected = Value(Raised(1.0f), &neutral, Raised(strength));
+    if (strength == 1.0f) {
+      EXPECT_NEAR(expected, 1.0f, 1e-5f);
+    }
+    for (int round = 0; round < 50; ++round) {
+      PoseFrame frame = Raised(1.0f);
+      PoseFrame rest = Rest();
+      PoseFrame live = Raised(strength);
+      if (round % 4 != 1) MoveAround(&frame);
+      if (round % 4 != 2) MoveAround(&rest);
+      if (round % 4 != 3) MoveAround(&live);
+      EXPECT_NEAR(Value(frame, &rest, live), expected, 1e-5f) << round;
+      // Without a rest frame, the skeleton's own rest pose counts.
+      EXPECT_NEAR(Value(frame, nullptr, live), expected, 1e-5f) << round;
+    }
+  }
+}
+
+// A brow that is drawn sideways, on a performer who faces another way.
+TEST_F(Performer, AFaceTurnedAsideReadsOneInItsOwnFrame) {
+  const glm::quat head = skeleton_.rest_model_rotations()[2];
+  for (const float heading : {0.0f, 90.0f, 180.0f}) {
+    PoseFrame frame = Rest();
+    frame.pose.joints[3].translation += glm::conjugate(head) * glm::vec3(-0.004f, 0, 0.001f);
+    PoseFrame rest = Rest();
+    for (PoseFrame* turned : {&frame, &rest}) {
+      wrinkle::Transform& hips = turned->pose.joints[0];
+      hips.rotation = Turn(heading, {0, 1, 0}) * hips.rotation;
+    }
+    EXPECT_NEAR(Value(frame, &rest, frame), 1.0f, 1e-5f) << heading;
+  }
 }
 
 TEST(RigReferencePose, RejectsPosesThatDoNotFitTheSkeleton) {
