@@ -35,6 +35,7 @@ glm::quat ShorterWay(const glm::quat& q) { return q.w < 0.0f ? -q : q; }
 
 // exp(weight * log(q)), by the shorter rotation.
 glm::quat Scaled(const glm::quat& rotation, float weight) {
+  if (weight == 1.0f) return rotation;
   const glm::quat q = ShorterWay(rotation);
   const glm::vec3 v(q.x, q.y, q.z);
   const float sine = glm::length(v);
@@ -109,24 +110,35 @@ Result<ReferencePose> ReferencePoseFromFrame(std::string name, const PoseFrame& 
 ReferencePose MixReferencePoses(std::string name, std::span<const WeightedPose> parts) {
   ReferencePose mix;
   mix.name = std::move(name);
-  // The units of the first part that states a size. Parts without a size keep their translations.
+  // The units of the first part that states a size.
   for (const WeightedPose& part : parts) {
     if (mix.source_size == 0.0f) mix.source_size = part.pose->source_size;
   }
   std::unordered_map<std::string, std::size_t> places;
   for (const WeightedPose& part : parts) {
+    // Parts without a size are in units of the bound skeleton, whatever its size. Their
+    // translations cannot be converted here, and stay apart if the mix states a size.
     const float size = part.pose->source_size;
+    const bool apart = size == 0.0f && mix.source_size > 0.0f;
     const float scale = size > 0.0f ? mix.source_size / size : 1.0f;
     for (const JointDelta& delta : part.pose->joints) {
       // Joints keep the order of their first appearance, so that files do not change between runs.
       const auto [place, added] = places.emplace(delta.joint, mix.joints.size());
-      if (added) mix.joints.push_back({delta.joint, glm::quat(1, 0, 0, 0), glm::vec3(0.0f)});
+      if (added) mix.joints.push_back({.joint = delta.joint});
       JointDelta& sum = mix.joints[place->second];
       sum.rotation = Scaled(delta.rotation, part.weight) * sum.rotation;
-      sum.translation += delta.translation * (part.weight * scale);
+      glm::vec3& translation = apart ? sum.unscaled_translation : sum.translation;
+      translation += delta.translation * (part.weight * scale);
+      sum.unscaled_translation += delta.unscaled_translation * part.weight;
     }
   }
-  for (JointDelta& sum : mix.joints) sum.rotation = ShorterWay(glm::normalize(sum.rotation));
+  for (JointDelta& sum : mix.joints) {
+    sum.rotation = ShorterWay(sum.rotation);
+    // A mix of one pose stays the same to the bit, so that files do not change when they are
+    // written again.
+    const float square = glm::dot(sum.rotation, sum.rotation);
+    if (std::abs(square - 1.0f) > 1e-6f) sum.rotation = glm::normalize(sum.rotation);
+  }
   return mix;
 }
 

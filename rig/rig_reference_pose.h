@@ -30,7 +30,9 @@ struct WeightedPose {
 };
 
 // Adds poses in the given order. Rotations are scaled as rotation vectors and applied one after the
-// other. Translations are summed in the units of the first pose that states its size.
+// other. Translations are summed in the units of the first pose that states its size. Those of
+// poses without a size are summed apart (JointDelta::unscaled_translation), because they are in
+// units of the skeleton to which the rig will be bound.
 [[nodiscard]] wrinkle::ReferencePose MixReferencePoses(std::string name,
                                                        std::span<const WeightedPose> parts);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // RigToJson(): omits defaults and writes small objects on one line, as a person would.
 #include <array>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,54 @@ std::string ToJson(const wrinkle::ReferencePose& pose) {
       .Always("joints", pose.joints, [](const auto& delta) { return ToJson(delta); })
       .str();
 }
+
+// The reference poses of a rig as JSON. A list of joints has one unit of length. A mix of two units
+// is written as the mix of two poses, which the reader omits again.
+class PoseWriter {
+ public:
+  explicit PoseWriter(const std::vector<wrinkle::ReferencePose>& poses) : poses_(poses) {
+    for (const wrinkle::ReferencePose& pose : poses) names_.insert(pose.name);
+  }
+
+  std::vector<std::string> Write() {
+    std::vector<std::string> texts;
+    for (const wrinkle::ReferencePose& pose : poses_) {
+      wrinkle::ReferencePose scaled = pose;
+      wrinkle::ReferencePose unscaled;
+      for (wrinkle::JointDelta& delta : scaled.joints) {
+        if (delta.unscaled_translation == glm::vec3(0)) continue;
+        unscaled.joints.push_back(
+            {.joint = delta.joint, .translation = delta.unscaled_translation});
+        delta.unscaled_translation = glm::vec3(0);
+      }
+      if (unscaled.joints.empty()) {
+        texts.push_back(ToJson(pose));
+        continue;
+      }
+      scaled.name = NewName(pose.name, "scaled");
+      unscaled.name = NewName(pose.name, "not scaled");
+      texts.push_back(ToJson(scaled));
+      texts.push_back(ToJson(unscaled));
+      const auto part = [](const std::string& name) { return Object().Text("pose", name).str(); };
+      texts.push_back(Object()
+                          .Text("name", pose.name)
+                          .Always("mix", std::vector{scaled.name, unscaled.name}, part)
+                          .str());
+    }
+    return texts;
+  }
+
+ private:
+  // Names have at most 255 bytes, so long ones cannot be extended.
+  std::string NewName(const std::string& pose, const std::string& what) {
+    std::string name = (pose.size() < 200 ? pose : "mix") + " (" + what + ")";
+    while (!names_.insert(name).second) name += "'";
+    return name;
+  }
+
+  const std::vector<wrinkle::ReferencePose>& poses_;
+  std::set<std::string> names_;
+};
 
 std::string ToJson(const wrinkle::Driver& driver) {
   const std::string kind(wrinkle::DriverKindName(driver.kind));
@@ -128,7 +177,9 @@ std::string RigToJson(const Rig& rig) {
   const auto each = [](const auto& entry) { return ToJson(entry); };
   Object object;
   object.Raw("version", "1").Text("name", rig.name).Text("anchor", rig.anchor);
-  object.List("reference_poses", rig.reference_poses, each)
+  object
+      .List("reference_poses", PoseWriter(rig.reference_poses).Write(),
+            [](const std::string& text) { return text; })
       .List("drivers", rig.drivers, each)
       .List("regions", rig.regions, each)
       .List("wrinkle_maps", rig.wrinkle_maps, each)

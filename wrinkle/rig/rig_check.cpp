@@ -26,6 +26,7 @@ void CheckReferencePose(const ReferencePose& pose, const std::string& at, FieldC
     check->Label(joint, ".joint", delta.joint);
     check->Once(joint, ".joint", delta.joint, &joints);
     check->Finite(joint, ".translation", delta.translation);
+    check->Finite(joint, ".translation", delta.unscaled_translation);
     check->Finite(joint, ".rotation", delta.rotation);
     check->Require(std::abs(glm::length(delta.rotation) - 1.0f) <= 1e-3f, joint, ".rotation",
                    "the rotation is not a unit quaternion",

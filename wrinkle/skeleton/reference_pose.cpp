@@ -15,7 +15,8 @@ constexpr float kLeastDelta = 1e-6f;  // radians, source units
 
 bool IsRest(const JointDelta& delta) {
   const float turn = glm::length(glm::vec3(delta.rotation.x, delta.rotation.y, delta.rotation.z));
-  return turn < kLeastDelta && glm::length(delta.translation) < kLeastDelta;
+  return turn < kLeastDelta && glm::length(delta.translation) < kLeastDelta &&
+         glm::length(delta.unscaled_translation) < kLeastDelta;
 }
 
 void ApplyJointDelta(const JointDelta& delta, const Skeleton& skeleton, int joint, float scale,
@@ -25,8 +26,8 @@ void ApplyJointDelta(const JointDelta& delta, const Skeleton& skeleton, int join
   // joint's own axes, where it is applied after the pose so far.
   local->rotation =
       glm::normalize(local->rotation * glm::conjugate(rest_model) * delta.rotation * rest_model);
-  local->translation +=
-      ToJointAxes(skeleton, skeleton.joint_parents()[joint], delta.translation) * scale;
+  const glm::vec3 moved = delta.translation * scale + delta.unscaled_translation;
+  local->translation += ToJointAxes(skeleton, skeleton.joint_parents()[joint], moved);
 }
 
 float ReferencePoseScale(const ReferencePose& pose, const Skeleton& skeleton) {

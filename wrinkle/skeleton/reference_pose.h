@@ -16,12 +16,15 @@ namespace furrow::wrinkle {
 //
 // With rest-pose model rotation G of the joint and G_p of its parent (identity for a root):
 //   local rotation    = rest.rotation * inverse(G) * rotation * G
-//   local translation = rest.translation + inverse(G_p) * translation * bound_size / source_size
+//   local translation = rest.translation + inverse(G_p) * moved
+//   moved             = translation * bound_size / source_size + unscaled_translation
 // On a skeleton with identity rest rotations (BVH), `rotation` is the local rotation itself.
 struct JointDelta {
   std::string joint;
   glm::quat rotation{1.0f, 0.0f, 0.0f, 0.0f};
   glm::vec3 translation{0.0f};  // in units of the source skeleton; see ReferencePose::source_size
+  // In units of the bound skeleton. Only in mixes of poses with and without a source_size.
+  glm::vec3 unscaled_translation{0.0f};
 };
 
 struct ReferencePose {

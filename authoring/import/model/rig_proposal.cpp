@@ -224,6 +224,9 @@ class Proposer {
         // Origin and tail of one joint may match two joints of the model. The first one counts.
         const auto is_same = [&](const auto& known) { return known.joint == delta.joint; };
         if (std::any_of(pose.joints.begin(), pose.joints.end(), is_same)) continue;
+        // Unscaled translations are in the units of the model that the poses come from.
+        delta.translation += delta.unscaled_translation * (pose.source_size / size);
+        delta.unscaled_translation = glm::vec3(0.0f);
         pose.joints.push_back(std::move(delta));
       }
       proposal_.rig.reference_poses.push_back(std::move(pose));

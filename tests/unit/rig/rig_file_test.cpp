@@ -330,6 +330,31 @@ TEST(RigFile, ReadsPosesFromFramesAndMixes) {
   EXPECT_GT(rig->reference_poses[0].source_size, 0.0f);
 }
 
+// A list of joints has one unit of length, so the writer splits what a mix of two units moves.
+TEST(RigFile, WritesMixesOfTwoUnits) {
+  const std::string json = Replaced(kSmallRig, R"({"name": "up",
+     "joints": [{"joint": "brow",
+                 "euler_degrees": [-20, 0, 0]}]})",
+                                    R"({"name": "sized", "source_size": 3, "joints": [
+      {"joint": "brow", "euler_degrees": [-20, 7, 3], "translation": [0, 0.3, 0.1]}]},
+    {"name": "plain", "joints": [{"joint": "brow", "translation": [0.2, 0, 0]}]},
+    {"name": "up", "mix": [{"pose": "plain", "weight": 0.7}, {"pose": "sized"}]})");
+  const auto rig = Parse(json);
+  ASSERT_TRUE(rig.ok()) << rig.status().ToString();
+  const std::string written = RigToJson(*rig);
+  const auto again = Parse(written);
+  ASSERT_TRUE(again.ok()) << again.status().ToString();
+  EXPECT_EQ(RigToJson(*again), written);
+  ASSERT_EQ(again->reference_poses.size(), 1u);
+  const wrinkle::ReferencePose& up = again->reference_poses[0];
+  EXPECT_EQ(up.source_size, 3.0f);
+  EXPECT_EQ(up.joints[0].rotation, rig->reference_poses[0].joints[0].rotation);
+  EXPECT_EQ(up.joints[0].translation, glm::vec3(0, 0.3f, 0.1f));
+  EXPECT_EQ(up.joints[0].unscaled_translation,
+            rig->reference_poses[0].joints[0].unscaled_translation);
+  EXPECT_NEAR(up.joints[0].unscaled_translation.x, 0.14f, 1e-7f);
+}
+
 TEST(RigFile, ReportsErrorsInFramesAndMixes) {
   const auto parse = [](const char* pose, const wrinkle::PoseSource& source) {
     return ParseRig(Replaced(kSmallRig, R"({"name": "up",

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "wrinkle/skeleton/retarget.h"
 #include "wrinkle/solver/subject_solver.h"
 
 namespace furrow::rig {
@@ -108,8 +109,8 @@ class Performer : public testing::Test {
     rig.drivers[0].pose.values = {{"up", "up"}};
     auto binding = wrinkle::RigBinding::Create(rig, skeleton_, {});
     EXPECT_TRUE(binding.ok()) << binding.status().ToString();
-    wrinkle::SubjectSolver solver(
-        std::make_shared<const wrinkle::RigBinding>(*std::move(binding)), false);
+    wrinkle::SubjectSolver solver(std::make_shared<const wrinkle::RigBinding>(*std::move(binding)),
+                                  false);
     EXPECT_EQ(solver.Update(live.pose, 0.0), wrinkle::JobStatus::kOk);
     return solver.driver_values()[0];
   }
@@ -179,6 +180,29 @@ TEST(RigReferencePose, MixesScaleRotationVectors) {
   EXPECT_NEAR(mix.joints[0].rotation.x, std::sin(-10.0f * kPi / 180.0f), 1e-6);
   EXPECT_NEAR(mix.joints[0].translation.z, 2.0f * 0.5f - 2.0f * 1.0f * (2.0f / 4.0f), 1e-6);
   EXPECT_NEAR(mix.joints[1].rotation.y, std::sin(-9.0f * kPi / 180.0f), 1e-6);
+}
+
+// A pose without a size is in the bound skeleton's units, also in a mix with a pose that has one.
+TEST(RigReferencePose, MixesPosesWithAndWithoutASize) {
+  const wrinkle::Skeleton skeleton =
+      *wrinkle::Skeleton::Create({{"root", -1, {}, {}}, {"j", 0, {glm::vec3(0, 5, 0)}, {}}});
+  ASSERT_EQ(wrinkle::SkeletonSize(skeleton), 5.0f);
+  const wrinkle::ReferencePose sized{"a", {{.joint = "j", .translation = {0, 0, 1}}}, 2.0f};
+  const wrinkle::ReferencePose plain{"b", {{.joint = "j", .translation = {1, 0, 0}}}, 0.0f};
+  const WeightedPose one_way[] = {{&sized, 0.2f}, {&plain, 0.5f}};
+  const WeightedPose other_way[] = {{&plain, 0.5f}, {&sized, 0.2f}};
+  for (const auto& parts : {one_way, other_way}) {
+    const auto mix = MixReferencePoses("m", std::span(parts, 2));
+    const WeightedPose again[] = {{&mix, 2.0f}};
+    const auto twice = MixReferencePoses("t", again);
+    std::vector<wrinkle::Transform> locals(2);
+    ASSERT_TRUE(wrinkle::ApplyReferencePose(mix, skeleton, locals).ok());
+    EXPECT_NEAR(locals[1].translation.x, 0.5f, 1e-6f);
+    EXPECT_NEAR(locals[1].translation.z, 0.2f * 5.0f / 2.0f, 1e-6f);
+    ASSERT_TRUE(wrinkle::ApplyReferencePose(twice, skeleton, locals).ok());
+    EXPECT_NEAR(locals[1].translation.x, 0.5f + 1.0f, 1e-6f);
+    EXPECT_NEAR(locals[1].translation.z, 0.5f + 1.0f, 1e-6f);
+  }
 }
 
 TEST(RigReferencePose, EulerAnglesTurnAboutFixedAxesInOrder) {
