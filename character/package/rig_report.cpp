@@ -83,35 +83,6 @@ void WarnOfPictures(const Rig& rig, const RigReportOptions& options,
   }
 }
 
-// A reference pose that moves no control point of a driver leaves the driver's value at 0.
-void WarnOfStillPoints(const Rig& rig, const Skeleton& skeleton,
-                       std::vector<std::string>* warnings) {
-  const int anchor = skeleton.Find(rig.anchor);
-  const auto moves = [&](const wrinkle::ReferencePose& pose, const Driver& driver) {
-    for (const wrinkle::JointDelta& delta : pose.joints) {
-      const int moved = skeleton.Find(delta.joint);
-      const bool carries_anchor = anchor >= 0 && moved >= 0 && skeleton.IsAncestor(moved, anchor);
-      if (moved < 0 || carries_anchor) continue;
-      for (const wrinkle::ControlPoint& point : driver.pose.points) {
-        const int joint = skeleton.Find(point.joint);
-        if (joint >= 0 && skeleton.IsAncestor(moved, joint)) return true;
-      }
-    }
-    return false;
-  };
-  for (const Driver& driver : rig.drivers) {
-    if (driver.kind != Driver::Kind::kPose) continue;
-    for (const auto& value : driver.pose.values) {
-      for (const auto& pose : rig.reference_poses) {
-        if (pose.name != value.reference_pose || moves(pose, driver)) continue;
-        warnings->push_back("reference pose " + Quoted(pose.name) +
-                            " moves no control point of driver " + Quoted(driver.name) + ", so " +
-                            driver.name + "." + value.name + " stays 0");
-      }
-    }
-  }
-}
-
 void TryBinding(const Rig& rig, const RigReportOptions& options, RigReport* report) {
   report->skeleton_size = wrinkle::SkeletonSize(*options.skeleton);
   const auto bind = [&](bool allow_missing) {
@@ -132,7 +103,8 @@ void TryBinding(const Rig& rig, const RigReportOptions& options, RigReport* repo
   for (const std::string& shape : lenient->missing_blend_shapes()) {
     report->warnings.push_back("no blend shape " + Quoted(shape) + " comes with the skeleton");
   }
-  WarnOfStillPoints(rig, *options.skeleton, &report->warnings);
+  report->warnings.insert(report->warnings.end(), lenient->warnings().begin(),
+                          lenient->warnings().end());
 }
 
 }  // namespace

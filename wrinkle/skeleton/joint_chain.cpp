@@ -26,20 +26,31 @@ int JointChains::Add(const Skeleton& skeleton, int joint, const glm::vec3& offse
   return static_cast<int>(points_.size()) - 1;
 }
 
-glm::vec3 JointChains::Evaluate(std::span<const Transform> local, int point) const {
+namespace {
+
+// `position` is in the space of the first joint.
+template <class Vector, class Joint>
+Vector Carry(Vector position, const JointChains::Chain& chain, std::span<const Joint> local) {
   // lane_points-inl.h has the same order of operations, so that both give the same bits.
-  const Point& chain = points_[point];
-  const std::int16_t* joint = joints_.data() + chain.first;
-  glm::vec3 position = chain.offset;
-  for (const std::int16_t* const end = joint + chain.num_up; joint != end; ++joint) {
-    const Transform& t = local[*joint];
+  for (const std::int16_t joint : chain.up) {
+    const Joint& t = local[static_cast<std::size_t>(joint)];
     position = t.translation + t.rotation * (t.scale * position);
   }
-  for (const std::int16_t* const end = joint + chain.num_down; joint != end; ++joint) {
-    const Transform& t = local[*joint];
+  for (const std::int16_t joint : chain.down) {
+    const Joint& t = local[static_cast<std::size_t>(joint)];
     position = (glm::conjugate(t.rotation) * (position - t.translation)) / t.scale;
   }
   return position;
+}
+
+}  // namespace
+
+glm::vec3 JointChains::Evaluate(std::span<const Transform> local, int point) const {
+  return Carry(chain(point).offset, chain(point), local);
+}
+
+glm::dvec3 JointChains::Evaluate(std::span<const PreciseTransform> local, int point) const {
+  return Carry(glm::dvec3(chain(point).offset), chain(point), local);
 }
 
 }  // namespace furrow::wrinkle

@@ -35,6 +35,7 @@ class JointChains {
 
   // The position of point `point` in its base's space. `local` is the skeleton's pose.
   [[nodiscard]] glm::vec3 Evaluate(std::span<const Transform> local, int point) const;
+  [[nodiscard]] glm::dvec3 Evaluate(std::span<const PreciseTransform> local, int point) const;
 
  private:
   struct Point {

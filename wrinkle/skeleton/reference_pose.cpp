@@ -30,6 +30,20 @@ void ApplyJointDelta(const JointDelta& delta, const Skeleton& skeleton, int join
   local->translation += ToJointAxes(skeleton, skeleton.joint_parents()[joint], moved);
 }
 
+void ApplyJointDelta(const JointDelta& delta, const Skeleton& skeleton, int joint, float scale,
+                     PreciseTransform* local) {
+  const auto rest_model = [&](int index) {
+    if (index == kNoJoint) return glm::dquat(1.0, 0.0, 0.0, 0.0);
+    return glm::normalize(glm::dquat(skeleton.rest_model_rotations()[index]));
+  };
+  const glm::dquat own = rest_model(joint);
+  const glm::dquat turn = glm::normalize(glm::dquat(delta.rotation));
+  local->rotation = glm::normalize(local->rotation * glm::conjugate(own) * turn * own);
+  const glm::dvec3 moved =
+      glm::dvec3(delta.translation) * double{scale} + glm::dvec3(delta.unscaled_translation);
+  local->translation += glm::conjugate(rest_model(skeleton.joint_parents()[joint])) * moved;
+}
+
 float ReferencePoseScale(const ReferencePose& pose, const Skeleton& skeleton) {
   return pose.source_size > 0.0f ? SkeletonSize(skeleton) / pose.source_size : 1.0f;
 }

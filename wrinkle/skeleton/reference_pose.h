@@ -40,6 +40,10 @@ struct ReferencePose {
 // `scale` converts the delta's units to the skeleton's.
 void ApplyJointDelta(const JointDelta& delta, const Skeleton& skeleton, int joint, float scale,
                      Transform* local);
+// The same in double precision. Two poses that are equal, or opposite, up to the rounding of their
+// numbers then differ by 1e-7 of their size, and not by the rounding of joints far away.
+void ApplyJointDelta(const JointDelta& delta, const Skeleton& skeleton, int joint, float scale,
+                     PreciseTransform* local);
 
 // SkeletonSize(skeleton) / pose.source_size; 1 if the pose states no size.
 [[nodiscard]] float ReferencePoseScale(const ReferencePose& pose, const Skeleton& skeleton);

@@ -24,6 +24,20 @@ struct Transform {
 // The matrix T * R * S, which maps the joint's space to its parent's space.
 [[nodiscard]] glm::mat4 ToMatrix(const Transform& transform);
 
+// A Transform in double precision, for what is computed once, when a rig is bound.
+struct PreciseTransform {
+  PreciseTransform() = default;
+  // The rotation is normalised again, in double precision.
+  explicit PreciseTransform(const Transform& transform)
+      : translation(transform.translation),
+        rotation(glm::normalize(glm::dquat(transform.rotation))),
+        scale(transform.scale) {}
+
+  glm::dvec3 translation{0.0};
+  glm::dquat rotation{1.0, 0.0, 0.0, 0.0};
+  glm::dvec3 scale{1.0};
+};
+
 [[nodiscard]] inline bool AllFinite(std::span<const Transform> transforms) {
   glm::vec3 zero(0.0f);
   glm::quat zero_rotation(0.0f, 0.0f, 0.0f, 0.0f);

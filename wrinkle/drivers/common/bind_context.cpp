@@ -22,7 +22,8 @@ BindContext::BindContext(const BindSource& source, const Skeleton& skeleton,
       skeleton_(skeleton),
       options_(options),
       chains_(chains),
-      size_(SkeletonSize(skeleton)) {}
+      size_(SkeletonSize(skeleton)),
+      rest_locals_(skeleton.rest_pose().begin(), skeleton.rest_pose().end()) {}
 
 Status BindContext::ResolveAnchorAndPoses() {
   if (!source_.anchor.empty()) {
@@ -34,14 +35,14 @@ Status BindContext::ResolveAnchorAndPoses() {
   // Every reference pose is a full local pose on this skeleton, so drivers can measure it like a
   // live pose.
   for (const ReferencePose& pose : source_.reference_poses) {
-    std::vector<Transform> locals(skeleton_.rest_pose().begin(), skeleton_.rest_pose().end());
+    std::vector<PreciseTransform> locals = rest_locals_;
     FURROW_RETURN_IF_ERROR(ApplyPose(pose, &locals));
     reference_locals_.push_back(std::move(locals));
   }
   return {};
 }
 
-Status BindContext::ApplyPose(const ReferencePose& pose, std::vector<Transform>* locals) {
+Status BindContext::ApplyPose(const ReferencePose& pose, std::vector<PreciseTransform>* locals) {
   const float scale = ReferencePoseScale(pose, skeleton_);
   for (const JointDelta& delta : pose.joints) {
     if (IsRest(delta)) continue;
@@ -94,7 +95,7 @@ Status BindContext::Unusable(std::string_view owner, std::string_view why) {
   return {};
 }
 
-const std::vector<Transform>* BindContext::ReferenceLocals(std::string_view name) const {
+const std::vector<PreciseTransform>* BindContext::ReferenceLocals(std::string_view name) const {
   for (std::size_t i = 0; i < source_.reference_poses.size(); ++i) {
     if (source_.reference_poses[i].name == name) return &reference_locals_[i];
   }

@@ -51,15 +51,17 @@ class BindContext {
   [[nodiscard]] float size() const { return size_; }  // SkeletonSize()
   [[nodiscard]] int anchor() const { return anchor_; }
   [[nodiscard]] bool anchor_missing() const { return anchor_missing_; }
+  // The skeleton's local transforms in the rest pose.
+  [[nodiscard]] std::span<const PreciseTransform> rest_locals() const { return rest_locals_; }
   // The skeleton's local transforms in reference pose `name`; null if the rig has no such pose.
-  [[nodiscard]] const std::vector<Transform>* ReferenceLocals(std::string_view name) const;
+  [[nodiscard]] const std::vector<PreciseTransform>* ReferenceLocals(std::string_view name) const;
 
   [[nodiscard]] std::vector<std::string>& missing_joints() { return missing_joints_; }
   [[nodiscard]] std::vector<std::string>& missing_blend_shapes() { return missing_blend_shapes_; }
   [[nodiscard]] std::vector<std::string>& warnings() { return warnings_; }
 
  private:
-  [[nodiscard]] Status ApplyPose(const ReferencePose& pose, std::vector<Transform>* locals);
+  [[nodiscard]] Status ApplyPose(const ReferencePose& pose, std::vector<PreciseTransform>* locals);
 
   const BindSource& source_;
   const Skeleton& skeleton_;
@@ -68,7 +70,8 @@ class BindContext {
   float size_ = 0.0f;
   int anchor_ = kNoJoint;
   bool anchor_missing_ = false;
-  std::vector<std::vector<Transform>> reference_locals_;  // one per reference pose
+  std::vector<PreciseTransform> rest_locals_;
+  std::vector<std::vector<PreciseTransform>> reference_locals_;  // one per reference pose
   std::vector<std::string> missing_joints_;
   std::vector<std::string> missing_blend_shapes_;
   std::vector<std::string> warnings_;

@@ -4,32 +4,59 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "base/scalar.h"
+#include "wrinkle/drivers/pose/pose_gram.h"
 
 namespace furrow::wrinkle {
 namespace {
 
 // A displacement below this share of the skeleton's size is rounding, not a pose.
 constexpr float kLeastDisplacement = 1e-6f;
-// Added to the Gram matrix's diagonal (which is about 1). Poses that nearly coincide then share
-// their weight instead of trading it back and forth from frame to frame.
-constexpr double kRidge = 1e-7;
 
 std::string OwnerOf(const std::string& name) { return "driver '" + name + "'"; }
 
-// In double: a Gram matrix of rounded products may not be positive definite.
+// In double: the terms of long vectors cancel.
 double Dot(StackedPoints a, StackedPoints b) {
   double sum = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += glm::dot(glm::dvec3(a[i]), glm::dvec3(b[i]));
   return sum;
 }
 
+double Dot(StackedPoints a, std::span<const glm::dvec3> b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += glm::dot(glm::dvec3(a[i]), b[i]);
+  return sum;
+}
+
 float SquaredLength(StackedPoints points) { return static_cast<float>(Dot(points, points)); }
 
-// d / dot(d, d), for one point of d; 0 if the square is 0.
-glm::vec3 Projection(const glm::vec3& d, float square) {
-  return square > 0.0f ? glm::vec3(glm::dvec3(d) / double{square}) : glm::vec3(0.0f);
+// "'a' and 'b'", "'a', 'b' and 'c'".
+std::string Listed(const std::vector<int>& values, const PoseDriver& driver) {
+  std::string text;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (i > 0) text += i + 1 == values.size() ? " and " : ", ";
+    text += "'" + driver.values[static_cast<std::size_t>(values[i])].reference_pose + "'";
+  }
+  return text;
+}
+
+// The warning about poses that depend on one another.
+std::string Describe(const PoseDependence& dependence, const PoseDriver& driver) {
+  char cosine[32];
+  std::snprintf(cosine, sizeof cosine, "%.4f", dependence.cosine);
+  const std::string poses = "reference poses " + Listed(dependence.poses, driver);
+  const std::string with_cosine = std::string(" (cosine ") + cosine;
+  if (dependence.poses.size() > 2) {
+    return poses + " are almost mixes of one another" + with_cosine +
+           " between one and a mix of the others), so noise moves their values; remove one, or add "
+           "points that distinguish them";
+  }
+  const bool opposite = dependence.cosine < 0.0;
+  return poses + " move its control points in almost " +
+         (opposite ? "opposite directions" : "the same direction") + with_cosine +
+         "), so noise moves their values; remove one, or add points that distinguish them";
 }
 
 // The control point in its joint's space. Offsets that state the size of their skeleton scale with
@@ -59,10 +86,11 @@ Status PoseDriverSet::Bind(const std::string& name, const PoseDriver& driver, in
   FURROW_RETURN_IF_ERROR(BindPoints(name, driver, context, &usable));
   if (!usable) return {};
   entry.num_points = static_cast<std::uint32_t>(points_.size()) - entry.first_point;
+  PreciseVectors precise;
   for (const PoseDriver::Value& value : driver.values) {
-    FURROW_RETURN_IF_ERROR(BindValue(name, value, entry, context));
+    FURROW_RETURN_IF_ERROR(BindValue(name, value, entry, context, &precise));
   }
-  if (entry.solve == PoseSolve::kNnls) BindGram(&entry);
+  if (entry.solve == PoseSolve::kNnls) BindGram(name, driver, precise, &entry, context);
   entries_.push_back(entry);
   return {};
 }
@@ -94,26 +122,33 @@ Status PoseDriverSet::BindPoints(const std::string& name, const PoseDriver& driv
 }
 
 Status PoseDriverSet::BindValue(const std::string& name, const PoseDriver::Value& value,
-                                const Entry& entry, BindContext* context) {
-  const std::vector<Transform>* locals = context->ReferenceLocals(value.reference_pose);
+                                const Entry& entry, BindContext* context, PreciseVectors* precise) {
+  const std::vector<PreciseTransform>* locals = context->ReferenceLocals(value.reference_pose);
   if (locals == nullptr) {
     return {StatusCode::kNotFound, OwnerOf(name) + ": value '" + value.name +
                                        "' names reference pose '" + value.reference_pose +
                                        "', which the rig does not have"};
   }
-  // d of thesis 4.1, stacked over all control points: one vector of 3 P numbers per value.
-  const std::size_t first = displacements_.size();
+  // d of thesis 4.1, stacked over all control points: one vector of 3 P numbers per value. In
+  // double precision, because d is often a thousandth of B.
+  const std::size_t first = precise->size();
+  double square = 0.0;
   for (const MeasuredPoint& point : points(entry)) {
-    displacements_.push_back(context->chains().Evaluate(*locals, point.point) - point.rest);
+    const JointChains& chains = context->chains();
+    precise->push_back(chains.Evaluate(std::span<const PreciseTransform>(*locals), point.point) -
+                       chains.Evaluate(context->rest_locals(), point.point));
+    square += glm::dot(precise->back(), precise->back());
   }
-  const StackedPoints d = StackedPoints(displacements_).subspan(first);
-  const double square = Dot(d, d);
   // A displacement with a square of 0 as a float does not move either.
   const bool moves = std::sqrt(square) > double{kLeastDisplacement * context->size()} &&
                      static_cast<float>(square) > 0.0f;
   squares_.push_back(moves ? static_cast<float>(square) : 0.0f);
-  inverse_lengths_.push_back(moves ? 1.0 / std::sqrt(double{squares_.back()}) : 0.0);
-  for (const glm::vec3& point : d) projections_.push_back(Projection(point, squares_.back()));
+  inverse_lengths_.push_back(moves ? 1.0 / std::sqrt(square) : 0.0);
+  for (glm::dvec3& d : std::span(*precise).subspan(first)) {
+    if (!moves) d = glm::dvec3(0.0);
+    displacements_.emplace_back(d);
+    projections_.emplace_back(moves ? d / square : d);
+  }
   if (!moves) {
     context->Warn(OwnerOf(name) + ": reference pose '" + value.reference_pose +
                   "' does not move its control points, so value '" + value.name + "' stays 0");
@@ -121,21 +156,16 @@ Status PoseDriverSet::BindValue(const std::string& name, const PoseDriver::Value
   return {};
 }
 
-// The Gram matrix of unit displacements. One ridge then suits large and small poses alike.
-void PoseDriverSet::BindGram(Entry* entry) {
-  std::vector<double> gram;
-  for (int row = 0; row < entry->num_values; ++row) {
-    for (int column = 0; column < entry->num_values; ++column) {
-      const double norm = std::sqrt(double{SquaredDisplacement(*entry, row)} *
-                                    double{SquaredDisplacement(*entry, column)});
-      // The diagonal is not simply 1: the norm is rounded, and in every entry the same way.
-      double cosine = row == column ? 1.0 : 0.0;
-      if (norm > 0.0) cosine = Dot(Displacement(*entry, row), Displacement(*entry, column)) / norm;
-      gram.push_back(row == column ? cosine + kRidge : cosine);
-    }
+void PoseDriverSet::BindGram(const std::string& name, const PoseDriver& driver,
+                             const PreciseVectors& precise, Entry* entry, BindContext* context) {
+  const PoseGram gram = MakePoseGram(precise, static_cast<std::size_t>(entry->num_values));
+  for (const PoseDependence& dependence : gram.dependences) {
+    context->Warn(OwnerOf(name) + ": " + Describe(dependence, driver));
   }
   entry->nnls = static_cast<std::uint32_t>(nnls_.size());
-  nnls_.emplace_back(gram);
+  entry->first_direction = static_cast<std::uint32_t>(directions_.size());
+  directions_.insert(directions_.end(), gram.directions.begin(), gram.directions.end());
+  nnls_.emplace_back(gram.gram);
 }
 
 BoundPose PoseDriverSet::Bound(const Entry& entry) const {
@@ -182,8 +212,9 @@ void PoseDriverSet::SolveNnls(int entry, StackedPoints moved, std::span<float> a
   // Fixed arrays: this runs per pose and must not allocate.
   std::array<double, kMaxNnlsValues> rhs;
   std::array<double, kMaxNnlsValues> lengths;  // the unknowns: along unit displacements
-  for (int k = 0; k < e.num_values; ++k) {
-    rhs[k] = Dot(moved, Displacement(e, k)) * inverse_lengths[k];
+  const std::span<const glm::dvec3> directions(directions_);
+  for (std::size_t k = 0; k < count; ++k) {
+    rhs[k] = Dot(moved, directions.subspan(e.first_direction + k * e.num_points, e.num_points));
   }
   nnls_[e.nnls].Solve(std::span(rhs).first(count), std::span(lengths).first(count));
   for (std::size_t k = 0; k < count; ++k) {

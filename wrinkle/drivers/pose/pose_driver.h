@@ -29,6 +29,7 @@ class PoseDriverSet {
     std::uint32_t first_displacement = 0;  // into displacements_: num_values x num_points
     std::uint32_t first_square = 0;        // into squares_: num_values
     std::uint32_t nnls = 0;                // into nnls_, for PoseSolve::kNnls
+    std::uint32_t first_direction = 0;     // into directions_, for PoseSolve::kNnls
     PoseSolve solve = PoseSolve::kProjection;
     float falloff = 0.0f;
   };
@@ -63,11 +64,15 @@ class PoseDriverSet {
   }
 
  private:
+  // Displacements before they are rounded: d = B_k - B_0 of one driver, value by value.
+  using PreciseVectors = std::vector<glm::dvec3>;
+
   [[nodiscard]] Status BindPoints(const std::string& name, const PoseDriver& driver,
                                   BindContext* context, bool* usable);
   [[nodiscard]] Status BindValue(const std::string& name, const PoseDriver::Value& value,
-                                 const Entry& entry, BindContext* context);
-  void BindGram(Entry* entry);
+                                 const Entry& entry, BindContext* context, PreciseVectors* precise);
+  void BindGram(const std::string& name, const PoseDriver& driver, const PreciseVectors& precise,
+                Entry* entry, BindContext* context);
   [[nodiscard]] BoundPose Bound(const Entry& entry) const;
 
   std::vector<Entry> entries_;
@@ -76,7 +81,8 @@ class PoseDriverSet {
   std::vector<glm::vec3> projections_;    // d / dot(d, d)
   std::vector<float> squares_;            // dot(d, d), or 0 below the epsilon
   std::vector<double> inverse_lengths_;   // 1 / |d|, or 0
-  std::vector<NnlsTable> nnls_;           // of the displacements as unit vectors
+  std::vector<glm::dvec3> directions_;    // of nnls drivers: d / |d| (PoseGram)
+  std::vector<NnlsTable> nnls_;           // of the directions
   PosePlan plan_;
 };
 

@@ -68,7 +68,7 @@ TEST(RigReport, WarnsOfUnusedPartsAndMissingReferences) {
   EXPECT_THAT(report.warnings, Contains("no driver uses reference pose 'unused'"));
   EXPECT_THAT(report.warnings, Contains("driver 'idle' feeds no region"));
   EXPECT_THAT(report.warnings, Contains("no region uses wrinkle map 'spare'"));
-  EXPECT_THAT(report.warnings, Contains(HasSubstr("d.v stays 0")));
+  EXPECT_THAT(report.warnings, Contains(HasSubstr("value 'v' stays 0")));
   EXPECT_THAT(report.warnings, Contains(HasSubstr("picture 'm.png'")));
   // A rig that reads joints binds to a skeleton without any blend shapes.
   EXPECT_TRUE(report.binding.ok()) << report.binding.ToString();
