@@ -34,7 +34,70 @@ const std::string* FirstOf(JointRole role, const wrinkle::JointRoles& roles,
   return found == roles.end() ? nullptr : &names[static_cast<std::size_t>(found - roles.begin())];
 }
 
+// The joints of twist drivers. Their values are sums over joints, so a sum over a whole chain has
+// the same meaning.
+std::set<std::string> JointsThatDriversAdd(const wrinkle::Rig& rig) {
+  std::set<std::string> joints;
+  for (const wrinkle::Driver& driver : rig.drivers) {
+    if (driver.kind != wrinkle::Driver::Kind::kTwist) continue;
+    const std::vector<std::string> read = wrinkle::JointsRead(driver.twist);
+    joints.insert(read.begin(), read.end());
+  }
+  return joints;
+}
+
+bool Has(const wrinkle::JointRoles& roles, JointRole role) {
+  return std::ranges::find(roles, role) != roles.end();
+}
+
+// The roles of a stream that do the part of one role of a rig. Skeletons divide the spine
+// differently: a role that only the stream has belongs to the next role below it, and a role that
+// only the rig has is played by the next one below, or else above. A neck without joints turns with
+// the head.
+class RoleParts {
+ public:
+  RoleParts(const wrinkle::JointRoles& rig, const wrinkle::JointRoles& stream)
+      : rig_(rig), stream_(stream) {}
+
+  [[nodiscard]] std::vector<JointRole> Of(JointRole role) const {
+    if (role == JointRole::kNeck && !Has(stream_, role)) return {JointRole::kHead};
+    if (std::ranges::find(kTorso, role) == std::end(kTorso)) return {role};
+    if (!Has(stream_, role)) return {Nearest(role, stream_)};
+    std::vector<JointRole> parts;
+    for (const JointRole part : kTorso) {
+      if (Has(stream_, part) && Nearest(part, rig_) == role) parts.push_back(part);
+    }
+    return parts;
+  }
+
+ private:
+  static constexpr JointRole kTorso[] = {JointRole::kSpine, JointRole::kChest,
+                                         JointRole::kUpperChest};
+
+  // The role itself if `roles` has it, or the next below, or else above. kNone: no torso.
+  static JointRole Nearest(JointRole role, const wrinkle::JointRoles& roles) {
+    JointRole nearest = JointRole::kNone;
+    bool is_above = false;
+    for (const JointRole known : kTorso) {
+      if (Has(roles, known) && (!is_above || nearest == JointRole::kNone)) nearest = known;
+      is_above = is_above || known == role;
+    }
+    return nearest;
+  }
+
+  const wrinkle::JointRoles& rig_;
+  const wrinkle::JointRoles& stream_;
+};
+
 }  // namespace
+
+bool SkeletonMatch::Reads(std::string_view stream_joint) const {
+  const auto is_alias = [&](const auto& alias) { return alias.second == stream_joint; };
+  const auto has_joint = [&](const wrinkle::RoleChain& chain) {
+    return std::ranges::count(chain.skeleton_joints, stream_joint) > 0;
+  };
+  return std::ranges::any_of(aliases, is_alias) || std::ranges::any_of(role_chains, has_joint);
+}
 
 Result<SkeletonMatcher> SkeletonMatcher::Create(const std::string& name_or_file) {
   auto shipped = SkeletonMaps::LoadShipped();
@@ -66,13 +129,28 @@ SkeletonMatch SkeletonMatcher::Match(const wrinkle::Skeleton& stream, const wrin
   const std::set<std::string> joints = wrinkle::JointsOf(rig);
   const std::vector<std::string> names(joints.begin(), joints.end());
   const SkeletonRoles own = characters_.RolesOf(names);
+  const wrinkle::JointRoles& theirs = match.stream.roles;
+  const RoleParts parts(own.roles, theirs);
+  const std::set<std::string> added = JointsThatDriversAdd(rig);
   for (std::size_t i = 0; i < own.roles.size(); ++i) {
-    // Equal names need no alias.
-    if (stream.Find(names[i]) != wrinkle::kNoJoint) continue;
     const JointRole role = own.roles[i];
     if (role == JointRole::kNone) continue;
-    const std::string* theirs = FirstOf(role, match.stream.roles, stream.joint_names());
-    if (theirs != nullptr) match.aliases.emplace_back(names[i], *theirs);
+    const int namesake = stream.Find(names[i]);
+    if (namesake != wrinkle::kNoJoint) {
+      // Equal names need no alias.
+      const JointRole their_role = theirs[static_cast<std::size_t>(namesake)];
+      if (their_role == role || their_role == JointRole::kNone) continue;
+    } else if (const std::string* first = FirstOf(role, theirs, stream.joint_names())) {
+      match.aliases.emplace_back(names[i], *first);
+    }
+    wrinkle::RoleChain chain{.joint = names[i], .skeleton_joints = {}};
+    if (!added.contains(names[i])) continue;
+    const std::vector<JointRole> played_by = parts.Of(role);
+    for (std::size_t k = 0; k < theirs.size(); ++k) {
+      if (theirs[k] == JointRole::kNone || std::ranges::count(played_by, theirs[k]) == 0) continue;
+      chain.skeleton_joints.push_back(stream.joint_names()[k]);
+    }
+    if (!chain.skeleton_joints.empty()) match.role_chains.push_back(std::move(chain));
   }
   return match;
 }

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "rig/skeleton_map.h"
+#include "wrinkle/drivers/common/bind_options.h"
 #include "wrinkle/rig/rig.h"
 #include "wrinkle/skeleton/retarget.h"
 
@@ -17,6 +19,16 @@ struct SkeletonMatch {
   SkeletonRoles character;  // empty without a character
   // For BindOptions::aliases: (the rig's joint, the stream's joint of the same role).
   std::vector<std::pair<std::string, std::string>> aliases;
+  // For BindOptions::role_chains: all joints of the stream that do the part of the rig's joint. A
+  // spine of five joints does the part of one with two. Only for joints that twist drivers read.
+  std::vector<wrinkle::RoleChain> role_chains;
+
+  // True if a joint of the rig is matched with this joint of the stream by its role.
+  [[nodiscard]] bool Reads(std::string_view stream_joint) const;
+  // The options that bind the rig to the stream; they refer to this object.
+  [[nodiscard]] wrinkle::BindOptions Options(bool allow_missing) const {
+    return {.allow_missing = allow_missing, .aliases = aliases, .role_chains = role_chains};
+  }
 };
 
 // Finds the roles of a stream's joints with the shipped maps and, if requested, one more.
@@ -30,7 +42,8 @@ class SkeletonMatcher {
 
   // `character` may be null. It does not affect the aliases, so weights are the same with and
   // without pictures. The map that explains the most joint names of the rig gives their roles.
-  // Joints that have the same name in the stream and in the rig get no alias.
+  // Joints that have the same name in the stream and in the rig get no alias. They get no chain
+  // either, unless their roles differ: CMU's Spine is Mixamo's Spine1.
   [[nodiscard]] SkeletonMatch Match(const wrinkle::Skeleton& stream, const wrinkle::Rig& rig,
                                     const wrinkle::Skeleton* character) const;
 

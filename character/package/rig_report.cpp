@@ -89,6 +89,7 @@ void TryBinding(const Rig& rig, const RigReportOptions& options, RigReport* repo
     wrinkle::BindOptions how;
     how.allow_missing = allow_missing;
     how.aliases = options.aliases;
+    how.role_chains = options.role_chains;
     return wrinkle::RigBinding::Create(rig, *options.skeleton, options.blend_shape_names, how);
   };
   // Strict first, to say whether the rig fits. Lenient second, to list everything that is missing

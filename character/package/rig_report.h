@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/status.h"
+#include "wrinkle/drivers/common/bind_options.h"
 #include "wrinkle/rig/rig.h"
 #include "wrinkle/skeleton/skeleton.h"
 
@@ -32,9 +33,9 @@ struct RigReportOptions {
   // The skeleton to bind to, and the names of its blend shapes. nullptr: do not bind.
   const wrinkle::Skeleton* skeleton = nullptr;
   std::span<const std::string> blend_shape_names;
-  // Pairs (joint name in the rig, joint name in the skeleton), tried if the skeleton has no joint
-  // with the rig's name.
+  // See BindOptions.
   std::span<const std::pair<std::string, std::string>> aliases;
+  std::span<const wrinkle::RoleChain> role_chains;
   // The folder that is searched for the rig's pictures, before FURROW_ASSET_PATH. Pictures embedded
   // in a character are listed in `embedded_pictures`.
   std::filesystem::path folder;

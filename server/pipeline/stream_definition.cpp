@@ -89,7 +89,7 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Make(
   rig::SkeletonMatch match = matcher_.Match(skeleton, *rig_, character_);
   // Live streams may lack joints and blend shapes. Their drivers rest, and Report() names them.
   auto binding = wrinkle::RigBinding::Create(*rig_, skeleton, blend_shapes,
-                                             {.allow_missing = true, .aliases = match.aliases});
+                                             match.Options(/*allow_missing=*/true));
   FURROW_RETURN_IF_ERROR(binding);
   auto definition = std::make_shared<StreamDefinition>();
   definition->joint_of_wire.resize(static_cast<std::size_t>(skeleton.num_joints()));
@@ -109,7 +109,7 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Make(
   definition->skeleton = std::move(skeleton);
   definition->blend_shapes = std::move(blend_shapes);
   Report(*definition, match);
-  definition->aliases = std::move(match.aliases);
+  definition->match = std::move(match);
   return std::shared_ptr<const StreamDefinition>(std::move(definition));
 }
 
@@ -137,10 +137,7 @@ void StreamDefinitions::Report(const StreamDefinition& stream,
       stream.retarget ? stream.retarget->unmatched_source() : std::span<const std::string>();
   for (const std::string& name : stream.skeleton.joint_names()) {
     const bool drawn = stream.retarget && std::ranges::find(unmatched, name) == unmatched.end();
-    const bool read =
-        rig_joints_.contains(name) ||
-        std::ranges::find(match.aliases, name, &std::pair<std::string, std::string>::second) !=
-            match.aliases.end();
+    const bool read = rig_joints_.contains(name) || match.Reads(name);
     if (!drawn && !read) ignored.push_back(name);
     draws_any |= drawn;
     feeds_any |= read;

@@ -32,8 +32,7 @@ struct StreamDefinition {
   wrinkle::Skeleton skeleton;
   std::vector<std::string> blend_shapes;
   std::vector<std::int16_t> joint_of_wire;  // wire index -> index in `skeleton`
-  // Pairs of (joint name in the rig, joint name in the stream) that a skeleton map has matched.
-  std::vector<std::pair<std::string, std::string>> aliases;
+  rig::SkeletonMatch match;                 // how a skeleton map has matched the rig's joints
   std::shared_ptr<const wrinkle::RigBinding> binding;
   // These two move the character by the stream's poses; null if nothing is rendered.
   std::shared_ptr<const wrinkle::Retarget> retarget;

@@ -38,7 +38,7 @@ int Explain(const RigOptions& options) {
   if (!matcher.ok()) return Fail(matcher.status());
   const auto match = matcher->Match(clip->skeleton, *rig, nullptr);
   const auto binding = wrinkle::RigBinding::Create(*rig, clip->skeleton, clip->blend_shape_names,
-                                                   {.aliases = match.aliases});
+                                                   match.Options(/*allow_missing=*/false));
   if (!binding.ok()) return Fail(binding.status().At(options.rig));
   wrinkle::LocalPose pose;
   clip->GetPose(options.frame, &pose);
@@ -70,6 +70,7 @@ int Check(const RigOptions& options) {
     if (!matcher.ok()) return Fail(matcher.status());
     match = matcher->Match(clip->skeleton, *rig, nullptr);
     report_options.aliases = match.aliases;
+    report_options.role_chains = match.role_chains;
   }
   const character::RigReport report = character::ReportOnRig(*rig, report_options);
   std::fputs(character::ToText(report).c_str(), stdout);

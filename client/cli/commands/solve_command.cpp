@@ -42,9 +42,8 @@ int SolveFile(const SolveOptions& options) {
   const auto matcher = LoadSkeletonMatcher(options.skeleton_map);
   if (!matcher.ok()) return Fail(matcher.status());
   const auto match = matcher->Match(clip->skeleton, *rig, nullptr);
-  auto binding = wrinkle::RigBinding::Create(
-      *rig, clip->skeleton, clip->blend_shape_names,
-      {.allow_missing = options.allow_missing, .aliases = match.aliases});
+  auto binding = wrinkle::RigBinding::Create(*rig, clip->skeleton, clip->blend_shape_names,
+                                             match.Options(options.allow_missing));
   if (!binding.ok()) return Fail(BindingFailed(binding.status(), options));
   WarnAboutMissing(*binding, *clip);
 

@@ -74,7 +74,7 @@ Result<std::shared_ptr<const wrinkle::RigBinding>> BindRig(const LoadInput& inpu
   FURROW_RETURN_IF_ERROR(matcher);
   const auto match = matcher->Match(clip.skeleton, *rig, nullptr);
   auto binding = wrinkle::RigBinding::Create(*rig, clip.skeleton, clip.blend_shape_names,
-                                             {.allow_missing = true, .aliases = match.aliases});
+                                             match.Options(/*allow_missing=*/true));
   if (!binding.ok()) return binding.status().At(rig_name);
   if (NothingMatches(*rig, clip, match)) {
     return Status(StatusCode::kNotFound, "the recording has no joint and no blend shape of the rig",

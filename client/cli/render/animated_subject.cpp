@@ -15,7 +15,7 @@ Result<std::unique_ptr<AnimatedSubject>> AnimatedSubject::Create(
   const motion::Clip& take = *self->clip_;
   const auto match = matcher.Match(take.skeleton, character.rig, &character.skeleton);
   auto binding = wrinkle::RigBinding::Create(character.rig, take.skeleton, take.blend_shape_names,
-                                             {.allow_missing = true, .aliases = match.aliases});
+                                             match.Options(/*allow_missing=*/true));
   FURROW_RETURN_IF_ERROR(binding);
   WarnAboutMissing(*binding, take);
   self->solver_ = std::make_unique<wrinkle::SubjectSolver>(

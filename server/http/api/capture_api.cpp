@@ -54,9 +54,10 @@ Json ChangesJson(std::span<const std::string> names, const Values& before, const
 // Replaces joint names of the stream by those of the rig, which a rig file must contain.
 void UseJointNamesOfRig(const StreamDefinition& stream, wrinkle::ReferencePose* pose) {
   for (wrinkle::JointDelta& delta : pose->joints) {
-    const auto alias = std::ranges::find(stream.aliases, delta.joint,
-                                         &std::pair<std::string, std::string>::second);
-    if (alias != stream.aliases.end()) delta.joint = alias->first;
+    const auto& aliases = stream.match.aliases;
+    const auto alias =
+        std::ranges::find(aliases, delta.joint, &std::pair<std::string, std::string>::second);
+    if (alias != aliases.end()) delta.joint = alias->first;
   }
 }
 
@@ -161,9 +162,9 @@ ApiReply CaptureApi::CapturePose(Hub& hub, Subject& subject, const std::string& 
   if (!changed.ok()) return ErrorReply(changed.status());
   const SubjectPipeline& pipeline = *subject.pipeline;
   // Binding checks the changed rig before anything is replaced, and serves the preview.
-  auto bound = wrinkle::RigBinding::Create(
-      *changed, pipeline.stream().skeleton, pipeline.stream().blend_shapes,
-      {.allow_missing = true, .aliases = pipeline.stream().aliases});
+  auto bound = wrinkle::RigBinding::Create(*changed, pipeline.stream().skeleton,
+                                           pipeline.stream().blend_shapes,
+                                           pipeline.stream().match.Options(/*allow_missing=*/true));
   if (!bound.ok()) return ErrorReply(bound.status());
   const Values before = WeightsOf(subject);
   auto stream = std::make_shared<StreamDefinition>(pipeline.stream());

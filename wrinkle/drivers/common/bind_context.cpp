@@ -72,6 +72,22 @@ Result<int> BindContext::Joint(std::string_view owner, std::string_view field,
   return kNoJoint;
 }
 
+Result<std::vector<int>> BindContext::JointChain(std::string_view owner, std::string_view field,
+                                                 const std::string& name) {
+  std::vector<int> joints;
+  for (const RoleChain& chain : options_.role_chains) {
+    if (chain.joint != name) continue;
+    for (const std::string& theirs : chain.skeleton_joints) {
+      if (const int joint = skeleton_.Find(theirs); joint != kNoJoint) joints.push_back(joint);
+    }
+  }
+  if (!joints.empty()) return joints;
+  const Result<int> joint = Joint(owner, field, name);
+  FURROW_RETURN_IF_ERROR(joint);
+  if (*joint != kNoJoint) joints.push_back(*joint);
+  return joints;
+}
+
 Result<int> BindContext::BlendShape(std::string_view owner, const std::string& name) {
   const std::span<const std::string> names = source_.blend_shape_names;
   for (std::size_t i = 0; i < names.size(); ++i) {

@@ -37,6 +37,10 @@ class BindContext {
   // describe the reference in errors: "driver 'x'", "joint".
   [[nodiscard]] Result<int> Joint(std::string_view owner, std::string_view field,
                                   const std::string& name);
+  // The indices of the joints that do the part of a rig's joint: its chain (BindOptions), or the
+  // joint itself. Empty if the joint is missing and may be.
+  [[nodiscard]] Result<std::vector<int>> JointChain(std::string_view owner, std::string_view field,
+                                                    const std::string& name);
   // The index of a blend shape, matched without case. -1 if it is missing, and BindOptions allow
   // that, or some driver reads joints and the stream has no blend shapes at all. Otherwise a
   // missing one is kNotFound.

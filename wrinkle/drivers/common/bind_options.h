@@ -4,8 +4,16 @@
 #include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace furrow::wrinkle {
+
+// The joints of a skeleton that together do what one joint of a rig does, parents first: three
+// joints of a neck for one. Several joints of a rig may share joints of the skeleton.
+struct RoleChain {
+  std::string joint;  // in the rig
+  std::vector<std::string> skeleton_joints;
+};
 
 // How RigBinding::Create() treats names that the skeleton lacks.
 struct BindOptions {
@@ -15,6 +23,9 @@ struct BindOptions {
   // Pairs (joint name in the rig, joint name in the skeleton), tried if the skeleton has no joint
   // with the rig's name.
   std::span<const std::pair<std::string, std::string>> aliases;
+  // For twist drivers, which add the joints of a chain. A chain wins over a joint with the rig's
+  // name.
+  std::span<const RoleChain> role_chains;
 };
 
 }  // namespace furrow::wrinkle

@@ -18,21 +18,24 @@ Status TwistDriverSet::Bind(const std::string& name, const TwistDriver& driver, 
   std::vector<TwistJoint> joints;
   bool usable = true;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const Result<int> found = context->Joint(owner, i == 0 ? "joint" : "through", names[i]);
-    FURROW_RETURN_IF_ERROR(found);
-    if (*found == kNoJoint) {
-      usable = false;
-      continue;
+    const Result<std::vector<int>> chain =
+        context->JointChain(owner, i == 0 ? "joint" : "through", names[i]);
+    FURROW_RETURN_IF_ERROR(chain);
+    usable = usable && !chain->empty();
+    for (const int index : *chain) {
+      // Another skeleton may have one joint for several of the rig's. Its twist counts once.
+      if (std::ranges::count(joints, index, &TwistJoint::joint) > 0) continue;
+      TwistJoint joint;
+      joint.joint = index;
+      joint.rest_inverse = glm::conjugate(glm::normalize(skeleton.rest_pose()[index].rotation));
+      joint.axis = Direction(driver.axis ? ToJointAxes(skeleton, index, *driver.axis)
+                                         : skeleton.tails()[index]);
+      if (joint.axis == glm::vec3(0.0f)) {
+        return context->Unusable(
+            owner, "joint '" + skeleton.joint_names()[index] + "' has no tail to twist about");
+      }
+      joints.push_back(joint);
     }
-    TwistJoint joint;
-    joint.joint = *found;
-    joint.rest_inverse = glm::conjugate(glm::normalize(skeleton.rest_pose()[*found].rotation));
-    joint.axis = Direction(driver.axis ? ToJointAxes(skeleton, *found, *driver.axis)
-                                       : skeleton.tails()[*found]);
-    if (joint.axis == glm::vec3(0.0f)) {
-      return context->Unusable(owner, "joint '" + names[i] + "' has no tail to twist about");
-    }
-    joints.push_back(joint);
   }
   if (!usable) return {};
   entries_.push_back({.first_value = first_value,

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rig/skeleton_match.h"
+
+#include <cstdlib>
+#include <memory>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/scalar.h"
+#include "rig/rig_file.h"
+#include "wrinkle/solver/subject_solver.h"
+
+namespace furrow::rig {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+// A body whose torso, neck and head are `column`, from bottom to top, after the hips.
+class Body {
+ public:
+  Body(const std::string& hips, const std::vector<std::string>& column,
+       const std::vector<std::string>& limbs) {
+    std::vector<wrinkle::JointDesc> joints = {{hips, -1, {{0, 1, 0}}, {}}};
+    for (const std::string& name : column) {
+      joints.push_back({name, static_cast<int>(joints.size()) - 1, {{0, 0.1f, 0}}, {}});
+    }
+    for (const std::string& name : limbs) joints.push_back({name, 0, {{0.1f, 0, 0}}, {}});
+    skeleton_ = *wrinkle::Skeleton::Create(std::move(joints));
+    pose_.SetRest(skeleton_);
+  }
+
+  const wrinkle::Skeleton& skeleton() const { return skeleton_; }
+  void Twist(const std::string& joint, float degrees) {
+    wrinkle::Transform& local = pose_.joints[static_cast<std::size_t>(skeleton_.Find(joint))];
+    local.rotation = glm::angleAxis(degrees * kDegrees, glm::vec3(0, 1, 0));
+  }
+  const wrinkle::LocalPose& pose() const { return pose_; }
+
+ private:
+  wrinkle::Skeleton skeleton_;
+  wrinkle::LocalPose pose_;
+};
+
+class SkeletonMatching : public testing::Test {
+ protected:
+  void SetUp() override {
+    setenv("FURROW_DATA_DIR", FURROW_SOURCE_DIR "/rig", 1);
+    auto matcher = SkeletonMatcher::Create("");
+    unsetenv("FURROW_DATA_DIR");
+    ASSERT_TRUE(matcher.ok()) << matcher.status().ToString();
+    matcher_ = *std::move(matcher);
+  }
+  static wrinkle::Rig Shipped(const std::string& name) {
+    return *LoadRig(std::string(FURROW_SOURCE_DIR "/rig/rigs/") + name);
+  }
+  float Value(const wrinkle::Rig& rig, const Body& body, const std::string& name) const {
+    const SkeletonMatch match = matcher_.Match(body.skeleton(), rig, nullptr);
+    auto binding = wrinkle::RigBinding::Create(rig, body.skeleton(), {}, match.Options(true));
+    EXPECT_TRUE(binding.ok()) << binding.status().ToString();
+    auto shared = std::make_shared<const wrinkle::RigBinding>(*std::move(binding));
+    wrinkle::SubjectSolver solver(shared, false);
+    EXPECT_EQ(solver.Update(body.pose(), 0.0), wrinkle::JobStatus::kOk);
+    const auto names = shared->driver_value_names();
+    const auto at = std::ranges::find(names, name);
+    EXPECT_NE(at, names.end()) << name;
+    return solver.driver_values()[static_cast<std::size_t>(at - names.begin())];
+  }
+
+  SkeletonMatcher matcher_;
+};
+
+const std::vector<std::string> kMixamoLimbs = {"mixamorig:LeftUpLeg", "mixamorig:RightUpLeg",
+                                               "mixamorig:LeftArm", "mixamorig:RightArm"};
+const std::vector<std::string> kMakeHumanLimbs = {"upperleg01.L", "upperleg01.R", "upperarm01.L",
+                                                  "upperarm01.R"};
+
+// CMU's neck has two joints, Mixamo's has one. Neck and head together give 1 at 75 degrees.
+TEST_F(SkeletonMatching, AJointThatPlaysTwoTwistsOnce) {
+  Body body("mixamorig:Hips",
+            {"mixamorig:Spine", "mixamorig:Spine1", "mixamorig:Spine2", "mixamorig:Neck",
+             "mixamorig:Head"},
+            kMixamoLimbs);
+  body.Twist("mixamorig:Neck", 30.0f);
+  EXPECT_NEAR(Value(Shipped("cmu.json"), body, "neck.twist_left"), 0.4f, 1e-5f);
+  body.Twist("mixamorig:Head", 15.0f);
+  EXPECT_NEAR(Value(Shipped("cmu.json"), body, "neck.twist_left"), 0.6f, 1e-5f);
+}
+
+// The default character has two joints in the spine and one in the neck, MakeHuman five and three.
+TEST_F(SkeletonMatching, AllJointsOfAChainCount) {
+  const wrinkle::Rig rig = Shipped("default.json");
+  for (const char* joint : {"spine05", "spine04", "spine03", "spine02", "spine01"}) {
+    Body body("root",
+              {"spine05", "spine04", "spine03", "spine02", "spine01", "neck01", "neck02", "neck03",
+               "head"},
+              kMakeHumanLimbs);
+    body.Twist(joint, -9.0f);
+    EXPECT_NEAR(Value(rig, body, "waist_twist.twist_right"), 0.2f, 1e-5f) << joint;
+    EXPECT_EQ(Value(rig, body, "neck.twist_right"), 0.0f) << joint;
+    body.Twist("neck02", 15.0f);
+    EXPECT_NEAR(Value(rig, body, "neck.twist_left"), 0.2f, 1e-5f);
+  }
+}
+
+// CMU's spine has three roles. A body with two of them can still twist its waist.
+TEST_F(SkeletonMatching, ARoleThatOnlyTheRigHasIsNoGap) {
+  Body body("hips", {"spine", "chest", "neck", "head"},
+            {"upper_leg_l", "upper_leg_r", "upper_arm_l", "upper_arm_r"});
+  body.Twist("spine", 9.0f);
+  body.Twist("chest", 18.0f);
+  EXPECT_NEAR(Value(Shipped("cmu.json"), body, "waist_twist.twist_left"), 0.6f, 1e-5f);
+}
+
+// "Spine" is the chest of CMU's files and the spine of Mixamo's.
+TEST_F(SkeletonMatching, RolesDecideWhereEqualNamesMeanOtherJoints) {
+  Body body("Hips", {"Spine", "Spine1", "Spine2", "Neck", "Head", "HeadTop_End"},
+            {"LeftUpLeg", "RightUpLeg", "LeftArm", "RightArm", "LeftHandThumb1", "LeftHandThumb2",
+             "LeftHandIndex2", "LeftHandIndex3"});
+  const wrinkle::Rig rig = Shipped("cmu.json");
+  ASSERT_EQ(matcher_.Match(body.skeleton(), rig, nullptr).stream.map, "mixamo");
+  body.Twist("Spine", 3.0f);
+  body.Twist("Spine1", 6.0f);
+  body.Twist("Spine2", 18.0f);
+  EXPECT_NEAR(Value(rig, body, "waist_twist.twist_left"), 0.6f, 1e-5f);
+}
+
+// On its own skeleton a rig reads the joints that it names, and no others of their chains.
+TEST_F(SkeletonMatching, EqualNamesStayAlone) {
+  wrinkle::Rig rig;
+  rig.drivers.resize(1);
+  rig.drivers[0].name = "waist";
+  rig.drivers[0].kind = wrinkle::Driver::Kind::kTwist;
+  rig.drivers[0].twist = {.joint = "spine05", .full_degrees = 45.0f, .through = {"spine03"}};
+  Body body("root", {"spine05", "spine04", "spine03", "spine02", "spine01", "neck01", "head"},
+            kMakeHumanLimbs);
+  EXPECT_THAT(matcher_.Match(body.skeleton(), rig, nullptr).role_chains, IsEmpty());
+  body.Twist("spine04", 9.0f);
+  EXPECT_EQ(Value(rig, body, "waist.twist_left"), 0.0f);
+  body.Twist("spine03", 9.0f);
+  EXPECT_NEAR(Value(rig, body, "waist.twist_left"), 0.2f, 1e-5f);
+}
+
+TEST_F(SkeletonMatching, OnlyTwistDriversReadWholeChains) {
+  const Body body("root", {"spine05", "spine04", "neck01", "head"}, kMakeHumanLimbs);
+  const SkeletonMatch match = matcher_.Match(body.skeleton(), Shipped("default.json"), nullptr);
+  std::vector<std::string> joints;
+  for (const wrinkle::RoleChain& chain : match.role_chains) joints.push_back(chain.joint);
+  EXPECT_THAT(joints, ElementsAre("chest", "neck", "spine"));
+  EXPECT_TRUE(match.Reads("spine04"));
+  EXPECT_FALSE(match.Reads("clavicle.L"));
+}
+
+}  // namespace
+}  // namespace furrow::rig
