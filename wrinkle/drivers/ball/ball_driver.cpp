@@ -1,11 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "wrinkle/drivers/ball/ball_driver.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include <glm/geometric.hpp>
 
 #include "base/scalar.h"
 
 namespace furrow::wrinkle {
+namespace {
+
+// The projection of a direction across the straight direction: towards forward, towards right.
+glm::vec2 Projected(const glm::vec3& direction, const BallDriverSet::Entry& entry) {
+  return {glm::dot(direction, entry.forward), glm::dot(direction, entry.right)};
+}
+
+// The direction of the bend, not normalised; `cosine` is that of the bend. The kernel has the same
+// formula.
+glm::vec2 BendSide(const BallDriverSet::Entry& entry, float cosine, const glm::vec3& across) {
+  const glm::vec2 side = Projected(across, entry);
+  if (entry.mode == BallMode::kThesis) return side;
+  const float beyond = std::max(kTurnCosine - cosine, 0.0f);
+  return side + kTurnGain * beyond * beyond * entry.rest_side;
+}
+
+}  // namespace
 
 Status BallDriverSet::Bind(const std::string& name, const BallDriver& driver, int first_value,
                            BindContext* context) {
@@ -39,6 +59,9 @@ Status BallDriverSet::Bind(const std::string& name, const BallDriver& driver, in
   }
   entry.forward = ToJointAxes(skeleton, parent, Direction(across));
   entry.right = ToJointAxes(skeleton, parent, SubjectsRight(bone, Direction(across)));
+  const glm::vec2 rest =
+      Projected(entry.bones.Lower(skeleton.rest_pose(), context->chains()), entry);
+  entry.rest_side = rest / std::max(glm::length(rest), kLeastSide);
   entries_.push_back(entry);
   return {};
 }
@@ -58,6 +81,8 @@ void BallDriverSet::Plan(LanePlanner* planner) {
       block.has_straight.at[lane] = entry.straight != glm::vec3(0.0f) ? kLaneYes : kLaneNo;
       SetLane(entry.forward, lane, block.forward);
       SetLane(entry.right, lane, block.right);
+      block.rest_side[0].at[lane] = entry.rest_side.x;
+      block.rest_side[1].at[lane] = entry.rest_side.y;
     }
     PlanBones(bones, 4, planner, &block);
   }
@@ -73,15 +98,14 @@ void BallDriverSet::Explain(const SolvedPose& pose, DriverExplanation* explanati
     const bool has_bones = straight != none && lower != none;
     const float cosine = has_bones ? glm::dot(straight, lower) : 1.0f;
     const glm::vec3 across = has_bones ? lower - cosine * straight : none;
-    const float forward = glm::dot(across, entry.forward);
-    const float right = glm::dot(across, entry.right);
+    const glm::vec2 bent = Projected(across, entry);
+    const glm::vec2 side = BendSide(entry, cosine, across);
     const std::string driver = pose.DriverName(entry.first_value);
+    explanation->angles.push_back({.driver = driver,
+                                   .what = "bend",
+                                   .degrees = std::atan2(glm::length(bent), cosine) / kDegrees});
     explanation->angles.push_back(
-        {.driver = driver,
-         .what = "bend",
-         .degrees = std::atan2(std::hypot(forward, right), cosine) / kDegrees});
-    explanation->angles.push_back(
-        {.driver = driver, .what = "direction", .degrees = std::atan2(right, forward) / kDegrees});
+        {.driver = driver, .what = "direction", .degrees = std::atan2(side.y, side.x) / kDegrees});
   }
 }
 

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <glm/vec2.hpp>
+
 #include "wrinkle/drivers/ball/ball_fields.h"
 #include "wrinkle/drivers/common/bone_pair.h"
 #include "wrinkle/drivers/common/driver_explanation.h"
@@ -15,12 +17,22 @@ inline constexpr float kLeastProjection = 1e-6f;  // shorter projections have no
 // BallMode::kThesis: a bend goes to front or back if the cosine of its direction exceeds this.
 inline constexpr float kThesisThreshold = 0.75f;
 
+// BallMode::kSmooth (docs/ALGORITHM.md). Beyond this cosine, 120 degrees from straight, directions
+// turn towards the side of the rest direction, so that no direction is singular above the shoulder.
+inline constexpr float kTurnCosine = -0.5f;
+inline constexpr float kTurnGain = 8.0f;
+// Around the one singular direction that is left, where the projection is shorter, values fade.
+inline constexpr float kFadeLength = 0.5f;
+// Shorter projections of the rest direction turn directions less.
+inline constexpr float kLeastSide = 0.5f;
+
 // Up to sixteen ball drivers, one per lane; the fields are those of BallDriverSet::Entry.
 struct BallBlock : BoneBlock {
   FloatRow straight[3];
   IntRow has_straight;  // -1; 0: the upper bone's direction counts as straight
   FloatRow forward[3];
   FloatRow right[3];
+  FloatRow rest_side[2];
   BallMode mode = BallMode::kSmooth;
 };
 
@@ -32,6 +44,9 @@ class BallDriverSet {
     glm::vec3 straight{0.0f};  // unit, parent's axes; zero: the upper bone's direction
     glm::vec3 forward{0.0f};   // unit, across the rest straight direction, parent's axes
     glm::vec3 right{0.0f};     // unit, across both, towards the subject's right
+    // The rest direction of the lower bone, projected onto forward and right and divided by its
+    // length there, or by kLeastSide if that is longer.
+    glm::vec2 rest_side{0.0f};
     BallMode mode = BallMode::kSmooth;
   };
 

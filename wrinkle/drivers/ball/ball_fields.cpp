@@ -8,6 +8,11 @@
 #include "wrinkle/fields/field_check.h"
 
 namespace furrow::wrinkle {
+namespace {
+
+constexpr float kSidewaysSine = 0.70710678f;  // of 45 degrees between the bone and the X axis
+
+}  // namespace
 
 std::vector<std::string> DriverValueNames(const BallDriver&) {
   return {"front", "back", "left", "right"};
@@ -47,12 +52,13 @@ Result<ReferencePose> FullPose(const BallDriver& driver, const FullPoseBuilder& 
 }
 
 glm::vec3 SubjectsRight(const glm::vec3& bone, const glm::vec3& forward) {
-  // A character faces +Z with Y up, so its right is -X. The sides of a bone along X (an arm in a
-  // T-pose) have no X, so the upper side counts as right there.
+  // A character faces +Z with Y up, so its right is -X. The sides of a bone that lies sideways have
+  // almost no X, and its sign would depend on how far an arm droops. There, right is where it would
+  // be if the arm hung: the sign changes only for arms that are raised by 45 degrees or more.
   const glm::vec3 side = Direction(glm::cross(bone, forward));
-  const float towards_right = -side.x;
-  const float decisive = std::abs(towards_right) > kLeastAcross ? towards_right : side.y;
-  return decisive < 0.0f ? -side : side;
+  const bool is_sideways = std::abs(side.x) < kSidewaysSine;
+  const bool flip = is_sideways ? forward.z < 0.0f : side.x > 0.0f;
+  return flip ? -side : side;
 }
 
 }  // namespace furrow::wrinkle

@@ -52,8 +52,9 @@ void CheckFields(const BallDriver& driver, const std::string& at, FieldCheck* ch
                                              const FullPoseBuilder& builder);
 
 // The unit direction across `bone` and `forward` (unit, model axes) that counts as the subject's
-// right. Characters face +Z with +Y up, so their right is -X. A bone that lies sideways has no left
-// or right; "right" is then up.
+// right. Characters face +Z with +Y up, so their right is -X. For a bone within 45 degrees of the X
+// axis, such as an arm in a T-pose, "right" is the side that is right when the arm hangs: below a
+// left arm, above a right arm. A drooping arm thus keeps its sides.
 [[nodiscard]] glm::vec3 SubjectsRight(const glm::vec3& bone, const glm::vec3& forward);
 
 }  // namespace furrow::wrinkle

@@ -14,23 +14,48 @@
 HWY_BEFORE_NAMESPACE();
 namespace furrow::wrinkle::HWY_NAMESPACE {
 
+// The lower bone's projection onto the plane across the straight direction, and its length. Only its
+// angle psi = atan2(right, forward) counts.
+struct BendSide {
+  Float forward, right, length;
+};
+HWY_INLINE BendSide SideOf(Float forward, Float right) {
+  const Float square = hn::Add(hn::Mul(forward, forward), hn::Mul(right, right));
+  return {forward, right, hn::Sqrt(square)};
+}
+
+// BallMode::kSmooth: far from straight, turns the direction towards the side of the rest direction.
+// `cosine` is that of the bend.
+HWY_INLINE BendSide TurnToRest(BendSide side, Float cosine, const BallBlock& block,
+                               std::size_t lane) {
+  const Float beyond = hn::Max(hn::Sub(Splat(kTurnCosine), cosine), hn::Zero(Floats()));
+  const Float turn = hn::Mul(hn::Mul(Splat(kTurnGain), beyond), beyond);
+  return SideOf(hn::Add(side.forward, hn::Mul(turn, LoadRow(block.rest_side[0], lane))),
+                hn::Add(side.right, hn::Mul(turn, LoadRow(block.rest_side[1], lane))));
+}
+
+// The factor of BallMode::kSmooth around the singular direction, in the half away from straight: a
+// smoothstep of the length up to kFadeLength.
+HWY_INLINE Float Fade(Float length, Float cosine) {
+  const Float t = hn::Min(hn::Mul(length, Splat(1.0f / kFadeLength)), Splat(1.0f));
+  const Float smooth = hn::Mul(hn::Mul(t, t), hn::Sub(Splat(3.0f), hn::Add(t, t)));
+  return hn::IfThenElse(hn::Lt(cosine, hn::Zero(Floats())), smooth, Splat(1.0f));
+}
+
 // Stores the shares of `bend` (in [0, 1]) to front, back, left and right in four rows from `values`
-// on. (`forward`, `right`) is the lower bone's projection onto the plane across the straight
-// direction. Only its angle psi = atan2(right, forward) counts. All shares are 0 if the projection
-// is shorter than kLeastProjection.
+// on. All shares are 0 if the projection is shorter than kLeastProjection.
 //
 // - kSmooth: bend times the squares of the positive parts of cos(psi), -cos(psi), -sin(psi) and
 //   sin(psi). They sum to `bend` and are C1 in psi.
 // - kThesis: the whole bend goes to front if cos(psi) > 0.75, to back if < -0.75, and to left or
 //   right between them. At exactly +-0.75 the thesis states no case: all shares are 0.
-inline void StoreShares(BallMode mode, Float bend, Float forward, Float right, float* values) {
+inline void StoreShares(BallMode mode, Float bend, const BendSide& side, float* values) {
   const Floats d;
   const Float zero = hn::Zero(d);
-  const Float length = hn::Sqrt(hn::Add(hn::Mul(forward, forward), hn::Mul(right, right)));
-  const auto has_length = hn::Gt(length, Splat(kLeastProjection));
+  const auto has_length = hn::Gt(side.length, Splat(kLeastProjection));
   const Float share = hn::IfThenElseZero(has_length, bend);
-  const Float cosine = hn::IfThenElseZero(has_length, hn::Div(forward, length));
-  const Float sine = hn::IfThenElseZero(has_length, hn::Div(right, length));
+  const Float cosine = hn::IfThenElseZero(has_length, hn::Div(side.forward, side.length));
+  const Float sine = hn::IfThenElseZero(has_length, hn::Div(side.right, side.length));
   if (mode == BallMode::kSmooth) {
     const Float directions[4] = {cosine, hn::Neg(cosine), hn::Neg(sine), sine};
     for (std::size_t i = 0; i < 4; ++i) {
@@ -64,9 +89,14 @@ void EvaluateDrivers(const BallDriverSet& drivers, const PointPlan& plan, LanePo
     const Float cosine = Dot(straight, lower);
     const Float3 across = lower - cosine * straight;
     const Mask counts = hn::And(bones.lower.has_length, hn::Or(fixed, bones.upper.has_length));
-    const Float bend = hn::IfThenElseZero(counts, Bend(cosine, LoadRow(block.bend_scale, lane)));
-    StoreShares(block.mode, bend, Dot(across, LoadRows(block.forward, lane)),
-                Dot(across, LoadRows(block.right, lane)), to);
+    Float bend = hn::IfThenElseZero(counts, Bend(cosine, LoadRow(block.bend_scale, lane)));
+    BendSide side = SideOf(Dot(across, LoadRows(block.forward, lane)),
+                           Dot(across, LoadRows(block.right, lane)));
+    if (block.mode == BallMode::kSmooth) {
+      side = TurnToRest(side, cosine, block, lane);
+      bend = hn::Mul(bend, Fade(side.length, cosine));
+    }
+    StoreShares(block.mode, bend, side, to);
   };
   ForEachBlock(drivers.blocks(), input.num_values, rows, evaluate);
 }

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <random>
 
+#include <glm/gtx/quaternion.hpp>
 #include <gtest/gtest.h>
 
 #include "tests/unit/wrinkle/bound_rig.h"
+#include "wrinkle/drivers/ball/ball_fields.h"
 
 namespace furrow::wrinkle {
 namespace {
@@ -119,6 +122,177 @@ TEST_P(ClothingDrivers, BallSweepIsContinuous) {
   }
   std::printf("ball, through the range: at most %.6f per 0.1 degree\n", worst);
   EXPECT_LE(worst, 0.00096f);  // sin(90) / (1 + cos(30)) per radian, and no more
+}
+
+// An arm that rests in a T-pose and hangs down when straight, as in the shipped rigs.
+class Shoulder : public testing::TestWithParam<unsigned> {
+ protected:
+  static Rig ShoulderRig(BallMode mode) {
+    Rig rig;
+    rig.drivers.resize(1);
+    Driver& driver = rig.drivers[0];
+    driver.name = "shoulder_l";
+    driver.kind = Driver::Kind::kBall;
+    driver.ball = {.parent = "spine",
+                   .joint = "upper_arm_l",
+                   .end = "forearm_l",
+                   .bone = {0.0f, -1.0f, 0.0f},
+                   .mode = mode};
+    return rig;
+  }
+  struct Shares {
+    float front, back, left, right;
+    [[nodiscard]] float Sum() const { return front + back + left + right; }
+    [[nodiscard]] float Change(const Shares& other) const {
+      return std::max({std::abs(front - other.front), std::abs(back - other.back),
+                       std::abs(left - other.left), std::abs(right - other.right)});
+    }
+  };
+  // The arm points along `direction` (model axes).
+  static Shares Pointing(BoundRig* rig, const glm::vec3& direction) {
+    LocalPose pose = RestPose(rig->skeleton());
+    Turn(rig->skeleton(), "upper_arm_l", glm::rotation(kX, glm::normalize(direction)), &pose);
+    rig->Solve(pose);
+    return {rig->Value("shoulder_l.front"), rig->Value("shoulder_l.back"),
+            rig->Value("shoulder_l.left"), rig->Value("shoulder_l.right")};
+  }
+  Shares Pointing(const glm::vec3& direction) { return Pointing(&rig_, direction); }
+  // From hanging (0 degrees) towards the side that `psi` gives, from the front to the right.
+  static glm::vec3 Raised(float degrees, float psi) {
+    const float a = glm::radians(degrees);
+    const float b = glm::radians(psi);
+    return {-std::sin(a) * std::sin(b), -std::cos(a), std::sin(a) * std::cos(b)};
+  }
+  static float Bend(float degrees) {
+    return std::min(1.0f, (1.0f - std::cos(glm::radians(degrees))) / 1.8660254f);
+  }
+
+  BoundRig rig_{ShoulderRig(BallMode::kSmooth), MakeBody(GetParam())};
+};
+
+INSTANTIATE_TEST_SUITE_P(LocalFrames, Shoulder, testing::Values(0u, 31u));
+
+// Great circles over the whole sphere, through the straight direction and its opposite, around
+// them, and at random.
+TEST_P(Shoulder, AnySweepIsContinuous) {
+  std::mt19937 random(5);
+  float worst = 0.0f;
+  for (int circle = 0; circle < 150; ++circle) {
+    const glm::vec3 axis = circle < 40 ? Raised(90.0f, static_cast<float>(circle) * 4.5f)
+                                       : glm::normalize(RandomVector(&random, 1.0f));
+    const glm::vec3 across = circle < 40 ? -kY : glm::normalize(glm::cross(axis, kX + 0.1f * kY));
+    const glm::vec3 other = glm::cross(axis, across);
+    Shares before = Pointing(across);
+    for (int i = 1; i <= 3600; ++i) {
+      const float a = glm::radians(static_cast<float>(i) * 0.1f);
+      const Shares now = Pointing(std::cos(a) * across + std::sin(a) * other);
+      worst = std::max(worst, now.Change(before));
+      before = now;
+    }
+  }
+  std::printf("ball, over the sphere: at most %.6f per 0.1 degree\n", worst);
+  EXPECT_LE(worst, 0.02f);
+}
+
+// The joint's own range: all directions but 45 degrees around the singular one, which lies behind
+// the head on the other side. There the values are as steady as those of the formula's other parts.
+TEST_P(Shoulder, JitterOverheadMovesNoFold) {
+  for (float psi = 0.0f; psi < 360.0f; psi += 10.0f) {
+    for (const float degrees : {175.0f, 179.0f, 179.9f}) {
+      const Shares up = Pointing(Raised(degrees, psi));
+      EXPECT_LE(Pointing(Raised(degrees, psi + 180.0f)).Change(up), 0.1f) << psi;
+      EXPECT_LE(Pointing(Raised(degrees - 1.0f, psi)).Change(up), 0.02f) << psi;
+      EXPECT_NEAR(up.Sum(), 1.0f, 1e-5f);
+      EXPECT_GT(up.left, 0.9f) << "overhead counts as raised to the side of the rest pose";
+    }
+  }
+}
+
+// Up to 120 degrees the shares are those of the direction around the straight arm.
+TEST_P(Shoulder, DirectionsUpTo120DegreesAreThoseAroundTheStraightArm) {
+  for (const float degrees : {0.01f, 1.0f, 20.0f, 60.0f, 90.0f, 119.9f}) {
+    for (float psi = 0.0f; psi < 360.0f; psi += 7.5f) {
+      const Shares shares = Pointing(Raised(degrees, psi));
+      const float bend = Bend(degrees);
+      const float cosine = std::cos(glm::radians(psi));
+      const float sine = std::sin(glm::radians(psi));
+      const auto part = [bend](float x) { return bend * std::max(x, 0.0f) * std::max(x, 0.0f); };
+      EXPECT_NEAR(shares.front, part(cosine), 2e-5f) << degrees << " " << psi;
+      EXPECT_NEAR(shares.back, part(-cosine), 2e-5f) << degrees << " " << psi;
+      EXPECT_NEAR(shares.right, part(sine), 2e-5f) << degrees << " " << psi;
+      EXPECT_NEAR(shares.left, part(-sine), 2e-5f) << degrees << " " << psi;
+    }
+  }
+}
+
+// The values fade around one direction only: 141 degrees from straight, opposite the rest pose.
+TEST_P(Shoulder, SharesSumToTheBendExceptAroundOneDirection) {
+  const glm::vec3 singular = Raised(141.1f, 90.0f);
+  EXPECT_LT(Pointing(singular).Sum(), 0.01f);
+  for (float degrees = 0.0f; degrees <= 180.0f; degrees += 3.0f) {
+    for (float psi = 0.0f; psi < 360.0f; psi += 5.0f) {
+      const glm::vec3 direction = Raised(degrees, psi);
+      const float sum = Pointing(direction).Sum();
+      EXPECT_LE(sum, Bend(degrees) + 1e-5f);
+      if (glm::dot(direction, singular) > std::cos(glm::radians(35.0f))) continue;
+      EXPECT_NEAR(sum, Bend(degrees), 2e-5f) << degrees << " " << psi;
+    }
+  }
+}
+
+// The printed rule stays as it is, with its jumps.
+TEST_P(Shoulder, ThesisModeDoesNotTurn) {
+  BoundRig rig(ShoulderRig(BallMode::kThesis), MakeBody(GetParam()));
+  for (const float degrees : {60.0f, 170.0f, 179.0f}) {
+    EXPECT_NEAR(Pointing(&rig, Raised(degrees, 40.0f)).front, Bend(degrees), 1e-5f);
+    EXPECT_NEAR(Pointing(&rig, Raised(degrees, 43.0f)).right, Bend(degrees), 1e-5f);
+    EXPECT_NEAR(Pointing(&rig, Raised(degrees, -43.0f)).left, Bend(degrees), 1e-5f);
+  }
+}
+
+// However far an arm droops in its rest pose, the same motion raises the same value.
+TEST(SubjectsRight, StaysWhereItIsWhileAnArmDroops) {
+  for (const float side : {1.0f, -1.0f}) {
+    glm::vec3 before(0.0f);
+    for (float droop = 90.0f; droop >= -40.0f; droop -= 1.0f) {
+      const float a = glm::radians(droop);
+      const glm::vec3 bone(side * std::cos(a), -std::sin(a), 0.0f);
+      const glm::vec3 right = SubjectsRight(bone, kZ);
+      EXPECT_NEAR(glm::dot(right, bone), 0.0f, 1e-6f);
+      if (droop < 90.0f) {
+        EXPECT_GT(glm::dot(right, before), 0.999f) << droop;
+      }
+      before = right;
+    }
+    // An arm that hangs has its right on the subject's right.
+    EXPECT_NEAR(SubjectsRight(-kY, kZ).x, -1.0f, 1e-6f);
+  }
+  EXPECT_NEAR(SubjectsRight(kX, kZ).y, -1.0f, 1e-6f);
+  EXPECT_NEAR(SubjectsRight(-kX, kZ).y, 1.0f, 1e-6f);
+  EXPECT_NEAR(SubjectsRight(kY, kZ).x, -1.0f, 1e-6f);  // a spine
+}
+
+TEST(Ball, AnArmThatRestsLowKeepsItsSides) {
+  for (const float droop : {0.0f, 3.0f, 5.0f, 6.0f, 7.0f, 20.0f, 45.0f, 80.0f}) {
+    const float a = glm::radians(droop);
+    const glm::vec3 bone(std::cos(a), -std::sin(a), 0.0f);
+    const glm::vec3 shoulder(0.15f, 1.4f, 0.0f);
+    const Skeleton body = MakeSkeleton({{"spine", "", {0, 1, 0}, {}},
+                                        {"arm", "spine", shoulder, {}},
+                                        {"forearm", "arm", shoulder + 0.25f * bone, {}},
+                                        {"hand", "forearm", shoulder + 0.5f * bone, glm::vec3(0)}});
+    Rig rig;
+    rig.drivers.resize(1);
+    rig.drivers[0].name = "shoulder";
+    rig.drivers[0].kind = Driver::Kind::kBall;
+    rig.drivers[0].ball = {.parent = "spine", .joint = "arm", .end = "forearm", .bone = bone};
+    BoundRig bound(rig, body);
+    LocalPose pose = RestPose(body);
+    Turn(body, "arm", AngleAxis(40.0f, kZ), &pose);  // raises a left arm
+    bound.Solve(pose);
+    EXPECT_GT(bound.Value("shoulder.left"), 0.1f) << droop;
+    EXPECT_NEAR(bound.Value("shoulder.right"), 0.0f, 1e-6f) << droop;
+  }
 }
 
 TEST_P(ClothingDrivers, TwistAddsUpOverItsJoints) {

@@ -42,4 +42,17 @@ BallShares SplitBend(BallMode mode, float bend, float forward, float right) {
                                    : SplitSmooth(bend, cos_psi, sin_psi);
 }
 
+BallShares SplitWideBend(BallMode mode, float bend, float cosine, float forward, float right,
+                         const glm::vec2& rest_side) {
+  if (mode == BallMode::kThesis || cosine >= 0.0f) return SplitBend(mode, bend, forward, right);
+  double turn = 0.0;
+  if (cosine < -0.5f) turn = 8.0 * std::pow(double{cosine} + 0.5, 2.0);
+  const double turned_forward = forward + turn * rest_side.x;
+  const double turned_right = right + turn * rest_side.y;
+  const double t = std::min(std::hypot(turned_forward, turned_right) / 0.5, 1.0);
+  const double fade = 3.0 * t * t - 2.0 * t * t * t;
+  return SplitBend(mode, static_cast<float>(bend * fade), static_cast<float>(turned_forward),
+                   static_cast<float>(turned_right));
+}
+
 }  // namespace furrow::wrinkle

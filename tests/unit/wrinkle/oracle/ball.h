@@ -24,4 +24,12 @@ struct BallShares {
 //   degrees; at exactly +-0.75 the thesis states no case: all are 0.
 [[nodiscard]] BallShares SplitBend(BallMode mode, float bend, float forward, float right);
 
+// SplitBend() for a bend of any angle, as the driver computes it.
+//
+// - `cosine`: of the angle between the straight direction and the lower bone.
+// - `rest_side`: BallDriverSet::Entry::rest_side. kSmooth turns directions beyond 120 degrees
+//   towards it, and fades around the direction that is then singular.
+[[nodiscard]] BallShares SplitWideBend(BallMode mode, float bend, float cosine, float forward,
+                                       float right, const glm::vec2& rest_side);
+
 }  // namespace furrow::wrinkle

@@ -67,8 +67,9 @@ class DriverOracle {
       if (straight != kNone && lower != kNone) {
         const float cosine = glm::dot(straight, lower);
         const glm::vec3 across = lower - cosine * straight;
-        shares = SplitBend(entry.mode, Bend(cosine, entry.bend_scale),
-                           glm::dot(across, entry.forward), glm::dot(across, entry.right));
+        shares = SplitWideBend(entry.mode, Bend(cosine, entry.bend_scale), cosine,
+                               glm::dot(across, entry.forward), glm::dot(across, entry.right),
+                               entry.rest_side);
       }
       float* const values = &values_[entry.first_value];
       values[0] = shares.front;
