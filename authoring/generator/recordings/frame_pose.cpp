@@ -35,12 +35,13 @@ Status FramePose::Apply(const std::string& pose, float weight) {
   if (found == rig_.reference_poses.end()) {
     return Status(StatusCode::kNotFound, "the rig has no reference pose '" + pose + "'");
   }
+  const float scale = wrinkle::ReferencePoseScale(*found, skeleton_);
   for (const wrinkle::JointDelta& delta : found->joints) {
     const int joint = skeleton_.Find(delta.joint);
     if (joint == wrinkle::kNoJoint) {
       return Status(StatusCode::kNotFound, "the skeleton has no joint '" + delta.joint + "'", pose);
     }
-    frame_[joint].translation += delta.translation * weight;
+    frame_[joint].translation += (delta.translation * scale + delta.unscaled_translation) * weight;
     frame_[joint].rotation =
         frame_[joint].rotation * glm::slerp(quat(1, 0, 0, 0), delta.rotation, weight);
   }
