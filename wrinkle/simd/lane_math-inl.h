@@ -41,21 +41,34 @@ HWY_INLINE Float ArcTangent(Float y, Float x) {
   return hn::CopySign(angle, y);
 }
 
-// exp(x) for x <= 0: 2^n times a polynomial (Cephes); 0 below the smallest normal number.
-HWY_INLINE Float Exponential(Float x) {
+// exp(x) for x in [-87, 0] in two parts: 2^n (1 + m), with m near 0 (Cephes).
+struct ExponentialParts {
+  Float power, m;
+};
+HWY_INLINE ExponentialParts SplitExponential(Float x) {
   const hn::RebindToSigned<Floats> ints;
-  const Float clamped = hn::Max(x, Splat(-87.0f));
-  const Float n = hn::Round(hn::Mul(clamped, Splat(1.44269504f)));
+  const Float n = hn::Round(hn::Mul(x, Splat(1.44269504f)));
   // ln 2 in two parts, so that the remainder keeps all its digits.
   const Float r =
-      hn::NegMulAdd(n, Splat(-2.12194440e-4f), hn::NegMulAdd(n, Splat(0.693359375f), clamped));
+      hn::NegMulAdd(n, Splat(-2.12194440e-4f), hn::NegMulAdd(n, Splat(0.693359375f), x));
   const Float p = Polynomial(r, 1.9875691500e-4f, 1.3981999507e-3f, 8.3334519073e-3f,
                              4.1665795894e-2f, 1.6666665459e-1f, 5.0000001201e-1f);
-  const Float mantissa = hn::Add(hn::MulAdd(p, hn::Mul(r, r), r), Splat(1.0f));
-  // n is at least -126 after the clamp, so n + 127 is the biased exponent of a normal float.
+  // n is at least -126, so n + 127 is the biased exponent of a normal float.
   const auto exponent = hn::ShiftLeft<23>(hn::Add(hn::ConvertTo(ints, n), hn::Set(ints, 127)));
+  return {hn::BitCast(Floats(), exponent), hn::MulAdd(p, hn::Mul(r, r), r)};
+}
+
+// exp(x) for x <= 0; 0 below the smallest normal number.
+HWY_INLINE Float Exponential(Float x) {
+  const ExponentialParts parts = SplitExponential(hn::Max(x, Splat(-87.0f)));
   return hn::IfThenElseZero(hn::Ge(x, Splat(-87.0f)),
-                            hn::Mul(mantissa, hn::BitCast(Floats(), exponent)));
+                            hn::Mul(hn::Add(parts.m, Splat(1.0f)), parts.power));
+}
+
+// 1 - exp(-x) for x >= 0, with a small relative error near 0 as well.
+HWY_INLINE Float OneMinusExponential(Float x) {
+  const ExponentialParts parts = SplitExponential(hn::Max(hn::Neg(x), Splat(-87.0f)));
+  return hn::NegMulAdd(parts.power, parts.m, hn::Sub(Splat(1.0f), parts.power));
 }
 
 // (1 - cos(pi x)) / 2 = sin(pi x / 2)^2 for x in [0, 1]. Coefficients: Hastings, Approximations for

@@ -9,25 +9,36 @@
 #endif
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/scalar.h"
-#include "wrinkle/simd/lanes-inl.h"
+#include "wrinkle/simd/lane_math-inl.h"
 #include "wrinkle/weights/filter.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace furrow::wrinkle::HWY_NAMESPACE {
 
-// A filter's parameters and times in the form that Follow() needs. A first-order low-pass of
-// cut-off f takes over the share c / (1 + c) of a new value after dt, with c = 2 pi f dt. With s
-// the share for the derivative: speed = s / since * (input - last input) + (1 - s) * last speed.
-// The cut-off for the value is min_cutoff + beta * |speed|.
+// A filter's parameters and times in the form that Follow() needs. Between two inputs, the input is
+// taken as a straight line, and both low-passes are solved exactly for it, so that the result
+// hardly depends on the frame rate:
+//
+// - slope      = (input - last input) / since, in 1/s
+// - speed'     = a_d (slope - speed), a_d = 2 pi derivative_cutoff, is an exponential. `speed_left`
+//                is exp(-a_d dt); `mean_left` is the mean of that exponential over dt.
+// - value'     = a (line - value), a = 2 pi (min_cutoff + beta |mean speed|), with c = a dt:
+//                value += rise (1 - (1 - exp(-c)) / c) + (line at the start - value) (1 - exp(-c)),
+//                where rise = slope dt.
 struct FilterLanes {
-  Float slope_share, speed_left, c_least, c_of_speed, largest_change, largest_fall;
+  Float inverse_since, dt;
+  Float speed_left, speed_share, mean_left, mean_share;  // of the last speed and of the slope
+  Float c_least, c_of_speed, largest_change, largest_fall;
 };
 
 HWY_INLINE FilterLanes MakeFilterLanes(const Filter& filter, double since_input, double dt) {
-  const double angle = 2.0 * double{kPi} * std::min(dt, 1e20);  // c / (1 + c) is 1 long before
+  const double angle = 2.0 * double{kPi} * std::min(dt, 1e20);  // exp(-angle) is 0 long before
   const double derivative = angle * double{filter.derivative_cutoff_hz};
+  const double share = -std::expm1(-derivative);
+  const double mean_left = share / derivative;
   // The slope is measured over all time since the last input, including time without input. If it
   // is 0, the infinite share stays unused: MoveOn() returns kStay.
   const double since = since_input + dt;
@@ -35,8 +46,12 @@ HWY_INLINE FilterLanes MakeFilterLanes(const Filter& filter, double since_input,
   // Values are in [0, 1], so a limit of 2 never acts.
   const double largest_change = limited ? double{filter.slew_per_second} * dt : 2.0;
   const auto splat = [](double x) HWY_ATTR { return Splat(static_cast<float>(x)); };
-  return {.slope_share = splat(derivative / ((1.0 + derivative) * since)),
-          .speed_left = splat(1.0 / (1.0 + derivative)),
+  return {.inverse_since = splat(1.0 / since),
+          .dt = splat(std::min(dt, 1e20)),
+          .speed_left = splat(1.0 - share),
+          .speed_share = splat(share),
+          .mean_left = splat(mean_left),
+          .mean_share = splat(1.0 - mean_left),
           .c_least = splat(angle * double{filter.min_cutoff_hz}),
           .c_of_speed = splat(angle * double{filter.beta}),
           .largest_change = splat(largest_change),
@@ -50,12 +65,17 @@ struct FilterState {
 
 // One step of One-Euro and the slew limit.
 HWY_INLINE FilterState Follow(const FilterLanes& f, FilterState old, Float input) {
-  const Float slope = hn::Mul(f.slope_share, hn::Sub(input, old.raw));
-  // `speed` low-passes the slope; `c` is 2 pi dt times the cut-off that follows from it.
-  const Float speed = hn::MulAdd(f.speed_left, old.derivative, slope);
-  const Float c = hn::MulAdd(f.c_of_speed, hn::Abs(speed), f.c_least);
-  const Float most = hn::Mul(c, hn::Sub(input, old.value));
-  const Float wanted = hn::Div(most, hn::Add(c, Splat(1.0f)));
+  const Float slope = hn::Mul(hn::Sub(input, old.raw), f.inverse_since);
+  // Sums of shares: a difference would lose digits where the slope is large.
+  const Float speed = hn::MulAdd(f.speed_left, old.derivative, hn::Mul(f.speed_share, slope));
+  const Float mean_speed = hn::MulAdd(f.mean_left, old.derivative, hn::Mul(f.mean_share, slope));
+  const Float c = hn::MulAdd(f.c_of_speed, hn::Abs(mean_speed), f.c_least);
+  const Float reached = OneMinusExponential(c);
+  // min() guards c of a time so short that its share is lost anyway.
+  const Float lag = hn::Sub(Splat(1.0f), hn::Min(hn::Div(reached, c), Splat(1.0f)));
+  const Float rise = hn::Mul(slope, f.dt);
+  const Float start = hn::Sub(hn::Sub(input, rise), old.value);
+  const Float wanted = hn::MulAdd(rise, lag, hn::Mul(start, reached));
   const Float change = hn::Max(hn::Min(wanted, f.largest_change), f.largest_fall);
   return {input, SaturateNumber(hn::Add(old.value, change)), speed};
 }

@@ -3,16 +3,18 @@
 
 namespace furrow::wrinkle {
 
-// Share of the new value that a first-order low-pass of `cutoff_hz` takes over after `dt` seconds:
-// 1 / (1 + tau / dt) with tau = 1 / (2 pi cutoff). 0 at dt = 0, towards 1 for a long dt.
+// Share of a constant input that a first-order low-pass of `cutoff_hz` takes over after `dt`
+// seconds: 1 - exp(-2 pi cutoff dt). 0 at dt = 0, towards 1 for a long dt.
 [[nodiscard]] double LowPassShare(double cutoff_hz, double dt);
 
 // One step of the One-Euro filter: a low-pass with a cut-off that rises with the signal's speed, so
-// that rest is steady and motion has little lag.
+// that rest is steady and motion has little lag. The input runs in a straight line of slope
+// `raw_slope` to `input`, and both low-passes follow it exactly.
 //
 // - `speed` is the low-passed derivative, 1/s, updated in place; `raw_slope` the derivative of the
 //   raw signal over the last step. `dt` > 0.
-// - Source: Casiez, Roussel and Vogel, 1 Euro Filter (CHI 2012).
+// - The cut-off follows from the mean of `speed` over the step.
+// - Source: Casiez, Roussel and Vogel, 1 Euro Filter (CHI 2012), in continuous time.
 struct OneEuro {
   double min_cutoff_hz = 4.0;
   double beta = 1.0;

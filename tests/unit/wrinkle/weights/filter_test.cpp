@@ -2,6 +2,7 @@
 #include <cmath>
 #include <optional>
 #include <random>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -48,9 +49,9 @@ class FilterTest : public testing::Test {
 
 TEST(OneEuro, LowPassShareIsThatOfAFirstOrderFilter) {
   EXPECT_EQ(LowPassShare(1.0, 0.0), 0.0);
-  // tau = 1 / (2 pi) s; dt = tau: 1 / (1 + 1).
-  EXPECT_NEAR(LowPassShare(1.0, 0.15915494), 0.5, 1e-6);
-  EXPECT_NEAR(LowPassShare(4.0, 1.0 / 60.0), 0.2952, 1e-4);  // 1 / (1 + 60 / 8 pi)
+  // tau = 1 / (2 pi) s; dt = tau: 1 - 1 / e.
+  EXPECT_NEAR(LowPassShare(1.0, 0.15915494), 0.63212056, 1e-6);
+  EXPECT_NEAR(LowPassShare(4.0, 1.0 / 60.0), 0.342211, 1e-5);  // 1 - exp(-8 pi / 60)
   EXPECT_NEAR(LowPassShare(1.0, 1e9), 1.0, 1e-8);
 }
 
@@ -58,16 +59,17 @@ TEST(OneEuro, LowPassShareIsThatOfAFirstOrderFilter) {
 TEST(OneEuro, FollowsAWorkedExample) {
   const OneEuro filter{.min_cutoff_hz = 1.0, .beta = 2.0, .derivative_cutoff_hz = 1.0};
   double speed = 0.0;
-  // share(1 Hz, 0.1 s) = 1 / (1 + 1.591549) = 0.385869; speed = 0.385869 * 5 = 1.929346;
-  // cut-off = 4.858692 Hz, tau = 0.0327567, share = 1 / 1.327567 = 0.753258.
+  // exp(-0.2 pi) = 0.533488: speed = 5 (1 - 0.533488) = 2.332560, and its mean 5 (1 - 0.466512 /
+  // 0.628319) = 1.287616. Cut-off 3.575232 Hz, a = 22.463848 / s: the value ends behind the line by
+  // 5 / a (1 - exp(-0.1 a)) = 0.222580 * (1 - 0.105781).
   const double first = filter.Step(0.0, 0.5, 5.0, 0.1, &speed);
-  EXPECT_NEAR(speed, 1.929346, 1e-5);
-  EXPECT_NEAR(first, 0.376629, 1e-5);
-  // speed = 1.929346 * (1 - 0.385869) = 1.184872; cut-off
-  // 3.369745, share = 1 / 1.472306 = 0.679207.
+  EXPECT_NEAR(speed, 2.332560, 1e-5);
+  EXPECT_NEAR(first, 0.5 - 0.222580 * (1.0 - 0.105781), 1e-5);
+  // The input rests. speed = 2.332560 * 0.533488, its mean 2.332560 * 0.466512 / 0.628319 =
+  // 1.731871; cut-off 4.463743 Hz: exp(-0.893 pi) = 0.060528 of the way is left.
   const double second = filter.Step(first, 0.5, 0.0, 0.1, &speed);
-  EXPECT_NEAR(speed, 1.184872, 1e-5);
-  EXPECT_NEAR(second, first + 0.679207 * (0.5 - first), 1e-5);
+  EXPECT_NEAR(speed, 1.244393, 1e-5);
+  EXPECT_NEAR(second, 0.5 - 0.060528 * (0.5 - first), 1e-5);
 }
 
 TEST_F(FilterTest, FirstInputPassesUnchanged) { EXPECT_EQ(Step(0.83f, 0.0), 0.83f); }
@@ -108,6 +110,53 @@ TEST_F(FilterTest, BetaShortensTheLagOfFastMotion) {
     return 1.0f - output;
   };
   EXPECT_LT(lag(5.0f), 0.6f * lag(0.0f));
+}
+
+// Gestures of up to 3 Hz, sampled at several rates: shipped_rigs_test.cpp does the same with
+// recordings.
+TEST_F(FilterTest, HardlyDependsOnTheFrameRate) {
+  const auto gesture = [](double t) {
+    return 0.5 + 0.35 * std::sin(2.0 * M_PI * t) + 0.15 * std::sin(6.0 * M_PI * t + 1.0);
+  };
+  const auto fast = [](double t) { return 0.5 + 0.5 * std::sin(6.0 * M_PI * t); };
+  const auto at_30_hz = [&](auto signal, int rate) {
+    Restart();
+    std::vector<float> outputs;
+    for (int i = 0; i <= 2 * rate; ++i) {
+      const double dt = 1.0 / rate;
+      Step(static_cast<float>(signal(i * dt)), i == 0 ? 0.0 : dt);
+      if (i % (rate / 30) == 0) outputs.push_back(Output());
+    }
+    return outputs;
+  };
+  const auto check = [&](auto signal) {
+    const std::vector<float> expected = at_30_hz(signal, 240);
+    for (const auto& [rate, bound] : {std::pair(30, 0.02f), {60, 0.006f}, {120, 0.002f}}) {
+      const std::vector<float> outputs = at_30_hz(signal, rate);
+      for (std::size_t i = 0; i < expected.size(); ++i) {
+        ASSERT_NEAR(outputs[i], expected[i], bound) << rate << " Hz, at " << i / 30.0 << " s";
+      }
+    }
+  };
+  check(gesture);
+  check(fast);
+}
+
+// A straight line, sampled anyhow, gives the same output.
+TEST_F(FilterTest, FollowsALineExactlyAtAnyRate) {
+  filter_.beta = 0.0f;
+  const auto after = [&](const std::vector<double>& steps) {
+    Restart();
+    Step(0.1f, 0.0);
+    double t = 0.0;
+    for (const double dt : steps) Step(static_cast<float>(0.1 + (t += dt)), dt);
+    return Output();
+  };
+  const float expected = after(std::vector<double>(240, 1.0 / 480.0));
+  EXPECT_NEAR(after({0.5}), expected, 2e-5f);
+  EXPECT_NEAR(after({0.01, 0.2, 0.003, 0.287}), expected, 2e-5f);
+  // It lags by the time constant 1 / (8 pi) s.
+  EXPECT_NEAR(expected, 0.6f - 0.0397887f, 2e-5f);
 }
 
 TEST_F(FilterTest, SlewLimitsTheChange) {
