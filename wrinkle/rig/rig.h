@@ -99,7 +99,8 @@ struct Export {
 
 struct Rig {
   std::string name;
-  std::string anchor;  // pose drivers measure in this joint's space; empty: model space
+  std::string anchor;  // pose drivers without their own anchor measure in this joint's space; empty:
+                       // model space
   std::vector<ReferencePose> reference_poses;
   std::vector<Driver> drivers;
   std::vector<Region> regions;

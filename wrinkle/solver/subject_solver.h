@@ -24,8 +24,7 @@ inline constexpr std::size_t kAllDrivers = std::numeric_limits<std::size_t>::max
 // - The drivers of a pose are evaluated side by side, in SIMD lanes, with the best instruction set
 //   of the processor. Instruction sets differ in the last bits of their results.
 // - Drivers compare joints with one another from the local pose alone, not in model space. Moving
-//   or turning the whole character changes no bit, except in pose drivers of a rig without an
-//   anchor.
+//   or turning the whole character changes no bit, except in pose drivers without an anchor.
 // - Allocates in the constructor and in SetLevel(), and when a thread first updates a subject of a
 //   larger binding than before. A call that fails changes nothing.
 // - Formulas: docs/ALGORITHM.md (thesis 4.1 to 4.6 with corrections).

@@ -37,6 +37,7 @@ TEST(RigWriter, WritesAPoseDriver) {
 )");
   driver.pose.points.resize(1);
   driver.pose.values.resize(1);
+  driver.pose.anchor = "head";
   driver.pose.solve = wrinkle::PoseSolve::kNnls;
   driver.pose.falloff = 0.25f;
   EXPECT_EQ(DriverToJson(driver), R"({
@@ -44,6 +45,7 @@ TEST(RigWriter, WritesAPoseDriver) {
   "pose": {
     "points": [{"joint": "brow"}],
     "values": [{"name": "stretch", "reference_pose": "up"}],
+    "anchor": "head",
     "solve": "nnls",
     "falloff": 0.25
   }

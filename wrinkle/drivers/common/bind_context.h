@@ -16,7 +16,7 @@ namespace furrow::wrinkle {
 
 // The parts of a rig that drivers refer to while they are bound.
 struct BindSource {
-  std::string anchor;  // joint; empty if the rig has no anchor or no driver measures from it
+  std::string anchor;  // the rig's; empty if it has none or no driver measures from it
   std::span<const ReferencePose> reference_poses;
   bool reads_joints = false;  // some driver reads joints
   std::span<const std::string> blend_shape_names;

@@ -99,7 +99,14 @@ Status PoseDriverSet::BindPoints(const std::string& name, const PoseDriver& driv
                                  BindContext* context, bool* usable) {
   const Skeleton& skeleton = context->skeleton();
   std::vector<int> joints;
+  int anchor = context->anchor();
   *usable = !context->anchor_missing();
+  if (!driver.anchor.empty()) {
+    const Result<int> own = context->Joint(OwnerOf(name), "anchor", driver.anchor);
+    FURROW_RETURN_IF_ERROR(own);
+    anchor = *own;
+    *usable = anchor != kNoJoint;
+  }
   for (const ControlPoint& point : driver.points) {
     const Result<int> joint = context->Joint(OwnerOf(name), "points", point.joint);
     FURROW_RETURN_IF_ERROR(joint);
@@ -110,12 +117,12 @@ Status PoseDriverSet::BindPoints(const std::string& name, const PoseDriver& driv
   // Points are measured in the anchor's space, so that a nod of the head makes no wrinkle (thesis
   // 4.1 leaves the space open).
   for (std::size_t i = 0; i < joints.size(); ++i) {
-    if (context->anchor() != kNoJoint && !skeleton.IsAncestor(context->anchor(), joints[i])) {
+    if (anchor != kNoJoint && !skeleton.IsAncestor(anchor, joints[i])) {
       context->Warn(OwnerOf(name) + ": joint '" + driver.points[i].joint +
                     "' does not hang from the anchor, so moving the anchor moves its value");
     }
     const glm::vec3 offset = LocalOffset(driver.points[i], skeleton, joints[i], context->size());
-    const int point = context->chains().Add(skeleton, joints[i], offset, context->anchor());
+    const int point = context->chains().Add(skeleton, joints[i], offset, anchor);
     points_.push_back({point, context->chains().Evaluate(skeleton.rest_pose(), point)});
   }
   return {};

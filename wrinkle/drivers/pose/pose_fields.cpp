@@ -18,6 +18,7 @@ std::vector<std::string> DriverValueNames(const PoseDriver& driver) {
 }
 
 void CheckFields(const PoseDriver& driver, const std::string& at, FieldCheck* check) {
+  if (!driver.anchor.empty()) check->Label(at, ".anchor", driver.anchor);
   const bool nnls = driver.solve == PoseSolve::kNnls;
   check->Require(!driver.points.empty(), at, ".points", "a pose driver needs a control point");
   check->Require(!driver.values.empty(), at, ".values", "a pose driver needs a value");
@@ -41,12 +42,17 @@ void CheckFields(const PoseDriver& driver, const std::string& at, FieldCheck* ch
 }
 
 std::vector<std::string> JointsRead(const PoseDriver& driver) {
+  std::vector<std::string> joints = JointsInfluenced(driver);
+  joints.push_back(driver.anchor);
+  return joints;
+}
+
+// The anchor is only the space of the measurement.
+std::vector<std::string> JointsInfluenced(const PoseDriver& driver) {
   std::vector<std::string> joints;
   for (const ControlPoint& point : driver.points) joints.push_back(point.joint);
   return joints;
 }
-
-std::vector<std::string> JointsInfluenced(const PoseDriver& driver) { return JointsRead(driver); }
 
 Result<ReferencePose> FullPose(const PoseDriver& driver, const FullPoseBuilder& builder) {
   for (const PoseDriver::Value& value : driver.values) {

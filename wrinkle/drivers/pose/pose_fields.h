@@ -54,6 +54,8 @@ struct PoseDriver {
   };
   std::vector<ControlPoint> points;
   std::vector<Value> values;
+  std::string anchor;  // optional: the joint whose space the points are measured in; empty: the
+                       // rig's anchor
   PoseSolve solve = PoseSolve::kProjection;
   float falloff = 0.0f;  // s of exp(-|perp|^2 / (2 s^2 |d|^2)), [0, 1000]; 0: no falloff
 
@@ -62,6 +64,7 @@ struct PoseDriver {
   static void ListFields(Fields& fields) {
     fields.Required("points", &PoseDriver::points);
     fields.Required("values", &PoseDriver::values);
+    fields.Optional("anchor", &PoseDriver::anchor);
     fields.Choice("solve", &PoseDriver::solve, {"projection", "nnls"});
     fields.Optional("falloff", &PoseDriver::falloff);
   }

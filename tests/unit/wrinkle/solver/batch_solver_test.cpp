@@ -34,6 +34,8 @@ Rig RandomRig(std::mt19937* random) {
   if (Pick(random, 4) == 0) rig.anchor.clear();
   for (Driver& driver : rig.drivers) {
     driver.pose.solve = Pick(random, 3) == 0 ? PoseSolve::kNnls : PoseSolve::kProjection;
+    const char* anchors[] = {"", "", "spine", "hand_l"};  // up and down again from the last two
+    driver.pose.anchor = anchors[Pick(random, 4)];
     driver.pose.falloff = Pick(random, 2) == 0 ? 0.0f : Uniform(random, 0.2f, 2.0f);
     if (Pick(random, 3) == 0) driver.hinge.axis.reset();
     driver.hinge.beta_degrees = driver.ball.beta_degrees = Uniform(random, 10.0f, 120.0f);

@@ -73,6 +73,8 @@ Driver& DriverNamed(Rig* rig, const std::string& name) {
 
 const Fault kReferenceFaults[] = {
     {"anchor", [](Rig* r) { r->anchor = "skull"; }, StatusCode::kNotFound, "'skull'"},
+    {"own_anchor", [](Rig* r) { r->drivers[0].pose.anchor = "skull"; }, StatusCode::kNotFound,
+     "driver 'brow_l': anchor names joint 'skull'"},
     {"pose_joint", [](Rig* r) { r->drivers[0].pose.points[0].joint = "brow_x"; },
      StatusCode::kNotFound, "driver 'brow_l': points names joint 'brow_x'"},
     {"reference_pose_joint", [](Rig* r) { r->reference_poses[0].joints[0].joint = "brow_x"; },
@@ -161,6 +163,8 @@ const Fault kNumberFaults[] = {
      "drivers[0].pose.falloff: -1 is out of range [0, 1000]"},
     {"falloff_nan", [](Rig* r) { r->drivers[0].pose.falloff = kNan; }, StatusCode::kNonFinite,
      "drivers[0].pose.falloff"},
+    {"own_anchor_label", [](Rig* r) { r->drivers[0].pose.anchor = "a\n"; },
+     StatusCode::kInvalidArgument, "drivers[0].pose.anchor: the name holds a control"},
     {"offset_nan", [](Rig* r) { r->drivers[0].pose.points[0].offset.y = kNan; },
      StatusCode::kNonFinite, "drivers[0].pose.points[0].offset"},
     {"beta", [](Rig* r) { DriverNamed(r, "knee_l").hinge.beta_degrees = 180.0f; },
@@ -384,6 +388,28 @@ TEST(RigBinding, NeedsNoAnchorWherePosesAreNotMeasured) {
   rig.regions = {rig.regions[4]};
   const Status status = Bind(rig).status();
   EXPECT_TRUE(status.ok()) << status.ToString();
+}
+
+TEST(RigBinding, NeedsNoAnchorOfTheRigWhereDriversHaveTheirOwn) {
+  Rig rig = MakeRig();
+  rig.anchor = "skull";
+  std::erase_if(rig.drivers,
+                [](const Driver& driver) { return driver.kind == Driver::Kind::kStrain; });
+  for (Driver& driver : rig.drivers) driver.pose.anchor = "head";
+  const Result<RigBinding> binding = Bind(rig);
+  ASSERT_TRUE(binding.ok()) << binding.status().ToString();
+  // One driver without its own anchor needs the rig's, and rests without it.
+  DriverNamed(&rig, "brow_r").pose.anchor.clear();
+  EXPECT_EQ(Bind(rig).status().code(), StatusCode::kNotFound);
+  const Result<RigBinding> partial = Bind(rig, true);
+  ASSERT_TRUE(partial.ok()) << partial.status().ToString();
+  EXPECT_THAT(partial->missing_joints(), ElementsAre("skull"));
+  LocalPose pose = RestPose(partial->skeleton());
+  Turn(partial->skeleton(), "brow_l", AngleAxis(-25.0f, {1, 0, 0}), &pose);
+  Turn(partial->skeleton(), "brow_r", AngleAxis(-25.0f, {1, 0, 0}), &pose);
+  const std::vector<float> values = DriverValues(*partial, pose);
+  EXPECT_NEAR(values[0], 1.0f, 1e-5f);
+  EXPECT_EQ(values[2], 0.0f);
 }
 
 }  // namespace

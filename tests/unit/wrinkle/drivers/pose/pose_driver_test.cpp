@@ -131,6 +131,38 @@ TEST(PoseDriver, LooksAtTheTailOfAJointThatOnlyRotates) {
   EXPECT_NEAR(tail.ValueAt(pose, "d.lean"), 0.5f, 1e-6f);
 }
 
+// With an anchor of its own, a driver does not see motion above that joint.
+TEST(PoseDriver, MeasuresInTheSpaceOfItsOwnAnchor) {
+  const Skeleton chain = MakeSkeleton({{"ground", "", {0, 0, 0}, {}},
+                                       {"arm", "ground", {0, 1, 0}, {}},
+                                       {"tip", "arm", {0, 2, 0}, glm::vec3(0, 3, 0)}},
+                                      6);
+  Rig rig;
+  rig.anchor = "ground";
+  rig.reference_poses = {{.name = "bent", .joints = {{"tip", AngleAxis(90.0f, {0, 0, 1})}}}};
+  Driver driver;
+  driver.pose.points = {{.joint = "tip"}};
+  driver.pose.values = {{"bent", "bent"}};
+  rig.drivers = {driver, driver};
+  rig.drivers[0].name = "own";
+  rig.drivers[0].pose.anchor = "arm";
+  rig.drivers[1].name = "shared";
+  BoundRig bound(rig, chain);
+  EXPECT_TRUE(bound.binding()->warnings().empty());
+  LocalPose pose = RestPose(chain);
+  Turn(chain, "tip", AngleAxis(45.0f, {0, 0, 1}), &pose);
+  bound.Solve(pose);
+  // Tail from (0, 1) to (-s, s), s = sqrt(1/2), onto (-1, -1): (s + (1 - s)) / 2.
+  EXPECT_NEAR(bound.Value("own.bent"), 0.5f, 1e-6f);
+  EXPECT_NEAR(bound.Value("shared.bent"), 0.5f, 1e-6f);
+  pose = RestPose(chain);
+  Turn(chain, "arm", AngleAxis(30.0f, {0, 0, 1}), &pose);
+  bound.Solve(pose);
+  EXPECT_NEAR(bound.Value("own.bent"), 0.0f, 1e-6f);
+  // The tail goes from (0, 2) to (-1, sqrt(3)) about the arm's origin: (1 + 2 - sqrt(3)) / 2.
+  EXPECT_NEAR(bound.Value("shared.bent"), 0.6339746f, 1e-6f);
+}
+
 TEST(PoseDriver, OffsetPointIsInTheJointsSpaceAndScaled) {
   const Skeleton pole = Pole();
   Rig rig = MoverRig({{1, 0, 0}}, PoseSolve::kProjection);
