@@ -59,6 +59,7 @@ TEST(RigWriter, WritesAHingeDriver) {
   EXPECT_EQ(DriverToJson(driver),
             "{\"name\": \"knee\", \"hinge\": {\"parent\": \"thigh\", \"joint\": \"shin\"}}\n");
   driver.hinge.end = "foot";
+  driver.hinge.bone = glm::vec3(0, -1, 0.25f);
   driver.hinge.axis = glm::vec3(0);
   driver.hinge.beta_degrees = 40.5f;
   EXPECT_EQ(DriverToJson(driver), R"({
@@ -67,6 +68,7 @@ TEST(RigWriter, WritesAHingeDriver) {
     "parent": "thigh",
     "joint": "shin",
     "end": "foot",
+    "bone": [0, -1, 0.25],
     "axis": [0, 0, 0],
     "beta_degrees": 40.5
   }

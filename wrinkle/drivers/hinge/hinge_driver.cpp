@@ -14,18 +14,21 @@ Status HingeDriverSet::Bind(const std::string& name, const HingeDriver& driver, 
   entry.first_value = first_value;
   entry.bend_scale = BendScale(driver.beta_degrees);
   bool usable = false;
-  FURROW_RETURN_IF_ERROR(BindBonePair(owner, driver.parent, driver.joint, driver.end, true, context,
-                                      &entry.bones, &usable));
+  const bool needs_upper = !driver.bone;
+  FURROW_RETURN_IF_ERROR(BindBonePair(owner, driver.parent, driver.joint, driver.end, needs_upper,
+                                      context, &entry.bones, &usable));
   if (!usable) return {};
-  // The axis is stated in model axes at rest. Only its part across the upper bone tells flexion
-  // from hyperextension.
+  // Directions are stated in model axes at rest and kept in the parent's axes, as the points are.
+  const Skeleton& skeleton = context->skeleton();
+  const int parent = entry.bones.parent;
+  if (driver.bone) entry.straight = Direction(ToJointAxes(skeleton, parent, *driver.bone));
+  // Only the part of the axis across the straight bone tells flexion from hyperextension.
   if (driver.axis) {
-    const Skeleton& skeleton = context->skeleton();
-    const glm::vec3 axis = Direction(ToJointAxes(skeleton, entry.bones.parent, *driver.axis));
-    const glm::vec3 upper = entry.bones.Upper(skeleton.rest_pose(), context->chains());
-    const glm::vec3 across = axis - glm::dot(axis, upper) * upper;
+    const glm::vec3 axis = Direction(ToJointAxes(skeleton, parent, *driver.axis));
+    const glm::vec3 straight = entry.Straight(skeleton.rest_pose(), context->chains());
+    const glm::vec3 across = axis - glm::dot(axis, straight) * straight;
     if (glm::length(across) < kLeastAcross) {
-      return context->Unusable(owner, "axis lies along the upper bone");
+      return context->Unusable(owner, "axis lies along the straight bone");
     }
     entry.axis = Direction(across);
   }
@@ -41,6 +44,8 @@ void HingeDriverSet::Plan(LanePlanner* planner) {
     for (std::size_t lane = 0; lane < lanes.count; ++lane) {
       const Entry& entry = entries_[static_cast<std::size_t>(lanes[lane])];
       bones.push_back(entry);
+      SetLane(entry.straight, lane, block.straight);
+      block.has_straight.at[lane] = entry.straight != glm::vec3(0.0f) ? kLaneYes : kLaneNo;
       SetLane(entry.axis, lane, block.axis);
       block.has_axis.at[lane] = entry.axis != glm::vec3(0.0f) ? kLaneYes : kLaneNo;
     }
@@ -50,12 +55,12 @@ void HingeDriverSet::Plan(LanePlanner* planner) {
 
 void HingeDriverSet::Explain(const SolvedPose& pose, DriverExplanation* explanation) const {
   for (const Entry& entry : entries_) {
-    const glm::vec3 upper = entry.bones.Upper(pose.local, pose.chains);
+    const glm::vec3 straight = entry.Straight(pose.local, pose.chains);
     const glm::vec3 lower = entry.bones.Lower(pose.local, pose.chains);
     // atan2 of sine and cosine stays accurate near 0 and 180 degrees, where acos loses half its
     // digits.
-    const glm::vec3 normal = glm::cross(upper, lower);
-    const float angle = std::atan2(glm::length(normal), glm::dot(upper, lower)) / kDegrees;
+    const glm::vec3 normal = glm::cross(straight, lower);
+    const float angle = std::atan2(glm::length(normal), glm::dot(straight, lower)) / kDegrees;
     explanation->angles.push_back(
         {.driver = pose.DriverName(entry.first_value),
          .what = "flexion",

@@ -13,6 +13,7 @@ void CheckFields(const HingeDriver& driver, const std::string& at, FieldCheck* c
   check->Label(at, ".parent", driver.parent);
   check->Label(at, ".joint", driver.joint);
   if (!driver.end.empty()) check->Label(at, ".end", driver.end);
+  if (driver.bone) check->Direction(at, ".bone", *driver.bone);
   if (driver.axis) check->Direction(at, ".axis", *driver.axis);
   check->Range(at, ".beta_degrees", driver.beta_degrees, 0.0f, kMaxBetaDegrees);
 }
@@ -26,17 +27,18 @@ std::vector<std::string> JointsInfluenced(const HingeDriver& driver) { return {d
 Result<ReferencePose> FullPose(const HingeDriver& driver, const FullPoseBuilder& builder) {
   const Result<Limb> limb = builder.FindLimb(driver.parent, driver.joint, driver.end);
   FURROW_RETURN_IF_ERROR(limb);
-  if (limb->upper == glm::vec3(0.0f)) return builder.CannotPose("its upper bone has no length");
-  if (builder.value() == "extended") return builder.Turned(*limb, limb->upper, limb->upper);
+  const glm::vec3 straight = driver.bone ? Direction(*driver.bone) : limb->upper;
+  if (straight == glm::vec3(0.0f)) return builder.CannotPose("its upper bone has no length");
+  if (builder.value() == "extended") return builder.Turned(*limb, straight, straight);
   // Without an axis, the bend at rest shows in which direction the limb bends.
-  const glm::vec3 given = driver.axis.value_or(glm::cross(limb->upper, limb->lower));
-  const bool straight = glm::dot(limb->upper, limb->lower) > kAlmostStraight;
-  if (!driver.axis && straight) {
+  const glm::vec3 given = driver.axis.value_or(glm::cross(straight, limb->lower));
+  const bool rests_straight = glm::dot(straight, limb->lower) > kAlmostStraight;
+  if (!driver.axis && rests_straight) {
     return builder.CannotPose("it states no axis, and the limb is straight at rest");
   }
-  const glm::vec3 axis = AcrossBone(given, limb->upper);
-  if (axis == glm::vec3(0.0f)) return builder.CannotPose("its axis lies along the upper bone");
-  return builder.Bent(*limb, limb->upper, glm::cross(axis, limb->upper), driver.beta_degrees);
+  const glm::vec3 axis = AcrossBone(given, straight);
+  if (axis == glm::vec3(0.0f)) return builder.CannotPose("its axis lies along the straight bone");
+  return builder.Bent(*limb, straight, glm::cross(axis, straight), driver.beta_degrees);
 }
 
 }  // namespace furrow::wrinkle

@@ -22,9 +22,13 @@ struct HingeDriver {
   std::string parent;             // upper bone: from this joint's origin to `joint`'s origin
   std::string joint;              // lower bone: from this joint's origin to its tail, or to `end`
   std::string end;                // optional: the joint at the end of the lower bone
+  std::optional<glm::vec3> bone;  // the lower bone's direction that counts as straight, model axes
+                                  // at rest; none: the upper bone's own direction
   std::optional<glm::vec3> axis;  // model axes in the rest pose; a right-handed turn about it
                                   // flexes. None: bending either way counts, as printed
-  float beta_degrees = 30.0f;     // angle between the bones when fully flexed, [0, 179]
+  // Angle between the bones when fully flexed, [0, 179]; with `bone`, 180 minus the angle from
+  // there.
+  float beta_degrees = 30.0f;
 
   // The fields as hinge.fbs names them, in the order in which they are written.
   template <class Fields>
@@ -32,6 +36,7 @@ struct HingeDriver {
     fields.Required("parent", &HingeDriver::parent);
     fields.Required("joint", &HingeDriver::joint);
     fields.Optional("end", &HingeDriver::end);
+    fields.Optional("bone", &HingeDriver::bone);
     fields.Optional("axis", &HingeDriver::axis);
     fields.Optional("beta_degrees", &HingeDriver::beta_degrees);
   }

@@ -10,6 +10,7 @@
 
 #include "tests/unit/wrinkle/bound_rig.h"
 #include "wrinkle/drivers/ball/ball_fields.h"
+#include "wrinkle/solver/explain.h"
 
 namespace furrow::wrinkle {
 namespace {
@@ -60,6 +61,80 @@ TEST_P(ClothingDrivers, EndReplacesTheTail) {
   }
   BoundRig rig(to_foot, MakeBody(GetParam()));
   EXPECT_NEAR(rig.ValueAt(Turned("shin_l", 90.0f, kX), "knee_l.flexed"), 0.536f, 5e-4f);
+}
+
+// A limb that rests bent by 20 degrees reads 0 at rest if that direction counts as straight, and
+// 4.6 of the further bend.
+TEST_P(ClothingDrivers, BoneStatesTheStraightDirection) {
+  const glm::vec3 knee(0.1f, 0.5f, 0.0f);
+  // Right-handed about +x, a hanging bone turns towards -z.
+  const auto hanging = [](float degrees) {
+    return glm::vec3(0.0f, -std::cos(glm::radians(degrees)), -std::sin(glm::radians(degrees)));
+  };
+  const Skeleton bent = MakeSkeleton({{"hips", "", {0.1f, 1.4f, 0.0f}, {}},
+                                      {"thigh_l", "hips", {0.1f, 0.95f, 0.0f}, {}},
+                                      {"shin_l", "thigh_l", knee, knee + 0.4f * hanging(20.0f)}},
+                                     GetParam());
+  Rig rig;
+  Driver driver;
+  driver.kind = Driver::Kind::kHinge;
+  driver.hinge = {.parent = "thigh_l", .joint = "shin_l", .axis = kX};
+  rig.drivers = {driver, driver, driver};
+  rig.drivers[0].name = "as_built";
+  rig.drivers[1].name = "from_rest";
+  rig.drivers[1].hinge.bone = 3.0f * hanging(20.0f);
+  rig.drivers[2].name = "without_axis";
+  rig.drivers[2].hinge.bone = hanging(20.0f);
+  rig.drivers[2].hinge.axis.reset();
+  BoundRig bound(rig, bent, {});
+  const auto solve = [&](float degrees, float hip_degrees) {
+    LocalPose pose = RestPose(bent);
+    Turn(bent, "shin_l", AngleAxis(degrees, kX), &pose);
+    Turn(bent, "thigh_l", AngleAxis(hip_degrees, {0.4f, 1.0f, -0.2f}), &pose);
+    bound.Solve(pose);
+  };
+  solve(0.0f, 0.0f);
+  // (1 - cos 20) / (1 + cos 30)
+  EXPECT_NEAR(bound.Value("as_built.flexed"), 0.0323183f, 1e-5f);
+  EXPECT_NEAR(bound.Value("from_rest.flexed"), 0.0f, 1e-6f);
+  EXPECT_NEAR(bound.Value("from_rest.extended"), 1.0f, 1e-6f);
+  EXPECT_NEAR(bound.Value("without_axis.flexed"), 0.0f, 1e-6f);
+  for (const float hip : {0.0f, 65.0f}) {  // the direction turns with the thigh
+    solve(45.0f, hip);
+    EXPECT_NEAR(bound.Value("from_rest.flexed"), 0.1569609f, 1e-5f);
+    EXPECT_NEAR(bound.Value("without_axis.flexed"), 0.1569609f, 1e-5f);
+    solve(90.0f, hip);
+    EXPECT_NEAR(bound.Value("from_rest.flexed"), 0.5358984f, 1e-5f);
+    solve(-15.0f, hip);
+    EXPECT_NEAR(bound.Value("from_rest.flexed"), 0.0f, 1e-6f);
+    // (1 - cos 15) / (1 + cos 30): without an axis, either way counts.
+    EXPECT_NEAR(bound.Value("without_axis.flexed"), 0.0182602f, 1e-5f);
+  }
+  Explanation explanation;
+  LocalPose pose = RestPose(bent);
+  Turn(bent, "shin_l", AngleAxis(-15.0f, kX), &pose);
+  ASSERT_EQ(Explain(*bound.binding(), pose, &explanation), JobStatus::kOk);
+  ASSERT_EQ(explanation.angles.size(), 3u);
+  EXPECT_NEAR(explanation.angles[0].degrees, 5.0f, 1e-2f);
+  EXPECT_NEAR(explanation.angles[1].degrees, -15.0f, 1e-2f);
+  EXPECT_NEAR(explanation.angles[2].degrees, 15.0f, 1e-2f);
+}
+
+// With a stated direction, the upper bone needs no length: the joint may lie on its parent.
+TEST_P(ClothingDrivers, BoneServesWhereTheUpperBoneHasNoLength) {
+  const Skeleton skeleton = MakeSkeleton(
+      {{"root", "", {0, 1, 0}, {}}, {"arm", "root", {0, 1, 0}, glm::vec3(0, 0, 0)}}, GetParam());
+  Rig rig;
+  rig.drivers.resize(1);
+  rig.drivers[0].name = "arm";
+  rig.drivers[0].kind = Driver::Kind::kHinge;
+  rig.drivers[0].hinge = {.parent = "root", .joint = "arm", .axis = kX};
+  EXPECT_EQ(RigBinding::Create(rig, skeleton, {}).status().code(), StatusCode::kInvalidArgument);
+  rig.drivers[0].hinge.bone = -kY;
+  BoundRig bound(rig, skeleton, {});
+  LocalPose pose = RestPose(skeleton);
+  Turn(skeleton, "arm", AngleAxis(90.0f, kX), &pose);
+  EXPECT_NEAR(bound.ValueAt(pose, "arm.flexed"), 0.5358984f, 1e-5f);
 }
 
 TEST_P(ClothingDrivers, HipTellsTheDirectionOfTheLeg) {

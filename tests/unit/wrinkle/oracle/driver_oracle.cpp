@@ -46,12 +46,13 @@ class DriverOracle {
 
   void Evaluate(const HingeDriverSet& drivers) {
     for (const HingeDriverSet::Entry& entry : drivers.entries()) {
-      const glm::vec3 upper = entry.bones.Upper(pose_.joints, data_.chains);
+      const glm::vec3 straight =
+          entry.straight == kNone ? entry.bones.Upper(pose_.joints, data_.chains) : entry.straight;
       const glm::vec3 lower = entry.bones.Lower(pose_.joints, data_.chains);
       float flexed = 0.0f;
-      if (upper != kNone && lower != kNone) {
-        flexed = entry.axis == kNone ? Bend(glm::dot(upper, lower), entry.bend_scale)
-                                     : SignedBend(upper, lower, entry.axis, entry.bend_scale);
+      if (straight != kNone && lower != kNone) {
+        flexed = entry.axis == kNone ? Bend(glm::dot(straight, lower), entry.bend_scale)
+                                     : SignedBend(straight, lower, entry.axis, entry.bend_scale);
       }
       values_[entry.first_value] = flexed;
       values_[entry.first_value + 1] = 1.0f - flexed;

@@ -72,6 +72,25 @@ TEST(FullPose, ExtendedStraightensALimbThatRestsBent) {
   EXPECT_NEAR(axisless.ValueAt(locals, "knee_l.flexed"), 1.0f, 1e-4f);
 }
 
+// With a stated bone, "extended" is that direction, and full flexion counts from it.
+TEST(FullPose, CountsFromTheStatedBone) {
+  Rig rig = MakeRig();
+  rig.drivers = {DriverOf(rig, "knee_l")};
+  rig.regions.clear();
+  rig.drivers[0].hinge.bone = glm::vec3(0.0f, -2.0f, -0.7f);
+  for (const bool has_axis : {true, false}) {
+    if (!has_axis) rig.drivers[0].hinge.axis.reset();
+    BoundRig bound(rig, MakeBody(31), {});
+    for (const std::string value : {"flexed", "extended"}) {
+      const auto pose = FullPose(rig, rig.drivers[0], value, bound.skeleton());
+      ASSERT_TRUE(pose.ok()) << pose.status().ToString();
+      LocalPose locals = RestPose(bound.skeleton());
+      ASSERT_TRUE(ApplyReferencePose(*pose, bound.skeleton(), locals.joints).ok());
+      EXPECT_NEAR(bound.ValueAt(locals, "knee_l." + value), 1.0f, 1e-4f);
+    }
+  }
+}
+
 TEST(FullPose, FoldsOntoItselfWhereBetaIsNone) {
   Rig rig = MakeRig();
   Driver knee = DriverOf(rig, "knee_l");

@@ -38,6 +38,8 @@ Rig RandomRig(std::mt19937* random) {
     driver.pose.anchor = anchors[Pick(random, 4)];
     driver.pose.falloff = Pick(random, 2) == 0 ? 0.0f : Uniform(random, 0.2f, 2.0f);
     if (Pick(random, 3) == 0) driver.hinge.axis.reset();
+    if (Pick(random, 2) == 0)
+      driver.hinge.bone = glm::vec3(0.0f, -1.0f, Uniform(random, -0.5f, 0.5f));
     driver.hinge.beta_degrees = driver.ball.beta_degrees = Uniform(random, 10.0f, 120.0f);
     driver.ball.mode = Pick(random, 3) == 0 ? BallMode::kThesis : BallMode::kSmooth;
     driver.twist.full_degrees = Uniform(random, 30.0f, 180.0f);

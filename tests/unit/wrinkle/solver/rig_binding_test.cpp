@@ -112,6 +112,9 @@ const Fault kReferenceFaults[] = {
      StatusCode::kInvalidArgument, "end 'foot_r' is not below joint 'shin_l'"},
     {"axis_along_bone", [](Rig* r) { DriverNamed(r, "knee_l").hinge.axis = glm::vec3(0, 1, 0); },
      StatusCode::kInvalidArgument, "axis lies along"},
+    {"axis_along_stated_bone",
+     [](Rig* r) { DriverNamed(r, "knee_l").hinge.bone = glm::vec3(1, 0.05f, 0); },
+     StatusCode::kInvalidArgument, "axis lies along the straight bone"},
     {"forward_along_bone",
      [](Rig* r) {
        DriverNamed(r, "waist").ball.forward = {0, 1, 0};
@@ -171,6 +174,8 @@ const Fault kNumberFaults[] = {
      StatusCode::kInvalidArgument, ".hinge.beta_degrees: 180 is out of range [0, 179]"},
     {"axis_too_long", [](Rig* r) { DriverNamed(r, "knee_l").hinge.axis = glm::vec3(1e30f); },
      StatusCode::kInvalidArgument, ".hinge.axis: the direction has no"},
+    {"hinge_bone", [](Rig* r) { DriverNamed(r, "knee_l").hinge.bone = glm::vec3(0.0f); },
+     StatusCode::kInvalidArgument, ".hinge.bone: the direction has no length"},
     {"bone_too_short", [](Rig* r) { DriverNamed(r, "waist").ball.bone = glm::vec3(1e-20f); },
      StatusCode::kInvalidArgument, ".ball.bone: the direction has no"},
     {"axis_zero", [](Rig* r) { DriverNamed(r, "knee_l").hinge.axis = glm::vec3(0.0f); },
