@@ -61,8 +61,31 @@ Status ReadDriver(const schema::Driver& from, const std::string& at, wrinkle::Dr
   return {};
 }
 
+// The modulation of a region or of one of its maps. `from` and `to` are a Region or a Feed.
+template <class From, class To>
+Status ReadModulation(const From& from, const std::string& at, To* to) {
+  const auto* curve = from.curve();
+  if (curve != nullptr && from.modulation()) {
+    return InvalidField("modulation and curve exclude each other", at + ".curve",
+                        "remove one of them");
+  }
+  if (curve != nullptr && curve->size() == 0) {
+    return InvalidField("a curve needs at least two points", at + ".curve");
+  }
+  if (from.modulation()) {
+    wrinkle::Modulation modulation{};
+    FURROW_RETURN_IF_ERROR(ReadEnum(*from.modulation(), &modulation, at + ".modulation"));
+    to->modulation = modulation;
+  }
+  for (flatbuffers::uoffset_t i = 0; curve != nullptr && i < curve->size(); ++i) {
+    to->curve.push_back({curve->Get(i)->x(), curve->Get(i)->y()});
+  }
+  return {};
+}
+
 Status ReadFeed(const schema::Feed& from, const std::string& at, wrinkle::Feed* to) {
   to->map = from.map()->str();
+  FURROW_RETURN_IF_ERROR(ReadModulation(from, at, to));
   return ForEach(
       from.sources(), at + ".sources",
       [&](const schema::Source& source, const std::string& where) -> Status {
@@ -93,7 +116,7 @@ Status ReadRegion(const schema::Region& from, const std::string& at, wrinkle::Re
   FURROW_RETURN_IF_ERROR(ReadEnum(mask.kind(), &to->mask.kind, at + ".mask.kind"));
   FURROW_RETURN_IF_ERROR(ReadEnum(mask.lambda(), &to->mask.lambda, at + ".mask.lambda"));
   FURROW_RETURN_IF_ERROR(ReadEnum(from.combine(), &to->combine, at + ".combine"));
-  FURROW_RETURN_IF_ERROR(ReadEnum(from.modulation(), &to->modulation, at + ".modulation"));
+  FURROW_RETURN_IF_ERROR(ReadModulation(from, at, to));
   if (from.neighbours() != nullptr) {
     for (const String* name : *from.neighbours()) to->neighbours.push_back(name->str());
   }

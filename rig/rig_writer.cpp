@@ -14,6 +14,8 @@ namespace {
 
 using wrinkle::Rig;
 
+constexpr std::array kModulations = {"linear", "cosine", "cubic"};  // wrinkle::Modulation
+
 std::string ToJson(const wrinkle::JointDelta& delta) {
   Object object;
   object.Text("joint", delta.joint);
@@ -102,23 +104,40 @@ std::string ToJson(const wrinkle::Mask& mask) {
       .str();
 }
 
+// The numbers of a curve take one line: [[0, 0], [0.3, 0.4], [1, 1]].
+void AddCurve(const std::vector<wrinkle::CurvePoint>& curve, Object* object) {
+  if (curve.empty()) return;
+  const auto point = [](const wrinkle::CurvePoint& p) {
+    return "[" + Number(p.x) + ", " + Number(p.y) + "]";
+  };
+  object->Raw("curve", OnOneLine(curve, point));
+}
+
+// A curve replaces the named modulation, so only one of the two is written.
 std::string ToJson(const wrinkle::Feed& feed) {
   const auto source = [](const wrinkle::Feed::Source& s) {
     return Object().Text("from", s.driver + "." + s.value).Float("gain", s.gain, 1.0f).str();
   };
-  return Object().Text("map", feed.map).Always("sources", feed.sources, source).str();
+  Object object;
+  object.Text("map", feed.map).Always("sources", feed.sources, source);
+  if (feed.modulation && feed.curve.empty()) {
+    object.Raw("modulation", Quote(kModulations.at(static_cast<std::size_t>(*feed.modulation))));
+  }
+  AddCurve(feed.curve, &object);
+  return object.str();
 }
 
 std::string ToJson(const wrinkle::Region& region) {
-  using wrinkle::Modulation;
-  return Object()
-      .Text("name", region.name)
+  Object object;
+  object.Text("name", region.name)
       .Raw("mask", ToJson(region.mask))
       .Always("feeds", region.feeds, [](const auto& feed) { return ToJson(feed); })
-      .Choice("combine", region.combine, {"max", "sum", "mean"})
-      .Choice("modulation", region.modulation, {"linear", "cosine", "cubic"}, Modulation::kCosine)
-      .List("neighbours", region.neighbours, Quote)
-      .str();
+      .Choice("combine", region.combine, {"max", "sum", "mean"});
+  if (region.modulation != wrinkle::Modulation::kCosine && region.curve.empty()) {
+    object.Raw("modulation", Quote(kModulations.at(static_cast<std::size_t>(region.modulation))));
+  }
+  AddCurve(region.curve, &object);
+  return object.List("neighbours", region.neighbours, Quote).str();
 }
 
 std::string ToJson(const wrinkle::WrinkleMap& map) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,16 @@
 namespace furrow::wrinkle {
 
 enum class Modulation { kLinear, kCosine, kCubic };  // thesis 4.3, 4.4
+
+// A point of a modulation curve: the combined value `x` becomes `y`, both in [0, 1]. A curve has 2
+// to 16 points, and `x` rises by at least 0.01 from point to point (weights/modulation_curve.h).
+struct CurvePoint {
+  float x = 0.0f;
+  float y = 0.0f;
+
+  friend bool operator==(const CurvePoint&, const CurvePoint&) = default;
+};
+
 enum class Combine {
   kMax,
   kSum,
@@ -28,6 +39,10 @@ struct Feed {
   };
   std::string map;  // a WrinkleMap's name; the wrinkle weight is "<region>.<map>"
   std::vector<Source> sources;
+  // The modulation of this map, instead of the region's: a name, or a curve. If both are set, the
+  // curve counts.
+  std::optional<Modulation> modulation = std::nullopt;
+  std::vector<CurvePoint> curve = {};
 };
 
 // Where a region's wrinkles are drawn.
@@ -55,6 +70,7 @@ struct Region {
   std::vector<Feed> feeds;
   Combine combine = Combine::kMax;
   Modulation modulation = Modulation::kCosine;
+  std::vector<CurvePoint> curve = {};   // instead of `modulation`, unless empty
   std::vector<std::string> neighbours;  // adjacent regions, for incongruence
 };
 

@@ -39,10 +39,26 @@ void CheckDriver(const Driver& driver, const std::string& at, FieldCheck* check)
   VisitFields(driver, [&](const auto& kind) { CheckFields(kind, fields, check); });
 }
 
+// `curve`: of a region or of a feed; empty if a named modulation counts.
+void CheckCurve(const std::vector<CurvePoint>& curve, const std::string& at, FieldCheck* check) {
+  if (curve.empty()) return;
+  check->Require(curve.size() > 1, at, ".curve", "a curve needs at least two points");
+  check->Count(at, ".curve", curve.size(), kMaxCurvePoints);
+  for (std::size_t i = 0; i < curve.size(); ++i) {
+    const std::string point = FieldAt(at + ".curve", i);
+    check->Range(point, "[0]", curve[i].x, 0.0f, 1.0f);
+    check->Range(point, "[1]", curve[i].y, 0.0f, 1.0f);
+    // A step of 0.01 between decimal numbers may be a little shorter as floats.
+    check->Require(i == 0 || curve[i].x - curve[i - 1].x > 0.999f * kLeastCurveStep, point, "[0]",
+                   "x must rise by at least 0.01 from point to point");
+  }
+}
+
 // Gains are not negative, so a sum of 0 means that all of them are 0.
 void CheckFeed(const Feed& feed, const std::string& at, Combine combine, FieldCheck* check) {
   check->Require(!feed.sources.empty(), at, ".sources", "a feed needs a source");
   check->Count(at, ".sources", feed.sources.size(), kMaxSources);
+  CheckCurve(feed.curve, at, check);
   float gains = 0.0f;
   for (std::size_t i = 0; i < feed.sources.size(); ++i) {
     const float gain = feed.sources[i].gain;
@@ -63,6 +79,7 @@ void CheckRegion(const Region& region, const std::string& at, FieldCheck* check)
   check->Range(at, ".mask.radius", region.mask.radius, 1e-3f, 10.0f);
   check->Require(region.mask.above + region.mask.below > 0.0f, at, ".mask.below",
                  "the mask has no length: above and below are 0");
+  CheckCurve(region.curve, at, check);
   check->Count(at, ".neighbours", region.neighbours.size(), kMaxRegions);
   check->Count(at, ".feeds", region.feeds.size(), kMaxWrinkleMaps);
   std::unordered_set<std::string_view> maps;

@@ -31,8 +31,9 @@ RowList ModulatedWeights(const WeightPlan& plan, const RowList& values) {
 // The same plan with linear modulation, which leaves the combined values.
 WeightPlan WithoutModulation(WeightPlan plan) {
   for (WeightBlock& block : plan.blocks) {
+    block.modulation = {};
     for (std::size_t lane = 0; lane < kRowLanes; ++lane) {
-      block.modulation.Set(Modulation::kLinear, lane);
+      block.modulation.Set({.modulation = Modulation::kLinear, .curve = {}}, lane);
     }
   }
   return plan;
@@ -53,6 +54,7 @@ Explanation::Weight ExplainWeight(const BindingData& data, int weight, const Ste
   }
   result.combined = steps.combined[index];
   result.modulated = steps.modulated[index];
+  result.modulation = ModulationName(table.modulation(weight));
   for (const std::uint16_t opponent : table.opponents(weight)) {
     const float other = steps.modulated[opponent];
     result.conflicts.push_back({.weight = table.names()[opponent],

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "wrinkle/drivers/common/driver_explanation.h"
@@ -32,6 +33,7 @@ struct Explanation : DriverExplanation {
     std::vector<Contribution> contributions;
     float combined = 0.0f;
     float modulated = 0.0f;
+    std::string_view modulation;  // ModulationName()
     std::vector<Conflict> conflicts;
     float result = 0.0f;  // after incongruence: the weight that is sent
   };

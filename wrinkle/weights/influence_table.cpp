@@ -48,7 +48,7 @@ void InfluenceTable::Bind(const Rig& rig, const Skeleton& skeleton,
                              .mask = mask,
                              .driver_value = value_index.at(source.driver + "." + source.value),
                              .gain = source.gain,
-                             .modulation = region.modulation});
+                             .modulation = ModulationOf(region, feed)});
         }
       }
     }

@@ -46,7 +46,7 @@ class InfluenceTable {
     std::size_t mask = 0;
     int driver_value = 0;
     float gain = 1.0f;
-    Modulation modulation = Modulation::kCosine;
+    FeedModulation modulation;
   };
   // Sixteen entries, modulated side by side.
   struct Block {

@@ -9,12 +9,31 @@
 #endif
 
 #include <algorithm>
+#include <span>
 
 #include "wrinkle/simd/lane_math-inl.h"
 #include "wrinkle/weights/weight_plan.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace furrow::wrinkle::HWY_NAMESPACE {
+
+// The value at `x`, in [0, 1], of the curve of each lane; 0 in lanes without a curve. Every lane
+// takes the last of its pieces that begins at or before `x`.
+HWY_INLINE Float FreeCurve(std::span<const CurveRow> pieces, std::size_t lane, Float x) {
+  Float from = hn::Zero(Floats());
+  Float c[4] = {from, from, from, from};
+  for (const CurveRow& piece : pieces) {
+    const Float start = LoadRow(piece.from, lane);
+    const Mask is_reached = hn::Ge(x, start);
+    from = hn::IfThenElse(is_reached, start, from);
+    for (std::size_t k = 0; k < 4; ++k) {
+      c[k] = hn::IfThenElse(is_reached, LoadRow(piece.c[k], lane), c[k]);
+    }
+  }
+  const Float t = hn::Sub(x, from);
+  // Rounding may leave [0, 1] by a few units in the last place.
+  return Saturate(hn::MulAdd(hn::MulAdd(hn::MulAdd(c[3], t, c[2]), t, c[1]), t, c[0]));
+}
 
 // `x` in [0, 1]. Cosine: (1 - cos(pi x)) / 2. Cubic: 2.62235 x - 4.87773 x^2 + 3.26168 x^3,
 // clamped.
@@ -24,6 +43,10 @@ HWY_INLINE Float Modulate(const ModulationRow& modulation, std::size_t lane, Flo
   if (modulation.any_cubic) {
     const Float cubic = Saturate(hn::Mul(x, Polynomial(x, 3.26168f, -4.87773f, 2.62235f)));
     modulated = hn::IfThenElse(LoadMask(modulation.is_cubic, lane), cubic, modulated);
+  }
+  if (!modulation.curve.empty()) {
+    const Float curve = FreeCurve(modulation.curve, lane, x);
+    modulated = hn::IfThenElse(LoadMask(modulation.is_curve, lane), curve, modulated);
   }
   return modulated;
 }

@@ -83,7 +83,9 @@ Status WeightTable::BindFeed(const Region& region, const Feed& feed,
   entry.first_source = static_cast<std::uint32_t>(sources_.size());
   entry.num_sources = static_cast<std::uint32_t>(feed.sources.size());
   entry.combine = region.combine;
-  entry.modulation = region.modulation;
+  const FeedModulation modulation = ModulationOf(region, feed);
+  entry.modulation = modulation.modulation;
+  entry.curve.assign(modulation.curve.begin(), modulation.curve.end());
   for (const Feed::Source& source : feed.sources) {
     const auto found = value_index.find(source.driver + "." + source.value);
     if (found == value_index.end()) {
@@ -93,7 +95,7 @@ Status WeightTable::BindFeed(const Region& region, const Feed& feed,
     }
     sources_.push_back({.driver_value = found->second, .gain = source.gain});
   }
-  entries_.push_back(entry);
+  entries_.push_back(std::move(entry));
   names_.push_back(region.name + "." + feed.map);
   return {};
 }

@@ -9,6 +9,7 @@
 
 #include "base/status.h"
 #include "wrinkle/rig/rig.h"
+#include "wrinkle/weights/modulation_curve.h"
 
 namespace furrow::wrinkle {
 
@@ -39,7 +40,10 @@ class WeightTable {
   }
 
   [[nodiscard]] Combine combine(int weight) const { return entries_[weight].combine; }
-  [[nodiscard]] Modulation modulation(int weight) const { return entries_[weight].modulation; }
+  [[nodiscard]] FeedModulation modulation(int weight) const {
+    const Entry& entry = entries_[weight];
+    return {.modulation = entry.modulation, .curve = entry.curve};
+  }
 
  private:
   struct Entry {
@@ -49,6 +53,7 @@ class WeightTable {
     std::uint32_t num_opponents = 0;
     Combine combine = Combine::kMax;
     Modulation modulation = Modulation::kCosine;
+    std::vector<CurvePoint> curve;
   };
   [[nodiscard]] Status BindFeed(const Region& region, const Feed& feed,
                                 const std::unordered_map<std::string, int>& value_index);

@@ -37,8 +37,9 @@ void PrintGeometry(const Explanation& explanation, std::string_view driver_value
 
 void PrintWeight(const Explanation& explanation, const Explanation::Weight& weight,
                  std::FILE* out) {
-  std::fprintf(out, "%-28s %.3f  = combined %.3f, modulated %.3f\n", weight.name.c_str(),
-               double{weight.result}, double{weight.combined}, double{weight.modulated});
+  std::fprintf(out, "%-28s %.3f  = combined %.3f, modulated %.3f (%.*s)\n", weight.name.c_str(),
+               double{weight.result}, double{weight.combined}, double{weight.modulated},
+               static_cast<int>(weight.modulation.size()), weight.modulation.data());
   for (const auto& part : weight.contributions) {
     std::fprintf(out, "    %-26s %.3f x %.2f\n", part.driver_value.c_str(), double{part.value},
                  double{part.gain});

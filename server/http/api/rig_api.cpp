@@ -2,6 +2,7 @@
 #include "server/http/api/rig_api.h"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -9,6 +10,7 @@
 #include "rig/rig_file.h"
 #include "server/http/api/json_reply.h"
 #include "wrinkle/solver/explain.h"
+#include "wrinkle/weights/modulation_curve.h"
 
 namespace furrow::server {
 namespace {
@@ -24,13 +26,12 @@ std::string_view CombineName(wrinkle::Combine combine) {
   return "";
 }
 
-std::string_view ModulationName(wrinkle::Modulation modulation) {
-  switch (modulation) {
-    case wrinkle::Modulation::kLinear: return "linear";
-    case wrinkle::Modulation::kCosine: return "cosine";
-    case wrinkle::Modulation::kCubic: return "cubic";
-  }
-  return "";
+// The points of a curve, [[x, y], ...]; null if a named modulation counts.
+Json CurveJson(std::span<const wrinkle::CurvePoint> curve) {
+  if (curve.empty()) return nullptr;
+  Json points = Json::array();
+  for (const wrinkle::CurvePoint& point : curve) points.push_back({point.x, point.y});
+  return points;
 }
 
 // Where the wrinkles of a region show: a channel of a texture, the skin weights, or the side that a
@@ -55,14 +56,18 @@ Json RegionJson(const wrinkle::Region& region) {
     for (const auto& source : feed.sources) {
       sources.push_back({{"value", source.driver + "." + source.value}, {"gain", source.gain}});
     }
+    const wrinkle::FeedModulation modulation = ModulationOf(region, feed);
     weights.push_back({{"name", region.name + "." + feed.map},
                        {"map", feed.map},
+                       {"modulation", wrinkle::ModulationName(modulation)},
+                       {"curve", CurveJson(modulation.curve)},
                        {"sources", std::move(sources)}});
   }
   return {{"name", region.name},
           {"mask", MaskJson(region.mask)},
           {"combine", CombineName(region.combine)},
-          {"modulation", ModulationName(region.modulation)},
+          {"modulation",
+           wrinkle::ModulationName({.modulation = region.modulation, .curve = region.curve})},
           {"neighbours", region.neighbours},
           {"weights", std::move(weights)}};
 }
@@ -222,6 +227,7 @@ ApiReply RigApi::Explain(const ApiRequest& request, Hub& hub) const {
                     {"result", weight.result},
                     {"combined", weight.combined},
                     {"modulated", weight.modulated},
+                    {"modulation", weight.modulation},
                     {"contributions", std::move(contributions)},
                     {"conflicts", std::move(conflicts)}});
 }

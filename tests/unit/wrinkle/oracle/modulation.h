@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "wrinkle/rig/rig.h"
+#include <span>
+
+#include "wrinkle/weights/modulation_curve.h"
 
 namespace furrow::wrinkle {
 
@@ -12,7 +14,14 @@ namespace furrow::wrinkle {
 // x = 0.5, and leaves the range at its end: f(1) = 1.0063.
 [[nodiscard]] float CubicModulation(float x);
 
+// The monotone cubic through the points, in double: Hermite's basis, with Brodlie's form of the
+// slopes. The first `y` before the first point, the last `y` after the last.
+[[nodiscard]] double CurveModulation(std::span<const CurvePoint> points, double x);
+
 // The modulated value, with `x` and the result clamped to [0, 1].
-[[nodiscard]] float Modulate(Modulation modulation, float x);
+[[nodiscard]] float Modulate(const FeedModulation& modulation, float x);
+[[nodiscard]] inline float Modulate(Modulation modulation, float x) {
+  return Modulate({.modulation = modulation, .curve = {}}, x);
+}
 
 }  // namespace furrow::wrinkle

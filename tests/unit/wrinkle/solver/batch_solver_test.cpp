@@ -28,6 +28,17 @@ int Pick(std::mt19937* random, int count) {
   return std::uniform_int_distribution<int>(0, count - 1)(*random);
 }
 
+// A curve of moderate slope, because a steep one magnifies the small differences of its inputs.
+std::vector<CurvePoint> RandomCurve(std::mt19937* random) {
+  std::vector<CurvePoint> curve;
+  const int steps = 2 + Pick(random, 4);
+  for (int i = Pick(random, 2); i <= steps; ++i) {
+    const float x = static_cast<float>(i) / static_cast<float>(steps);
+    curve.push_back({x, std::clamp(x + Uniform(random, -0.1f, 0.1f), 0.0f, 1.0f)});
+  }
+  return curve;
+}
+
 // Drivers of every kind with random parameters, in random order.
 Rig RandomRig(std::mt19937* random) {
   Rig rig = MakeRig();
@@ -50,6 +61,11 @@ Rig RandomRig(std::mt19937* random) {
   for (Region& region : rig.regions) {
     region.combine = static_cast<Combine>(Pick(random, 3));
     region.modulation = static_cast<Modulation>(Pick(random, 3));
+    if (Pick(random, 4) == 0) region.curve = RandomCurve(random);
+    if (Pick(random, 4) == 0) {
+      region.feeds.back().modulation = static_cast<Modulation>(Pick(random, 3));
+    }
+    if (Pick(random, 4) == 0) region.feeds.front().curve = RandomCurve(random);
     region.feeds[0].sources.push_back({"jaw", "value", Uniform(random, 0.1f, 1.0f)});
   }
   rig.regions[1].neighbours = {"cheek_l", "mouth"};

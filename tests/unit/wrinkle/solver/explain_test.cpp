@@ -63,6 +63,19 @@ TEST_F(ExplainTest, ShowsEachStepOfAConflict) {
   EXPECT_NEAR(squash.result, squash.modulated * squash.conflicts[0].factor, 1e-6f);
 }
 
+TEST_F(ExplainTest, NamesTheModulationAndShowsTheValueBeforeACurve) {
+  EXPECT_EQ(Weight("brow_r.squash").modulation, "cosine");
+  Rig rig = MakeRig();
+  rig.regions[1].feeds[1].curve = {{0.0f, 0.25f}, {1.0f, 0.75f}};  // y = x / 2 + 1 / 4
+  const BoundRig bound(rig, MakeBody(5));
+  ASSERT_EQ(Explain(*bound.binding(), pose_, &explanation_), JobStatus::kOk);
+  const Explanation::Weight& squash = Weight("brow_r.squash");
+  EXPECT_EQ(squash.modulation, "curve");
+  EXPECT_EQ(squash.contributions[0].product, squash.combined);
+  EXPECT_NEAR(squash.modulated, 0.5f * squash.combined + 0.25f, 1e-6f);
+  EXPECT_EQ(Weight("brow_r.stretch").modulation, "cosine");
+}
+
 TEST_F(ExplainTest, ShowsTheGeometryOfAPoseDriver) {
   const Explanation::PoseValue& stretch = explanation_.pose_values[0];
   EXPECT_EQ(stretch.driver_value, "brow_l.stretch");
