@@ -132,7 +132,7 @@ std::string ToJson(const wrinkle::Region& region) {
   object.Text("name", region.name)
       .Raw("mask", ToJson(region.mask))
       .Always("feeds", region.feeds, [](const auto& feed) { return ToJson(feed); })
-      .Choice("combine", region.combine, {"max", "sum", "mean"});
+      .Choice("combine", region.combine, {"max", "sum", "mean", "sum_modulated"});
   if (region.modulation != wrinkle::Modulation::kCosine && region.curve.empty()) {
     object.Raw("modulation", Quote(kModulations.at(static_cast<std::size_t>(region.modulation))));
   }

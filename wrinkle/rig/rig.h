@@ -23,11 +23,12 @@ struct CurvePoint {
   friend bool operator==(const CurvePoint&, const CurvePoint&) = default;
 };
 
-enum class Combine {
-  kMax,
-  kSum,
-  kMean
-};  // of gain * value; the sum is clamped, gains weight the mean
+// How the sources of a map become one number, with theta the map's modulation:
+// - kMax, kSum, kMean: theta of the largest gain * value, of their sum, clamped to 1, or of the mean
+//   of the values, weighted by gain.
+// - kSumModulated: the sum of gain * theta(value), clamped to 1 (4.2 as printed, with the gain as
+//   lambda).
+enum class Combine { kMax, kSum, kMean, kSumModulated };
 enum class LambdaMode { kSmooth, kBinary, kLinear };  // 4.2
 
 // The driver values that feed one wrinkle map of a region.

@@ -39,6 +39,19 @@ WeightPlan WithoutModulation(WeightPlan plan) {
   return plan;
 }
 
+// What a source adds to its weight, before the gain.
+float ModulatedSource(const WeightTable& table, int weight, float value) {
+  if (table.combine(weight) != Combine::kSumModulated) return value;
+  ModulationRow modulation;
+  FloatRow row;
+  for (std::size_t lane = 0; lane < kRowLanes; ++lane) {
+    modulation.Set(table.modulation(weight), lane);
+    row.at[lane] = value;
+  }
+  BestSubjectKernel().modulate(modulation, row.at);
+  return row.at[0];
+}
+
 Explanation::Weight ExplainWeight(const BindingData& data, int weight, const Steps& steps) {
   const WeightTable& table = data.weights;
   const auto index = static_cast<std::size_t>(weight);
@@ -47,10 +60,12 @@ Explanation::Weight ExplainWeight(const BindingData& data, int weight, const Ste
   for (const WeightSource& source : table.sources(weight)) {
     const auto from = static_cast<std::size_t>(source.driver_value);
     const float value = steps.driver_values[from];
+    const float modulated = ModulatedSource(table, weight, value);
     result.contributions.push_back({.driver_value = data.driver_value_names[from],
                                     .value = value,
                                     .gain = source.gain,
-                                    .product = source.gain * value});
+                                    .modulated = modulated,
+                                    .product = source.gain * modulated});
   }
   result.combined = steps.combined[index];
   result.modulated = steps.modulated[index];

@@ -20,7 +20,9 @@ struct Explanation : DriverExplanation {
     std::string driver_value;  // "<driver>.<value>"
     float value = 0.0f;
     float gain = 1.0f;
-    float product = 0.0f;  // gain * value, before combining
+    // The value, or with Combine::kSumModulated the modulated value.
+    float modulated = 0.0f;
+    float product = 0.0f;  // gain * modulated, before combining
   };
   // The weight of a neighbouring region on an opposed map, and the factor that it leaves.
   struct Conflict {
@@ -31,7 +33,7 @@ struct Explanation : DriverExplanation {
   struct Weight {
     std::string name;  // "<region>.<map>"
     std::vector<Contribution> contributions;
-    float combined = 0.0f;
+    float combined = 0.0f;  // without modulation
     float modulated = 0.0f;
     std::string_view modulation;  // ModulationName()
     std::vector<Conflict> conflicts;

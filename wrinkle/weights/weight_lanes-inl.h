@@ -57,7 +57,7 @@ inline void ModulateLanes(const ModulationRow& modulation, float* row) {
   }
 }
 
-// Combines the sources of a block's weights, and modulates the result.
+// Combines the sources of a block's weights, and modulates the result (Combine).
 HWY_INLINE Float ModulatedWeights(const WeightBlock& block, Gatherer sources, const FloatRow* gains,
                                   std::size_t lane, const float* values) {
   const auto term = [&](std::uint32_t i) HWY_ATTR {
@@ -79,7 +79,15 @@ HWY_INLINE Float ModulatedWeights(const WeightBlock& block, Gatherer sources, co
     const Float scaled = hn::Mul(sum, LoadRow(block.scale, lane));
     largest = hn::IfThenElse(LoadMask(block.is_max, lane), largest, scaled);
   }
-  return Modulate(block.modulation, lane, Saturate(largest));
+  const Float combined = Modulate(block.modulation, lane, Saturate(largest));
+  if (!block.any_sum_modulated) return combined;
+  // 4.2 modulates every source by itself. Missing sources have a gain of 0.
+  Float sum = hn::Zero(Floats());
+  for (std::uint32_t i = first; i != end; ++i) {
+    const Float source = Modulate(block.modulation, lane, sources.Row(i, lane, values));
+    sum = hn::Add(sum, hn::Mul(source, LoadRow(gains[i], lane)));
+  }
+  return hn::IfThenElse(LoadMask(block.is_sum_modulated, lane), Saturate(sum), combined);
 }
 
 inline void ModulateAll(const WeightPlan& plan, const float* values, float* modulated) {

@@ -65,6 +65,10 @@ void WeightPlanner::SetKinds(WeightBlock* block) {
     const Combine combine = table_.combine(weight);
     block->scale.at[lane] = SumScale(combine, table_.sources(weight));
     if (combine == Combine::kMax) block->is_max.at[lane] = kYes;
+    if (combine == Combine::kSumModulated) {
+      block->is_sum_modulated.at[lane] = kYes;
+      block->any_sum_modulated = true;
+    }
     block->all_max = block->all_max && combine == Combine::kMax;
     block->takes_largest = block->takes_largest && IsLargestValue(table_, weight);
     block->modulation.Set(table_.modulation(weight), static_cast<std::size_t>(lane));

@@ -22,8 +22,10 @@ struct WeightBlock {
   std::uint32_t num_opponents = 0;
   FloatRow scale;  // factor for the sum of the sources; unused in lanes that take the largest
   IntRow is_max;
+  IntRow is_sum_modulated;
   ModulationRow modulation;
   bool all_max = true;
+  bool any_sum_modulated = false;
   bool takes_largest = true;  // every weight is the largest of its driver values, all gains 1
 };
 

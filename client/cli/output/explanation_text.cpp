@@ -41,8 +41,9 @@ void PrintWeight(const Explanation& explanation, const Explanation::Weight& weig
                double{weight.result}, double{weight.combined}, double{weight.modulated},
                static_cast<int>(weight.modulation.size()), weight.modulation.data());
   for (const auto& part : weight.contributions) {
-    std::fprintf(out, "    %-26s %.3f x %.2f\n", part.driver_value.c_str(), double{part.value},
-                 double{part.gain});
+    std::fprintf(out, "    %-26s %.3f", part.driver_value.c_str(), double{part.value});
+    if (part.modulated != part.value) std::fprintf(out, " modulated %.3f", double{part.modulated});
+    std::fprintf(out, " x %.2f\n", double{part.gain});
     if (part.value > 0.0f) PrintGeometry(explanation, part.driver_value, out);
   }
   for (const auto& conflict : weight.conflicts) {

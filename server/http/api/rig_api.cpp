@@ -22,6 +22,7 @@ std::string_view CombineName(wrinkle::Combine combine) {
     case wrinkle::Combine::kMax: return "max";
     case wrinkle::Combine::kSum: return "sum";
     case wrinkle::Combine::kMean: return "mean";
+    case wrinkle::Combine::kSumModulated: return "sum_modulated";
   }
   return "";
 }
@@ -155,6 +156,7 @@ Json ContributionJson(const wrinkle::Explanation& explanation, const wrinkle::Ri
                {"reference_pose", nullptr},
                {"driver_value", part.value},
                {"gain", part.gain},
+               {"modulated", part.modulated},
                {"product", part.product},
                {"pose", PoseJson(explanation, part.driver_value)},
                {"angles", nullptr},

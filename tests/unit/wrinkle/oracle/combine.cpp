@@ -24,16 +24,29 @@ float CombineSources(Combine combine, std::span<const WeightSource> sources,
     case Combine::kMax: return Saturate(largest);
     case Combine::kSum: return Saturate(sum);
     case Combine::kMean: return gains > 0.0f ? Saturate(sum / gains) : 0.0f;
+    case Combine::kSumModulated: break;
   }
   return 0.0f;
+}
+
+float SumModulated(const FeedModulation& modulation, std::span<const WeightSource> sources,
+                   std::span<const float> driver_values) {
+  float sum = 0.0f;
+  for (const WeightSource& source : sources) {
+    sum += source.gain * Modulate(modulation, driver_values[source.driver_value]);
+  }
+  return Saturate(sum);
 }
 
 std::vector<float> WrinkleWeights(const WeightTable& table, std::span<const float> driver_values) {
   const int count = static_cast<int>(table.names().size());
   std::vector<float> modulated;
   for (int i = 0; i < count; ++i) {
-    modulated.push_back(Modulate(
-        table.modulation(i), CombineSources(table.combine(i), table.sources(i), driver_values)));
+    const Combine combine = table.combine(i);
+    modulated.push_back(combine == Combine::kSumModulated
+                            ? SumModulated(table.modulation(i), table.sources(i), driver_values)
+                            : Modulate(table.modulation(i),
+                                       CombineSources(combine, table.sources(i), driver_values)));
   }
   std::vector<float> weights = modulated;
   for (int i = 0; i < count; ++i) {

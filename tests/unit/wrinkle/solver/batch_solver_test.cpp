@@ -59,7 +59,7 @@ Rig RandomRig(std::mt19937* random) {
   }
   std::shuffle(rig.drivers.begin(), rig.drivers.end(), *random);
   for (Region& region : rig.regions) {
-    region.combine = static_cast<Combine>(Pick(random, 3));
+    region.combine = static_cast<Combine>(Pick(random, 4));
     region.modulation = static_cast<Modulation>(Pick(random, 3));
     if (Pick(random, 4) == 0) region.curve = RandomCurve(random);
     if (Pick(random, 4) == 0) {

@@ -10,6 +10,7 @@
 
 #include "tests/unit/wrinkle/bound_rig.h"
 #include "tests/unit/wrinkle/oracle/combine.h"
+#include "wrinkle/solver/explain.h"
 
 namespace furrow::wrinkle {
 namespace {
@@ -55,6 +56,61 @@ TEST(WrinkleWeights, AreCombinedAsWorked) {
   EXPECT_EQ(weight(Combine::kMax, strong), 1.0f);
   EXPECT_EQ(weight(Combine::kSum, strong), 1.0f);
   EXPECT_FLOAT_EQ(weight(Combine::kMean, strong), 3.2f / 4.0f);
+}
+
+// 4.2 as printed: clamp(sum of lambda_i theta(I_i)). Worked values of theta = (1 - cos(pi x)) / 2
+// and of the cubic.
+TEST(WrinkleWeights, SumOfModulatedSources) {
+  Rig rig;
+  std::vector<std::string> names;
+  for (const char* name : {"a", "b", "c"}) {
+    Driver& driver = rig.drivers.emplace_back();
+    driver.name = name;
+    driver.kind = Driver::Kind::kBlendShape;
+    driver.blend_shape.blend_shape = name;
+    names.push_back(name);
+  }
+  const auto add = [&](const char* name, Combine combine, Modulation modulation,
+                       std::vector<Feed::Source> sources) {
+    Region& region = rig.regions.emplace_back();
+    region.name = name;
+    region.combine = combine;
+    region.modulation = modulation;
+    region.feeds = {{.map = "map", .sources = std::move(sources)}};
+  };
+  constexpr Modulation kCosine = Modulation::kCosine;
+  const std::vector<Feed::Source> both = {{"a", "value", 1.0f}, {"b", "value", 0.5f}};
+  add("each", Combine::kSumModulated, kCosine, both);
+  add("together", Combine::kSum, kCosine, both);
+  add("cubic", Combine::kSumModulated, Modulation::kCubic, both);
+  add("one", Combine::kSumModulated, kCosine, {{"a", "value", 1.0f}});
+  add("largest", Combine::kMax, kCosine, both);
+  add("over", Combine::kSumModulated, kCosine,
+      {{"a", "value", 3.0f}, {"b", "value", 1.0f}, {"c", "value", 2.0f}});
+  rig.regions[2].feeds.push_back({.map = "curve", .sources = both});
+  rig.regions[2].feeds[1].curve = {{0.0f, 0.2f}, {1.0f, 0.4f}};  // 0.2 + x / 5
+  BoundRig bound(rig, Skeleton(), names);
+  LocalPose pose;
+  pose.blend_shapes = {0.25f, 0.5f, 0.75f};
+  bound.Solve(pose);
+  // theta(0.25) = (1 - sqrt(1/2)) / 2, theta(0.5) = 1/2
+  EXPECT_NEAR(bound.Weight("each.map"), 0.1464466f + 0.25f, 1e-6f);
+  EXPECT_NEAR(bound.Weight("together.map"), 0.5f, 1e-6f);  // theta(0.25 + 0.25)
+  // 2.62235 / 4 - 4.87773 / 16 + 3.26168 / 64 = 0.4016934, and half of 0.4994525
+  EXPECT_NEAR(bound.Weight("cubic.map"), 0.4016934f + 0.2497263f, 1e-6f);
+  EXPECT_NEAR(bound.Weight("cubic.curve"), 0.25f + 0.5f * 0.3f, 1e-6f);
+  EXPECT_NEAR(bound.Weight("one.map"), 0.1464466f, 1e-6f);
+  EXPECT_NEAR(bound.Weight("largest.map"), 0.1464466f, 1e-6f);
+  EXPECT_EQ(bound.Weight("over.map"), 1.0f);  // 0.44 + 0.5 + 1.71
+  // The parts of an explanation add up to the weight.
+  Explanation explanation;
+  ASSERT_EQ(Explain(*bound.binding(), pose, &explanation), JobStatus::kOk);
+  const Explanation::Weight& each = explanation.weights[0];
+  EXPECT_NEAR(each.contributions[0].modulated, 0.1464466f, 1e-6f);
+  EXPECT_NEAR(each.contributions[0].product, 0.1464466f, 1e-6f);
+  EXPECT_NEAR(each.contributions[1].product, 0.25f, 1e-6f);
+  EXPECT_NEAR(each.modulated, each.contributions[0].product + each.contributions[1].product, 1e-6f);
+  EXPECT_EQ(explanation.weights[1].contributions[0].modulated, 0.25f);
 }
 
 // Weights of driver values alone: four blend shapes feed two opposed maps of two neighbours, "l"
