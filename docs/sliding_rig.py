@@ -16,7 +16,7 @@ def hip(side):
     return {
         "name": f"hip_{side}",
         "combine": "sum",
-        "mask": {"kind": "sliding", "ball": f"hip_{side}"},
+        "mask": {"kind": "sliding", "driver": f"hip_{side}"},
         "feeds": [{
             "map": "folds",
             "sources": [{"from": f"hip_{side}.{way}", "gain": 3}

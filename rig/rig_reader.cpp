@@ -108,7 +108,10 @@ Status ReadRegion(const schema::Region& from, const std::string& at, wrinkle::Re
   to->mask.texture = Text(mask.texture());
   to->mask.smooth_width = mask.smooth_width();
   to->mask.channel = static_cast<int>(mask.channel());
-  to->mask.ball = Text(mask.ball());
+  if (mask.driver() != nullptr && mask.ball() != nullptr) {
+    return InvalidField("ball is the former name of driver", at + ".mask.ball", "remove it");
+  }
+  to->mask.driver = Text(mask.driver() != nullptr ? mask.driver() : mask.ball());
   to->mask.spread_degrees = mask.spread_degrees();
   to->mask.above = mask.above();
   to->mask.below = mask.below();

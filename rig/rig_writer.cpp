@@ -96,7 +96,7 @@ std::string ToJson(const wrinkle::Mask& mask) {
   if (mask.channel != 0) object.Raw("channel", Quote(kChannels.at(mask.channel)));
   return object.Choice("lambda", mask.lambda, {"smooth", "binary", "linear"})
       .Float("smooth_width", mask.smooth_width, 0.25f)
-      .Text("ball", mask.ball)
+      .Text("driver", mask.driver)
       .Float("spread_degrees", mask.spread_degrees, 100.0f)
       .Float("above", mask.above, 0.15f)
       .Float("below", mask.below, 0.4f)

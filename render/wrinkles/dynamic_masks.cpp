@@ -7,6 +7,8 @@
 
 #include <glm/trigonometric.hpp>
 
+#include "wrinkle/rig/driver_values.h"
+
 namespace furrow::render {
 namespace {
 
@@ -49,12 +51,17 @@ void DynamicMasks::FindSlides(const wrinkle::RigBinding& binding) {
       const std::size_t index = weight++;
       if (region.mask.kind != wrinkle::Mask::Kind::kSliding) continue;
       const wrinkle::Driver& driver =
-          rig.drivers[static_cast<std::size_t>(IndexByName(rig.drivers, region.mask.ball))];
-      const auto frame = wrinkle::RestBallFrame(driver.ball, binding.skeleton());
-      const auto front = std::ranges::find(values, region.mask.ball + ".front");
-      if (!frame || front == values.end()) continue;  // a joint is missing; draw nothing
-      slides_.push_back({IndexByName(rig.wrinkle_maps, feed.map), index,
-                         static_cast<std::size_t>(front - values.begin()), *frame, region.mask});
+          rig.drivers[static_cast<std::size_t>(IndexByName(rig.drivers, region.mask.driver))];
+      const auto frame = wrinkle::RestSlidingFrame(driver, feed, binding.skeleton());
+      const std::vector<std::string> names = wrinkle::DriverValueNames(driver);
+      const auto first = std::ranges::find(values, driver.name + "." + names.front());
+      if (!frame || first == values.end()) continue;  // a joint is missing; draw nothing
+      slides_.push_back({.map = IndexByName(rig.wrinkle_maps, feed.map),
+                         .weight = index,
+                         .first_value = static_cast<std::size_t>(first - values.begin()),
+                         .num_values = names.size(),
+                         .frame = *frame,
+                         .mask = region.mask});
     }
   }
 }
@@ -103,9 +110,8 @@ void DynamicMasks::Update(MaskMode mode, std::span<const float> values,
 }
 
 DynamicMaskBlock DynamicMasks::BlockOf(const Slide& slide) const {
-  const float* value = &values_[slide.value];
-  const glm::vec3 towards =
-      wrinkle::BendDirection(slide.frame, value[0], value[1], value[2], value[3]);
+  const glm::vec3 towards = wrinkle::BendDirection(
+      slide.frame, std::span(values_).subspan(slide.first_value, slide.num_values));
   DynamicMaskBlock block;
   block.origin = glm::vec4(slide.frame.origin, weights_[slide.weight]);
   block.towards = glm::vec4(towards, std::cos(glm::radians(slide.mask.spread_degrees)));

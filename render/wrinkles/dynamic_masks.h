@@ -22,8 +22,8 @@ struct DynamicMaskBlock {
   std::int32_t lambda = 0;     // wrinkle::LambdaMode, for columns
   float smooth_width = 0.25f;  // of LambdaMode::kSmooth
   // Sliding masks only; model space, rest pose.
-  glm::vec4 origin{0.0f};   // xyz: the ball joint, metres; w: the wrinkle weight
-  glm::vec4 towards{0.0f};  // xyz: unit direction of the bend; w: cosine at which the mask is 0
+  glm::vec4 origin{0.0f};   // xyz: the joint, metres; w: the wrinkle weight
+  glm::vec4 towards{0.0f};  // xyz: unit direction it moves to; w: cosine at which the mask is 0
   glm::vec4 bone{0.0f};     // xyz: unit direction of the bone; w: 1 / bone length, 1/m
   glm::vec4 extent{0.0f};   // Mask's above, below and radius, in bone lengths
 };
@@ -40,7 +40,7 @@ struct SkinnedShare {
   wrinkle::DynamicMask mask;  // the column's map and lambda
 };
 
-// The vertex masks of one subject: masks by skin weight, and masks that slide around ball joints.
+// The vertex masks of one subject: masks by skin weight, and masks that slide around joints.
 class DynamicMasks {
  public:
   // `painted`: the character's rig, bound to its own skeleton. `skinning`: the same rig with
@@ -64,9 +64,10 @@ class DynamicMasks {
   // One input of a region with a sliding mask.
   struct Slide {
     int map = -1;
-    std::size_t weight = 0;  // index of RigBinding::weight_names()
-    std::size_t value = 0;   // first index of the ball driver's values: front, back, left, right
-    wrinkle::BallFrame frame;
+    std::size_t weight = 0;       // index of RigBinding::weight_names()
+    std::size_t first_value = 0;  // the values of the driver that moves the mask
+    std::size_t num_values = 0;
+    wrinkle::SlidingFrame frame;
     wrinkle::Mask mask;
   };
   [[nodiscard]] const wrinkle::RigBinding& BindingOf(MaskMode mode) const;

@@ -10,10 +10,10 @@ struct DynamicMask {
   int column;         // of u_joint_influences; -1: a sliding mask
   int lambda;         // 0 smooth, 1 binary, 2 linear
   float smoothWidth;  // w0 of the smooth lambda
-  // The remaining members describe a sliding mask around a ball joint. Lengths are relative to the
-  // bone below the joint.
+  // The remaining members describe a sliding mask around a joint. Lengths are relative to the bone
+  // below the joint.
   vec4 origin;        // xyz: rest pose; w: the wrinkle weight
-  vec4 towards;       // xyz: bend direction of the joint; w: cosine at which the mask reaches 0
+  vec4 towards;       // xyz: direction that the joint moves to; w: cosine at which the mask reaches 0
   vec4 bone;          // xyz: unit; w: 1 / length (1/m)
   vec4 extent;        // above, below, radius
 };

@@ -24,8 +24,8 @@ struct CurvePoint {
 };
 
 // How the sources of a map become one number, with theta the map's modulation:
-// - kMax, kSum, kMean: theta of the largest gain * value, of their sum, clamped to 1, or of the mean
-//   of the values, weighted by gain.
+// - kMax, kSum, kMean: theta of the largest gain * value, of their sum, clamped to 1, or of the
+//   mean of the values, weighted by gain.
 // - kSumModulated: the sum of gain * theta(value), clamped to 1 (4.2 as printed, with the gain as
 //   lambda).
 enum class Combine { kMax, kSum, kMean, kSumModulated };
@@ -48,8 +48,8 @@ struct Feed {
 
 // Where a region's wrinkles are drawn.
 struct Mask {
-  // kTexture: painted. kSkinning: the vertices that the driving joints move. kSliding: around a
-  // ball joint, on the side it bends to (sliding_mask.h).
+  // kTexture: painted. kSkinning: the vertices that the driving joints move. kSliding: around the
+  // joint of a ball, hinge or twist driver, on the side it moves to (sliding_mask.h).
   enum class Kind { kTexture, kSkinning, kSliding };
   Kind kind = Kind::kTexture;
   std::string texture;  // a file, or the name of a picture inside the character
@@ -57,8 +57,8 @@ struct Mask {
   LambdaMode lambda = LambdaMode::kSmooth;
   float smooth_width = 0.25f;  // w0 of smoothstep(0, w0, skin_weight)
   // For kSliding. The unit of length is the bone below the joint.
-  std::string ball;               // the ball driver that moves the mask
-  float spread_degrees = 100.0f;  // [1, 180]: reach to either side of the bend
+  std::string driver;             // the driver that moves the mask; a hinge must have an axis
+  float spread_degrees = 100.0f;  // [1, 180]: reach to either side of the direction
   float above = 0.15f;            // [0, 10]: reach beyond the joint, towards the parent
   float below = 0.4f;             // [0, 10]: reach along the bone; above + below > 0
   float radius = 0.5f;            // [0.001, 10]: reach from the bone's axis
@@ -116,8 +116,8 @@ struct Export {
 
 struct Rig {
   std::string name;
-  std::string anchor;  // pose drivers without their own anchor measure in this joint's space; empty:
-                       // model space
+  std::string anchor;  // pose drivers without their own anchor measure in this joint's space;
+                       // empty: model space
   std::vector<ReferencePose> reference_poses;
   std::vector<Driver> drivers;
   std::vector<Region> regions;

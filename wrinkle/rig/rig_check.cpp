@@ -126,16 +126,30 @@ void CheckList(const std::string& list, const std::vector<Item>& items, std::siz
   }
 }
 
-// A sliding mask must name a ball driver.
+// Why a driver cannot move a sliding mask; null if it has a direction.
+const char* WhyNoDirection(const BallDriver&) { return nullptr; }
+const char* WhyNoDirection(const TwistDriver&) { return nullptr; }
+const char* WhyNoDirection(const HingeDriver& driver) {
+  return driver.axis ? nullptr : "a hinge without an axis has no direction";
+}
+template <class Kind>
+const char* WhyNoDirection(const Kind&) {
+  return "this kind of driver has no direction";
+}
+
 void CheckSlides(const Rig& rig, FieldCheck* check) {
   for (std::size_t i = 0; i < rig.regions.size(); ++i) {
     const Mask& mask = rig.regions[i].mask;
     if (mask.kind != Mask::Kind::kSliding) continue;
-    const bool is_ball = std::any_of(rig.drivers.begin(), rig.drivers.end(), [&](const Driver& d) {
-      return d.name == mask.ball && d.kind == Driver::Kind::kBall;
-    });
-    check->Require(is_ball, FieldAt("regions", i), ".mask.ball",
-                   "a sliding mask names a ball driver of the rig");
+    const auto driver = std::find_if(rig.drivers.begin(), rig.drivers.end(),
+                                     [&](const Driver& d) { return d.name == mask.driver; });
+    const char* const wrong =
+        driver == rig.drivers.end()
+            ? "a sliding mask names a driver of the rig"
+            : VisitFields(*driver, [](const auto& fields) { return WhyNoDirection(fields); });
+    check->Require(wrong == nullptr, FieldAt("regions", i), ".mask.driver",
+                   wrong == nullptr ? "" : wrong,
+                   "name a ball driver, a twist driver, or a hinge driver with an axis");
   }
 }
 

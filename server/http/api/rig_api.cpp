@@ -36,11 +36,11 @@ Json CurveJson(std::span<const wrinkle::CurvePoint> curve) {
 }
 
 // Where the wrinkles of a region show: a channel of a texture, the skin weights, or the side that a
-// ball joint bends to.
+// joint moves to.
 Json MaskJson(const wrinkle::Mask& mask) {
   switch (mask.kind) {
     case wrinkle::Mask::Kind::kSkinning: return {{"kind", "skinning"}};
-    case wrinkle::Mask::Kind::kSliding: return {{"kind", "sliding"}, {"ball", mask.ball}};
+    case wrinkle::Mask::Kind::kSliding: return {{"kind", "sliding"}, {"driver", mask.driver}};
     case wrinkle::Mask::Kind::kTexture: break;
   }
   // A rig may be made by hand; the index below must stay inside "rgba".
@@ -151,16 +151,12 @@ Json StrainJson(const wrinkle::Explanation& explanation, const std::string& driv
 Json ContributionJson(const wrinkle::Explanation& explanation, const wrinkle::Rig& rig,
                       const wrinkle::Explanation::Contribution& part) {
   const Driver* driver = FindDriver(rig, part.driver_value);
-  Json json = {{"value", part.driver_value},
-               {"kind", driver == nullptr ? "" : DriverKindName(driver->kind)},
-               {"reference_pose", nullptr},
-               {"driver_value", part.value},
-               {"gain", part.gain},
-               {"modulated", part.modulated},
-               {"product", part.product},
-               {"pose", PoseJson(explanation, part.driver_value)},
-               {"angles", nullptr},
-               {"strain", nullptr}};
+  Json json = {
+      {"value", part.driver_value}, {"kind", driver == nullptr ? "" : DriverKindName(driver->kind)},
+      {"reference_pose", nullptr},  {"driver_value", part.value},
+      {"gain", part.gain},          {"modulated", part.modulated},
+      {"product", part.product},    {"pose", PoseJson(explanation, part.driver_value)},
+      {"angles", nullptr},          {"strain", nullptr}};
   if (driver != nullptr) {
     json["reference_pose"] = ReferencePoseOf(*driver, part.driver_value);
     json["angles"] = AnglesJson(explanation, driver->name);

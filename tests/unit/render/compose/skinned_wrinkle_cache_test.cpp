@@ -171,7 +171,7 @@ TEST_F(SkinnedWrinkleCacheTest, SlidingMasksStayInTheFragment) {
   region.name = "slide";
   region.mask = {};
   region.mask.kind = wrinkle::Mask::Kind::kSliding;
-  region.mask.ball = "roll";
+  region.mask.driver = "roll";
   region.mask.above = region.mask.below = 4.0f;
   region.mask.radius = 8.0f;
   region.feeds = {{"stretch", {}}};

@@ -2,7 +2,10 @@
 #include "render/wrinkles/dynamic_masks.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -32,7 +35,7 @@ character::Character MakeSlidingHead() {
   slide.combine = wrinkle::Combine::kSum;
   slide.mask = {.kind = wrinkle::Mask::Kind::kSliding,
                 .texture = {},
-                .ball = "nod",
+                .driver = "nod",
                 .spread_degrees = 80.0f,
                 .above = 2.0f,
                 .below = 2.0f,
@@ -73,7 +76,8 @@ FrameRequest RequestOf(const test::Subject& subject) {
 TEST(SlidingMask, MatchesTheReference) {
   const character::Character head = MakeSlidingHead();
   const wrinkle::Mask& mask = head.rig.regions.back().mask;
-  const auto frame = wrinkle::RestBallFrame(head.rig.drivers.back().ball, head.skeleton);
+  const auto frame = wrinkle::RestSlidingFrame(
+      head.rig.drivers.back(), head.rig.regions.back().feeds.front(), head.skeleton);
   ASSERT_TRUE(frame.has_value());
   test::SceneProbe probe(head);
   for (const float front : {0.0f, 0.3f, 0.6f}) {
@@ -84,7 +88,8 @@ TEST(SlidingMask, MatchesTheReference) {
     }
     const std::vector<glm::vec4> pixels = probe.Draw(request);
     const float blue = probe.tables().table(WrinkleGroup::kSkin).maps.at(0).colour.b;
-    const glm::vec3 towards = wrinkle::BendDirection(*frame, front, 0.0f, 0.6f - front, 0.0f);
+    const glm::vec3 towards =
+        wrinkle::BendDirection(*frame, std::array{front, 0.0f, 0.6f - front, 0.0f});
     const CameraFrame camera = ComputeCamera(request.camera, head.skeleton, subject.model, 1.0f);
     int compared = 0;
     int masked = 0;
@@ -120,6 +125,50 @@ TEST(SlidingMask, IsInactiveAtWeight0AndWithTextureMasksOnly) {
   subject.weights.back() = 0.0f;
   (void)probe.Draw(request);
   EXPECT_TRUE(probe.tables().table(WrinkleGroup::kSkin).maps.empty());
+}
+
+// The mask of the tests' head after the value `value` of its driver has become 0.5.
+std::vector<DynamicMaskBlock> BlocksOf(character::Character head, const std::string& value) {
+  head.rig.regions.back().feeds = {{"folds", {{"nod", value, 1.0f}}}};
+  test::Subject subject(head);
+  std::ranges::fill(subject.driver_values, 0.0f);
+  std::ranges::fill(subject.weights, 0.0f);
+  const auto names = subject.binding.driver_value_names();
+  const auto at = std::ranges::find(names, "nod." + value) - names.begin();
+  subject.driver_values[static_cast<std::size_t>(at)] = 0.5f;
+  subject.weights.back() = 0.8f;
+  DynamicMasks masks(&subject.binding, &subject.binding);
+  masks.Update(MaskMode::kRig, subject.driver_values, subject.weights);
+  std::vector<DynamicMaskBlock> blocks;
+  for (std::size_t map = 0; map < head.rig.wrinkle_maps.size(); ++map) {
+    masks.Append(static_cast<int>(map), &blocks);
+  }
+  return blocks;
+}
+
+// The head is above the root: about +x it nods forward, about +y its front turns to its left.
+TEST(SlidingMask, FollowsHingesAndTwists) {
+  character::Character head = MakeSlidingHead();
+  wrinkle::Driver& nod = head.rig.drivers.back();
+  nod.kind = wrinkle::Driver::Kind::kHinge;
+  nod.hinge.parent = "root";
+  nod.hinge.joint = "head";
+  nod.hinge.end = "brow";
+  nod.hinge.axis = glm::vec3(1.0f, 0.0f, 0.0f);
+  const auto expect = [&](const char* value, const glm::vec3& towards) {
+    const std::vector<DynamicMaskBlock> blocks = BlocksOf(head, value);
+    ASSERT_EQ(blocks.size(), 1u) << value;
+    EXPECT_EQ(blocks[0].column, -1);
+    EXPECT_EQ(blocks[0].origin.w, 0.8f);
+    EXPECT_GT(glm::dot(glm::vec3(blocks[0].towards), towards), 0.999f) << value;
+  };
+  expect("flexed", {0.0f, 0.0f, 1.0f});
+  expect("extended", {0.0f, 0.0f, -1.0f});
+  nod.kind = wrinkle::Driver::Kind::kTwist;
+  nod.twist.joint = "head";
+  nod.twist.axis = glm::vec3(0.0f, 1.0f, 0.0f);
+  expect("twist_left", {1.0f, 0.0f, 0.0f});
+  expect("twist_right", {-1.0f, 0.0f, 0.0f});
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ TEST_F(ApiRigTest, EveryKindOfMaskIsShown) {
   rig.regions.back().name = "arm";
   rig.regions[0].mask = {.kind = Kind::kTexture, .texture = "face.png", .channel = 2};
   rig.regions[1].mask = {.kind = Kind::kSkinning};
-  rig.regions[2].mask = {.kind = Kind::kSliding, .ball = "shoulder"};
+  rig.regions[2].mask = {.kind = Kind::kSliding, .driver = "shoulder"};
   MakeWith(std::move(rig));
   Connect(&sender);
   Publish(sender, "ann");
@@ -39,7 +39,7 @@ TEST_F(ApiRigTest, EveryKindOfMaskIsShown) {
   const Json regions = Json::parse(reply.body)["regions"];
   EXPECT_EQ(regions[0]["mask"].dump(), R"({"kind":"texture","texture":"face.png","channel":"b"})");
   EXPECT_EQ(regions[1]["mask"].dump(), R"({"kind":"skinning"})");
-  EXPECT_EQ(regions[2]["mask"].dump(), R"({"kind":"sliding","ball":"shoulder"})");
+  EXPECT_EQ(regions[2]["mask"].dump(), R"({"kind":"sliding","driver":"shoulder"})");
 }
 
 }  // namespace
