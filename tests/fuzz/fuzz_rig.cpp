@@ -10,7 +10,7 @@
 #include "rig/rig_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace furrow::character;
+  using namespace furrow;
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   const auto rig = rig::ParseRig(text, "fuzz.json", "no/such/folder");
   if (!rig.ok()) {
@@ -20,6 +20,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string written = rig::RigToJson(*rig);
   const auto again = rig::ParseRig(written, "written.json", "no/such/folder");
   if (!again.ok() || rig::RigToJson(*again) != written) std::abort();
-  if (ReportOnRig(*rig).name != rig->name) std::abort();
+  if (character::ReportOnRig(*rig).name != rig->name) std::abort();
   return 0;
 }

@@ -10,7 +10,7 @@
 #include "rig/skeleton_map.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace furrow::character;
+  using namespace furrow;
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   const auto map = rig::ParseSkeletonMap(text, "fuzz.json");
   if (!map.ok()) {
