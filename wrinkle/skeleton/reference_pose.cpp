@@ -3,13 +3,24 @@
 
 #include <glm/geometric.hpp>
 
-#include "wrinkle/skeleton/direction.h"
+#include "wrinkle/skeleton/rest.h"
 #include "wrinkle/skeleton/retarget.h"
 
 namespace furrow::wrinkle {
 namespace {
 
 constexpr float kLeastDelta = 1e-6f;  // radians, source units
+
+// The formula of JointDelta, in the precision of the pose. `own` and `above`: the rest rotations of
+// the joint and of its parent in model space.
+template <class Quaternion, class Vector, class Joint>
+void Apply(const Quaternion& turn, const Vector& moved, const Quaternion& own,
+           const Quaternion& above, Joint* local) {
+  // `turn` is about model axes at rest. Conjugation with the rest rotation expresses it in the
+  // joint's own axes, where it is applied after the pose so far.
+  local->rotation = glm::normalize(local->rotation * glm::conjugate(own) * turn * own);
+  local->translation += glm::conjugate(above) * moved;
+}
 
 }  // namespace
 
@@ -21,27 +32,18 @@ bool IsRest(const JointDelta& delta) {
 
 void ApplyJointDelta(const JointDelta& delta, const Skeleton& skeleton, int joint, float scale,
                      Transform* local) {
-  const glm::quat& rest_model = skeleton.rest_model_rotations()[joint];
-  // `delta` turns about model axes at rest. Conjugation with the rest rotation expresses it in the
-  // joint's own axes, where it is applied after the pose so far.
-  local->rotation =
-      glm::normalize(local->rotation * glm::conjugate(rest_model) * delta.rotation * rest_model);
-  const glm::vec3 moved = delta.translation * scale + delta.unscaled_translation;
-  local->translation += ToJointAxes(skeleton, skeleton.joint_parents()[joint], moved);
+  Apply(delta.rotation, delta.translation * scale + delta.unscaled_translation,
+        RestRotation(skeleton, joint), RestRotation(skeleton, skeleton.joint_parents()[joint]),
+        local);
 }
 
 void ApplyJointDelta(const JointDelta& delta, const Skeleton& skeleton, int joint, float scale,
                      PreciseTransform* local) {
-  const auto rest_model = [&](int index) {
-    if (index == kNoJoint) return glm::dquat(1.0, 0.0, 0.0, 0.0);
-    return glm::normalize(glm::dquat(skeleton.rest_model_rotations()[index]));
-  };
-  const glm::dquat own = rest_model(joint);
-  const glm::dquat turn = glm::normalize(glm::dquat(delta.rotation));
-  local->rotation = glm::normalize(local->rotation * glm::conjugate(own) * turn * own);
-  const glm::dvec3 moved =
-      glm::dvec3(delta.translation) * double{scale} + glm::dvec3(delta.unscaled_translation);
-  local->translation += glm::conjugate(rest_model(skeleton.joint_parents()[joint])) * moved;
+  const auto precise = [](const glm::quat& q) { return glm::normalize(glm::dquat(q)); };
+  Apply(precise(delta.rotation),
+        glm::dvec3(delta.translation) * double{scale} + glm::dvec3(delta.unscaled_translation),
+        precise(RestRotation(skeleton, joint)),
+        precise(RestRotation(skeleton, skeleton.joint_parents()[joint])), local);
 }
 
 float ReferencePoseScale(const ReferencePose& pose, const Skeleton& skeleton) {

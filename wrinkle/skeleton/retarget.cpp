@@ -10,18 +10,10 @@
 #include "wrinkle/skeleton/body_retarget.h"
 #include "wrinkle/skeleton/body_stance.h"
 #include "wrinkle/skeleton/finite.h"
+#include "wrinkle/skeleton/rest.h"
 
 namespace furrow::wrinkle {
 namespace {
-
-glm::vec3 RestOrigin(const Skeleton& skeleton, int joint) {
-  return glm::vec3(skeleton.rest_model()[joint][3]);
-}
-
-glm::quat RestRotation(const Skeleton& skeleton, int joint) {
-  return joint == kNoJoint ? glm::quat(1.0f, 0.0f, 0.0f, 0.0f)
-                           : skeleton.rest_model_rotations()[joint];
-}
 
 // The lengths of all bones, or of those to joints that `other` has too.
 float SumOfBones(const Skeleton& skeleton, const Skeleton* other) {

@@ -12,6 +12,7 @@
 #include "wrinkle/drivers/ball/ball_fields.h"
 #include "wrinkle/drivers/common/full_pose_builder.h"
 #include "wrinkle/skeleton/direction.h"
+#include "wrinkle/skeleton/rest.h"
 
 namespace furrow::wrinkle {
 namespace {
@@ -19,10 +20,6 @@ namespace {
 // The shares of the mask's length and radius over which it fades. The shader has the same values.
 constexpr float kSoftEnd = 0.4f;
 constexpr float kSoftRim = 0.4f;
-
-glm::vec3 RestOrigin(const Skeleton& skeleton, int joint) {
-  return glm::vec3(skeleton.rest_model()[joint][3]);
-}
 
 // What a frame depends on besides the fields of the driver.
 struct FrameContext {

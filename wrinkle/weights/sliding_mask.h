@@ -29,9 +29,8 @@ struct SlidingFrame {
 // - Ball: forward and right as in the driver, and its four values.
 // - Hinge with an axis: forward is the side that it flexes to. The mask lies there. If `feed` reads
 //   the hinge's "extended" and not its "flexed", it lies on the opposite side.
-// - Twist: the mask lies on the side to which the front of the joint (its top, if the axis points
-// to
-//   the front) turns. That is the subject's left for "twist_left" about an axis that points up.
+// - Twist: the mask lies on the side to which the front of the joint turns (its top, if the axis
+//   points to the front). That is the subject's left for "twist_left" about an axis that points up.
 // - nullopt for other drivers, if the skeleton lacks a joint, or if a bone has no length.
 [[nodiscard]] std::optional<SlidingFrame> RestSlidingFrame(const Driver& driver, const Feed& feed,
                                                            const Skeleton& skeleton);
