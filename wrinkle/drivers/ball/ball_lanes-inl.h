@@ -14,8 +14,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace furrow::wrinkle::HWY_NAMESPACE {
 
-// The lower bone's projection onto the plane across the straight direction, and its length. Only its
-// angle psi = atan2(right, forward) counts.
+// The lower bone's projection onto the plane across the straight direction, and its length. Only
+// its angle psi = atan2(right, forward) counts.
 struct BendSide {
   Float forward, right, length;
 };
@@ -37,8 +37,7 @@ HWY_INLINE BendSide TurnToRest(BendSide side, Float cosine, const BallBlock& blo
 // The factor of BallMode::kSmooth around the singular direction, in the half away from straight: a
 // smoothstep of the length up to kFadeLength.
 HWY_INLINE Float Fade(Float length, Float cosine) {
-  const Float t = hn::Min(hn::Mul(length, Splat(1.0f / kFadeLength)), Splat(1.0f));
-  const Float smooth = hn::Mul(hn::Mul(t, t), hn::Sub(Splat(3.0f), hn::Add(t, t)));
+  const Float smooth = Smoothstep(0.0f, kFadeLength, length);
   return hn::IfThenElse(hn::Lt(cosine, hn::Zero(Floats())), smooth, Splat(1.0f));
 }
 

@@ -18,15 +18,10 @@ constexpr float kLeastDisplacement = 1e-6f;
 std::string OwnerOf(const std::string& name) { return "driver '" + name + "'"; }
 
 // In double: the terms of long vectors cancel.
-double Dot(StackedPoints a, StackedPoints b) {
+template <class Vector>
+double Dot(StackedPoints a, std::span<const Vector> b) {
   double sum = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += glm::dot(glm::dvec3(a[i]), glm::dvec3(b[i]));
-  return sum;
-}
-
-double Dot(StackedPoints a, std::span<const glm::dvec3> b) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += glm::dot(glm::dvec3(a[i]), b[i]);
   return sum;
 }
 
