@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // RigToJson(): omits defaults and writes small objects on one line, as a person would.
 #include <array>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -13,8 +14,6 @@ namespace furrow::rig {
 namespace {
 
 using wrinkle::Rig;
-
-constexpr std::array kModulations = {"linear", "cosine", "cubic"};  // wrinkle::Modulation
 
 std::string ToJson(const wrinkle::JointDelta& delta) {
   Object object;
@@ -104,26 +103,28 @@ std::string ToJson(const wrinkle::Mask& mask) {
       .str();
 }
 
-// The numbers of a curve take one line: [[0, 0], [0.3, 0.4], [1, 1]].
-void AddCurve(const std::vector<wrinkle::CurvePoint>& curve, Object* object) {
-  if (curve.empty()) return;
+// A curve replaces the named modulation, so only one of the two is written. The numbers of a curve
+// take one line: [[0, 0], [0.3, 0.4], [1, 1]].
+void AddModulation(std::optional<wrinkle::Modulation> modulation,
+                   const std::vector<wrinkle::CurvePoint>& curve, Object* object) {
+  constexpr std::array kNames = {"linear", "cosine", "cubic"};  // wrinkle::Modulation
   const auto point = [](const wrinkle::CurvePoint& p) {
     return "[" + Number(p.x) + ", " + Number(p.y) + "]";
   };
-  object->Raw("curve", OnOneLine(curve, point));
+  if (!curve.empty()) {
+    object->Raw("curve", OnOneLine(curve, point));
+  } else if (modulation) {
+    object->Raw("modulation", Quote(kNames.at(static_cast<std::size_t>(*modulation))));
+  }
 }
 
-// A curve replaces the named modulation, so only one of the two is written.
 std::string ToJson(const wrinkle::Feed& feed) {
   const auto source = [](const wrinkle::Feed::Source& s) {
     return Object().Text("from", s.driver + "." + s.value).Float("gain", s.gain, 1.0f).str();
   };
   Object object;
   object.Text("map", feed.map).Always("sources", feed.sources, source);
-  if (feed.modulation && feed.curve.empty()) {
-    object.Raw("modulation", Quote(kModulations.at(static_cast<std::size_t>(*feed.modulation))));
-  }
-  AddCurve(feed.curve, &object);
+  AddModulation(feed.modulation, feed.curve, &object);
   return object.str();
 }
 
@@ -133,10 +134,9 @@ std::string ToJson(const wrinkle::Region& region) {
       .Raw("mask", ToJson(region.mask))
       .Always("feeds", region.feeds, [](const auto& feed) { return ToJson(feed); })
       .Choice("combine", region.combine, {"max", "sum", "mean", "sum_modulated"});
-  if (region.modulation != wrinkle::Modulation::kCosine && region.curve.empty()) {
-    object.Raw("modulation", Quote(kModulations.at(static_cast<std::size_t>(region.modulation))));
-  }
-  AddCurve(region.curve, &object);
+  const bool is_default = region.modulation == wrinkle::Modulation::kCosine;
+  AddModulation(is_default ? std::nullopt : std::optional(region.modulation), region.curve,
+                &object);
   return object.List("neighbours", region.neighbours, Quote).str();
 }
 
