@@ -34,14 +34,16 @@ const std::string* FirstOf(JointRole role, const wrinkle::JointRoles& roles,
   return found == roles.end() ? nullptr : &names[static_cast<std::size_t>(found - roles.begin())];
 }
 
-// The joints of twist drivers. Their values are sums over joints, so a sum over a whole chain has
-// the same meaning.
+// The joints of drivers whose values are sums over joints. There, a sum over a whole chain has the
+// same meaning.
 std::set<std::string> JointsThatDriversAdd(const wrinkle::Rig& rig) {
   std::set<std::string> joints;
   for (const wrinkle::Driver& driver : rig.drivers) {
-    if (driver.kind != wrinkle::Driver::Kind::kTwist) continue;
-    const std::vector<std::string> read = wrinkle::JointsRead(driver.twist);
-    joints.insert(read.begin(), read.end());
+    wrinkle::VisitFields(driver, [&](const auto& fields) {
+      if (!fields.kAddsJoints) return;
+      const std::vector<std::string> read = JointsRead(fields);
+      joints.insert(read.begin(), read.end());
+    });
   }
   return joints;
 }
@@ -143,8 +145,8 @@ SkeletonMatch SkeletonMatcher::Match(const wrinkle::Skeleton& stream, const wrin
     } else if (const std::string* first = FirstOf(role, theirs, stream.joint_names())) {
       match.aliases.emplace_back(names[i], *first);
     }
-    wrinkle::RoleChain chain{.joint = names[i], .skeleton_joints = {}};
     if (!added.contains(names[i])) continue;
+    wrinkle::RoleChain chain{.joint = names[i], .skeleton_joints = {}};
     const std::vector<JointRole> played_by = parts.Of(role);
     for (std::size_t k = 0; k < theirs.size(); ++k) {
       if (theirs[k] == JointRole::kNone || std::ranges::count(played_by, theirs[k]) == 0) continue;

@@ -20,6 +20,7 @@ enum class BallMode { kSmooth, kThesis };
 struct BallDriver {
   static constexpr bool kReadsJoints = true;
   static constexpr bool kMeasuresFromAnchor = false;
+  static constexpr bool kAddsJoints = false;
 
   std::string parent;  // joint of the upper bone: gives its direction and its frame
   std::string joint;

@@ -15,6 +15,7 @@ class FullPoseBuilder;
 struct BlendShapeDriver {
   static constexpr bool kReadsJoints = false;
   static constexpr bool kMeasuresFromAnchor = false;
+  static constexpr bool kAddsJoints = false;
 
   std::string blend_shape;  // matched without case
   float neutral = 0.0f;     // the coefficient that gives 0, [-1000, 1000]

@@ -18,6 +18,7 @@ class FullPoseBuilder;
 struct HingeDriver {
   static constexpr bool kReadsJoints = true;
   static constexpr bool kMeasuresFromAnchor = false;
+  static constexpr bool kAddsJoints = false;
 
   std::string parent;             // upper bone: from this joint's origin to `joint`'s origin
   std::string joint;              // lower bone: from this joint's origin to its tail, or to `end`

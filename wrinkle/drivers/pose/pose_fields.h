@@ -40,6 +40,7 @@ enum class PoseSolve { kProjection, kNnls };
 struct PoseDriver {
   static constexpr bool kReadsJoints = true;
   static constexpr bool kMeasuresFromAnchor = true;
+  static constexpr bool kAddsJoints = false;
 
   // A driver value and the reference pose at which it is 1.
   struct Value {

@@ -29,6 +29,7 @@ inline constexpr std::size_t kMaxPatchJoints = 32;
 struct StrainDriver {
   static constexpr bool kReadsJoints = true;
   static constexpr bool kMeasuresFromAnchor = false;
+  static constexpr bool kAddsJoints = false;
   static constexpr int kMaxInfluences = 4;
 
   struct Vertex {

@@ -19,6 +19,7 @@ class FullPoseBuilder;
 struct TwistDriver {
   static constexpr bool kReadsJoints = true;
   static constexpr bool kMeasuresFromAnchor = false;
+  static constexpr bool kAddsJoints = true;
 
   std::string joint;
   std::optional<glm::vec3> axis;  // model axes in the rest pose; none: along the joint's tail
