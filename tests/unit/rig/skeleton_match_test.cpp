@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rig/skeleton_match.h"
 
-#include <cstdlib>
 #include <memory>
 
 #include <gmock/gmock.h>
@@ -9,6 +8,7 @@
 
 #include "base/scalar.h"
 #include "rig/rig_file.h"
+#include "tests/unit/rig/shipped_matcher.h"
 #include "wrinkle/solver/subject_solver.h"
 
 namespace furrow::rig {
@@ -46,9 +46,7 @@ class Body {
 class SkeletonMatching : public testing::Test {
  protected:
   void SetUp() override {
-    setenv("FURROW_DATA_DIR", FURROW_SOURCE_DIR "/rig", 1);
-    auto matcher = SkeletonMatcher::Create("");
-    unsetenv("FURROW_DATA_DIR");
+    auto matcher = ShippedMatcher();
     ASSERT_TRUE(matcher.ok()) << matcher.status().ToString();
     matcher_ = *std::move(matcher);
   }

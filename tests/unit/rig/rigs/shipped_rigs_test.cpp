@@ -19,6 +19,7 @@
 #include "motion/pose_source.h"
 #include "rig/rig_file.h"
 #include "rig/skeleton_match.h"
+#include "tests/unit/rig/shipped_matcher.h"
 #include "wrinkle/rig/rig_joints.h"
 #include "wrinkle/solver/subject_solver.h"
 
@@ -72,9 +73,7 @@ Clip Scaled(const Clip& clip, float scale) {
 class ShippedRigs : public testing::Test {
  protected:
   void SetUp() override {
-    setenv("FURROW_DATA_DIR", FURROW_SOURCE_DIR "/rig", 1);
-    auto matcher = SkeletonMatcher::Create("");
-    unsetenv("FURROW_DATA_DIR");
+    auto matcher = ShippedMatcher();
     ASSERT_TRUE(matcher.ok()) << matcher.status().ToString();
     matcher_ = *std::move(matcher);
   }

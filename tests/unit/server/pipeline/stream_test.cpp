@@ -15,6 +15,7 @@
 #include "server/pipeline/stream_definition.h"
 #include "server/pipeline/subject_pipeline.h"
 #include "server/pipeline/wire_adapter.h"
+#include "tests/unit/rig/shipped_matcher.h"
 
 namespace furrow::server {
 namespace {
@@ -223,9 +224,7 @@ wrinkle::Skeleton LegsCalled(const std::vector<std::string>& names) {
 
 // The rig and the character use upper_leg_l, the stream mixamorig:LeftUpLeg.
 TEST(StreamDefinitions, AForeignStreamFeedsTheRigAndMovesTheCharacter) {
-  setenv("FURROW_DATA_DIR", FURROW_SOURCE_DIR "/rig", 1);
-  const auto matcher = rig::SkeletonMatcher::Create("");
-  unsetenv("FURROW_DATA_DIR");
+  const auto matcher = rig::ShippedMatcher();
   ASSERT_TRUE(matcher.ok()) << matcher.status().ToString();
   auto rig = std::make_shared<wrinkle::Rig>(*KneeRig());
   wrinkle::Driver right = rig->drivers[0];

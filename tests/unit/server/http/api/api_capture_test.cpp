@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Captures, previews and undo.
 #include <cmath>
-#include <cstdlib>
 #include <memory>
 #include <string>
 #include <utility>
@@ -10,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "server/http/api/api.h"
+#include "tests/unit/rig/shipped_matcher.h"
 #include "tests/unit/server/session/hub_fixture.h"
 
 namespace furrow::server {
@@ -104,9 +104,7 @@ TEST_F(ApiCaptureTest, APreviewChangesNothing) {
 class ApiForeignCaptureTest : public HubTest {
  protected:
   void SetUp() override {
-    setenv("FURROW_DATA_DIR", FURROW_SOURCE_DIR "/rig", 1);
-    auto matcher = rig::SkeletonMatcher::Create("");
-    unsetenv("FURROW_DATA_DIR");
+    auto matcher = rig::ShippedMatcher();
     ASSERT_TRUE(matcher.ok()) << matcher.status().ToString();
     wrinkle::Rig rig = MakeRig(/*filter=*/false);
     for (const char* side : {"l", "r"}) {
