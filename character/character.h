@@ -24,6 +24,9 @@ struct Character {
   // Model space in the rest pose to joint space; one per joint of the skeleton.
   std::vector<glm::mat4> inverse_bind_matrices;
   std::vector<Mesh> meshes;
+  // Names of the shapes that move the meshes, unique, at most kMaxShapes. Targets of equal names on
+  // different meshes (head, teeth, lashes) are one shape.
+  std::vector<std::string> shapes;
   std::vector<Material> materials;
   std::vector<Picture> pictures;
   wrinkle::Rig rig;

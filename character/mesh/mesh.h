@@ -9,6 +9,8 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include "character/mesh/morph_target.h"
+
 namespace furrow::character {
 
 // The parts of glTF's metallic-roughness material that are drawn, and the kind of surface.
@@ -46,6 +48,7 @@ struct Mesh {
   int material = -1;  // index into Character::materials; -1: none
   std::vector<Vertex> vertices;
   std::vector<std::uint32_t> indices;  // three per triangle, counter-clockwise seen from outside
+  std::vector<MorphTarget> morph_targets;  // ascending by shape, at most one per shape
 };
 
 }  // namespace furrow::character
