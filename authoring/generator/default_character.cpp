@@ -221,6 +221,13 @@ Status WriteShare(const std::filesystem::path& rigs, const std::filesystem::path
   std::filesystem::create_directories(share / "recordings", error);
   if (error) return Status(StatusCode::kIo, "cannot create the folder: " + error.message(), share);
   FURROW_RETURN_IF_ERROR(WriteCharacter(rigs, {}, share / "default.glb"));
+  FURROW_RETURN_IF_ERROR(CopyRigs(rigs, share));
+  Result<wrinkle::Rig> rig = rig::LoadRig(rigs / "default.json");
+  FURROW_RETURN_IF_ERROR(rig);
+  return WriteRecordings(rig.value(), MakeSkeleton(), share / "recordings");
+}
+
+Status WriteElder(const std::filesystem::path& rigs, const std::filesystem::path& glb) {
   CharacterOptions elder;
   elder.face = {.sex = -1.0f, .age = 65.0f};
   elder.body = {.shoulder_width = 0.92f,
@@ -231,11 +238,7 @@ Status WriteShare(const std::filesystem::path& rigs, const std::filesystem::path
                 .bust = 0.035f,
                 .shirt = {0.55f, 0.42f, 0.44f}};
   elder.texture_size = 512;
-  FURROW_RETURN_IF_ERROR(WriteCharacter(rigs, elder, share / "elder.glb"));
-  FURROW_RETURN_IF_ERROR(CopyRigs(rigs, share));
-  Result<wrinkle::Rig> rig = rig::LoadRig(rigs / "default.json");
-  FURROW_RETURN_IF_ERROR(rig);
-  return WriteRecordings(rig.value(), MakeSkeleton(), share / "recordings");
+  return WriteCharacter(rigs, elder, glb);
 }
 
 }  // namespace furrow::authoring

@@ -36,10 +36,14 @@ struct CharacterOptions {
                                     const CharacterOptions& options,
                                     const std::filesystem::path& glb);
 
-// Writes the contents of share/furrow: default.glb and elder.glb (a woman of 65) with their rigs, a
-// copy of the folder `rigs` in rigs/, and recordings/*.bvh. Creates missing folders. Errors: kIo,
-// and those of WriteCharacter(); files that were already written remain.
+// Writes the contents of share/furrow except the elder: default.glb with its rig, a copy of the
+// folder `rigs` in rigs/, and recordings/*.bvh. Creates missing folders. Errors: kIo, and those of
+// WriteCharacter(); files that were already written remain.
 [[nodiscard]] Status WriteShare(const std::filesystem::path& rigs,
                                 const std::filesystem::path& share);
+
+// Writes the second shipped character, a woman of 65. Errors: those of WriteCharacter().
+[[nodiscard]] Status WriteElder(const std::filesystem::path& rigs,
+                                const std::filesystem::path& glb);
 
 }  // namespace furrow::authoring

@@ -15,23 +15,27 @@ namespace {
 
 using furrow::authoring::CharacterOptions;
 
-furrow::Status MakeOne(const std::string& out, std::string rigs, const CharacterOptions& options) {
+// Writes one character with the rigs of the folder `rigs`; empty: the shipped folder.
+furrow::Status MakeOne(std::string rigs, const std::string& out, const std::string& elder,
+                       const CharacterOptions& options) {
   if (rigs.empty()) {
     auto shipped = furrow::FindDataFile("rigs");
     FURROW_RETURN_IF_ERROR(shipped);
     rigs = shipped->string();
   }
-  return furrow::authoring::WriteCharacter(rigs, options, out);
+  return elder.empty() ? furrow::authoring::WriteCharacter(rigs, options, out)
+                       : furrow::authoring::WriteElder(rigs, elder);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app("Generates characters");
-  std::string rigs, share, out;
+  std::string rigs, share, elder, out;
   CharacterOptions options;
   app.add_option("RIGS", rigs, "Folder of rig files (default: the shipped folder)");
-  app.add_option("SHARE", share, "Output folder for the shipped characters, rigs and recordings");
+  app.add_option("SHARE", share, "Output folder for the default character, rigs and recordings");
+  app.add_option("--elder", elder, "Output FILE.glb of the elder; also writes FILE.rig.json");
   app.add_option("--out", out, "Output FILE.glb of one character; also writes FILE.rig.json");
   app.add_option("--sex", options.face.sex,
                  "Sex: -1 female, 0 neutral, 1 male; values in between blend")
@@ -56,12 +60,14 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
-  if (out.empty() == share.empty()) {
-    std::fprintf(stderr, "furrow-make-character: give either --out FILE.glb, or RIGS and SHARE\n");
+  if (out.empty() + share.empty() + elder.empty() != 2) {
+    std::fprintf(stderr,
+                 "furrow-make-character: give one of --out FILE.glb, --elder FILE.glb, and RIGS "
+                 "with SHARE\n");
     return 2;
   }
-  const furrow::Status status =
-      share.empty() ? MakeOne(out, rigs, options) : furrow::authoring::WriteShare(rigs, share);
+  const furrow::Status status = share.empty() ? MakeOne(rigs, out, elder, options)
+                                              : furrow::authoring::WriteShare(rigs, share);
   if (status.ok()) return 0;
   std::fprintf(stderr, "furrow-make-character: %s\n", status.ToString().c_str());
   return 1;
