@@ -55,6 +55,16 @@ function(furrow_optimise target)
   set_target_properties(${target} PROPERTIES DISABLE_PRECOMPILE_HEADERS ON)
 endfunction()
 
+# furrow_build_quickly(TARGET): compiles a library of cold code with -O1 in builds that use -O2. Beast and CLI11
+# instantiate much code that runs once per request or command; -O1 takes two thirds of the time. As above, it
+# then does without the precompiled header.
+function(furrow_build_quickly target)
+  if(CMAKE_BUILD_TYPE STREQUAL "Release")
+    target_compile_options(${target} PRIVATE -O1)
+    set_target_properties(${target} PROPERTIES DISABLE_PRECOMPILE_HEADERS ON)
+  endif()
+endfunction()
+
 # furrow_compile_alone(SOURCES...): compiles sources separately. Highway includes the source of a kernel once
 # per instruction set, so a kernel cannot share a unit. Call this before furrow_library().
 function(furrow_compile_alone)
