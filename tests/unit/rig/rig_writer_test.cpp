@@ -86,6 +86,7 @@ TEST(RigWriter, WritesABallDriver) {
   driver.ball.forward = {0, 0, 0};
   driver.ball.beta_degrees = 0.0f;
   driver.ball.mode = wrinkle::BallMode::kThesis;
+  driver.ball.back = {.threshold_degrees = 10.0f, .limit_degrees = 60.0f};
   EXPECT_EQ(DriverToJson(driver), R"({
   "name": "hip",
   "ball": {
@@ -95,7 +96,8 @@ TEST(RigWriter, WritesABallDriver) {
     "bone": [0, -1, 0],
     "forward": [0, 0, 0],
     "beta_degrees": 0,
-    "mode": "thesis"
+    "mode": "thesis",
+    "back": {"threshold_degrees": 10, "limit_degrees": 60}
   }
 }
 )");

@@ -25,6 +25,16 @@ glm::vec2 BendSide(const BallDriverSet::Entry& entry, float cosine, const glm::v
   return side + kTurnGain * beyond * beyond * entry.rest_side;
 }
 
+BallDriverSet::Entry::Range RangeOf(const BallDriver& driver, const BallSide& side) {
+  // Without a threshold or a limit, the range is exactly that of thesis 4.6, as for hinges.
+  if (side.threshold_degrees == 0.0f && side.limit_degrees == 0.0f) {
+    return {.start = 1.0f, .scale = BendScale(driver.beta_degrees)};
+  }
+  const float start = std::cos(side.threshold_degrees * kDegrees);
+  const float full = std::cos(LimitDegrees(driver, side) * kDegrees);
+  return {.start = start, .scale = 1.0f / (start - full)};
+}
+
 }  // namespace
 
 Status BallDriverSet::Bind(const std::string& name, const BallDriver& driver, int first_value,
@@ -36,7 +46,8 @@ Status BallDriverSet::Bind(const std::string& name, const BallDriver& driver, in
   const bool own_direction = driver.bone == glm::vec3(0.0f);
   Entry entry;
   entry.first_value = first_value;
-  entry.bend_scale = BendScale(driver.beta_degrees);
+  entry.ranges = {RangeOf(driver, driver.front), RangeOf(driver, driver.back),
+                  RangeOf(driver, driver.left), RangeOf(driver, driver.right)};
   entry.mode = driver.mode;
   bool usable = false;
   FURROW_RETURN_IF_ERROR(BindBonePair(owner, driver.parent, driver.joint, driver.end, own_direction,
@@ -83,6 +94,10 @@ void BallDriverSet::Plan(LanePlanner* planner) {
       SetLane(entry.right, lane, block.right);
       block.rest_side[0].at[lane] = entry.rest_side.x;
       block.rest_side[1].at[lane] = entry.rest_side.y;
+      for (std::size_t side = 0; side < entry.ranges.size(); ++side) {
+        block.start[side].at[lane] = entry.ranges[side].start;
+        block.scale[side].at[lane] = entry.ranges[side].scale;
+      }
     }
     PlanBones(bones, 4, planner, &block);
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <span>
 #include <string>
 #include <vector>
@@ -33,6 +34,8 @@ struct BallBlock : BoneBlock {
   FloatRow forward[3];
   FloatRow right[3];
   FloatRow rest_side[2];
+  FloatRow start[4];  // front, back, left, right
+  FloatRow scale[4];
   BallMode mode = BallMode::kSmooth;
 };
 
@@ -47,6 +50,12 @@ class BallDriverSet {
     // The rest direction of the lower bone, projected onto forward and right and divided by its
     // length there, or by kLeastSide if that is longer.
     glm::vec2 rest_side{0.0f};
+    // The bend to front, back, left and right is clamp((start - cosine) * scale, 0, 1).
+    struct Range {
+      float start = 1.0f;  // cosine of the threshold
+      float scale = 0.0f;  // 1 / (start - cosine of the limit)
+    };
+    std::array<Range, 4> ranges;
     BallMode mode = BallMode::kSmooth;
   };
 

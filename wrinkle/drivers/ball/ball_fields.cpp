@@ -10,9 +10,28 @@
 namespace furrow::wrinkle {
 namespace {
 
+constexpr float kLeastRangeDegrees = 1.0f;    // a smaller range would act as a switch
 constexpr float kSidewaysSine = 0.70710678f;  // of 45 degrees between the bone and the X axis
 
+void CheckSide(const BallDriver& driver, const BallSide& side, const std::string& at,
+               FieldCheck* check) {
+  check->Range(at, ".limit_degrees", side.limit_degrees, 0.0f, 180.0f);
+  check->Range(at, ".threshold_degrees", side.threshold_degrees, 0.0f,
+               LimitDegrees(driver, side) - kLeastRangeDegrees);
+}
+
+const BallSide& SideOf(const BallDriver& driver, std::string_view value) {
+  return value == "front"  ? driver.front
+         : value == "back" ? driver.back
+         : value == "left" ? driver.left
+                           : driver.right;
+}
+
 }  // namespace
+
+float LimitDegrees(const BallDriver& driver, const BallSide& side) {
+  return side.limit_degrees > 0.0f ? side.limit_degrees : 180.0f - driver.beta_degrees;
+}
 
 std::vector<std::string> DriverValueNames(const BallDriver&) {
   return {"front", "back", "left", "right"};
@@ -25,6 +44,10 @@ void CheckFields(const BallDriver& driver, const std::string& at, FieldCheck* ch
   if (driver.bone != glm::vec3(0.0f)) check->Direction(at, ".bone", driver.bone);
   check->Direction(at, ".forward", driver.forward);
   check->Range(at, ".beta_degrees", driver.beta_degrees, 0.0f, kMaxBetaDegrees);
+  CheckSide(driver, driver.front, at + ".front", check);
+  CheckSide(driver, driver.back, at + ".back", check);
+  CheckSide(driver, driver.left, at + ".left", check);
+  CheckSide(driver, driver.right, at + ".right", check);
 }
 
 std::vector<std::string> JointsRead(const BallDriver& driver) {
@@ -48,7 +71,8 @@ Result<ReferencePose> FullPose(const BallDriver& driver, const FullPoseBuilder& 
                             : value == "back" ? -front
                             : value == "left" ? -right
                                               : right;
-  return builder.Bent(*limb, straight, towards, driver.beta_degrees);
+  const float limit = LimitDegrees(driver, SideOf(driver, value));
+  return builder.Bent(*limb, straight, towards, 180.0f - limit);
 }
 
 glm::vec3 SubjectsRight(const glm::vec3& bone, const glm::vec3& forward) {

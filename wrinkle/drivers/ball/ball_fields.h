@@ -15,6 +15,18 @@ class FullPoseBuilder;
 
 enum class BallMode { kSmooth, kThesis };
 
+// The range of a ball's bend towards one direction, as angles from straight in degrees.
+struct BallSide {
+  float threshold_degrees = 0.0f;  // the value is 0 up to here, [0, 179]
+  float limit_degrees = 0.0f;  // and 1 from here on, (0, 180]; 0: 180 - BallDriver::beta_degrees
+
+  template <class Fields>
+  static void ListFields(Fields& fields) {
+    fields.Optional("threshold_degrees", &BallSide::threshold_degrees);
+    fields.Optional("limit_degrees", &BallSide::limit_degrees);
+  }
+};
+
 // A hip, a shoulder or a waist: values "front", "back", "left" and "right", the subject's left and
 // right.
 struct BallDriver {
@@ -30,6 +42,7 @@ struct BallDriver {
   glm::vec3 forward{0.0f, 0.0f, 1.0f};  // model axes in the rest pose
   float beta_degrees = 30.0f;           // angle between the bones when fully bent, [0, 179]
   BallMode mode = BallMode::kSmooth;
+  BallSide front, back, left, right;
 
   // The fields as ball.fbs names them, in the order in which they are written.
   template <class Fields>
@@ -41,8 +54,15 @@ struct BallDriver {
     fields.Optional("forward", &BallDriver::forward);
     fields.Optional("beta_degrees", &BallDriver::beta_degrees);
     fields.Choice("mode", &BallDriver::mode, {"smooth", "thesis"});
+    fields.Optional("front", &BallDriver::front);
+    fields.Optional("back", &BallDriver::back);
+    fields.Optional("left", &BallDriver::left);
+    fields.Optional("right", &BallDriver::right);
   }
 };
+
+// The bend at which the value of `side` is 1, in degrees from straight.
+[[nodiscard]] float LimitDegrees(const BallDriver& driver, const BallSide& side);
 
 [[nodiscard]] std::vector<std::string> DriverValueNames(const BallDriver& driver);
 void CheckFields(const BallDriver& driver, const std::string& at, FieldCheck* check);

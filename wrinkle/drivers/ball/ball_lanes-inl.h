@@ -41,35 +41,44 @@ HWY_INLINE Float Fade(Float length, Float cosine) {
   return hn::IfThenElse(hn::Lt(cosine, hn::Zero(Floats())), smooth, Splat(1.0f));
 }
 
-// Stores the shares of `bend` (in [0, 1]) to front, back, left and right in four rows from `values`
-// on. All shares are 0 if the projection is shorter than kLeastProjection.
+// How far the joint is bent in the range of each direction, in [0, 1].
+struct Bends {
+  Float front, back, left, right;
+};
+
+// Stores the shares of the bends to front, back, left and right in four rows from `values` on. All
+// shares are 0 if the projection is shorter than kLeastProjection.
 //
-// - kSmooth: bend times the squares of the positive parts of cos(psi), -cos(psi), -sin(psi) and
-//   sin(psi). They sum to `bend` and are C1 in psi.
+// - kSmooth: the bends times the squares of the positive parts of cos(psi), -cos(psi), -sin(psi)
+//   and sin(psi). If all ranges are equal they sum to the bend. They are C1 in psi.
 // - kThesis: the whole bend goes to front if cos(psi) > 0.75, to back if < -0.75, and to left or
 //   right between them. At exactly +-0.75 the thesis states no case: all shares are 0.
-inline void StoreShares(BallMode mode, Float bend, const BendSide& side, float* values) {
+inline void StoreShares(BallMode mode, const Bends& bends, const BendSide& side, float* values) {
   const Floats d;
   const Float zero = hn::Zero(d);
   const auto has_length = hn::Gt(side.length, Splat(kLeastProjection));
-  const Float share = hn::IfThenElseZero(has_length, bend);
+  const Float shares[4] = {
+      hn::IfThenElseZero(has_length, bends.front), hn::IfThenElseZero(has_length, bends.back),
+      hn::IfThenElseZero(has_length, bends.left), hn::IfThenElseZero(has_length, bends.right)};
   const Float cosine = hn::IfThenElseZero(has_length, hn::Div(side.forward, side.length));
   const Float sine = hn::IfThenElseZero(has_length, hn::Div(side.right, side.length));
   if (mode == BallMode::kSmooth) {
     const Float directions[4] = {cosine, hn::Neg(cosine), hn::Neg(sine), sine};
     for (std::size_t i = 0; i < 4; ++i) {
       const Float positive = hn::Max(directions[i], zero);
-      StoreLanes(hn::Mul(share, hn::Mul(positive, positive)), values + i * kRowLanes);
+      StoreLanes(hn::Mul(shares[i], hn::Mul(positive, positive)), values + i * kRowLanes);
     }
     return;
   }
   const Float threshold = Splat(kThesisThreshold);
-  const Float beside = hn::IfThenElseZero(hn::Lt(hn::Abs(cosine), threshold), share);
-  const auto is_left = hn::Lt(sine, zero);
-  StoreLanes(hn::IfThenElseZero(hn::Gt(cosine, threshold), share), values);
-  StoreLanes(hn::IfThenElseZero(hn::Lt(cosine, hn::Neg(threshold)), share), values + kRowLanes);
-  StoreLanes(hn::IfThenElseZero(is_left, beside), values + 2 * kRowLanes);
-  StoreLanes(hn::IfThenZeroElse(is_left, beside), values + 3 * kRowLanes);
+  const auto beside = hn::Lt(hn::Abs(cosine), threshold);
+  const auto is_left = hn::And(beside, hn::Lt(sine, zero));
+  const auto is_right = hn::And(beside, hn::Ge(sine, zero));
+  const Mask chosen[4] = {hn::Gt(cosine, threshold), hn::Lt(cosine, hn::Neg(threshold)), is_left,
+                          is_right};
+  for (std::size_t i = 0; i < 4; ++i) {
+    StoreLanes(hn::IfThenElseZero(chosen[i], shares[i]), values + i * kRowLanes);
+  }
 }
 
 // Writes the four values of each driver of `drivers` to the scratch memory `rows` (kRowLanes floats
@@ -88,14 +97,18 @@ void EvaluateDrivers(const BallDriverSet& drivers, const PointPlan& plan, LanePo
     const Float cosine = Dot(straight, lower);
     const Float3 across = lower - cosine * straight;
     const Mask counts = hn::And(bones.lower.has_length, hn::Or(fixed, bones.upper.has_length));
-    Float bend = hn::IfThenElseZero(counts, Bend(cosine, LoadRow(block.bend_scale, lane)));
     BendSide side = SideOf(Dot(across, LoadRows(block.forward, lane)),
                            Dot(across, LoadRows(block.right, lane)));
+    Float factor = hn::IfThenElseZero(counts, Splat(1.0f));
     if (block.mode == BallMode::kSmooth) {
       side = TurnToRest(side, cosine, block, lane);
-      bend = hn::Mul(bend, Fade(side.length, cosine));
+      factor = hn::Mul(factor, Fade(side.length, cosine));
     }
-    StoreShares(block.mode, bend, side, to);
+    const auto bend = [&](std::size_t i) HWY_ATTR {
+      const Float start = LoadRow(block.start[i], lane);
+      return hn::Mul(Bend(cosine, start, LoadRow(block.scale[i], lane)), factor);
+    };
+    StoreShares(block.mode, {bend(0), bend(1), bend(2), bend(3)}, side, to);
   };
   ForEachBlock(drivers.blocks(), input.num_values, rows, evaluate);
 }

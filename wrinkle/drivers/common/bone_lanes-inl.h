@@ -43,11 +43,11 @@ HWY_INLINE BoneLanes EvaluateBones(const PointPlan& plan, const BoneBlock& block
   return {DirectionOf(joint), DirectionOf(end - joint)};
 }
 
-// Thesis 4.6: how far a joint is bent, clamp((1 - cosine) * bend_scale, 0, 1). `cosine`: between
-// the directions of its bones; 1 (straight) gives 0, cos(180 - beta) (fully flexed) gives 1.
-// `bend_scale`: BendScale(beta).
-HWY_INLINE Float Bend(Float cosine, Float bend_scale) {
-  return Saturate(hn::Mul(hn::Sub(Splat(1.0f), cosine), bend_scale));
+// How far a joint is bent in the range from `start`, clamp((start - cosine) * scale, 0, 1).
+// `cosine`: between the directions of its bones, 1 if it is straight. With start 1 and
+// BendScale(beta) this is thesis 4.6: fully flexed, at cos(180 - beta), gives 1.
+HWY_INLINE Float Bend(Float cosine, Float start, Float scale) {
+  return Saturate(hn::Mul(hn::Sub(start, cosine), scale));
 }
 
 }  // namespace furrow::wrinkle::HWY_NAMESPACE

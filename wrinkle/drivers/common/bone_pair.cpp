@@ -74,7 +74,6 @@ void PlanBones(std::span<const BoneEntry> entries, std::size_t num_values, LaneP
   for (const BoneEntry& entry : entries) {
     const std::size_t lane = joints.count;
     planner->Place(entry.first_value, num_values, lane, block);
-    block->bend_scale.at[lane] = entry.bend_scale;
     joints.Add(entry.bones.joint_point);
     ends.Add(entry.bones.end_point);
   }

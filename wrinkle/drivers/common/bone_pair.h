@@ -46,14 +46,12 @@ struct BonePair {
 struct BoneEntry {
   int first_value = 0;
   BonePair bones;
-  float bend_scale = 0.0f;  // BendScale()
 };
 
 // Up to sixteen hinges or balls, one per lane.
 struct BoneBlock : Block {
   std::uint32_t joint_point = 0;  // into PointPlan::points
   std::uint32_t end_point = 0;
-  FloatRow bend_scale;
 };
 
 // Plans the points and values of up to sixteen hinges or balls.

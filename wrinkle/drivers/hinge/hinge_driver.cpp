@@ -48,6 +48,7 @@ void HingeDriverSet::Plan(LanePlanner* planner) {
       block.has_straight.at[lane] = entry.straight != glm::vec3(0.0f) ? kLaneYes : kLaneNo;
       SetLane(entry.axis, lane, block.axis);
       block.has_axis.at[lane] = entry.axis != glm::vec3(0.0f) ? kLaneYes : kLaneNo;
+      block.bend_scale.at[lane] = entry.bend_scale;
     }
     PlanBones(bones, 2, planner, &block);
   }

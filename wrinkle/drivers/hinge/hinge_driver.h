@@ -20,6 +20,7 @@ struct HingeBlock : BoneBlock {
   IntRow has_straight;  // -1; 0: the upper bone's direction counts as straight
   FloatRow axis[3];
   IntRow has_axis;  // -1 or 0
+  FloatRow bend_scale;
 };
 
 // All hinge drivers of a binding. Private to wrinkle/. hinge_lanes-inl.h evaluates them.
@@ -28,6 +29,7 @@ class HingeDriverSet {
   struct Entry : BoneEntry {
     glm::vec3 straight{0.0f};  // unit, parent's axes; zero: the upper bone's direction
     glm::vec3 axis{0.0f};      // unit, across the straight bone, parent's axes; zero: unsigned
+    float bend_scale = 0.0f;   // BendScale()
 
     // The direction that counts as straight in a pose, parent's axes; zero if there is none.
     [[nodiscard]] glm::vec3 Straight(std::span<const Transform> local,

@@ -32,7 +32,7 @@ void EvaluateDrivers(const HingeDriverSet& drivers, const PointPlan& plan, LaneP
     // Lanes with and without a stated bone share a block; each lane selects its own.
     const Float3 straight = IfThenElse(fixed, LoadRows(block.straight, lane), bones.upper.unit);
     const Float3& lower = bones.lower.unit;
-    const Float bend = Bend(Dot(straight, lower), LoadRow(block.bend_scale, lane));
+    const Float bend = Bend(Dot(straight, lower), Splat(1.0f), LoadRow(block.bend_scale, lane));
     const Float3 normal = Cross(straight, lower);
     const Float sine = hn::Sqrt(Dot(normal, normal));
     // NaN or infinite for parallel bones, whose plane is undefined. `is_signed` excludes these

@@ -172,6 +172,23 @@ TEST_P(ClothingDrivers, BallSumsToTheBendAroundTheBone) {
   }
 }
 
+TEST_P(ClothingDrivers, EachSideOfABallHasItsOwnRange) {
+  Rig own = MakeRig();
+  for (Driver& driver : own.drivers) {
+    if (driver.name == "hip_l") driver.ball.back = {.threshold_degrees = 10, .limit_degrees = 60};
+  }
+  BoundRig rig(own, MakeBody(GetParam()));
+  const auto at = [&](float degrees, const std::string& value) {
+    rig.Solve(Turned("thigh_l", degrees, kX));  // a positive turn carries the leg back
+    return rig.Value("hip_l." + value);
+  };
+  EXPECT_EQ(at(9.0f, "back"), 0.0f);
+  EXPECT_NEAR(at(35.0f, "back"), 0.3416938f, 1e-4f);  // (cos 10 - cos 35) / (cos 10 - cos 60)
+  EXPECT_NEAR(at(60.0f, "back"), 1.0f, 1e-4f);
+  EXPECT_NEAR(at(80.0f, "back"), 1.0f, 1e-5f);
+  EXPECT_NEAR(at(-90.0f, "front"), 0.5358984f, 1e-4f);  // as before
+}
+
 TEST_P(ClothingDrivers, BallWithoutABoneTakesTheParentsOwnDirection) {
   Rig own = MakeRig();
   for (Driver& driver : own.drivers) {

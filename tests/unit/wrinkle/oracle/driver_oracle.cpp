@@ -68,9 +68,15 @@ class DriverOracle {
       if (straight != kNone && lower != kNone) {
         const float cosine = glm::dot(straight, lower);
         const glm::vec3 across = lower - cosine * straight;
-        shares = SplitWideBend(entry.mode, Bend(cosine, entry.bend_scale), cosine,
-                               glm::dot(across, entry.forward), glm::dot(across, entry.right),
-                               entry.rest_side);
+        shares = SplitWideBend(entry.mode, 1.0f, cosine, glm::dot(across, entry.forward),
+                               glm::dot(across, entry.right), entry.rest_side);
+        const auto bend = [&](std::size_t side) {
+          return Saturate((entry.ranges[side].start - cosine) * entry.ranges[side].scale);
+        };
+        shares.front *= bend(0);
+        shares.back *= bend(1);
+        shares.left *= bend(2);
+        shares.right *= bend(3);
       }
       float* const values = &values_[entry.first_value];
       values[0] = shares.front;

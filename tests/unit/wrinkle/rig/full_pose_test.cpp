@@ -102,6 +102,17 @@ TEST(FullPose, FoldsOntoItselfWhereBetaIsNone) {
   EXPECT_NEAR(std::abs(pose->joints[0].rotation.x), 1.0f, 1e-2f);  // about the axis
 }
 
+TEST(FullPose, ASideOfABallBendsToItsOwnLimit) {
+  const Rig rig = MakeRig();
+  Driver hip = DriverOf(rig, "hip_l");
+  hip.ball.back.limit_degrees = 40.0f;
+  const auto pose = FullPose(rig, hip, "back", MakeBody());
+  ASSERT_TRUE(pose.ok());
+  const glm::vec3 thigh = pose->joints[0].rotation * glm::vec3(0, -1, 0);
+  EXPECT_NEAR(thigh.y, -0.7660444f, 1e-3f);  // -cos 40
+  EXPECT_LT(thigh.z, 0.0f);
+}
+
 TEST(FullPose, SaysWhyThereIsNone) {
   const Rig rig = MakeRig();
   const Skeleton body = MakeBody();
