@@ -18,16 +18,23 @@ enum class ElementType : std::uint8_t { kScalar = 65, kVec2 = 2, kVec3 = 3, kVec
 
 // A typed view of a buffer. Create() checks that every element lies inside its buffer view.
 // The document must outlive it.
+//
+// Sparse accessors replace some elements (glTF 2.0, section 3.6.2.3). Nothing is copied: each read
+// looks the element up. An accessor without a buffer view holds zeros.
 class Accessor {
  public:
   // `where` names the field that refers to the accessor, for errors.
   //
   // Errors: kSchema (no such accessor or buffer view, another element type, doubles, empty, out of
-  // range), kLimit (kMaxAccessorNumbers), kUnsupported (sparse).
+  // range, sparse indices that do not ascend), kLimit (kMaxAccessorNumbers).
   [[nodiscard]] static Result<Accessor> Create(const Document& document, int accessor,
                                                ElementType type, const std::string& where);
 
   [[nodiscard]] std::size_t size() const { return count_; }
+  // The elements that may differ from 0, ascending: Candidate(0) to Candidate(num_candidates() -
+  // 1). All elements, unless the accessor is sparse and has no buffer view.
+  [[nodiscard]] std::size_t num_candidates() const { return data_ ? count_ : sparse_.count; }
+  [[nodiscard]] std::size_t Candidate(std::size_t i) const { return data_ ? i : sparse_.Index(i); }
   // True for unsigned bytes, shorts and ints that are not normalised or read as if not.
   [[nodiscard]] bool is_unsigned() const;
   // True for floats and for normalised integers.
@@ -40,10 +47,26 @@ class Accessor {
   [[nodiscard]] std::uint32_t Unsigned(std::size_t element, int component = 0) const;
 
  private:
+  // The elements that a sparse accessor replaces, both lists tightly packed.
+  struct Sparse {
+    [[nodiscard]] std::size_t Index(std::size_t i) const;
+    // The place of an element in `values`, or nullptr if the element is not replaced.
+    [[nodiscard]] const std::uint8_t* Find(std::size_t element, std::size_t element_bytes) const;
+
+    std::size_t count = 0;
+    const std::uint8_t* indices = nullptr;  // ascending
+    std::size_t index_bytes = 0;            // 1, 2 or 4
+    const std::uint8_t* values = nullptr;
+  };
+
+  static Status ReadSparse(const Document& document, int accessor, const std::string& where,
+                           Accessor* to);
   template <class T>
   [[nodiscard]] T Load(std::size_t element, int component) const;
 
-  const std::uint8_t* data_ = nullptr;
+  const std::uint8_t* data_ = nullptr;  // nullptr: zeros
+  std::size_t element_bytes_ = 0;
+  Sparse sparse_;
   std::size_t count_ = 0;
   std::size_t stride_ = 0;
   int component_type_ = 0;

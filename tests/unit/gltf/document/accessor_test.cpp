@@ -81,6 +81,82 @@ TEST(Accessor, ReadsIndicesAndStrides) {
   EXPECT_EQ(accessor->Float(1, 0), 8.0f);
 }
 
+// Four elements of VEC3, of which a sparse part states two.
+struct SparseGltf : HandMadeGltf {
+  template <class Index>
+  explicit SparseGltf(const std::vector<Index>& indices, int index_type) {
+    AddFloats({1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}, "VEC3");
+    AddAccessor(indices, "SCALAR", index_type, 1);
+    AddFloats({-1, -2, -3, -4, -5, -6}, "VEC3");
+    json["accessors"][0]["sparse"] = {
+        {"count", indices.size()},
+        {"indices", {{"bufferView", 1}, {"componentType", index_type}}},
+        {"values", {{"bufferView", 2}}}};
+  }
+  [[nodiscard]] Result<std::vector<float>> Values() const {
+    const Opened opened(*this);
+    std::size_t budget = 100;
+    return ReadFloats(*opened.document, 0, ElementType::kVec3, "here", &budget);
+  }
+};
+
+TEST(Accessor, SparseElementsReplaceOthers) {
+  const std::vector<float> due = {1, 2, 3, -1, -2, -3, 7, 8, 9, -4, -5, -6};
+  EXPECT_EQ(*SparseGltf(std::vector<std::uint8_t>{1, 3}, 5121).Values(), due);
+  EXPECT_EQ(*SparseGltf(std::vector<std::uint16_t>{1, 3}, 5123).Values(), due);
+  EXPECT_EQ(*SparseGltf(std::vector<std::uint32_t>{1, 3}, 5125).Values(), due);
+}
+
+TEST(Accessor, WithoutBufferViewIsZero) {
+  SparseGltf gltf(std::vector<std::uint16_t>{0, 2}, 5123);
+  gltf.json["accessors"][0].erase("bufferView");
+  EXPECT_THAT(*gltf.Values(), ElementsAre(-1, -2, -3, 0, 0, 0, -4, -5, -6, 0, 0, 0));
+  const Opened opened(gltf);
+  const auto accessor = Accessor::Create(*opened.document, 0, ElementType::kVec3, "here");
+  ASSERT_TRUE(accessor.ok());
+  ASSERT_EQ(accessor->num_candidates(), 2u);
+  EXPECT_EQ(accessor->Candidate(1), 2u);
+  gltf.json["accessors"][0].erase("sparse");
+  EXPECT_THAT(*gltf.Values(), ::testing::Each(0.0f));
+}
+
+TEST(Accessor, SparseValuesHaveTheAccessorsType) {
+  HandMadeGltf gltf;
+  gltf.AddAccessor(std::vector<std::int8_t>{127, 0, -127, 0}, "SCALAR", 5120, 1);
+  gltf.AddAccessor(std::vector<std::uint16_t>{1}, "SCALAR", 5123, 1);
+  gltf.AddAccessor(std::vector<std::int8_t>{-127}, "SCALAR", 5120, 1);
+  gltf.json["accessors"][0]["normalized"] = true;
+  gltf.json["accessors"][0]["sparse"] = {{"count", 1},
+                                         {"indices", {{"bufferView", 1}, {"componentType", 5123}}},
+                                         {"values", {{"bufferView", 2}}}};
+  const Opened opened(gltf);
+  std::size_t budget = 100;
+  EXPECT_THAT(*ReadFloats(*opened.document, 0, ElementType::kScalar, "here", &budget),
+              ElementsAre(1, -1, -1, 0));
+}
+
+TEST(Accessor, RejectsSparsePartsThatLie) {
+  using Indices = std::vector<std::uint16_t>;
+  EXPECT_EQ(SparseGltf(Indices{3, 1}, 5123).Values().status().code(), StatusCode::kSchema);
+  EXPECT_EQ(SparseGltf(Indices{1, 1}, 5123).Values().status().code(), StatusCode::kSchema);
+  EXPECT_EQ(SparseGltf(Indices{1, 4}, 5123).Values().status().code(), StatusCode::kSchema);
+  const auto changed = [](const std::function<void(json&)>& change) {
+    SparseGltf gltf(Indices{1, 3}, 5123);
+    change(gltf.json["accessors"][0]["sparse"]);
+    return gltf.Values().status().code();
+  };
+  EXPECT_EQ(changed([](json&) {}), StatusCode::kOk);
+  EXPECT_EQ(changed([](json& s) { s["count"] = 3; }), StatusCode::kSchema);
+  EXPECT_EQ(changed([](json& s) { s["count"] = 5; }), StatusCode::kSchema);
+  EXPECT_EQ(changed([](json& s) { s["count"] = -1; }), StatusCode::kSchema);
+  EXPECT_EQ(changed([](json& s) { s["indices"]["bufferView"] = 9; }), StatusCode::kSchema);
+  EXPECT_EQ(changed([](json& s) { s["indices"]["byteOffset"] = 2; }), StatusCode::kSchema);
+  EXPECT_EQ(changed([](json& s) { s["indices"]["componentType"] = 5126; }), StatusCode::kSchema);
+  EXPECT_EQ(changed([](json& s) { s["values"]["bufferView"] = -1; }), StatusCode::kSchema);
+  EXPECT_EQ(changed([](json& s) { s["values"]["byteOffset"] = -4; }), StatusCode::kSchema);
+  EXPECT_EQ(changed([](json& s) { s["values"]["byteOffset"] = 4; }), StatusCode::kSchema);
+}
+
 TEST(Accessor, RejectsWhatItCannotRead) {
   const auto error = [](const std::function<void(json&)>& change, int index = 0) {
     HandMadeGltf gltf;
@@ -106,10 +182,6 @@ TEST(Accessor, RejectsWhatItCannotRead) {
   EXPECT_EQ(error(set("count", 4'000'000'000u)), StatusCode::kLimit);
   EXPECT_EQ(error(set("byteOffset", 4)), StatusCode::kSchema);
   EXPECT_EQ(error(set("byteOffset", ~0ull)), StatusCode::kSchema);
-  EXPECT_EQ(error(set("sparse", {{"count", 1},
-                                 {"indices", {{"bufferView", 0}, {"componentType", 5123}}},
-                                 {"values", {{"bufferView", 0}}}})),
-            StatusCode::kUnsupported);
   EXPECT_EQ(error([](json& j) { j["bufferViews"][0]["byteStride"] = 8; }), StatusCode::kSchema);
   EXPECT_EQ(error([](json& j) { j["bufferViews"][0]["byteStride"] = 16; }), StatusCode::kSchema);
 }

@@ -249,11 +249,11 @@ TEST(GltfReader, RejectsInvalidFiles) {
       {[](json& j) { j["accessors"][0]["bufferView"] = 17; }, StatusCode::kSchema},
       {[](json& j) { j["accessors"][0].erase("bufferView"); }, StatusCode::kSchema},
       {[](json& j) {
-         j["accessors"][0]["sparse"] = {{"count", 1},
+         j["accessors"][0]["sparse"] = {{"count", 3},
                                         {"indices", {{"bufferView", 0}, {"componentType", 5123}}},
                                         {"values", {{"bufferView", 0}}}};
        },
-       StatusCode::kUnsupported},
+       StatusCode::kSchema},
       {[](json& j) { j["bufferViews"][0]["buffer"] = 1; }, StatusCode::kSchema},
       {[](json& j) { j["bufferViews"][0]["byteLength"] = 1 << 20; }, StatusCode::kSchema},
       {[](json& j) { j["bufferViews"][0]["byteOffset"] = 1 << 20; }, StatusCode::kSchema},
