@@ -88,6 +88,29 @@ class CharacterWriter {
         }
       }
     }
+    return CheckMorphTargets(mesh, where + ".morph_targets");
+  }
+
+  // Readers require ascending indices in sparse accessors.
+  Status CheckMorphTargets(const Mesh& mesh, const std::string& where) const {
+    int last_shape = -1;
+    for (const MorphTarget& target : mesh.morph_targets) {
+      if (target.shape <= last_shape ||
+          target.shape >= static_cast<int>(character_.shapes.size())) {
+        return {StatusCode::kInvalidArgument, "the shapes must exist and ascend", where};
+      }
+      last_shape = target.shape;
+      if (target.deltas.empty()) {
+        return {StatusCode::kInvalidArgument, "a morph target moves nothing", where};
+      }
+      std::size_t next = 0;
+      for (const MorphDelta& delta : target.deltas) {
+        if (delta.vertex < next || delta.vertex >= mesh.vertices.size()) {
+          return {StatusCode::kInvalidArgument, "the vertices must exist and ascend", where};
+        }
+        next = std::size_t{delta.vertex} + 1;
+      }
+    }
     return {};
   }
 
@@ -164,8 +187,45 @@ class CharacterWriter {
         builder_.AddAccessor(weights, Builder::kFloat, "VEC4", Builder::kArrayBuffer);
     Json primitive = {{"attributes", std::move(attributes)}, {"indices", AddIndices(mesh)}};
     if (mesh.material >= 0) primitive["material"] = mesh.material;
-    root_["meshes"].push_back(
-        {{"name", mesh.name}, {"primitives", Json::array({std::move(primitive)})}});
+    Json names = Json::array();
+    for (const MorphTarget& target : mesh.morph_targets) {
+      primitive["targets"].push_back(AddMorphTarget(mesh, target));
+      names.push_back(character_.shapes[static_cast<std::size_t>(target.shape)]);
+    }
+    Json json = {{"name", mesh.name}, {"primitives", Json::array({std::move(primitive)})}};
+    if (!names.empty()) json["extras"] = {{"targetNames", std::move(names)}};
+    root_["meshes"].push_back(std::move(json));
+  }
+
+  // Positions and normals, and tangents if the target has any. Normals are written even if they are
+  // zero, because readers compute missing ones.
+  Json AddMorphTarget(const Mesh& mesh, const MorphTarget& target) {
+    std::vector<std::uint32_t> vertices;
+    std::vector<glm::vec3> positions, normals, tangents;
+    // A sparse accessor's limits include the zeros that it does not state.
+    const bool all = target.deltas.size() == mesh.vertices.size();
+    glm::vec3 low = all ? target.deltas.front().position : glm::vec3(0.0f);
+    glm::vec3 high = low;
+    bool has_tangents = false;
+    for (const MorphDelta& delta : target.deltas) {
+      vertices.push_back(delta.vertex);
+      positions.push_back(delta.position);
+      low = glm::min(low, delta.position);
+      high = glm::max(high, delta.position);
+      normals.push_back(delta.normal);
+      tangents.push_back(delta.tangent);
+      has_tangents = has_tangents || delta.tangent != glm::vec3(0.0f);
+    }
+    const Builder::SparseIndices indices = builder_.AddSparseIndices(vertices);
+    const auto add = [&](const std::vector<glm::vec3>& values) {
+      return builder_.AddSparseAccessor(indices, values, "VEC3", mesh.vertices.size());
+    };
+    const int position = add(positions);
+    builder_.accessor(position)["min"] = gltf::ToJson(low);
+    builder_.accessor(position)["max"] = gltf::ToJson(high);
+    Json json = {{"POSITION", position}, {"NORMAL", add(normals)}};
+    if (has_tangents) json["TANGENT"] = add(tangents);
+    return json;
   }
 
   // Joints and indices use the narrowest integers that hold all of them.

@@ -41,6 +41,30 @@ int Builder::DescribeAccessor(int view, Component component, std::size_t count, 
   return static_cast<int>(accessors_.size()) - 1;
 }
 
+Builder::SparseIndices Builder::AddSparseIndices(const std::vector<std::uint32_t>& indices) {
+  if (indices.back() > std::numeric_limits<std::uint16_t>::max()) {
+    const int view = AddView(indices.data(), indices.size() * sizeof indices[0], kNoTarget);
+    return {view, kUnsignedInt, indices.size()};
+  }
+  const std::vector<std::uint16_t> narrow(indices.begin(), indices.end());
+  const int view = AddView(narrow.data(), narrow.size() * sizeof narrow[0], kNoTarget);
+  return {view, kUnsignedShort, narrow.size()};
+}
+
+int Builder::DescribeSparse(const SparseIndices& indices, int values, const char* type,
+                            std::size_t count) {
+  accessors_.push_back(
+      {{"componentType", static_cast<int>(kFloat)},
+       {"count", count},
+       {"type", type},
+       {"sparse",
+        {{"count", indices.count},
+         {"indices",
+          {{"bufferView", indices.view}, {"componentType", static_cast<int>(indices.component)}}},
+         {"values", {{"bufferView", values}}}}}});
+  return static_cast<int>(accessors_.size()) - 1;
+}
+
 Result<std::string> Builder::Finish() {
   root_["accessors"] = std::move(accessors_);
   root_["bufferViews"] = std::move(views_);

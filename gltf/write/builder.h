@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,22 @@ class Builder {
     return DescribeAccessor(AddView(values.data(), values.size() * sizeof(T), target), component,
                             count, type);
   }
+  // Which elements a sparse accessor states. Several accessors may share it.
+  struct SparseIndices {
+    int view = -1;
+    Component component = kUnsignedShort;
+    std::size_t count = 0;
+  };
+  // `indices`: ascending, at least one. Shorts are written if all indices fit.
+  [[nodiscard]] SparseIndices AddSparseIndices(const std::vector<std::uint32_t>& indices);
+  // Appends an accessor of `count` elements that are zero except for the stated ones. `values`: one
+  // element of floats per index.
+  template <class T>
+  int AddSparseAccessor(const SparseIndices& indices, const std::vector<T>& values,
+                        const char* type, std::size_t count) {
+    return DescribeSparse(indices, AddView(values.data(), values.size() * sizeof(T), kNoTarget),
+                          type, count);
+  }
   [[nodiscard]] Json& accessor(int index) { return accessors_[static_cast<std::size_t>(index)]; }
 
   // Returns the file. Call it once, last. Bytes of names that are not UTF-8 become U+FFFD. Errors:
@@ -53,6 +70,7 @@ class Builder {
 
  private:
   int DescribeAccessor(int view, Component component, std::size_t count, const char* type);
+  int DescribeSparse(const SparseIndices& indices, int values, const char* type, std::size_t count);
 
   Json root_;
   Json accessors_ = Json::array();
