@@ -14,6 +14,9 @@ namespace furrow {
 // every byte that is not printable ASCII.
 [[nodiscard]] std::string Quoted(std::string_view text);
 
+// A UTF-8 text, cut to at most `most` bytes between two characters.
+[[nodiscard]] std::string CutText(const std::string& text, std::size_t most);
+
 // "1 pose", "2 poses", "0 poses". `many` is the plural if it is not `one` with an s.
 [[nodiscard]] std::string Counted(std::uint64_t count, const std::string& one,
                                   const std::string& many = {});

@@ -16,7 +16,7 @@ struct MeshNotes {
   int unnormalised_vertices = 0;  // vertices whose weights miss a sum of 1 by more than 0.01
   float worst_sum = 1.0f;         // the sum furthest from 1
   int truncated_vertices = 0;     // vertices with more than four joints
-  int morph_targets = 0;          // morph targets in the file; they are not imported
+  int morph_targets = 0;          // in the file, including those that move nothing
 };
 
 // What a glTF file contained before the reader computed missing data. Used by importers and by
@@ -24,6 +24,7 @@ struct MeshNotes {
 struct SourceNotes {
   std::vector<MeshNotes> meshes;              // one per mesh of Character::meshes, in that order
   std::vector<std::string> missing_pictures;  // "name: reason"
+  std::vector<std::string> idle_shapes;       // morph targets that move no vertex; left out
   int nameless_joints = 0;  // joints without a name, which are now called "node_<number>"
 };
 

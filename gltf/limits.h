@@ -27,6 +27,9 @@ inline constexpr std::size_t kMaxVertices = 8u << 20;  // of one mesh, and of al
 inline constexpr std::size_t kMaxIndices = 48u << 20;  // of one mesh, and of all meshes
 inline constexpr int kMaxInfluenceSets = 4;            // JOINTS_0 to JOINTS_3; more are ignored
 inline constexpr std::size_t kMaxMorphTargets = 2048;  // of one mesh
+inline constexpr std::size_t kMaxAllMorphTargets = 65'536;     // of all meshes
+inline constexpr std::size_t kMaxMorphElements = 128'000'000;  // vertices read for all targets
+inline constexpr std::size_t kMaxMorphDeltas = 16u << 20;      // kept: vertices that targets move
 
 // Animation.
 inline constexpr std::size_t kMaxChannels = 65'536;

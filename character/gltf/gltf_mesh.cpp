@@ -2,16 +2,16 @@
 #include "character/gltf/gltf_mesh.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
 
 #include "base/status.h"
+#include "character/gltf/gltf_morph_targets.h"
+#include "character/mesh/move_mesh.h"
 #include "character/mesh/spread_influences.h"
 #include "character/mesh/tangents.h"
 #include "character/source_notes.h"
@@ -52,7 +52,7 @@ class PrimitiveReader {
     notes_->has_uvs = uv.has_value();
     notes_->has_normals = normal.has_value();
     notes_->has_tangents = tangent.has_value();
-    notes_->morph_targets = static_cast<int>(primitive_.num_morph_targets);
+    notes_->morph_targets = static_cast<int>(primitive_.morph_targets.size());
     // One unusable vector discards the attribute of the whole mesh: mixing stated and computed
     // vectors would show as a seam.
     bool normals_usable = normal.has_value();
@@ -80,7 +80,12 @@ class PrimitiveReader {
     if (!normals_usable) paint::ComputeNormals(mesh_->vertices, mesh_->indices);
     if (!tangents_usable || !normals_usable)
       paint::ComputeTangents(mesh_->vertices, mesh_->indices);
+    base_ = {normals_usable, normals_usable && tangents_usable};
     return {};
+  }
+
+  Status ReadMorphTargets(const gltf::Mesh& from, GltfMorphTargets* targets) {
+    return targets->Read(from, primitive_, at_, base_, mesh_);
   }
 
   // `joint_of`: from index in the skin's list to joint of the skeleton.
@@ -95,7 +100,8 @@ class PrimitiveReader {
       FURROW_RETURN_IF_ERROR(
           Attribute("WEIGHTS" + suffix, ElementType::kVec4, joints.has_value(), &weights));
       if (joints && !joints->is_unsigned()) {
-        return {StatusCode::kSchema, "expected an array of unsigned integers", Field("JOINTS" + suffix)};
+        return {StatusCode::kSchema, "expected an array of unsigned integers",
+                Field("JOINTS" + suffix)};
       }
       if (!joints) {
         sets.pop_back();
@@ -261,29 +267,13 @@ class PrimitiveReader {
   bool lenient_;
   Mesh* mesh_;
   MeshNotes* notes_;
+  GltfMorphTargets::Base base_;
 };
-
-// Moves a mesh without a skin to model space in the rest pose.
-void Place(const glm::mat4& node_model, Mesh* mesh) {
-  const glm::mat3 axes(node_model);
-  const float determinant = glm::determinant(axes);
-  // Normals transform by the inverse transpose. A flat matrix has none.
-  const glm::mat3 normals =
-      std::abs(determinant) > 1e-20f ? glm::transpose(glm::inverse(axes)) : glm::mat3(1.0f);
-  for (Vertex& vertex : mesh->vertices) {
-    vertex.position = glm::vec3(node_model * glm::vec4(vertex.position, 1.0f));
-    vertex.normal = glm::normalize(normals * vertex.normal);
-    vertex.tangent = glm::vec4(glm::normalize(axes * glm::vec3(vertex.tangent)), vertex.tangent.w);
-  }
-  if (determinant >= 0.0f) return;
-  for (std::size_t i = 0; i + 2 < mesh->indices.size(); i += 3) {
-    std::swap(mesh->indices[i + 1], mesh->indices[i + 2]);  // mirrored: keep the winding
-  }
-}
 
 Status ReadNode(const gltf::Document& document, const gltf::Mesh& from, const gltf::Node& node,
                 const GltfSkeleton& skeleton, std::size_t n, bool lenient,
-                std::vector<Mesh>* meshes, std::vector<MeshNotes>* notes) {
+                GltfMorphTargets* targets, std::vector<Mesh>* meshes,
+                std::vector<MeshNotes>* notes) {
   for (std::size_t p = 0; p < from.primitives.size(); ++p) {
     const gltf::Primitive& primitive = from.primitives[p];
     const std::string where =
@@ -294,11 +284,13 @@ Status ReadNode(const gltf::Document& document, const gltf::Mesh& from, const gl
     mesh.material = primitive.material;
     PrimitiveReader reader(document, primitive, where, lenient, &mesh, &notes->emplace_back());
     FURROW_RETURN_IF_ERROR(reader.ReadGeometry());
+    FURROW_RETURN_IF_ERROR(reader.ReadMorphTargets(from, targets));
     if (node.skin != gltf::kNone) {
       FURROW_RETURN_IF_ERROR(
           reader.ReadInfluences(skeleton.skin_joints[static_cast<std::size_t>(node.skin)]));
     } else {
-      Place(skeleton.node_model[n], &mesh);
+      // Moves the mesh to model space in the rest pose.
+      MoveMesh([&](const Vertex&) { return skeleton.node_model[n]; }, &mesh);
       reader.FollowJoint(skeleton.joint_of_node[n]);
     }
   }
@@ -307,11 +299,11 @@ Status ReadNode(const gltf::Document& document, const gltf::Mesh& from, const gl
 
 }  // namespace
 
-Result<std::vector<Mesh>> ReadGltfMeshes(const gltf::Document& document,
-                                         const gltf::NodeForest& forest,
-                                         const GltfSkeleton& skeleton, const ReadOptions& options) {
+Result<GltfMeshes> ReadGltfMeshes(gltf::Document* document, const gltf::NodeForest& forest,
+                                  const GltfSkeleton& skeleton, const ReadOptions& options) {
   const Result<std::vector<gltf::Mesh>> from = gltf::ReadMeshes(document);
   FURROW_RETURN_IF_ERROR(from);
+  GltfMorphTargets targets(*document);
   std::vector<Mesh> meshes;
   std::vector<MeshNotes> notes;
   std::size_t vertices = 0;
@@ -320,8 +312,8 @@ Result<std::vector<Mesh>> ReadGltfMeshes(const gltf::Document& document,
     const gltf::Node& node = forest.nodes[n];
     if (node.mesh == gltf::kNone) continue;
     const std::size_t before = meshes.size();
-    FURROW_RETURN_IF_ERROR(ReadNode(document, (*from)[static_cast<std::size_t>(node.mesh)], node,
-                                    skeleton, n, options.lenient, &meshes, &notes));
+    FURROW_RETURN_IF_ERROR(ReadNode(*document, (*from)[static_cast<std::size_t>(node.mesh)], node,
+                                    skeleton, n, options.lenient, &targets, &meshes, &notes));
     for (std::size_t m = before; m < meshes.size(); ++m) {
       vertices += meshes[m].vertices.size();
       indices += meshes[m].indices.size();
@@ -335,8 +327,15 @@ Result<std::vector<Mesh>> ReadGltfMeshes(const gltf::Document& document,
     }
   }
   if (meshes.empty()) return Status(StatusCode::kSchema, "no node has a mesh", "nodes");
-  if (options.notes != nullptr) options.notes->meshes = std::move(notes);
-  return meshes;
+  if (targets.num_surplus() > 0) {
+    document->Warn("meshes", "the meshes have more than " + std::to_string(kMaxShapes) +
+                                 " shapes; left out: " + std::to_string(targets.num_surplus()));
+  }
+  if (options.notes != nullptr) {
+    options.notes->meshes = std::move(notes);
+    options.notes->idle_shapes = targets.idle_names();
+  }
+  return GltfMeshes{std::move(meshes), targets.names()};
 }
 
 }  // namespace furrow::character

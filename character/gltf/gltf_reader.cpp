@@ -44,7 +44,7 @@ Status ReadGltfCharacter(std::string_view bytes, const std::filesystem::path& fo
   FURROW_RETURN_IF_ERROR(forest);
   Result<GltfSkeleton> skeleton = ReadGltfSkeleton(&*document, *forest);
   FURROW_RETURN_IF_ERROR(skeleton);
-  Result<std::vector<Mesh>> meshes = ReadGltfMeshes(*document, *forest, *skeleton, options);
+  Result<GltfMeshes> meshes = ReadGltfMeshes(&*document, *forest, *skeleton, options);
   FURROW_RETURN_IF_ERROR(meshes);
   Result<std::vector<Material>> materials = ReadGltfMaterials(*document);
   FURROW_RETURN_IF_ERROR(materials);
@@ -54,7 +54,8 @@ Status ReadGltfCharacter(std::string_view bytes, const std::filesystem::path& fo
   character->name = document->SceneName();
   character->skeleton = std::move(skeleton->skeleton);
   character->inverse_bind_matrices = std::move(skeleton->inverse_bind_matrices);
-  character->meshes = std::move(*meshes);
+  character->meshes = std::move(meshes->meshes);
+  character->shapes = std::move(meshes->shapes);
   character->materials = std::move(*materials);
   character->pictures = std::move(*pictures);
   character->warnings = document->warnings();

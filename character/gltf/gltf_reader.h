@@ -10,9 +10,9 @@
 
 namespace furrow::character {
 
-// Reads the glTF part of a character: name (of the scene), skeleton, meshes, materials, pictures
-// and warnings. `bytes`: a whole .glb or .gltf file. `folder`: holds the files that it names.
-// `where` of errors is a field. After an error, `character` is partly filled; discard it.
+// Reads the glTF part of a character: name (of the scene), skeleton, meshes, shapes, materials,
+// pictures and warnings. `bytes`: a whole .glb or .gltf file. `folder`: holds the files that it
+// names. `where` of errors is a field. After an error, `character` is partly filled; discard it.
 [[nodiscard]] Status ReadGltfCharacter(std::string_view bytes, const std::filesystem::path& folder,
                                        const ReadOptions& options, Character* character);
 

@@ -41,10 +41,9 @@ class Document {
   [[nodiscard]] const OpenOptions& options() const { return options_; }
   [[nodiscard]] std::size_t num_meshes() const { return raw_.num_meshes; }
 
-  // The number of a mesh's morph targets. 0 if `mesh` is -1 or the file was not opened with
-  // Contents::kAnimation.
+  // The number of a mesh's morph targets: that of its primitive with the most. 0 if `mesh` is -1.
   [[nodiscard]] std::size_t NumMorphTargets(int mesh) const;
-  // Their names: `extras.targetNames`, else "<mesh>.<index>".
+  // Their names: `extras.targetNames`, else "<mesh>.<index>". Names may repeat.
   [[nodiscard]] std::vector<std::string> MorphTargetNames(int mesh) const;
   // The name of the first scene; may be empty.
   [[nodiscard]] std::string SceneName() const;

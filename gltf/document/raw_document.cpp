@@ -86,10 +86,9 @@ class RawReader {
     FURROW_RETURN_IF_ERROR(ReadBuffers());
     FURROW_RETURN_IF_ERROR(ReadBufferViews());
     result_.num_meshes = Array(json_, "meshes").size();
+    FURROW_RETURN_IF_ERROR(ReadMorphTargets());
     if (options_.contents == Contents::kCharacter) {
       FURROW_RETURN_IF_ERROR(ReadImages());
-    } else {
-      FURROW_RETURN_IF_ERROR(ReadMorphTargets());
     }
     WriteReducedJson();
     return std::move(result_);
@@ -251,15 +250,18 @@ class RawReader {
   }
 
   Status ReadMorphTargets() {
+    std::size_t total = 0;
     for (const Json& mesh : Array(json_, "meshes")) {
       MorphTargetSource source;
       for (const Json& primitive : Array(mesh, "primitives")) {
         // Valid files have equally many targets in every primitive of a mesh.
         source.count = std::max(source.count, Array(primitive, "targets").size());
       }
-      if (source.count > kMaxMorphTargets) {
+      total += source.count;
+      if (source.count > kMaxMorphTargets || total > kMaxAllMorphTargets) {
         return {StatusCode::kLimit,
-                "more than " + std::to_string(kMaxMorphTargets) + " morph targets",
+                "more than " + std::to_string(kMaxMorphTargets) + " morph targets, or more than " +
+                    std::to_string(kMaxAllMorphTargets) + " in the file",
                 Entry("meshes", result_.morph_targets.size())};
       }
       source.mesh_name = Text(mesh, "name");

@@ -18,7 +18,7 @@ namespace furrow::gltf {
 // What a reader needs of a file. Other parts are dropped unread, so faults in them do no harm.
 enum class Contents : std::uint8_t {
   kAnimation,  // nodes, joints of skins, animations, VRMC_vrm_animation, morph target names
-  kCharacter,  // nodes, skins, meshes, materials, images
+  kCharacter,  // nodes, skins, meshes with their morph targets, materials, images
 };
 
 struct OpenOptions {
@@ -51,7 +51,7 @@ struct RawDocument {
   std::vector<BufferView> views;
   std::vector<std::vector<std::uint8_t>> owned_buffers;  // of data URIs and external files
   std::vector<ImageSource> images;                       // of kCharacter
-  std::vector<MorphTargetSource> morph_targets;          // of kAnimation; one per mesh
+  std::vector<MorphTargetSource> morph_targets;          // one per mesh
   std::size_t num_meshes = 0;
   std::vector<std::string> warnings;  // "field: what"
 };

@@ -12,13 +12,6 @@
 namespace furrow::gltf {
 namespace {
 
-// Cuts a UTF-8 text to at most `most` bytes, between two characters.
-std::string CutText(const std::string& text, std::size_t most) {
-  if (text.size() <= most) return text;
-  while (most > 0 && (static_cast<unsigned char>(text[most]) & 0xC0) == 0x80) --most;
-  return text.substr(0, most);
-}
-
 // Unique names for joints, which skeletons require and glTF does not. Names that VRM gives come
 // first, and no other joint may take them.
 class JointNames {

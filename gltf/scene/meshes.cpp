@@ -1,19 +1,65 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gltf/scene/meshes.h"
 
+#include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include <tiny_gltf.h>
 
-namespace furrow::gltf {
+#include "base/text.h"
+#include "gltf/limits.h"
 
-Result<std::vector<Mesh>> ReadMeshes(const Document& document) {
-  const tinygltf::Model& model = document.model();
+namespace furrow::gltf {
+namespace {
+
+// Names that tell the targets of one mesh apart. FBX converters repeat a name for each in-between.
+std::vector<std::string> UniqueTargetNames(int mesh, Document* document) {
+  std::vector<std::string> names = document->MorphTargetNames(mesh);
+  std::unordered_set<std::string> taken;
+  std::unordered_map<std::string, int> next_number;  // keeps many equal names linear
+  std::size_t repeated = 0;
+  for (std::string& name : names) {
+    name = CutText(name, kMaxNameBytes);
+    const std::string base = name;
+    int& number = next_number.try_emplace(base, 2).first->second;
+    while (!taken.insert(name).second) name = base + "_" + std::to_string(number++);
+    repeated += name != base ? 1 : 0;
+  }
+  if (repeated > 0) {
+    document->Warn("meshes[" + std::to_string(mesh) + "].extras.targetNames",
+                   Counted(repeated, "morph target repeats", "morph targets repeat") +
+                       " a name of the mesh; a number is appended");
+  }
+  return names;
+}
+
+int FindAccessor(const std::map<std::string, int>& attributes, const char* name) {
+  const auto found = attributes.find(name);
+  return found == attributes.end() ? kNone : found->second;
+}
+
+Primitive ReadPrimitive(const tinygltf::Primitive& from, std::size_t num_names) {
+  Primitive to{
+      from.mode == TINYGLTF_MODE_TRIANGLES, from.attributes, from.indices, from.material, {}};
+  for (const std::map<std::string, int>& target : from.targets) {
+    if (to.morph_targets.size() == num_names) break;
+    to.morph_targets.push_back({FindAccessor(target, "POSITION"), FindAccessor(target, "NORMAL"),
+                                FindAccessor(target, "TANGENT")});
+  }
+  return to;
+}
+
+}  // namespace
+
+Result<std::vector<Mesh>> ReadMeshes(Document* document) {
+  const tinygltf::Model& model = document->model();
   std::vector<Mesh> meshes;
   for (const tinygltf::Mesh& from : model.meshes) {
     const std::string index = std::to_string(meshes.size());
     Mesh& mesh = meshes.emplace_back();
     mesh.name = from.name.empty() ? "mesh_" + index : from.name;
+    mesh.morph_target_names = UniqueTargetNames(static_cast<int>(meshes.size()) - 1, document);
     for (const tinygltf::Primitive& part : from.primitives) {
       if (part.material < kNone || part.material >= static_cast<int>(model.materials.size())) {
         return Status(StatusCode::kSchema,
@@ -21,8 +67,7 @@ Result<std::vector<Mesh>> ReadMeshes(const Document& document) {
                       "meshes[" + index + "].primitives[" + std::to_string(mesh.primitives.size()) +
                           "].material");
       }
-      mesh.primitives.push_back({part.mode == TINYGLTF_MODE_TRIANGLES, part.attributes,
-                                 part.indices, part.material, part.targets.size()});
+      mesh.primitives.push_back(ReadPrimitive(part, mesh.morph_target_names.size()));
     }
   }
   return meshes;

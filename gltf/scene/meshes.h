@@ -12,22 +12,35 @@
 
 namespace furrow::gltf {
 
+// One morph target of a primitive: accessors of deltas (VEC3), kNone where the file has none.
+struct MorphTarget {
+  int position = kNone;
+  int normal = kNone;
+  int tangent = kNone;
+};
+
 // A part of a mesh with one material. Accessors are indices; Accessor::Create() checks them.
 struct Primitive {
-  bool is_triangles = true;               // false: points, lines, strips or fans
-  std::map<std::string, int> attributes;  // "POSITION" -> accessor
-  int indices = kNone;                    // accessor; kNone: vertices in order
-  int material = kNone;                   // checked: in range
-  std::size_t num_morph_targets = 0;
+  bool is_triangles = true;                // false: points, lines, strips or fans
+  std::map<std::string, int> attributes;   // "POSITION" -> accessor
+  int indices = kNone;                     // accessor; kNone: vertices in order
+  int material = kNone;                    // checked: in range
+  std::vector<MorphTarget> morph_targets;  // at most Mesh::morph_target_names
 };
 
 struct Mesh {
   std::string name;  // "mesh_<index>" if the file has none
   std::vector<Primitive> primitives;
+  std::vector<std::string> morph_target_names;  // unique; see ReadMeshes()
 };
 
-// All meshes of a document with Contents::kCharacter. Errors: kSchema (a material that does not
-// exist).
-[[nodiscard]] Result<std::vector<Mesh>> ReadMeshes(const Document& document);
+// All meshes of a document with Contents::kCharacter.
+//
+// A morph target without a name in `extras.targetNames` is called "<mesh>.<index>". A name that the
+// mesh has already gets "_2", "_3" and so on, and a warning. Names longer than kMaxNameBytes are
+// cut.
+//
+// Errors: kSchema (a material that does not exist).
+[[nodiscard]] Result<std::vector<Mesh>> ReadMeshes(Document* document);
 
 }  // namespace furrow::gltf

@@ -32,10 +32,11 @@ void ReadScene(Document* document, const NodeForest& forest) {
   for (std::size_t image = 0; image < document->images().size(); ++image) {
     (void)LocateImage(*document, image);
   }
-  const auto meshes = ReadMeshes(*document);
+  const auto meshes = ReadMeshes(document);
   if (!meshes.ok()) return;
   for (const Mesh& mesh : *meshes) {
     for (const Primitive& primitive : mesh.primitives) {
+      if (primitive.morph_targets.size() > mesh.morph_target_names.size()) std::abort();
       for (const auto& [name, index] : primitive.attributes) {
         const auto accessor = Accessor::Create(*document, index, ElementType::kVec3, name);
         if (accessor.ok()) (void)accessor->Float(accessor->size() - 1, 2);

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "character/gltf/gltf_morph_targets.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "character/mesh/morph_normals.h"
+
+namespace furrow::character {
+namespace {
+
+using gltf::Accessor;
+
+constexpr float kZeroPart = 1e-7f;  // of the mesh's extent
+constexpr float kZeroTurn = 1e-4f;  // of a unit vector
+
+// The length below which a delta does not move a vertex. Relative, because quantised files and
+// files in centimetres have other units.
+float ZeroLength(const Mesh& mesh) {
+  if (mesh.vertices.empty()) return 0.0f;
+  glm::vec3 low = mesh.vertices.front().position;
+  glm::vec3 high = low;
+  for (const Vertex& vertex : mesh.vertices) {
+    low = glm::min(low, vertex.position);
+    high = glm::max(high, vertex.position);
+  }
+  const glm::vec3 size = high - low;
+  return kZeroPart * std::max({size.x, size.y, size.z});
+}
+
+std::vector<bool> UsedVertices(const Mesh& mesh) {
+  std::vector<bool> used(mesh.vertices.size(), false);
+  for (const std::uint32_t index : mesh.indices) used[index] = true;
+  return used;
+}
+
+// Removes deltas that are zero and deltas of vertices without a triangle.
+void DropZeroDeltas(const std::vector<bool>& used, float zero, std::vector<MorphDelta>* deltas) {
+  std::erase_if(*deltas, [&](MorphDelta& delta) {
+    // Not moved at all is exact, so that normals are computed for moved vertices only.
+    if (glm::length(delta.position) <= zero) delta.position = glm::vec3(0.0f);
+    const bool zero_turn =
+        glm::length(delta.normal) <= kZeroTurn && glm::length(delta.tangent) <= kZeroTurn;
+    return !used[delta.vertex] || (zero_turn && delta.position == glm::vec3(0.0f));
+  });
+}
+
+// Steps through the elements of an accessor that may differ from zero, in ascending order.
+class Cursor {
+ public:
+  Cursor(const Accessor& accessor, glm::vec3 MorphDelta::*part)
+      : accessor_(&accessor), part_(part) {}
+
+  [[nodiscard]] bool done() const { return next_ == accessor_->num_candidates(); }
+  [[nodiscard]] std::size_t element() const { return accessor_->Candidate(next_); }
+
+  // Reads the part of `delta` and goes on, if the accessor has an element for that vertex. False if
+  // the element is not finite.
+  bool Take(MorphDelta* delta) {
+    if (done() || element() != delta->vertex) return true;
+    glm::vec3& to = delta->*part_;
+    for (int i = 0; i < 3; ++i) to[i] = accessor_->Float(delta->vertex, i);
+    ++next_;
+    return std::isfinite(to.x) && std::isfinite(to.y) && std::isfinite(to.z);
+  }
+
+ private:
+  const Accessor* accessor_;
+  glm::vec3 MorphDelta::*part_;
+  std::size_t next_ = 0;
+};
+
+// The least element that a cursor has not taken yet.
+std::optional<std::size_t> NextElement(const std::vector<Cursor>& cursors) {
+  std::optional<std::size_t> next;
+  for (const Cursor& cursor : cursors) {
+    if (!cursor.done()) next = std::min(next.value_or(cursor.element()), cursor.element());
+  }
+  return next;
+}
+
+}  // namespace
+
+Status GltfMorphTargets::Read(const gltf::Mesh& from, const gltf::Primitive& primitive,
+                              const std::string& at, const Base& base, Mesh* mesh) {
+  for (const std::string& name : from.morph_target_names) {
+    if (is_stated_.insert(name).second) stated_.push_back(name);
+  }
+  if (primitive.morph_targets.empty()) return {};
+  const float zero = ZeroLength(*mesh);
+  const std::vector<bool> used = UsedVertices(*mesh);
+  std::vector<std::pair<MorphTarget, bool>> found;  // with the flag for ComputeMorphNormals()
+  for (std::size_t i = 0; i < primitive.morph_targets.size(); ++i) {
+    const gltf::MorphTarget& target = primitive.morph_targets[i];
+    const std::string where = at + ".targets[" + std::to_string(i) + "]";
+    MorphTarget to;
+    FURROW_RETURN_IF_ERROR(ReadDeltas(target, where, base, *mesh, &to.deltas));
+    DropZeroDeltas(used, zero, &to.deltas);
+    if (to.deltas.empty()) continue;
+    to.deltas.shrink_to_fit();
+    if (to.deltas.size() > deltas_) {
+      return {StatusCode::kLimit, "the morph targets move too many vertices", where,
+              "reduce the mesh, or the number of its shapes"};
+    }
+    deltas_ -= to.deltas.size();
+    to.shape = ShapeOf(from.morph_target_names[i]);
+    if (to.shape < 0) continue;
+    found.emplace_back(std::move(to), !base.has_normals || target.normal == gltf::kNone);
+  }
+  std::sort(found.begin(), found.end(),
+            [](const auto& a, const auto& b) { return a.first.shape < b.first.shape; });
+  std::vector<bool> lacking;
+  std::size_t before = 0;
+  for (auto& [target, lacks] : found) {
+    before += target.deltas.size();
+    mesh->morph_targets.push_back(std::move(target));
+    lacking.push_back(lacks);
+  }
+  Status status = ComputeMorphNormals(lacking, before + deltas_, mesh);
+  if (!status.ok()) return status.At(at + ".targets");
+  std::size_t after = 0;
+  for (const MorphTarget& target : mesh->morph_targets) after += target.deltas.size();
+  deltas_ -= after - before;
+  return {};
+}
+
+Status GltfMorphTargets::OpenDeltas(int accessor, const char* name, const std::string& at,
+                                    const Mesh& mesh, std::vector<Accessor>* accessors) {
+  const std::string where = at + "." + name;
+  const Result<Accessor> opened =
+      Accessor::Create(document_, accessor, gltf::ElementType::kVec3, where);
+  FURROW_RETURN_IF_ERROR(opened);
+  if (opened->size() != mesh.vertices.size()) {
+    return {StatusCode::kSchema,
+            std::to_string(opened->size()) + " elements for " +
+                std::to_string(mesh.vertices.size()) + " vertices",
+            where};
+  }
+  if (opened->num_candidates() > elements_) {
+    return {StatusCode::kLimit, "the morph targets have too many vertices together", where,
+            "reduce the mesh, or the number of its shapes"};
+  }
+  elements_ -= opened->num_candidates();
+  accessors->push_back(*opened);
+  return {};
+}
+
+Status GltfMorphTargets::ReadDeltas(const gltf::MorphTarget& target, const std::string& at,
+                                    const Base& base, const Mesh& mesh,
+                                    std::vector<MorphDelta>* deltas) {
+  struct Part {
+    const char* name;
+    int accessor;
+    glm::vec3 MorphDelta::*member;
+  };
+  // Deltas of normals and tangents belong to the file's own, not to computed ones.
+  const std::array<Part, 3> parts = {{
+      {"POSITION", target.position, &MorphDelta::position},
+      {"NORMAL", base.has_normals ? target.normal : gltf::kNone, &MorphDelta::normal},
+      {"TANGENT", base.has_tangents ? target.tangent : gltf::kNone, &MorphDelta::tangent},
+  }};
+  std::vector<Accessor> accessors;
+  std::vector<const Part*> read;
+  for (const Part& part : parts) {
+    if (part.accessor == gltf::kNone) continue;
+    FURROW_RETURN_IF_ERROR(OpenDeltas(part.accessor, part.name, at, mesh, &accessors));
+    read.push_back(&part);
+  }
+  std::vector<Cursor> cursors;
+  for (std::size_t i = 0; i < read.size(); ++i) cursors.emplace_back(accessors[i], read[i]->member);
+  while (const std::optional<std::size_t> element = NextElement(cursors)) {
+    MorphDelta delta{.vertex = static_cast<std::uint32_t>(*element)};
+    for (std::size_t i = 0; i < cursors.size(); ++i) {
+      if (!cursors[i].Take(&delta)) {
+        return {StatusCode::kNonFinite, "vertex " + std::to_string(*element) + " is not finite",
+                at + "." + read[i]->name};
+      }
+    }
+    // Most elements of a dense target are zero; DropZeroDeltas() needs the others.
+    if (delta.position != glm::vec3(0.0f) || delta.normal != glm::vec3(0.0f) ||
+        delta.tangent != glm::vec3(0.0f)) {
+      deltas->push_back(delta);
+    }
+  }
+  return {};
+}
+
+int GltfMorphTargets::ShapeOf(const std::string& name) {
+  const auto found = index_of_.find(name);
+  if (found != index_of_.end()) return found->second;
+  if (names_.size() == kMaxShapes) {
+    surplus_.insert(name);
+    return -1;
+  }
+  names_.push_back(name);
+  return index_of_[name] = static_cast<int>(names_.size()) - 1;
+}
+
+std::vector<std::string> GltfMorphTargets::idle_names() const {
+  std::vector<std::string> idle;
+  for (const std::string& name : stated_) {
+    if (index_of_.count(name) == 0 && surplus_.count(name) == 0) idle.push_back(name);
+  }
+  return idle;
+}
+
+}  // namespace furrow::character

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "character/gltf/gltf_morph_targets.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <glm/geometric.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "character/package/package.h"
+#include "tests/unit/gltf/gltf_testing.h"
+
+namespace furrow::character {
+namespace {
+
+using gltf::HandMadeGltf;
+using nlohmann::json;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+// A node with a mesh: a square of two triangles with normals, facing +Z, and vertex 4 without a
+// triangle.
+HandMadeGltf SquareMesh() {
+  HandMadeGltf gltf;
+  gltf.json["nodes"] = {{{"name", "head"}, {"mesh", 0}}};
+  const int position = gltf.AddFloats({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 9, 9, 9}, "VEC3");
+  const int normal = gltf.AddFloats({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
+  const int indices =
+      gltf.AddAccessor(std::vector<std::uint16_t>{0, 1, 2, 0, 2, 3}, "SCALAR", 5123, 1);
+  gltf.json["meshes"] = {
+      {{"name", "face"},
+       {"primitives",
+        {{{"attributes", {{"POSITION", position}, {"NORMAL", normal}}}, {"indices", indices}}}}}};
+  return gltf;
+}
+
+json& Primitive(HandMadeGltf* gltf) { return gltf->json["meshes"][0]["primitives"][0]; }
+
+// Adds a target to the first mesh.
+void AddTarget(const std::string& name, const json& attributes, HandMadeGltf* gltf) {
+  Primitive(gltf)["targets"].push_back(attributes);
+  gltf->json["meshes"][0]["extras"]["targetNames"].push_back(name);
+}
+
+Result<Character> Parse(const HandMadeGltf& gltf, SourceNotes* notes = nullptr) {
+  return ParseCharacter(gltf.Glb(), ".", {.notes = notes});
+}
+
+TEST(GltfMorphTargets, AreReadSparsely) {
+  HandMadeGltf gltf = SquareMesh();
+  const int position = gltf.AddFloats({0, 0, 0, 0, 0, 0.5f, 0, 0, 0, 0, 0, 0, 5, 5, 5}, "VEC3");
+  const int normal = gltf.AddFloats({0, 0, 0, 0.1f, 0, 0, 0.2f, 0, 0, 0, 0, 0, 5, 5, 5}, "VEC3");
+  AddTarget("still", {{"POSITION", gltf.AddFloats(std::vector<float>(15, 0.0f), "VEC3")}}, &gltf);
+  AddTarget("jawOpen", {{"POSITION", position}, {"NORMAL", normal}}, &gltf);
+  SourceNotes notes;
+  const auto character = Parse(gltf, &notes);
+  ASSERT_TRUE(character.ok()) << character.status().ToString();
+  EXPECT_THAT(character->shapes, ElementsAre("jawOpen"));
+  EXPECT_THAT(notes.idle_shapes, ElementsAre("still"));
+  EXPECT_EQ(notes.meshes[0].morph_targets, 2);
+  ASSERT_THAT(character->meshes[0].morph_targets, SizeIs(1));
+  const MorphTarget& target = character->meshes[0].morph_targets[0];
+  EXPECT_EQ(target.shape, 0);
+  ASSERT_THAT(target.deltas, SizeIs(2)) << "vertex 4 has no triangle";
+  EXPECT_EQ(target.deltas[0].vertex, 1u);
+  EXPECT_EQ(target.deltas[0].position, glm::vec3(0, 0, 0.5f));
+  EXPECT_EQ(target.deltas[0].normal, glm::vec3(0.1f, 0, 0));
+  EXPECT_EQ(target.deltas[1].vertex, 2u);
+  EXPECT_EQ(target.deltas[1].position, glm::vec3(0.0f));
+  EXPECT_EQ(target.deltas[1].normal, glm::vec3(0.2f, 0, 0));
+}
+
+TEST(GltfMorphTargets, SparseAccessorsAgreeWithDenseOnes) {
+  HandMadeGltf gltf = SquareMesh();
+  const int dense = gltf.AddFloats({0, 0, 0, 0, 0, 0.5f, 0, 0, 0, 0.25f, 0, 0, 0, 0, 0}, "VEC3");
+  const int values = gltf.AddFloats({0, 0, 0.5f, 0.25f, 0, 0}, "VEC3");
+  const int indices = gltf.AddAccessor(std::vector<std::uint8_t>{1, 3}, "SCALAR", 5121, 1);
+  gltf.json["accessors"].push_back(
+      {{"componentType", 5126},
+       {"count", 5},
+       {"type", "VEC3"},
+       {"sparse",
+        {{"count", 2},
+         {"indices", {{"bufferView", indices}, {"componentType", 5121}}},
+         {"values", {{"bufferView", values}}}}}});
+  AddTarget("dense", {{"POSITION", dense}}, &gltf);
+  AddTarget("sparse", {{"POSITION", gltf.json["accessors"].size() - 1}}, &gltf);
+  const auto character = Parse(gltf);
+  ASSERT_TRUE(character.ok()) << character.status().ToString();
+  ASSERT_THAT(character->meshes[0].morph_targets, SizeIs(2));
+  const auto& a = character->meshes[0].morph_targets[0].deltas;
+  const auto& b = character->meshes[0].morph_targets[1].deltas;
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].vertex, b[i].vertex);
+    EXPECT_EQ(a[i].position, b[i].position);
+    EXPECT_EQ(a[i].normal, b[i].normal);
+  }
+}
+
+// A quarter turn about +X of the edge at y = 1 tilts the square's normal to (0, -1, 1).
+TEST(GltfMorphTargets, LackingNormalsAreComputed) {
+  HandMadeGltf gltf = SquareMesh();
+  const int position = gltf.AddFloats({0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0}, "VEC3");
+  AddTarget("tilt", {{"POSITION", position}}, &gltf);
+  const auto character = Parse(gltf);
+  ASSERT_TRUE(character.ok()) << character.status().ToString();
+  const MorphTarget& target = character->meshes[0].morph_targets.at(0);
+  ASSERT_THAT(target.deltas, SizeIs(4)) << "the edge at y = 0 turns as well";
+  for (const MorphDelta& delta : target.deltas) {
+    const glm::vec3 normal = glm::normalize(glm::vec3(0, 0, 1) + delta.normal);
+    EXPECT_LT(glm::distance(normal, glm::normalize(glm::vec3(0, -1, 1))), 1e-5f) << delta.vertex;
+  }
+}
+
+TEST(GltfMorphTargets, FollowTheirNode) {
+  HandMadeGltf gltf = SquareMesh();
+  gltf.json["nodes"][0]["scale"] = {0.01, 0.01, 0.01};
+  gltf.json["nodes"][0]["rotation"] = {0, 0, 0.70710678, 0.70710678};
+  gltf.json["nodes"][0]["translation"] = {7, 8, 9};
+  const int position = gltf.AddFloats({0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, "VEC3");
+  const int normal = gltf.AddFloats({0, 0, 0, 0.5f, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, "VEC3");
+  AddTarget("a", {{"POSITION", position}, {"NORMAL", normal}}, &gltf);
+  const auto character = Parse(gltf);
+  ASSERT_TRUE(character.ok()) << character.status().ToString();
+  const MorphDelta& delta = character->meshes[0].morph_targets.at(0).deltas.at(0);
+  EXPECT_LT(glm::distance(delta.position, glm::vec3(0, 0.01f, 0)), 1e-6f);
+  EXPECT_LT(glm::distance(delta.normal, glm::vec3(0, 0.5f, 0)), 1e-6f);
+}
+
+// Head and teeth both have jawOpen; the order is that of first appearance.
+TEST(GltfMorphTargets, EqualNamesAreOneShape) {
+  HandMadeGltf gltf = SquareMesh();
+  const int position = gltf.AddFloats({0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, "VEC3");
+  AddTarget("smile", {{"POSITION", position}}, &gltf);
+  AddTarget("jawOpen", {{"POSITION", position}}, &gltf);
+  json teeth = gltf.json["meshes"][0];
+  teeth["name"] = "teeth";
+  teeth["extras"]["targetNames"] = {"jawOpen", "bite"};
+  gltf.json["meshes"].push_back(teeth);
+  gltf.json["nodes"].push_back({{"name", "mouth"}, {"mesh", 1}});
+  const auto character = Parse(gltf);
+  ASSERT_TRUE(character.ok()) << character.status().ToString();
+  EXPECT_THAT(character->shapes, ElementsAre("smile", "jawOpen", "bite"));
+  EXPECT_EQ(character->meshes[1].morph_targets.at(0).shape, 1);
+  EXPECT_EQ(character->meshes[1].morph_targets.at(1).shape, 2);
+}
+
+TEST(GltfMorphTargets, AscendByShape) {
+  HandMadeGltf gltf = SquareMesh();
+  const int position = gltf.AddFloats({0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, "VEC3");
+  AddTarget("a", {{"POSITION", position}}, &gltf);
+  AddTarget("b", {{"POSITION", position}}, &gltf);
+  json other = gltf.json["meshes"][0];
+  other["extras"]["targetNames"] = {"b", "a"};
+  gltf.json["meshes"].push_back(other);
+  gltf.json["nodes"].push_back({{"mesh", 1}});
+  const auto character = Parse(gltf);
+  ASSERT_TRUE(character.ok()) << character.status().ToString();
+  EXPECT_EQ(character->meshes[1].morph_targets.at(0).shape, 0);
+  EXPECT_EQ(character->meshes[1].morph_targets.at(1).shape, 1);
+}
+
+TEST(GltfMorphTargets, SurplusShapesAreLeftOut) {
+  HandMadeGltf gltf = SquareMesh();
+  const int position = gltf.AddFloats({0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, "VEC3");
+  for (std::size_t i = 0; i < kMaxShapes + 3; ++i) {
+    AddTarget("shape" + std::to_string(i), {{"POSITION", position}}, &gltf);
+  }
+  const auto character = Parse(gltf);
+  ASSERT_TRUE(character.ok()) << character.status().ToString();
+  EXPECT_THAT(character->shapes, SizeIs(kMaxShapes));
+  EXPECT_THAT(character->meshes[0].morph_targets, SizeIs(kMaxShapes));
+  EXPECT_THAT(character->warnings, ElementsAre(HasSubstr("left out: 3")));
+}
+
+TEST(GltfMorphTargets, ErrorsNameTheTarget) {
+  const auto status = [](const std::function<json(HandMadeGltf*)>& accessor) {
+    HandMadeGltf gltf = SquareMesh();
+    AddTarget("a", {{"POSITION", accessor(&gltf)}}, &gltf);
+    const Status s = Parse(gltf).status();
+    EXPECT_EQ(s.where(), s.ok() ? "" : "meshes[0].primitives[0].targets[0].POSITION");
+    return s.code();
+  };
+  EXPECT_EQ(status([](HandMadeGltf*) { return 1; }), StatusCode::kOk);
+  EXPECT_EQ(status([](HandMadeGltf*) { return 99; }), StatusCode::kSchema);
+  EXPECT_EQ(status([](HandMadeGltf*) { return 2; }), StatusCode::kSchema) << "the indices";
+  EXPECT_EQ(status([](HandMadeGltf* g) {
+              return g->AddFloats({0, 0, 1}, "VEC3");
+            }),
+            StatusCode::kSchema);
+  EXPECT_EQ(status([](HandMadeGltf* g) {
+              return g->AddFloats({0, 0, 1, NAN, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, "VEC3");
+            }),
+            StatusCode::kNonFinite);
+}
+
+// A few bytes must not stand for many vertices: accessors without a buffer view have no size.
+TEST(GltfMorphTargets, AreLimitedInAll) {
+  HandMadeGltf gltf;
+  gltf.json["nodes"] = {{{"name", "head"}, {"mesh", 0}}};
+  const std::size_t vertices = 300'000;
+  const int position = gltf.AddFloats(std::vector<float>(3 * vertices, 1.0f), "VEC3");
+  const int indices = gltf.AddAccessor(std::vector<std::uint16_t>{0, 1, 2}, "SCALAR", 5123, 1);
+  gltf.json["meshes"] = {
+      {{"primitives", {{{"attributes", {{"POSITION", position}}}, {"indices", indices}}}}}};
+  for (int i = 0; i < 512; ++i) {
+    Primitive(&gltf)["targets"].push_back({{"POSITION", position}});
+  }
+  EXPECT_EQ(Parse(gltf).status().code(), StatusCode::kLimit);
+}
+
+TEST(GltfMorphTargets, ReadBackEqual) {
+  HandMadeGltf gltf = SquareMesh();
+  const int position = gltf.AddFloats({0, 0, 1, 0, 0, 0, 0, 0, 0.25f, 0, 0, 0, 0, 0, 0}, "VEC3");
+  const int normal = gltf.AddFloats({0, 0, 0, 0.5f, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, "VEC3");
+  AddTarget("jawOpen", {{"POSITION", position}}, &gltf);
+  AddTarget("smile", {{"POSITION", position}, {"NORMAL", normal}}, &gltf);
+  const auto first = Parse(gltf);
+  ASSERT_TRUE(first.ok()) << first.status().ToString();
+  const Result<std::string> glb = CharacterGlb(*first);
+  ASSERT_TRUE(glb.ok()) << glb.status().ToString();
+  const auto again = ParseCharacter(*glb, ".");
+  ASSERT_TRUE(again.ok()) << again.status().ToString();
+  EXPECT_THAT(again->warnings, IsEmpty());
+  EXPECT_EQ(again->shapes, first->shapes);
+  const auto& a = first->meshes[0].morph_targets;
+  const auto& b = again->meshes[0].morph_targets;
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t t = 0; t < a.size(); ++t) {
+    EXPECT_EQ(a[t].shape, b[t].shape);
+    ASSERT_EQ(a[t].deltas.size(), b[t].deltas.size());
+    for (std::size_t i = 0; i < a[t].deltas.size(); ++i) {
+      EXPECT_EQ(a[t].deltas[i].vertex, b[t].deltas[i].vertex);
+      EXPECT_EQ(a[t].deltas[i].position, b[t].deltas[i].position);
+      EXPECT_EQ(a[t].deltas[i].normal, b[t].deltas[i].normal);
+    }
+  }
+  EXPECT_EQ(*CharacterGlb(*again), *glb);
+}
+
+TEST(GltfMorphTargets, TangentsAreWritten) {
+  auto character = Parse(SquareMesh());
+  ASSERT_TRUE(character.ok()) << character.status().ToString();
+  character->shapes = {"a"};
+  character->meshes[0].morph_targets = {{0, {{2, glm::vec3(0, 0, 1), {}, glm::vec3(0, 0.5f, 0)}}}};
+  const auto again = ParseCharacter(*CharacterGlb(*character), ".");
+  ASSERT_TRUE(again.ok()) << again.status().ToString();
+  EXPECT_EQ(again->meshes[0].morph_targets.at(0).deltas.at(0).tangent, glm::vec3(0, 0.5f, 0));
+}
+
+TEST(GltfMorphTargets, InvalidOnesAreNotWritten) {
+  const auto code = [](std::vector<MorphTarget> targets) {
+    auto character = Parse(SquareMesh());
+    character->shapes = {"a", "b"};
+    character->meshes[0].morph_targets = std::move(targets);
+    return CharacterGlb(*character).status().code();
+  };
+  const MorphDelta delta{1, glm::vec3(1.0f), {}, {}};
+  EXPECT_EQ(code({{0, {delta}}, {1, {delta}}}), StatusCode::kOk);
+  EXPECT_EQ(code({{1, {delta}}, {0, {delta}}}), StatusCode::kInvalidArgument);
+  EXPECT_EQ(code({{2, {delta}}}), StatusCode::kInvalidArgument);
+  EXPECT_EQ(code({{0, {delta, delta}}}), StatusCode::kInvalidArgument);
+  EXPECT_EQ(code({{0, {{9, glm::vec3(1.0f), {}, {}}}}}), StatusCode::kInvalidArgument);
+  EXPECT_EQ(code({{0, {}}}), StatusCode::kInvalidArgument);
+}
+
+}  // namespace
+}  // namespace furrow::character
