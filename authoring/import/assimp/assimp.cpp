@@ -274,7 +274,6 @@ class SceneWriter {
 
   void AddMesh(const aiMesh& mesh, std::size_t source) {
     const bool skinned = mesh.mNumBones > 0;
-    blend_shapes_ += mesh.mNumAnimMeshes;
     const std::vector<std::uint32_t> indices = TrianglesOf(mesh);
     if (indices.empty() || mesh.mNumVertices == 0) return;
     const std::vector<std::vector<Influence>> influences = InfluencesOf(mesh);
@@ -312,8 +311,40 @@ class SceneWriter {
     const int kept = skinned ? -1 : Kept(static_cast<int>(source));
     (kept < 0 ? roots_ : nodes_[sources_[kept].written]["children"]).push_back(nodes_.size());
     nodes_.push_back(std::move(holder));
-    root_["meshes"].push_back(
-        {{"name", std::move(name)}, {"primitives", GltfJson::array({std::move(primitive)})}});
+    GltfJson target_names = AddMorphTargets(mesh, placements, &primitive);
+    GltfJson written = {{"name", std::move(name)},
+                        {"primitives", GltfJson::array({std::move(primitive)})}};
+    if (!target_names.empty()) written["extras"] = {{"targetNames", std::move(target_names)}};
+    root_["meshes"].push_back(std::move(written));
+  }
+
+  // Adds the shapes that move a vertex to `primitive` and returns their names. Shapes state
+  // positions; the reader computes the change of the normals.
+  GltfJson AddMorphTargets(const aiMesh& mesh, const std::vector<glm::mat4>& placements,
+                           GltfJson* primitive) {
+    GltfJson names = GltfJson::array();
+    for (unsigned s = 0; s < mesh.mNumAnimMeshes; ++s) {
+      const aiAnimMesh& shape = *mesh.mAnimMeshes[s];
+      if (shape.mVertices == nullptr || shape.mNumVertices != mesh.mNumVertices) continue;
+      std::vector<std::uint32_t> vertices;
+      std::vector<glm::vec3> deltas;
+      for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+        const glm::vec3 delta = ToGlm(shape.mVertices[v]) - ToGlm(mesh.mVertices[v]);
+        if (delta == glm::vec3(0.0f)) continue;
+        vertices.push_back(v);
+        deltas.push_back(glm::mat3(placements[v]) * delta);
+      }
+      if (vertices.empty() || vertices.size() > morph_deltas_) {
+        left_out_ += vertices.empty() ? 0 : 1;
+        continue;
+      }
+      morph_deltas_ -= vertices.size();
+      (*primitive)["targets"].push_back(
+          {{"POSITION", builder_.AddSparseAccessor(builder_.AddSparseIndices(vertices), deltas,
+                                                   "VEC3", mesh.mNumVertices)}});
+      names.push_back(NameFrom(shape.mName));
+    }
+    return names;
   }
 
   // assimp has triangulated. Faces with fewer corners are points and lines.
@@ -327,9 +358,9 @@ class SceneWriter {
   }
 
   void RemarkOnRest() {
-    if (blend_shapes_ > 0) {
-      remarks_.push_back(std::to_string(blend_shapes_) +
-                         " blend shapes are not imported; the face moves only by joints");
+    if (left_out_ > 0) {
+      remarks_.push_back(std::to_string(left_out_) +
+                         " blend shapes are not imported: the shapes move too many vertices");
     }
   }
 
@@ -343,7 +374,8 @@ class SceneWriter {
   std::vector<std::pair<unsigned, std::size_t>> instances_;  // mesh, source
   std::vector<std::size_t> joints_;                          // sources, in the skin's order
   std::unordered_map<std::size_t, std::size_t> joint_of_source_;
-  unsigned blend_shapes_ = 0;
+  std::size_t morph_deltas_ = gltf::kMaxMorphDeltas;  // that may still be written
+  unsigned left_out_ = 0;                             // blend shapes beyond that
   std::vector<std::string> remarks_;
 };
 

@@ -86,6 +86,7 @@ class Checker {
                       {"triangles", triangles},
                       {"materials", character_.materials.size()},
                       {"pictures", character_.pictures.size()},
+                      {"shapes", character_.shapes.size()},
                       {"regions", character_.rig.regions.size()},
                       {"wrinkle maps", character_.rig.wrinkle_maps.size()}};
   }
@@ -97,16 +98,24 @@ class Checker {
       Find(Severity::kError, "no-skin", {}, "no mesh is skinned, so nothing can fold",
            "bind the mesh to its skeleton and export both");
     }
-    int morph_targets = 0;
     for (std::size_t m = 0; m < notes_.meshes.size(); ++m) {
       CheckMesh(character_.meshes[m], notes_.meshes[m]);
-      morph_targets += notes_.meshes[m].morph_targets;
     }
-    if (morph_targets > 0) {
-      Find(Severity::kNote, "blend-shapes", {},
-           Count(morph_targets, "blend shape is", "blend shapes are") + " not imported",
-           "drive wrinkles with a tracker's blend shapes (rig 'arkit'), or add face joints");
+    if (!notes_.idle_shapes.empty()) CheckIdleShapes();
+  }
+
+  // Avatars often carry the names of all ARKit shapes, but move only some of them.
+  void CheckIdleShapes() {
+    constexpr std::size_t kMaxNamed = 5;
+    const std::size_t count = notes_.idle_shapes.size();
+    std::string names;
+    for (std::size_t i = 0; i < std::min(count, kMaxNamed); ++i) {
+      names += (i == 0 ? "" : ", ") + notes_.idle_shapes[i];
     }
+    if (count > kMaxNamed) names += ", ...";
+    Find(Severity::kNote, "idle-shapes", {},
+         Count(count, "shape moves", "shapes move") + " no vertex: " + names,
+         "the import leaves them out");
   }
 
   void CheckMesh(const character::Mesh& mesh, const character::MeshNotes& notes) {

@@ -48,7 +48,7 @@ struct CharacterReport {
 //   errors    no-skin, uv-missing, unskinned-vertices, degenerate-triangles, rig-binding
 //   warnings  uv-overlap (a bake refuses it), uv-flat, weights-sum, normals-missing,
 //             picture-missing, units, up-axis, joint-names, no-roles, rig, rig-picture
-//   notes     uv-outside, weights-truncated, tangents-missing, blend-shapes, roles-missing,
+//   notes     uv-outside, weights-truncated, tangents-missing, idle-shapes, roles-missing,
 //             no-face-joints, no-rig
 [[nodiscard]] CharacterReport CheckCharacter(const character::Character& character,
                                              const character::SourceNotes& notes,

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include <glm/gtc/quaternion.hpp>
@@ -14,6 +13,7 @@
 #include <glm/matrix.hpp>
 
 #include "base/status.h"
+#include "character/mesh/move_mesh.h"
 
 namespace furrow::authoring {
 namespace {
@@ -96,19 +96,6 @@ std::vector<glm::mat4> RestSkinMatrices(const character::Character& character) {
     matrices.push_back(character.skeleton.rest_model()[j] * character.inverse_bind_matrices[j]);
   }
   return matrices;
-}
-
-// `otherwise` replaces vectors that have no direction.
-glm::vec3 UnitOr(const glm::vec3& v, const glm::vec3& otherwise) {
-  const float length = glm::length(v);
-  return length > 1e-12f ? v / length : otherwise;
-}
-
-void MoveVertex(const glm::mat4& m, const glm::mat3& normals, character::Vertex* vertex) {
-  vertex->position = glm::vec3(m * glm::vec4(vertex->position, 1.0f));
-  vertex->normal = UnitOr(normals * vertex->normal, vertex->normal);
-  const glm::vec3 tangent(vertex->tangent);
-  vertex->tangent = glm::vec4(UnitOr(glm::mat3(m) * tangent, tangent), vertex->tangent.w);
 }
 
 // The same joints at rotated and scaled positions in model space, without scales of their own.
@@ -201,7 +188,7 @@ CharacterSpace FindCharacterSpace(const character::Character& character,
 Status MoveToSpace(const glm::mat3& rotation, float scale, character::Character* character) {
   const glm::mat4 move(rotation * scale);
   for (character::Mesh& mesh : character->meshes) {
-    for (character::Vertex& vertex : mesh.vertices) MoveVertex(move, rotation, &vertex);
+    character::MoveMesh([&](const character::Vertex&) { return move; }, &mesh);
   }
   return ReplaceSkeleton(rotation, scale, character);
 }
@@ -215,18 +202,7 @@ Status BringToRestPose(character::Character* character) {
   });
   if (at_rest && !scaled) return {};
   for (character::Mesh& mesh : character->meshes) {
-    bool mirrored = false;
-    for (character::Vertex& vertex : mesh.vertices) {
-      const glm::mat4 m = RestMatrix(vertex, skin);
-      const float determinant = glm::determinant(glm::mat3(m));
-      // Normals transform with the inverse transpose, which a singular matrix does not have.
-      const bool flat = std::abs(determinant) < 1e-30f;
-      mirrored = mirrored || determinant < 0.0f;
-      MoveVertex(m, flat ? glm::mat3(m) : glm::transpose(glm::inverse(glm::mat3(m))), &vertex);
-    }
-    for (std::size_t i = 0; mirrored && i + 2 < mesh.indices.size(); i += 3) {
-      std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);  // keeps the winding after a mirroring
-    }
+    character::MoveMesh([&](const character::Vertex& v) { return RestMatrix(v, skin); }, &mesh);
   }
   return ReplaceSkeleton(glm::mat3(1.0f), 1.0f, character);
 }

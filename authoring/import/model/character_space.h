@@ -26,8 +26,8 @@ struct CharacterSpace {
 [[nodiscard]] CharacterSpace FindCharacterSpace(const character::Character& character,
                                                 const FoundJoints& joints);
 
-// Rotates a character, then multiplies all lengths by `scale`: skeleton, meshes and inverse bind
-// matrices. Errors: those of Skeleton::Create().
+// Rotates a character, then multiplies all lengths by `scale`: skeleton, meshes with their morph
+// targets, and inverse bind matrices. Errors: those of Skeleton::Create().
 [[nodiscard]] Status MoveToSpace(const glm::mat3& rotation, float scale,
                                  character::Character* character);
 

@@ -94,10 +94,11 @@ int ImportFile(const ImportArguments& arguments) {
     vertices += mesh.vertices.size();
     triangles += mesh.indices.size() / 3;
   }
-  std::fprintf(stderr, "furrow: %s: %s, %s, %s, %s, %s\n", arguments.out.c_str(),
+  std::fprintf(stderr, "furrow: %s: %s, %s, %s, %s, %s, %s\n", arguments.out.c_str(),
                Counted(character.skeleton.num_joints(), "joint").c_str(),
                Counted(vertices, "vertex", "vertices").c_str(),
                Counted(triangles, "triangle").c_str(),
+               Counted(character.shapes.size(), "shape").c_str(),
                Counted(character.rig.drivers.size(), "driver").c_str(),
                Counted(character.rig.regions.size(), "region").c_str());
   return kDone;

@@ -110,9 +110,9 @@ INSTANTIATE_TEST_SUITE_P(
               [](character::Character*, character::SourceNotes* n) {
                 n->meshes[0].has_tangents = false;
               }},
-        Fault{"blend-shapes", Severity::kNote, "52 blend shapes are not imported",
+        Fault{"idle-shapes", Severity::kNote, "7 shapes move no vertex: a, b, c, d, e, ...",
               [](character::Character*, character::SourceNotes* n) {
-                n->meshes[0].morph_targets = 52;
+                n->idle_shapes = {"a", "b", "c", "d", "e", "f", "g"};
               }},
         Fault{"picture-missing", Severity::kWarning, "skin.png",
               [](character::Character*, character::SourceNotes* n) {

@@ -140,6 +140,75 @@ INSTANTIATE_TEST_SUITE_P(
                       std::tuple(glm::mat3(1.0f), 100.0f),                       // centimetres
                       std::tuple(glm::mat3(0, 1, 0, 0, 0, 1, 1, 0, 0), 1000.0f)));
 
+// The toy body with a shape that lifts everything above 1.4 m and a shape that moves its left hand.
+character::Character MorphingBody() {
+  character::Character body = ToyBody();
+  body.shapes = {"lift", "wave"};
+  std::vector<character::MorphDelta> lift, wave;
+  character::Mesh& mesh = body.meshes[0];
+  for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
+    const glm::vec3& p = mesh.vertices[v].position;
+    if (p.y > 1.4f) lift.push_back({v, glm::vec3(0, 0.05f, 0), {}, {}});
+    if (p.x > 0.6f) wave.push_back({v, glm::vec3(0, 0.02f, 0.1f), {}, {}});
+  }
+  mesh.morph_targets = {{0, std::move(lift)}, {1, std::move(wave)}};
+  return body;
+}
+
+// The deltas of a shape by the UVs of its vertices, because importers reorder vertices.
+std::map<std::pair<int, int>, glm::vec3> DeltasOf(const character::Character& character,
+                                                  const std::string& name) {
+  std::map<std::pair<int, int>, glm::vec3> deltas;
+  for (const character::Mesh& mesh : character.meshes) {
+    for (const character::MorphTarget& target : mesh.morph_targets) {
+      if (character.shapes[static_cast<std::size_t>(target.shape)] != name) continue;
+      for (const character::MorphDelta& delta : target.deltas) {
+        const glm::vec2 uv = mesh.vertices[delta.vertex].uv;
+        if (delta.position == glm::vec3(0.0f)) continue;  // only its normal turns
+        deltas[{static_cast<int>(std::lround(uv.x * 1000)),
+                static_cast<int>(std::lround(uv.y * 1000))}] = delta.position;
+      }
+    }
+  }
+  return deltas;
+}
+
+void ExpectSameShapes(const character::Character& seen, const character::Character& due) {
+  ASSERT_EQ(seen.shapes.size(), due.shapes.size());
+  for (const std::string& name : due.shapes) {
+    const auto a = DeltasOf(seen, name);
+    const auto b = DeltasOf(due, name);
+    ASSERT_EQ(a.size(), b.size()) << name;
+    for (const auto& [uv, delta] : b) {
+      const auto found = a.find(uv);
+      ASSERT_NE(found, a.end()) << name;
+      EXPECT_LT(glm::distance(found->second, delta), 1e-5f) << name;
+    }
+  }
+}
+
+TEST(ImportModel, TurnsAndScalesShapes) {
+  const character::Character body = MorphingBody();
+  character::Character moved = body;
+  const glm::mat3 z_up(1, 0, 0, 0, 0, 1, 0, -1, 0);
+  ASSERT_TRUE(MoveToSpace(z_up, 100.0f, &moved).ok());
+  EXPECT_LT(glm::distance(moved.meshes[0].morph_targets[0].deltas[0].position, glm::vec3(0, 0, 5)),
+            1e-4f);
+  const Folder folder;
+  const auto imported = ImportModel(folder.Write("body.glb", GlbOf(moved)), Maps());
+  ASSERT_TRUE(imported.ok()) << imported.status().ToString();
+  ExpectSameShapes(imported->character, body);
+}
+
+TEST(ImportModel, ReadsShapesOfFbx) {
+  const character::Character body = MorphingBody();
+  const Folder folder;
+  const auto imported =
+      ImportModel(folder.Write("body.fbx", ConvertByAssimp(GlbOf(body), "fbxa")), Maps());
+  ASSERT_TRUE(imported.ok()) << imported.status().ToString();
+  ExpectSameShapes(imported->character, body);
+}
+
 TEST(ImportModel, AcceptsAScale) {
   const Folder folder;
   const auto imported =
