@@ -92,8 +92,9 @@ Handle Pipeline::AddSkin(FrameGraph* graph, const FrameRequest& request, const S
     ScreenRect rect;
     for (const NamedSubject& named : SubjectsOf(request)) {
       const PosedSubject& subject = *named.subject;
-      rect = rect.With(bounds.Project(subject.model, camera.view_projection * subject.placement,
-                                      desc.width, desc.height, scene_->displacement_reach()));
+      rect = rect.With(bounds.Project({subject.model, subject.shapes},
+                                      camera.view_projection * subject.placement, desc.width,
+                                      desc.height, scene_->displacement_reach()));
     }
     return rect.Grown(1, desc.width, desc.height);
   };

@@ -41,7 +41,7 @@ class GlRenderer final : public Renderer {
   }
 
   Status Submit(const FrameRequest& request) override {
-    FURROW_RETURN_IF_ERROR(CheckRequest(request, skeleton_.num_joints()));
+    FURROW_RETURN_IF_ERROR(CheckRequest(request, skeleton_.num_joints(), num_shapes_));
     if (read_back_.in_flight() == ReadBack::kCapacity) {
       return {StatusCode::kUnavailable, "two pictures are in flight", "renderer",
               "call Poll() first"};
@@ -77,6 +77,7 @@ class GlRenderer final : public Renderer {
              std::unique_ptr<GpuCharacter> gpu, std::unique_ptr<WrinkleTables> tables)
       : skeleton_(character.skeleton),
         inverse_bind_matrices_(character.inverse_bind_matrices),
+        num_shapes_(character.shapes.size()),
         presets_(CameraPresets(character)),
         context_(std::move(context)),
         pool_(&device_),
@@ -107,6 +108,7 @@ class GlRenderer final : public Renderer {
 
   const wrinkle::Skeleton skeleton_;
   const std::vector<glm::mat4> inverse_bind_matrices_;
+  const std::size_t num_shapes_;
   const std::vector<std::pair<std::string, Camera>> presets_;
   std::unique_ptr<EglContext> context_;
   GlDevice device_;

@@ -81,8 +81,12 @@ render::PosedSubject MovingScene::Advance(std::size_t index) {
       subject.solver.Update(subject.pose, kFrameSeconds) != wrinkle::JobStatus::kOk) {
     FailWith({StatusCode::kInternal, "cannot solve the pose of the benchmark", "scene"});
   }
-  return {subject.model, &subject.solver.binding(), subject.solver.wrinkle_weights(),
-          subject.solver.filtered_values(), subject.placement};
+  return {subject.model,
+          {},
+          &subject.solver.binding(),
+          subject.solver.wrinkle_weights(),
+          subject.solver.filtered_values(),
+          subject.placement};
 }
 
 void MovingScene::Submit(const render::Settings& settings) {

@@ -119,7 +119,7 @@ void WrinkleCache::AddVisibleRegion(const MaskRegion& region, std::size_t channe
                                     ComposedMaterial::Needs* needs) const {
   const PosedSubject& subject = *view.subject;
   const JointBounds::Extent extent =
-      region.bounds.Look(subject.model, view.projection * subject.placement);
+      region.bounds.Look({subject.model, {}}, view.projection * subject.placement, view.reach);
   if (!extent.is_seen()) return;
   needs->is_seen[channel] = true;
   // The columns of a placement have the length of its scale. Bounds and UV densities are in the

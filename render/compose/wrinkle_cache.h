@@ -41,6 +41,7 @@ class WrinkleCache {
     const PosedSubject* subject = nullptr;  // required, like `list`
     glm::mat4 projection{1.0f};             // model space to clip space
     float pixels = 0.0f;                    // pixels per metre where clip space's w is 1
+    float reach = 0.0f;                     // longest way of a vertex by morph targets, metres
     float picture = 0.0f;                   // number of pixels of the picture: width * height
     const DrawList* list = nullptr;
   };

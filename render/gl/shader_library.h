@@ -21,6 +21,7 @@ struct PoseShader {
   bool dynamic = false;    // write the dynamic masks of each vertex
   bool displaced = false;  // write the share of the heights by which each vertex is moved
   int map_slots = 1;       // MapSlots() of the rig's wrinkle maps
+  int morph_parts = 0;     // MeshMorphs::num_parts(); 0: no morph target moves the mesh
 
   friend auto operator<=>(const PoseShader&, const PoseShader&) = default;
 };

@@ -44,6 +44,16 @@ void DescribeShares(GLuint array, const gl::Buffer& shares) {
   glVertexArrayAttribBinding(array, kShare, 1);
 }
 
+// The rows are in a separate buffer at binding 3, because few meshes have any.
+void DescribeMorphRows(GLuint array, const gl::Buffer& rows) {
+  constexpr GLuint kMorphRow = 8;  // a_morph_row of shaders/scene/pose.vert.glsl
+  if (!rows) return;
+  glVertexArrayVertexBuffer(array, 3, rows.name(), 0, sizeof(std::uint32_t));
+  glEnableVertexArrayAttrib(array, kMorphRow);
+  glVertexArrayAttribIFormat(array, kMorphRow, 1, GL_UNSIGNED_INT, 0);
+  glVertexArrayAttribBinding(array, kMorphRow, 3);
+}
+
 // Counts inner edges twice, which does not change the mean much.
 float MeanEdge(const character::Mesh& mesh) {
   double sum = 0.0;
@@ -97,7 +107,13 @@ GpuMesh MakeGpuMesh(const character::Mesh& mesh, std::span<const glm::mat4> inve
   gpu.surface = Surface(mesh);
   gpu.uv_per_metre = MinUvPerMetre(mesh);
   gpu.bounds = JointBounds(mesh, inverse_bind_matrices);
+  gpu.morphs = MeshMorphs(mesh);
+  if (!gpu.morphs.empty()) {
+    const auto rows = gpu.morphs.rows();
+    gpu.morph_rows = gl::MakeStaticBuffer(rows.data(), rows.size_bytes());
+  }
   DescribeVertices(gpu.vertex_array.name(), gpu.vertices);
+  DescribeMorphRows(gpu.vertex_array.name(), gpu.morph_rows);
   glVertexArrayElementBuffer(gpu.vertex_array.name(), gpu.indices.name());
   return gpu;
 }
@@ -124,6 +140,12 @@ GpuMesh MakeUnindexed(const GpuMesh& mesh) {
   gpu.num_vertices = gpu.num_indices = mesh.num_indices;
   gpu.material = mesh.material;
   DescribeVertices(gpu.vertex_array.name(), gpu.vertices);
+  if (mesh.morphs.empty()) return gpu;
+  std::vector<std::uint32_t> rows;
+  rows.reserve(source.indices.size());
+  for (const std::uint32_t vertex : source.indices) rows.push_back(mesh.morphs.rows()[vertex]);
+  gpu.morph_rows = gl::MakeStaticBuffer(rows.data(), rows.size() * sizeof(std::uint32_t));
+  DescribeMorphRows(gpu.vertex_array.name(), gpu.morph_rows);
   return gpu;
 }
 
@@ -137,6 +159,7 @@ GpuPatches MakePatches(const GpuMesh& mesh) {
   gpu.metres_per_uv = patches.metres_per_uv;
   DescribeVertices(gpu.vertex_array.name(), mesh.vertices);
   DescribeShares(gpu.vertex_array.name(), gpu.shares);
+  DescribeMorphRows(gpu.vertex_array.name(), mesh.morph_rows);
   glVertexArrayElementBuffer(gpu.vertex_array.name(), gpu.indices.name());
   return gpu;
 }

@@ -10,6 +10,7 @@
 #include "render/gl/gl_objects.h"
 #include "render/mesh/joint_bounds.h"
 #include "render/mesh/mesh_levels.h"
+#include "render/mesh/mesh_morphs.h"
 
 namespace furrow::render {
 
@@ -18,7 +19,9 @@ struct GpuMesh {
   gl::VertexArray vertex_array;
   gl::Buffer vertices;
   gl::Buffer indices;
-  JointBounds bounds;  // bounds of the posed mesh
+  MeshMorphs morphs;
+  gl::Buffer morph_rows;  // MeshMorphs::rows(), per vertex of this object; none without morphs
+  JointBounds bounds;     // bounds of the posed mesh
   GLsizei num_vertices = 0;
   GLsizei num_indices = 0;
   int material = 0;           // index into Character::materials
@@ -50,10 +53,10 @@ struct GpuPatches {
                                   std::span<const glm::mat4> inverse_bind_matrices);
 // Computes the levels of detail (MakeMeshLevels()), uploads them and fills mesh->levels.
 void AddLevels(GpuMesh* mesh, Borders borders);
-// Reads the whole mesh back from the GPU, where its only copy is.
+// Reads the whole mesh, without morph targets, back from the GPU, where its only copy is.
 [[nodiscard]] character::Mesh ReadMesh(const GpuMesh& mesh);
 // A copy of `mesh` without an index buffer, for the view wireframe: each triangle has three
-// vertices of its own.
+// vertices of its own. Its `morphs` are empty; its rows refer to those of `mesh`.
 [[nodiscard]] GpuMesh MakeUnindexed(const GpuMesh& mesh);
 // Makes the patches of a mesh. They use the vertices of `mesh`, which must outlive them.
 [[nodiscard]] GpuPatches MakePatches(const GpuMesh& mesh);

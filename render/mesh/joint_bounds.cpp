@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <utility>
+
+#include "render/mesh/mesh_morphs.h"
 
 namespace furrow::render {
 
@@ -39,15 +42,55 @@ void JointBounds::Add(const character::Mesh& mesh,
       found->second.high = glm::max(found->second.high, place);
     }
   }
+  const std::size_t first_box = boxes_.size();
   for (const auto& [joint, box] : boxes) boxes_.push_back(box);
+  AddMoves(mesh, inverse_bind_matrices, first_box);
 }
 
-JointBounds::Extent JointBounds::Look(std::span<const glm::mat4> model,
-                                      const glm::mat4& view_projection, float reach) const {
+void JointBounds::AddMoves(const character::Mesh& mesh,
+                           std::span<const glm::mat4> inverse_bind_matrices,
+                           std::size_t first_box) {
+  std::map<int, std::size_t> box_of_joint;
+  for (std::size_t box = first_box; box < boxes_.size(); ++box) {
+    box_of_joint[boxes_[box].joint] = box;
+  }
+  for (const character::MorphTarget& target : mesh.morph_targets) {
+    std::map<std::size_t, Move> moves;  // by box
+    for (const character::MorphDelta& delta : target.deltas) {
+      const character::Vertex& vertex = mesh.vertices[delta.vertex];
+      for (int i = 0; i < 4; ++i) {
+        if (!(vertex.skin_weights[i] > 0.0f)) continue;
+        const std::size_t box = box_of_joint.at(vertex.joints[i]);
+        // A delta is a direction: the joint's translation does not apply.
+        const glm::vec3 way = glm::mat3(inverse_bind_matrices[vertex.joints[i]]) * delta.position;
+        Move& move =
+            moves.try_emplace(box, Move{box, static_cast<std::size_t>(target.shape)}).first->second;
+        move.low = glm::min(move.low, way);
+        move.high = glm::max(move.high, way);
+      }
+    }
+    for (const auto& [box, move] : moves) moves_.push_back(move);
+  }
+}
+
+std::vector<JointBounds::Box> JointBounds::MovedBoxes(std::span<const float> shapes) const {
+  std::vector<Box> boxes = boxes_;
+  for (const Move& move : moves_) {
+    const float weight = move.shape < shapes.size() ? DrawnShapeWeight(shapes[move.shape]) : 0.0f;
+    Box& box = boxes[move.box];
+    box.low += weight * (weight > 0.0f ? move.low : move.high);
+    box.high += weight * (weight > 0.0f ? move.high : move.low);
+  }
+  return boxes;
+}
+
+JointBounds::Extent JointBounds::Look(const Pose& pose, const glm::mat4& view_projection,
+                                      float reach) const {
   Extent extent{glm::vec2(std::numeric_limits<float>::max()),
                 glm::vec2(std::numeric_limits<float>::lowest()), std::numeric_limits<float>::max()};
-  for (const Box& box : boxes_) {
-    const glm::mat4 to_clip = view_projection * model[static_cast<std::size_t>(box.joint)];
+  const std::vector<Box> moved = moves_.empty() ? std::vector<Box>() : MovedBoxes(pose.shapes);
+  for (const Box& box : moves_.empty() ? boxes_ : moved) {
+    const glm::mat4 to_clip = view_projection * pose.model[static_cast<std::size_t>(box.joint)];
     const glm::vec3 low_corner = box.low - reach;
     const glm::vec3 high_corner = box.high + reach;
     for (int corner = 0; corner < 8; ++corner) {
@@ -66,9 +109,9 @@ JointBounds::Extent JointBounds::Look(std::span<const glm::mat4> model,
   return extent;
 }
 
-ScreenRect JointBounds::Project(std::span<const glm::mat4> model, const glm::mat4& view_projection,
-                                int width, int height, float reach) const {
-  const Extent extent = Look(model, view_projection, reach);
+ScreenRect JointBounds::Project(const Pose& pose, const glm::mat4& view_projection, int width,
+                                int height, float reach) const {
+  const Extent extent = Look(pose, view_projection, reach);
   const glm::vec2 size(width, height);
   const auto pixel = [&](const glm::vec2& place) { return (place * 0.5f + 0.5f) * size; };
   // Rounded outwards, so that partly covered pixels count.

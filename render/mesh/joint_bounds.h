@@ -16,7 +16,8 @@ namespace furrow::render {
 
 // Bounds of a posed character on the screen, computed without skinning a vertex. Each joint has a
 // box around all vertices that it moves. A skinned vertex is a weighted mean of points in its
-// joints' boxes, so a region that contains all boxes contains the surface.
+// joints' boxes, so a region that contains all boxes contains the surface. Each morph target moves
+// the sides of the boxes by its largest deltas, in proportion to its weight.
 class JointBounds {
  public:
   JointBounds() = default;
@@ -26,6 +27,12 @@ class JointBounds {
   // Bounds of one mesh.
   JointBounds(const character::Mesh& mesh, std::span<const glm::mat4> inverse_bind_matrices);
 
+  struct Pose {
+    // Joint matrices in model space, one per joint of the character's skeleton.
+    std::span<const glm::mat4> model;
+    // Weights of the character's shapes; missing ones count as 0.
+    std::span<const float> shapes;
+  };
   // The projected boxes.
   struct Extent {
     glm::vec2 low{0.0f};  // normalised device coordinates; the picture is [-1, 1]
@@ -38,17 +45,15 @@ class JointBounds {
       return nearest <= 0.0f || (low.x < 1.0f && high.x > -1.0f && low.y < 1.0f && high.y > -1.0f);
     }
   };
-  // Projects the boxes. `model`: joint matrices in model space, one per joint of the character's
-  // skeleton. `view_projection`: model space to clip space. `reach`: largest distance in metres
-  // between the drawn surface and the skinned one (displacement).
-  [[nodiscard]] Extent Look(std::span<const glm::mat4> model, const glm::mat4& view_projection,
+  // Projects the boxes. `view_projection`: model space to clip space. `reach`: largest distance in
+  // metres between the drawn surface and the one that the pose gives (displacement).
+  [[nodiscard]] Extent Look(const Pose& pose, const glm::mat4& view_projection,
                             float reach = 0.0f) const;
 
   // Returns the pixels of a picture of `width` x `height` that the boxes may cover: the whole
   // picture if a box reaches behind the camera, and an empty rectangle if there are no boxes.
-  [[nodiscard]] ScreenRect Project(std::span<const glm::mat4> model,
-                                   const glm::mat4& view_projection, int width, int height,
-                                   float reach = 0.0f) const;
+  [[nodiscard]] ScreenRect Project(const Pose& pose, const glm::mat4& view_projection, int width,
+                                   int height, float reach = 0.0f) const;
 
  private:
   void Add(const character::Mesh& mesh, std::span<const glm::mat4> inverse_bind_matrices);
@@ -58,7 +63,20 @@ class JointBounds {
     glm::vec3 low{0.0f};  // in the joint's space
     glm::vec3 high{0.0f};
   };
+  // How far a shape at weight 1 moves the vertices of a box: between `low` and `high`, which
+  // enclose 0, because a target does not move all vertices.
+  struct Move {
+    std::size_t box = 0;
+    std::size_t shape = 0;
+    glm::vec3 low{0.0f};  // in the joint's space
+    glm::vec3 high{0.0f};
+  };
+  void AddMoves(const character::Mesh& mesh, std::span<const glm::mat4> inverse_bind_matrices,
+                std::size_t first_box);
+  [[nodiscard]] std::vector<Box> MovedBoxes(std::span<const float> shapes) const;
+
   std::vector<Box> boxes_;
+  std::vector<Move> moves_;
 };
 
 }  // namespace furrow::render

@@ -114,7 +114,8 @@ SceneDraw::SceneDraw(const wrinkle::Skeleton& skeleton,
       shaders_(shaders),
       buffers_(inverse_bind_matrices, tables),
       cache_(gpu, tables, inverse_bind_matrices, is_software),
-      posed_(gpu, shaders),
+      morphs_(gpu),
+      posed_(gpu, &morphs_, shaders),
       shadow_compare_(MakeShadowSampler(true)),
       shadow_depth_(MakeShadowSampler(false)),
       cut_out_(MakeCutOutSampler()) {}
@@ -134,6 +135,7 @@ Status SceneDraw::Update(const FrameRequest& request) {
   // Later steps use the results of earlier ones: tables, frame set-up, visibility, composing.
   FindVisible(subjects, settings);
   buffers_.Upload(MakeFrameBlock(setup_, settings), subjects, gpu_->layout());
+  morphs_.BeginFrame(subjects);
   posed_.BeginFrame();
   PlanComposing(request);
   return {};
@@ -146,6 +148,7 @@ void SceneDraw::PlanComposing(const FrameRequest& request) {
               {.subject = &request,
                .projection = setup_.camera.view_projection,
                .pixels = setup_.pixels_per_slope,
+               .reach = gpu_->MorphReach(request.shapes),
                .picture = static_cast<float>(request.width) * static_cast<float>(request.height),
                .list = &draw_list_});
 }
@@ -222,6 +225,9 @@ Result<PosedMeshes::Vertices> SceneDraw::Pose(std::size_t index, PosedMeshes::Fo
   shader.dynamic = material.group != WrinkleGroup::kNone &&
                    NeedsOf(tables_->table(material.group), part).uses_dynamic;
   shader.map_slots = MapSlots(tables_->num_maps());
+  if (morphs_.Moves(index, draw_list_.subjects(index))) {
+    shader.morph_parts = static_cast<int>(gpu_->meshes()[index].morphs.num_parts());
+  }
   return posed_.Get(index, form, shader, part, draw_list_.subjects(index));
 }
 

@@ -10,6 +10,7 @@
 #include "render/scene/frame_block.h"
 #include "render/scene/gpu_character.h"
 #include "render/scene/lookup_tables.h"
+#include "render/scene/morph_sums.h"
 #include "render/scene/posed_meshes.h"
 #include "render/scene/scene_buffers.h"
 #include "render/wrinkles/wrinkle_table.h"
@@ -92,6 +93,7 @@ class SceneDraw {
   DrawList draw_list_;
   SceneBuffers buffers_;
   WrinkleCache cache_;
+  MorphSums morphs_;
   PosedMeshes posed_;
 
   LookupTables lookup_tables_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/passes/shadow_pass.h"
 
+#include "render/mesh/mesh_morphs.h"
 #include "render/request/subjects.h"
 
 namespace furrow::render {
@@ -32,6 +33,7 @@ std::vector<float> ShadowPass::Inputs(const FrameRequest& request) const {
   for (const NamedSubject& named : SubjectsOf(request)) {
     Append(named.subject->placement, &values);
     for (const glm::mat4& joint : named.subject->model) Append(joint, &values);
+    for (const float shape : named.subject->shapes) values.push_back(DrawnShapeWeight(shape));
   }
   return values;
 }

@@ -22,6 +22,9 @@ struct PosedSubject {
   // Joint matrices in model space, one per joint of the character's skeleton. Joints that blend
   // shapes move must be moved already (wrinkle::BlendShapePose).
   std::span<const glm::mat4> model;
+  // Weights of the character's shapes (wrinkle::ShapeProgram): one per shape, or empty: all 0.
+  // Weights outside [0, 1] are drawn, limited to [-2, 2].
+  std::span<const float> shapes{};
   // The binding that computed the values below. Its rig names the regions. Null: no wrinkles.
   const wrinkle::RigBinding* binding = nullptr;
   std::span<const float> wrinkle_weights;  // one per weight of the binding, [0, 1]

@@ -65,6 +65,22 @@ Status CheckModel(const std::string& field, std::span<const glm::mat4> model, in
   return {};
 }
 
+Status CheckShapes(const std::string& field, std::span<const float> shapes,
+                   std::size_t num_shapes) {
+  if (!shapes.empty() && shapes.size() != num_shapes) {
+    return {
+        StatusCode::kInvalidArgument,
+        std::to_string(shapes.size()) + " weights for " + std::to_string(num_shapes) + " shapes",
+        field + "shapes"};
+  }
+  for (std::size_t shape = 0; shape < shapes.size(); ++shape) {
+    if (std::isfinite(shapes[shape])) continue;
+    return {StatusCode::kNonFinite,
+            "the weight of shape " + std::to_string(shape) + " is not finite", field + "shapes"};
+  }
+  return {};
+}
+
 // Returns true for rotation, uniform scale and translation. The shaders rotate directions with the
 // matrix itself, and a mirrored mesh would turn its triangles inside out.
 bool IsRigidButForScale(const glm::mat4& placement) {
@@ -92,7 +108,7 @@ Status CheckPlacement(const std::string& field, const glm::mat4& placement) {
           "must consist of rotation, uniform scale and translation only", field + "placement"};
 }
 
-Status CheckSubjects(const FrameRequest& request, int num_joints) {
+Status CheckSubjects(const FrameRequest& request, int num_joints, std::size_t num_shapes) {
   const std::size_t count = 1 + request.others.size();
   if (count > static_cast<std::size_t>(kMaxSubjects)) {
     return {
@@ -102,6 +118,7 @@ Status CheckSubjects(const FrameRequest& request, int num_joints) {
   }
   for (const auto& [subject, field] : SubjectsOf(request)) {
     FURROW_RETURN_IF_ERROR(CheckModel(field, subject->model, num_joints));
+    FURROW_RETURN_IF_ERROR(CheckShapes(field, subject->shapes, num_shapes));
     FURROW_RETURN_IF_ERROR(CheckPlacement(field, subject->placement));
   }
   return {};
@@ -109,12 +126,12 @@ Status CheckSubjects(const FrameRequest& request, int num_joints) {
 
 }  // namespace
 
-Status CheckRequest(const FrameRequest& request, int num_joints) {
+Status CheckRequest(const FrameRequest& request, int num_joints, std::size_t num_shapes) {
   FURROW_RETURN_IF_ERROR(CheckSize("width", request.width));
   FURROW_RETURN_IF_ERROR(CheckSize("height", request.height));
   FURROW_RETURN_IF_ERROR(CheckSettings(request.settings));
   FURROW_RETURN_IF_ERROR(CheckCamera(request.camera, num_joints));
-  return CheckSubjects(request, num_joints);
+  return CheckSubjects(request, num_joints, num_shapes);
 }
 
 }  // namespace furrow::render

@@ -33,8 +33,8 @@ Look LookAt(const JointBounds& bounds, const PosedSubject& subject,
   float of_lamps = 0.0f;
   for (std::size_t view = 0; view < views.size(); ++view) {
     if (!views[view].is_active) continue;
-    const auto extent =
-        bounds.Look(subject.model, views[view].projection * subject.placement, reach);
+    const auto extent = bounds.Look({subject.model, subject.shapes},
+                                    views[view].projection * subject.placement, reach);
     if (!extent.is_seen()) continue;
     look.is_seen[view] = true;
     const float pixels = extent.nearest > 0.0f ? views[view].pixels / extent.nearest

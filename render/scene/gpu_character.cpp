@@ -88,6 +88,16 @@ Status CheckMesh(const character::Mesh& mesh, const Character& character) {
   for (const std::uint32_t index : mesh.indices) {
     if (index >= mesh.vertices.size()) return fail("has a vertex index out of range");
   }
+  for (const character::MorphTarget& target : mesh.morph_targets) {
+    if (target.shape < 0 || target.shape >= static_cast<int>(character.shapes.size())) {
+      return fail("has a morph target with a shape out of range");
+    }
+    for (const character::MorphDelta& delta : target.deltas) {
+      if (delta.vertex >= mesh.vertices.size()) {
+        return fail("has a morph target with a vertex out of range");
+      }
+    }
+  }
   // Every joint is checked, even with a skin weight of 0, because the shader reads its matrix.
   for (const Vertex& vertex : mesh.vertices) {
     for (const std::uint16_t joint : vertex.joints) {
@@ -241,8 +251,21 @@ Status GpuCharacter::AddMeshes(const Character& character) {
   });
   for (const character::Mesh* source : order) {
     meshes_.push_back(MakeGpuMesh(*source, character.inverse_bind_matrices));
+    if (meshes_.back().morphs.num_floats() * sizeof(float) > kMaxMorphBytes) {
+      return {StatusCode::kLimit,
+              "its morph targets move " + std::to_string(meshes_.back().morphs.num_rows() - 1) +
+                  " vertices, which need more than the limit of " +
+                  std::to_string(kMaxMorphBytes >> 20) + " MiB",
+              "mesh '" + source->name + "'"};
+    }
   }
   return {};
+}
+
+float GpuCharacter::MorphReach(std::span<const float> shapes) const {
+  float reach = 0.0f;
+  for (const GpuMesh& mesh : meshes_) reach = std::max(reach, mesh.morphs.Reach(shapes));
+  return reach;
 }
 
 // Simplification takes long and is put off until it is certain to have an effect.

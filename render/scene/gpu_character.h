@@ -15,6 +15,9 @@
 
 namespace furrow::render {
 
+// Limit of the summed morph targets of one mesh for one subject.
+inline constexpr std::size_t kMaxMorphBytes = std::size_t{1} << 26;
+
 // A material on the GPU. The textures belong to the GpuCharacter.
 struct GpuMaterial {
   gl::Buffer block;        // the Material block of shaders/scene/surface_frag.glsl
@@ -37,7 +40,7 @@ class GpuCharacter {
  public:
   // Uploads `character` and keeps no reference to it. Errors: kInvalidArgument (a mesh or material
   // refers to something that does not exist), kLimit (more layers or larger textures than the
-  // driver supports).
+  // driver supports; kMaxMorphBytes).
   [[nodiscard]] static Result<std::unique_ptr<GpuCharacter>> Create(
       const character::Character& character);
 
@@ -55,6 +58,9 @@ class GpuCharacter {
   [[nodiscard]] const WrinkleLayout& layout() const { return layout_; }
   // Heights of the wrinkle maps, in the order of WrinkleLayout::height_layers.
   [[nodiscard]] const WrinkleHeights& heights() const { return heights_; }
+  // Upper bound, in metres, of the way of any vertex from the rest pose by morph targets. `shapes`:
+  // weights of the character's shapes.
+  [[nodiscard]] float MorphReach(std::span<const float> shapes) const;
   // Returns the index in GpuMesh::levels of the coarsest level of mesh `mesh` with an error of at
   // most `metres`. Computes the mesh's levels the first time that a level above 0 may be used.
   [[nodiscard]] int Level(std::size_t mesh, float metres);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/scene/posed_meshes.h"
 
+#include <algorithm>
+
 #include "base/status.h"
 
 namespace furrow::render {
@@ -62,14 +64,14 @@ PosedMeshes::Source PosedMeshes::SourceOf(std::size_t mesh, Form form) {
     case Form::kIndexed: break;
     case Form::kUnindexed: {
       const GpuMesh& unindexed = gpu_->Unindexed(mesh);
-      return {unindexed.vertex_array.name(), unindexed.num_vertices, 0};
+      return {mesh, unindexed.vertex_array.name(), unindexed.num_vertices, 0};
     }
     case Form::kPatches: {
       const GpuPatches& patches = gpu_->Patches(mesh);
-      return {patches.vertex_array.name(), indexed.num_vertices, patches.indices.name()};
+      return {mesh, patches.vertex_array.name(), indexed.num_vertices, patches.indices.name()};
     }
   }
-  return {indexed.vertex_array.name(), indexed.num_vertices, indexed.indices.name()};
+  return {mesh, indexed.vertex_array.name(), indexed.num_vertices, indexed.indices.name()};
 }
 
 Result<PosedMeshes::Vertices> PosedMeshes::Get(std::size_t mesh, Form form,
@@ -124,22 +126,38 @@ Status PosedMeshes::Pose(const Source& source, const PoseShader& shader,
 
   glUseProgram(*program);
   glBindVertexArray(source.vertex_array);
-  glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, posed->vertices.name());
-  // Points make transform feedback write each vertex once, in order, whatever the triangles share.
-  // Nothing is rasterized.
-  glEnable(GL_RASTERIZER_DISCARD);
-  glBeginTransformFeedback(GL_POINTS);
-  glDrawArraysInstanced(GL_POINTS, 0, source.num_vertices, static_cast<GLsizei>(subjects.size()));
-  glEndTransformFeedback();
-  glDisable(GL_RASTERIZER_DISCARD);
-  // Later passes read the buffer as vertices, so it must not stay bound for feedback.
-  glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
-
+  Capture(source, shader, subjects, posed->vertices);
   DescribePosed(posed->vertex_array.name(), posed->vertices, shader);
   glVertexArrayElementBuffer(posed->vertex_array.name(), source.indices);
   posed->per_subject = source.num_vertices;
   posed->is_fresh = true;
   return {};
+}
+
+// A crowd of morphed faces is captured in parts, because the sums of all faces may not fit one
+// buffer. The vertices of the parts follow one another.
+void PosedMeshes::Capture(const Source& source, const PoseShader& shader,
+                          std::span<const std::uint32_t> subjects, const gl::Buffer& vertices) {
+  const auto subject_bytes = static_cast<std::size_t>(source.num_vertices) * Layout(shader).stride;
+  const bool is_morphed = shader.morph_parts > 0;
+  const std::size_t most = is_morphed ? morphs_->MaxSubjects(source.mesh) : subjects.size();
+  // Points make transform feedback write each vertex once, in order, whatever the triangles share.
+  // Nothing is rasterized.
+  glEnable(GL_RASTERIZER_DISCARD);
+  for (std::size_t first = 0; first < subjects.size(); first += most) {
+    const std::size_t count = std::min(most, subjects.size() - first);
+    if (is_morphed) morphs_->Bind(source.mesh, subjects.subspan(first, count));
+    glBindBufferRange(GL_TRANSFORM_FEEDBACK_BUFFER, 0, vertices.name(),
+                      static_cast<GLintptr>(first * subject_bytes),
+                      static_cast<GLsizeiptr>(count * subject_bytes));
+    glBeginTransformFeedback(GL_POINTS);
+    glDrawArraysInstancedBaseInstance(GL_POINTS, 0, source.num_vertices,
+                                      static_cast<GLsizei>(count), static_cast<GLuint>(first));
+    glEndTransformFeedback();
+  }
+  glDisable(GL_RASTERIZER_DISCARD);
+  // Later passes read the buffer as vertices, so it must not stay bound for feedback.
+  glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
 }
 
 }  // namespace furrow::render

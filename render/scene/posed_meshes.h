@@ -9,6 +9,7 @@
 
 #include "render/gl/shader_library.h"
 #include "render/scene/gpu_character.h"
+#include "render/scene/morph_sums.h"
 #include "render/wrinkles/wrinkle_table.h"
 
 namespace furrow::render {
@@ -21,8 +22,9 @@ class PosedMeshes {
   enum class Form { kIndexed, kUnindexed, kPatches };
   static constexpr std::size_t kMaxVertices = std::size_t{1} << 24;  // per mesh, over all subjects
 
-  // Both arguments must outlive this object.
-  PosedMeshes(GpuCharacter* gpu, ShaderLibrary* shaders) : gpu_(gpu), shaders_(shaders) {}
+  // All arguments must outlive this object.
+  PosedMeshes(GpuCharacter* gpu, MorphSums* morphs, ShaderLibrary* shaders)
+      : gpu_(gpu), morphs_(morphs), shaders_(shaders) {}
 
   // Marks all posed vertices as outdated.
   void BeginFrame();
@@ -35,8 +37,8 @@ class PosedMeshes {
   // `subjects`, ascending numbers of the frame's subjects, at least one. With PoseShader::dynamic
   // they have dynamic masks for the maps of `part`. Repeated calls within a frame reuse the
   // vertices unless they ask for other masks. Requires that SceneBuffers has bound joints and
-  // dynamic masks; changes the current program. Errors: kLimit (kMaxVertices), kInternal (a
-  // shader).
+  // dynamic masks, and that MorphSums has this frame's weights; changes the current program.
+  // Errors: kLimit (kMaxVertices), kInternal (a shader).
   [[nodiscard]] Result<Vertices> Get(std::size_t mesh, Form form, const PoseShader& shader,
                                      WrinklePart part, std::span<const std::uint32_t> subjects);
 
@@ -51,6 +53,7 @@ class PosedMeshes {
     bool is_fresh = false;
   };
   struct Source {
+    std::size_t mesh = 0;
     GLuint vertex_array = 0;
     GLsizei num_vertices = 0;
     GLuint indices = 0;  // 0: none
@@ -60,7 +63,11 @@ class PosedMeshes {
   [[nodiscard]] Status Pose(const Source& source, const PoseShader& shader,
                             std::span<const std::uint32_t> subjects, Posed* posed);
 
+  void Capture(const Source& source, const PoseShader& shader,
+               std::span<const std::uint32_t> subjects, const gl::Buffer& vertices);
+
   GpuCharacter* gpu_;
+  MorphSums* morphs_;
   ShaderLibrary* shaders_;
   std::map<std::pair<std::size_t, Form>, Posed> posed_;
 };

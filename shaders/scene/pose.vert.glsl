@@ -3,6 +3,9 @@
 #if WRINKLE_DYNAMIC
 #include "wrinkles/wrinkles_vert.glsl"
 #endif
+#if MORPH_PARTS
+#include "scene/morph.glsl"
+#endif
 
 // Poses a mesh for several subjects, one per instance. It draws nothing: transform feedback
 // captures the output for every pass that draws the mesh (render/scene/posed_meshes.h).
@@ -18,6 +21,9 @@ layout(location = 5) in vec4 a_skin_weights;
 layout(location = 6) in float a_share;  // share of the heights; 0 on the mesh's border
 #endif
 layout(location = 7) in uint a_subject;
+#if MORPH_PARTS
+layout(location = 8) in uint a_morph_row;
+#endif
 
 layout(xfb_buffer = 0, xfb_stride = 52 + 4 * DISPLACED + 16 * WRINKLE_DYNAMIC * MAP_SLOTS) out;
 layout(location = 0, xfb_offset = 0) out vec3 p_position;  // model space of the picture
@@ -34,15 +40,28 @@ layout(location = 6, xfb_offset = 52 + 4 * DISPLACED) out vec4 p_dynamic_masks[M
 
 void main() {
   SkinMatrix skin = blendJoints(a_subject, a_joints, a_skin_weights);
-  p_position = skinPoint(skin, a_position);
-  p_normal = skinDirection(skin, a_normal);
-  p_tangent = vec4(skinDirection(skin, a_tangent.xyz), a_tangent.w);
+  vec3 position = a_position;
+  vec3 normal = a_normal;
+  vec3 tangent = a_tangent.xyz;
+#if MORPH_PARTS
+  position += morphSum(a_morph_row, 0u);
+#endif
+#if MORPH_PARTS > 1
+  normal = morphDirection(normal, morphSum(a_morph_row, 1u));
+#endif
+#if MORPH_PARTS > 2
+  tangent = morphDirection(tangent, morphSum(a_morph_row, 2u));
+#endif
+  p_position = skinPoint(skin, position);
+  p_normal = skinDirection(skin, normal);
+  p_tangent = vec4(skinDirection(skin, tangent), a_tangent.w);
   p_uv = a_uv;
   p_subject = a_subject;
 #if DISPLACED
   p_share = a_share;
 #endif
 #if WRINKLE_DYNAMIC
+  // By the rest pose: masks belong to places of the skin, which morph targets move along.
   dynamicMasksAt(a_position, a_subject, a_joints, a_skin_weights, p_dynamic_masks);
 #endif
 }

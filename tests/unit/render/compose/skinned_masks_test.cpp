@@ -214,7 +214,7 @@ TEST(SkinnedMasks, RegionsAreTheTrianglesThatAJointAffects) {
   EXPECT_EQ(masks.regions()[0].channel, 0);
   const std::vector<glm::mat4> rest(kJoints, glm::mat4(1.0f));
   glm::mat4 projection(1.0f);
-  const auto extent = masks.regions()[0].bounds.Look(rest, projection);
+  const auto extent = masks.regions()[0].bounds.Look({rest, {}}, projection);
   EXPECT_NEAR(extent.low.x, 0.5f, 1e-5f);  // the last vertex that is not affected
   EXPECT_NEAR(extent.high.x, 1.0f, 1e-5f);
   EXPECT_NEAR(masks.regions()[0].uv_per_metre, 1.0f, 1e-4f);

@@ -154,7 +154,7 @@ TEST_F(RestrictedPasses, MatchUnrestrictedPasses) {
     const auto whole = Draw(request, {{0, 0, kSize, kSize}, false});
     const JointBounds bounds(head_, [](const character::Material&) { return true; });
     const ScreenRect rect =
-        bounds.Project(subject_.model, scene_.setup().camera.view_projection, kSize, kSize)
+        bounds.Project({subject_.model, {}}, scene_.setup().camera.view_projection, kSize, kSize)
             .Grown(1, kSize, kSize);
     ASSERT_LT((rect.x1 - rect.x0) * (rect.y1 - rect.y0), kSize * kSize);
     const auto restricted = Draw(request, {rect, true});

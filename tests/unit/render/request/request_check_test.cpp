@@ -80,6 +80,26 @@ TEST_F(RequestCheck, NamesTheInvalidSubject) {
   ExpectRefused("placement", [](FrameRequest& r) { r.placement[0].y = 1.0f; });
 }
 
+TEST_F(RequestCheck, ShapesAreOnePerShapeOrNone) {
+  FrameRequest request;
+  request.model = model_;
+  EXPECT_TRUE(CheckRequest(request, 2, 3).ok());
+  std::vector<float> shapes = {0.5f, -7.0f, 9.0f};  // drawn, limited
+  request.shapes = shapes;
+  EXPECT_TRUE(CheckRequest(request, 2, 3).ok());
+  for (const std::size_t num_shapes : {0, 2, 4}) {
+    const Status status = CheckRequest(request, 2, num_shapes);
+    EXPECT_EQ(status.code(), StatusCode::kInvalidArgument);
+    EXPECT_EQ(status.where(), "shapes");
+  }
+  shapes[1] = kNan;
+  EXPECT_EQ(CheckRequest(request, 2, 3).code(), StatusCode::kNonFinite);
+  const std::vector<PosedSubject> others(2, request);
+  request.shapes = {};
+  request.others = others;
+  EXPECT_EQ(CheckRequest(request, 2, 3).where(), "others[0].shapes");
+}
+
 TEST_F(RequestCheck, LimitsTheNumberOfSubjects) {
   FrameRequest request;
   request.model = model_;

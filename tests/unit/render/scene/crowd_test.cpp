@@ -19,7 +19,7 @@ constexpr int kHeight = 120;
 constexpr int kNumPeople = 3;
 
 PosedSubject DrawnAs(const test::Subject& subject, const glm::mat4& placement) {
-  return {subject.model, &subject.binding, subject.weights, subject.driver_values, placement};
+  return {subject.model, {}, &subject.binding, subject.weights, subject.driver_values, placement};
 }
 
 glm::mat4 Spot(int i) {
@@ -99,7 +99,8 @@ class Crowd : public testing::Test {
       }
       most = std::max(most, covered);
     }
-    EXPECT_GT(most, 100) << "nothing is visible";  // the masks of a neutral subject are black on black
+    EXPECT_GT(most, 100)
+        << "nothing is visible";  // the masks of a neutral subject are black on black
     return NumDifferent(all, composed, 1);
   }
 

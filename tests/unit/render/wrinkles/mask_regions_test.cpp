@@ -25,7 +25,7 @@ class MaskRegionsTest : public testing::Test {
     projection[0][0] = 10.0f;
     projection[1][1] = 1.0f;
     projection[3] = {0.0f, -1.6f, 0.0f, 1.0f};
-    const auto extent = region.bounds.Look(subject_.model, projection);
+    const auto extent = region.bounds.Look({subject_.model, {}}, projection);
     return {extent.low.x, extent.high.x};
   }
 
