@@ -154,6 +154,7 @@ void Daemon::MakeHub() {
   // Without a renderer no stream is retargeted to the character, which saves work for each
   // skeleton.
   parts.character = render_ != nullptr ? &assets_.character->skeleton : nullptr;
+  if (render_ != nullptr) parts.shapes = assets_.character->shapes;
   parts.skeletons = assets_.skeletons;
   parts.pictures = render_.get();
   parts.settings = assets_.settings;

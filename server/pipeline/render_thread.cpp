@@ -102,12 +102,13 @@ void RenderThread::Draw(RenderJob job) {
   if (renderer_ == nullptr && !Revive()) return Fail(std::move(job));
   const Snapshot& snapshot = *job.snapshot;
   // Retargeting runs here, not on the network thread: only poses that are drawn pay for it.
-  if (drawn_.Run(*snapshot.retarget, *snapshot.blend_shape_pose, snapshot.joints,
-                 snapshot.blend_shapes) != wrinkle::JobStatus::kOk) {
+  if (drawn_.Run({*snapshot.retarget, *snapshot.blend_shape_pose, snapshot.shape_program.get()},
+                 snapshot.joints, snapshot.blend_shapes) != wrinkle::JobStatus::kOk) {
     return Fail(std::move(job));
   }
   render::FrameRequest request;
   request.model = drawn_.model();
+  request.shapes = drawn_.shapes();
   request.binding = snapshot.binding.get();
   request.wrinkle_weights = snapshot.wrinkle_weights;
   request.filtered_values = snapshot.filtered_values;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "wrinkle/shapes/blend_shape_pose.h"
+#include "wrinkle/shapes/shape_program.h"
 #include "wrinkle/skeleton/retarget.h"
 #include "wrinkle/solver/solver.h"
 
@@ -22,6 +23,7 @@ struct Snapshot {
   std::shared_ptr<const wrinkle::Retarget>
       retarget;  // from the stream's skeleton to the character's
   std::shared_ptr<const wrinkle::BlendShapePose> blend_shape_pose;
+  std::shared_ptr<const wrinkle::ShapeProgram> shape_program;  // null: no shapes
   std::vector<wrinkle::Transform> joints;  // local transforms, stream's skeleton
   std::vector<float> blend_shapes;         // in the stream's order
   std::vector<float> wrinkle_weights;      // in the order of the binding

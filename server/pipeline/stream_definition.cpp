@@ -97,13 +97,15 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Make(
     definition->joint_of_wire[static_cast<std::size_t>(skeleton.source_index()[joint])] =
         static_cast<std::int16_t>(joint);
   }
-  // The character has its own skeleton: the pose is carried over joint by joint, and the rig's
-  // blend shapes move it through BlendShapePose.
+  // The character has its own skeleton: the pose is carried over joint by joint, and blend shapes
+  // move it through its own shapes or, where it has none of the name, through the rig's poses.
   if (character_ != nullptr) {
     definition->retarget =
         std::make_shared<const wrinkle::Retarget>(rig::MakeRetarget(match, skeleton, *character_));
     definition->blend_shape_pose = std::make_shared<const wrinkle::BlendShapePose>(
-        wrinkle::BlendShapePose::Create(*rig_, *character_, blend_shapes));
+        wrinkle::BlendShapePose::Create(*rig_, *character_, blend_shapes, shapes_));
+    definition->shape_program = std::make_shared<const wrinkle::ShapeProgram>(
+        wrinkle::ShapeProgram::ByName(blend_shapes, shapes_));
   }
   definition->binding = std::make_shared<const wrinkle::RigBinding>(*std::move(binding));
   definition->skeleton = std::move(skeleton);
@@ -154,6 +156,7 @@ void StreamDefinitions::Report(const StreamDefinition& stream,
         "--rig");
   }
   draws_any |= stream.blend_shape_pose != nullptr && !stream.blend_shape_pose->empty();
+  draws_any |= stream.shape_program != nullptr && !stream.shape_program->empty();
   if (character_ != nullptr && !draws_any) {
     spdlog::warn(
         "the stream and the character have no joint in common, so pictures show the rest pose; "

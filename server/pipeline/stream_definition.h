@@ -6,6 +6,7 @@
 #include <list>
 #include <memory>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "wrinkle/rig/rig.h"
 #include "wrinkle/rig/rig_joints.h"
 #include "wrinkle/shapes/blend_shape_pose.h"
+#include "wrinkle/shapes/shape_program.h"
 #include "wrinkle/skeleton/retarget.h"
 #include "wrinkle/skeleton/skeleton.h"
 #include "wrinkle/solver/solver.h"
@@ -34,9 +36,10 @@ struct StreamDefinition {
   std::vector<std::int16_t> joint_of_wire;  // wire index -> index in `skeleton`
   rig::SkeletonMatch match;                 // how a skeleton map has matched the rig's joints
   std::shared_ptr<const wrinkle::RigBinding> binding;
-  // These two move the character by the stream's poses; null if nothing is rendered.
+  // These three move the character by the stream's poses; null if nothing is rendered.
   std::shared_ptr<const wrinkle::Retarget> retarget;
   std::shared_ptr<const wrinkle::BlendShapePose> blend_shape_pose;
+  std::shared_ptr<const wrinkle::ShapeProgram> shape_program;
 };
 
 // Creates stream definitions and keeps the `capacity` most recently used ones, so that a sender
@@ -44,13 +47,16 @@ struct StreamDefinition {
 class StreamDefinitions {
  public:
   // `character`: outlives this object; null: nothing is rendered. `matcher` finds the joints of
-  // skeletons with other joint names than the rig and the character.
+  // skeletons with other joint names than the rig and the character. `shapes`: the character's;
+  // outlive this object.
   StreamDefinitions(std::shared_ptr<const wrinkle::Rig> rig, const wrinkle::Skeleton* character,
-                    std::size_t capacity, rig::SkeletonMatcher matcher = {})
+                    std::size_t capacity, rig::SkeletonMatcher matcher = {},
+                    std::span<const std::string> shapes = {})
       : rig_(std::move(rig)),
         character_(character),
         capacity_(capacity),
         matcher_(std::move(matcher)),
+        shapes_(shapes),
         rig_joints_(wrinkle::JointsOf(*rig_)) {}
 
   // Returns the definition of a stream, creating it if needed. `may_make` is called before a new
@@ -82,6 +88,7 @@ class StreamDefinitions {
   const wrinkle::Skeleton* character_;
   std::size_t capacity_;
   rig::SkeletonMatcher matcher_;
+  std::span<const std::string> shapes_;
   std::set<std::string> rig_joints_;                          // all joints that the rig reads
   std::list<std::shared_ptr<const StreamDefinition>> known_;  // most recently used first
 };

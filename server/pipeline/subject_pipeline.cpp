@@ -121,6 +121,7 @@ std::shared_ptr<const Snapshot> SubjectPipeline::TakeSnapshot(std::int64_t age_u
   snapshot->binding = stream_->binding;
   snapshot->retarget = stream_->retarget;
   snapshot->blend_shape_pose = stream_->blend_shape_pose;
+  snapshot->shape_program = stream_->shape_program;
   snapshot->joints = pose_.joints;
   snapshot->blend_shapes = pose_.blend_shapes;
   snapshot->wrinkle_weights.assign(weights.begin(), weights.end());

@@ -48,6 +48,7 @@ class Hub {
     std::shared_ptr<const wrinkle::Rig> rig;
     rig::SkeletonMatcher skeletons;                // finds the rig's joints in foreign skeletons
     const wrinkle::Skeleton* character = nullptr;  // null: render nothing
+    std::span<const std::string> shapes;           // the character's; outlive the hub
     PictureSource* pictures = nullptr;             // null: render nothing
     render::Settings settings;                     // defaults for all pictures
     Metrics* metrics = nullptr;

@@ -12,16 +12,25 @@
 #include "wrinkle/skeleton/reference_pose.h"
 
 namespace furrow::wrinkle {
+namespace {
+
+bool HasName(std::span<const std::string> names, const std::string& name) {
+  return std::ranges::any_of(names,
+                             [&](const std::string& one) { return EqualsIgnoreCase(one, name); });
+}
+
+}  // namespace
 
 BlendShapePose BlendShapePose::Create(const Rig& rig, const Skeleton& skeleton,
-                                      std::span<const std::string> blend_shapes) {
+                                      std::span<const std::string> blend_shapes,
+                                      std::span<const std::string> shapes) {
   BlendShapePose result;
   result.num_joints_ = static_cast<std::size_t>(skeleton.num_joints());
   for (std::size_t shape = 0; shape < blend_shapes.size(); ++shape) {
     const auto pose = std::find_if(
         rig.reference_poses.begin(), rig.reference_poses.end(),
         [&](const ReferencePose& p) { return EqualsIgnoreCase(p.name, blend_shapes[shape]); });
-    if (pose == rig.reference_poses.end()) continue;
+    if (pose == rig.reference_poses.end() || HasName(shapes, blend_shapes[shape])) continue;
     const float scale = ReferencePoseScale(*pose, skeleton);
     for (const JointDelta& delta : pose->joints) {
       const int joint = skeleton.Find(delta.joint);

@@ -20,9 +20,11 @@ class BlendShapePose {
   BlendShapePose() = default;  // moves nothing
 
   // `blend_shapes`: the stream's names, in its order. Names without a pose, and joints that
-  // `skeleton` lacks, are ignored.
+  // `skeleton` lacks, are ignored. `shapes`: the shapes of the skeleton's meshes. A blend shape of
+  // their name moves them alone: an eyeball that both its joint and a shape turn would turn twice.
   [[nodiscard]] static BlendShapePose Create(const Rig& rig, const Skeleton& skeleton,
-                                             std::span<const std::string> blend_shapes);
+                                             std::span<const std::string> blend_shapes,
+                                             std::span<const std::string> shapes = {});
 
   // True if no blend shape of the stream moves a joint.
   [[nodiscard]] bool empty() const { return moves_.empty(); }

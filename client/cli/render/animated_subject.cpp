@@ -21,8 +21,9 @@ Result<std::unique_ptr<AnimatedSubject>> AnimatedSubject::Create(
   self->solver_ = std::make_unique<wrinkle::SubjectSolver>(
       std::make_shared<const wrinkle::RigBinding>(std::move(*binding)));
   self->retarget_ = rig::MakeRetarget(match, take.skeleton, character.skeleton);
-  self->blend_shape_pose_ =
-      wrinkle::BlendShapePose::Create(character.rig, character.skeleton, take.blend_shape_names);
+  self->blend_shape_pose_ = wrinkle::BlendShapePose::Create(
+      character.rig, character.skeleton, take.blend_shape_names, character.shapes);
+  self->shape_program_ = wrinkle::ShapeProgram::ByName(take.blend_shape_names, character.shapes);
   // Pictures would all show the rest pose.
   if (take.blend_shape_names.empty() &&
       self->retarget_.unmatched_source().size() == take.skeleton.joint_names().size()) {
@@ -37,8 +38,8 @@ Status AnimatedSubject::Advance(int frame) {
   clip_->GetPose(frame, &pose_);
   const bool solved =
       solver_->Update(pose_, motion::CaptureStep(*clip_, frame)) == wrinkle::JobStatus::kOk &&
-      drawn_->Run(retarget_, blend_shape_pose_, pose_.joints, pose_.blend_shapes) ==
-          wrinkle::JobStatus::kOk;
+      drawn_->Run({retarget_, blend_shape_pose_, &shape_program_}, pose_.joints,
+                  pose_.blend_shapes) == wrinkle::JobStatus::kOk;
   if (!solved)
     return {StatusCode::kInternal, "frame " + std::to_string(frame) + " could not be solved"};
   return {};
@@ -46,6 +47,7 @@ Status AnimatedSubject::Advance(int frame) {
 
 render::PosedSubject AnimatedSubject::subject() const {
   return {.model = drawn_->model(),
+          .shapes = drawn_->shapes(),
           .binding = &solver_->binding(),
           .wrinkle_weights = solver_->wrinkle_weights(),
           .filtered_values = solver_->filtered_values()};

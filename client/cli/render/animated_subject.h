@@ -35,6 +35,7 @@ class AnimatedSubject {
   std::shared_ptr<const motion::Clip> clip_;
   wrinkle::Retarget retarget_;
   wrinkle::BlendShapePose blend_shape_pose_;
+  wrinkle::ShapeProgram shape_program_;
   std::unique_ptr<wrinkle::SubjectSolver> solver_;
   wrinkle::LocalPose pose_;
   std::optional<wrinkle::CharacterPose> drawn_;

@@ -25,7 +25,8 @@ struct Script {
   std::deque<Status> submit;
   std::deque<Status> poll;
   std::latch* hold_first_submit = nullptr;
-  std::deque<int> samples;  // of the rendered requests
+  std::deque<int> samples;                 // of the rendered requests
+  std::vector<std::vector<float>> shapes;  // of the same
   int num_created = 0;
 
   static Status Next(std::deque<Status>* of) {
@@ -44,6 +45,7 @@ class ScriptedRenderer : public render::Renderer {
     Status status = Script::Next(&script_->submit);
     if (status.ok()) ++in_flight_;
     if (status.ok()) script_->samples.push_back(request.settings.anti_aliasing.samples);
+    if (status.ok()) script_->shapes.emplace_back(request.shapes.begin(), request.shapes.end());
     return status;
   }
   Result<render::Image> Poll(bool) override {
@@ -117,6 +119,8 @@ class RenderThreadTest : public testing::Test {
     snapshot->retarget =
         std::make_shared<const wrinkle::Retarget>(wrinkle::Retarget::Create(skeleton, skeleton));
     snapshot->blend_shape_pose = std::make_shared<const wrinkle::BlendShapePose>();
+    snapshot->shape_program = shape_program;
+    snapshot->blend_shapes = {0.25f};
     snapshot->joints.assign(skeleton.rest_pose().begin(), skeleton.rest_pose().end());
     PictureSpec spec{
         .width = 16, .height = 16, .settings = std::make_shared<const render::Settings>(settings)};
@@ -126,11 +130,26 @@ class RenderThreadTest : public testing::Test {
 
   wrinkle::Skeleton skeleton =
       wrinkle::Skeleton::Create({{.name = "head", .parent = wrinkle::kNoJoint}}).value();
+  std::shared_ptr<const wrinkle::ShapeProgram> shape_program;  // of the next snapshots
   Script script;
   Metrics metrics;
   Pictures pictures;
   std::unique_ptr<RenderThread> thread;  // destroyed first
 };
+
+TEST_F(RenderThreadTest, TheRequestHasTheWeightsOfTheShapes) {
+  Start();
+  Submit(1);
+  EXPECT_EQ(pictures.Take().sequence, 1u);
+  const std::vector<std::string> stream = {"jawOpen"};
+  const std::vector<std::string> face = {"cheekPuff", "jawOpen"};
+  shape_program =
+      std::make_shared<const wrinkle::ShapeProgram>(wrinkle::ShapeProgram::ByName(stream, face));
+  Submit(2);
+  EXPECT_EQ(pictures.Take().sequence, 2u);
+  thread.reset();
+  EXPECT_EQ(script.shapes, (std::vector<std::vector<float>>{{}, {0.0f, 0.25f}}));
+}
 
 TEST_F(RenderThreadTest, ALostContextIsCreatedAgain) {
   script.submit = {Status(), kLost};

@@ -194,6 +194,30 @@ TEST(StreamDefinitions, AStreamThatMatchesNothingIsLoggedOnce) {
   EXPECT_EQ(log.text(), once);
 }
 
+TEST(StreamDefinitions, BlendShapesMoveTheCharactersShapes) {
+  const wrinkle::Skeleton character = Head("neck");
+  const std::vector<std::string> shapes = {"cheekPuff", "jawOpen"};
+  StreamOffer offer;
+  offer.blend_shapes = {"JawOpen", "tongueOut"};
+  LogCapture log;
+  StreamDefinitions definitions(KneeRig(), &character, 4, {}, shapes);
+  const auto definition = definitions.Get(offer);
+  ASSERT_TRUE(definition.ok()) << definition.status().ToString();
+  EXPECT_THAT(log.text(), Not(HasSubstr("pictures show the rest pose")));
+  SubjectPipeline subject(*definition);
+  subject.mutable_pose()->blend_shapes = {0.5f, 1.0f};
+  ASSERT_EQ(subject.Solve(1, 1000), wrinkle::JobStatus::kOk);
+  const auto snapshot = subject.TakeSnapshot(0);
+  ASSERT_NE(snapshot->shape_program, nullptr);
+  std::vector<float> weights(2);
+  ASSERT_EQ(snapshot->shape_program->Run(snapshot->blend_shapes, weights), wrinkle::JobStatus::kOk);
+  EXPECT_EQ(weights, (std::vector<float>{0.0f, 0.5f}));
+  // Without shapes nothing of the character moves, which is said.
+  StreamDefinitions none(KneeRig(), &character, 4);
+  ASSERT_TRUE(none.Get(offer).ok());
+  EXPECT_THAT(log.text(), HasSubstr("pictures show the rest pose"));
+}
+
 TEST(StreamDefinitions, IgnoredJointsAreLogged) {
   const wrinkle::Skeleton character = Head("foot");
   for (const wrinkle::Skeleton* drawn :

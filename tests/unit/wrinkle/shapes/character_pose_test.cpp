@@ -53,7 +53,7 @@ TEST(CharacterPose, CarriesThePoseOverAndPutsTheBlendShapesUponIt) {
     ASSERT_EQ(retarget.Run(pose.joints, local), JobStatus::kOk);
     const int brow = target.Find("brow_l");
     ApplyJointDelta(kLift, target, brow, 0.5f, &local[brow]);
-    ASSERT_EQ(drawn.Run(retarget, shapes, pose.joints, std::vector<float>{0.5f}), JobStatus::kOk);
+    ASSERT_EQ(drawn.Run({retarget, shapes}, pose.joints, std::vector<float>{0.5f}), JobStatus::kOk);
     for (const std::string& name : target.joint_names()) {
       const glm::vec3 at(drawn.model()[target.Find(name)][3]);
       EXPECT_LT(glm::distance(at, OriginOf(target, local, name)), 1e-4f) << name;
@@ -67,12 +67,36 @@ TEST(CharacterPose, ForgetsTheBlendShapesOfThePoseBefore) {
   const BlendShapePose shapes = BlendShapePose::Create(BrowLift(), body, kShapes);
   const LocalPose rest = RestPose(body);
   CharacterPose drawn(&body);
-  ASSERT_EQ(drawn.Run(retarget, shapes, rest.joints, {}), JobStatus::kOk);
+  ASSERT_EQ(drawn.Run({retarget, shapes}, rest.joints, {}), JobStatus::kOk);
   const glm::mat4 before = drawn.model()[body.Find("brow_l")];
-  ASSERT_EQ(drawn.Run(retarget, shapes, rest.joints, std::vector<float>{1.0f}), JobStatus::kOk);
+  ASSERT_EQ(drawn.Run({retarget, shapes}, rest.joints, std::vector<float>{1.0f}), JobStatus::kOk);
   EXPECT_NE(drawn.model()[body.Find("brow_l")], before);
-  ASSERT_EQ(drawn.Run(retarget, shapes, rest.joints, {}), JobStatus::kOk);
+  ASSERT_EQ(drawn.Run({retarget, shapes}, rest.joints, {}), JobStatus::kOk);
   EXPECT_EQ(drawn.model()[body.Find("brow_l")], before);
+}
+
+TEST(CharacterPose, GivesTheWeightsOfTheShapes) {
+  const Skeleton body = MakeBody(2);
+  const Retarget retarget = Retarget::Create(body, body);
+  const std::vector<std::string> shapes = {"jawOpen", "BrowOuterUpLeft"};
+  const ShapeProgram program = ShapeProgram::ByName(kShapes, shapes);
+  const LocalPose rest = RestPose(body);
+  CharacterPose drawn(&body);
+  const std::vector<float> half = {0.5f};
+  ASSERT_EQ(drawn.Run({retarget, BlendShapePose(), &program}, rest.joints, half), JobStatus::kOk);
+  EXPECT_EQ(std::vector<float>(drawn.shapes().begin(), drawn.shapes().end()),
+            (std::vector<float>{0.0f, 0.5f}));
+  ASSERT_EQ(drawn.Run({retarget, BlendShapePose()}, rest.joints, half), JobStatus::kOk);
+  EXPECT_TRUE(drawn.shapes().empty());
+}
+
+// An eyeball with a shape and a joint would turn twice.
+TEST(CharacterPose, AShapeOfTheNameReplacesTheJoints) {
+  const Skeleton body = MakeBody(2);
+  const std::vector<std::string> other = {"jawOpen"};
+  const std::vector<std::string> same = {"jawOpen", "BrowOuterUpLeft"};
+  EXPECT_FALSE(BlendShapePose::Create(BrowLift(), body, kShapes, other).empty());
+  EXPECT_TRUE(BlendShapePose::Create(BrowLift(), body, kShapes, same).empty());
 }
 
 TEST(CharacterPose, APoseOfAnotherSkeletonFails) {
@@ -80,7 +104,8 @@ TEST(CharacterPose, APoseOfAnotherSkeletonFails) {
   const Retarget retarget = Retarget::Create(body, body);
   LocalPose pose = RestPose(body);
   pose.joints.pop_back();
-  EXPECT_NE(CharacterPose(&body).Run(retarget, {}, pose.joints, {}), JobStatus::kOk);
+  EXPECT_NE(CharacterPose(&body).Run({retarget, BlendShapePose()}, pose.joints, {}),
+            JobStatus::kOk);
 }
 
 }  // namespace
