@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rig/shapes/rig_shapes.h"
+
+#include <algorithm>
+
+#include "base/ascii.h"
+#include "rig/shapes/arkit_shapes.h"
+
+namespace furrow::rig {
+namespace {
+
+// Each blend shape once, although several drivers may read it.
+void AddTarget(const std::string& name, std::vector<std::string>* targets) {
+  const auto is_same = [&](const std::string& known) { return EqualsIgnoreCase(known, name); };
+  if (std::ranges::none_of(*targets, is_same)) targets->push_back(name);
+}
+
+std::vector<std::string> ShapesOfDrivers(const wrinkle::Rig& rig) {
+  std::vector<std::string> targets;
+  for (const wrinkle::Driver& driver : rig.drivers) {
+    if (driver.kind == wrinkle::Driver::Kind::kBlendShape) {
+      AddTarget(driver.blend_shape.blend_shape, &targets);
+    }
+  }
+  return targets;
+}
+
+// Reference poses are named freely ("jaw_open" is a pose of the default rig), so only ARKit's exact
+// names count as blend shapes, and names that the stream itself has.
+std::vector<std::string> ShapesOfPoses(const wrinkle::Rig& rig,
+                                       std::span<const std::string> stream) {
+  std::vector<std::string> targets;
+  for (const wrinkle::ReferencePose& pose : rig.reference_poses) {
+    const bool in_stream = std::ranges::any_of(
+        stream, [&](const std::string& name) { return EqualsIgnoreCase(name, pose.name); });
+    if (in_stream || FindArkitShape(pose.name) >= 0) AddTarget(pose.name, &targets);
+  }
+  return targets;
+}
+
+}  // namespace
+
+RigShapes::RigShapes(const ShapeMatcher& matcher, std::span<const std::string> stream,
+                     const wrinkle::Rig& rig)
+    : num_of_stream_(stream.size()),
+      driver_names_(stream.begin(), stream.end()),
+      pose_names_(stream.begin(), stream.end()) {
+  // A body tracker's stream has nothing to translate.
+  if (stream.empty()) return;
+  const std::vector<std::string> drivers = ShapesOfDrivers(rig);
+  drivers_ = matcher.Match(stream, drivers);
+  Append(drivers_, drivers, &driver_names_, &pose_names_);
+  num_of_drivers_ = size() - num_of_stream_;
+  const std::vector<std::string> poses = ShapesOfPoses(rig, stream);
+  poses_ = matcher.Match(stream, poses);
+  Append(poses_, poses, &pose_names_, &driver_names_);
+}
+
+// Targets that the stream has by name keep the stream's own coefficient.
+void RigShapes::Append(const ShapeMatch& match, std::span<const std::string> targets,
+                       std::vector<std::string>* names, std::vector<std::string>* other) {
+  if (match.num_mapped() == 0) return;
+  for (std::size_t t = 0; t < targets.size(); ++t) {
+    const bool is_mapped =
+        match.by[t] != ShapeMatch::By::kNothing && match.by[t] != ShapeMatch::By::kSameName;
+    names->push_back(is_mapped ? targets[t] : std::string());
+    other->emplace_back();
+  }
+}
+
+void RigShapes::Extend(std::span<float> coefficients) const {
+  if (coefficients.size() < size() || size() == num_of_stream_) return;
+  const auto stream = coefficients.first(num_of_stream_);
+  const auto extension = coefficients.subspan(num_of_stream_);
+  // A status other than Ok means that the solver refuses the pose as well.
+  if (num_of_drivers_ > 0) (void)drivers_.program.Run(stream, extension.first(num_of_drivers_));
+  const auto poses = extension.subspan(num_of_drivers_);
+  if (!poses.empty()) (void)poses_.program.Run(stream, poses);
+}
+
+std::string RigShapes::Description() const {
+  // The drivers make the weights; a rig without them is described by its poses.
+  const std::string text = Describe(drivers_);
+  return text.empty() ? Describe(poses_) : text;
+}
+
+}  // namespace furrow::rig

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/status.h"
+#include "rig/shapes/shape_vocabulary.h"
+#include "wrinkle/shapes/shape_program.h"
+
+namespace furrow::rig {
+
+// A vocabulary fits a stream if it explains this many names. Fewer may be coincidence.
+inline constexpr int kMinShapes = 3;
+
+// How the blend shapes of a stream move the shapes of a face, or the blend shapes that a rig reads.
+struct ShapeMatch {
+  // What moves a target.
+  enum class By : std::uint8_t {
+    kNothing,
+    kSameName,     // matched without case
+    kNewName,      // the same shape in another spelling or vocabulary
+    kFormula,      // by a map's first formula
+    kFallback,     // by a later formula, or by a part of one
+    kCombination,  // a corrective: a product of other targets, or a tent of one
+  };
+
+  std::string stream_map;  // the maps' names; empty: none fits
+  std::string target_map;
+  wrinkle::ShapeProgram program;       // one weight per target
+  std::vector<By> by;                  // one per target
+  std::vector<std::string> missing;    // targets that nothing moves
+  std::vector<std::string> fallbacks;  // targets moved by kFallback
+  std::vector<std::string> unknown;    // names of the stream that its map does not know
+
+  // The number of targets that are moved otherwise than by their own name.
+  [[nodiscard]] int num_mapped() const;
+};
+
+// Finds the vocabularies of streams and faces, and translates between them.
+//
+// 1. A target takes the blend shape of the same name, else the same shape by another name.
+// 2. The stream's other blend shapes are translated to ARKit's shapes by the map of the stream, and
+//    these to the remaining targets by the map of the targets. A blend shape that a target has
+//    taken in step 1 moves nothing else, so that a face that has both ARKit's shapes and visemes
+//    does not open its mouth twice.
+// 3. Targets that are still missing take complete formulas of the other maps: a face without
+//    "jawOpen" opens its mouth by "viseme_aa".
+// 4. Correctives ("jawOpen_mouthSmileLeft", "a_x_b", "a__b", "jawOpen50") follow from their
+// targets.
+class ShapeMatcher {
+ public:
+  ShapeMatcher() = default;  // no maps: shapes match by equal names only
+  // `chosen`: the map of every stream; null: the best of `shipped` per stream.
+  explicit ShapeMatcher(std::vector<ShapeMap> shipped, const ShapeMap* chosen = nullptr);
+
+  // Loads the shipped maps, and the map for every stream if `name_or_file` is not empty. Errors:
+  // those of LoadShapeMap() and LoadShippedShapeMaps().
+  [[nodiscard]] static Result<ShapeMatcher> Create(const std::string& name_or_file);
+
+  // Empty names match nothing. Of equal names, the first counts. The result depends on the order of
+  // neither list. mouthClose, unless taken by its own name, is at most jawOpen: alone it would pull
+  // the lips apart.
+  [[nodiscard]] ShapeMatch Match(std::span<const std::string> stream,
+                                 std::span<const std::string> targets) const;
+
+  [[nodiscard]] std::span<const ShapeVocabulary> vocabularies() const { return targets_; }
+  // The vocabulary of a stream's names; null if none fits.
+  [[nodiscard]] const ShapeVocabulary* VocabularyOf(std::span<const std::string> stream) const;
+
+ private:
+  std::vector<ShapeVocabulary> streams_;
+  std::vector<ShapeVocabulary> targets_;
+  bool chosen_ = false;
+};
+
+// The program that moves a face's shapes by a stream: ShapeMatcher::Match().program.
+[[nodiscard]] wrinkle::ShapeProgram MatchShapes(const ShapeMatcher& matcher,
+                                                std::span<const std::string> stream,
+                                                std::span<const std::string> targets);
+
+// One line for a log: "shape map 'vrm0' to 'arkit': 23 of 23 blend shapes; by fallback: jawOpen;
+// missing: tongueOut". Empty if no map moves anything.
+[[nodiscard]] std::string Describe(const ShapeMatch& match);
+
+}  // namespace furrow::rig
