@@ -22,7 +22,6 @@ struct ShapeMapReport {
 // - Raised alone, a shape of ARKit must not lose its own value on the way to the vocabulary and
 //   back, and must not fall while it rises.
 // - The formula of a shape on one side must be the mirror image of that on the other side.
-// - A formula must not reach its limit of 1 before its inputs do: then it loses detail.
 [[nodiscard]] ShapeMapReport CheckShapeMap(const ShapeMap& map);
 
 // Formats a report for a terminal.

@@ -71,9 +71,10 @@ class ShapeMapReader {
                    std::vector<std::string>* texts) const;
   Status ReadHeader(const ShapeJson& root, ShapeMap* map);
   Status ReadSides(const ShapeJson& root);
-  // The two sides of an entry with a '*' in its name, or none.
+  // The two sides of an entry with a '*' in its name, or none. The names of ARKit need no "sides".
   [[nodiscard]] Result<std::vector<std::optional<MapSide>>> SidesOf(const std::string& key,
-                                                                    const std::string& field) const;
+                                                                    const std::string& field,
+                                                                    Names names) const;
   Status ListShapes(const ShapeJson& shapes, ShapeMap* map);
   Status IndexNames(const ShapeMap& map);
   Status AddName(const std::string& name, std::size_t shape, const ShapeMap& map);
@@ -161,14 +162,17 @@ Status ShapeMapReader::ReadHeader(const ShapeJson& root, ShapeMap* map) {
   return ReadSides(root);
 }
 
-Result<std::vector<std::optional<MapSide>>> ShapeMapReader::SidesOf(
-    const std::string& key, const std::string& field) const {
+Result<std::vector<std::optional<MapSide>>> ShapeMapReader::SidesOf(const std::string& key,
+                                                                    const std::string& field,
+                                                                    Names names) const {
   using Sides = std::vector<std::optional<MapSide>>;
   if (key.empty() || key.size() > kMaxShapeName) {
     return Error(field, "a name needs 1 to 255 bytes", StatusCode::kLimit);
   }
   if (!HasStar(key)) return Sides{std::nullopt};
-  if (left_.own.empty()) return Error(field, "a '*' in a name requires \"sides\"");
+  if (names == Names::kOwn && left_.own.empty()) {
+    return Error(field, "a '*' in a name requires \"sides\"");
+  }
   return Sides{left_, right_};
 }
 
@@ -179,7 +183,7 @@ Status ShapeMapReader::ListShapes(const ShapeJson& shapes, ShapeMap* map) {
   }
   for (const auto& [key, value] : shapes.items()) {
     const std::string field = "shapes." + Quoted(key);
-    const auto sides = SidesOf(key, field);
+    const auto sides = SidesOf(key, field, Names::kOwn);
     FURROW_RETURN_IF_ERROR(sides);
     for (const auto& side : *sides) {
       const std::string name = side ? WithSide(key, side->own) : key;
@@ -226,6 +230,9 @@ Status ShapeMapReader::ReadFactor(std::string_view word, const Entry& entry, Nam
   std::string name(word);
   if (HasStar(name)) {
     if (!entry.side) return Error(entry.field, "a '*' in a formula requires a '*' in its name");
+    if (names == Names::kOwn && entry.side->own.empty()) {
+      return Error(entry.field, "a '*' in a name requires \"sides\"");
+    }
     name = WithSide(name, names == Names::kArkit ? entry.side->arkit : entry.side->own);
   }
   if (names == Names::kArkit) {
@@ -364,7 +371,7 @@ Status ShapeMapReader::ReadArkit(const ShapeJson& arkit, ShapeMap* map) const {
   std::set<int> seen;
   for (const auto& [key, value] : arkit.items()) {
     const std::string field = "arkit." + Quoted(key);
-    const auto sides = SidesOf(key, field);
+    const auto sides = SidesOf(key, field, Names::kArkit);
     FURROW_RETURN_IF_ERROR(sides);
     for (const auto& side : *sides) {
       const int shape = FindArkitShape(side ? WithSide(key, side->arkit) : key);

@@ -24,6 +24,24 @@ ShapeInput Coefficient(std::size_t index) {
   return {.from = ShapeInput::From::kBlendShape, .index = static_cast<std::uint32_t>(index)};
 }
 
+// The shape of ARKit that a name of a vocabulary renames; -1: it is something else; nullopt: the
+// vocabulary does not know the name.
+std::optional<int> RenamedBy(const ShapeVocabulary* vocabulary, std::string_view name) {
+  const int found = vocabulary == nullptr ? -1 : vocabulary->Find(name).shape;
+  if (found < 0) return std::nullopt;
+  const auto& formulas = vocabulary->map().shapes[static_cast<std::size_t>(found)].from_arkit;
+  return formulas.empty() ? -1 : formulas.front().RenamedShape();
+}
+
+// Two vocabularies may use one name for different shapes: SRanipal's Jaw_Open is ARKit's jawOpen
+// less mouthClose. Such names go through the formulas.
+bool MeanTheSame(const ShapeVocabulary* from, std::string_view stream_name,
+                 const ShapeVocabulary* to, std::string_view target) {
+  const std::optional<int> theirs = RenamedBy(from, stream_name);
+  const std::optional<int> ours = RenamedBy(to, target);
+  return from == to || !theirs || !ours || *theirs == *ours;
+}
+
 // Matches one stream with one set of targets, in the steps that shape_match.h describes.
 class Matching {
  public:
@@ -33,7 +51,10 @@ class Matching {
   }
 
   void TakeEqualNames();
-  void TakeNewNames(const ShapeVocabulary* vocabulary);
+  // `vocabulary` says which names mean the same shape; `from` and `to` are those of the stream and
+  // of the targets. All may be null.
+  void TakeNewNames(const ShapeVocabulary* vocabulary, const ShapeVocabulary* from,
+                    const ShapeVocabulary* to);
   void TranslateToArkit(const ShapeVocabulary& stream);
   void TranslateToTargets(const ShapeVocabulary& targets, bool only_complete);
   void LimitMouthClose(const ShapeVocabulary& targets);
@@ -108,14 +129,15 @@ std::vector<std::optional<std::size_t>> Matching::StreamByShape(
   return by_shape;
 }
 
-void Matching::TakeNewNames(const ShapeVocabulary* vocabulary) {
+void Matching::TakeNewNames(const ShapeVocabulary* vocabulary, const ShapeVocabulary* from,
+                            const ShapeVocabulary* to) {
   if (vocabulary == nullptr) return;
   const auto by_shape = StreamByShape(*vocabulary);
   for (std::size_t t = 0; t < targets_.size(); ++t) {
     const int shape = vocabulary->Find(targets_[t]).shape;
     if (!IsOpen(t) || shape < 0) continue;
     const auto& source = by_shape[static_cast<std::size_t>(shape)];
-    if (!source) continue;
+    if (!source || !MeanTheSame(from, stream_[*source], to, targets_[t])) continue;
     taken_[*source] = true;
     Set(t, By::kNewName, SameAs(Coefficient(*source)));
   }
@@ -272,13 +294,9 @@ int ShapeMatch::num_mapped() const {
 ShapeMatcher::ShapeMatcher(std::vector<ShapeMap> shipped, const ShapeMap* chosen)
     : chosen_(chosen != nullptr) {
   std::ranges::sort(shipped, {}, &ShapeMap::name);
-  for (ShapeMap& map : shipped) targets_.emplace_back(std::move(map));
-  // A chosen map may also describe the user's own face, so it joins the maps for targets. For
-  // streams it replaces them.
-  if (chosen_) {
-    streams_.emplace_back(*chosen);
-    targets_.emplace_back(*chosen);
-  }
+  for (ShapeMap& map : shipped) vocabularies_.emplace_back(std::move(map));
+  // A chosen map may also describe the user's own face, so it joins the maps for targets.
+  if (chosen_) vocabularies_.emplace_back(*chosen);
 }
 
 Result<ShapeMatcher> ShapeMatcher::Create(const std::string& name_or_file) {
@@ -291,7 +309,7 @@ Result<ShapeMatcher> ShapeMatcher::Create(const std::string& name_or_file) {
 }
 
 const ShapeVocabulary* ShapeMatcher::VocabularyOf(std::span<const std::string> stream) const {
-  return chosen_ ? &streams_.front() : BestVocabulary(targets_, stream, kMinShapes);
+  return chosen_ ? &vocabularies_.back() : BestVocabulary(vocabularies_, stream, kMinShapes);
 }
 
 ShapeMatch ShapeMatcher::Match(std::span<const std::string> stream,
@@ -299,13 +317,13 @@ ShapeMatch ShapeMatcher::Match(std::span<const std::string> stream,
   Matching matching(stream, targets);
   matching.TakeEqualNames();
   const ShapeVocabulary* from = VocabularyOf(stream);
-  const ShapeVocabulary* to = BestVocabulary(targets_, targets, 1);
+  const ShapeVocabulary* to = BestVocabulary(vocabularies_, targets, 1);
   // The targets' own map first: it knows the spelling that is asked for.
-  matching.TakeNewNames(to);
-  matching.TakeNewNames(from);
+  matching.TakeNewNames(to, from, to);
+  matching.TakeNewNames(from, from, to);
   if (from != nullptr) matching.TranslateToArkit(*from);
   if (to != nullptr) matching.TranslateToTargets(*to, /*only_complete=*/false);
-  for (const ShapeVocabulary& other : targets_) {
+  for (const ShapeVocabulary& other : vocabularies_) {
     if (&other != to) matching.TranslateToTargets(other, /*only_complete=*/true);
   }
   if (to != nullptr) matching.LimitMouthClose(*to);

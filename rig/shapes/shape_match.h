@@ -65,13 +65,12 @@ class ShapeMatcher {
   [[nodiscard]] ShapeMatch Match(std::span<const std::string> stream,
                                  std::span<const std::string> targets) const;
 
-  [[nodiscard]] std::span<const ShapeVocabulary> vocabularies() const { return targets_; }
+  [[nodiscard]] std::span<const ShapeVocabulary> vocabularies() const { return vocabularies_; }
   // The vocabulary of a stream's names; null if none fits.
   [[nodiscard]] const ShapeVocabulary* VocabularyOf(std::span<const std::string> stream) const;
 
  private:
-  std::vector<ShapeVocabulary> streams_;
-  std::vector<ShapeVocabulary> targets_;
+  std::vector<ShapeVocabulary> vocabularies_;  // sorted by name, then the chosen one
   bool chosen_ = false;
 };
 
