@@ -23,8 +23,8 @@ using wrinkle::InvalidField;
 class PoseReader {
  public:
   PoseReader(const TableList<schema::ReferencePose>* list, const std::filesystem::path& folder,
-             const wrinkle::PoseSource& source)
-      : list_(list), folder_(folder), source_(source) {}
+             const wrinkle::PoseSource& source, wrinkle::Skeleton* recorded)
+      : list_(list), folder_(folder), source_(source), recorded_(recorded) {}
 
   Status Run(std::vector<wrinkle::ReferencePose>* poses) {
     // The limit comes before any reading, so that a hostile file cannot make this load thousands of
@@ -142,6 +142,7 @@ class PoseReader {
       rest = Frame(*path, from.rest_frame(), at + ".rest_frame");
       FURROW_RETURN_IF_ERROR(rest);
     }
+    if (recorded_->num_joints() == 0) *recorded_ = frame->skeleton;
     Result<wrinkle::ReferencePose> pose =
         ReferencePoseFromFrame(from.name()->str(), *frame, rest.ok() ? &*rest : nullptr);
     if (!pose.ok()) return pose.status().At(at + ".file");
@@ -185,6 +186,7 @@ class PoseReader {
   const TableList<schema::ReferencePose>* list_;
   const std::filesystem::path& folder_;
   const wrinkle::PoseSource& source_;
+  wrinkle::Skeleton* recorded_;
   std::unordered_map<std::string, std::size_t> index_;
   std::vector<wrinkle::ReferencePose> poses_;
   std::vector<State> state_;
@@ -194,8 +196,8 @@ class PoseReader {
 
 Status ReadReferencePoses(const TableList<schema::ReferencePose>* list,
                           const std::filesystem::path& folder, const wrinkle::PoseSource& source,
-                          std::vector<wrinkle::ReferencePose>* poses) {
-  return PoseReader(list, folder, source).Run(poses);
+                          std::vector<wrinkle::ReferencePose>* poses, wrinkle::Skeleton* recorded) {
+  return PoseReader(list, folder, source, recorded).Run(poses);
 }
 
 }  // namespace furrow::rig

@@ -14,9 +14,11 @@ namespace furrow::rig {
 // recordings (searched in `folder`, then in FURROW_ASSET_PATH) and mixes, which may precede their
 // parts. Errors: kLimit, kCyclic (a mix that contains itself), kInvalidArgument, kUnsupported (a
 // recording with an empty `source`), and those of `source`; `where` is the field.
+// `recorded` becomes the skeleton of the first recording, unless it has joints already.
 [[nodiscard]] Status ReadReferencePoses(const TableList<schema::ReferencePose>* list,
                                         const std::filesystem::path& folder,
                                         const wrinkle::PoseSource& source,
-                                        std::vector<wrinkle::ReferencePose>* poses);
+                                        std::vector<wrinkle::ReferencePose>* poses,
+                                        wrinkle::Skeleton* recorded);
 
 }  // namespace furrow::rig

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rig/rig_reader.h"
 
+#include <memory>
 #include <string>
 #include <string_view>
 #include <unordered_set>
+#include <utility>
 #include <vector>
 
 #include "base/status.h"
@@ -12,6 +14,7 @@
 #include "rig/json/rig_tables.h"
 #include "rig/rig_pose_reader.h"
 #include "rig/rig_schema_text.h"
+#include "wrinkle/rig/rig_joints.h"
 
 namespace furrow::rig {
 namespace {
@@ -148,6 +151,36 @@ Status ReadExports(const TableList<schema::ExportProfile>* list,
       });
 }
 
+Status ReadSizeReference(const schema::SizeReference* from,
+                         std::shared_ptr<const wrinkle::SizeReference>* to) {
+  if (from == nullptr) return {};
+  wrinkle::SizeReference reference;
+  reference.size = from->size();
+  const Status status =
+      ForEach(from->joints(), "size_reference.joints",
+              [&](const schema::JointPlace& joint, const std::string&) -> Status {
+                reference.joints.push_back({joint.joint()->str(), ToVec3(*joint.position())});
+                return {};
+              });
+  FURROW_RETURN_IF_ERROR(status);
+  *to = std::make_shared<const wrinkle::SizeReference>(std::move(reference));
+  return {};
+}
+
+// Poses from frames bring the skeleton of their lengths along.
+void MeasureOn(const wrinkle::Skeleton& recorded, wrinkle::Rig* rig) {
+  if (rig->size_reference == nullptr) {
+    wrinkle::SizeReference reference =
+        wrinkle::MakeSizeReference(recorded, wrinkle::JointsOf(*rig));
+    if (reference.joints.size() > 1 && reference.size > 0.0f) {
+      rig->size_reference = std::make_shared<const wrinkle::SizeReference>(std::move(reference));
+    }
+  }
+  for (wrinkle::ReferencePose& pose : rig->reference_poses) {
+    pose.size_reference = rig->size_reference;
+  }
+}
+
 void ReadFilter(const schema::Filter* from, wrinkle::Filter* to) {
   if (from == nullptr) return;
   to->enabled = from->enabled();
@@ -187,7 +220,11 @@ Result<wrinkle::Rig> ReadRigTables(const schema::Rig& tables, const std::filesys
   wrinkle::Rig rig;
   rig.name = tables.name()->str();
   rig.anchor = Text(tables.anchor());
-  Status status = ReadReferencePoses(tables.reference_poses(), folder, poses, &rig.reference_poses);
+  Status status = ReadSizeReference(tables.size_reference(), &rig.size_reference);
+  if (!status.ok()) return status;
+  wrinkle::Skeleton recorded;
+  status =
+      ReadReferencePoses(tables.reference_poses(), folder, poses, &rig.reference_poses, &recorded);
   if (!status.ok()) return status;
   status = ForEach(tables.drivers(), "drivers",
                    [&](const schema::Driver& driver, const std::string& where) {
@@ -204,6 +241,7 @@ Result<wrinkle::Rig> ReadRigTables(const schema::Rig& tables, const std::filesys
                      return ReadMap(map, where, &rig.wrinkle_maps.emplace_back());
                    });
   if (!status.ok()) return status;
+  MeasureOn(recorded, &rig);
   ReadFilter(tables.filter(), &rig.filter);
   status = ReadExports(tables.export_(), &rig.exports);
   if (!status.ok()) return status;

@@ -31,6 +31,16 @@ std::string ToJson(const wrinkle::ReferencePose& pose) {
       .str();
 }
 
+std::string ToJson(const wrinkle::SizeReference& reference) {
+  const auto joint = [](const wrinkle::SizeReference::Joint& place) {
+    return Object().Text("joint", place.name).Raw("position", Numbers(place.position)).str();
+  };
+  return Object()
+      .Float("size", reference.size, 0.0f)
+      .Always("joints", reference.joints, joint)
+      .str();
+}
+
 // The reference poses of a rig as JSON. A list of joints has one unit of length. A mix of two units
 // is written as the mix of two poses, which the reader omits again.
 class PoseWriter {
@@ -196,6 +206,7 @@ std::string RigToJson(const Rig& rig) {
   const auto each = [](const auto& entry) { return ToJson(entry); };
   Object object;
   object.Raw("version", "1").Text("name", rig.name).Text("anchor", rig.anchor);
+  if (rig.size_reference != nullptr) object.Raw("size_reference", ToJson(*rig.size_reference));
   object
       .List("reference_poses", PoseWriter(rig.reference_poses).Write(),
             [](const std::string& text) { return text; })

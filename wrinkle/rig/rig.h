@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -118,6 +119,8 @@ struct Rig {
   std::string name;
   std::string anchor;  // pose drivers without their own anchor measure in this joint's space;
                        // empty: model space
+  // The skeleton of the rig's lengths. Null: their sizes compare with SkeletonSize().
+  std::shared_ptr<const SizeReference> size_reference = nullptr;
   std::vector<ReferencePose> reference_poses;
   std::vector<Driver> drivers;
   std::vector<Region> regions;

@@ -34,6 +34,21 @@ void CheckReferencePose(const ReferencePose& pose, const std::string& at, FieldC
   }
 }
 
+void CheckSizeReference(const SizeReference& reference, FieldCheck* check) {
+  const std::string at = "size_reference";
+  check->Range(at, ".size", reference.size, 0.0f, kMaxSkeletonSize);
+  check->Require(reference.size > 0.0f, at, ".size", "the size must be above 0");
+  check->Require(reference.joints.size() > 1, at, ".joints", "a size needs at least two joints");
+  check->Count(at, ".joints", reference.joints.size(), kMaxJoints);
+  std::unordered_set<std::string_view> names;
+  for (std::size_t i = 0; i < reference.joints.size(); ++i) {
+    const std::string joint = FieldAt(at + ".joints", i);
+    check->Label(joint, ".joint", reference.joints[i].name);
+    check->Once(joint, ".joint", reference.joints[i].name, &names);
+    check->Finite(joint, ".position", reference.joints[i].position);
+  }
+}
+
 void CheckDriver(const Driver& driver, const std::string& at, FieldCheck* check) {
   const std::string fields = at + "." + std::string(DriverKindName(driver.kind));
   VisitFields(driver, [&](const auto& kind) { CheckFields(kind, fields, check); });
@@ -157,6 +172,7 @@ void CheckSlides(const Rig& rig, FieldCheck* check) {
 
 Status CheckRigFields(const Rig& rig) {
   FieldCheck check;
+  if (rig.size_reference != nullptr) CheckSizeReference(*rig.size_reference, &check);
   CheckList("reference_poses", rig.reference_poses, kMaxReferencePoses, &FieldCheck::Label,
             CheckReferencePose, &check);
   CheckList("drivers", rig.drivers, kMaxRigDrivers, &FieldCheck::Name, CheckDriver, &check);

@@ -4,7 +4,6 @@
 #include <glm/geometric.hpp>
 
 #include "wrinkle/skeleton/rest.h"
-#include "wrinkle/skeleton/retarget.h"
 
 namespace furrow::wrinkle {
 namespace {
@@ -47,7 +46,8 @@ void ApplyJointDelta(const JointDelta& delta, const Skeleton& skeleton, int join
 }
 
 float ReferencePoseScale(const ReferencePose& pose, const Skeleton& skeleton) {
-  return pose.source_size > 0.0f ? SkeletonSize(skeleton) / pose.source_size : 1.0f;
+  if (!(pose.source_size > 0.0f)) return 1.0f;
+  return SkeletonSizeBy(pose.size_reference.get(), skeleton) / pose.source_size;
 }
 
 Status ApplyReferencePose(const ReferencePose& pose, const Skeleton& skeleton,

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "base/status.h"
+#include "wrinkle/skeleton/size_reference.h"
 #include "wrinkle/skeleton/skeleton.h"
 #include "wrinkle/skeleton/transform.h"
 
@@ -31,6 +33,8 @@ struct ReferencePose {
   std::string name;
   std::vector<JointDelta> joints;  // all other joints stay at rest
   float source_size = 0.0f;  // SkeletonSize() of the source; 0: same units as the bound skeleton
+  // How to measure the bound skeleton, if the rig says so (Rig::size_reference). May be null.
+  std::shared_ptr<const SizeReference> size_reference = nullptr;
 };
 
 // True if the delta leaves its joint at rest. Pose files often list every joint.
@@ -45,7 +49,7 @@ void ApplyJointDelta(const JointDelta& delta, const Skeleton& skeleton, int join
 void ApplyJointDelta(const JointDelta& delta, const Skeleton& skeleton, int joint, float scale,
                      PreciseTransform* local);
 
-// SkeletonSize(skeleton) / pose.source_size; 1 if the pose states no size.
+// SkeletonSizeBy(pose.size_reference, skeleton) / pose.source_size; 1 if the pose states no size.
 [[nodiscard]] float ReferencePoseScale(const ReferencePose& pose, const Skeleton& skeleton);
 
 // Adds a reference pose to `locals`, which holds num_joints local transforms: the rest pose or any

@@ -16,7 +16,9 @@ namespace {
 // it, joints only if a driver reads them. Streams of blend shapes alone thus bind to rigs without
 // joints.
 BindSource SourceOf(const Rig& rig, std::span<const std::string> blend_shape_names) {
-  BindSource source{.reference_poses = rig.reference_poses, .blend_shape_names = blend_shape_names};
+  BindSource source{.size_reference = rig.size_reference.get(),
+                    .reference_poses = rig.reference_poses,
+                    .blend_shape_names = blend_shape_names};
   for (const Driver& driver : rig.drivers) {
     VisitFields(driver, [&](const auto& fields) {
       source.reads_joints = source.reads_joints || fields.kReadsJoints;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <utility>
@@ -10,6 +11,7 @@
 #include <glm/geometric.hpp>
 
 #include "authoring/import/model/face_frame.h"
+#include "wrinkle/rig/rig_joints.h"
 #include "wrinkle/skeleton/retarget.h"
 
 namespace furrow::authoring {
@@ -56,6 +58,7 @@ class Proposer {
     for (const wrinkle::Region& region : from_.regions) AddRegion(region);
     KeepNeighbours();
     AddMaps();
+    AddSizeReference();
     Remark();
     return std::move(proposal_);
   }
@@ -263,6 +266,18 @@ class Proposer {
       map.amplitude = from.amplitude;
       if (fed.contains(from.opposes)) map.opposes = from.opposes;
       proposal_.rig.wrinkle_maps.push_back(std::move(map));
+    }
+  }
+
+  // Streams of this character with fewer joints then have its size, too.
+  void AddSizeReference() {
+    Rig& rig = proposal_.rig;
+    wrinkle::SizeReference reference =
+        wrinkle::MakeSizeReference(*target_.skeleton, wrinkle::JointsOf(rig));
+    if (rig.reference_poses.empty() || reference.joints.size() < 2) return;
+    rig.size_reference = std::make_shared<const wrinkle::SizeReference>(std::move(reference));
+    for (wrinkle::ReferencePose& pose : rig.reference_poses) {
+      pose.size_reference = rig.size_reference;
     }
   }
 

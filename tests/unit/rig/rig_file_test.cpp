@@ -118,6 +118,45 @@ TEST(RigFile, WritesFloatsThatReadBackEqual) {
             rig.reference_poses[0].joints[0].rotation);
 }
 
+TEST(RigFile, ReadsAndWritesTheSizeReference) {
+  EXPECT_EQ(Parse(kSmallRig)->size_reference, nullptr);
+  const std::string json = Replaced(kSmallRig, R"("anchor": "head",)", R"("anchor": "head",
+  "size_reference": {"size": 9.5, "joints": [
+    {"joint": "head", "position": [0, 1.5, 0]}, {"joint": "brow", "position": [0.1, 1.6, 0.2]}]},)");
+  const auto rig = Parse(json);
+  ASSERT_TRUE(rig.ok()) << rig.status().ToString();
+  ASSERT_NE(rig->size_reference, nullptr);
+  EXPECT_EQ(rig->size_reference->size, 9.5f);
+  ASSERT_EQ(rig->size_reference->joints.size(), 2u);
+  EXPECT_EQ(rig->size_reference->joints[1].name, "brow");
+  EXPECT_EQ(rig->size_reference->joints[1].position, glm::vec3(0.1f, 1.6f, 0.2f));
+  EXPECT_EQ(rig->reference_poses[0].size_reference, rig->size_reference);
+  const std::string written = RigToJson(*rig);
+  const auto again = Parse(written);
+  ASSERT_TRUE(again.ok()) << again.status().ToString();
+  EXPECT_EQ(RigToJson(*again), written);
+  EXPECT_NE(written.find("size_reference"), std::string::npos);
+}
+
+TEST(RigFile, RejectsSizeReferencesThatSayNothing) {
+  const auto with = [](const char* reference) {
+    return Parse(Replaced(kSmallRig, R"("anchor": "head",)",
+                          std::string(R"("anchor": "head", "size_reference": )") + reference + ","))
+        .status();
+  };
+  EXPECT_EQ(with(R"({"joints": [{"joint": "a", "position": [0, 0, 0]},
+                                {"joint": "b", "position": [0, 1, 0]}]})")
+                .code(),
+            StatusCode::kInvalidArgument);
+  EXPECT_EQ(with(R"({"size": 1, "joints": [{"joint": "a", "position": [0, 0, 0]}]})").code(),
+            StatusCode::kInvalidArgument);
+  EXPECT_EQ(with(R"({"size": 1, "joints": [{"joint": "a", "position": [0, 0, 0]},
+                                           {"joint": "a", "position": [0, 1, 0]}]})")
+                .code(),
+            StatusCode::kInvalidArgument);
+  EXPECT_EQ(with(R"({"size": 1, "joints": [{"joint": "a"}]})").code(), StatusCode::kSchema);
+}
+
 TEST(RigFile, KeepsEveryFieldOfAMap) {
   auto rig = *Parse(kSmallRig);
   EXPECT_EQ(rig.wrinkle_maps[0].surface, wrinkle::WrinkleMap::Surface::kAny);
@@ -320,7 +359,8 @@ TEST(RigFile, ReadsPosesFromFramesAndMixes) {
                                     R"({"name": "unit", "file": "rig_file_test.cpp", "frame": 10},
     {"name": "from_2", "file": "rig_file_test.cpp", "frame": 10, "rest_frame": 4},
     {"name": "up", "mix": [{"pose": "unit", "weight": 0.5}, {"pose": "from_2"}]})");
-  const auto rig = ParseRig(json, "a.rig.json", FURROW_SOURCE_DIR "/tests/unit/rig", TurningSource);
+  const auto rig = ParseRig(Replaced(json, R"("anchor": "head")", R"("anchor": "root")"),
+                            "a.rig.json", FURROW_SOURCE_DIR "/tests/unit/rig", TurningSource);
   ASSERT_TRUE(rig.ok()) << rig.status().ToString();
   ASSERT_EQ(rig->reference_poses.size(), 1u) << "building blocks are omitted";
   ASSERT_EQ(rig->reference_poses[0].joints.size(), 1u) << "the root does not move";
@@ -328,6 +368,10 @@ TEST(RigFile, ReadsPosesFromFramesAndMixes) {
   // 10 * 0.5 + (10 - 4) degrees about X.
   EXPECT_NEAR(rig->reference_poses[0].joints[0].rotation.x, std::sin(glm::radians(5.5)), 1e-6);
   EXPECT_GT(rig->reference_poses[0].source_size, 0.0f);
+  // The recording's skeleton comes along, so streams with fewer joints have the same size.
+  ASSERT_NE(rig->size_reference, nullptr);
+  EXPECT_EQ(rig->size_reference->size, rig->reference_poses[0].source_size);
+  EXPECT_EQ(rig->reference_poses[0].size_reference, rig->size_reference);
 }
 
 // A list of joints has one unit of length, so the writer splits what a mix of two units moves.

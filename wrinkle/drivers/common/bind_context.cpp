@@ -5,7 +5,6 @@
 
 #include "base/ascii.h"
 #include "base/status.h"
-#include "wrinkle/skeleton/retarget.h"
 
 namespace furrow::wrinkle {
 namespace {
@@ -22,7 +21,7 @@ BindContext::BindContext(const BindSource& source, const Skeleton& skeleton,
       skeleton_(skeleton),
       options_(options),
       chains_(chains),
-      size_(SkeletonSize(skeleton)),
+      size_(SkeletonSizeBy(source.size_reference, skeleton)),
       rest_locals_(skeleton.rest_pose().begin(), skeleton.rest_pose().end()) {}
 
 Status BindContext::ResolveAnchorAndPoses() {

@@ -17,6 +17,7 @@ namespace furrow::wrinkle {
 // The parts of a rig that drivers refer to while they are bound.
 struct BindSource {
   std::string anchor;  // the rig's; empty if it has none or no driver measures from it
+  const SizeReference* size_reference = nullptr;  // the rig's; may be null
   std::span<const ReferencePose> reference_poses;
   bool reads_joints = false;  // some driver reads joints
   std::span<const std::string> blend_shape_names;
@@ -52,7 +53,7 @@ class BindContext {
 
   [[nodiscard]] const Skeleton& skeleton() const { return skeleton_; }
   [[nodiscard]] JointChains& chains() { return *chains_; }
-  [[nodiscard]] float size() const { return size_; }  // SkeletonSize()
+  [[nodiscard]] float size() const { return size_; }  // SkeletonSizeBy()
   [[nodiscard]] int anchor() const { return anchor_; }
   [[nodiscard]] bool anchor_missing() const { return anchor_missing_; }
   // The skeleton's local transforms in the rest pose.

@@ -9,7 +9,6 @@
 #include <glm/geometric.hpp>
 
 #include "base/scalar.h"
-#include "wrinkle/skeleton/retarget.h"
 
 namespace furrow::wrinkle {
 namespace {
@@ -33,10 +32,12 @@ PatchFrame FrameOf(std::span<const glm::vec3> places) {
 }
 
 // The patch's vertices at rest, in the base joint's space.
-std::vector<glm::vec3> RestPlaces(const StrainDriver& strain, const Skeleton& skeleton, int base) {
+std::vector<glm::vec3> RestPlaces(const StrainDriver& strain, const BindContext& context,
+                                  int base) {
   // `position` is an offset from the base joint along model axes, on a skeleton of size
   // `strain.size`.
-  const float scale = strain.size > 0.0f ? SkeletonSize(skeleton) / strain.size : 1.0f;
+  const float scale = strain.size > 0.0f ? context.size() / strain.size : 1.0f;
+  const Skeleton& skeleton = context.skeleton();
   const glm::mat4& model = skeleton.rest_model()[base];
   const glm::mat4 to_base = glm::inverse(model);
   std::vector<glm::vec3> places;
@@ -63,7 +64,7 @@ Status StrainDriverSet::Bind(const std::string& name, const StrainDriver& strain
   entry.inverse_full = 1.0f / strain.full_compression;
   entry.first_point = static_cast<std::uint32_t>(points_.size());
   entry.num_joints = static_cast<std::uint32_t>(joints.size());
-  const std::vector<glm::vec3> places = RestPlaces(strain, skeleton, base);
+  const std::vector<glm::vec3> places = RestPlaces(strain, *context, base);
   const PatchFrame frame = FrameOf(places);
   // Skinning needs each joint's affine motion relative to the base. Four points determine it: the
   // patch's centre, and one point along each axis at the distance of the radius. Points near the

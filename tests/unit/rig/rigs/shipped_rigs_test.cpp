@@ -2,10 +2,12 @@
 // The rigs that ship, on recordings: their weights depend neither on the unit of length nor much on
 // the frame rate.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -20,7 +22,10 @@
 #include "rig/rig_file.h"
 #include "rig/skeleton_match.h"
 #include "tests/unit/rig/shipped_matcher.h"
+#include "wrinkle/rig/driver_values.h"
 #include "wrinkle/rig/rig_joints.h"
+#include "wrinkle/skeleton/retarget.h"
+#include "wrinkle/skeleton/size_reference.h"
 #include "wrinkle/solver/subject_solver.h"
 
 namespace furrow::rig {
@@ -99,6 +104,39 @@ class ShippedRigs : public testing::Test {
     return weights;
   }
 
+  // All driver values of every 7th frame, without filter.
+  std::vector<float> Drivers(const wrinkle::Rig& rig, const Clip& clip) const {
+    wrinkle::SubjectSolver solver(Bind(rig, clip), false);
+    std::vector<float> values;
+    wrinkle::LocalPose pose;
+    for (int frame = 0; frame < clip.num_frames(); frame += 7) {
+      clip.GetPose(frame, &pose);
+      EXPECT_EQ(solver.Update(pose, 0.0), wrinkle::JobStatus::kOk);
+      const auto now = solver.driver_values();
+      values.insert(values.end(), now.begin(), now.end());
+    }
+    return values;
+  }
+
+  // The largest difference between two results of Drivers(), among the drivers that measure
+  // lengths: pose and strain.
+  float WorstOfFace(const wrinkle::Rig& rig, const Clip& clip, const std::vector<float>& expected,
+                    const std::vector<float>& values) const {
+    std::vector<bool> of_face;
+    for (const wrinkle::Driver& driver : rig.drivers) {
+      const bool measures = driver.kind == wrinkle::Driver::Kind::kPose ||
+                            driver.kind == wrinkle::Driver::Kind::kStrain;
+      of_face.insert(of_face.end(), wrinkle::DriverValueNames(driver).size(), measures);
+    }
+    EXPECT_EQ(values.size(), expected.size());
+    EXPECT_EQ(Bind(rig, clip)->driver_value_names().size(), of_face.size());
+    float worst = 0.0f;
+    for (std::size_t i = 0; i < std::min(values.size(), expected.size()); ++i) {
+      if (of_face[i % of_face.size()]) worst = std::max(worst, std::abs(values[i] - expected[i]));
+    }
+    return worst;
+  }
+
   void ExpectSameInAnyUnit(const std::string& name, const wrinkle::Rig& rig, const Clip& clip,
                            int step = 7) const {
     const std::vector<float> expected = Weights(rig, clip, step);
@@ -167,6 +205,74 @@ TEST_F(ShippedRigs, DefaultHasTheSameWeightsInAnyUnit) {
   for (const char* recording : {"performance", "squat"}) {
     ExpectSameInAnyUnit(recording, rig, Generated(recording));
   }
+}
+
+// A stream of the same performer with some of the joints.
+Clip Reduced(const Clip& clip, const std::function<bool(const std::string&)>& keep) {
+  const wrinkle::Skeleton& from = clip.skeleton;
+  std::vector<wrinkle::JointDesc> joints;
+  std::vector<int> kept;
+  for (int i = 0; i < from.num_joints(); ++i) {
+    if (!keep(from.joint_names()[i])) continue;
+    const auto parent = std::ranges::find(kept, int{from.joint_parents()[i]});
+    joints.push_back(
+        {from.joint_names()[i],
+         parent == kept.end() ? wrinkle::kNoJoint : static_cast<int>(parent - kept.begin()),
+         from.rest_pose()[i], from.tails()[i]});
+    kept.push_back(i);
+  }
+  Clip reduced;
+  reduced.skeleton = *wrinkle::Skeleton::Create(std::move(joints));
+  reduced.times = clip.times;
+  for (int frame = 0; frame < clip.num_frames(); ++frame) {
+    for (const int joint : kept) {
+      reduced.locals.push_back(
+          clip.locals[static_cast<std::size_t>(frame * from.num_joints() + joint)]);
+    }
+  }
+  return reduced;
+}
+
+bool IsFinger(const std::string& name) {
+  return std::ranges::any_of(std::array{"thumb_", "index_", "middle_", "ring_", "little_"},
+                             [&](const char* finger) { return name.starts_with(finger); });
+}
+
+// Facial folds depend on the joints of the face, not on what else a stream has.
+TEST_F(ShippedRigs, DefaultHasTheSameFaceWithFewerJoints) {
+  const wrinkle::Rig rig = *Shipped("default");
+  const Clip whole = Generated("performance");
+  const int neck = whole.skeleton.Find("neck");
+  const auto of_head = [&](const std::string& name) {
+    return whole.skeleton.IsAncestor(neck, whole.skeleton.Find(name));
+  };
+  const auto no_finger = [](const std::string& name) { return !IsFinger(name); };
+  const std::vector<float> expected = Drivers(rig, whole);
+  for (const float scale : {1.0f, 100.0f}) {
+    EXPECT_LE(WorstOfFace(rig, whole, expected, Drivers(rig, Scaled(whole, scale))), 1e-4f);
+    EXPECT_LE(
+        WorstOfFace(rig, whole, expected, Drivers(rig, Scaled(Reduced(whole, no_finger), scale))),
+        1e-4f);
+    EXPECT_LE(
+        WorstOfFace(rig, whole, expected, Drivers(rig, Scaled(Reduced(whole, of_head), scale))),
+        1e-4f);
+  }
+}
+
+// The places in the rig are those of the skeleton that the generator makes.
+TEST_F(ShippedRigs, DefaultStatesTheSizeOfItsCharacter) {
+  const wrinkle::Rig rig = *Shipped("default");
+  ASSERT_NE(rig.size_reference, nullptr);
+  const wrinkle::Skeleton skeleton = authoring::MakeSkeleton();
+  for (const auto& joint : rig.size_reference->joints) {
+    const int index = skeleton.Find(joint.name);
+    ASSERT_NE(index, wrinkle::kNoJoint) << joint.name;
+    EXPECT_LT(glm::distance(joint.position, glm::vec3(skeleton.rest_model()[index][3])), 1e-5f)
+        << joint.name;
+  }
+  EXPECT_NEAR(rig.size_reference->size, wrinkle::SkeletonSize(skeleton), 1e-4f);
+  EXPECT_NEAR(wrinkle::SkeletonSizeBy(rig.size_reference.get(), skeleton),
+              wrinkle::SkeletonSize(skeleton), 1e-4f);
 }
 
 TEST_F(ShippedRigs, CmuHasTheSameWeightsInAnyUnit) {
