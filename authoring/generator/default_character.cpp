@@ -10,6 +10,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "authoring/bake/strokes_file.h"
+#include "authoring/generator/blend_shapes/blend_shape_face.h"
 #include "authoring/generator/body/body_shape.h"
 #include "authoring/generator/body/body_skeleton.h"
 #include "authoring/generator/clothes/cloth_masks.h"
@@ -207,12 +208,17 @@ Status WriteCharacter(const std::filesystem::path& rigs, const CharacterOptions&
       !status.ok()) {
     return status;
   }
+  const bool shapes = options.face_kind == FaceKind::kBlendShapes;
+  if (shapes) FURROW_RETURN_IF_ERROR(MakeBlendShapeFace(&character));
   FURROW_RETURN_IF_ERROR(character::SaveCharacterGlb(character, glb));
+  std::filesystem::path beside = glb;
+  beside.replace_extension(".rig.json");
+  if (shapes) return rig::SaveRig(character.rig, beside);
+  // Copied, because the file has comments.
   constexpr std::size_t kMaxRig = 16u << 20;
   Result<std::string> text = ReadFile(rigs / "default.json", kMaxRig);
   FURROW_RETURN_IF_ERROR(text);
-  std::filesystem::path beside = glb;
-  return WriteFileAtomically(beside.replace_extension(".rig.json"), text.value());
+  return WriteFileAtomically(beside, text.value());
 }
 
 Status WriteShare(const std::filesystem::path& rigs, const std::filesystem::path& share) {

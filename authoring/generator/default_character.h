@@ -11,7 +11,13 @@
 
 namespace furrow::authoring {
 
-// The options of MakeDefaultCharacter().
+// How the face of a generated character moves.
+enum class FaceKind {
+  kJoints,       // joints that follow the muscles
+  kBlendShapes,  // ARKit's 52 blend shapes (MakeBlendShapeFace())
+};
+
+// The options of MakeDefaultCharacter() and WriteCharacter().
 struct CharacterOptions {
   FaceParameters face;
   BodyParameters body;
@@ -19,6 +25,7 @@ struct CharacterOptions {
   // Width and height of the pictures of skin, cloth and wrinkles, texels. Those of masks,
   // eyes and hair are half as wide and high.
   int texture_size = 1024;
+  FaceKind face_kind = FaceKind::kJoints;  // of WriteCharacter(); MakeDefaultCharacter() has joints
 };
 
 // Makes the default character (CC0), without wrinkle maps: a clothed body with a face whose joints
@@ -30,8 +37,8 @@ struct CharacterOptions {
 
 // Makes a character, bakes its wrinkle maps, and writes the file `glb`, then its rig beside it
 // (NAME.rig.json). `rigs`: the folder of default.json and default.strokes.json, which are read.
-// Errors: those of LoadRig(), LoadStrokes(), AddWrinkleMaps(), SaveCharacterGlb() and of writing
-// the rig; `glb` may exist then.
+// Errors: those of LoadRig(), LoadStrokes(), AddWrinkleMaps(), MakeBlendShapeFace(),
+// SaveCharacterGlb() and of writing the rig; `glb` may exist then.
 [[nodiscard]] Status WriteCharacter(const std::filesystem::path& rigs,
                                     const CharacterOptions& options,
                                     const std::filesystem::path& glb);

@@ -3,6 +3,7 @@
 // furrow-make-character: writes share/furrow during the build of Furrow, or a single character.
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -14,6 +15,7 @@
 namespace {
 
 using furrow::authoring::CharacterOptions;
+using furrow::authoring::FaceKind;
 
 // Writes one character with the rigs of the folder `rigs`; empty: the shipped folder.
 furrow::Status MakeOne(std::string rigs, const std::string& out, const std::string& elder,
@@ -37,6 +39,11 @@ int main(int argc, char** argv) {
   app.add_option("SHARE", share, "Output folder for the default character, rigs and recordings");
   app.add_option("--elder", elder, "Output FILE.glb of the elder; also writes FILE.rig.json");
   app.add_option("--out", out, "Output FILE.glb of one character; also writes FILE.rig.json");
+  app.add_option("--face", options.face_kind,
+                 "What moves the face: joints, or blend-shapes (ARKit's 52, as morph targets) "
+                 "(default: joints)")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, FaceKind>{
+          {"joints", FaceKind::kJoints}, {"blend-shapes", FaceKind::kBlendShapes}}));
   app.add_option("--sex", options.face.sex,
                  "Sex: -1 female, 0 neutral, 1 male; values in between blend")
       ->check(CLI::Range(-1.0f, 1.0f))
