@@ -3,7 +3,11 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <fstream>
 #include <functional>
+#include <optional>
+#include <system_error>
 #include <utility>
 
 #include "base/ascii.h"
@@ -14,13 +18,14 @@
 #include "motion/bvh/bvh.h"
 #include "motion/clip/limits.h"
 #include "motion/clip/up_axis.h"
+#include "motion/foreign/foreign_clip.h"
 #include "motion/gltf/gltf_animation.h"
 #include "motion/livelink/livelink_csv.h"
 
 namespace furrow::motion {
 namespace {
 
-enum class Format { kUnknown, kBvh, kGlb, kGltf, kVrma, kCsv };
+enum class Format { kUnknown, kBvh, kGlb, kGltf, kVrma, kCsv, kFbx, kCollada };
 
 Format FormatOf(const std::filesystem::path& path) {
   const std::string extension = AsciiLower(path.extension().string());
@@ -29,7 +34,29 @@ Format FormatOf(const std::filesystem::path& path) {
   if (extension == ".gltf") return Format::kGltf;
   if (extension == ".vrma") return Format::kVrma;
   if (extension == ".csv") return Format::kCsv;
+  if (extension == ".fbx") return Format::kFbx;
+  if (extension == ".dae") return Format::kCollada;
   return Format::kUnknown;
+}
+
+// How much of a file shows its format. Collada's first element may follow comments.
+constexpr std::size_t kSniffed = 1024;
+
+// The format that the first bytes show, or `otherwise`: BVH and CSV have no magic bytes.
+Format FormatOf(std::string_view bytes, Format otherwise) {
+  bytes = bytes.substr(0, kSniffed);
+  if (bytes.starts_with("Kaydara FBX Binary") || bytes.starts_with("; FBX")) return Format::kFbx;
+  if (bytes.find("<COLLADA") != bytes.npos) return Format::kCollada;
+  return bytes.starts_with("glTF") ? Format::kGlb : otherwise;
+}
+
+// A file that is absent or unreadable shows nothing; reading it in full reports why.
+Format Sniff(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string bytes(kSniffed, '\0');
+  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(file.gcount(), 0)));
+  return FormatOf(bytes, Format::kUnknown);
 }
 
 Status UnknownFormat(const std::filesystem::path& path, std::string todo) {
@@ -40,18 +67,47 @@ Status UnknownFormat(const std::filesystem::path& path, std::string todo) {
           path.string(), std::move(todo)};
 }
 
-// By the extension alone: BVH and CSV have no magic bytes.
+// A foreign file becomes a GLB, which is then read like any other.
+Result<Clip> ParseForeign(Format format, std::string_view bytes, const std::string& name,
+                          const LoadOptions& options, ClipReport* report) {
+  ClipReport converted;
+  const Result<std::string> glb = ForeignClipToGlb(bytes, format == Format::kFbx ? ".fbx" : ".dae",
+                                                   options.animation, &converted);
+  if (!glb.ok()) return glb.status().At(name);
+  if (report != nullptr) {
+    for (const std::string& warning : converted.warnings)
+      report->warnings.push_back(name + ": " + warning);
+    report->animations = std::move(converted.animations);
+  }
+  return ParseGltfAnimation(*glb, name, {.load = options, .folder = std::nullopt}, report);
+}
+
+// Whether a file of this format may hold several animations, of which the reader can choose.
+bool HasAnimations(Format format) { return format == Format::kFbx || format == Format::kCollada; }
+
 Result<Clip> Parse(Format format, std::string_view bytes, const std::filesystem::path& path,
                    const LoadOptions& options, ClipReport* report) {
   const std::string name = path.string();
   if (bytes.empty()) return Status(StatusCode::kParse, "the file is empty", name);
+  if (!options.animation.empty() && !HasAnimations(format)) {
+    return Status(StatusCode::kUnsupported,
+                  "animation " + Quoted(options.animation) + " cannot be chosen in this format",
+                  name, "choose animations in .fbx and .dae files only");
+  }
   switch (format) {
     case Format::kBvh: return ParseBvh(bytes, name, options, report);
     case Format::kCsv: return ParseLiveLinkCsv(bytes, name, options, report);
+    case Format::kFbx:
+    case Format::kCollada: return ParseForeign(format, bytes, name, options, report);
     default:
       return ParseGltfAnimation(bytes, name, {.load = options, .folder = path.parent_path()},
                                 report);
   }
+}
+
+std::uint64_t MaxBytes(Format format) {
+  const bool is_gltf = format == Format::kGlb || format == Format::kGltf || format == Format::kVrma;
+  return is_gltf ? gltf::kMaxFileBytes : kMaxFileBytes;
 }
 
 // Turns a BVH clip to Y up. glTF is Y up by definition.
@@ -89,23 +145,45 @@ Status CheckSizes(const Clip& clip) {
 
 }  // namespace
 
-Result<Clip> LoadClip(const std::filesystem::path& path, const LoadOptions& options,
-                      ClipReport* report) {
-  const Format format = FormatOf(path);
-  if (format == Format::kUnknown) {
-    return UnknownFormat(path, "use .bvh, .glb, .gltf, .vrma or .csv");
+void SplitClipPath(const std::filesystem::path& path, std::filesystem::path* file,
+                   std::string* animation) {
+  *file = path;
+  animation->clear();
+  std::error_code error;
+  if (std::filesystem::exists(path, error)) return;
+  const std::string text = path.string();
+  for (std::size_t hash = text.find('#'); hash != text.npos; hash = text.find('#', hash + 1)) {
+    const std::filesystem::path before = text.substr(0, hash);
+    if (FormatOf(before) == Format::kUnknown) continue;
+    *file = before;
+    *animation = text.substr(hash + 1);
+    return;
   }
-  const bool is_text = format == Format::kBvh || format == Format::kCsv;
-  const Result<std::string> bytes = ReadFile(path, is_text ? kMaxFileBytes : gltf::kMaxFileBytes);
+}
+
+Result<Clip> LoadClip(const std::filesystem::path& path, const LoadOptions& load_options,
+                      ClipReport* report) {
+  LoadOptions options = load_options;
+  std::filesystem::path file;
+  std::string animation;
+  SplitClipPath(path, &file, &animation);
+  if (!animation.empty()) options.animation = std::move(animation);
+  Format format = FormatOf(file);
+  if (format == Format::kUnknown) format = Sniff(file);
+  if (format == Format::kUnknown) {
+    return UnknownFormat(file, "use .bvh, .glb, .gltf, .vrma, .csv, .fbx or .dae");
+  }
+  const Result<std::string> bytes = ReadFile(file, MaxBytes(format));
   FURROW_RETURN_IF_ERROR(bytes);
-  Result<Clip> clip = Parse(format, *bytes, path, options, report);
-  if (!clip.ok()) return clip.status().At(path.string());
+  format = FormatOf(*bytes, format);
+  Result<Clip> clip = Parse(format, *bytes, file, options, report);
+  if (!clip.ok()) return clip.status().At(file.string());
   if (format == Format::kBvh) {
     KeepRootsAtOffset(&*clip);
     if (Status status = SetUpright(options.up_axis, &*clip); !status.ok())
-      return status.At(path.string());
+      return status.At(file.string());
   }
-  if (clip->name.empty()) clip->name = path.stem().string();
+  if (clip->name.empty()) clip->name = file.stem().string();
   return clip;
 }
 

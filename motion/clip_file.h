@@ -2,14 +2,25 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "base/status.h"
 #include "motion/clip/clip.h"
 
 namespace furrow::motion {
 
-// Loads a clip. The extension, in any case, decides the format: .bvh, .glb, .gltf, .vrma or .csv
-// (Live Link Face). BVH files are turned to Y up.
+// Splits "FILE#NAME", or "FILE#INDEX" with an index from 0, which chooses an animation (take) of a
+// file. `path` is a file name as a whole if a file of this name exists, or if nothing before a '#'
+// has the extension of a recording. `animation` is then empty.
+void SplitClipPath(const std::filesystem::path& path, std::filesystem::path* file,
+                   std::string* animation);
+
+// Loads a clip. The content decides the format for FBX, Collada and binary glTF, and else the
+// extension, in any case: .bvh, .glb, .gltf, .vrma, .csv (Live Link Face), .fbx or .dae. BVH files
+// are turned to Y up; other files state their axes and unit. FBX and Collada files are read by the
+// helper program furrow-assimp.
+//
+// `path` may choose an animation; see SplitClipPath(). Only FBX and Collada support this.
 //
 // Errors: kNotFound, kIo, kParse, kSchema, kLimit, kNonFinite, kUnsupported. `where` is
 // "file:line" or "file: field".

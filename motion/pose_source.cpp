@@ -45,8 +45,11 @@ CachedPoseSource::CachedPoseSource(const LoadOptions& options)
 Result<wrinkle::PoseFrame> CachedPoseSource::operator()(const std::filesystem::path& path,
                                                         int frame) const {
   std::error_code error;  // ignored: LoadClip() reports what is wrong with the file
-  const auto time = std::filesystem::last_write_time(path, error);
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  std::filesystem::path file;
+  std::string animation;
+  SplitClipPath(path, &file, &animation);
+  const auto time = std::filesystem::last_write_time(file, error);
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
   // A rig names many frames of one file, so the last file stays loaded. Time and size tell whether
   // it changed on disk.
   const bool fresh =

@@ -46,12 +46,22 @@ struct LoadOptions {
   BvhPositions bvh_positions = BvhPositions::kReplace;
   UpAxis up_axis = UpAxis::kAuto;  // BVH only
   double timecode_rate = 0.0;  // frames per second of a Live Link Face CSV's timecode; 0: inferred
+  // For files with several animations (takes): the name of one, or its index from 0. Empty: the
+  // first. "FILE#NAME" as a path takes precedence; see SplitClipPath().
+  std::string animation;
+};
+
+// An animation (take) of a file.
+struct AnimationInfo {
+  std::string name;  // may be empty
+  double seconds = 0.0;
 };
 
 // What a reader tolerated, or what a writer could not express in its format. One sentence per
 // entry, with the place: "take.bvh:186: states 100 frames, holds 99".
 struct ClipReport {
   std::vector<std::string> warnings;
+  std::vector<AnimationInfo> animations;  // FBX and Collada: all of the file's
 };
 
 }  // namespace furrow::motion

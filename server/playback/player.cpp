@@ -39,7 +39,10 @@ Result<std::unique_ptr<Player>> Player::Load(const std::filesystem::path& path) 
   }
   // The wire's limits (names, counts) hold for a file as for any sender. Checking them here gives
   // an error at the start instead of a rejected offer later.
-  clip->name = path.stem().string();
+  std::filesystem::path file;
+  std::string animation;
+  motion::SplitClipPath(path, &file, &animation);
+  clip->name = file.stem().string();
   auto player = std::make_unique<Player>(*std::move(clip), path.filename().string());
   if (std::string why = protocol::FindOfferProblem(player->offer_); !why.empty()) {
     return Status(StatusCode::kInvalidArgument, "the skeleton cannot be offered: " + why,

@@ -65,7 +65,7 @@ CONFINED = [
     (r"toml\+\+/", {"server/config", "render/settings"}),
     (r"nlohmann/", {"rig", "gltf", "motion", "character", "authoring", "server/http", "client"}),
     (r"(tiny_gltf\.h|third_party/tinygltf/)", {"gltf"}),
-    (r"assimp/", {"authoring/import"}),
+    (r"assimp/", {"authoring/assimp"}),
     (r"(zstd|lz4frame)\.h", {"motion/mcap"}),
 ]
 

@@ -15,9 +15,6 @@ struct ForeignModel {
   std::vector<std::string> remarks;  // what was converted, and what was lost
 };
 
-// Whether assimp reads files with this extension (".fbx"). Case is ignored.
-[[nodiscard]] bool AssimpReads(std::string_view extension);
-
 // Reads a skinned model (FBX, Collada or another format of assimp) and converts it to glTF, which
 // the glTF reader then checks like any other file.
 //
@@ -28,9 +25,11 @@ struct ForeignModel {
 //   pictures. Remarks name what is lost: blend shapes, lights, cameras, animations.
 // - Vertices are moved to the rest pose, and inverse bind matrices are the inverses of the rest
 //   pose. Meshes that were bound in different poses therefore fit together.
-// - assimp runs in a child process with limits on memory and time, so a crash in assimp is an
-// error. Errors: kParse (damaged, or another format), kUnsupported (no mesh), kLimit (size, memory,
-// time, joints, vertices).
+// - assimp runs in the helper program furrow-assimp with limits on memory and time, so a crash in
+//   assimp is an error.
+//
+// Errors: kParse (damaged, or another format), kUnsupported (no mesh, or an extension that assimp
+// does not know), kLimit (size, memory, time, joints, vertices), kNotFound (no furrow-assimp).
 [[nodiscard]] Result<ForeignModel> ReadWithAssimp(std::string_view bytes,
                                                   const std::string& extension);
 

@@ -30,13 +30,6 @@ Status Parse(std::string_view bytes, const fs::path& path, OpenedModel* model) {
   const std::string extension = Extension(path);
   std::string converted;
   if (!IsGltf(bytes, extension)) {
-    if (!AssimpReads(extension)) {
-      return {StatusCode::kUnsupported,
-              "unknown file extension '" + extension + "'",
-              {},
-              "supported formats: glTF (.glb, .gltf, .vrm), FBX, Collada (.dae) and the other "
-              "formats of assimp"};
-    }
     Result<ForeignModel> foreign = ReadWithAssimp(bytes, extension);
     FURROW_RETURN_IF_ERROR(foreign);
     model->remarks = std::move(foreign->remarks);

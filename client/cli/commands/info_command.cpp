@@ -19,8 +19,16 @@ namespace {
 using recording::SubjectSummary;
 using recording::TakeReader;
 
+// Lists the animations of a file, of which "FILE#NAME" or "FILE#INDEX" chooses one.
+void PrintAnimations(const std::vector<motion::AnimationInfo>& animations) {
+  for (std::size_t i = 0; i < animations.size(); ++i)
+    std::printf("  animation   %zu: %s, %.3f s\n", i, animations[i].name.c_str(),
+                animations[i].seconds);
+}
+
 int DescribeClip(const std::string& path) {
-  const auto clip = LoadClipArgument(path);
+  motion::ClipReport report;
+  const auto clip = LoadClipArgument(path, {}, &report);
   if (!clip.ok()) return Fail(clip.status());
   double longest = 0.0;
   for (std::size_t i = 1; i < clip->times.size(); ++i)
@@ -34,6 +42,7 @@ int DescribeClip(const std::string& path) {
               Counted(clip->blend_shape_names.size(), "blend shape").c_str());
   std::printf("  frames      %d in %.3f s, %.2f Hz, longest gap %.3f s\n", clip->num_frames(),
               clip->duration(), rate, longest);
+  PrintAnimations(report.animations);
   return kDone;
 }
 
@@ -104,7 +113,8 @@ void AddInfo(CLI::App& app, Action& action) {
   auto path = std::make_shared<std::string>();
   CLI::App* command = app.add_subcommand(
       "info", "Describe a recording: subjects, rates, gaps, duration and completeness");
-  command->add_option("FILE", *path, "Recording: .bvh, .glb, .gltf, .vrma, .csv or .mcap")
+  command
+      ->add_option("FILE", *path, "Recording: .bvh, .glb, .gltf, .vrma, .fbx, .dae, .csv or .mcap")
       ->required();
   command->callback([path, &action] {
     action = [path] {

@@ -6,16 +6,14 @@
 #include <cerrno>
 #include <cstring>
 #include <string_view>
-#include <system_error>
 
 #include <unistd.h>
 
+#include "base/process/find_program.h"
 #include "client/cli/common/exit_code.h"
 
 namespace furrow::cli {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr const char* kLoadProgram = "furrow-load";
 constexpr const char* kAuthorProgram = "furrow-author";
@@ -59,20 +57,8 @@ const HelperCommand* FindHelperCommand(int argc, const char* const* argv) {
   return nullptr;
 }
 
-Result<fs::path> FindHelperProgram(const std::string& program, const fs::path& folder) {
-  for (const fs::path& place : {folder, folder.parent_path() / "libexec" / "furrow"}) {
-    if (access((place / program).c_str(), X_OK) == 0) return place / program;
-  }
-  return Status(StatusCode::kNotFound, "this command needs the program " + program, folder.string(),
-                "build it with 'cmake --build <build folder> --target " + program +
-                    "', or install the complete furrow package");
-}
-
 int RunHelperProgram(const HelperCommand& command, const char* const* argv) {
-  std::error_code error;
-  // Not argv[0], which the caller chooses and which may be a name on the PATH.
-  const fs::path self = fs::read_symlink("/proc/self/exe", error);
-  const auto program = FindHelperProgram(command.program, self.parent_path());
+  const auto program = FindHelperProgram(command.program);
   if (!program.ok()) {
     (void)Fail(program.status());
     return kFailed;

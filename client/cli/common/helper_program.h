@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
 #include <span>
 #include <string>
 
-#include "base/status.h"
 #include "client/cli/common/command.h"
 
 namespace furrow::cli {
@@ -30,11 +28,6 @@ void AddHelperEntry(CLI::App& parent, const std::string& name);
 
 // The helper command that a command line asks for, or null.
 [[nodiscard]] const HelperCommand* FindHelperCommand(int argc, const char* const* argv);
-
-// The path of helper program `program` for an executable in `folder`: beside it, else in
-// ../libexec/furrow. kNotFound says what to build or install.
-[[nodiscard]] Result<std::filesystem::path> FindHelperProgram(const std::string& program,
-                                                              const std::filesystem::path& folder);
 
 // Replaces this process by the helper program of `command`, with unchanged arguments, which keeps
 // the process id and the standard streams. Returns only on failure: prints the reason and returns

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "base/data_dir.h"
 #include "base/status.h"
@@ -45,12 +46,14 @@ Result<std::unique_ptr<recording::TakeReader>> OpenTakeArgument(const std::strin
   return take;
 }
 
-Result<motion::Clip> LoadClipArgument(const std::string& path, const motion::LoadOptions& options) {
+Result<motion::Clip> LoadClipArgument(const std::string& path, const motion::LoadOptions& options,
+                                      motion::ClipReport* result) {
   motion::ClipReport report;
   auto clip = recording::IsTakePath(path)
                   ? recording::LoadTakeClip(path, options.scale, &report, ReadingBar())
                   : motion::LoadClip(path, options, &report);
   PrintWarnings(report.warnings);
+  if (result != nullptr) *result = std::move(report);
   return clip;
 }
 

@@ -17,9 +17,11 @@
 namespace furrow::cli {
 
 // Loads the recording in file `path`. "take.mcap#NAME" selects a subject of a take with several
-// subjects. Prints the reader's warnings to standard error. Errors: those of motion::LoadClip().
+// subjects, "walk.fbx#NAME" an animation of a file with several. Prints the reader's warnings to
+// standard error. Sets `report`, unless it is null. Errors: those of motion::LoadClip().
 [[nodiscard]] Result<motion::Clip> LoadClipArgument(const std::string& path,
-                                                    const motion::LoadOptions& options = {});
+                                                    const motion::LoadOptions& options = {},
+                                                    motion::ClipReport* report = nullptr);
 
 // Returns a callback that shows a progress bar while a take is read. The end of the read erases it.
 [[nodiscard]] recording::ReadProgress ReadingBar();

@@ -6,6 +6,7 @@
 
 #include "base/status.h"
 #include "client/cli/common/inputs.h"
+#include "motion/clip_file.h"
 #include "recording/wire_pose.h"
 
 namespace furrow::cli {
@@ -34,7 +35,10 @@ Result<std::vector<PlaySource>> PlaySource::Load(const std::string& path) {
   if (clip->num_frames() == 0)
     return Status(StatusCode::kInvalidArgument, "the recording has no frames", path);
   PlaySource& source = sources.emplace_back();
-  source.subject_ = std::filesystem::path(path).stem().string();
+  std::filesystem::path file;
+  std::string animation;
+  motion::SplitClipPath(path, &file, &animation);
+  source.subject_ = file.stem().string();
   source.poses_ = *std::move(clip);
   return sources;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "authoring/import/assimp/gltf_pieces.h"
+#include "authoring/assimp/gltf_pieces.h"
 
 #include <algorithm>
 #include <cmath>

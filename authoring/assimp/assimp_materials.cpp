@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "authoring/import/assimp/assimp_materials.h"
+#include "authoring/assimp/assimp_materials.h"
 
 #include <algorithm>
 #include <cmath>

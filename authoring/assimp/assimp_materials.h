@@ -10,7 +10,7 @@
 #include <assimp/material.h>
 #include <assimp/scene.h>
 
-#include "authoring/import/assimp/gltf_pieces.h"
+#include "authoring/assimp/gltf_pieces.h"
 #include "gltf/write/builder.h"
 
 namespace furrow::authoring {
