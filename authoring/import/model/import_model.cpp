@@ -4,7 +4,7 @@
 #include <string_view>
 #include <utility>
 
-#include "authoring/import/assimp/assimp.h"
+#include "authoring/import/model/foreign_model.h"
 #include "base/ascii.h"
 #include "base/files.h"
 #include "base/status.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "authoring/import/assimp/assimp.h"
+#include "authoring/import/model/foreign_model.h"
 
 #include <utility>
 
