@@ -44,6 +44,13 @@ Result<rig::SkeletonMatcher> LoadMatcher(const std::string& map) {
   return rig::SkeletonMatcher();
 }
 
+Result<rig::ShapeMatcher> LoadShapeMaps(const std::string& map) {
+  auto matcher = rig::ShapeMatcher::Create(map);
+  if (matcher.ok() || !map.empty()) return matcher;
+  spdlog::warn("blend shapes are matched by equal names only: {}", matcher.status().ToString());
+  return rig::ShapeMatcher();
+}
+
 }  // namespace
 
 Result<Assets> LoadAssets(const Config& config) {
@@ -53,6 +60,9 @@ Result<Assets> LoadAssets(const Config& config) {
   auto matcher = LoadMatcher(config.skeleton_map);
   if (!matcher.ok()) return matcher.status().At("--skeleton-map");
   assets.skeletons = *std::move(matcher);
+  auto shapes = LoadShapeMaps(config.shape_map);
+  if (!shapes.ok()) return shapes.status().At("--shape-map");
+  assets.shape_matcher = *std::move(shapes);
   if (!config.render_settings.empty()) {
     Status loaded = render::LoadSettings(config.render_settings, &assets.settings);
     if (!loaded.ok()) return loaded.At("--render-settings");

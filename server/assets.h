@@ -6,6 +6,7 @@
 #include "base/status.h"
 #include "character/character.h"
 #include "render/settings/settings.h"
+#include "rig/shapes/shape_match.h"
 #include "rig/skeleton_match.h"
 #include "server/config/config.h"
 #include "wrinkle/rig/rig.h"
@@ -17,16 +18,18 @@ struct Assets {
   std::shared_ptr<const wrinkle::Rig> rig;
   std::shared_ptr<const character::Character> character;  // null: weights only
   rig::SkeletonMatcher skeletons;                         // finds the rig's joints by other names
+  rig::ShapeMatcher shape_matcher;                        // finds its blend shapes by other names
   render::Settings settings;                              // defaults for all pictures
 };
 
 // Loads the files that `config` names, or the default character. Loads a rig and no character if
 // `config` names only a rig, or if rendering is off and there is a rig. If the shipped skeleton
-// maps are missing, logs a warning, and joints are then matched by equal names only.
+// maps are missing, logs a warning, and joints are then matched by equal names only; likewise for
+// shape maps and blend shapes.
 //
 // Errors: those of LoadCharacter(), LoadRig() and render::LoadSettings(), and of
-// SkeletonMatcher::Create() if `config` names a skeleton map; kNotFound if there is no default
-// character, with a hint how to get one.
+// SkeletonMatcher::Create() and ShapeMatcher::Create() if `config` names a map; kNotFound if there
+// is no default character, with a hint how to get one.
 [[nodiscard]] Result<Assets> LoadAssets(const Config& config);
 
 }  // namespace furrow::server

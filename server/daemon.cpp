@@ -156,6 +156,7 @@ void Daemon::MakeHub() {
   parts.character = render_ != nullptr ? &assets_.character->skeleton : nullptr;
   if (render_ != nullptr) parts.shapes = assets_.character->shapes;
   parts.skeletons = assets_.skeletons;
+  parts.shape_matcher = assets_.shape_matcher;
   parts.pictures = render_.get();
   parts.settings = assets_.settings;
   parts.metrics = metrics_;

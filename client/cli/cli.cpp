@@ -19,6 +19,7 @@ void AddCommands(CLI::App& app, Action& action) {
   AddSolve(app, action);
   AddRender(app, action);
   AddRig(app, action);
+  AddShapeMapCommand(app, action);
   AddConvert(app, action);
   AddInfo(app, action);
   AddHelperEntry(app, "character");

@@ -35,6 +35,11 @@ class RigShapes {
   // stream's first. Coefficients that are not finite leave the extension unchanged; the solver
   // refuses them. Does not allocate.
   void Extend(std::span<float> coefficients) const;
+  // The same for a pose of the stream, which grows to size().
+  void Extend(std::vector<float>* coefficients) const {
+    coefficients->resize(size(), 0.0f);
+    Extend(std::span<float>(*coefficients));
+  }
 
   // How the blend shapes of the rig's drivers, and its reference poses, are found.
   [[nodiscard]] const ShapeMatch& drivers() const { return drivers_; }

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <optional>
+#include <map>
 #include <set>
 
 #include "base/ascii.h"
@@ -57,6 +57,7 @@ class RoundTrip {
 
 void CheckRoundTrip(const ShapeMap& map, ShapeMapReport* report) {
   const RoundTrip trip(map);
+  const auto jaw = static_cast<std::size_t>(FindArkitShape("jawOpen"));
   for (int a = 0; a < kNumArkitShapes; ++a) {
     const auto index = static_cast<std::size_t>(a);
     const std::string name(ArkitShapes()[index]);
@@ -71,6 +72,8 @@ void CheckRoundTrip(const ShapeMap& map, ShapeMapReport* report) {
     for (int step = 1; step <= kSteps; ++step) {
       std::vector<float> coefficients(kNumArkitShapes, 0.0f);
       coefficients[index] = static_cast<float>(step) / kSteps;
+      // A closed mouth exists on an open jaw only.
+      if (name == "mouthClose") coefficients[jaw] = 1.0f;
       const float now = trip.Of(coefficients)[index];
       falls |= now < before - kTiny;
       before = now;
@@ -78,22 +81,25 @@ void CheckRoundTrip(const ShapeMap& map, ShapeMapReport* report) {
     if (falls) {
       report->warnings.push_back(Quoted(name) + " falls while it rises, on the way there and back");
     } else if (before == 0.0f) {
-      report->warnings.push_back(Quoted(name) +
-                                 " is lost on the way there and back: no shape takes it");
+      report->one_way.push_back(name);
     }
   }
 }
 
-// Left for right and back, in words of any spelling; nullopt: the name has no side.
-std::optional<std::string> MirroredName(const std::string& name) {
-  constexpr std::pair<std::string_view, std::string_view> kSides[] = {
-      {"Left", "Right"}, {"Right", "Left"}, {"left", "right"}, {"right", "left"},
-      {"_L", "_R"},      {"_R", "_L"},      {"_l", "_r"},      {"_r", "_l"}};
-  for (const auto& [from, to] : kSides) {
-    if (!name.ends_with(from)) continue;
-    return name.substr(0, name.size() - from.size()) + std::string(to);
+// Left for right and back in a normal name, at every place: "eyeleftlookright".
+std::string MirroredNormalName(std::string_view name) {
+  std::string mirrored;
+  while (!name.empty()) {
+    const bool is_left = name.starts_with("left");
+    if (is_left || name.starts_with("right")) {
+      mirrored += is_left ? "right" : "left";
+      name.remove_prefix(is_left ? 4 : 5);
+    } else {
+      mirrored += name.front();
+      name.remove_prefix(1);
+    }
   }
-  return std::nullopt;
+  return mirrored;
 }
 
 // What a formula does when ARKit's shapes are raised one by one.
@@ -110,15 +116,21 @@ std::vector<float> GainsOf(const std::vector<MapFormula>& formulas, bool mirrore
 }
 
 void CheckMirrors(const ShapeMap& map, ShapeMapReport* report) {
+  std::map<std::string, const MapShape*> by_name;
   for (const MapShape& shape : map.shapes) {
-    const auto mirrored = MirroredName(shape.name);
-    if (!mirrored || *mirrored < shape.name) continue;  // each pair once
-    const auto other = std::ranges::find(map.shapes, *mirrored, &MapShape::name);
-    if (other == map.shapes.end()) {
-      report->warnings.push_back(Quoted(shape.name) + " has no counterpart " + Quoted(*mirrored));
-    } else if (GainsOf(shape.from_arkit, true) != GainsOf(other->from_arkit, false)) {
-      report->warnings.push_back("the formulas of " + Quoted(shape.name) + " and " +
-                                 Quoted(*mirrored) + " are not mirror images");
+    by_name.emplace(NormalShapeName(shape.name, map.prefixes), &shape);
+  }
+  for (const auto& [name, shape] : by_name) {
+    const std::string mirrored = MirroredNormalName(name);
+    const auto other = by_name.find(mirrored);
+    if (other == by_name.end()) {
+      // A side inside a word ("brightness") is none.
+      if (!name.ends_with("left") && !name.ends_with("right")) continue;
+      report->warnings.push_back(Quoted(shape->name) + " has no counterpart on the other side");
+    } else if (name < mirrored &&  // each pair once
+               GainsOf(shape->from_arkit, true) != GainsOf(other->second->from_arkit, false)) {
+      report->warnings.push_back("the formulas of " + Quoted(shape->name) + " and " +
+                                 Quoted(other->second->name) + " are not mirror images");
     }
   }
 }
@@ -177,6 +189,10 @@ std::string ToText(const ShapeMapReport& report) {
     text += (i == 0 ? "; none for: " : ", ") + report.not_covered[i];
   }
   text += "\n";
+  for (std::size_t i = 0; i < report.one_way.size(); ++i) {
+    text += (i == 0 ? "  only from the vocabulary to ARKit: " : ", ") + report.one_way[i];
+  }
+  if (!report.one_way.empty()) text += "\n";
   for (const std::string& warning : report.warnings) text += "  warning: " + warning + "\n";
   return text;
 }

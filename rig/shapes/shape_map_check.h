@@ -15,12 +15,12 @@ struct ShapeMapReport {
   std::size_t num_shapes = 0;
   std::size_t num_from_arkit = 0;        // shapes that ARKit's can make
   std::vector<std::string> not_covered;  // ARKit's shapes that the vocabulary cannot make
+  std::vector<std::string> one_way;      // ... that it makes, but that none of its shapes show
   std::vector<std::string> warnings;     // one sentence each
 };
 
 // Checks a map that ParseShapeMap() has accepted:
-// - Raised alone, a shape of ARKit must not lose its own value on the way to the vocabulary and
-//   back, and must not fall while it rises.
+// - Raised alone, a shape of ARKit must not fall on the way to the vocabulary and back.
 // - The formula of a shape on one side must be the mirror image of that on the other side.
 [[nodiscard]] ShapeMapReport CheckShapeMap(const ShapeMap& map);
 

@@ -39,6 +39,9 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
   app->add_option("--skeleton-map", config->skeleton_map,
                   "Map joint names of streams with this map, by name or file\n"
                   "(default: the best match of the shipped maps)");
+  app->add_option("--shape-map", config->shape_map,
+                  "Map blend-shape names of streams with this map, by name or file\n"
+                  "(default: the best match of the shipped maps)");
   app->add_option("--bind", config->bind, "Listen on this address (default: 127.0.0.1)");
   app->add_option("--tcp", config->tcp, "TCP port for poses, weights and pictures (default: 7400)");
   app->add_option("--udp", config->udp, "UDP port for poses and weights (default: 7401)");

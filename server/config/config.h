@@ -35,6 +35,7 @@ struct Config {
   // If both the character and the rig are empty, the default character is used.
   std::filesystem::path character;  // .glb
   std::string skeleton_map;         // name or file; empty: the best match of the shipped maps
+  std::string shape_map;            // the same for the names of blend shapes
   std::filesystem::path rig;        // without a character: weights only; else replaces its rig
   std::string bind = "127.0.0.1";   // numeric, IPv4 or IPv6
   std::uint16_t tcp = 7400;         // 0: any free port; the ready line shows it

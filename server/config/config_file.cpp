@@ -25,8 +25,8 @@ struct Key {
   std::function<std::string(const toml::node&)> assign;
 };
 
-// Each of these makes the key of one type. value_exact() converts nothing: 1.0 is not a port, and 1 is
-// not a flag.
+// Each of these makes the key of one type. value_exact() converts nothing: 1.0 is not a port, and 1
+// is not a flag.
 Key Text(std::string_view name, std::string* target) {
   return {name, [target](const toml::node& node) -> std::string {
             const auto value = node.value_exact<std::string>();
@@ -178,7 +178,8 @@ Tables InputTables(Config* config, const std::filesystem::path& folder) {
   return {{"",
            {Path("character", &config->character, folder), Path("rig", &config->rig, folder),
             Path("play", &config->play, folder),
-            NameOrFile("skeleton_map", &config->skeleton_map, folder)}},
+            NameOrFile("skeleton_map", &config->skeleton_map, folder),
+            NameOrFile("shape_map", &config->shape_map, folder)}},
           {"listen",
            {Text("bind", &config->bind), Port("tcp", &config->tcp), Port("udp", &config->udp),
             Count("threads", &config->threads)}},

@@ -87,8 +87,10 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Make(
     wrinkle::Skeleton skeleton, std::vector<std::string> blend_shapes) {
   // Finds the skeleton map whose joint names fit, and by it the joints of the rig.
   rig::SkeletonMatch match = matcher_.Match(skeleton, *rig_, character_);
+  // The same for the names of blend shapes.
+  rig::RigShapes shapes(shape_matcher_, blend_shapes, *rig_);
   // Live streams may lack joints and blend shapes. Their drivers rest, and Report() names them.
-  auto binding = wrinkle::RigBinding::Create(*rig_, skeleton, blend_shapes,
+  auto binding = wrinkle::RigBinding::Create(*rig_, skeleton, shapes.driver_names(),
                                              match.Options(/*allow_missing=*/true));
   FURROW_RETURN_IF_ERROR(binding);
   auto definition = std::make_shared<StreamDefinition>();
@@ -103,13 +105,14 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Make(
     definition->retarget =
         std::make_shared<const wrinkle::Retarget>(rig::MakeRetarget(match, skeleton, *character_));
     definition->blend_shape_pose = std::make_shared<const wrinkle::BlendShapePose>(
-        wrinkle::BlendShapePose::Create(*rig_, *character_, blend_shapes, shapes_));
+        wrinkle::BlendShapePose::Create(*rig_, *character_, shapes.pose_names(), shapes_));
     definition->shape_program = std::make_shared<const wrinkle::ShapeProgram>(
-        wrinkle::ShapeProgram::ByName(blend_shapes, shapes_));
+        rig::MatchShapes(shape_matcher_, blend_shapes, shapes_));
   }
   definition->binding = std::make_shared<const wrinkle::RigBinding>(*std::move(binding));
   definition->skeleton = std::move(skeleton);
   definition->blend_shapes = std::move(blend_shapes);
+  definition->shapes = std::move(shapes);
   Report(*definition, match);
   definition->match = std::move(match);
   return std::shared_ptr<const StreamDefinition>(std::move(definition));
@@ -119,6 +122,9 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Make(
 void StreamDefinitions::Report(const StreamDefinition& stream,
                                const rig::SkeletonMatch& match) const {
   if (const std::string text = rig::Describe(match.stream); !text.empty()) {
+    spdlog::info("{}", text);
+  }
+  if (const std::string text = stream.shapes.Description(); !text.empty()) {
     spdlog::info("{}", text);
   }
   const auto missing_joints = stream.binding->missing_joints();
@@ -144,6 +150,7 @@ void StreamDefinitions::Report(const StreamDefinition& stream,
     draws_any |= drawn;
     feeds_any |= read;
   }
+  feeds_any |= stream.shapes.drivers().num_mapped() > 0;
   feeds_any |= std::ranges::any_of(
       stream.blend_shapes, [this](const std::string& shape) { return Reads(*rig_, shape); });
   if (!ignored.empty()) {

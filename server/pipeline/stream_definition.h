@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/status.h"
+#include "rig/shapes/rig_shapes.h"
 #include "rig/skeleton_match.h"
 #include "wrinkle/rig/rig.h"
 #include "wrinkle/rig/rig_joints.h"
@@ -33,6 +34,8 @@ struct StreamOffer {
 struct StreamDefinition {
   wrinkle::Skeleton skeleton;
   std::vector<std::string> blend_shapes;
+  // The blend shapes that the rig reads by other names. They follow the stream's own in every pose.
+  rig::RigShapes shapes;
   std::vector<std::int16_t> joint_of_wire;  // wire index -> index in `skeleton`
   rig::SkeletonMatch match;                 // how a skeleton map has matched the rig's joints
   std::shared_ptr<const wrinkle::RigBinding> binding;
@@ -47,15 +50,16 @@ struct StreamDefinition {
 class StreamDefinitions {
  public:
   // `character`: outlives this object; null: nothing is rendered. `matcher` finds the joints of
-  // skeletons with other joint names than the rig and the character. `shapes`: the character's;
-  // outlive this object.
+  // skeletons with other joint names than the rig and the character, `shape_matcher` blend shapes
+  // with other names than theirs. `shapes`: the character's; outlive this object.
   StreamDefinitions(std::shared_ptr<const wrinkle::Rig> rig, const wrinkle::Skeleton* character,
                     std::size_t capacity, rig::SkeletonMatcher matcher = {},
-                    std::span<const std::string> shapes = {})
+                    rig::ShapeMatcher shape_matcher = {}, std::span<const std::string> shapes = {})
       : rig_(std::move(rig)),
         character_(character),
         capacity_(capacity),
         matcher_(std::move(matcher)),
+        shape_matcher_(std::move(shape_matcher)),
         shapes_(shapes),
         rig_joints_(wrinkle::JointsOf(*rig_)) {}
 
@@ -63,8 +67,9 @@ class StreamDefinitions {
   // one is created; if it returns false, the result is null. Errors: those of Skeleton::Create()
   // and RigBinding::Create().
   //
-  // Logs once per definition: the matching skeleton map, joints and blend shapes that the rig needs
-  // and the stream lacks, joints that are ignored, and streams that move no weight or no picture.
+  // Logs once per definition: the matching skeleton map and shape map, joints and blend shapes that
+  // the rig needs and the stream lacks, joints that are ignored, and streams that move no weight or
+  // no picture.
   [[nodiscard]] Result<std::shared_ptr<const StreamDefinition>> Get(
       StreamOffer offer, const std::function<bool()>& may_make = [] { return true; });
 
@@ -88,6 +93,7 @@ class StreamDefinitions {
   const wrinkle::Skeleton* character_;
   std::size_t capacity_;
   rig::SkeletonMatcher matcher_;
+  rig::ShapeMatcher shape_matcher_;
   std::span<const std::string> shapes_;
   std::set<std::string> rig_joints_;                          // all joints that the rig reads
   std::list<std::shared_ptr<const StreamDefinition>> known_;  // most recently used first

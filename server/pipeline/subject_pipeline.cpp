@@ -9,7 +9,7 @@ namespace furrow::server {
 SubjectPipeline::SubjectPipeline(std::shared_ptr<const StreamDefinition> stream)
     : stream_(std::move(stream)), solver_(stream_->binding) {
   pose_.SetRest(stream_->skeleton);
-  pose_.blend_shapes.assign(stream_->blend_shapes.size(), 0.0f);
+  pose_.blend_shapes.assign(stream_->shapes.size(), 0.0f);
 }
 
 wrinkle::JobStatus SubjectPipeline::Solve(std::uint32_t sequence, std::int64_t capture_time_us) {
@@ -28,6 +28,8 @@ wrinkle::BatchUpdate SubjectPipeline::Prepare(std::uint32_t sequence,
     // of this pose.
     solver_.Reset();
   }
+  // The blend shapes that the rig reads by other names.
+  stream_->shapes.Extend(std::span<float>(pose_.blend_shapes));
   // Writes corrected_, which solved_pose() then returns.
   if (neutral_pose_) SubtractNeutral();
   next_sequence_ = sequence;
@@ -80,6 +82,12 @@ bool SubjectPipeline::SetNeutral(std::optional<wrinkle::LocalPose> neutral) {
 
 void SubjectPipeline::SetStream(std::shared_ptr<const StreamDefinition> stream) {
   stream_ = std::move(stream);
+  // Another rig may read other blend shapes. The stream's own come first and stay.
+  stream_->shapes.Extend(&pose_.blend_shapes);
+  if (neutral_pose_) {
+    stream_->shapes.Extend(&neutral_pose_->blend_shapes);
+    corrected_ = pose_;
+  }
   // The level starts at all drivers again; Subscribers::OnSubjectReady() lowers it.
   solver_ = wrinkle::SubjectSolver(stream_->binding);
   SolveAgain();

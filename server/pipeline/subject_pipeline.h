@@ -21,8 +21,9 @@ class SubjectPipeline {
   explicit SubjectPipeline(std::shared_ptr<const StreamDefinition> stream);
 
   // The pose to fill before Solve(): local joint transforms in the skeleton's order, and blend
-  // shapes in the stream's order. It starts at rest and keeps the last values, including those that
-  // Solve() has refused, so that partial poses can build on them.
+  // shapes in the stream's order; Prepare() computes those behind them. It starts at rest and keeps
+  // the last values, including those that Solve() has refused, so that partial poses can build on
+  // them.
   [[nodiscard]] wrinkle::LocalPose* mutable_pose() { return &pose_; }
 
   [[nodiscard]] const wrinkle::LocalPose& pose() const { return pose_; }

@@ -106,7 +106,7 @@ void ToWholePose(const wrinkle::LocalPose& pose, const StreamDefinition& stream,
   const std::size_t joints = stream.joint_of_wire.size();
   frame->partial = false;
   frame->num_joints = static_cast<std::uint16_t>(joints);
-  frame->num_blend_shapes = static_cast<std::uint16_t>(pose.blend_shapes.size());
+  frame->num_blend_shapes = static_cast<std::uint16_t>(stream.blend_shapes.size());
   ListAll(joints, &frame->rotation_joints);
   frame->rotations.resize(joints);
   frame->translation_joints.clear();
@@ -127,8 +127,10 @@ void ToWholePose(const wrinkle::LocalPose& pose, const StreamDefinition& stream,
       frame->scales.push_back(ToWire(local.scale));
     }
   }
-  ListAll(pose.blend_shapes.size(), &frame->blend_shape_indices);
-  frame->blend_shapes.assign(pose.blend_shapes.begin(), pose.blend_shapes.end());
+  // Without those that the daemon has computed for its rig.
+  const auto sent = std::span(pose.blend_shapes).first(stream.blend_shapes.size());
+  ListAll(sent.size(), &frame->blend_shape_indices);
+  frame->blend_shapes.assign(sent.begin(), sent.end());
 }
 
 }  // namespace furrow::server

@@ -47,6 +47,7 @@ class Hub {
     std::uint64_t session = 1;  // random, not 0
     std::shared_ptr<const wrinkle::Rig> rig;
     rig::SkeletonMatcher skeletons;                // finds the rig's joints in foreign skeletons
+    rig::ShapeMatcher shape_matcher;               // finds the rig's blend shapes by other names
     const wrinkle::Skeleton* character = nullptr;  // null: render nothing
     std::span<const std::string> shapes;           // the character's; outlive the hub
     PictureSource* pictures = nullptr;             // null: render nothing

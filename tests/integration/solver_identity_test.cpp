@@ -16,6 +16,7 @@
 #include "motion/clip_file.h"
 #include "motion/pose_source.h"
 #include "rig/rig_file.h"
+#include "rig/shapes/rig_shapes.h"
 #include "wrinkle/solver/solver.h"
 
 namespace furrow::testing_net {
@@ -27,7 +28,10 @@ std::vector<std::vector<float>> SolveAsTheCommandLine(const motion::Clip& clip,
   const auto path = std::filesystem::path(FURROW_SOURCE_DIR) / "rig" / "rigs" / rig_name;
   const auto rig = rig::LoadRig(path, motion::CachedPoseSource());
   EXPECT_TRUE(rig.ok()) << rig.status().ToString();
-  auto binding = wrinkle::RigBinding::Create(*rig, clip.skeleton, clip.blend_shape_names,
+  const auto matcher = rig::ShapeMatcher::Create("");
+  EXPECT_TRUE(matcher.ok()) << matcher.status().ToString();
+  const rig::RigShapes shapes(*matcher, clip.blend_shape_names, *rig);
+  auto binding = wrinkle::RigBinding::Create(*rig, clip.skeleton, shapes.driver_names(),
                                              {.allow_missing = true});
   EXPECT_TRUE(binding.ok()) << binding.status().ToString();
   wrinkle::SubjectSolver solver(std::make_shared<const wrinkle::RigBinding>(*std::move(binding)));
@@ -35,6 +39,7 @@ std::vector<std::vector<float>> SolveAsTheCommandLine(const motion::Clip& clip,
   wrinkle::LocalPose pose;
   for (int frame = 0; frame < clip.num_frames(); ++frame) {
     clip.GetPose(frame, &pose);
+    shapes.Extend(&pose.blend_shapes);
     EXPECT_EQ(solver.Update(pose, motion::CaptureStep(clip, frame)), wrinkle::JobStatus::kOk);
     weights.emplace_back(solver.wrinkle_weights().begin(), solver.wrinkle_weights().end());
   }
@@ -80,6 +85,17 @@ TEST(SolverIdentity, FacesHaveTheSameBits) { ExpectSameBits(ArkitClip(120), "ark
 
 TEST(SolverIdentity, ManySubjectsAtOnceHaveTheSameBits) {
   ExpectSameBits(ArkitClip(60), "arkit.json", 8);
+}
+
+// The coefficients of a phone under the names of VRM presets, which a shape map translates.
+TEST(SolverIdentity, MappedFacesHaveTheSameBits) {
+  motion::Clip clip = ArkitClip(60);
+  const std::vector<std::string> presets = {"Joy", "Angry", "Sorrow", "Fun",     "A",      "I", "U",
+                                            "E",   "O",     "Blink",  "Blink_L", "Blink_R"};
+  for (std::size_t i = 0; i < clip.blend_shape_names.size(); ++i) {
+    clip.blend_shape_names[i] = i < presets.size() ? presets[i] : "custom" + std::to_string(i);
+  }
+  ExpectSameBits(clip, "arkit.json", 3);
 }
 
 TEST(SolverIdentity, BodiesHaveTheSameBits) {

@@ -14,6 +14,7 @@ void AddPlay(CLI::App& app, Action& action);
 void AddRecord(CLI::App& app, Action& action);
 void AddRender(CLI::App& app, Action& action);
 void AddRig(CLI::App& app, Action& action);
+void AddShapeMapCommand(CLI::App& app, Action& action);
 void AddSolve(CLI::App& app, Action& action);
 void AddWatch(CLI::App& app, Action& action);
 

@@ -26,6 +26,21 @@ void PrintAnimations(const std::vector<motion::AnimationInfo>& animations) {
                 animations[i].seconds);
 }
 
+// What the names of the blend shapes mean, as the shipped shape maps know them.
+void PrintVocabulary(const std::vector<std::string>& names) {
+  if (names.empty()) return;
+  const auto matcher = LoadShapeMatcher("");
+  if (!matcher.ok()) return;
+  const rig::ShapeVocabulary* vocabulary = matcher->VocabularyOf(names);
+  if (vocabulary == nullptr) {
+    std::printf("  shape map   none fits; write one with furrow shape-map propose\n");
+    return;
+  }
+  const rig::VocabularyFit fit = vocabulary->Fit(names);
+  std::printf("  shape map   '%s' knows %d of %s\n", vocabulary->map().name.c_str(), fit.explained,
+              Counted(names.size(), "blend shape").c_str());
+}
+
 int DescribeClip(const std::string& path) {
   motion::ClipReport report;
   const auto clip = LoadClipArgument(path, {}, &report);
@@ -40,6 +55,7 @@ int DescribeClip(const std::string& path) {
   std::printf("  subject     %s\n", clip->name.c_str());
   std::printf("  skeleton    %s, %s\n", Counted(clip->skeleton.num_joints(), "joint").c_str(),
               Counted(clip->blend_shape_names.size(), "blend shape").c_str());
+  PrintVocabulary(clip->blend_shape_names);
   std::printf("  frames      %d in %.3f s, %.2f Hz, longest gap %.3f s\n", clip->num_frames(),
               clip->duration(), rate, longest);
   PrintAnimations(report.animations);

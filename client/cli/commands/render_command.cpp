@@ -33,6 +33,7 @@ struct RenderOptions {
   std::string character;
   std::string rig;
   std::string skeleton_map;
+  std::string shape_map;
   std::string frames;
   std::string size = "640x640";
   std::string camera = "face";
@@ -163,9 +164,11 @@ Result<std::unique_ptr<SubjectGroup>> MakeGroup(const RenderOptions& options,
   FURROW_RETURN_IF_ERROR(clips);
   const auto matcher = LoadSkeletonMatcher(options.skeleton_map);
   FURROW_RETURN_IF_ERROR(matcher);
+  const auto shapes = LoadShapeMatcher(options.shape_map);
+  FURROW_RETURN_IF_ERROR(shapes);
   const std::vector<std::string> names =
       options.files.empty() ? std::vector<std::string>{""} : options.files;
-  return SubjectGroup::Create(character, *clips, names, *matcher, options.group);
+  return SubjectGroup::Create(character, *clips, names, *matcher, *shapes, options.group);
 }
 
 // The first and last frame to draw.
@@ -271,6 +274,7 @@ void AddRender(CLI::App& app, Action& action) {
   command->add_option("--rig", options->rig,
                       "Wrinkle rig, by file or shipped name (default: the rig of the package)");
   AddSkeletonMap(*command, options->skeleton_map);
+  AddShapeMap(*command, options->shape_map);
   command
       ->add_option("--frames", options->frames,
                    "Frames to draw, A:B or A, counted from 0, B included (default: all)")

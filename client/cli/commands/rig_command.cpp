@@ -19,6 +19,7 @@ struct RigOptions {
   std::string rig;
   std::string file;  // a recording; `check` uses its skeleton only
   std::string skeleton_map;
+  std::string shape_map;
   int frame = 0;
   float threshold = 0.01f;
 };
@@ -37,11 +38,15 @@ int Explain(const RigOptions& options) {
   const auto matcher = LoadSkeletonMatcher(options.skeleton_map);
   if (!matcher.ok()) return Fail(matcher.status());
   const auto match = matcher->Match(clip->skeleton, *rig, nullptr);
-  const auto binding = wrinkle::RigBinding::Create(*rig, clip->skeleton, clip->blend_shape_names,
+  const auto shape_matcher = LoadShapeMatcher(options.shape_map);
+  if (!shape_matcher.ok()) return Fail(shape_matcher.status());
+  const rig::RigShapes shapes = MatchBlendShapes(*shape_matcher, *clip, *rig);
+  const auto binding = wrinkle::RigBinding::Create(*rig, clip->skeleton, shapes.driver_names(),
                                                    match.Options(/*allow_missing=*/false));
   if (!binding.ok()) return Fail(binding.status().At(options.rig));
   wrinkle::LocalPose pose;
   clip->GetPose(options.frame, &pose);
+  shapes.Extend(&pose.blend_shapes);
   wrinkle::Explanation explanation;
   if (wrinkle::Explain(*binding, pose, &explanation) != wrinkle::JobStatus::kOk) {
     return Fail({StatusCode::kInternal, "the frame could not be explained", options.file});
@@ -57,12 +62,16 @@ int Check(const RigOptions& options) {
   character::RigReportOptions report_options;
   report_options.folder = ResolveRigPath(options.rig).parent_path();
   std::optional<motion::Clip> clip;
+  rig::RigShapes shapes;
   if (!options.file.empty()) {
     auto loaded = LoadClipArgument(options.file);
     if (!loaded.ok()) return Fail(loaded.status());
     clip = std::move(*loaded);
     report_options.skeleton = &clip->skeleton;
-    report_options.blend_shape_names = clip->blend_shape_names;
+    const auto shape_matcher = LoadShapeMatcher(options.shape_map);
+    if (!shape_matcher.ok()) return Fail(shape_matcher.status());
+    shapes = MatchBlendShapes(*shape_matcher, *clip, *rig);
+    report_options.blend_shape_names = shapes.driver_names();
   }
   rig::SkeletonMatch match;
   if (clip) {
@@ -86,6 +95,7 @@ void AddCheck(CLI::App& group, Action& action) {
       "--skeleton", options->file,
       "Recording to check the rig's joints and blend shapes against (default: none)");
   AddSkeletonMap(*command, options->skeleton_map);
+  AddShapeMap(*command, options->shape_map);
   command->callback([options, &action] { action = [options] { return Check(*options); }; });
 }
 
@@ -100,6 +110,7 @@ void AddExplain(CLI::App& group, Action& action) {
                    "Recording: BVH, glTF/GLB, VRMA, Live Link Face CSV or a take")
       ->required();
   AddSkeletonMap(*command, options->skeleton_map);
+  AddShapeMap(*command, options->shape_map);
   command->add_option("--frame", options->frame, "Frame number, counted from 0")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();

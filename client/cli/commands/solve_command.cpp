@@ -19,6 +19,7 @@ struct SolveOptions {
   std::string file;
   std::string rig;
   std::string skeleton_map;
+  std::string shape_map;
   TableFormat format = TableFormat::kCsv;
   int level = 0;  // number of drivers; 0: all
   bool drivers = false;
@@ -42,7 +43,10 @@ int SolveFile(const SolveOptions& options) {
   const auto matcher = LoadSkeletonMatcher(options.skeleton_map);
   if (!matcher.ok()) return Fail(matcher.status());
   const auto match = matcher->Match(clip->skeleton, *rig, nullptr);
-  auto binding = wrinkle::RigBinding::Create(*rig, clip->skeleton, clip->blend_shape_names,
+  const auto shape_matcher = LoadShapeMatcher(options.shape_map);
+  if (!shape_matcher.ok()) return Fail(shape_matcher.status());
+  const rig::RigShapes shapes = MatchBlendShapes(*shape_matcher, *clip, *rig);
+  auto binding = wrinkle::RigBinding::Create(*rig, clip->skeleton, shapes.driver_names(),
                                              match.Options(options.allow_missing));
   if (!binding.ok()) return Fail(BindingFailed(binding.status(), options));
   WarnAboutMissing(*binding, *clip);
@@ -57,6 +61,7 @@ int SolveFile(const SolveOptions& options) {
   wrinkle::LocalPose pose;
   for (int frame = 0; frame < clip->num_frames(); ++frame) {
     clip->GetPose(frame, &pose);
+    shapes.Extend(&pose.blend_shapes);
     if (solver.Update(pose, motion::CaptureStep(*clip, frame)) != wrinkle::JobStatus::kOk) {
       return Fail({StatusCode::kInternal, "frame " + std::to_string(frame) + " could not be solved",
                    options.file, "please report this file"});
@@ -85,6 +90,7 @@ void AddSolve(CLI::App& app, Action& action) {
                    "Wrinkle rig: a JSON file, or the name of a shipped rig (cmu, arkit, ...)")
       ->required();
   AddSkeletonMap(*command, options->skeleton_map);
+  AddShapeMap(*command, options->shape_map);
   const std::map<std::string, TableFormat> formats{{"csv", TableFormat::kCsv},
                                                    {"jsonl", TableFormat::kJsonl}};
   AddChoice(*command, "--format", options->format, formats, "Output format");

@@ -11,6 +11,12 @@ void AddSkeletonMap(CLI::App& command, std::string& value) {
                      "(default: the best match of the shipped maps)");
 }
 
+void AddShapeMap(CLI::App& command, std::string& value) {
+  command.add_option("--shape-map", value,
+                     "Map of the recording's blend-shape names, by name (arkit, vrm0, cc4, ...) or "
+                     "file (default: the best match of the shipped maps)");
+}
+
 // The limits are those of the wire (protocol::kMinImageSize, kMaxImageSize).
 bool ParseSize(const std::string& text, int* width, int* height) {
   const char* const end = text.data() + text.size();

@@ -42,6 +42,9 @@ CLI::Option* AddChoice(CLI::App& app, const std::string& name, T& value,
 // Adds --skeleton-map. `value` receives its argument, a name or a file, for LoadSkeletonMatcher().
 void AddSkeletonMap(CLI::App& command, std::string& value);
 
+// Adds --shape-map. `value` receives its argument, a name or a file, for LoadShapeMatcher().
+void AddShapeMap(CLI::App& command, std::string& value);
+
 // Parses a picture size such as "640x480", both numbers in [16, 4096] pixels. Returns false and
 // leaves the outputs unspecified if `text` is not one.
 [[nodiscard]] bool ParseSize(const std::string& text, int* width, int* height);

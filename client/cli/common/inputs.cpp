@@ -79,6 +79,23 @@ Result<rig::SkeletonMatcher> LoadSkeletonMatcher(const std::string& map) {
   return rig::SkeletonMatcher();
 }
 
+Result<rig::ShapeMatcher> LoadShapeMatcher(const std::string& map) {
+  auto matcher = rig::ShapeMatcher::Create(map);
+  if (matcher.ok()) return matcher;
+  if (!map.empty()) return matcher.status().At("--shape-map");
+  PrintWarnings({"blend shapes are matched by equal names only: " + matcher.status().ToString()});
+  return rig::ShapeMatcher();
+}
+
+rig::RigShapes MatchBlendShapes(const rig::ShapeMatcher& matcher, const motion::Clip& clip,
+                                const wrinkle::Rig& rig) {
+  rig::RigShapes shapes(matcher, clip.blend_shape_names, rig);
+  const std::string text = shapes.Description();
+  // To standard error, because commands write their results to standard output.
+  if (!text.empty()) std::fprintf(stderr, "furrow: %s\n", text.c_str());
+  return shapes;
+}
+
 void WarnAboutMissing(const wrinkle::RigBinding& binding, const motion::Clip& clip) {
   static constexpr std::size_t kNamed = 4;
   const auto warn = [](std::span<const std::string> names, const std::string& one) {

@@ -10,6 +10,7 @@
 #include "character/character.h"
 #include "motion/clip/clip.h"
 #include "recording/take_reader.h"
+#include "rig/shapes/rig_shapes.h"
 #include "rig/skeleton_match.h"
 #include "wrinkle/rig/rig.h"
 #include "wrinkle/solver/solver.h"
@@ -45,6 +46,14 @@ void PrintWarnings(const std::vector<std::string>& warnings);
 // shipped map per skeleton. Without shipped maps, joints match by equal names and a warning is
 // printed.
 [[nodiscard]] Result<rig::SkeletonMatcher> LoadSkeletonMatcher(const std::string& map);
+
+// Loads the shape map of --shape-map in the same way. Without shipped maps, blend shapes match by
+// equal names.
+[[nodiscard]] Result<rig::ShapeMatcher> LoadShapeMatcher(const std::string& map);
+
+// Finds the blend shapes that `rig` reads in the recording. Prints which map is used, if one is.
+[[nodiscard]] rig::RigShapes MatchBlendShapes(const rig::ShapeMatcher& matcher,
+                                              const motion::Clip& clip, const wrinkle::Rig& rig);
 
 // Prints one warning for the joints and one for the blend shapes that the rig reads and the
 // recording lacks, with their number and the first few names. A recording without any blend shapes

@@ -64,6 +64,7 @@ void AddSubscriberOptions(CLI::App& command, LoadFlags& options) {
                      "The daemon's wrinkle rig, by file or shipped name, to check the weights "
                      "(default: the default character's rig)");
   AddSkeletonMap(command, options.input.skeleton_map);
+  AddShapeMap(command, options.input.shape_map);
   command
       .add_option("--tolerance", options.run.tolerance,
                   "Largest accepted error of a weight, which is in [0, 1]")

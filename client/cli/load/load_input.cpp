@@ -47,7 +47,7 @@ void QuantiseFrame(std::span<wrinkle::Transform> locals, std::span<const wrinkle
 
 // True if the recording has no joint and no blend shape that the rig reads, by name or by alias.
 bool NothingMatches(const wrinkle::Rig& rig, const motion::Clip& clip,
-                    const rig::SkeletonMatch& match) {
+                    const rig::SkeletonMatch& match, const rig::RigShapes& shapes) {
   const auto joints = wrinkle::JointsOf(rig);
   const auto has_joint = [&](const std::string& name) { return joints.contains(name); };
   const auto has_blend_shape = [&](const wrinkle::Driver& driver) {
@@ -56,12 +56,15 @@ bool NothingMatches(const wrinkle::Rig& rig, const motion::Clip& clip,
              return EqualsIgnoreCase(name, driver.blend_shape.blend_shape);
            });
   };
-  return match.aliases.empty() && std::ranges::none_of(clip.skeleton.joint_names(), has_joint) &&
+  return match.aliases.empty() && shapes.drivers().num_mapped() == 0 &&
+         std::ranges::none_of(clip.skeleton.joint_names(), has_joint) &&
          std::ranges::none_of(rig.drivers, has_blend_shape);
 }
 
+// `shapes` receives the blend shapes that the rig reads.
 Result<std::shared_ptr<const wrinkle::RigBinding>> BindRig(const LoadInput& input,
-                                                           const motion::Clip& clip) {
+                                                           const motion::Clip& clip,
+                                                           rig::RigShapes* shapes) {
   std::string rig_name = input.rig;
   if (rig_name.empty()) {
     const auto shipped = furrow::FindDataFile("default.rig.json");
@@ -73,14 +76,17 @@ Result<std::shared_ptr<const wrinkle::RigBinding>> BindRig(const LoadInput& inpu
   const auto matcher = LoadSkeletonMatcher(input.skeleton_map);
   FURROW_RETURN_IF_ERROR(matcher);
   const auto match = matcher->Match(clip.skeleton, *rig, nullptr);
-  auto binding = wrinkle::RigBinding::Create(*rig, clip.skeleton, clip.blend_shape_names,
+  const auto shape_matcher = LoadShapeMatcher(input.shape_map);
+  FURROW_RETURN_IF_ERROR(shape_matcher);
+  *shapes = MatchBlendShapes(*shape_matcher, clip, *rig);
+  auto binding = wrinkle::RigBinding::Create(*rig, clip.skeleton, shapes->driver_names(),
                                              match.Options(/*allow_missing=*/true));
   if (!binding.ok()) return binding.status().At(rig_name);
-  if (NothingMatches(*rig, clip, match)) {
+  if (NothingMatches(*rig, clip, match, *shapes)) {
     return Status(StatusCode::kNotFound, "the recording has no joint and no blend shape of the rig",
                   input.file,
                   "all weights would stay at 0; choose a --rig for this recording, or map its "
-                  "joints with --skeleton-map");
+                  "joints with --skeleton-map and its blend shapes with --shape-map");
   }
   WarnAboutMissing(*binding, clip);
   return std::make_shared<const wrinkle::RigBinding>(*std::move(binding));
@@ -105,14 +111,18 @@ Result<load::Workload> LoadWorkload(const LoadInput& input) {
     return Status(StatusCode::kInvalidArgument, "the recording has no frames", input.file);
   if (input.quantise) QuantiseClip(&*loaded);
   const auto clip = std::make_shared<const motion::Clip>(*std::move(loaded));
-  auto binding = BindRig(input, *clip);
+  rig::RigShapes shapes;
+  auto binding = BindRig(input, *clip, &shapes);
   FURROW_RETURN_IF_ERROR(binding);
 
   load::Workload workload;
   workload.offer = recording::OfferOf(*clip, clip->name, input.scale);
   workload.times = clip->times;
   workload.binding = *std::move(binding);
-  workload.pose = [clip](int frame, wrinkle::LocalPose* pose) { clip->GetPose(frame, pose); };
+  workload.pose = [clip, shapes](int frame, wrinkle::LocalPose* pose) {
+    clip->GetPose(frame, pose);
+    shapes.Extend(&pose->blend_shapes);
+  };
   const auto encoding = input.quantise ? protocol::PoseEncoding::Small() : protocol::PoseEncoding{};
   protocol::Encoder encoder;
   protocol::PoseFrame pose;

@@ -14,6 +14,7 @@ struct LoadInput {
   std::string file;          // the recording
   std::string rig;           // file or name of a shipped rig; empty: the default character's rig
   std::string skeleton_map;  // file or name of a shipped map; empty: the best match
+  std::string shape_map;     // the same for the names of blend shapes
   bool quantise = false;     // send packed poses
   float scale = 1.0f;        // metres per unit of the recording
 };

@@ -53,6 +53,7 @@ nlohmann::json SettingsOf(const LoadFlags& flags) {
       {"file", flags.input.file},
       {"rig", TextOrNull(flags.input.rig)},
       {"skeleton_map", TextOrNull(flags.input.skeleton_map)},
+      {"shape_map", TextOrNull(flags.input.shape_map)},
       {"quantise", flags.input.quantise},
       {"scale", flags.input.scale},
       {"path", NameOf(run.path)},

@@ -9,21 +9,23 @@ namespace furrow::cli {
 
 Result<std::unique_ptr<AnimatedSubject>> AnimatedSubject::Create(
     const character::Character& character, std::shared_ptr<const motion::Clip> clip,
-    const rig::SkeletonMatcher& matcher, const std::string& file) {
+    const rig::SkeletonMatcher& matcher, const rig::ShapeMatcher& shapes, const std::string& file) {
   auto self = std::make_unique<AnimatedSubject>();
   self->clip_ = std::move(clip);
   const motion::Clip& take = *self->clip_;
   const auto match = matcher.Match(take.skeleton, character.rig, &character.skeleton);
-  auto binding = wrinkle::RigBinding::Create(character.rig, take.skeleton, take.blend_shape_names,
-                                             match.Options(/*allow_missing=*/true));
+  self->shapes_ = MatchBlendShapes(shapes, take, character.rig);
+  auto binding =
+      wrinkle::RigBinding::Create(character.rig, take.skeleton, self->shapes_.driver_names(),
+                                  match.Options(/*allow_missing=*/true));
   FURROW_RETURN_IF_ERROR(binding);
   WarnAboutMissing(*binding, take);
   self->solver_ = std::make_unique<wrinkle::SubjectSolver>(
       std::make_shared<const wrinkle::RigBinding>(std::move(*binding)));
   self->retarget_ = rig::MakeRetarget(match, take.skeleton, character.skeleton);
   self->blend_shape_pose_ = wrinkle::BlendShapePose::Create(
-      character.rig, character.skeleton, take.blend_shape_names, character.shapes);
-  self->shape_program_ = wrinkle::ShapeProgram::ByName(take.blend_shape_names, character.shapes);
+      character.rig, character.skeleton, self->shapes_.pose_names(), character.shapes);
+  self->shape_program_ = rig::MatchShapes(shapes, take.blend_shape_names, character.shapes);
   // Pictures would all show the rest pose.
   if (take.blend_shape_names.empty() &&
       self->retarget_.unmatched_source().size() == take.skeleton.joint_names().size()) {
@@ -36,6 +38,7 @@ Result<std::unique_ptr<AnimatedSubject>> AnimatedSubject::Create(
 
 Status AnimatedSubject::Advance(int frame) {
   clip_->GetPose(frame, &pose_);
+  shapes_.Extend(&pose_.blend_shapes);
   const bool solved =
       solver_->Update(pose_, motion::CaptureStep(*clip_, frame)) == wrinkle::JobStatus::kOk &&
       drawn_->Run({retarget_, blend_shape_pose_, &shape_program_}, pose_.joints,

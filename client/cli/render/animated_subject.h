@@ -7,6 +7,7 @@
 
 #include "motion/clip/clip.h"
 #include "render/renderer.h"
+#include "rig/shapes/rig_shapes.h"
 #include "rig/skeleton_match.h"
 #include "wrinkle/shapes/character_pose.h"
 #include "wrinkle/solver/solver.h"
@@ -22,7 +23,8 @@ class AnimatedSubject {
   // kNotFound (the recording and the character have no joint in common).
   [[nodiscard]] static Result<std::unique_ptr<AnimatedSubject>> Create(
       const character::Character& character, std::shared_ptr<const motion::Clip> clip,
-      const rig::SkeletonMatcher& matcher, const std::string& file);
+      const rig::SkeletonMatcher& matcher, const rig::ShapeMatcher& shapes,
+      const std::string& file);
 
   [[nodiscard]] int num_frames() const { return clip_->num_frames(); }
   // Solves frame `frame` in [0, num_frames). The filter of the weights depends on earlier frames,
@@ -34,6 +36,7 @@ class AnimatedSubject {
  private:
   std::shared_ptr<const motion::Clip> clip_;
   wrinkle::Retarget retarget_;
+  rig::RigShapes shapes_;
   wrinkle::BlendShapePose blend_shape_pose_;
   wrinkle::ShapeProgram shape_program_;
   std::unique_ptr<wrinkle::SubjectSolver> solver_;

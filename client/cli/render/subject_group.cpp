@@ -103,7 +103,7 @@ Result<std::unique_ptr<SubjectGroup>> SubjectGroup::Create(
     const character::Character& character,
     const std::vector<std::shared_ptr<const motion::Clip>>& clips,
     const std::vector<std::string>& files, const rig::SkeletonMatcher& matcher,
-    const GroupOptions& options) {
+    const rig::ShapeMatcher& shapes, const GroupOptions& options) {
   auto self = std::make_unique<SubjectGroup>();
   self->character_ = &character;
   self->spacing_ = options.spacing;
@@ -111,7 +111,7 @@ Result<std::unique_ptr<SubjectGroup>> SubjectGroup::Create(
   const int subjects = options.subjects > 0 ? options.subjects : num_clips;
   for (int i = 0; i < subjects; ++i) {
     const auto clip = static_cast<std::size_t>(i % num_clips);
-    auto subject = AnimatedSubject::Create(character, clips[clip], matcher, files[clip]);
+    auto subject = AnimatedSubject::Create(character, clips[clip], matcher, shapes, files[clip]);
     FURROW_RETURN_IF_ERROR(subject);
     const int frames = std::max(1, (*subject)->num_frames());
     const int sharing = (subjects - static_cast<int>(clip) + num_clips - 1) / num_clips;

@@ -43,7 +43,7 @@ class SubjectGroup {
       const character::Character& character,
       const std::vector<std::shared_ptr<const motion::Clip>>& clips,
       const std::vector<std::string>& files, const rig::SkeletonMatcher& matcher,
-      const GroupOptions& options);
+      const rig::ShapeMatcher& shapes, const GroupOptions& options);
 
   // Number of frames of the longest clip.
   [[nodiscard]] int num_frames() const;

@@ -163,7 +163,7 @@ ApiReply CaptureApi::CapturePose(Hub& hub, Subject& subject, const std::string& 
   const SubjectPipeline& pipeline = *subject.pipeline;
   // Binding checks the changed rig before anything is replaced, and serves the preview.
   auto bound = wrinkle::RigBinding::Create(*changed, pipeline.stream().skeleton,
-                                           pipeline.stream().blend_shapes,
+                                           pipeline.stream().shapes.driver_names(),
                                            pipeline.stream().match.Options(/*allow_missing=*/true));
   if (!bound.ok()) return ErrorReply(bound.status());
   const Values before = WeightsOf(subject);

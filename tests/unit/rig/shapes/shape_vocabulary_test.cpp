@@ -41,7 +41,9 @@ TEST(ShapeVocabulary, FindsNoSimilarNames) {
   for (const char* name : {"", "eyeBlinkLef", "eyeBlinkLeftt", "jaw", "smile", "mouthSmile_X"}) {
     EXPECT_EQ(arkit.Find(name).shape, -1) << name;
   }
-  EXPECT_EQ(arkit.Find(std::string(300, 'x') + ".jawOpen").shape, -1);
+  std::string long_name(300, 'x');
+  long_name += ".jawOpen";
+  EXPECT_EQ(arkit.Find(long_name).shape, -1);
   EXPECT_GE(arkit.Find("ARKit_jaw_open").shape, 0);
   EXPECT_FALSE(arkit.Find("ARKit_jaw_open").exact);
   EXPECT_TRUE(arkit.Find("JAWOPEN").exact);

@@ -51,6 +51,8 @@ TEST(CommandLine, EveryFlagReachesTheConfig) {
                                   "b.json",
                                   "--skeleton-map",
                                   "mixamo",
+                                  "--shape-map",
+                                  "vrm0",
                                   "--bind",
                                   "::1",
                                   "--tcp",
@@ -85,6 +87,7 @@ TEST(CommandLine, EveryFlagReachesTheConfig) {
   EXPECT_EQ(config.character, "a.glb");
   EXPECT_EQ(config.rig, "b.json");
   EXPECT_EQ(config.skeleton_map, "mixamo");
+  EXPECT_EQ(config.shape_map, "vrm0");
   EXPECT_EQ(config.bind, "::1");
   EXPECT_EQ(config.tcp, 1);
   EXPECT_EQ(config.udp, 2);
@@ -163,7 +166,7 @@ TEST(CommandLine, AMissingFileIsBadInput) {
 TEST(ParseConfig, ReadsEveryTable) {
   Config config;
   const Status status = ParseText(
-      "character = 'face.glb'\nrig = '/abs/rig.json'\nskeleton_map = 'cmu'\n"
+      "character = 'face.glb'\nrig = '/abs/rig.json'\nskeleton_map = 'cmu'\nshape_map = 'cc4'\n"
       "[listen]\nbind = '0.0.0.0'\ntcp = 0\nudp = 1\nthreads = 3\n"
       "[render]\nenabled = true\nrequired = true\ndevice = '1'\n"
       "[mocap]\nvmc = 39539\nlivelink_face = 11111\n"
@@ -177,6 +180,7 @@ TEST(ParseConfig, ReadsEveryTable) {
   EXPECT_EQ(config.threads, 3);
   EXPECT_EQ(config.rig, "/abs/rig.json");
   EXPECT_EQ(config.skeleton_map, "cmu");
+  EXPECT_EQ(config.shape_map, "cc4");
   EXPECT_TRUE(config.require_render);
   EXPECT_EQ(config.osc_out->host, "::1");
   EXPECT_EQ(config.record, (RecordConfig{"takes", 2.0, 60.0, false}));

@@ -15,6 +15,7 @@
 #include "server/pipeline/stream_definition.h"
 #include "server/pipeline/subject_pipeline.h"
 #include "server/pipeline/wire_adapter.h"
+#include "tests/unit/rig/shapes/shipped_shape_maps.h"
 #include "tests/unit/rig/shipped_matcher.h"
 
 namespace furrow::server {
@@ -200,7 +201,7 @@ TEST(StreamDefinitions, BlendShapesMoveTheCharactersShapes) {
   StreamOffer offer;
   offer.blend_shapes = {"JawOpen", "tongueOut"};
   LogCapture log;
-  StreamDefinitions definitions(KneeRig(), &character, 4, {}, shapes);
+  StreamDefinitions definitions(KneeRig(), &character, 4, {}, {}, shapes);
   const auto definition = definitions.Get(offer);
   ASSERT_TRUE(definition.ok()) << definition.status().ToString();
   EXPECT_THAT(log.text(), Not(HasSubstr("pictures show the rest pose")));
@@ -283,6 +284,58 @@ TEST(StreamDefinitions, AForeignStreamFeedsTheRigAndMovesTheCharacter) {
   std::vector<wrinkle::Transform> drawn(7);
   ASSERT_EQ(snapshot->retarget->Run(snapshot->joints, drawn), wrinkle::JobStatus::kOk);
   EXPECT_NEAR(glm::angle(drawn[2].rotation), 1.5f, 1e-4f);
+}
+
+// A rig of one driver, which reads a blend shape of ARKit.
+std::shared_ptr<const wrinkle::Rig> FaceRig(const char* blend_shape) {
+  auto rig = std::make_shared<wrinkle::Rig>();
+  rig->name = "face";
+  rig->filter.enabled = false;
+  rig->wrinkle_maps.push_back({.name = "folds"});
+  wrinkle::Driver& driver = rig->drivers.emplace_back();
+  driver.name = "face";
+  driver.kind = wrinkle::Driver::Kind::kBlendShape;
+  driver.blend_shape.blend_shape = blend_shape;
+  wrinkle::Region region;
+  region.name = "face";
+  region.modulation = wrinkle::Modulation::kLinear;
+  region.feeds.push_back({"folds", {{"face", "value", 1.0f}}});
+  rig->regions.push_back(region);
+  return rig;
+}
+
+TEST(SubjectPipeline, PresetsMoveARigOfArkit) {
+  StreamDefinitions definitions(FaceRig("mouthSmileLeft"), nullptr, 4, {},
+                                rig::ShippedShapeMatcher());
+  LogCapture log;
+  const auto definition = definitions.Get({.joints = {}, .blend_shapes = {"Joy", "A", "Blink"}});
+  ASSERT_TRUE(definition.ok()) << definition.status().ToString();
+  EXPECT_THAT(log.text(), HasSubstr("shape map 'vrm0' to 'arkit': 1 of 1 blend shape"));
+  EXPECT_THAT(log.text(), Not(HasSubstr("lacks")));
+  EXPECT_THAT(log.text(), Not(HasSubstr("at rest")));
+
+  SubjectPipeline subject(*definition);
+  protocol::PoseFrame frame;
+  frame.num_blend_shapes = 3;
+  frame.blend_shapes = {0.5f, 0.25f, 0.0f};
+  ASSERT_TRUE(PoseFits(frame, subject.stream()));
+  ApplyPose(frame, subject.stream(), subject.mutable_pose());
+  ASSERT_EQ(subject.Solve(1, 1000), wrinkle::JobStatus::kOk);
+  EXPECT_FLOAT_EQ(subject.wrinkle_weights()[0], 0.5f);
+  // What is relayed is what was sent.
+  protocol::PoseFrame relayed;
+  ToWholePose(subject.pose(), subject.stream(), &relayed);
+  EXPECT_EQ(relayed.num_blend_shapes, 3);
+  EXPECT_EQ(relayed.blend_shapes, frame.blend_shapes);
+
+  // The relaxed face counts as neutral, also after the rig has changed.
+  ASSERT_TRUE(subject.SetNeutral(subject.pose()));
+  EXPECT_FLOAT_EQ(subject.wrinkle_weights()[0], 0.0f);
+  definitions.SetRig(FaceRig("jawOpen"));
+  subject.SetStream(definitions.Rebind(subject.stream()).value());
+  EXPECT_FLOAT_EQ(subject.wrinkle_weights()[0], 0.0f);
+  ASSERT_TRUE(subject.SetNeutral(std::nullopt));
+  EXPECT_FLOAT_EQ(subject.wrinkle_weights()[0], 0.2f);
 }
 
 TEST(SubjectPipeline, FollowsTheBend) {

@@ -42,5 +42,58 @@ TEST(ShapeProgram, FailuresChangeNothing) {
   EXPECT_EQ(two, std::vector<float>(2, 9.0f));
 }
 
+using Formulas = std::vector<std::pair<std::size_t, ShapeFormula>>;
+
+ShapeInput InputFrom(ShapeInput::From from, std::uint32_t index,
+                     ShapeInput::Use use = ShapeInput::Use::kValue) {
+  return {.from = from, .use = use, .index = index};
+}
+
+TEST(ShapeProgram, AddsUpProductsOfShapedInputs) {
+  using From = ShapeInput::From;
+  using Use = ShapeInput::Use;
+  const ShapeInput a = InputFrom(From::kBlendShape, 0, Use::kClamped);
+  const ShapeInput rest = InputFrom(From::kBlendShape, 1, Use::kRest);
+  ShapeInput tent = InputFrom(From::kShape, 2, Use::kTent);
+  tent.before = 0.0f;
+  tent.at = 0.5f;
+  tent.after = 0.75f;
+  const std::vector<ShapeFormula> steps = {
+      {.sum = {{0.5f, {a, rest}}, {0.25f, {a}}}, .clamped = true, .at_most = {}}};
+  const Formulas shapes = {
+      {2, SameAs(InputFrom(From::kStep, 0))},
+      {0, {.sum = {{1.0f, {tent}}}, .clamped = false, .at_most = {}}},
+      {1, {.sum = {{3.0f, {a}}}, .clamped = true, .at_most = InputFrom(From::kShape, 2)}}};
+  const auto program = ShapeProgram::Create(4, steps, shapes);
+  ASSERT_TRUE(program.ok()) << program.status().ToString();
+  std::vector<float> weights(4, 9.0f);
+  ASSERT_EQ(program->Run(std::vector<float>{0.8f, 0.5f}, weights), JobStatus::kOk);
+  // 0.5 * 0.8 * (1 - 0.5) + 0.25 * 0.8 = 0.4, which is 0.8 up the tent's left side.
+  EXPECT_FLOAT_EQ(weights[2], 0.4f);
+  EXPECT_FLOAT_EQ(weights[0], 0.8f);
+  EXPECT_FLOAT_EQ(weights[1], 0.4f);
+  EXPECT_EQ(weights[3], 0.0f);
+  ASSERT_EQ(program->Run(std::vector<float>{7.0f, -3.0f}, weights), JobStatus::kOk);
+  EXPECT_FLOAT_EQ(weights[2], 0.75f);
+  EXPECT_FLOAT_EQ(weights[0], 0.0f);
+}
+
+TEST(ShapeProgram, RejectsFormulasThatReadWhatComesLater) {
+  using From = ShapeInput::From;
+  const ShapeFormula step = SameAs(InputFrom(From::kStep, 0));
+  EXPECT_FALSE(ShapeProgram::Create(1, std::vector{step}, {}).ok());
+  EXPECT_FALSE(ShapeProgram::Create(2, {}, Formulas{{0, SameAs(InputFrom(From::kShape, 1))}}).ok());
+  EXPECT_FALSE(ShapeProgram::Create(1, {}, Formulas{{1, {}}}).ok());
+  EXPECT_FALSE(ShapeProgram::Create(1, {}, Formulas{{0, {}}, {0, {}}}).ok());
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  ShapeFormula gain = SameAs({});
+  gain.sum[0].gain = nan;
+  EXPECT_FALSE(ShapeProgram::Create(1, {}, Formulas{{0, gain}}).ok());
+  ShapeInput tent{.use = ShapeInput::Use::kTent, .before = 0.5f, .at = 0.5f, .after = 1.0f};
+  EXPECT_FALSE(ShapeProgram::Create(1, {}, Formulas{{0, SameAs(tent)}}).ok());
+  const std::vector<ShapeFormula> many(ShapeProgram::kMaxSteps + 1);
+  EXPECT_EQ(ShapeProgram::Create(1, many, {}).status().code(), StatusCode::kLimit);
+}
+
 }  // namespace
 }  // namespace furrow::wrinkle
