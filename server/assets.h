@@ -28,8 +28,8 @@ struct Assets {
 // shape maps and blend shapes.
 //
 // Errors: those of LoadCharacter(), LoadRig() and render::LoadSettings(), and of
-// SkeletonMatcher::Create() and ShapeMatcher::Create() if `config` names a map; kNotFound if there
-// is no default character, with a hint how to get one.
+// SkeletonMatcher::Create() and ShapeMatcher::Create() if `config` names a map; kNotFound without a
+// default character, with a hint how to get one.
 [[nodiscard]] Result<Assets> LoadAssets(const Config& config);
 
 }  // namespace furrow::server

@@ -57,6 +57,12 @@ class Matching {
                     const ShapeVocabulary* to);
   void TranslateToArkit(const ShapeVocabulary& stream);
   void TranslateToTargets(const ShapeVocabulary& targets, bool only_complete);
+  [[nodiscard]] bool HasOpenTargets() const {
+    for (std::size_t t = 0; t < targets_.size(); ++t) {
+      if (IsOpen(t)) return true;
+    }
+    return false;
+  }
   void LimitMouthClose(const ShapeVocabulary& targets);
   void Combine(const ShapeVocabulary* targets);
   [[nodiscard]] ShapeMatch Finish(const ShapeVocabulary* stream, const ShapeVocabulary* targets) &&;
@@ -316,6 +322,8 @@ ShapeMatch ShapeMatcher::Match(std::span<const std::string> stream,
                                std::span<const std::string> targets) const {
   Matching matching(stream, targets);
   matching.TakeEqualNames();
+  // Most streams have the rig's own names. Translating costs a millisecond or more.
+  if (!matching.HasOpenTargets()) return std::move(matching).Finish(nullptr, nullptr);
   const ShapeVocabulary* from = VocabularyOf(stream);
   const ShapeVocabulary* to = BestVocabulary(vocabularies_, targets, 1);
   // The targets' own map first: it knows the spelling that is asked for.

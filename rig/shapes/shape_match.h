@@ -26,7 +26,7 @@ struct ShapeMatch {
     kCombination,  // a corrective: a product of other targets, or a tent of one
   };
 
-  std::string stream_map;  // the maps' names; empty: none fits
+  std::string stream_map;  // the maps' names; empty: none fits, or none is needed
   std::string target_map;
   wrinkle::ShapeProgram program;       // one weight per target
   std::vector<By> by;                  // one per target

@@ -175,6 +175,30 @@ TEST(ForeignWires, VmcRaisesTheRightWeights) {
   EXPECT_LT(weights["brow_l.squash"], 0.05f);
 }
 
+// A VRM avatar sends its expressions, and the rig reads ARKit's blend shapes.
+TEST(ForeignWires, VrmPresetsOverVmcRaiseTheRightWeights) {
+  DaemonThread daemon(ForeignConfig());
+  ASSERT_TRUE(daemon.serves());
+  TcpClient viewer(daemon.ready().tcp);
+  AwaitSubject(viewer, "vmc");
+  UdpClient performer(*daemon.ready().vmc);
+  performer.SendRaw(BlendVal("Sorrow", 1.0f));
+  performer.SendRaw(BlendVal("A", 1.0f));
+  performer.SendRaw(BlendVal("Blink", 0.0f));
+  performer.SendRaw(BlendVal("Angry", 0.0f));
+  performer.SendRaw(BlendApply());
+  const auto reply = viewer.Await<protocol::SubscribeReply>();
+  ASSERT_TRUE(reply.has_value());
+  const auto frame = viewer.Await<protocol::WeightFrame>();
+  ASSERT_TRUE(frame.has_value());
+  auto weights = Named(*reply, *frame);
+  EXPECT_GT(weights["brow_l.stretch"], 0.5f);  // browInnerUp
+  EXPECT_EQ(weights["brow_l.stretch"], weights["brow_r.stretch"]);
+  EXPECT_GT(weights["mouth_l.squash"], 0.3f);  // mouthFrownLeft
+  EXPECT_GT(weights["nose.stretch"], 0.1f);    // jawOpen
+  EXPECT_LT(weights["brow_l.squash"], 0.05f);
+}
+
 TEST(ForeignWires, APortAcceptsItsFirstSenderAndCountsOthers) {
   DaemonThread daemon(ForeignConfig());
   ASSERT_TRUE(daemon.serves());

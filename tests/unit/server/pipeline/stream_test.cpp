@@ -322,7 +322,7 @@ TEST(SubjectPipeline, PresetsMoveARigOfArkit) {
   ApplyPose(frame, subject.stream(), subject.mutable_pose());
   ASSERT_EQ(subject.Solve(1, 1000), wrinkle::JobStatus::kOk);
   EXPECT_FLOAT_EQ(subject.wrinkle_weights()[0], 0.5f);
-  // What is relayed is what was sent.
+  // Subscribers receive the coefficients as they were sent.
   protocol::PoseFrame relayed;
   ToWholePose(subject.pose(), subject.stream(), &relayed);
   EXPECT_EQ(relayed.num_blend_shapes, 3);
