@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "motion/pose_source.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -39,8 +40,9 @@ struct CachedPoseSource::Entry {
   std::optional<Clip> clip;
 };
 
-CachedPoseSource::CachedPoseSource(const LoadOptions& options)
-    : options_(options), entry_(std::make_shared<Entry>()) {}
+CachedPoseSource::CachedPoseSource(const LoadOptions& options,
+                                   std::function<void(const std::string&)> warn)
+    : options_(options), warn_(std::move(warn)), entry_(std::make_shared<Entry>()) {}
 
 Result<wrinkle::PoseFrame> CachedPoseSource::operator()(const std::filesystem::path& path,
                                                         int frame) const {
@@ -56,8 +58,10 @@ Result<wrinkle::PoseFrame> CachedPoseSource::operator()(const std::filesystem::p
       entry_->clip && entry_->path == path && entry_->time == time && entry_->size == size;
   if (!fresh) {
     entry_->clip.reset();
-    Result<Clip> clip = LoadClip(path, options_);
+    ClipReport report;
+    Result<Clip> clip = LoadClip(path, options_, &report);
     FURROW_RETURN_IF_ERROR(clip);
+    if (warn_) std::for_each(report.warnings.begin(), report.warnings.end(), warn_);
     *entry_ = {path, time, size, std::move(*clip)};
   }
   return GetFrame(*entry_->clip, path, frame);

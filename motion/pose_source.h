@@ -2,7 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
+#include <string>
 
 #include "motion/clip/clip.h"
 #include "wrinkle/skeleton/pose_frame.h"
@@ -18,7 +20,9 @@ namespace furrow::motion {
 //   are), kUnsupported (a recording without joints).
 class CachedPoseSource {
  public:
-  explicit CachedPoseSource(const LoadOptions& options = {});
+  // `warn` receives the reader's warnings each time a recording is read. Optional.
+  explicit CachedPoseSource(const LoadOptions& options = {},
+                            std::function<void(const std::string&)> warn = {});
 
   [[nodiscard]] Result<wrinkle::PoseFrame> operator()(const std::filesystem::path& path,
                                                       int frame) const;
@@ -26,6 +30,7 @@ class CachedPoseSource {
  private:
   struct Entry;
   LoadOptions options_;
+  std::function<void(const std::string&)> warn_;
   std::shared_ptr<Entry> entry_;
 };
 

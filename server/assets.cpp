@@ -55,7 +55,8 @@ Result<rig::ShapeMatcher> LoadShapeMaps(const std::string& map) {
 
 Result<Assets> LoadAssets(const Config& config) {
   // Rigs name the files and frames of their reference poses; each file is read once.
-  const wrinkle::PoseSource poses = motion::CachedPoseSource();
+  const wrinkle::PoseSource poses = motion::CachedPoseSource(
+      ReadOptions(config), [](const std::string& warning) { spdlog::warn("{}", warning); });
   Assets assets;
   auto matcher = LoadMatcher(config.skeleton_map);
   if (!matcher.ok()) return matcher.status().At("--skeleton-map");

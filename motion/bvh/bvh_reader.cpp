@@ -15,6 +15,7 @@
 #include "base/text_cursor.h"
 #include "motion/bvh/bvh.h"
 #include "motion/bvh/bvh_hierarchy.h"
+#include "motion/bvh/bvh_positions.h"
 #include "motion/clip/limits.h"
 
 namespace furrow::motion {
@@ -91,14 +92,17 @@ glm::dquat AxisRotation(int axis, double degrees) {
   return rotation;
 }
 
-// One joint's channel values in one frame, in the file's unit.
+// One joint's channel values in one frame, in the file's unit. kAuto is decided after all frames
+// (AddPositionsThatCollapse()).
 Transform MakeLocal(const BvhJointChannels& channels, const double* values, const glm::vec3& offset,
                     BvhPositions positions) {
+  const bool keep = positions == BvhPositions::kOffsets;
   glm::dvec3 translation(offset);
   glm::dquat rotation(1.0, 0.0, 0.0, 0.0);
   for (int i = 0; i < channels.count; ++i) {
     const int channel = static_cast<int>(channels.channels[static_cast<std::size_t>(i)]);
     if (channel < 3) {
+      if (keep) continue;
       translation[channel] = values[i] + (positions == BvhPositions::kAdd ? offset[channel] : 0.0);
     } else {
       // Channels apply in the order of the file, each about the axes that the ones before have
@@ -161,8 +165,11 @@ class FrameReader {
     const double* values = values_.data();
     for (std::size_t j = 0; j < num_joints; ++j) {
       const BvhJointChannels& channels = hierarchy_.channels[j];
+      const bool is_root = hierarchy_.joints[j].parent == wrinkle::kNoJoint;
+      // A root has no other way to travel.
+      const bool travels = is_root && options_.bvh_positions == BvhPositions::kOffsets;
       Transform local = MakeLocal(channels, values, hierarchy_.joints[j].rest.translation,
-                                  options_.bvh_positions);
+                                  travels ? BvhPositions::kReplace : options_.bvh_positions);
       // Finite numbers can leave the range of a float when they are added or scaled.
       local.translation *= options_.scale;
       if (!wrinkle::IsValid(local)) {
@@ -240,6 +247,9 @@ Result<Clip> ParseBvh(std::string_view text, std::string_view source_name,
   clip.skeleton = std::move(*skeleton);
   FrameReader reader(&cursor, *hierarchy, options);
   FURROW_RETURN_IF_ERROR(reader.Run(*header, &clip, report));
+  if (options.bvh_positions == BvhPositions::kAuto) {
+    AddPositionsThatCollapse(*hierarchy, options.scale, source_name, &clip, report);
+  }
   return clip;
 }
 

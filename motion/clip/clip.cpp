@@ -5,6 +5,14 @@
 
 namespace furrow::motion {
 
+std::optional<BvhPositions> ParseBvhPositions(std::string_view word) {
+  if (word == "auto") return BvhPositions::kAuto;
+  if (word == "channels" || word == "replace") return BvhPositions::kReplace;
+  if (word == "add") return BvhPositions::kAdd;
+  if (word == "offsets") return BvhPositions::kOffsets;
+  return std::nullopt;
+}
+
 void Clip::GetPose(int frame, wrinkle::LocalPose* pose) const {
   const auto f = static_cast<std::size_t>(frame);
   const auto joints = static_cast<std::size_t>(skeleton.num_joints());

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "wrinkle/skeleton/pose.h"
@@ -29,11 +31,18 @@ struct Clip {
   void GetPose(int frame, wrinkle::LocalPose* pose) const;
 };
 
-// The meaning of a BVH joint's position channels, which the format does not define. Most tools
-// replace the joint's OFFSET; some add to it. In both cases, an axis without a channel keeps the
-// OFFSET. Even with kReplace, LoadClip() keeps the OFFSET of a root whose position is 0 in every
-// frame; MakeHuman writes such files.
-enum class BvhPositions { kReplace, kAdd };
+// The meaning of a BVH joint's position channels, which the format does not define.
+// - kReplace: they replace the joint's OFFSET, as in most tools.
+// - kAdd: they are added to it.
+// - kOffsets: only those of roots count; all other joints keep their OFFSET.
+// - kAuto: kReplace, but kAdd below roots if kReplace would collapse the body (bvh_positions.h).
+// An axis without a channel keeps the OFFSET. With any of them, LoadClip() keeps the OFFSET of a
+// root whose position is 0 in every frame; MakeHuman writes such files.
+enum class BvhPositions { kAuto, kReplace, kAdd, kOffsets };
+
+// The word of --bvh-positions: auto, channels (or replace), add, offsets. nullopt for others.
+[[nodiscard]] std::optional<BvhPositions> ParseBvhPositions(std::string_view word);
+inline constexpr char kBvhPositionsWords[] = "auto, channels, offsets or add";
 
 // The axis that points up in a BVH file, which the format does not define. FindUpAxis() implements
 // kAuto. A loaded clip is always Y up and faces +Z.
@@ -43,7 +52,7 @@ enum class UpAxis { kAuto, kY, kZ };
 struct LoadOptions {
   float scale = 1.0f;        // multiplies every length, to convert it to metres
   double sample_rate = 0.0;  // Hz, for formats that store curves (glTF); 0: the file's own keys
-  BvhPositions bvh_positions = BvhPositions::kReplace;
+  BvhPositions bvh_positions = BvhPositions::kAuto;
   UpAxis up_axis = UpAxis::kAuto;  // BVH only
   double timecode_rate = 0.0;  // frames per second of a Live Link Face CSV's timecode; 0: inferred
   // For files with several animations (takes): the name of one, or its index from 0. Empty: the

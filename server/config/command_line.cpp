@@ -55,6 +55,9 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
   app->add_flag("--no-http", flags->no_http, "Disable the web page, WebSocket and HTTP API");
   app->add_option("--play", config->play,
                   "Play this recording as a subject, with a timeline on the web page");
+  app->add_option("--bvh-positions", config->bvh_positions,
+                  "Position channels of BVH joints: auto, channels, offsets or add\n"
+                  "(default: auto; 'furrow convert --help' explains them)");
   app->add_flag("--no-render", flags->no_render, "Send weights only; do not use OpenGL");
   app->add_flag("--require-render", config->require_render, "Exit with 1 if OpenGL is unavailable");
   app->add_option("--render-device", config->render_device,

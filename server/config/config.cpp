@@ -73,6 +73,13 @@ Status ValidatePorts(const Config& config) {
 
 }  // namespace
 
+motion::LoadOptions ReadOptions(const Config& config) {
+  motion::LoadOptions options;
+  options.bvh_positions =
+      motion::ParseBvhPositions(config.bvh_positions).value_or(motion::BvhPositions::kAuto);
+  return options;
+}
+
 Status ValidateConfig(const Config& config) {
   if (!IsNumericAddress(config.bind)) {
     return Status(StatusCode::kInvalidArgument,
@@ -89,6 +96,10 @@ Status ValidateConfig(const Config& config) {
   if (config.threads < 1 || config.threads > kMaxThreads) {
     return Invalid("--threads is " + std::to_string(config.threads) + "; it must be 1 to " +
                    std::to_string(kMaxThreads));
+  }
+  if (!motion::ParseBvhPositions(config.bvh_positions)) {
+    return Invalid("--bvh-positions: '" + config.bvh_positions + "' is not one of " +
+                   motion::kBvhPositionsWords);
   }
   if (config.require_render && !config.render) {
     return Invalid("--require-render and --no-render cannot be combined");

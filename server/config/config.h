@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/status.h"
+#include "motion/clip/clip.h"
 #include "server/config/http_config.h"
 #include "server/core/exit_code.h"
 #include "server/core/limits.h"
@@ -52,12 +53,16 @@ struct Config {
   std::string osc_prefix = "furrow";           // /<prefix>/<subject>/<wrinkle weight>
   RecordConfig record;
   HttpConfig http;
-  std::filesystem::path play;  // recording to play inside the daemon; empty: none
-  bool verbose = false;        // print a status line every second
-  bool log_json = false;       // log JSON objects instead of text
+  std::filesystem::path play;          // recording to play inside the daemon; empty: none
+  std::string bvh_positions = "auto";  // motion::ParseBvhPositions()
+  bool verbose = false;                // print a status line every second
+  bool log_json = false;               // log JSON objects instead of text
   Limits limits;
   friend bool operator==(const Config&, const Config&) = default;
 };
+
+// How recordings are read: --play and those of the rig's reference poses.
+[[nodiscard]] motion::LoadOptions ReadOptions(const Config& config);
 
 // Reads a TOML file, or the text of one, into `config`. Keys that it does not set keep their
 // values. `source_name`: the file name in errors. After an error `config` may be partly changed.

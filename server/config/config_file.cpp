@@ -177,7 +177,7 @@ class Reader {
 Tables InputTables(Config* config, const std::filesystem::path& folder) {
   return {{"",
            {Path("character", &config->character, folder), Path("rig", &config->rig, folder),
-            Path("play", &config->play, folder),
+            Path("play", &config->play, folder), Text("bvh_positions", &config->bvh_positions),
             NameOrFile("skeleton_map", &config->skeleton_map, folder),
             NameOrFile("shape_map", &config->shape_map, folder)}},
           {"listen",

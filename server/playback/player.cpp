@@ -27,11 +27,12 @@ constexpr Time kOfferAgain = FromSeconds(1.0);
 
 }  // namespace
 
-Result<std::unique_ptr<Player>> Player::Load(const std::filesystem::path& path) {
+Result<std::unique_ptr<Player>> Player::Load(const std::filesystem::path& path,
+                                             const motion::LoadOptions& read) {
   motion::ClipReport report;
   auto clip = recording::IsTakePath(path.string())
                   ? recording::LoadTakeClip(path.string(), 1.0f, &report)
-                  : motion::LoadClip(path, {}, &report);
+                  : motion::LoadClip(path, read, &report);
   for (const std::string& warning : report.warnings) spdlog::warn("{}", warning);
   FURROW_RETURN_IF_ERROR(clip);
   if (clip->num_frames() == 0) {

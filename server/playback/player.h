@@ -48,7 +48,8 @@ class Player : public Link {
   // Reads a recording. The subject gets the name of the file. Errors: those of the readers;
   // kInvalidArgument for a recording without frames or one that the wire cannot carry (too many
   // blend shapes, names that are not UTF-8).
-  [[nodiscard]] static Result<std::unique_ptr<Player>> Load(const std::filesystem::path& path);
+  [[nodiscard]] static Result<std::unique_ptr<Player>> Load(const std::filesystem::path& path,
+                                                            const motion::LoadOptions& read = {});
   // `file`: name of the recording, for State.
   explicit Player(motion::Clip clip, std::string file);
 

@@ -41,6 +41,7 @@ struct BakeArguments {
   std::vector<std::string> maps;
   MapFormat format = MapFormat::kPng;
   bool masks = false;
+  motion::LoadOptions read;
   authoring::BakeOptions options;
 };
 
@@ -85,7 +86,7 @@ void KeepRequested(const std::vector<std::string>& maps,
 Result<BakeJob> Prepare(const BakeArguments& arguments) {
   BakeJob job;
   FURROW_RETURN_IF_ERROR(CheckOutput(arguments));
-  auto character = LoadCharacterArgument(arguments.character, arguments.rig);
+  auto character = LoadCharacterArgument(arguments.character, arguments.rig, arguments.read);
   FURROW_RETURN_IF_ERROR(character);
   job.character = std::move(*character);
   auto poses = authoring::CollectBakePoses(job.character, arguments.maps);
@@ -250,6 +251,7 @@ void AddBake(CLI::App& app, Action& action) {
       ->add_option("--out", arguments->out,
                    "Folder for the maps, the rig that names them and report.html")
       ->required();
+  AddReadOptions(*command, arguments->read);
   command->add_option("--map", arguments->maps, "Name of a map to bake (repeatable; default: all)")
       ->allow_extra_args(false);
   command->add_option(

@@ -122,10 +122,7 @@ void AddConvert(CLI::App& app, Action& action) {
           "Sample rate in Hz for formats that store curves; 0 uses the key times of the file")
       ->check(Within(0.0, 1000.0))
       ->capture_default_str();
-  const std::map<std::string, motion::BvhPositions> positions{
-      {"replace", motion::BvhPositions::kReplace}, {"add", motion::BvhPositions::kAdd}};
-  AddChoice(*command, "--bvh-positions", options->load.bvh_positions, positions,
-            "Effect of a BVH joint's position channels on its offset: replace or add");
+  AddReadOptions(*command, options->load);
   const std::map<std::string, motion::UpAxis> axes{
       {"auto", motion::UpAxis::kAuto}, {"y", motion::UpAxis::kY}, {"z", motion::UpAxis::kZ}};
   AddChoice(*command, "--up-axis", options->load.up_axis, axes,

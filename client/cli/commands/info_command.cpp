@@ -41,9 +41,9 @@ void PrintVocabulary(const std::vector<std::string>& names) {
               Counted(names.size(), "blend shape").c_str());
 }
 
-int DescribeClip(const std::string& path) {
+int DescribeClip(const std::string& path, const motion::LoadOptions& read) {
   motion::ClipReport report;
-  const auto clip = LoadClipArgument(path, {}, &report);
+  const auto clip = LoadClipArgument(path, read, &report);
   if (!clip.ok()) return Fail(clip.status());
   double longest = 0.0;
   for (std::size_t i = 1; i < clip->times.size(); ++i)
@@ -127,14 +127,16 @@ int DescribeTake(const std::string& path) {
 
 void AddInfo(CLI::App& app, Action& action) {
   auto path = std::make_shared<std::string>();
+  auto read = std::make_shared<motion::LoadOptions>();
   CLI::App* command = app.add_subcommand(
       "info", "Describe a recording: subjects, rates, gaps, duration and completeness");
   command
       ->add_option("FILE", *path, "Recording: .bvh, .glb, .gltf, .vrma, .fbx, .dae, .csv or .mcap")
       ->required();
-  command->callback([path, &action] {
-    action = [path] {
-      return recording::IsTakePath(*path) ? DescribeTake(*path) : DescribeClip(*path);
+  AddReadOptions(*command, *read);
+  command->callback([path, read, &action] {
+    action = [path, read] {
+      return recording::IsTakePath(*path) ? DescribeTake(*path) : DescribeClip(*path, *read);
     };
   });
 }

@@ -24,6 +24,7 @@ struct PlayOptions {
   std::string file;
   std::string host;
   std::string subject;
+  motion::LoadOptions read;
   bool udp = false;  // the default, so the value is not read
   bool tcp = false;
   bool loop = false;
@@ -55,7 +56,7 @@ int NotAccepted(const client::Acceptance& answer, const std::string& host) {
 
 // Loads the subjects of the recording. Only a single subject can be renamed.
 Result<std::vector<PlaySource>> LoadSources(const PlayOptions& options) {
-  auto sources = PlaySource::Load(options.file);
+  auto sources = PlaySource::Load(options.file, options.read);
   if (!sources.ok() || options.subject.empty() || sources->size() == 1) return sources;
   std::string names;
   for (const PlaySource& source : *sources) names += (names.empty() ? "" : ", ") + source.subject();
@@ -143,6 +144,7 @@ void AddPlay(CLI::App& app, Action& action) {
   command->add_option("--scale", options->scale, "Metres per unit of the recording's lengths")
       ->check(Within(1e-6, 1e6))
       ->capture_default_str();
+  AddReadOptions(*command, options->read);
   command->callback([options, &action] { action = [options] { return PlayFile(*options); }; });
 }
 

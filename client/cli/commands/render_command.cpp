@@ -34,6 +34,7 @@ struct RenderOptions {
   std::string rig;
   std::string skeleton_map;
   std::string shape_map;
+  motion::LoadOptions read;
   std::string frames;
   std::string size = "640x640";
   std::string camera = "face";
@@ -80,7 +81,7 @@ Result<Clips> LoadClips(const RenderOptions& options, const character::Character
     FURROW_RETURN_IF_ERROR(add(PoseClip(character, options.pose)));
   }
   for (const std::string& file : options.files) {
-    FURROW_RETURN_IF_ERROR(add(LoadClipArgument(file)));
+    FURROW_RETURN_IF_ERROR(add(LoadClipArgument(file, options.read)));
   }
   return clips;
 }
@@ -205,7 +206,7 @@ Status DrawFrames(const RenderOptions& options, const render::Settings& settings
 int RenderFiles(const RenderOptions& options) {
   const auto settings = SettingsOf(options.picture);
   if (!settings.ok()) return Fail(settings.status());
-  const auto character = LoadCharacterArgument(options.character, options.rig);
+  const auto character = LoadCharacterArgument(options.character, options.rig, options.read);
   if (!character.ok()) return Fail(character.status());
   auto group = MakeGroup(options, *character);
   if (!group.ok()) return Fail(group.status());
@@ -275,6 +276,7 @@ void AddRender(CLI::App& app, Action& action) {
                       "Wrinkle rig, by file or shipped name (default: the rig of the package)");
   AddSkeletonMap(*command, options->skeleton_map);
   AddShapeMap(*command, options->shape_map);
+  AddReadOptions(*command, options->read);
   command
       ->add_option("--frames", options->frames,
                    "Frames to draw, A:B or A, counted from 0, B included (default: all)")

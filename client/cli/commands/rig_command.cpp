@@ -20,14 +20,15 @@ struct RigOptions {
   std::string file;  // a recording; `check` uses its skeleton only
   std::string skeleton_map;
   std::string shape_map;
+  motion::LoadOptions read;
   int frame = 0;
   float threshold = 0.01f;
 };
 
 int Explain(const RigOptions& options) {
-  const auto rig = LoadRigArgument(options.rig);
+  const auto rig = LoadRigArgument(options.rig, options.read);
   if (!rig.ok()) return Fail(rig.status());
-  const auto clip = LoadClipArgument(options.file);
+  const auto clip = LoadClipArgument(options.file, options.read);
   if (!clip.ok()) return Fail(clip.status());
   if (options.frame >= clip->num_frames()) {
     return Fail({StatusCode::kInvalidArgument,
@@ -57,14 +58,14 @@ int Explain(const RigOptions& options) {
 }
 
 int Check(const RigOptions& options) {
-  const auto rig = LoadRigArgument(options.rig);
+  const auto rig = LoadRigArgument(options.rig, options.read);
   if (!rig.ok()) return Fail(rig.status());
   character::RigReportOptions report_options;
   report_options.folder = ResolveRigPath(options.rig).parent_path();
   std::optional<motion::Clip> clip;
   rig::RigShapes shapes;
   if (!options.file.empty()) {
-    auto loaded = LoadClipArgument(options.file);
+    auto loaded = LoadClipArgument(options.file, options.read);
     if (!loaded.ok()) return Fail(loaded.status());
     clip = std::move(*loaded);
     report_options.skeleton = &clip->skeleton;
@@ -96,6 +97,7 @@ void AddCheck(CLI::App& group, Action& action) {
       "Recording to check the rig's joints and blend shapes against (default: none)");
   AddSkeletonMap(*command, options->skeleton_map);
   AddShapeMap(*command, options->shape_map);
+  AddReadOptions(*command, options->read);
   command->callback([options, &action] { action = [options] { return Check(*options); }; });
 }
 
@@ -111,6 +113,7 @@ void AddExplain(CLI::App& group, Action& action) {
       ->required();
   AddSkeletonMap(*command, options->skeleton_map);
   AddShapeMap(*command, options->shape_map);
+  AddReadOptions(*command, options->read);
   command->add_option("--frame", options->frame, "Frame number, counted from 0")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();

@@ -20,6 +20,7 @@ struct SolveOptions {
   std::string rig;
   std::string skeleton_map;
   std::string shape_map;
+  motion::LoadOptions read;
   TableFormat format = TableFormat::kCsv;
   int level = 0;  // number of drivers; 0: all
   bool drivers = false;
@@ -36,9 +37,9 @@ Status BindingFailed(const Status& status, const SolveOptions& options) {
 }
 
 int SolveFile(const SolveOptions& options) {
-  const auto clip = LoadClipArgument(options.file);
+  const auto clip = LoadClipArgument(options.file, options.read);
   if (!clip.ok()) return Fail(clip.status());
-  const auto rig = LoadRigArgument(options.rig);
+  const auto rig = LoadRigArgument(options.rig, options.read);
   if (!rig.ok()) return Fail(rig.status());
   const auto matcher = LoadSkeletonMatcher(options.skeleton_map);
   if (!matcher.ok()) return Fail(matcher.status());
@@ -91,6 +92,7 @@ void AddSolve(CLI::App& app, Action& action) {
       ->required();
   AddSkeletonMap(*command, options->skeleton_map);
   AddShapeMap(*command, options->shape_map);
+  AddReadOptions(*command, options->read);
   const std::map<std::string, TableFormat> formats{{"csv", TableFormat::kCsv},
                                                    {"jsonl", TableFormat::kJsonl}};
   AddChoice(*command, "--format", options->format, formats, "Output format");

@@ -17,6 +17,28 @@ void AddShapeMap(CLI::App& command, std::string& value) {
                      "file (default: the best match of the shipped maps)");
 }
 
+void AddReadOptions(CLI::App& command, motion::LoadOptions& options) {
+  using motion::BvhPositions;
+  command
+      .add_option_function<std::string>(
+          "--bvh-positions",
+          [&options](const std::string& word) {
+            options.bvh_positions = *motion::ParseBvhPositions(word);
+          },
+          "Position channels of a BVH joint: channels (they replace its OFFSET), add (to the "
+          "OFFSET), offsets (ignored except for roots) or auto (channels, unless they would "
+          "collapse the body)")
+      ->check(CLI::Validator(
+          [](std::string& word) {
+            return motion::ParseBvhPositions(word)
+                       ? std::string()
+                       : "'" + word + "' is not one of " + motion::kBvhPositionsWords;
+          },
+          "auto|channels|offsets|add"))
+      ->type_name("")
+      ->default_str("auto");
+}
+
 // The limits are those of the wire (protocol::kMinImageSize, kMaxImageSize).
 bool ParseSize(const std::string& text, int* width, int* height) {
   const char* const end = text.data() + text.size();

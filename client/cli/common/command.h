@@ -7,6 +7,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "motion/clip/clip.h"
+
 namespace furrow::cli {
 
 // The work of a command with its parsed options; returns the exit code. It runs after CLI11 has
@@ -44,6 +46,9 @@ void AddSkeletonMap(CLI::App& command, std::string& value);
 
 // Adds --shape-map. `value` receives its argument, a name or a file, for LoadShapeMatcher().
 void AddShapeMap(CLI::App& command, std::string& value);
+
+// Adds the options that say how the recordings of a command are read: --bvh-positions.
+void AddReadOptions(CLI::App& command, motion::LoadOptions& options);
 
 // Parses a picture size such as "640x480", both numbers in [16, 4096] pixels. Returns false and
 // leaves the outputs unspecified if `text` is not one.

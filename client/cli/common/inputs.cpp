@@ -21,9 +21,16 @@ namespace furrow::cli {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+void PrintWarning(const std::string& text) {
+  std::fprintf(stderr, "furrow: warning: %s\n", text.c_str());
+}
+
+}  // namespace
+
 void PrintWarnings(const std::vector<std::string>& warnings) {
-  for (const std::string& text : warnings)
-    std::fprintf(stderr, "furrow: warning: %s\n", text.c_str());
+  std::ranges::for_each(warnings, PrintWarning);
 }
 
 recording::ReadProgress ReadingBar() {
@@ -66,8 +73,8 @@ fs::path ResolveRigPath(const std::string& argument) {
   return shipped.ok() ? *shipped : fs::path(argument);
 }
 
-Result<wrinkle::Rig> LoadRigArgument(const std::string& argument) {
-  return rig::LoadRig(ResolveRigPath(argument), motion::CachedPoseSource());
+Result<wrinkle::Rig> LoadRigArgument(const std::string& argument, const motion::LoadOptions& read) {
+  return rig::LoadRig(ResolveRigPath(argument), motion::CachedPoseSource(read, PrintWarning));
 }
 
 Result<rig::SkeletonMatcher> LoadSkeletonMatcher(const std::string& map) {
@@ -110,7 +117,8 @@ void WarnAboutMissing(const wrinkle::RigBinding& binding, const motion::Clip& cl
   if (!clip.blend_shape_names.empty()) warn(binding.missing_blend_shapes(), "blend shape");
 }
 
-Result<character::Character> LoadCharacterArgument(const std::string& glb, const std::string& rig) {
+Result<character::Character> LoadCharacterArgument(const std::string& glb, const std::string& rig,
+                                                   const motion::LoadOptions& read) {
   fs::path package = glb;
   if (glb.empty()) {
     const auto shipped = furrow::FindDataFile("default.glb");
@@ -118,7 +126,7 @@ Result<character::Character> LoadCharacterArgument(const std::string& glb, const
     package = *shipped;
   }
   auto character = character::LoadCharacter(package, rig.empty() ? fs::path() : ResolveRigPath(rig),
-                                            motion::CachedPoseSource());
+                                            motion::CachedPoseSource(read, PrintWarning));
   if (!character.ok()) return character;
   PrintWarnings(character->warnings);
   for (const std::string& name : character->missing_rig_pictures) {

@@ -40,7 +40,9 @@ void PrintWarnings(const std::vector<std::string>& warnings);
 [[nodiscard]] std::filesystem::path ResolveRigPath(const std::string& argument);
 
 // Loads a rig by path, or a shipped rig by name ("cmu" or "cmu.json").
-[[nodiscard]] Result<wrinkle::Rig> LoadRigArgument(const std::string& argument);
+// `read`: how the recordings of its reference poses are read.
+[[nodiscard]] Result<wrinkle::Rig> LoadRigArgument(const std::string& argument,
+                                                   const motion::LoadOptions& read = {});
 
 // Loads the skeleton map of --skeleton-map, by name or file. An empty `map` selects the best
 // shipped map per skeleton. Without shipped maps, joints match by equal names and a warning is
@@ -62,8 +64,8 @@ void WarnAboutMissing(const wrinkle::RigBinding& binding, const motion::Clip& cl
 
 // Loads a character package. `glb`: its file; empty: the default character. `rig`: a rig that
 // replaces the rig of the package, by path or name of a shipped rig; empty: keep the rig of the
-// package.
-[[nodiscard]] Result<character::Character> LoadCharacterArgument(const std::string& glb,
-                                                                 const std::string& rig);
+// package. `read`: how the recordings of its reference poses are read.
+[[nodiscard]] Result<character::Character> LoadCharacterArgument(
+    const std::string& glb, const std::string& rig, const motion::LoadOptions& read = {});
 
 }  // namespace furrow::cli

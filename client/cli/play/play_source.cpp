@@ -13,7 +13,8 @@ namespace furrow::cli {
 
 using recording::TakePoses;
 
-Result<std::vector<PlaySource>> PlaySource::Load(const std::string& path) {
+Result<std::vector<PlaySource>> PlaySource::Load(const std::string& path,
+                                                 const motion::LoadOptions& read) {
   std::vector<PlaySource> sources;
   if (recording::IsTakePath(path)) {
     std::string subject;
@@ -30,7 +31,7 @@ Result<std::vector<PlaySource>> PlaySource::Load(const std::string& path) {
     }
     return sources;
   }
-  auto clip = LoadClipArgument(path);
+  auto clip = LoadClipArgument(path, read);
   FURROW_RETURN_IF_ERROR(clip);
   if (clip->num_frames() == 0)
     return Status(StatusCode::kInvalidArgument, "the recording has no frames", path);

@@ -19,7 +19,8 @@ class PlaySource {
   // Loads all subjects of a recording, or the subject that `file` names ("take.mcap#ada"). Prints
   // warnings. Errors: those of LoadClipArgument() and TakePoses::LoadAll(); kInvalidArgument (no
   // frames).
-  [[nodiscard]] static Result<std::vector<PlaySource>> Load(const std::string& file);
+  [[nodiscard]] static Result<std::vector<PlaySource>> Load(const std::string& file,
+                                                            const motion::LoadOptions& read = {});
 
   // Frame times in seconds, increasing.
   [[nodiscard]] std::span<const double> times() const;
