@@ -114,6 +114,47 @@ SkeletonRoles ApplyWithPrefix(const SkeletonMap& map, const Places& places, std:
   return result;
 }
 
+// The points of a map's roles; `parents` may be empty (SkeletonMaps::RolesOf()). Fingers count less
+// than the body: CMU's files have an index finger of Mixamo's name, and a spine of their own.
+int Points(const wrinkle::JointRoles& roles, std::span<const std::int16_t> parents) {
+  constexpr int kOfBody = 4;
+  constexpr int kOfFingersOrFace = 1;
+  constexpr int kLeftOut = -2;
+  int points = 0;
+  for (const JointRole role : roles) {
+    if (role == JointRole::kNone) continue;
+    points += wrinkle::IsFinger(role) || wrinkle::IsOfFace(role) ? kOfFingersOrFace : kOfBody;
+  }
+  // Parents come first, so one pass marks the joints below a role, and one pass back those above.
+  std::vector<bool> below(parents.size(), false);
+  std::vector<bool> above(parents.size(), false);
+  for (std::size_t j = 0; j < parents.size(); ++j) {
+    if (parents[j] < 0) continue;
+    const auto parent = static_cast<std::size_t>(parents[j]);
+    below[j] = below[parent] || roles[parent] != JointRole::kNone;
+  }
+  for (std::size_t j = parents.size(); j-- > 0;) {
+    if (parents[j] < 0) continue;
+    const auto parent = static_cast<std::size_t>(parents[j]);
+    above[parent] = above[parent] || above[j] || roles[j] != JointRole::kNone;
+  }
+  for (std::size_t j = 0; j < parents.size(); ++j) {
+    if (roles[j] == JointRole::kNone && below[j] && above[j]) points += kLeftOut;
+  }
+  return points;
+}
+
+// The share of a map's roles that a skeleton has. The more specific of two maps has more.
+double Share(const SkeletonRoles& found, const SkeletonMap& map) {
+  return static_cast<double>(found.num_roles) / static_cast<double>(map.entries.size());
+}
+
+bool IsEnough(const SkeletonRoles& found, bool needs_limbs) {
+  if (found.num_roles < kMinRoles) return false;
+  if (!needs_limbs || std::ranges::any_of(found.roles, wrinkle::IsOfLimb)) return true;
+  return 4 * static_cast<std::size_t>(found.num_joints) >= 3 * found.roles.size();
+}
+
 Result<SkeletonMap> LoadFile(const fs::path& path) {
   const auto text = ReadFile(path, kMaxTextFileBytes);
   FURROW_RETURN_IF_ERROR(text);
@@ -174,17 +215,30 @@ Result<SkeletonMaps> SkeletonMaps::Load(const std::string& name_or_file) {
 }
 
 SkeletonRoles SkeletonMaps::RolesOf(const wrinkle::Skeleton& skeleton) const {
-  return RolesOf(skeleton.joint_names());
+  return Best(skeleton.joint_names(), skeleton.joint_parents(), /*needs_limbs=*/true);
 }
 
 SkeletonRoles SkeletonMaps::RolesOf(std::span<const std::string> joint_names) const {
+  return Best(joint_names, {}, /*needs_limbs=*/true);
+}
+
+SkeletonRoles SkeletonMaps::RolesOfRig(std::span<const std::string> joint_names) const {
+  return Best(joint_names, {}, /*needs_limbs=*/false);
+}
+
+SkeletonRoles SkeletonMaps::Best(std::span<const std::string> joint_names,
+                                 std::span<const std::int16_t> parents, bool needs_limbs) const {
   SkeletonRoles best;
+  std::pair<int, double> best_score;
   for (const SkeletonMap& map : maps_) {
     SkeletonRoles found = ApplySkeletonMap(map, joint_names);
     // A map that the user chose needs no minimum. For shipped maps, a few matches may be
     // coincidence.
-    const bool enough = chosen_ || found.num_roles >= kMinRoles;
-    if (enough && (best.map.empty() || found.num_joints > best.num_joints)) best = std::move(found);
+    if (!chosen_ && !IsEnough(found, needs_limbs)) continue;
+    const std::pair<int, double> score = {Points(found.roles, parents), Share(found, map)};
+    if (!best.map.empty() && score <= best_score) continue;
+    best = std::move(found);
+    best_score = score;
   }
   return best;
 }

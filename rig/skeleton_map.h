@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -69,14 +70,23 @@ class SkeletonMaps {
   // argument loads all shipped maps; then each skeleton gets the map that fits best.
   [[nodiscard]] static Result<SkeletonMaps> Load(const std::string& name_or_file);
 
-  // The roles of the map that explains the most joints, if it finds at least kMinRoles. The first
-  // name wins a tie.
+  // The roles of the map that fits best, if it finds at least kMinRoles, and limbs among them
+  // unless it explains three quarters of the joints: a trunk alone leaves arms and legs stiff.
+  //
+  // A joint of the body counts 4, one of fingers or face 1. With a skeleton, a joint without a role
+  // between joints with roles costs 2. In a tie, the map of which more is found wins, and then the
+  // first name.
   [[nodiscard]] SkeletonRoles RolesOf(const wrinkle::Skeleton& skeleton) const;
   [[nodiscard]] SkeletonRoles RolesOf(std::span<const std::string> joint_names) const;
+  // The roles of the joints that a rig names. They need no limbs: a rig of a face has none.
+  [[nodiscard]] SkeletonRoles RolesOfRig(std::span<const std::string> joint_names) const;
 
   [[nodiscard]] std::span<const SkeletonMap> maps() const { return maps_; }
 
  private:
+  [[nodiscard]] SkeletonRoles Best(std::span<const std::string> joint_names,
+                                   std::span<const std::int16_t> parents, bool needs_limbs) const;
+
   std::vector<SkeletonMap> maps_;  // sorted by name
   bool chosen_ = false;
 };

@@ -13,20 +13,6 @@ namespace {
 
 using wrinkle::JointRole;
 
-std::string_view NameOf(JointRole role) { return wrinkle::ToString(role); }
-
-// By name, because the fingers of the two sides are apart in the enumeration.
-bool IsFinger(JointRole role) {
-  const std::string_view name = NameOf(role);
-  return std::ranges::any_of(
-      std::initializer_list<std::string_view>{"Thumb", "Index", "Middle", "Ring", "Little"},
-      [name](std::string_view finger) { return name.find(finger) != std::string_view::npos; });
-}
-
-bool IsOfFace(JointRole role) {
-  return role == JointRole::kJaw || role == JointRole::kLeftEye || role == JointRole::kRightEye;
-}
-
 // The joint that a role stands for in a rig: the first joint of the role's chain.
 const std::string* FirstOf(JointRole role, const wrinkle::JointRoles& roles,
                            std::span<const std::string> names) {
@@ -130,7 +116,7 @@ SkeletonMatch SkeletonMatcher::Match(const wrinkle::Skeleton& stream, const wrin
   // The roles of a rig's joints follow from their names alone, since a rig has no skeleton.
   const std::set<std::string> joints = wrinkle::JointsOf(rig);
   const std::vector<std::string> names(joints.begin(), joints.end());
-  const SkeletonRoles own = characters_.RolesOf(names);
+  const SkeletonRoles own = characters_.RolesOfRig(names);
   const wrinkle::JointRoles& theirs = match.stream.roles;
   const RoleParts parts(own.roles, theirs);
   const std::set<std::string> added = JointsThatDriversAdd(rig);
@@ -170,7 +156,7 @@ std::string Describe(const SkeletonRoles& roles) {
   // Body captures without fingers or a face are usual; listing all of these roles would bury the
   // rest.
   std::vector<JointRole> missing = roles.missing;
-  for (const auto& kind : {IsFinger, IsOfFace}) {
+  for (const auto& kind : {wrinkle::IsFinger, wrinkle::IsOfFace}) {
     if (std::ranges::none_of(roles.roles, kind)) std::erase_if(missing, kind);
   }
   if (!missing.empty()) text += "; missing: " + JoinRoles(missing);

@@ -83,4 +83,16 @@ JointRole MirrorOf(JointRole role) {
   return static_cast<JointRole>(i < kFirstRight ? i + kNumOfASide : i - kNumOfASide);
 }
 
+bool IsFinger(JointRole role) {
+  const JointRole left = role >= kRightEye ? MirrorOf(role) : role;
+  return left >= kLeftThumbMetacarpal && left <= kLeftLittleDistal;
+}
+
+bool IsOfFace(JointRole role) { return role == kJaw || role == kLeftEye || role == kRightEye; }
+
+bool IsOfLimb(JointRole role) {
+  const JointRole left = role >= kRightEye ? MirrorOf(role) : role;
+  return (left >= kLeftUpperArm && left <= kLeftHand) || left >= kLeftUpperLeg;
+}
+
 }  // namespace furrow::wrinkle

@@ -87,4 +87,10 @@ using JointRoles = std::vector<JointRole>;
 // The same role on the other side; roles in the middle of the body are their own mirror.
 [[nodiscard]] JointRole MirrorOf(JointRole role);
 
+// True for the joints of fingers; for the jaw and the eyes; for arms, hands, legs, feet and toes,
+// without shoulders.
+[[nodiscard]] bool IsFinger(JointRole role);
+[[nodiscard]] bool IsOfFace(JointRole role);
+[[nodiscard]] bool IsOfLimb(JointRole role);
+
 }  // namespace furrow::wrinkle

@@ -187,6 +187,76 @@ TEST(SkeletonMaps, EveryShippedMapRecognisesItsOwnFamily) {
   }
 }
 
+// CMU's database in the conversion that most people have, and in the one for MotionBuilder.
+TEST(SkeletonMaps, RecognisesCmuByItsSpine) {
+  const SkeletonMaps maps = Shipped();
+  for (const char* finger : {"LFingers", "LeftHandIndex1"}) {
+    Names names = {"Hips", "LHipJoint", "LowerBack", "Spine", "Spine1", "Neck", "Neck1", "Head"};
+    for (const std::string side : {"Left", "Right"}) {
+      for (const char* joint : {"UpLeg", "Leg", "Foot", "ToeBase", "Shoulder", "Arm", "ForeArm",
+                                "Hand", "FingerBase"}) {
+        names.push_back(side + joint);
+      }
+    }
+    const bool friendly = std::string(finger) == "LeftHandIndex1";
+    names.insert(names.end(),
+                 {finger, friendly ? "RightHandIndex1" : "RFingers", "LThumb", "RThumb"});
+    const SkeletonRoles found = maps.RolesOf(names);
+    EXPECT_EQ(found.map, "cmu") << finger;
+    EXPECT_EQ(found.roles[2], kSpine) << finger;
+    EXPECT_EQ(found.roles[3], kChest) << finger;
+  }
+}
+
+// Two maps explain the same number of joints; one of them leaves a joint of the spine out.
+TEST(SkeletonMaps, JointsLeftOutBetweenOthersCount) {
+  const auto map = [](const char* name, const char* spine) {
+    return ParseSkeletonMap(std::string(R"({"version": 1, "name": ")") + name +
+                                R"(", "joints": {"hips": "a", "head": "d", "leftUpperLeg": "l1",
+       "leftLowerLeg": "l2", "leftFoot": "l3", )" +
+                                spine + "}}",
+                            name)
+        .value();
+  };
+  const SkeletonMaps maps({map("first", R"("leftToes": "l4")"), map("second", R"("spine": "b")")});
+  const auto joint = [](const char* name, int parent) {
+    wrinkle::JointDesc desc{name, parent, {}, {}};
+    desc.rest.translation = {0.0f, 1.0f, 0.0f};
+    return desc;
+  };
+  const auto skeleton =
+      wrinkle::Skeleton::Create({joint("a", -1), joint("b", 0), joint("d", 1), joint("l1", 0),
+                                 joint("l2", 3), joint("l3", 4), joint("l4", 5)});
+  ASSERT_TRUE(skeleton.ok());
+  EXPECT_EQ(maps.RolesOf(*skeleton).map, "second");
+}
+
+TEST(SkeletonMaps, TheMoreSpecificMapWinsATie) {
+  const auto with = [](const char* name, const char* more) {
+    return ParseSkeletonMap(std::string(R"({"version": 1, "name": ")") + name +
+                                R"(", "joints": {"hips": "a", "spine": "b", "head": "c",
+       "leftUpperLeg": "d", "leftLowerLeg": "e", "leftFoot": "f")" +
+                                more + "}}",
+                            name)
+        .value();
+  };
+  const SkeletonMaps two({with("a_general", R"(, "neck": "g", "jaw": "h")"), with("specific", "")});
+  EXPECT_EQ(two.RolesOf(Names{"a", "b", "c", "d", "e", "f"}).map, "specific");
+}
+
+// MakeHuman's older rig shares its trunk with other families. Its legs would stay stiff.
+TEST(SkeletonMaps, ATrunkAloneIsNoMatch) {
+  const SkeletonMaps maps = Shipped();
+  const Names trunk = {"hips", "spine", "chest", "upperChest", "neck", "head"};
+  Names body = trunk;
+  for (const char* limb : {"bein_l", "knie_l", "fuss_l", "bein_r", "knie_r", "fuss_r"}) {
+    body.push_back(limb);
+  }
+  EXPECT_TRUE(maps.RolesOf(body).map.empty());
+  EXPECT_FALSE(maps.RolesOf(trunk).map.empty()) << "nothing is left unexplained";
+  EXPECT_FALSE(maps.RolesOfRig(body).map.empty()) << "a rig names the joints that it needs";
+}
+
 TEST(SkeletonMaps, RecognisesMixamoWithAnyPrefix) {
   const SkeletonMaps maps = Shipped();
   for (const char* prefix : {"mixamorig:", "mixamorig12:", "mixamorig", "mixamorig_", ""}) {
