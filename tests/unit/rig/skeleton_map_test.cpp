@@ -208,6 +208,93 @@ TEST(SkeletonMaps, RecognisesCmuByItsSpine) {
   }
 }
 
+// Joint names of published files.
+TEST(SkeletonMaps, RecognisesFilesOfOtherFamilies) {
+  const SkeletonMaps maps = Shipped();
+  struct Family {
+    const char* map;
+    Names middle;
+    std::vector<std::string> of_side;  // '*' stands for the side
+    const char* left;
+    const char* right;
+    std::vector<JointRole> roles;  // of the left side
+  };
+  const std::vector<JointRole> arm = {kLeftShoulder, kLeftUpperArm, kLeftLowerArm, kLeftHand};
+  const std::vector<JointRole> leg = {kLeftUpperLeg, kLeftLowerLeg, kLeftFoot};
+  const auto both = [](std::vector<JointRole> a, const std::vector<JointRole>& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+  };
+  const Family families[] = {
+      {"biovision",
+       {"Hips", "Chest", "Neck", "Head"},
+       {"*Collar", "*Shoulder", "*Elbow", "*Wrist", "*Hip", "*Knee", "*Ankle"},
+       "Left",
+       "Right",
+       both(arm, leg)},
+      {"biovision",
+       {"Hips", "Chest", "Chest2", "Neck", "Head"},
+       {"*Collar", "*UpArm", "*LowArm", "*Hand", "*UpLeg", "*LowLeg", "*Foot"},
+       "Left",
+       "Right",
+       both(arm, leg)},
+      {"bandai_namco",
+       {"joint_Root", "Hips", "Spine", "Chest", "Neck", "Head"},
+       {"Shoulder_*", "UpperArm_*", "LowerArm_*", "Hand_*", "UpperLeg_*", "LowerLeg_*", "Foot_*"},
+       "L",
+       "R",
+       both(arm, leg)},
+      {"lafan1",
+       {"Hips", "Spine", "Spine1", "Spine2", "Neck", "Head"},
+       {"*Shoulder", "*Arm", "*ForeArm", "*Hand", "*UpLeg", "*Leg", "*Foot", "*Toe"},
+       "Left",
+       "Right",
+       both(both(arm, leg), {kLeftToes})},
+      {"makehuman_1_0",
+       {"hips", "spine", "spine-1", "chest", "chest-1", "neck", "head", "jaw"},
+       {"clavicle.*", "upper_arm.*", "forearm.*", "hand.*", "thigh.*", "shin.*", "foot.*"},
+       "L",
+       "R",
+       both(arm, leg)},
+      {"makehuman_mhx",
+       {"Root", "Hips", "Spine1", "Spine2", "Spine3", "Neck", "Head"},
+       {"Clavicle_*", "UpArm_*", "LoArm_*", "Hand_*", "UpLeg_*", "LoLeg_*", "Foot_*"},
+       "L",
+       "R",
+       both(arm, leg)},
+      {"cal3d",
+       {"Bip01", "Bip01 Pelvis", "Bip01 Spine", "Bip01 Spine1", "Bip01 Neck", "Bip01 Head"},
+       {"Bip01 * Clavicle", "Bip01 * UpperArm", "Bip01 * Forearm", "Bip01 * Hand", "Bip01 * Thigh",
+        "Bip01 * Calf", "Bip01 * Foot"},
+       "L",
+       "R",
+       both(arm, leg)},
+      {"cal3d",
+       {"Bip001_Pelvis", "Bip001_Spine", "Bip001_Spine1", "Bip001_Neck", "Bip001_Head"},
+       {"Bip001_*_Clavicle", "Bip001_*_UpperArm", "Bip001_*_Forearm", "Bip001_*_Hand",
+        "Bip001_*_Thigh", "Bip001_*_Calf", "Bip001_*_Foot"},
+       "L",
+       "R",
+       both(arm, leg)},
+  };
+  for (const Family& family : families) {
+    Names names = family.middle;
+    for (const char* side : {family.left, family.right}) {
+      for (std::string name : family.of_side)
+        names.push_back(name.replace(name.find('*'), 1, side));
+    }
+    const SkeletonRoles found = maps.RolesOf(names);
+    EXPECT_EQ(found.map, family.map);
+    if (found.map != family.map) continue;
+    EXPECT_EQ(std::ranges::count(found.roles, kHips), 1) << family.map;
+    for (std::size_t i = 0; i < family.roles.size(); ++i) {
+      const std::size_t left = family.middle.size() + i;
+      EXPECT_EQ(found.roles[left], family.roles[i]) << names[left];
+      EXPECT_EQ(found.roles[left + family.of_side.size()], MirrorOf(family.roles[i]));
+    }
+  }
+}
+
 // Two maps explain the same number of joints; one of them leaves a joint of the spine out.
 TEST(SkeletonMaps, JointsLeftOutBetweenOthersCount) {
   const auto map = [](const char* name, const char* spine) {
