@@ -49,6 +49,22 @@ const TakeReader::ChannelInfo* TakeReader::InfoOf(std::uint16_t id) {
   return found->second ? &*found->second : nullptr;
 }
 
+// The reader's limits bound the number and the names of the channels.
+void TakeReader::CountForeign(const Message& message) {
+  const auto channel = file_->channels().find(message.channel_id);
+  if (channel == file_->channels().end()) return;
+  ForeignTopic& topic = foreign_[channel->second.topic];
+  if (topic.messages == 0) {
+    topic.encoding = channel->second.message_encoding;
+    const auto schema = file_->schemas().find(channel->second.schema_id);
+    if (schema != file_->schemas().end()) topic.schema = schema->second.name;
+    topic.first_ns = topic.last_ns = message.log_time;
+  }
+  ++topic.messages;
+  topic.first_ns = std::min(topic.first_ns, message.log_time);
+  topic.last_ns = std::max(topic.last_ns, message.log_time);
+}
+
 Status TakeReader::ForEach(const std::function<bool(const TakeMessage&)>& visit) {
   // An estimate for progress: chunks also hold records other than messages. 1 avoids a total of 0.
   std::uint64_t num_bytes = 1;
@@ -62,11 +78,15 @@ Status TakeReader::ForEach(const std::function<bool(const TakeMessage&)>& visit)
 Status TakeReader::VisitAll(const std::function<bool(const TakeMessage&)>& visit,
                             std::uint64_t num_bytes) {
   std::uint64_t done = 0;
+  foreign_.clear();
   return file_->ForEach({}, [&](const Message& message) {
     done += message.data.size();
     if (progress_) progress_(std::min(done, num_bytes - 1), num_bytes);
     const ChannelInfo* info = InfoOf(message.channel_id);
-    if (info == nullptr) return true;
+    if (info == nullptr) {
+      CountForeign(message);
+      return true;
+    }
     TakeMessage known;
     known.kind = info->kind;
     known.subject = info->subject;

@@ -51,6 +51,17 @@ class TakeReader {
   // mcap::Reader::ForEach().
   [[nodiscard]] Status ForEach(const std::function<bool(const TakeMessage&)>& visit);
 
+  // The channels of other programs, by topic, and the number of messages that the last ForEach()
+  // passed over.
+  struct ForeignTopic {
+    std::string encoding;  // of the messages: "cdr", "protobuf", "json"
+    std::string schema;    // its name; may be empty
+    std::size_t messages = 0;
+    std::uint64_t first_ns = 0;  // log times
+    std::uint64_t last_ns = 0;
+  };
+  [[nodiscard]] const std::map<std::string, ForeignTopic>& foreign() const { return foreign_; }
+
  private:
   struct ChannelInfo {
     TakeKind kind = TakeKind::kPose;
@@ -62,6 +73,7 @@ class TakeReader {
       : path_(std::move(path)), file_(std::move(file)) {}
   // Null for a foreign channel.
   [[nodiscard]] const ChannelInfo* InfoOf(std::uint16_t channel);
+  void CountForeign(const motion::mcap::Message& message);
   [[nodiscard]] Status VisitAll(const std::function<bool(const TakeMessage&)>& visit,
                                 std::uint64_t num_bytes);
 
@@ -69,6 +81,7 @@ class TakeReader {
   std::unique_ptr<motion::mcap::Reader> file_;
   std::map<std::uint16_t, std::optional<ChannelInfo>>
       channels_;  // filled on first use; none: foreign
+  std::map<std::string, ForeignTopic> foreign_;
   ReadProgress progress_;
 };
 

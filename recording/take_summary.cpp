@@ -96,7 +96,14 @@ Result<TakeSummary> Summarise(TakeReader& take) {
     return true;
   });
   if (!status.ok()) return status;
-  return summariser.summary();
+  TakeSummary summary = summariser.summary();
+  for (const auto& [name, topic] : take.foreign()) {
+    const bool none = summary.messages == 0 && summary.foreign.empty();
+    summary.first_ns = none ? topic.first_ns : std::min(summary.first_ns, topic.first_ns);
+    summary.last_ns = std::max(summary.last_ns, topic.last_ns);
+    summary.foreign.emplace(name, topic);
+  }
+  return summary;
 }
 
 }  // namespace furrow::recording

@@ -37,9 +37,10 @@ struct SubjectSummary {
 
 struct TakeSummary {
   std::map<std::string, SubjectSummary> subjects;
+  std::map<std::string, TakeReader::ForeignTopic> foreign;  // of other programs, by topic
   std::size_t datagrams = 0;
-  std::size_t messages = 0;
-  std::uint64_t first_ns = 0;  // log times
+  std::size_t messages = 0;    // of Furrow
+  std::uint64_t first_ns = 0;  // log times of all messages
   std::uint64_t last_ns = 0;
   [[nodiscard]] double seconds() const { return static_cast<double>(last_ns - first_ns) * 1e-9; }
 };

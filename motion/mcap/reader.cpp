@@ -86,11 +86,12 @@ Status Reader::Open() {
   } else {
     return {StatusCode::kParse, "no header after the magic bytes"};
   }
-  complete_ = ReadSummary();
-  if (complete_) return {};
+  const Summary summary = ReadSummary();
+  complete_ = summary != Summary::kDamaged;
+  if (summary == Summary::kRead) return {};
   // A half-read index may be wrong, so the scan starts without any.
   ForgetIndex();
-  return Scan();
+  return Scan(complete_);
 }
 
 void Reader::ForgetIndex() {
@@ -154,50 +155,55 @@ void Reader::Warn(std::uint64_t offset, std::string_view what) {
     warnings_.push_back(std::move(text));
 }
 
-bool Reader::ReadSummary() {
+Reader::Summary Reader::ReadSummary() {
   constexpr std::uint64_t kTail = kFooterBytes + sizeof kMagic;
   // The end of a complete file: a footer of fixed size, then the magic bytes again.
-  if (file_bytes_ < sizeof kMagic + kTail) return false;
+  if (file_bytes_ < sizeof kMagic + kTail) return Summary::kDamaged;
   const std::uint64_t footer_at = file_bytes_ - kTail;
   const auto tail = ReadAt(footer_at, kTail);
-  if (!tail.ok() || !std::equal(tail->end() - sizeof kMagic, tail->end(), kMagic)) return false;
+  if (!tail.ok() || !std::equal(tail->end() - sizeof kMagic, tail->end(), kMagic))
+    return Summary::kDamaged;
   ByteReader footer(*tail);
-  if (footer.Get<std::uint8_t>() != static_cast<std::uint8_t>(Opcode::kFooter)) return false;
-  if (footer.Get<std::uint64_t>() != kFooterBytes - kRecordHeaderBytes) return false;
+  if (footer.Get<std::uint8_t>() != static_cast<std::uint8_t>(Opcode::kFooter) ||
+      footer.Get<std::uint64_t>() != kFooterBytes - kRecordHeaderBytes) {
+    return Summary::kDamaged;
+  }
   const auto start = footer.Get<std::uint64_t>();
   (void)footer.Get<std::uint64_t>();  // start of the summary offsets, which are not needed
   const auto crc = footer.Get<std::uint32_t>();
-  if (start < sizeof kMagic || start > footer_at) return false;
+  if (start == 0) return Summary::kNone;  // as the format defines it
+  if (start < sizeof kMagic || start > footer_at) return Summary::kDamaged;
   const auto summary = ReadAt(start, footer_at - start);
-  if (!summary.ok()) return false;
+  if (!summary.ok()) return Summary::kDamaged;
   const std::span<const std::uint8_t> covered(tail->data(), kFooterBytes - sizeof crc);
   // 0 means that the writer stated no checksum.
   if (crc != 0 && Crc32(covered, Crc32(*summary)) != crc) {
     Warn(start, "the summary is damaged; the whole file was scanned instead");
-    return false;
+    return Summary::kDamaged;
   }
   return ReadSummaryRecords(*summary);
 }
 
-bool Reader::ReadSummaryRecords(std::span<const std::uint8_t> summary) {
+Reader::Summary Reader::ReadSummaryRecords(std::span<const std::uint8_t> summary) {
   ByteReader records(summary);
   bool has_statistics = false;
   std::uint64_t num_messages = 0;
   while (records.ok() && !records.at_end()) {
     const auto opcode = static_cast<Opcode>(records.Get<std::uint8_t>());
     ByteReader content(records.GetBytes(records.Get<std::uint64_t>()));
-    if (!records.ok()) return false;
+    if (!records.ok()) return Summary::kDamaged;
     if (opcode == Opcode::kStatistics) {
       has_statistics = true;
       num_messages = content.Get<std::uint64_t>();
     } else if (!AddSummaryRecord(opcode, content)) {
-      return false;
+      return Summary::kDamaged;
     }
   }
+  // Every byte of the file may be listed once only.
+  if (!records.ok() || !ExtentsAreApart()) return Summary::kDamaged;
   // No index lists messages outside chunks. Only the statistics reveal that there are none.
-  // Every byte of the file may be listed once only (ExtentsAreApart).
-  return records.ok() && has_statistics && (num_messages == 0 || !chunks_.empty()) &&
-         ExtentsAreApart();
+  const bool lists_messages = has_statistics && (num_messages == 0 || !chunks_.empty());
+  return lists_messages ? Summary::kRead : Summary::kNone;
 }
 
 bool Reader::AddSummaryRecord(Opcode opcode, ByteReader content) {
@@ -318,7 +324,7 @@ bool Reader::AddMetadataIndex(ByteReader content) {
   return bytes.ok() && AddMetadata(ByteReader(*bytes));
 }
 
-Status Reader::Scan() {
+Status Reader::Scan(bool is_whole) {
   std::uint64_t offset = sizeof kMagic;
   bool ended = false;
   while (!ended && offset < file_bytes_) {
@@ -333,6 +339,7 @@ Status Reader::Scan() {
     }
     offset += kRecordHeaderBytes + record->length;
   }
+  if (ended && is_whole) return {};
   Warn(offset, ended ? "the index after the data is cut off or damaged; all data was read"
                      : "the file has no index; its writer died");
   return {};

@@ -30,9 +30,12 @@ struct ReaderLimits {
 
 // Reads MCAP files of any writer. Treats every file as hostile.
 //
-// - A file without a summary (its writer died), or with a damaged one, is scanned from the start.
-//   Every complete chunk counts, and warnings() reports what was lost. A summary that refers to the
-//   same bytes twice counts as damaged.
+// - A file without a summary, or with a damaged one, is scanned from the start. Every complete
+// chunk
+//   counts, and warnings() reports what was lost. A summary that refers to the same bytes twice
+//   counts as damaged.
+// - MCAP's summary, its statistics and its chunks are optional. A file that ends as its writer
+//   intended is complete without them, and it is scanned without a warning.
 // - Checksums are verified if the writer stated them. Damaged chunks, and records beyond
 //   ReaderLimits::kept_bytes and ::records, are skipped with a warning.
 class Reader {
@@ -51,7 +54,7 @@ class Reader {
   [[nodiscard]] const std::vector<ChunkInfo>& chunks() const { return chunks_; }
   [[nodiscard]] const std::vector<AttachmentInfo>& attachments() const { return attachments_; }
   [[nodiscard]] const std::vector<Metadata>& metadata() const { return metadata_; }
-  // False if the file has no intact summary.
+  // False if the file was cut off, or if its summary is damaged.
   [[nodiscard]] bool complete() const { return complete_; }
   [[nodiscard]] std::uint64_t file_bytes() const { return file_bytes_; }
   [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
@@ -83,14 +86,17 @@ class Reader {
   class Run;
   Reader(int file, std::filesystem::path path, const ReaderLimits& limits);
   [[nodiscard]] Status Open();
-  [[nodiscard]] bool ReadSummary();
-  [[nodiscard]] bool ReadSummaryRecords(std::span<const std::uint8_t> summary);
+  // kNone: the file is whole, but the summary lists too little to find its messages.
+  enum class Summary { kRead, kNone, kDamaged };
+  [[nodiscard]] Summary ReadSummary();
+  [[nodiscard]] Summary ReadSummaryRecords(std::span<const std::uint8_t> summary);
   [[nodiscard]] bool AddSummaryRecord(Opcode opcode, ByteReader content);
   // Records a range that the summary refers to. False if it is outside the file or too short for a
   // record.
   [[nodiscard]] bool AddExtent(std::uint64_t offset, std::uint64_t length);
   [[nodiscard]] bool ExtentsAreApart();
-  [[nodiscard]] Status Scan();
+  // `is_whole`: the file ends with a footer, so nothing is missing after the data.
+  [[nodiscard]] Status Scan(bool is_whole);
   [[nodiscard]] Status ScanRecord(const Record& record);
   void ForgetIndex();
 

@@ -65,15 +65,17 @@ int DescribeClip(const std::string& path, const motion::LoadOptions& read) {
 void PrintFile(const TakeReader& take) {
   const motion::mcap::Reader& file = take.file();
   std::map<std::string, int> compressions;
+  std::size_t num_chunks = 0;
   for (const motion::mcap::ChunkInfo& chunk : file.chunks()) {
     // Messages outside of chunks have no compression to count.
-    if (chunk.compression != motion::mcap::kLooseMessages)
-      ++compressions[chunk.compression.empty() ? "uncompressed" : chunk.compression];
+    if (chunk.compression == motion::mcap::kLooseMessages) continue;
+    ++compressions[chunk.compression.empty() ? "uncompressed" : chunk.compression];
+    ++num_chunks;
   }
   std::printf("  file        %" PRIu64 " bytes, written by '%s', %s\n", file.file_bytes(),
               file.library().c_str(),
               file.complete() ? "complete" : "cut short, readable up to the last whole chunk");
-  std::printf("  chunks      %zu", file.chunks().size());
+  std::printf("  chunks      %zu", num_chunks);
   for (const auto& [name, count] : compressions) std::printf(", %d %s", count, name.c_str());
   if (file.warnings().empty()) {
     std::printf("; all checksums are correct\n");
@@ -99,6 +101,21 @@ void PrintSubject(const std::string& name, const SubjectSummary& subject) {
     std::printf("    unreadable %s\n", Counted(subject.unreadable, "message").c_str());
 }
 
+// The topics of other programs. A foreign file may have thousands, so the list has a limit.
+void PrintForeign(const recording::TakeSummary& summary) {
+  constexpr std::size_t kListed = 32;
+  std::size_t listed = 0;
+  for (const auto& [name, topic] : summary.foreign) {
+    if (++listed > kListed) break;
+    std::printf("  foreign     %s: %s, encoding %s%s%s\n", name.c_str(),
+                Counted(topic.messages, "message").c_str(),
+                topic.encoding.empty() ? "unknown" : topic.encoding.c_str(),
+                topic.schema.empty() ? "" : ", schema ", topic.schema.c_str());
+  }
+  if (summary.foreign.size() > kListed)
+    std::printf("  foreign     %zu topics more\n", summary.foreign.size() - kListed);
+}
+
 int DescribeTake(const std::string& path) {
   std::string only;
   const auto take = OpenTakeArgument(path, &only);
@@ -115,8 +132,11 @@ int DescribeTake(const std::string& path) {
   }
   std::printf("%s\n", file.c_str());
   PrintFile(**take);
-  std::printf("  messages    %zu in %.3f s; datagrams: %zu\n", summary->messages,
-              summary->seconds(), summary->datagrams);
+  std::size_t messages = summary->messages;
+  for (const auto& [name, topic] : summary->foreign) messages += topic.messages;
+  std::printf("  messages    %zu in %.3f s; datagrams: %zu\n", messages, summary->seconds(),
+              summary->datagrams);
+  PrintForeign(*summary);
   for (const auto& [name, subject] : summary->subjects)
     if (only.empty() || only == name) PrintSubject(name, subject);
   PrintWarnings((*take)->file().warnings());

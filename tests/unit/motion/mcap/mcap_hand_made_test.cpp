@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -133,15 +134,19 @@ class HandMade {
   }
 
   // Writes the file with a summary. Its statistics omit messages outside chunks.
-  [[nodiscard]] fs::path Finish(const fs::path& path) {
+  [[nodiscard]] fs::path Finish(const fs::path& path, std::optional<std::uint64_t> messages = 0) {
     file_.PutRecord(Opcode::kDataEnd, ByteWriter().Put(std::uint32_t{0}));
     const std::uint64_t start = file_.size();
-    file_.PutRecord(Opcode::kStatistics, ByteWriter().Put(std::uint64_t{0}));
+    if (messages) file_.PutRecord(Opcode::kStatistics, ByteWriter().Put(*messages));
     file_.PutBytes(summary_.bytes());
-    ByteWriter footer;
-    file_.PutRecord(Opcode::kFooter, footer.Put(start).Put(std::uint64_t{0}).Put(std::uint32_t{0}));
-    file_.PutBytes(kMagic);
-    return Write(path);
+    // A summary may hold any records, so this one is not empty.
+    file_.PutRecord(Opcode::kSchema, SchemaRecord(9, 1));
+    return PutFooter(start, path);
+  }
+  // Writes the whole file without a summary, as the format allows.
+  [[nodiscard]] fs::path End(const fs::path& path) {
+    file_.PutRecord(Opcode::kDataEnd, ByteWriter().Put(std::uint32_t{0}));
+    return PutFooter(0, path);
   }
   // Writes the file without a summary.
   [[nodiscard]] fs::path Write(const fs::path& path) const {
@@ -153,6 +158,13 @@ class HandMade {
   }
 
  private:
+  fs::path PutFooter(std::uint64_t start, const fs::path& path) {
+    ByteWriter footer;
+    file_.PutRecord(Opcode::kFooter, footer.Put(start).Put(std::uint64_t{0}).Put(std::uint32_t{0}));
+    file_.PutBytes(kMagic);
+    return Write(path);
+  }
+
   ByteWriter file_;
   ByteWriter summary_;
   std::uint64_t uncompressed_ = 0;
@@ -195,6 +207,33 @@ TEST_F(McapHandMadeTest, ReadsAllCompressionsAndLooseMessages) {
   EXPECT_EQ(reader->warnings().size(), 1u);
   EXPECT_EQ(ReadAll(*reader),
             (Texts{"loose", "zstd 1", "lz4 1", "plain 1", "alone", "zstd 2", "lz4 2", "plain 2"}));
+}
+
+// Chunks, indexes, statistics and the whole summary are optional.
+TEST_F(McapHandMadeTest, FilesWithoutChunksOrIndexAreWhole) {
+  using Statistics = std::optional<std::uint64_t>;
+  for (const bool chunked : {false, true}) {
+    HandMade file;
+    if (chunked) {
+      (void)file.AddChunk({{{10, "a"}, {20, "b"}}, "zstd"});
+    } else {
+      (void)file.Add(Opcode::kChannel, ChannelRecord(1));
+      (void)file.Add(Opcode::kMessage, MessageRecord(10, "a"));
+      (void)file.Add(Opcode::kMessage, MessageRecord(20, "b"));
+    }
+    for (const bool summary : {false, true}) {
+      // Statistics of a summary count messages that no chunk index lists.
+      for (const Statistics count : {Statistics(), Statistics(2)}) {
+        HandMade copy = file;
+        const auto reader = Open(summary ? copy.Finish(Path(), count) : copy.End(Path()));
+        EXPECT_TRUE(reader->complete()) << chunked << summary << count.has_value();
+        EXPECT_TRUE(reader->warnings().empty()) << reader->warnings().front();
+        EXPECT_EQ(ReadAll(*reader), (Texts{"a", "b"}));
+      }
+    }
+    // Without the footer, the writer died.
+    EXPECT_FALSE(Open(file.Write(Path()))->complete());
+  }
 }
 
 TEST_F(McapHandMadeTest, MessagesWithEqualTimesKeepTheFilesOrder) {
