@@ -4,6 +4,7 @@
 #include <flatbuffers/flatbuffers.h>
 
 #include "base/checked_json.h"
+#include "base/data_dir.h"
 #include "base/files.h"
 #include "base/json_index.h"
 #include "base/status.h"
@@ -17,14 +18,14 @@ namespace furrow::rig {
 std::string_view RigSchemaText() { return kRigSchemaText; }
 
 Result<wrinkle::Rig> ParseRig(std::string_view json, std::string_view source_name,
-                              const std::filesystem::path& folder,
-                              const wrinkle::PoseSource& poses) {
+                              const std::filesystem::path& folder, const wrinkle::PoseSource& poses,
+                              std::set<std::string>* missing) {
   const Result<CheckedJson> checked =
       CheckedJson::Parse(json, source_name, {kRigSchemaText, "Rig", "rig/rig.fbs"});
   FURROW_RETURN_IF_ERROR(checked);
   const auto* tables = flatbuffers::GetRoot<schema::Rig>(checked->buffer());
   // The tables give errors by field; Located() adds file and line from the text.
-  Result<wrinkle::Rig> rig = ReadRigTables(*tables, folder, poses);
+  Result<wrinkle::Rig> rig = ReadRigTables(*tables, folder, poses, missing);
   if (!rig.ok()) return checked->Located(rig.status());
   if (Status status = CheckRig(*rig); !status.ok()) return checked->Located(status);
   // After the check, because errors name reference poses by their place in the file.
@@ -32,11 +33,23 @@ Result<wrinkle::Rig> ParseRig(std::string_view json, std::string_view source_nam
   return rig;
 }
 
-Result<wrinkle::Rig> LoadRig(const std::filesystem::path& path, const wrinkle::PoseSource& poses) {
+std::filesystem::path FindRigFile(const std::string& name_or_file) {
+  std::error_code error;
+  // A slash says that a file is meant, so a misspelt path does not select a shipped rig.
+  if (std::filesystem::exists(name_or_file, error) || name_or_file.find('/') != std::string::npos) {
+    return name_or_file;
+  }
+  const auto shipped =
+      FindDataFile("rigs/" + name_or_file + (name_or_file.ends_with(".json") ? "" : ".json"));
+  return shipped.ok() ? *shipped : std::filesystem::path(name_or_file);
+}
+
+Result<wrinkle::Rig> LoadRig(const std::filesystem::path& path, const wrinkle::PoseSource& poses,
+                             std::set<std::string>* missing) {
   // The same limit as the parser's, so that a larger file is never read into memory.
   const Result<std::string> text = ReadFile(path, JsonIndex::kMaxBytes);
   FURROW_RETURN_IF_ERROR(text);
-  return ParseRig(*text, path.string(), path.parent_path(), poses);
+  return ParseRig(*text, path.string(), path.parent_path(), poses, missing);
 }
 
 Status SaveRig(const wrinkle::Rig& rig, const std::filesystem::path& path) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -27,12 +28,21 @@ namespace furrow::rig {
 //   missing field, wrong type), kInvalidArgument (out of range, unknown name), kNonFinite,
 //   kCyclic (mixes). `where` is "file:line: field" with the path of the field:
 //   "drivers[3].hinge.axis".
+// - `missing`: receives the names of recordings that are not found; their poses are then the rest
+//   pose. Null: they are errors (kNotFound).
 [[nodiscard]] Result<wrinkle::Rig> LoadRig(const std::filesystem::path& path,
-                                           const wrinkle::PoseSource& poses = {});
+                                           const wrinkle::PoseSource& poses = {},
+                                           std::set<std::string>* missing = nullptr);
 // `source_name`: the file name in errors. `folder`: the first folder in which files are searched.
 [[nodiscard]] Result<wrinkle::Rig> ParseRig(std::string_view json, std::string_view source_name,
                                             const std::filesystem::path& folder,
-                                            const wrinkle::PoseSource& poses = {});
+                                            const wrinkle::PoseSource& poses = {},
+                                            std::set<std::string>* missing = nullptr);
+
+// The file of a rig that a user names: an existing path, else the path of the shipped rig of this
+// name ("cmu" or "cmu.json"). A name that is neither is returned unchanged, so that the loader
+// reports the error.
+[[nodiscard]] std::filesystem::path FindRigFile(const std::string& name_or_file);
 
 // The rig as JSON that ParseRig() reads back unchanged. Reference poses are written as joints.
 [[nodiscard]] std::string RigToJson(const wrinkle::Rig& rig);

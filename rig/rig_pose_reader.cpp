@@ -23,8 +23,9 @@ using wrinkle::InvalidField;
 class PoseReader {
  public:
   PoseReader(const TableList<schema::ReferencePose>* list, const std::filesystem::path& folder,
-             const wrinkle::PoseSource& source, wrinkle::Skeleton* recorded)
-      : list_(list), folder_(folder), source_(source), recorded_(recorded) {}
+             const wrinkle::PoseSource& source, wrinkle::Skeleton* recorded,
+             std::set<std::string>* missing)
+      : list_(list), folder_(folder), source_(source), recorded_(recorded), missing_(missing) {}
 
   Status Run(std::vector<wrinkle::ReferencePose>* poses) {
     // The limit comes before any reading, so that a hostile file cannot make this load thousands of
@@ -130,6 +131,11 @@ class PoseReader {
               at + ".file", "write the pose as joints"};
     }
     const Result<std::filesystem::path> path = FindAsset(from.file()->string_view(), folder_);
+    if (path.status().code() == StatusCode::kNotFound && missing_ != nullptr) {
+      missing_->insert(from.file()->str());
+      to->name = from.name()->str();
+      return {};
+    }
     if (!path.ok()) {
       const Status s = path.status();
       return {s.code(), s.what(), at + ".file", s.todo()};
@@ -187,6 +193,7 @@ class PoseReader {
   const std::filesystem::path& folder_;
   const wrinkle::PoseSource& source_;
   wrinkle::Skeleton* recorded_;
+  std::set<std::string>* missing_;
   std::unordered_map<std::string, std::size_t> index_;
   std::vector<wrinkle::ReferencePose> poses_;
   std::vector<State> state_;
@@ -196,8 +203,9 @@ class PoseReader {
 
 Status ReadReferencePoses(const TableList<schema::ReferencePose>* list,
                           const std::filesystem::path& folder, const wrinkle::PoseSource& source,
-                          std::vector<wrinkle::ReferencePose>* poses, wrinkle::Skeleton* recorded) {
-  return PoseReader(list, folder, source, recorded).Run(poses);
+                          std::vector<wrinkle::ReferencePose>* poses, wrinkle::Skeleton* recorded,
+                          std::set<std::string>* missing) {
+  return PoseReader(list, folder, source, recorded, missing).Run(poses);
 }
 
 }  // namespace furrow::rig

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "rig/json/rig_tables.h"
@@ -15,10 +17,12 @@ namespace furrow::rig {
 // parts. Errors: kLimit, kCyclic (a mix that contains itself), kInvalidArgument, kUnsupported (a
 // recording with an empty `source`), and those of `source`; `where` is the field.
 // `recorded` becomes the skeleton of the first recording, unless it has joints already.
+// `missing` may be null; see LoadRig().
 [[nodiscard]] Status ReadReferencePoses(const TableList<schema::ReferencePose>* list,
                                         const std::filesystem::path& folder,
                                         const wrinkle::PoseSource& source,
                                         std::vector<wrinkle::ReferencePose>* poses,
-                                        wrinkle::Skeleton* recorded);
+                                        wrinkle::Skeleton* recorded,
+                                        std::set<std::string>* missing);
 
 }  // namespace furrow::rig

@@ -210,7 +210,8 @@ Status ReadMap(const schema::WrinkleMap& from, const std::string& at, wrinkle::W
 }  // namespace
 
 Result<wrinkle::Rig> ReadRigTables(const schema::Rig& tables, const std::filesystem::path& folder,
-                                   const wrinkle::PoseSource& poses) {
+                                   const wrinkle::PoseSource& poses,
+                                   std::set<std::string>* missing) {
   if (tables.version() != 1) {
     return Status(StatusCode::kUnsupported,
                   "unsupported version " + std::to_string(tables.version()) +
@@ -223,8 +224,8 @@ Result<wrinkle::Rig> ReadRigTables(const schema::Rig& tables, const std::filesys
   Status status = ReadSizeReference(tables.size_reference(), &rig.size_reference);
   if (!status.ok()) return status;
   wrinkle::Skeleton recorded;
-  status =
-      ReadReferencePoses(tables.reference_poses(), folder, poses, &rig.reference_poses, &recorded);
+  status = ReadReferencePoses(tables.reference_poses(), folder, poses, &rig.reference_poses,
+                              &recorded, missing);
   if (!status.ok()) return status;
   status = ForEach(tables.drivers(), "drivers",
                    [&](const schema::Driver& driver, const std::string& where) {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <set>
+#include <string>
 
 #include "base/status.h"
 #include "wrinkle/rig/rig.h"
@@ -19,7 +21,8 @@ struct Rig;
 // field.
 [[nodiscard]] Result<wrinkle::Rig> ReadRigTables(const schema::Rig& tables,
                                                  const std::filesystem::path& folder,
-                                                 const wrinkle::PoseSource& poses);
+                                                 const wrinkle::PoseSource& poses,
+                                                 std::set<std::string>* missing);
 
 // Removes the reference poses that are parts of mixes and that no driver uses.
 void DropBuildingBlocks(const schema::Rig& tables, wrinkle::Rig* rig);

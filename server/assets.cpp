@@ -57,6 +57,7 @@ Result<Assets> LoadAssets(const Config& config) {
   // Rigs name the files and frames of their reference poses; each file is read once.
   const wrinkle::PoseSource poses = motion::CachedPoseSource(
       ReadOptions(config), [](const std::string& warning) { spdlog::warn("{}", warning); });
+  const fs::path chosen_rig = config.rig.empty() ? fs::path() : rig::FindRigFile(config.rig);
   Assets assets;
   auto matcher = LoadMatcher(config.skeleton_map);
   if (!matcher.ok()) return matcher.status().At("--skeleton-map");
@@ -69,7 +70,7 @@ Result<Assets> LoadAssets(const Config& config) {
     if (!loaded.ok()) return loaded.At("--render-settings");
   }
   if (config.character.empty() && !config.rig.empty()) {
-    FURROW_RETURN_IF_ERROR(LoadRigAlone(config.rig, poses, &assets));
+    FURROW_RETURN_IF_ERROR(LoadRigAlone(chosen_rig, poses, &assets));
     return assets;
   }
   fs::path glb = config.character;
@@ -82,12 +83,12 @@ Result<Assets> LoadAssets(const Config& config) {
     }
     glb = *std::move(shipped);
   }
-  const fs::path rig = RigOf(glb, config.rig);
+  const fs::path rig = RigOf(glb, chosen_rig);
   if (!config.render && !rig.empty()) {  // weights need no mesh and no pictures, which are large
     FURROW_RETURN_IF_ERROR(LoadRigAlone(rig, poses, &assets));
     return assets;
   }
-  auto loaded = character::LoadCharacter(glb, config.rig, poses);
+  auto loaded = character::LoadCharacter(glb, chosen_rig, poses);
   FURROW_RETURN_IF_ERROR(loaded);
   if (!config.render) {
     assets.rig = std::make_shared<const wrinkle::Rig>(std::move(loaded->rig));

@@ -35,7 +35,9 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
                   "Read a TOML configuration file; flags override it");
   app->add_option("--character", config->character,
                   "Render this character (.glb) and use its wrinkle rig");
-  app->add_option("--rig", config->rig, "Use this wrinkle rig (JSON)");
+  app->add_option(
+      "--rig", config->rig,
+      "Use this wrinkle rig: a JSON file, or the name of a shipped rig (arkit, cmu, ...)");
   app->add_option("--skeleton-map", config->skeleton_map,
                   "Map joint names of streams with this map, by name or file\n"
                   "(default: the best match of the shipped maps)");

@@ -37,9 +37,10 @@ struct Config {
   std::filesystem::path character;  // .glb
   std::string skeleton_map;         // name or file; empty: the best match of the shipped maps
   std::string shape_map;            // the same for the names of blend shapes
-  std::filesystem::path rig;        // without a character: weights only; else replaces its rig
-  std::string bind = "127.0.0.1";   // numeric, IPv4 or IPv6
-  std::uint16_t tcp = 7400;         // 0: any free port; the ready line shows it
+  // A file or the name of a shipped rig. Without a character: weights only; else replaces its rig.
+  std::filesystem::path rig;
+  std::string bind = "127.0.0.1";  // numeric, IPv4 or IPv6
+  std::uint16_t tcp = 7400;        // 0: any free port; the ready line shows it
   std::uint16_t udp = 7401;
   int threads = 1;  // threads that receive UDP, [1, kMaxThreads]; see docs/CAPACITY.md
   bool render = true;

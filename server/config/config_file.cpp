@@ -46,7 +46,8 @@ Key Path(std::string_view name, std::filesystem::path* target, std::filesystem::
 }
 
 // A name or a file. Values with a slash or the ending .json are files, relative to `folder`.
-Key NameOrFile(std::string_view name, std::string* target, std::filesystem::path folder) {
+template <class Target>
+Key NameOrFile(std::string_view name, Target* target, std::filesystem::path folder) {
   return {name, [target, folder = std::move(folder)](const toml::node& node) -> std::string {
             const auto value = node.value_exact<std::string>();
             if (!value) return "must be a string";
@@ -176,7 +177,7 @@ class Reader {
 // The keys by table. Three functions, because the whole list is long.
 Tables InputTables(Config* config, const std::filesystem::path& folder) {
   return {{"",
-           {Path("character", &config->character, folder), Path("rig", &config->rig, folder),
+           {Path("character", &config->character, folder), NameOrFile("rig", &config->rig, folder),
             Path("play", &config->play, folder), Text("bvh_positions", &config->bvh_positions),
             NameOrFile("skeleton_map", &config->skeleton_map, folder),
             NameOrFile("shape_map", &config->shape_map, folder)}},

@@ -129,11 +129,12 @@ void StreamDefinitions::Report(const StreamDefinition& stream,
   }
   const auto missing_joints = stream.binding->missing_joints();
   const auto missing_shapes = stream.binding->missing_blend_shapes();
-  if (!missing_joints.empty()) {
+  // A stream without any joints comes from a face tracker, and one without any blend shapes from a
+  // body tracker; nothing is missing.
+  if (!missing_joints.empty() && stream.skeleton.num_joints() > 0) {
     spdlog::warn("the stream lacks joints that the rig uses; their drivers stay at rest: {}",
                  Join(missing_joints));
   }
-  // A stream without any blend shapes comes from a body tracker; nothing is missing.
   if (!missing_shapes.empty() && !stream.blend_shapes.empty()) {
     spdlog::warn("the stream lacks blend shapes that the rig uses; their drivers stay at rest: {}",
                  Join(missing_shapes));

@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <set>
 
 #include "character/package/rig_report.h"
 #include "client/cli/commands/commands.h"
@@ -10,6 +11,8 @@
 #include "client/cli/common/inputs.h"
 #include "client/cli/output/explanation_text.h"
 #include "motion/clip/clip.h"
+#include "motion/pose_source.h"
+#include "rig/rig_file.h"
 #include "wrinkle/solver/solver.h"
 
 namespace furrow::cli {
@@ -58,8 +61,19 @@ int Explain(const RigOptions& options) {
 }
 
 int Check(const RigOptions& options) {
-  const auto rig = LoadRigArgument(options.rig, options.read);
+  // The rig that ships for MakeHuman names a recording of MakeHuman, which does not ship. Only
+  // binding to a skeleton needs the poses.
+  std::set<std::string> missing;
+  const auto rig = options.file.empty()
+                       ? rig::LoadRig(ResolveRigPath(options.rig),
+                                      motion::CachedPoseSource(options.read), &missing)
+                       : LoadRigArgument(options.rig, options.read);
   if (!rig.ok()) return Fail(rig.status());
+  for (const std::string& file : missing) {
+    PrintWarnings({"the recording '" + file +
+                   "' was not found, so the poses taken from it are not "
+                   "checked; put it beside the rig or add its folder to FURROW_ASSET_PATH"});
+  }
   character::RigReportOptions report_options;
   report_options.folder = ResolveRigPath(options.rig).parent_path();
   std::optional<motion::Clip> clip;

@@ -64,14 +64,7 @@ Result<motion::Clip> LoadClipArgument(const std::string& path, const motion::Loa
   return clip;
 }
 
-fs::path ResolveRigPath(const std::string& argument) {
-  std::error_code error;
-  // A slash says that a file is meant, so a misspelt path does not select a shipped rig.
-  if (fs::exists(argument, error) || argument.find('/') != std::string::npos) return argument;
-  const std::string file = argument.ends_with(".json") ? argument : argument + ".json";
-  const auto shipped = furrow::FindDataFile("rigs/" + file);
-  return shipped.ok() ? *shipped : fs::path(argument);
-}
+fs::path ResolveRigPath(const std::string& argument) { return rig::FindRigFile(argument); }
 
 Result<wrinkle::Rig> LoadRigArgument(const std::string& argument, const motion::LoadOptions& read) {
   return rig::LoadRig(ResolveRigPath(argument), motion::CachedPoseSource(read, PrintWarning));

@@ -374,6 +374,29 @@ TEST(RigFile, ReadsPosesFromFramesAndMixes) {
   EXPECT_EQ(rig->reference_poses[0].size_reference, rig->size_reference);
 }
 
+// `furrow rig check` goes on without recordings that are not here.
+TEST(RigFile, ListsMissingRecordingsOnRequest) {
+  const std::string json = Replaced(kSmallRig, R"(     "joints": [{"joint": "brow",
+                 "euler_degrees": [-20, 0, 0]}]})",
+                                    R"("file": "nowhere.bvh", "frame": 3})");
+  std::set<std::string> missing;
+  const auto rig = ParseRig(json, "a.rig.json", ".", TurningSource, &missing);
+  ASSERT_TRUE(rig.ok()) << rig.status().ToString();
+  EXPECT_THAT(missing, testing::ElementsAre("nowhere.bvh"));
+  EXPECT_TRUE(rig->reference_poses[0].joints.empty());
+}
+
+TEST(RigFile, FindsShippedRigsByName) {
+  setenv("FURROW_DATA_DIR", (std::string(FURROW_SOURCE_DIR) + "/rig").c_str(), 1);
+  const std::filesystem::path shipped = FURROW_SOURCE_DIR "/rig/rigs/arkit.json";
+  EXPECT_EQ(FindRigFile("arkit"), shipped);
+  EXPECT_EQ(FindRigFile("arkit.json"), shipped);
+  EXPECT_EQ(FindRigFile(shipped.string()), shipped);
+  EXPECT_EQ(FindRigFile("./arkit"), "./arkit");
+  EXPECT_EQ(FindRigFile("nobody"), "nobody");
+  unsetenv("FURROW_DATA_DIR");
+}
+
 // A list of joints has one unit of length, so the writer splits what a mix of two units moves.
 TEST(RigFile, WritesMixesOfTwoUnits) {
   const std::string json = Replaced(kSmallRig, R"({"name": "up",

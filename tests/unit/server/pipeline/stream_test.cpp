@@ -219,6 +219,20 @@ TEST(StreamDefinitions, BlendShapesMoveTheCharactersShapes) {
   EXPECT_THAT(log.text(), HasSubstr("pictures show the rest pose"));
 }
 
+// A phone sends a face without joints. The default character's rig also reads joints of a body.
+TEST(StreamDefinitions, AFaceWithoutJointsLacksNothing) {
+  auto rig = std::make_shared<wrinkle::Rig>(*KneeRig());
+  wrinkle::Driver jaw;
+  jaw.name = "jaw";
+  jaw.kind = wrinkle::Driver::Kind::kBlendShape;
+  jaw.blend_shape.blend_shape = "jawOpen";
+  rig->drivers.push_back(jaw);
+  StreamDefinitions definitions(rig, nullptr, 4);
+  LogCapture log;
+  ASSERT_TRUE(definitions.Get({.joints = {}, .blend_shapes = {"jawOpen"}}).ok());
+  EXPECT_THAT(log.text(), Not(HasSubstr("lacks"))) << log.text();
+}
+
 TEST(StreamDefinitions, IgnoredJointsAreLogged) {
   const wrinkle::Skeleton character = Head("foot");
   for (const wrinkle::Skeleton* drawn :
