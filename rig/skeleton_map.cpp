@@ -5,13 +5,17 @@
 #include <array>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <unordered_map>
 #include <utility>
+
+#include <nlohmann/json.hpp>
 
 #include "base/ascii.h"
 #include "base/data_dir.h"
 #include "base/files.h"
 #include "base/status.h"
+#include "rig/hierarchy_roles.h"
 
 namespace furrow::rig {
 namespace {
@@ -241,6 +245,40 @@ SkeletonRoles SkeletonMaps::Best(std::span<const std::string> joint_names,
     best_score = score;
   }
   return best;
+}
+
+SkeletonRoles SkeletonMaps::RolesOrGuess(const wrinkle::Skeleton& skeleton) const {
+  SkeletonRoles found = RolesOf(skeleton);
+  if (!found.map.empty() || chosen_ || maps_.empty()) return found;
+  found.roles = RolesFromHierarchy(skeleton);
+  if (found.roles.empty()) return found;
+  found.map = kFromHierarchy;
+  std::set<JointRole> distinct;
+  for (const JointRole role : found.roles) {
+    if (role == JointRole::kNone) continue;
+    distinct.insert(role);
+    ++found.num_joints;
+  }
+  found.num_roles = static_cast<int>(distinct.size());
+  return found;
+}
+
+std::string ProposeSkeletonMap(std::string_view name, std::span<const std::string> joint_names,
+                               const wrinkle::JointRoles& roles) {
+  nlohmann::ordered_json joints = nlohmann::ordered_json::object();
+  for (int i = 1; i < wrinkle::kNumJointRoles; ++i) {
+    std::vector<std::string> chain;
+    for (std::size_t j = 0; j < std::min(roles.size(), joint_names.size()); ++j) {
+      // A namespace is never part of a map.
+      if (roles[j] == static_cast<JointRole>(i))
+        chain.emplace_back(WithoutNamespace(joint_names[j]));
+    }
+    const std::string role(wrinkle::ToString(static_cast<JointRole>(i)));
+    if (chain.size() == 1) joints[role] = chain.front();
+    if (chain.size() > 1) joints[role] = chain;
+  }
+  const nlohmann::ordered_json map = {{"version", 1}, {"name", name}, {"joints", joints}};
+  return map.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 std::string JoinRoles(std::span<const JointRole> roles) {

@@ -17,6 +17,8 @@ namespace furrow::rig {
 // A map fits a skeleton if it finds this many roles. Fewer matches may be coincidence.
 inline constexpr int kMinRoles = 6;
 
+inline constexpr char kFromHierarchy[] = "(hierarchy)";
+
 // The joint names of one family of skeletons. docs/SKELETONS.md describes the file format.
 struct SkeletonMap {
   struct Entry {
@@ -38,7 +40,8 @@ struct SkeletonMap {
 
 // The roles that a map finds in a skeleton.
 struct SkeletonRoles {
-  std::string map;                          // the map's name; empty if no map fits the skeleton
+  // The map's name; kFromHierarchy if no map fits, and the hierarchy tells the roles; else empty.
+  std::string map;
   wrinkle::JointRoles roles;                // one per joint; empty if `map` is empty
   int num_roles = 0;                        // distinct roles found
   int num_joints = 0;                       // joints that have a role
@@ -78,6 +81,9 @@ class SkeletonMaps {
   // first name.
   [[nodiscard]] SkeletonRoles RolesOf(const wrinkle::Skeleton& skeleton) const;
   [[nodiscard]] SkeletonRoles RolesOf(std::span<const std::string> joint_names) const;
+  // RolesOf(), or the roles that RolesFromHierarchy() finds if no map fits. Not for a chosen map,
+  // and not without any maps: then joints are matched by equal names.
+  [[nodiscard]] SkeletonRoles RolesOrGuess(const wrinkle::Skeleton& skeleton) const;
   // The roles of the joints that a rig names. They need no limbs: a rig of a face has none.
   [[nodiscard]] SkeletonRoles RolesOfRig(std::span<const std::string> joint_names) const;
 
@@ -90,6 +96,12 @@ class SkeletonMaps {
   std::vector<SkeletonMap> maps_;  // sorted by name
   bool chosen_ = false;
 };
+
+// A skeleton map (JSON) with the joints of these roles: a start for a map of one's own. `roles`:
+// one per joint.
+[[nodiscard]] std::string ProposeSkeletonMap(std::string_view name,
+                                             std::span<const std::string> joint_names,
+                                             const wrinkle::JointRoles& roles);
 
 // Joins role names for messages: "leftToes, rightToes".
 [[nodiscard]] std::string JoinRoles(std::span<const wrinkle::JointRole> roles);

@@ -109,8 +109,8 @@ Result<SkeletonMatcher> SkeletonMatcher::Create(const std::string& name_or_file)
 SkeletonMatch SkeletonMatcher::Match(const wrinkle::Skeleton& stream, const wrinkle::Rig& rig,
                                      const wrinkle::Skeleton* character) const {
   SkeletonMatch match;
-  match.stream = streams_.RolesOf(stream);
-  if (character != nullptr) match.character = characters_.RolesOf(*character);
+  match.stream = streams_.RolesOrGuess(stream);
+  if (character != nullptr) match.character = characters_.RolesOrGuess(*character);
   if (match.stream.roles.empty()) return match;
 
   // The roles of a rig's joints follow from their names alone, since a rig has no skeleton.
@@ -151,6 +151,10 @@ wrinkle::Retarget MakeRetarget(const SkeletonMatch& match, const wrinkle::Skelet
 
 std::string Describe(const SkeletonRoles& roles) {
   if (roles.map.empty()) return {};
+  if (roles.map == kFromHierarchy) {
+    return "no skeleton map fits; " + std::to_string(roles.num_roles) +
+           " roles were guessed from the hierarchy";
+  }
   std::string text =
       "skeleton map '" + roles.map + "': " + std::to_string(roles.num_roles) + " roles";
   // Body captures without fingers or a face are usual; listing all of these roles would bury the

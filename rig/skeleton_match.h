@@ -40,6 +40,11 @@ class SkeletonMatcher {
   // shipped map per stream. A character's map is chosen among the shipped maps and that one.
   [[nodiscard]] static Result<SkeletonMatcher> Create(const std::string& name_or_file);
 
+  // The roles of a recording's joints, as Match() finds them.
+  [[nodiscard]] SkeletonRoles RolesOf(const wrinkle::Skeleton& stream) const {
+    return streams_.RolesOrGuess(stream);
+  }
+
   // `character` may be null. It does not affect the aliases, so weights are the same with and
   // without pictures. The map that explains the most joint names of the rig gives their roles.
   // Joints that have the same name in the stream and in the rig get no alias. They get no chain

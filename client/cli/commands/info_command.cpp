@@ -56,6 +56,14 @@ int DescribeClip(const std::string& path, const motion::LoadOptions& read) {
   std::printf("  skeleton    %s, %s\n", Counted(clip->skeleton.num_joints(), "joint").c_str(),
               Counted(clip->blend_shape_names.size(), "blend shape").c_str());
   PrintVocabulary(clip->blend_shape_names);
+  if (clip->skeleton.num_joints() > 0) {
+    const auto matcher = LoadSkeletonMatcher({});
+    if (!matcher.ok()) return Fail(matcher.status());
+    const std::string roles = rig::Describe(matcher->RolesOf(clip->skeleton));
+    std::printf("  joints      %s\n",
+                roles.empty() ? "no skeleton map fits; 'furrow rig propose-map' writes a start"
+                              : roles.c_str());
+  }
   std::printf("  frames      %d in %.3f s, %.2f Hz, longest gap %.3f s\n", clip->num_frames(),
               clip->duration(), rate, longest);
   PrintAnimations(report.animations);

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <set>
 
+#include "base/files.h"
 #include "character/package/rig_report.h"
 #include "client/cli/commands/commands.h"
 #include "client/cli/common/exit_code.h"
@@ -23,6 +25,7 @@ struct RigOptions {
   std::string file;  // a recording; `check` uses its skeleton only
   std::string skeleton_map;
   std::string shape_map;
+  std::string out;
   motion::LoadOptions read;
   int frame = 0;
   float threshold = 0.01f;
@@ -101,6 +104,36 @@ int Check(const RigOptions& options) {
   return report.binding.ok() ? kDone : Fail(report.binding.At(options.rig));
 }
 
+int ProposeMap(const RigOptions& options) {
+  const auto clip = LoadClipArgument(options.file, options.read);
+  if (!clip.ok()) return Fail(clip.status());
+  const auto matcher = LoadSkeletonMatcher({});
+  if (!matcher.ok()) return Fail(matcher.status());
+  const rig::SkeletonRoles roles = matcher->RolesOf(clip->skeleton);
+  if (clip->skeleton.num_joints() == 0 || roles.roles.empty()) {
+    return Fail({StatusCode::kUnsupported,
+                 "no roles were found: no skeleton map fits, and the hierarchy is not that of an "
+                 "upright body",
+                 options.file, "write the map by hand (docs/SKELETONS.md)"});
+  }
+  const std::string name = std::filesystem::path(options.out).stem().string();
+  const std::string map = rig::ProposeSkeletonMap(name, clip->skeleton.joint_names(), roles.roles);
+  if (Status status = WriteFileAtomically(options.out, map); !status.ok()) return Fail(status);
+  std::fprintf(stderr, "furrow: %s: %s; check the joints, then use --skeleton-map %s\n",
+               options.out.c_str(), rig::Describe(roles).c_str(), options.out.c_str());
+  return kDone;
+}
+
+void AddProposeMap(CLI::App& group, Action& action) {
+  auto options = std::make_shared<RigOptions>();
+  CLI::App* command = group.add_subcommand(
+      "propose-map", "Write a skeleton map for a recording, as a start for your own");
+  command->add_option("FILE", options->file, "Recording with the skeleton")->required();
+  command->add_option("--out", options->out, "File to write (.json)")->required();
+  AddReadOptions(*command, options->read);
+  command->callback([options, &action] { action = [options] { return ProposeMap(*options); }; });
+}
+
 void AddCheck(CLI::App& group, Action& action) {
   auto options = std::make_shared<RigOptions>();
   CLI::App* command = group.add_subcommand("check", "Validate a rig and report likely mistakes");
@@ -146,6 +179,7 @@ void AddRig(CLI::App& app, Action& action) {
       app.add_subcommand("rig", "Check wrinkle rigs, explain their weights and cut patches");
   group->require_subcommand(1);
   AddCheck(*group, action);
+  AddProposeMap(*group, action);
   AddExplain(*group, action);
   AddHelperEntry(*group, "rig patch");
 }
