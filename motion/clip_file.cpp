@@ -7,8 +7,10 @@
 #include <fstream>
 #include <functional>
 #include <optional>
+#include <string>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "base/ascii.h"
 #include "base/files.h"
@@ -116,6 +118,27 @@ Status SetUpright(UpAxis up, Clip* clip) {
   return up == UpAxis::kZ ? TurnZUpToYUp(clip) : Status();
 }
 
+// Replaces the rest pose by a frame. Some files state none: all bones of LaFAN1 lie along +X.
+Status TakeRestFrom(int frame, Clip* clip) {
+  if (frame >= clip->num_frames()) {
+    return {StatusCode::kInvalidArgument, "there is no frame " + std::to_string(frame) +
+                                              " to take the rest pose from; the recording has " +
+                                              std::to_string(clip->num_frames()) + " frames"};
+  }
+  wrinkle::LocalPose pose;
+  clip->GetPose(frame, &pose);
+  std::vector<wrinkle::JointDesc> joints;
+  for (std::size_t j = 0; j < pose.joints.size(); ++j) {
+    joints.push_back({clip->skeleton.joint_names()[j], clip->skeleton.joint_parents()[j],
+                      pose.joints[j], clip->skeleton.tails()[j]});
+  }
+  if (joints.empty()) return {};
+  Result<wrinkle::Skeleton> skeleton = wrinkle::Skeleton::Create(std::move(joints));
+  FURROW_RETURN_IF_ERROR(skeleton);
+  clip->skeleton = std::move(*skeleton);  // parents come first, so the order stays
+  return {};
+}
+
 // Moves roots to their OFFSET if their position is 0 in every frame. MakeHuman writes such files:
 // its position channels add to the OFFSET.
 void KeepRootsAtOffset(Clip* clip) {
@@ -181,6 +204,10 @@ Result<Clip> LoadClip(const std::filesystem::path& path, const LoadOptions& load
   if (format == Format::kBvh) {
     KeepRootsAtOffset(&*clip);
     if (Status status = SetUpright(options.up_axis, &*clip); !status.ok())
+      return status.At(file.string());
+  }
+  if (options.rest_frame >= 0) {
+    if (Status status = TakeRestFrom(options.rest_frame, &*clip); !status.ok())
       return status.At(file.string());
   }
   if (clip->name.empty()) clip->name = file.stem().string();

@@ -54,6 +54,7 @@ struct LoadOptions {
   double sample_rate = 0.0;  // Hz, for formats that store curves (glTF); 0: the file's own keys
   BvhPositions bvh_positions = BvhPositions::kAuto;
   UpAxis up_axis = UpAxis::kAuto;  // BVH only
+  int rest_frame = -1;             // the frame that is the rest pose; -1: the file's own rest pose
   double timecode_rate = 0.0;  // frames per second of a Live Link Face CSV's timecode; 0: inferred
   // For files with several animations (takes): the name of one, or its index from 0. Empty: the
   // first. "FILE#NAME" as a path takes precedence; see SplitClipPath().

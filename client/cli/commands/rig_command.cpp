@@ -67,10 +67,11 @@ int Check(const RigOptions& options) {
   // The rig that ships for MakeHuman names a recording of MakeHuman, which does not ship. Only
   // binding to a skeleton needs the poses.
   std::set<std::string> missing;
-  const auto rig = options.file.empty()
-                       ? rig::LoadRig(ResolveRigPath(options.rig),
-                                      motion::CachedPoseSource(options.read), &missing)
-                       : LoadRigArgument(options.rig, options.read);
+  motion::LoadOptions read = options.read;
+  read.rest_frame = -1;  // is about the recording of --skeleton
+  const auto rig = options.file.empty() ? rig::LoadRig(ResolveRigPath(options.rig),
+                                                       motion::CachedPoseSource(read), &missing)
+                                        : LoadRigArgument(options.rig, options.read);
   if (!rig.ok()) return Fail(rig.status());
   for (const std::string& file : missing) {
     PrintWarnings({"the recording '" + file +

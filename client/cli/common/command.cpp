@@ -37,6 +37,12 @@ void AddReadOptions(CLI::App& command, motion::LoadOptions& options) {
           "auto|channels|offsets|add"))
       ->type_name("")
       ->default_str("auto");
+  command
+      .add_option(
+          "--rest-frame", options.rest_frame,
+          "Frame to take as the rest pose, counted from 0; the performer stands upright and "
+          "faces +Z there (default: the rest pose of the file)")
+      ->check(CLI::NonNegativeNumber);
 }
 
 // The limits are those of the wire (protocol::kMinImageSize, kMaxImageSize).

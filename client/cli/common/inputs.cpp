@@ -27,6 +27,12 @@ void PrintWarning(const std::string& text) {
   std::fprintf(stderr, "furrow: warning: %s\n", text.c_str());
 }
 
+// The frames of a rig's reference poses have a rest frame of their own.
+motion::LoadOptions ForPoses(motion::LoadOptions read) {
+  read.rest_frame = -1;
+  return read;
+}
+
 }  // namespace
 
 void PrintWarnings(const std::vector<std::string>& warnings) {
@@ -67,7 +73,8 @@ Result<motion::Clip> LoadClipArgument(const std::string& path, const motion::Loa
 fs::path ResolveRigPath(const std::string& argument) { return rig::FindRigFile(argument); }
 
 Result<wrinkle::Rig> LoadRigArgument(const std::string& argument, const motion::LoadOptions& read) {
-  return rig::LoadRig(ResolveRigPath(argument), motion::CachedPoseSource(read, PrintWarning));
+  return rig::LoadRig(ResolveRigPath(argument),
+                      motion::CachedPoseSource(ForPoses(read), PrintWarning));
 }
 
 Result<rig::SkeletonMatcher> LoadSkeletonMatcher(const std::string& map) {
@@ -119,7 +126,7 @@ Result<character::Character> LoadCharacterArgument(const std::string& glb, const
     package = *shipped;
   }
   auto character = character::LoadCharacter(package, rig.empty() ? fs::path() : ResolveRigPath(rig),
-                                            motion::CachedPoseSource(read, PrintWarning));
+                                            motion::CachedPoseSource(ForPoses(read), PrintWarning));
   if (!character.ok()) return character;
   PrintWarnings(character->warnings);
   for (const std::string& name : character->missing_rig_pictures) {

@@ -45,6 +45,27 @@ TEST(Clip, GetPoseCopiesOneFrame) {
   EXPECT_THAT(pose.blend_shapes, ElementsAre(0.6f));
 }
 
+// All bones along +X at rest, as in LaFAN1; frame 1 stands.
+TEST(LoadClip, TakesTheRestPoseFromAFrame) {
+  const TemporaryFolder folder;
+  const auto path = folder / "flat.bvh";
+  std::ofstream(path) << "HIERARCHY\nROOT Hips\n{\nOFFSET 0 0 0\nCHANNELS 6 Xposition Yposition "
+                         "Zposition Zrotation Yrotation Xrotation\nJOINT Spine\n{\nOFFSET 2 0 0\n"
+                         "CHANNELS 3 Zrotation Yrotation Xrotation\nEnd Site\n{\nOFFSET 1 0 0\n}\n"
+                         "}\n}\nMOTION\nFrames: 2\nFrame Time: 0.1\n0 5 0 0 0 0 0 0 0\n"
+                         "0 5 0 90 0 0 0 0 0\n";
+  LoadOptions options;
+  options.rest_frame = 1;
+  const auto clip = LoadClip(path, options);
+  ASSERT_TRUE(clip.ok()) << clip.status().ToString();
+  const glm::vec3 spine(clip->skeleton.rest_model()[1][3]);
+  EXPECT_NEAR(spine.x, 0.0f, 1e-5f);
+  EXPECT_NEAR(spine.y, 7.0f, 1e-5f);
+  EXPECT_EQ(clip->locals[3].rotation, clip->skeleton.rest_pose()[1].rotation);
+  options.rest_frame = 2;
+  EXPECT_EQ(LoadClip(path, options).status().code(), StatusCode::kInvalidArgument);
+}
+
 TEST(SaveClip, WritesWhatLoadClipReadsByExtension) {
   TemporaryFolder folder;
   const Clip clip = MakeClip();
