@@ -99,9 +99,10 @@ void AddConvert(CLI::App& app, Action& action) {
   CLI::App* command =
       app.add_subcommand("convert", "Convert a recording to another format, by file extension");
   command
-      ->add_option("IN", options->in,
-                   "Recording to read: .bvh, .glb, .gltf, .vrma, .csv (Live Link Face) or .mcap "
-                   "(FILE.mcap#SUBJECT)")
+      ->add_option(
+          "IN", options->in,
+          "Recording to read: .bvh, .glb, .gltf, .vrma, .fbx, .dae, .csv (Live Link Face) or .mcap "
+          "(FILE.mcap#SUBJECT)")
       ->required();
   command
       ->add_option(

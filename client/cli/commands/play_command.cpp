@@ -116,10 +116,10 @@ void AddPlay(CLI::App& app, Action& action) {
   auto options = std::make_shared<PlayOptions>();
   CLI::App* command = app.add_subcommand("play", "Send a recording to a daemon in real time");
   command
-      ->add_option(
-          "FILE", options->file,
-          "Recording: BVH, glTF/GLB, VRMA, Live Link Face CSV or a take (FILE.mcap plays all "
-          "subjects, FILE.mcap#SUBJECT one)")
+      ->add_option("FILE", options->file,
+                   "Recording: BVH, glTF/GLB, VRMA, FBX, Collada, Live Link Face CSV or a take "
+                   "(FILE.mcap plays all "
+                   "subjects, FILE.mcap#SUBJECT one)")
       ->required();
   command->add_option("--to", options->host, kHostHelp)->required();
   auto* udp = command->add_flag("--udp", options->udp, "Send over UDP, port 7401 (default)");

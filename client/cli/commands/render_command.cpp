@@ -258,10 +258,10 @@ void AddRender(CLI::App& app, Action& action) {
   auto options = std::make_shared<RenderOptions>();
   CLI::App* command = app.add_subcommand(
       "render", "Render pictures of a recording or a pose, offline: DIR/000123.png for frame 123");
-  CLI::Option* file = command->add_option(
-      "FILE", options->files,
-      "Recordings: BVH, glTF/GLB, VRMA, Live Link Face CSV or a take (.mcap); several "
-      "files are drawn as several subjects in one picture");
+  CLI::Option* file = command->add_option("FILE", options->files,
+                                          "Recordings: BVH, glTF/GLB, VRMA, FBX, Collada, Live "
+                                          "Link Face CSV or a take (.mcap); several "
+                                          "files are drawn as several subjects in one picture");
   CLI::Option* pose =
       command->add_option("--pose", options->pose,
                           "Draw one picture of the rig's reference poses instead of FILE: "

@@ -157,7 +157,7 @@ void AddExplain(CLI::App& group, Action& action) {
       ->required();
   command
       ->add_option("FILE", options->file,
-                   "Recording: BVH, glTF/GLB, VRMA, Live Link Face CSV or a take")
+                   "Recording: BVH, glTF/GLB, VRMA, FBX, Collada, Live Link Face CSV or a take")
       ->required();
   AddSkeletonMap(*command, options->skeleton_map);
   AddShapeMap(*command, options->shape_map);

@@ -83,8 +83,9 @@ void AddSolve(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand(
       "solve", "Compute the weights of a recording offline, as the daemon would send them");
   command
-      ->add_option("FILE", options->file,
-                   "Recording: BVH, glTF/GLB, VRMA, Live Link Face CSV or a take (.mcap)")
+      ->add_option(
+          "FILE", options->file,
+          "Recording: BVH, glTF/GLB, VRMA, FBX, Collada, Live Link Face CSV or a take (.mcap)")
       ->required();
   command
       ->add_option("--rig", options->rig,

@@ -17,7 +17,8 @@ void AddTrafficOptions(CLI::App& command, LoadFlags& options) {
       ->required();
   command
       .add_option("FILE", options.input.file,
-                  "Recording that all subjects send: BVH, glTF/GLB, VRMA, Live Link Face CSV or a "
+                  "Recording that all subjects send: BVH, glTF/GLB, VRMA, FBX, Collada, Live Link "
+                  "Face CSV or a "
                   "take (.mcap)")
       ->required();
   command

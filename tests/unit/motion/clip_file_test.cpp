@@ -66,6 +66,31 @@ TEST(LoadClip, TakesTheRestPoseFromAFrame) {
   EXPECT_EQ(LoadClip(path, options).status().code(), StatusCode::kInvalidArgument);
 }
 
+TEST(SplitClipPath, SplitsAfterTheExtensionOfARecording) {
+  TemporaryFolder folder;
+  const auto split = [](const std::filesystem::path& path) {
+    std::filesystem::path file;
+    std::string animation;
+    SplitClipPath(path, &file, &animation);
+    return file.string() + "|" + animation;
+  };
+  EXPECT_EQ(split("walk.fbx#Run"), "walk.fbx|Run");
+  EXPECT_EQ(split("walk.FBX#Armature|a.b/c#1"), "walk.FBX|Armature|a.b/c#1");
+  EXPECT_EQ(split("take#2.dae#0"), "take#2.dae|0");
+  EXPECT_EQ(split("walk.fbx"), "walk.fbx|");
+  EXPECT_EQ(split("walk.txt#Run"), "walk.txt#Run|");
+  const std::filesystem::path odd = folder.path() / "walk.fbx#Run";
+  std::ofstream(odd) << "x";
+  EXPECT_EQ(split(odd), odd.string() + "|");
+}
+
+TEST(LoadClip, AnimationsOfOtherFormatsCannotBeChosen) {
+  TemporaryFolder folder;
+  ASSERT_TRUE(SaveClip(MakeClip(), folder.path() / "a.bvh").ok());
+  const Result<Clip> clip = LoadClip(folder.path() / "a.bvh#0");
+  EXPECT_EQ(clip.status().code(), StatusCode::kUnsupported);
+}
+
 TEST(SaveClip, WritesWhatLoadClipReadsByExtension) {
   TemporaryFolder folder;
   const Clip clip = MakeClip();
@@ -120,7 +145,7 @@ TEST(LoadClip, ReportsWhatIsWrongWithTheFile) {
     EXPECT_THAT(empty.status().ToString(), HasSubstr(name));
     EXPECT_THAT(empty.status().ToString(), HasSubstr("empty"));
   }
-  const Status unknown = LoadClip(write("a.fbx", "x")).status();
+  const Status unknown = LoadClip(write("a.usd", "x")).status();
   EXPECT_EQ(unknown.code(), StatusCode::kUnsupported);
   EXPECT_THAT(unknown.ToString(), HasSubstr(".bvh"));
   EXPECT_EQ(LoadClip(write("plain", "x")).status().code(), StatusCode::kUnsupported);

@@ -86,6 +86,22 @@ void DropMetadata(aiNode* node) {
   for (unsigned c = 0; c < node->mNumChildren; ++c) DropMetadata(node->mChildren[c]);
 }
 
+// assimp 5.2 writes the ticks of an animation as if they were seconds.
+void SetTicksToSeconds(aiAnimation* animation) {
+  const double seconds = 1.0 / animation->mTicksPerSecond;
+  const auto scale = [seconds](auto* keys, unsigned count) {
+    for (unsigned k = 0; k < count; ++k) keys[k].mTime *= seconds;
+  };
+  for (unsigned c = 0; c < animation->mNumChannels; ++c) {
+    aiNodeAnim& channel = *animation->mChannels[c];
+    scale(channel.mPositionKeys, channel.mNumPositionKeys);
+    scale(channel.mRotationKeys, channel.mNumRotationKeys);
+    scale(channel.mScalingKeys, channel.mNumScalingKeys);
+  }
+  animation->mDuration *= seconds;
+  animation->mTicksPerSecond = 1.0;
+}
+
 }  // namespace
 
 character::Character ToyBody() {
@@ -127,6 +143,7 @@ std::string ConvertByAssimp(std::string_view glb, const std::string& format) {
   const std::unique_ptr<aiScene> scene(importer.GetOrphanedScene());
   if (scene == nullptr) return {};
   DropMetadata(scene->mRootNode);
+  for (unsigned a = 0; a < scene->mNumAnimations; ++a) SetTicksToSeconds(scene->mAnimations[a]);
   Assimp::Exporter exporter;
   const aiExportDataBlob* blob = exporter.ExportToBlob(scene.get(), format);
   if (blob == nullptr) return {};
