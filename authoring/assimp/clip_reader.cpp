@@ -166,7 +166,7 @@ class ClipReader {
 
   // Collada states unit and axes as the root's transform, FBX as properties.
   void FindSpace() {
-    std::vector<std::string> remarks;  // conversions to metres are no warnings
+    std::vector<std::string> remarks;  // unused: a conversion to metres needs no warning
     const glm::dmat4 space(wrinkle::ToMatrix(SpaceOf(scene_, &remarks)));
     space_ =
         gltf::Decompose(space * glm::dmat4(ToGlm(scene_.mRootNode->mTransformation))).transform;

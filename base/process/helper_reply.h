@@ -20,7 +20,7 @@ struct HelperReply {
 [[nodiscard]] std::string EncodeReply(const Result<HelperReply>& reply);
 
 // The inverse. A hostile file may have taken over the helper: every length is checked. Errors: the
-// encoded one, kParse (the bytes are no reply).
+// encoded one, kParse (not a reply).
 [[nodiscard]] Result<HelperReply> DecodeReply(std::string_view bytes);
 
 }  // namespace furrow

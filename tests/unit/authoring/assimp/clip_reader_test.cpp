@@ -25,12 +25,15 @@ motion::Clip Swinging() {
   motion::Clip clip;
   clip.name = "swing";
   clip.skeleton = *wrinkle::Skeleton::Create(
-      {{"hips", kNoJoint, {{0, 1, 0}}, {}},
-       {"spine", 0, {{0, 0.3f, 0}, glm::angleAxis(0.4f, glm::vec3(1, 0, 0))}, {}},
-       {"head", 1, {{0, 0.4f, 0.1f}}, {}}});
+      // assimp's FBX exporter loses the transform of the topmost node.
+      {{"root", kNoJoint, {}, {}},
+       {"hips", 0, {{0, 1, 0}}, {}},
+       {"spine", 1, {{0, 0.3f, 0}, glm::angleAxis(0.4f, glm::vec3(1, 0, 0))}, {}},
+       {"head", 2, {{0, 0.4f, 0.1f}}, {}}});
   for (int f = 0; f < kFrames; ++f) {
     const float t = static_cast<float>(f) / 10.0f;
     clip.times.push_back(f / 10.0);
+    clip.locals.push_back({});
     clip.locals.push_back({{t, 1.0f, 0.2f}, glm::angleAxis(t, glm::vec3(0, 1, 0))});
     clip.locals.push_back({{0, 0.3f, 0}, glm::angleAxis(0.4f + t, glm::vec3(1, 0, 0))});
     clip.locals.push_back({{0, 0.4f, 0.1f}, glm::angleAxis(-t, glm::vec3(0, 0, 1))});
