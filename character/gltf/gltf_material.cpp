@@ -12,7 +12,6 @@
 #include "character/pictures/picture_file.h"
 #include "character/source_notes.h"
 #include "gltf/container/uri.h"
-#include "gltf/scene/materials.h"
 
 namespace furrow::character {
 namespace {
@@ -101,11 +100,9 @@ Result<std::vector<Picture>> ReadGltfPictures(const gltf::Document& document,
   return pictures;
 }
 
-Result<std::vector<Material>> ReadGltfMaterials(const gltf::Document& document) {
-  const Result<std::vector<gltf::Material>> from = gltf::ReadMaterials(document);
-  FURROW_RETURN_IF_ERROR(from);
+std::vector<Material> MakeGltfMaterials(const std::vector<gltf::Material>& from) {
   std::vector<Material> materials;
-  for (const gltf::Material& material : *from) {
+  for (const gltf::Material& material : from) {
     Material& to = materials.emplace_back();
     to.name = material.name;
     to.kind = KindOf(material);

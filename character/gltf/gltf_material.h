@@ -7,6 +7,7 @@
 #include "character/character.h"
 #include "character/source_notes.h"
 #include "gltf/document/document.h"
+#include "gltf/scene/materials.h"
 
 namespace furrow::character {
 
@@ -26,9 +27,9 @@ namespace furrow::character {
 [[nodiscard]] Result<std::vector<Picture>> ReadGltfPictures(const gltf::Document& document,
                                                             const ReadOptions& options = {});
 
-// Reads all materials, in the file's order. The kind is the glTF extra "furrow_kind", or guessed
-// from the name. Texture indices count the results of ReadGltfPictures(). Errors: those of
-// gltf::ReadMaterials().
-[[nodiscard]] Result<std::vector<Material>> ReadGltfMaterials(const gltf::Document& document);
+// The file's materials, in its order. The kind is the glTF extra "furrow_kind", or guessed from the
+// name. Texture indices count the results of ReadGltfPictures(). Their UV transforms are in the
+// meshes; see ReadGltfMeshes().
+[[nodiscard]] std::vector<Material> MakeGltfMaterials(const std::vector<gltf::Material>& from);
 
 }  // namespace furrow::character

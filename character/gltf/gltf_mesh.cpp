@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -37,7 +38,7 @@ class PrimitiveReader {
         mesh_(mesh),
         notes_(notes) {}
 
-  Status ReadGeometry() {
+  Status ReadGeometry(const gltf::UvTransform& uv_transform) {
     if (!primitive_.is_triangles) {
       return {StatusCode::kUnsupported, "only triangles are supported", at_ + ".mode"};
     }
@@ -53,6 +54,7 @@ class PrimitiveReader {
     notes_->has_normals = normal.has_value();
     notes_->has_tangents = tangent.has_value();
     notes_->morph_targets = static_cast<int>(primitive_.morph_targets.size());
+    const bool transformed = uv_transform != gltf::UvTransform();
     // One unusable vector discards the attribute of the whole mesh: mixing stated and computed
     // vectors would show as a seam.
     bool normals_usable = normal.has_value();
@@ -62,6 +64,7 @@ class PrimitiveReader {
       FURROW_RETURN_IF_ERROR(Vector(*position, v, "POSITION", &vertex.position));
       if (uv) {
         FURROW_RETURN_IF_ERROR(Vector(*uv, v, "TEXCOORD_0", &vertex.uv));
+        if (transformed) vertex.uv = uv_transform.Apply(vertex.uv);
       }
       if (normal) {
         FURROW_RETURN_IF_ERROR(Vector(*normal, v, "NORMAL", &vertex.normal));
@@ -270,10 +273,37 @@ class PrimitiveReader {
   GltfMorphTargets::Base base_;
 };
 
-Status ReadNode(const gltf::Document& document, const gltf::Mesh& from, const gltf::Node& node,
-                const GltfSkeleton& skeleton, std::size_t n, bool lenient,
+// Moves a skinned mesh to model space.
+void ApplySkinMoves(const std::vector<int>& joints, const std::vector<glm::mat4>& moves,
+                    Mesh* mesh) {
+  if (moves.empty()) return;
+  std::unordered_map<int, const glm::mat4*> move_of;
+  for (std::size_t i = 0; i < joints.size(); ++i) move_of.try_emplace(joints[i], &moves[i]);
+  MoveMesh(
+      [&](const Vertex& vertex) {
+        glm::mat4 sum(0.0f);
+        for (int i = 0; i < 4; ++i) {
+          const float weight = vertex.skin_weights[i];
+          if (weight > 0.0f) sum += *move_of.at(vertex.joints[i]) * weight;
+        }
+        return sum;
+      },
+      mesh);
+}
+
+// What all meshes of a file share.
+struct Source {
+  const gltf::Document& document;
+  const GltfSkeleton& skeleton;
+  const std::vector<gltf::Material>& materials;
+  bool lenient;
+};
+
+// `n`: the index of `node`.
+Status ReadNode(const Source& source, const gltf::Mesh& from, const gltf::Node& node, std::size_t n,
                 GltfMorphTargets* targets, std::vector<Mesh>* meshes,
                 std::vector<MeshNotes>* notes) {
+  const GltfSkeleton& skeleton = source.skeleton;
   for (std::size_t p = 0; p < from.primitives.size(); ++p) {
     const gltf::Primitive& primitive = from.primitives[p];
     const std::string where =
@@ -282,12 +312,17 @@ Status ReadNode(const gltf::Document& document, const gltf::Mesh& from, const gl
     mesh.name = from.name;
     if (from.primitives.size() > 1) mesh.name += "_" + std::to_string(p);
     mesh.material = primitive.material;
-    PrimitiveReader reader(document, primitive, where, lenient, &mesh, &notes->emplace_back());
-    FURROW_RETURN_IF_ERROR(reader.ReadGeometry());
+    PrimitiveReader reader(source.document, primitive, where, source.lenient, &mesh,
+                           &notes->emplace_back());
+    const gltf::UvTransform uv_transform =
+        mesh.material < 0 ? gltf::UvTransform()
+                          : source.materials[static_cast<std::size_t>(mesh.material)].uv_transform;
+    FURROW_RETURN_IF_ERROR(reader.ReadGeometry(uv_transform));
     FURROW_RETURN_IF_ERROR(reader.ReadMorphTargets(from, targets));
     if (node.skin != gltf::kNone) {
-      FURROW_RETURN_IF_ERROR(
-          reader.ReadInfluences(skeleton.skin_joints[static_cast<std::size_t>(node.skin)]));
+      const auto skin = static_cast<std::size_t>(node.skin);
+      FURROW_RETURN_IF_ERROR(reader.ReadInfluences(skeleton.skin_joints[skin]));
+      ApplySkinMoves(skeleton.skin_joints[skin], skeleton.skin_moves[skin], &mesh);
     } else {
       // Moves the mesh to model space in the rest pose.
       MoveMesh([&](const Vertex&) { return skeleton.node_model[n]; }, &mesh);
@@ -300,9 +335,12 @@ Status ReadNode(const gltf::Document& document, const gltf::Mesh& from, const gl
 }  // namespace
 
 Result<GltfMeshes> ReadGltfMeshes(gltf::Document* document, const gltf::NodeForest& forest,
-                                  const GltfSkeleton& skeleton, const ReadOptions& options) {
+                                  const GltfSkeleton& skeleton,
+                                  const std::vector<gltf::Material>& materials,
+                                  const ReadOptions& options) {
   const Result<std::vector<gltf::Mesh>> from = gltf::ReadMeshes(document);
   FURROW_RETURN_IF_ERROR(from);
+  const Source source{*document, skeleton, materials, options.lenient};
   GltfMorphTargets targets(*document);
   std::vector<Mesh> meshes;
   std::vector<MeshNotes> notes;
@@ -312,8 +350,8 @@ Result<GltfMeshes> ReadGltfMeshes(gltf::Document* document, const gltf::NodeFore
     const gltf::Node& node = forest.nodes[n];
     if (node.mesh == gltf::kNone) continue;
     const std::size_t before = meshes.size();
-    FURROW_RETURN_IF_ERROR(ReadNode(*document, (*from)[static_cast<std::size_t>(node.mesh)], node,
-                                    skeleton, n, options.lenient, &targets, &meshes, &notes));
+    FURROW_RETURN_IF_ERROR(ReadNode(source, (*from)[static_cast<std::size_t>(node.mesh)], node, n,
+                                    &targets, &meshes, &notes));
     for (std::size_t m = before; m < meshes.size(); ++m) {
       vertices += meshes[m].vertices.size();
       indices += meshes[m].indices.size();

@@ -8,6 +8,7 @@
 #include "character/gltf/gltf_skeleton.h"
 #include "character/source_notes.h"
 #include "gltf/document/document.h"
+#include "gltf/scene/materials.h"
 #include "gltf/scene/nodes.h"
 
 namespace furrow::character {
@@ -23,6 +24,8 @@ struct GltfMeshes {
 //
 // - Up to 16 influences per vertex are read; the strongest four are kept and normalised.
 // - Missing or degenerate normals and tangents are computed.
+// - UVs are those of the image: the transform of the mesh's material (KHR_texture_transform) is
+//   applied. `materials`: those of the file.
 // - Morph targets are read as GltfMorphTargets describes.
 //
 // Errors: kSchema (missing or mistyped attributes, counts that differ, indices out of range),
@@ -32,6 +35,7 @@ struct GltfMeshes {
 [[nodiscard]] Result<GltfMeshes> ReadGltfMeshes(gltf::Document* document,
                                                 const gltf::NodeForest& forest,
                                                 const GltfSkeleton& skeleton,
+                                                const std::vector<gltf::Material>& materials,
                                                 const ReadOptions& options = {});
 
 }  // namespace furrow::character

@@ -10,6 +10,7 @@
 #include "character/gltf/gltf_skeleton.h"
 #include "character/source_notes.h"
 #include "gltf/document/document.h"
+#include "gltf/scene/materials.h"
 #include "gltf/scene/nodes.h"
 
 namespace furrow::character {
@@ -44,10 +45,10 @@ Status ReadGltfCharacter(std::string_view bytes, const std::filesystem::path& fo
   FURROW_RETURN_IF_ERROR(forest);
   Result<GltfSkeleton> skeleton = ReadGltfSkeleton(&*document, *forest);
   FURROW_RETURN_IF_ERROR(skeleton);
-  Result<GltfMeshes> meshes = ReadGltfMeshes(&*document, *forest, *skeleton, options);
-  FURROW_RETURN_IF_ERROR(meshes);
-  Result<std::vector<Material>> materials = ReadGltfMaterials(*document);
+  const Result<std::vector<gltf::Material>> materials = gltf::ReadMaterials(&*document);
   FURROW_RETURN_IF_ERROR(materials);
+  Result<GltfMeshes> meshes = ReadGltfMeshes(&*document, *forest, *skeleton, *materials, options);
+  FURROW_RETURN_IF_ERROR(meshes);
   Result<std::vector<Picture>> pictures = ReadGltfPictures(*document, options);
   FURROW_RETURN_IF_ERROR(pictures);
   if (options.notes != nullptr) options.notes->nameless_joints = skeleton->num_nameless_joints;
@@ -56,7 +57,7 @@ Status ReadGltfCharacter(std::string_view bytes, const std::filesystem::path& fo
   character->inverse_bind_matrices = std::move(skeleton->inverse_bind_matrices);
   character->meshes = std::move(meshes->meshes);
   character->shapes = std::move(meshes->shapes);
-  character->materials = std::move(*materials);
+  character->materials = MakeGltfMaterials(*materials);
   character->pictures = std::move(*pictures);
   character->warnings = document->warnings();
   if (options.lenient) DropMissingPictures(character);

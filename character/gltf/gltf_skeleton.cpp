@@ -102,38 +102,97 @@ class SkeletonReader {
   }
 
   Status ReadInverseBindMatrices() {
-    std::vector<glm::mat4>& known = result_.inverse_bind_matrices;
     for (const glm::mat4& rest : result_.skeleton.rest_model()) {
       const glm::mat4 inverse = glm::inverse(rest);
-      // Joints that no skin states get the inverse of their rest pose. A flat rest pose has no
-      // inverse.
-      known.push_back(IsFinite(inverse) ? inverse : glm::mat4(1.0f));
+      // A flat rest pose has no inverse.
+      const bool usable = IsFinite(inverse);
+      result_.inverse_bind_matrices.push_back(usable ? inverse : glm::mat4(1.0f));
+      binds_.push_back(usable ? rest : glm::mat4(1.0f));
     }
-    std::vector<bool> is_stated(known.size(), false);
     for (std::size_t skin = 0; skin < result_.skin_joints.size(); ++skin) {
-      const Result<std::vector<glm::mat4>> matrices =
-          gltf::ReadInverseBindMatrices(document_, skin);
+      Result<std::vector<glm::mat4>> matrices = gltf::ReadInverseBindMatrices(document_, skin);
       FURROW_RETURN_IF_ERROR(matrices);
-      for (std::size_t i = 0; i < matrices->size(); ++i) {
-        const auto joint = static_cast<std::size_t>(result_.skin_joints[skin][i]);
-        if (is_stated[joint] && !AreNear(known[joint], (*matrices)[i])) {
-          return {StatusCode::kUnsupported,
-                  "two skins have different inverse bind matrices for the joint '" +
-                      result_.skeleton.joint_names()[joint] + "'",
-                  "skins[" + std::to_string(skin) + "].inverseBindMatrices",
-                  "apply the mesh transforms before exporting"};
-        }
-        if (!is_stated[joint]) known[joint] = (*matrices)[i];
+      stated_.push_back(std::move(*matrices));
+    }
+    result_.skin_moves.resize(stated_.size());
+    if (HasConflict() || HidesTransform()) {
+      MoveSkinsToRest();
+    } else {
+      KeepStatedMatrices();
+    }
+    return {};
+  }
+
+  // True if two skins bind one joint differently. Quantised exports do, because each mesh has a
+  // scale of its own, and so do meshes that were bound in different poses.
+  [[nodiscard]] bool HasConflict() const {
+    std::vector<const glm::mat4*> first(binds_.size(), nullptr);
+    for (std::size_t skin = 0; skin < stated_.size(); ++skin) {
+      for (std::size_t i = 0; i < stated_[skin].size(); ++i) {
+        const glm::mat4*& known = first[JointOf(skin, i)];
+        if (known != nullptr && !AreNear(*known, stated_[skin][i])) return true;
+        if (known == nullptr) known = &stated_[skin][i];
+      }
+    }
+    return false;
+  }
+
+  // True if a skin's matrices move or scale the whole mesh: KHR_mesh_quantization keeps there what
+  // makes metres of its integers.
+  [[nodiscard]] bool HidesTransform() const {
+    for (std::size_t skin = 0; skin < stated_.size(); ++skin) {
+      bool equal = true;
+      bool scaled = false;
+      const glm::mat4 first = Move(skin, 0);
+      for (std::size_t i = 0; i < stated_[skin].size(); ++i) {
+        const glm::mat4 move = Move(skin, i);
+        equal = equal && AreNear(first, move);
+        const float scale = std::cbrt(std::abs(glm::determinant(glm::mat3(move))));
+        scaled = scaled || !(std::abs(scale - 1.0f) < 0.05f);
+      }
+      if (scaled || (equal && !AreNear(glm::mat4(1.0f), first))) return true;
+    }
+    return false;
+  }
+
+  // From the space of a skin's mesh to model space in the rest pose, by one of its joints.
+  [[nodiscard]] glm::mat4 Move(std::size_t skin, std::size_t i) const {
+    return binds_[JointOf(skin, i)] * stated_[skin][i];
+  }
+
+  [[nodiscard]] std::size_t JointOf(std::size_t skin, std::size_t i) const {
+    return static_cast<std::size_t>(result_.skin_joints[skin][i]);
+  }
+
+  // Every joint gets the inverse of its rest pose, and meshes move there.
+  void MoveSkinsToRest() {
+    for (std::size_t skin = 0; skin < stated_.size(); ++skin) {
+      std::vector<glm::mat4> moves;
+      for (std::size_t i = 0; i < stated_[skin].size(); ++i) moves.push_back(Move(skin, i));
+      const bool moved = std::any_of(moves.begin(), moves.end(), [](const glm::mat4& move) {
+        return !AreNear(glm::mat4(1.0f), move);
+      });
+      if (moved) result_.skin_moves[skin] = std::move(moves);
+    }
+  }
+
+  void KeepStatedMatrices() {
+    std::vector<bool> is_stated(binds_.size(), false);
+    for (std::size_t skin = 0; skin < stated_.size(); ++skin) {
+      for (std::size_t i = 0; i < stated_[skin].size(); ++i) {
+        const std::size_t joint = JointOf(skin, i);
+        if (!is_stated[joint]) result_.inverse_bind_matrices[joint] = stated_[skin][i];
         is_stated[joint] = true;
       }
     }
-    return {};
   }
 
   gltf::Document& document_;
   const gltf::NodeForest& forest_;
   gltf::NodeSet chosen_;
-  std::vector<int> joint_at_;  // per node: its own joint, or kNoJoint
+  std::vector<int> joint_at_;     // per node: its own joint, or kNoJoint
+  std::vector<glm::mat4> binds_;  // per joint: the inverse of the matrix made from its rest pose
+  std::vector<std::vector<glm::mat4>> stated_;  // per skin and joint: the file's matrices
   GltfSkeleton result_;
 };
 

@@ -18,6 +18,9 @@ struct GltfSkeleton {
   // Model space in the rest pose to joint space; one per joint of the skeleton.
   std::vector<glm::mat4> inverse_bind_matrices;
   std::vector<std::vector<int>> skin_joints;  // per skin: indices of its joints in `skeleton`
+  // Per skin: empty, or one matrix per joint of the skin, from the space of its meshes to model
+  // space. A vertex moves by the mean of its joints' matrices, by skin weight.
+  std::vector<std::vector<glm::mat4>> skin_moves;
   // Per node of the file: index of the nearest joint at or above it; 0 if there is none.
   std::vector<int> joint_of_node;
   std::vector<glm::mat4> node_model;  // per node: its space to model space in the rest pose
@@ -29,9 +32,13 @@ struct GltfSkeleton {
 // the rest pose, or the identity if that matrix is singular. `forest` describes the nodes of
 // `document`; neither is kept.
 //
+// If two skins bind one joint differently, or the matrices of a skin contain a transform of the
+// whole mesh, as quantised files have it, all joints get matrices from the rest pose and
+// `skin_moves` tells how the meshes get there. That changes no picture if the matrices of a skin
+// differ from those of the rest pose by one transform. Otherwise the rest pose is exact.
+//
 // Errors: those of gltf::ReadSkinJoints() and gltf::ReadInverseBindMatrices(), kSchema (no nodes),
-// kLimit (more than wrinkle::kMaxJoints joints), kUnsupported (two skins with different inverse
-// bind matrices for one joint). `where` is a field.
+// kLimit (more than wrinkle::kMaxJoints joints). `where` is a field.
 [[nodiscard]] Result<GltfSkeleton> ReadGltfSkeleton(gltf::Document* document,
                                                     const gltf::NodeForest& forest);
 

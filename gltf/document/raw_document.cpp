@@ -21,6 +21,7 @@ using Json = nlohmann::json;
 // Required extensions that do not change what this code reads. Any other required extension is a
 // warning, unless it is in kRefused below.
 constexpr std::string_view kHarmless[] = {"KHR_mesh_quantization",
+                                          "KHR_texture_transform",
                                           "KHR_materials_unlit",
                                           "KHR_materials_volume",
                                           "VRMC_vrm_animation",

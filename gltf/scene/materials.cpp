@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <tiny_gltf.h>
@@ -16,8 +17,8 @@ namespace {
 // Only what the renderer draws: metalness, emission and occlusion are ignored.
 class MaterialReader {
  public:
-  MaterialReader(const Document& document, const tinygltf::Material& from, std::string field)
-      : document_(document), from_(from), field_(std::move(field)) {}
+  MaterialReader(Document* document, const tinygltf::Material& from, std::string field)
+      : document_(*document), from_(from), field_(std::move(field)) {}
 
   Result<Material> Run() {
     const tinygltf::PbrMetallicRoughness& pbr = from_.pbrMetallicRoughness;
@@ -42,20 +43,65 @@ class MaterialReader {
     if (from_.alphaMode == "MASK") {
       to.alpha_cutoff = std::clamp(static_cast<float>(from_.alphaCutoff), 0.0f, 1.0f);
     }
-    FURROW_RETURN_IF_ERROR(ReadTexture(pbr.baseColorTexture.index, pbr.baseColorTexture.texCoord,
-                                       ".pbrMetallicRoughness.baseColorTexture",
-                                       &to.base_colour_image));
     FURROW_RETURN_IF_ERROR(
-        ReadTexture(pbr.metallicRoughnessTexture.index, pbr.metallicRoughnessTexture.texCoord,
-                    ".pbrMetallicRoughness.metallicRoughnessTexture", &to.roughness_image));
-    FURROW_RETURN_IF_ERROR(ReadTexture(from_.normalTexture.index, from_.normalTexture.texCoord,
-                                       ".normalTexture", &to.normal_image));
+        ReadTexture(pbr.baseColorTexture, "baseColorTexture", &to.base_colour_image));
+    FURROW_RETURN_IF_ERROR(
+        ReadTexture(pbr.metallicRoughnessTexture, "metallicRoughnessTexture", &to.roughness_image));
+    FURROW_RETURN_IF_ERROR(ReadTexture(from_.normalTexture, "normalTexture", &to.normal_image));
     FURROW_RETURN_IF_ERROR(ReadThickness(&to));
+    to.uv_transform = uv_transform_.value_or(UvTransform());
+    if (transforms_differ_) {
+      document_.Warn(field_,
+                     "its textures have different KHR_texture_transform; the first is used "
+                     "for all");
+    }
     return to;
   }
 
  private:
-  Status ReadTexture(int texture, int tex_coord, const std::string& member, int* image) const {
+  // `info`: tinygltf's type of a texture reference, of which there are two.
+  template <class Info>
+  Status ReadTexture(const Info& info, const std::string& name, int* image) {
+    if (info.index < 0) return {};
+    const bool pbr = name != "normalTexture";
+    const std::string member = (pbr ? ".pbrMetallicRoughness." : ".") + name;
+    int tex_coord = info.texCoord;
+    const auto extension = info.extensions.find("KHR_texture_transform");
+    UvTransform transform;
+    if (extension != info.extensions.end()) {
+      FURROW_RETURN_IF_ERROR(ReadUvTransform(extension->second, member, &transform, &tex_coord));
+    }
+    UseTransform(transform);
+    return FindImage(info.index, tex_coord, member, image);
+  }
+
+  // The material is drawn with one set of UVs, and so with one transform.
+  void UseTransform(const UvTransform& transform) {
+    transforms_differ_ = transforms_differ_ || (uv_transform_ && *uv_transform_ != transform);
+    if (!uv_transform_) uv_transform_ = transform;
+  }
+
+  Status ReadUvTransform(const tinygltf::Value& from, const std::string& member, UvTransform* to,
+                         int* tex_coord) const {
+    const std::string field = field_ + member + ".extensions.KHR_texture_transform";
+    if (!from.IsObject()) return {StatusCode::kSchema, "expected an object", field};
+    const auto number = [](const tinygltf::Value& value, float* into) {
+      if (value.IsNumber()) *into = static_cast<float>(value.GetNumberAsDouble());
+    };
+    for (int i = 0; i < 2; ++i) {
+      if (from.Get("offset").IsArray()) number(from.Get("offset").Get(i), &to->offset[i]);
+      if (from.Get("scale").IsArray()) number(from.Get("scale").Get(i), &to->scale[i]);
+    }
+    number(from.Get("rotation"), &to->rotation);
+    if (from.Get("texCoord").IsInt()) *tex_coord = from.Get("texCoord").Get<int>();
+    for (const float value : {to->offset.x, to->offset.y, to->scale.x, to->scale.y, to->rotation}) {
+      if (std::isfinite(value)) continue;
+      return {StatusCode::kNonFinite, "the texture transform is not finite", field};
+    }
+    return {};
+  }
+
+  Status FindImage(int texture, int tex_coord, const std::string& member, int* image) const {
     const tinygltf::Model& model = document_.model();
     *image = kNone;
     if (texture < 0) return {};
@@ -93,19 +139,28 @@ class MaterialReader {
     const tinygltf::Value& texture = volume->second.Get("thicknessTexture");
     if (!texture.IsObject() || !texture.Get("index").IsInt()) return {};
     const tinygltf::Value& coord = texture.Get("texCoord");
-    return ReadTexture(texture.Get("index").Get<int>(), coord.IsInt() ? coord.Get<int>() : 0,
-                       member + ".thicknessTexture", &to->thickness_image);
+    return FindImage(texture.Get("index").Get<int>(), coord.IsInt() ? coord.Get<int>() : 0,
+                     member + ".thicknessTexture", &to->thickness_image);
   }
 
-  const Document& document_;
+  Document& document_;
   const tinygltf::Material& from_;
   const std::string field_;
+  std::optional<UvTransform> uv_transform_;  // of the first texture
+  bool transforms_differ_ = false;
 };
 
 }  // namespace
 
-Result<std::vector<Material>> ReadMaterials(const Document& document) {
-  const std::vector<tinygltf::Material>& from = document.model().materials;
+glm::vec2 UvTransform::Apply(const glm::vec2& uv) const {
+  const glm::vec2 scaled = scale * uv;
+  const float c = std::cos(rotation), s = std::sin(rotation);
+  // v points down, so a counter-clockwise turn has this sign.
+  return offset + glm::vec2(c * scaled.x + s * scaled.y, c * scaled.y - s * scaled.x);
+}
+
+Result<std::vector<Material>> ReadMaterials(Document* document) {
+  const std::vector<tinygltf::Material>& from = document->model().materials;
   if (from.size() > kMaxMaterials) {
     return Status(StatusCode::kLimit, "more than " + std::to_string(kMaxMaterials) + " materials",
                   "materials");

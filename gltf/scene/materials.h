@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 
 #include "base/status.h"
@@ -18,6 +19,16 @@ namespace furrow::gltf {
 
 // The extra in which Furrow keeps the kind of a material ("skin", "cloth", ...).
 inline constexpr char kKindExtra[] = "furrow_kind";
+
+// KHR_texture_transform: how UVs of the mesh become UVs of the image.
+struct UvTransform {
+  glm::vec2 offset{0.0f};
+  float rotation = 0.0f;  // radians, counter-clockwise as seen in the image, about (0, 0)
+  glm::vec2 scale{1.0f};
+
+  bool operator==(const UvTransform&) const = default;
+  [[nodiscard]] glm::vec2 Apply(const glm::vec2& uv) const;
+};
 
 // A metallic-roughness material. Texture fields are indices into Document::images(), or kNone.
 struct Material {
@@ -31,6 +42,8 @@ struct Material {
   float thickness = 0.0f;       // metres (KHR_materials_volume); 0: not stated
   int thickness_image = kNone;  // green channel, times `thickness`
   bool double_sided = false;
+  // Of all textures. If they differ, that of the base colour and a warning.
+  UvTransform uv_transform;
   float alpha_cutoff = 0.0f;  // 0: opaque. alphaMode BLEND becomes 0.5.
 };
 
@@ -38,7 +51,7 @@ struct Material {
 //
 // Errors: kLimit (kMaxMaterials), kSchema (a texture or image that does not exist), kNonFinite,
 // kUnsupported (a texture that uses another set than TEXCOORD_0).
-[[nodiscard]] Result<std::vector<Material>> ReadMaterials(const Document& document);
+[[nodiscard]] Result<std::vector<Material>> ReadMaterials(Document* document);
 
 // An image in its file format (PNG, JPEG, ...).
 struct EncodedImage {

@@ -28,7 +28,7 @@ void ReadScene(Document* document, const NodeForest& forest) {
     (void)ReadSkinJoints(*document, skin);
     (void)ReadInverseBindMatrices(*document, skin);
   }
-  (void)ReadMaterials(*document);
+  (void)ReadMaterials(document);
   for (std::size_t image = 0; image < document->images().size(); ++image) {
     (void)LocateImage(*document, image);
   }

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gltf/scene/materials.h"
+
+#include <glm/geometric.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/gltf/gltf_testing.h"
+
+namespace furrow::gltf {
+namespace {
+
+using nlohmann::json;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+struct Read {
+  std::vector<Material> materials;
+  std::vector<std::string> warnings;
+  Status status;
+};
+
+// One material whose base colour and normal texture have these transforms.
+Read ReadMaterial(const json& colour, const json& normal) {
+  HandMadeGltf gltf;
+  gltf.AddFloats({0}, "SCALAR");  // a buffer must not be empty
+  gltf.json["images"] = {{{"uri", "a.png"}}};
+  gltf.json["textures"] = {{{"source", 0}}};
+  const auto texture = [](const json& transform) {
+    json info = {{"index", 0}};
+    if (!transform.is_null()) info["extensions"]["KHR_texture_transform"] = transform;
+    return info;
+  };
+  gltf.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", texture(colour)}}},
+                             {"normalTexture", texture(normal)}}};
+  gltf.json["extensionsRequired"] = {"KHR_texture_transform"};
+  const std::string glb = gltf.Glb();
+  Result<Document> document = Document::Open(glb, {});
+  if (!document.ok()) return {{}, {}, document.status()};
+  Result<std::vector<Material>> materials = ReadMaterials(&*document);
+  if (!materials.ok()) return {{}, {}, materials.status()};
+  return {std::move(*materials), document->warnings(), {}};
+}
+
+TEST(UvTransform, ScalesThenTurnsThenMoves) {
+  const UvTransform turn{.rotation = 1.5707963f};
+  EXPECT_LT(glm::distance(turn.Apply({1, 0}), glm::vec2(0, -1)), 1e-6f);
+  EXPECT_LT(glm::distance(turn.Apply({0, 1}), glm::vec2(1, 0)), 1e-6f);
+  const UvTransform all{.offset = {0.5f, 0.25f}, .rotation = 1.5707963f, .scale = {2, 3}};
+  EXPECT_LT(glm::distance(all.Apply({1, 1}), glm::vec2(3.5f, -1.75f)), 1e-6f);
+}
+
+TEST(Materials, ReadTheTextureTransform) {
+  const json transform = {{"offset", {0.5, 0.25}}, {"scale", {2, 3}}, {"rotation", 0.125}};
+  const Read read = ReadMaterial(transform, transform);
+  ASSERT_TRUE(read.status.ok()) << read.status.ToString();
+  EXPECT_THAT(read.warnings, IsEmpty());
+  EXPECT_EQ(read.materials[0].uv_transform, (UvTransform{{0.5f, 0.25f}, 0.125f, {2, 3}}));
+}
+
+TEST(Materials, WarnOfTransformsThatDiffer) {
+  const Read read = ReadMaterial({{"scale", {2, 2}}}, json());
+  ASSERT_TRUE(read.status.ok()) << read.status.ToString();
+  EXPECT_THAT(read.warnings, ElementsAre(HasSubstr("different KHR_texture_transform")));
+  EXPECT_EQ(read.materials[0].uv_transform.scale, glm::vec2(2));
+}
+
+TEST(Materials, RejectInvalidTransforms) {
+  EXPECT_EQ(ReadMaterial({{"scale", {1e200, 1}}}, json()).status.code(), StatusCode::kNonFinite);
+  EXPECT_EQ(ReadMaterial({{"texCoord", 1}}, json()).status.code(), StatusCode::kUnsupported);
+  EXPECT_TRUE(ReadMaterial({{"scale", 5}, {"offset", {1}}}, {{"offset", {1}}}).status.ok());
+}
+
+}  // namespace
+}  // namespace furrow::gltf
