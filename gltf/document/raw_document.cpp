@@ -11,6 +11,7 @@
 #include "base/text.h"
 #include "gltf/container/json_guard.h"
 #include "gltf/container/uri.h"
+#include "gltf/document/meshopt_view.h"
 #include "gltf/limits.h"
 
 namespace furrow::gltf {
@@ -21,6 +22,8 @@ using Json = nlohmann::json;
 // Required extensions that do not change what this code reads. Any other required extension is a
 // warning, unless it is in kRefused below.
 constexpr std::string_view kHarmless[] = {"KHR_mesh_quantization",
+                                          "EXT_meshopt_compression",
+                                          "KHR_meshopt_compression",
                                           "KHR_texture_transform",
                                           "KHR_materials_unlit",
                                           "KHR_materials_volume",
@@ -33,9 +36,7 @@ struct RefusedExtension {
   std::string_view name;
   bool meshes_only;  // harmless for readers of animations
 };
-constexpr RefusedExtension kRefused[] = {{"EXT_meshopt_compression", false},
-                                         {"KHR_meshopt_compression", false},
-                                         {"KHR_draco_mesh_compression", true}};
+constexpr RefusedExtension kRefused[] = {{"KHR_draco_mesh_compression", true}};
 
 // The member, or null. Also null if `object` is none, because the file decides about types.
 const Json* Find(const Json& object, const char* key) {
@@ -125,7 +126,8 @@ class RawReader {
       if (refused != std::end(kRefused)) {
         if (refused->meshes_only && options_.contents == Contents::kAnimation) continue;
         return {StatusCode::kUnsupported, "the file requires the extension " + name,
-                "extensionsRequired", "export without mesh compression"};
+                "extensionsRequired",
+                "export without Draco compression; Blender imports such files and exports others"};
       }
       if (std::find(std::begin(kHarmless), std::end(kHarmless), name) == std::end(kHarmless)) {
         result_.warnings.push_back("extensionsRequired: the extension " + Quoted(name) +
@@ -148,6 +150,10 @@ class RawReader {
       if (!ReadUnsigned(buffers[i], "byteLength", 0, &length) || length == 0) {
         return {StatusCode::kSchema, "expected a length of at least 1 byte", field + ".byteLength"};
       }
+      if (IsMeshoptFallback(buffers[i], i)) {
+        buffers_.emplace_back();
+        continue;
+      }
       const Result<std::span<const std::uint8_t>> bytes = ReadBuffer(buffers[i], i, field);
       FURROW_RETURN_IF_ERROR(bytes);
       if (length > bytes->size()) {
@@ -165,6 +171,20 @@ class RawReader {
       buffers_.push_back(bytes->first(length));
     }
     return {};
+  }
+
+  // The extension of meshopt in an object, or null.
+  static const Json* FindMeshopt(const Json& object) {
+    const Json* extensions = Find(object, "extensions");
+    if (extensions == nullptr) return nullptr;
+    const Json* khr = Find(*extensions, "KHR_meshopt_compression");
+    return khr != nullptr ? khr : Find(*extensions, "EXT_meshopt_compression");
+  }
+
+  // A buffer without bytes, which stands for what compressed views decode to.
+  [[nodiscard]] bool IsMeshoptFallback(const Json& buffer, std::size_t index) const {
+    const bool has_bytes = index == 0 && container_.has_binary;
+    return Find(buffer, "uri") == nullptr && !has_bytes && FindMeshopt(buffer) != nullptr;
   }
 
   Result<std::span<const std::uint8_t>> ReadBuffer(const Json& buffer, std::size_t index,
@@ -206,6 +226,9 @@ class RawReader {
   Status ReadBufferView(const Json& view, const std::string& field) {
     std::uint64_t buffer = 0, offset = 0, length = 0, stride = 0;
     if (!view.is_object()) return {StatusCode::kSchema, "expected an object", field};
+    if (const Json* meshopt = FindMeshopt(view); meshopt != nullptr) {
+      return ReadMeshoptView(view, *meshopt, field + ".extensions.EXT_meshopt_compression");
+    }
     if (!ReadUnsigned(view, "buffer", buffers_.size(), &buffer) || buffer >= buffers_.size()) {
       return {StatusCode::kSchema, "the buffer does not exist", field + ".buffer"};
     }
@@ -227,6 +250,37 @@ class RawReader {
               field + ".byteLength"};
     }
     result_.views.push_back({bytes.subspan(offset, length), stride});
+    return {};
+  }
+
+  // The view's own buffer holds an uncompressed copy at best, so it is not read.
+  Status ReadMeshoptView(const Json& view, const Json& from, const std::string& field) {
+    std::uint64_t buffer = 0, offset = 0, length = 0, stride = 0;
+    MeshoptView meshopt{.mode = Text(from, "mode"), .filter = Text(from, "filter")};
+    const bool read = ReadUnsigned(from, "buffer", buffers_.size(), &buffer) &&
+                      ReadUnsigned(from, "byteOffset", 0, &offset) &&
+                      ReadUnsigned(from, "byteLength", 0, &length) &&
+                      ReadUnsigned(from, "byteStride", 0, &meshopt.stride) &&
+                      ReadUnsigned(from, "count", 0, &meshopt.count) &&
+                      ReadUnsigned(view, "byteStride", 0, &stride);
+    if (!read || buffer >= buffers_.size() || stride > kMaxByteStride) {
+      return {StatusCode::kSchema, "expected an existing buffer and unsigned integers", field};
+    }
+    const std::span<const std::uint8_t> bytes = buffers_[buffer];
+    if (offset > bytes.size() || length > bytes.size() - offset) {
+      return {StatusCode::kSchema, "the view ends after the end of its buffer",
+              field + ".byteLength"};
+    }
+    meshopt.bytes = bytes.subspan(offset, length);
+    Result<std::vector<std::uint8_t>> decoded = DecodeMeshopt(meshopt, field);
+    FURROW_RETURN_IF_ERROR(decoded);
+    // Many views may name the same compressed bytes.
+    decoded_bytes_ += decoded->size();
+    if (decoded_bytes_ > kMaxFileBytes) {
+      return {StatusCode::kLimit, "the buffers are larger than 1 GiB together", field};
+    }
+    result_.owned_buffers.push_back(std::move(*decoded));
+    result_.views.push_back({result_.owned_buffers.back(), stride});
     return {};
   }
 
@@ -317,6 +371,7 @@ class RawReader {
   const OpenOptions& options_;
   Json json_;
   std::vector<std::span<const std::uint8_t>> buffers_;
+  std::uint64_t decoded_bytes_ = 0;  // of compressed views
   RawDocument result_;
 };
 

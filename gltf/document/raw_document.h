@@ -49,7 +49,7 @@ struct MorphTargetSource {
 struct RawDocument {
   std::string json;  // for tinygltf: without buffers, buffer views, images and unused parts
   std::vector<BufferView> views;
-  std::vector<std::vector<std::uint8_t>> owned_buffers;  // of data URIs and external files
+  std::vector<std::vector<std::uint8_t>> owned_buffers;  // of data URIs, files, meshopt
   std::vector<ImageSource> images;                       // of kCharacter
   std::vector<MorphTargetSource> morph_targets;          // one per mesh
   std::size_t num_meshes = 0;

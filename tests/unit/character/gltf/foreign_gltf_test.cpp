@@ -97,6 +97,19 @@ TEST_P(ForeignGltf, IsBoundInTheRestPose) {
   }
 }
 
+INSTANTIATE_TEST_SUITE_P(Compressed, ForeignGltf,
+                         ::testing::Values("toy_meshopt.glb", "toy_meshopt_filtered.glb",
+                                           "toy_meshopt_fallback.gltf"),
+                         [](const auto& info) {
+                           return std::filesystem::path(info.param).stem().string();
+                         });
+
+TEST(ForeignGltf, NewerMeshoptIsNamed) {
+  const std::filesystem::path folder = FURROW_SOURCE_DIR "/tests/unit/character/gltf/fixtures";
+  const auto character = LoadCharacter(folder / "toy_meshopt_khr.glb");
+  EXPECT_EQ(character.status().code(), StatusCode::kUnsupported) << character.status().ToString();
+}
+
 std::string TestNameOf(const ::testing::TestParamInfo<const char*>& info) {
   return std::filesystem::path(info.param).stem().string();
 }

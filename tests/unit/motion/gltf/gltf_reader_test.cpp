@@ -271,8 +271,14 @@ TEST(GltfReader, RejectsInvalidFiles) {
        StatusCode::kSchema},
       {[](json& j) { j["animations"][0]["channels"][0]["target"]["path"] = "weights"; },
        StatusCode::kSchema},
-      {[](json& j) { j["extensionsRequired"] = {"EXT_meshopt_compression"}; },
-       StatusCode::kUnsupported},
+      {[](json& j) {
+         j["bufferViews"][0]["extensions"]["EXT_meshopt_compression"] = {{"buffer", 0},
+                                                                         {"byteLength", 8},
+                                                                         {"byteStride", 4},
+                                                                         {"count", 2},
+                                                                         {"mode", "ATTRIBUTES"}};
+       },
+       StatusCode::kParse},
       {[](json& j) {
          j["extensions"]["VRMC_vrm_animation"]["humanoid"]["humanBones"]["hips"] = {{"node", 99}};
        },
