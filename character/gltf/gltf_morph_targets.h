@@ -63,8 +63,8 @@ class GltfMorphTargets {
   std::vector<std::string> stated_;  // all names of the file, unique
   std::unordered_set<std::string> is_stated_;
   std::unordered_set<std::string> surplus_;
-  // What the targets of the file may still use, so that a small file cannot cost much memory or
-  // time: sparse accessors and shared buffers are no measure.
+  // What the targets of the file may still use. The size of the file does not bound that: accessors
+  // may be sparse, and many may share one buffer.
   std::size_t elements_ = gltf::kMaxMorphElements;
   std::size_t deltas_ = gltf::kMaxMorphDeltas;
 };

@@ -22,6 +22,7 @@ using Json = nlohmann::json;
 // Required extensions that do not change what this code reads. Any other required extension is a
 // warning, unless it is in kRefused below.
 constexpr std::string_view kHarmless[] = {"KHR_mesh_quantization",
+                                          "EXT_texture_webp",
                                           "EXT_meshopt_compression",
                                           "KHR_meshopt_compression",
                                           "KHR_texture_transform",
@@ -91,6 +92,7 @@ class RawReader {
     FURROW_RETURN_IF_ERROR(ReadMorphTargets());
     if (options_.contents == Contents::kCharacter) {
       FURROW_RETURN_IF_ERROR(ReadImages());
+      UseTextureExtensions();
     }
     WriteReducedJson();
     return std::move(result_);
@@ -358,6 +360,27 @@ class RawReader {
     AddViewStandIns(&reduced);
     // Replaces malformed UTF-8, for which dump() would throw.
     result_.json = reduced.dump(-1, ' ', false, Json::error_handler_t::replace);
+  }
+
+  // Textures name their WebP image in an extension, beside a PNG or JPEG for other readers or
+  // alone.
+  void UseTextureExtensions() {
+    Json& textures = json_["textures"];
+    if (!textures.is_array()) return;
+    for (std::size_t i = 0; i < textures.size(); ++i) {
+      const Json* extensions = Find(textures[i], "extensions");
+      if (extensions == nullptr || Find(textures[i], "source") != nullptr) continue;
+      const Json* webp = Find(*extensions, "EXT_texture_webp");
+      const Json* source = webp != nullptr ? Find(*webp, "source") : nullptr;
+      if (source != nullptr && source->is_number_unsigned()) {
+        textures[i]["source"] = Json(*source);
+      } else if (extensions->is_object() && !extensions->empty()) {
+        result_.warnings.push_back(Entry("textures", i) + ": the extension " +
+                                   Quoted(extensions->begin().key()) +
+                                   " is not supported and the texture is left out; export PNG, "
+                                   "JPEG or WebP textures");
+      }
+    }
   }
 
   // tinygltf rejects primitives whose accessor refers to a buffer view that it does not know.

@@ -22,6 +22,11 @@ std::string_view FormatOf(std::span<const std::uint8_t> bytes) {
   if (starts_with({0x89, 'P', 'N', 'G', 0x0d, 0x0a, 0x1a, 0x0a})) return "png";
   if (starts_with({0xff, 0xd8, 0xff})) return "jpeg";
   if (starts_with({0x76, 0x2f, 0x31, 0x01})) return "openexr";
+  constexpr std::string_view kWebp = "WEBP";
+  if (starts_with({'R', 'I', 'F', 'F'}) && bytes.size() >= 12 &&
+      std::equal(kWebp.begin(), kWebp.end(), bytes.begin() + 8)) {
+    return "webp";
+  }
   return {};
 }
 
@@ -90,7 +95,7 @@ OIIO::TypeDesc TypeOf(PictureStorage::Type type) {
 StatusCode Decode(std::span<const std::uint8_t> bytes, Picture* picture, std::string* why) {
   const std::string format(FormatOf(bytes));
   if (format.empty()) {
-    *why = "the picture is not a PNG, JPEG or OpenEXR file";
+    *why = "the picture is not a PNG, JPEG, WebP or OpenEXR file";
     return StatusCode::kUnsupported;
   }
   // The reader never writes; its interface lacks const.

@@ -14,6 +14,18 @@ std::span<const std::uint8_t> Bytes(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
+// Four red pixels by two, lossless, written by oiiotool.
+TEST(Picture, ReadsWebp) {
+  const auto picture =
+      LoadPicture("four", FURROW_SOURCE_DIR "/tests/unit/character/pictures/four.webp");
+  ASSERT_TRUE(picture.ok()) << picture.status().ToString();
+  EXPECT_EQ(picture->width, 4);
+  EXPECT_EQ(picture->height, 2);
+  ASSERT_GE(picture->pixels.size(), 3u);
+  EXPECT_NEAR(picture->pixels[0], 255, 3);
+  EXPECT_NEAR(picture->pixels[1], 0, 3);
+}
+
 TEST(Picture, ReadsBackEveryNumberOfChannels) {
   for (int channels = 1; channels <= 4; ++channels) {
     Picture picture;

@@ -21,6 +21,35 @@ struct Read {
   Status status;
 };
 
+// A material whose texture names its image by this extension only.
+Read ReadExtension(const std::string& name) {
+  HandMadeGltf gltf;
+  gltf.AddFloats({0}, "SCALAR");
+  gltf.json["images"] = {{{"uri", "a.png"}}, {{"uri", "b.webp"}}};
+  gltf.json["textures"] = {{{"extensions", {{name, {{"source", 1}}}}}}};
+  gltf.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
+  const std::string glb = gltf.Glb();
+  Result<Document> document = Document::Open(glb, {});
+  if (!document.ok()) return {{}, {}, document.status()};
+  Result<std::vector<Material>> materials = ReadMaterials(&*document);
+  if (!materials.ok()) return {{}, {}, materials.status()};
+  return {std::move(*materials), document->warnings(), {}};
+}
+
+TEST(Materials, UseWebpImages) {
+  const Read read = ReadExtension("EXT_texture_webp");
+  ASSERT_TRUE(read.status.ok()) << read.status.ToString();
+  EXPECT_EQ(read.materials[0].base_colour_image, 1);
+  EXPECT_THAT(read.warnings, IsEmpty());
+}
+
+TEST(Materials, WarnOfTexturesThatNobodyReads) {
+  const Read read = ReadExtension("KHR_texture_basisu");
+  ASSERT_TRUE(read.status.ok()) << read.status.ToString();
+  EXPECT_EQ(read.materials[0].base_colour_image, kNone);
+  EXPECT_THAT(read.warnings, ElementsAre(HasSubstr("'KHR_texture_basisu' is not supported")));
+}
+
 // One material whose base colour and normal texture have these transforms.
 Read ReadMaterial(const json& colour, const json& normal) {
   HandMadeGltf gltf;
