@@ -32,13 +32,33 @@ std::string Number(float value) {
   return text;
 }
 
+glm::vec3 DeltaOf(const character::MorphTarget& target, std::uint32_t vertex) {
+  const auto found = std::lower_bound(
+      target.deltas.begin(), target.deltas.end(), vertex,
+      [](const character::MorphDelta& delta, std::uint32_t v) { return delta.vertex < v; });
+  const bool moved = found != target.deltas.end() && found->vertex == vertex;
+  return moved ? found->position : glm::vec3(0.0f);
+}
+
+// True if a morph target moves the corners of a triangle apart: closed lips and lids may be flat at
+// rest.
+bool OpensWithAShape(const character::Mesh& mesh, std::size_t triangle) {
+  return std::any_of(mesh.morph_targets.begin(), mesh.morph_targets.end(),
+                     [&](const character::MorphTarget& target) {
+                       const glm::vec3 first = DeltaOf(target, mesh.indices[triangle]);
+                       return first != DeltaOf(target, mesh.indices[triangle + 1]) ||
+                              first != DeltaOf(target, mesh.indices[triangle + 2]);
+                     });
+}
+
 // Relative to the longest edge, so that the test does not depend on the file's unit. True for NaN.
 bool IsDegenerate(const character::Mesh& mesh, std::size_t triangle) {
   const glm::vec3& a = mesh.vertices[mesh.indices[triangle]].position;
   const glm::vec3& b = mesh.vertices[mesh.indices[triangle + 1]].position;
   const glm::vec3& c = mesh.vertices[mesh.indices[triangle + 2]].position;
   const float longest = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
-  return !(glm::length(glm::cross(b - a, c - a)) > 1e-6f * longest * longest);
+  const bool flat = !(glm::length(glm::cross(b - a, c - a)) > 1e-6f * longest * longest);
+  return flat && !OpensWithAShape(mesh, triangle);
 }
 
 // Collects findings in one pass over the character. Checks are independent, so one report shows all
@@ -130,9 +150,8 @@ class Checker {
            "bind every vertex, or import with --repair to make them follow their neighbours");
     }
     if (const std::size_t flat = CountDegenerateTriangles(mesh); flat > 0) {
-      Find(Severity::kError, "degenerate-triangles", where,
-           Count(flat, "triangle has", "triangles have") + " no area",
-           "merge duplicate vertices, or import with --repair to remove them");
+      Find(Severity::kNote, "degenerate-triangles", where,
+           Count(flat, "triangle has", "triangles have") + " no area", "the import removes them");
     }
     if (notes.unnormalised_vertices > 0) {
       Find(Severity::kWarning, "weights-sum", where,

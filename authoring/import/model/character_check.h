@@ -45,16 +45,18 @@ struct CharacterReport {
 // check; else the report has the note no-rig.
 //
 // Codes
-//   errors    no-skin, uv-missing, unskinned-vertices, degenerate-triangles, rig-binding
+//   errors    no-skin, uv-missing, unskinned-vertices, rig-binding
 //   warnings  uv-overlap (a bake refuses it), uv-flat, weights-sum, normals-missing,
 //             picture-missing, units, up-axis, joint-names, no-roles, rig, rig-picture
-//   notes     uv-outside, weights-truncated, tangents-missing, idle-shapes, roles-missing,
+//   notes     degenerate-triangles, uv-outside, weights-truncated, tangents-missing, idle-shapes,
+//   roles-missing,
 //             no-face-joints, no-rig
 [[nodiscard]] CharacterReport CheckCharacter(const character::Character& character,
                                              const character::SourceNotes& notes,
                                              const rig::SkeletonMaps& maps, bool rig_given);
 
-// Counts triangles without area: coinciding corners or corners on one line.
+// Counts triangles without area: coinciding corners or corners on one line. Triangles that a morph
+// target opens do not count.
 [[nodiscard]] std::size_t CountDegenerateTriangles(const character::Mesh& mesh);
 // Removes the triangles without area and returns their number. The mesh may be empty afterwards.
 std::size_t DropDegenerateTriangles(character::Mesh* mesh);

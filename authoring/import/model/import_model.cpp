@@ -94,10 +94,8 @@ Result<ImportedModel> ImportModel(const fs::path& path, const rig::SkeletonMaps&
                                   const ModelOptions& options) {
   Result<OpenedModel> opened = OpenModel(path);
   FURROW_RETURN_IF_ERROR(opened);
-  if (options.repair) {
-    DropDegenerates(&*opened);
-    BindUnskinned(&*opened);
-  }
+  DropDegenerates(&*opened);
+  if (options.repair) BindUnskinned(&*opened);
   const CharacterReport report = CheckCharacter(opened->character, opened->notes, maps, false);
   ImportedModel imported;
   imported.remarks = std::move(opened->remarks);

@@ -31,7 +31,7 @@ struct OpenedModel {
 
 // The options of ImportModel().
 struct ModelOptions {
-  bool repair = false;         // removes degenerate triangles and binds unskinned vertices
+  bool repair = false;         // binds unskinned vertices
   std::optional<float> scale;  // metres per unit of the file; empty: derived from the height
 };
 
@@ -42,11 +42,12 @@ struct ImportedModel {
   std::vector<std::string> warnings;
 };
 
-// Opens a model with OpenModel() and prepares it for drawing: rotates and scales it, and repairs it
-// if `options` ask for it. `maps`: skeleton maps that give joints their roles by name.
+// Opens a model with OpenModel() and prepares it for drawing: rotates and scales it, removes
+// triangles without area, and repairs it if `options` ask for it. `maps`: skeleton maps that give
+// joints their roles by name.
 //
 // Errors: those of OpenModel(), and kUnsupported for the first error of CheckCharacter() (no skin,
-// no UVs, unskinned vertices, degenerate triangles).
+// no UVs, unskinned vertices).
 [[nodiscard]] Result<ImportedModel> ImportModel(const std::filesystem::path& path,
                                                 const rig::SkeletonMaps& maps,
                                                 const ModelOptions& options = {});

@@ -135,7 +135,7 @@ void AddCharacterImport(CLI::App& group, Action& action) {
                       "Skeleton map of the joint names, by name or file (default: the best match)");
   command->add_flag(
       "--repair", arguments->model.repair,
-      "Remove triangles of zero area, and bind unskinned vertices like their neighbours");
+      "Bind unskinned vertices like their neighbours");
   command->add_option("--scale", arguments->model.scale,
                       "Metres per unit of the model (default: derived from its height)");
   command->add_option("--clothes", arguments->makehuman.clothes,

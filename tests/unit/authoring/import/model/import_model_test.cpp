@@ -223,15 +223,14 @@ Status StatusOf(const character::Character& character, const ModelOptions& optio
   return ImportModel(folder.Write("bad.glb", GlbOf(character)), Maps(), options).status();
 }
 
-TEST(ImportModel, TrianglesWithoutAreaAreAnErrorOrSkipped) {
+TEST(ImportModel, TrianglesWithoutAreaAreRemoved) {
   character::Character body = ToyBody();
   body.meshes[0].vertices[1].position = body.meshes[0].vertices[0].position;
-  const Status status = StatusOf(body);
-  EXPECT_EQ(status.code(), StatusCode::kUnsupported);
-  EXPECT_THAT(status.what(), HasSubstr("no area"));
-  EXPECT_THAT(status.where(), HasSubstr("mesh 'skin'"));
-  EXPECT_THAT(status.todo(), HasSubstr("--repair"));
-  EXPECT_TRUE(StatusOf(body, {.repair = true}).ok());
+  const Folder folder;
+  const auto imported = ImportModel(folder.Write("flat.glb", GlbOf(body)), Maps());
+  ASSERT_TRUE(imported.ok()) << imported.status().ToString();
+  EXPECT_EQ(imported->character.meshes[0].indices.size(), body.meshes[0].indices.size() - 3);
+  EXPECT_THAT(imported->remarks, Contains(HasSubstr("without area: 1")));
 }
 
 TEST(ImportModel, UnskinnedVerticesAreAnErrorOrFollowTheirNeighbours) {
