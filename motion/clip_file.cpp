@@ -85,7 +85,7 @@ Result<Clip> ParseForeign(Format format, std::string_view bytes, const std::stri
 }
 
 // Whether a file of this format may hold several animations, of which the reader can choose.
-bool HasAnimations(Format format) { return format == Format::kFbx || format == Format::kCollada; }
+bool HasAnimations(Format format) { return format != Format::kBvh && format != Format::kCsv; }
 
 Result<Clip> Parse(Format format, std::string_view bytes, const std::filesystem::path& path,
                    const LoadOptions& options, ClipReport* report) {
@@ -94,7 +94,7 @@ Result<Clip> Parse(Format format, std::string_view bytes, const std::filesystem:
   if (!options.animation.empty() && !HasAnimations(format)) {
     return Status(StatusCode::kUnsupported,
                   "animation " + Quoted(options.animation) + " cannot be chosen in this format",
-                  name, "choose animations in .fbx and .dae files only");
+                  name, "only .glb, .gltf, .vrma, .fbx and .dae files hold several animations");
   }
   switch (format) {
     case Format::kBvh: return ParseBvh(bytes, name, options, report);

@@ -36,30 +36,60 @@ ElementType ElementTypeOf(TrackTarget target) {
   }
 }
 
-// Reads the first animation: tracks of one node and property each, bounded by kMaxAnimationNumbers
+// "0 'walk', 1 'run'", at most 16.
+std::string ListOf(const std::vector<tinygltf::Animation>& animations) {
+  constexpr std::size_t kMaxListed = 16;
+  std::string list;
+  for (std::size_t i = 0; i < std::min(animations.size(), kMaxListed); ++i) {
+    list += (i == 0 ? "" : ", ") + std::to_string(i) + " " + Quoted(animations[i].name);
+  }
+  return animations.size() > kMaxListed ? list + ", ..." : list;
+}
+
+// The index of the animation with a name, else with a number; the number of animations if there is
+// none.
+std::size_t FindAnimation(const std::vector<tinygltf::Animation>& animations,
+                          std::string_view choice) {
+  for (std::size_t i = 0; i < animations.size(); ++i) {
+    if (animations[i].name == choice) return i;
+  }
+  for (std::size_t i = 0; i < animations.size(); ++i) {
+    if (std::to_string(i) == choice) return i;
+  }
+  return animations.size();
+}
+
+// Reads one animation: tracks of one node and property each, bounded by kMaxAnimationNumbers
 // in total, because many channels may share one large accessor.
 class AnimationReader {
  public:
-  AnimationReader(Document* document, const NodeForest& forest)
-      : document_(*document), forest_(forest) {}
+  AnimationReader(Document* document, const NodeForest& forest, std::string_view choice)
+      : document_(*document), forest_(forest), choice_(choice) {}
 
   Result<Animation> Run() {
     const std::vector<tinygltf::Animation>& animations = document_.model().animations;
     if (animations.empty()) {
       return Status(StatusCode::kSchema, "the file has no animation", "animations");
     }
-    if (animations.size() > 1) {
+    if (choice_.empty() && animations.size() > 1) {
       document_.Warn("animations", "the file has " + std::to_string(animations.size()) +
-                                       " animations; only the first is read");
+                                       " animations; only the first is read (" +
+                                       ListOf(animations) + ")");
     }
-    from_ = &animations.front();
+    const std::size_t index = choice_.empty() ? 0 : FindAnimation(animations, choice_);
+    if (index == animations.size()) {
+      return Status(StatusCode::kNotFound, "the file has no animation " + Quoted(choice_),
+                    "animations", "choose one of: " + ListOf(animations));
+    }
+    from_ = &animations[index];
+    field_ = "animations[" + std::to_string(index) + "]";
     result_.name = from_->name;
     if (from_->channels.size() > kMaxChannels) {
       return Status(StatusCode::kLimit, "more than " + std::to_string(kMaxChannels) + " channels",
-                    "animations[0].channels");
+                    field_ + ".channels");
     }
     for (std::size_t i = 0; i < from_->channels.size(); ++i) {
-      const std::string field = "animations[0].channels[" + std::to_string(i) + "]";
+      const std::string field = field_ + ".channels[" + std::to_string(i) + "]";
       FURROW_RETURN_IF_ERROR(ReadChannel(from_->channels[i], field));
     }
     return std::move(result_);
@@ -98,7 +128,7 @@ class AnimationReader {
   }
 
   Status ReadSampler(std::size_t index, NodeTrack* node_track) {
-    const std::string field = "animations[0].samplers[" + std::to_string(index) + "]";
+    const std::string field = field_ + ".samplers[" + std::to_string(index) + "]";
     const tinygltf::AnimationSampler& sampler = from_->samplers[index];
     Track& track = node_track->track;
     if (sampler.interpolation == "STEP") {
@@ -166,6 +196,8 @@ class AnimationReader {
 
   Document& document_;
   const NodeForest& forest_;
+  const std::string_view choice_;
+  std::string field_;  // "animations[0]"
   const tinygltf::Animation* from_ = nullptr;
   std::size_t budget_ = kMaxAnimationNumbers;
   std::map<int, std::shared_ptr<const std::vector<float>>> times_;  // by accessor
@@ -175,8 +207,9 @@ class AnimationReader {
 
 }  // namespace
 
-Result<Animation> ReadFirstAnimation(Document* document, const NodeForest& forest) {
-  return AnimationReader(document, forest).Run();
+Result<Animation> ReadAnimation(Document* document, const NodeForest& forest,
+                                std::string_view choice) {
+  return AnimationReader(document, forest, choice).Run();
 }
 
 }  // namespace furrow::gltf

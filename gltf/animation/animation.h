@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/status.h"
@@ -26,16 +27,19 @@ struct Animation {
   std::vector<NodeTrack> tracks;  // at most one per node and target
 };
 
-// Reads the first animation of a document with Contents::kAnimation.
+// Reads one animation of a document with Contents::kAnimation. `choice`: its name, or its index
+// from 0; empty: the first.
 //
-// - Further animations, and channels with an unknown path, are warnings. A channel without a node
+// - Without a choice, further animations are a warning that names them. Channels with an unknown
+//   path are warnings. A channel without a node
 //   is ignored, as the specification demands.
 // - Output values may be floats or normalised integers. Keys of rotations may deviate from unit
 //   length by a factor of 2.
 //
-// Errors: Accessor::Create()'s, kSchema (no animation, an index out of range, two channels for one
-// target, times that do not increase, a wrong number of values, an unknown interpolation), kLimit
-// (kMaxChannels, kMaxAnimationNumbers), kNonFinite.
-[[nodiscard]] Result<Animation> ReadFirstAnimation(Document* document, const NodeForest& forest);
+// Errors: Accessor::Create()'s, kNotFound (no such choice), kSchema (no animation, an index out of
+// range, two channels for one target, times that do not increase, a wrong number of values, an
+// unknown interpolation), kLimit (kMaxChannels, kMaxAnimationNumbers), kNonFinite.
+[[nodiscard]] Result<Animation> ReadAnimation(Document* document, const NodeForest& forest,
+                                              std::string_view choice = {});
 
 }  // namespace furrow::gltf

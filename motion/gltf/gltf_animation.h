@@ -13,11 +13,11 @@
 namespace furrow::motion {
 
 struct GltfOptions {
-  LoadOptions load;                             // only `scale` and `sample_rate` are used
+  LoadOptions load;                             // `scale`, `sample_rate` and `animation` are used
   std::optional<std::filesystem::path> folder;  // for external buffers; none: none are opened
 };
 
-// Reads the first animation of a glTF file, binary or JSON.
+// Reads one animation of a glTF file, binary or JSON.
 //
 // - Joints: the joints of all skins and their ancestors. Without a skin: all nodes of the trees in
 //   which a node moves. VRMA: the human bones, under VRM's names ("hips", "leftUpperArm"), and
@@ -29,7 +29,7 @@ struct GltfOptions {
 // - Frames: the times of all keys together, or evenly spaced at `sample_rate`.
 // - Meshes, materials and images are not read.
 //
-// Errors: those of gltf::Document::Open(), gltf::ReadNodes() and gltf::ReadFirstAnimation(); kLimit
+// Errors: those of gltf::Document::Open(), gltf::ReadNodes() and gltf::ReadAnimation(); kLimit
 // (motion/clip/limits.h, wrinkle::kMaxJoints), kSchema (nothing moves), kNonFinite. `where` is
 // "source_name: field". `report` receives the document's warnings.
 [[nodiscard]] Result<Clip> ParseGltfAnimation(std::string_view bytes, std::string_view source_name,

@@ -29,7 +29,7 @@ using wrinkle::Transform;
 // Seconds. Keys of different samplers that are closer than this are one frame.
 constexpr double kSameTime = 1e-5;
 
-constexpr const char* kAnimationField = "animations[0]";
+constexpr const char* kAnimationField = "animations";
 
 struct JointTrack {
   int joint = wrinkle::kNoJoint;
@@ -54,7 +54,8 @@ class ClipSampler {
     Result<gltf::NodeForest> forest = gltf::ReadNodes(&document_);
     FURROW_RETURN_IF_ERROR(forest);
     forest_ = std::move(*forest);
-    Result<gltf::Animation> animation = gltf::ReadFirstAnimation(&document_, forest_);
+    Result<gltf::Animation> animation =
+        gltf::ReadAnimation(&document_, forest_, options_.load.animation);
     FURROW_RETURN_IF_ERROR(animation);
     animation_ = std::move(*animation);
     clip_.name = animation_.name;

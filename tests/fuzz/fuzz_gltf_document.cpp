@@ -56,7 +56,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (!forest.ok()) continue;
     ReadScene(&*document, *forest);
     (void)ReadVrmAnimation(*document);
-    const auto animation = ReadFirstAnimation(&*document, *forest);
+    const auto animation = ReadAnimation(&*document, *forest);
     if (!animation.ok()) continue;
     for (const NodeTrack& track : animation->tracks) {
       if (track.target == TrackTarget::kMorphWeights) continue;

@@ -47,8 +47,8 @@ void AddSkeletonMap(CLI::App& command, std::string& value);
 // Adds --shape-map. `value` receives its argument, a name or a file, for LoadShapeMatcher().
 void AddShapeMap(CLI::App& command, std::string& value);
 
-// Adds the options that say how the recordings of a command are read: --bvh-positions,
-// --rest-frame.
+// Adds the options that say how the recordings of a command are read: --animation,
+// --bvh-positions, --rest-frame.
 void AddReadOptions(CLI::App& command, motion::LoadOptions& options);
 
 // Parses a picture size such as "640x480", both numbers in [16, 4096] pixels. Returns false and

@@ -292,6 +292,25 @@ TEST(GltfReader, RejectsInvalidFiles) {
   }
 }
 
+TEST(GltfReader, ReadsTheChosenAnimation) {
+  HandMadeGltf gltf = TwoJoints();
+  json second = gltf.json["animations"][0];
+  second["name"] = "run";
+  second["channels"].erase(0);
+  gltf.json["animations"].push_back(second);
+  const std::string glb = gltf.Glb();
+  const auto read = [&](const std::string& choice) {
+    return ParseGltfAnimation(glb, "a.glb", {.load = {.animation = choice}, .folder = {}});
+  };
+  EXPECT_EQ(read("")->name, "take");
+  EXPECT_EQ(read("run")->name, "run");
+  EXPECT_EQ(read("0")->name, "take");
+  EXPECT_EQ(read("1")->name, "run");
+  const Status none = read("2").status();
+  EXPECT_EQ(none.code(), StatusCode::kNotFound);
+  EXPECT_THAT(none.todo(), HasSubstr("0 'take', 1 'run'"));
+}
+
 TEST(GltfReader, RejectsBadNumbers) {
   const auto with_times = [](const std::vector<float>& times) {
     HandMadeGltf gltf = TwoJoints();
