@@ -81,7 +81,9 @@ Result<Clip> ParseForeign(Format format, std::string_view bytes, const std::stri
       report->warnings.push_back(name + ": " + warning);
     report->animations = std::move(converted.animations);
   }
-  return ParseGltfAnimation(*glb, name, {.load = options, .folder = std::nullopt}, report);
+  LoadOptions rest = options;
+  rest.animation.clear();  // the GLB holds the chosen one only
+  return ParseGltfAnimation(*glb, name, {.load = rest, .folder = std::nullopt}, report);
 }
 
 // Whether a file of this format may hold several animations, of which the reader can choose.

@@ -20,7 +20,7 @@ void SplitClipPath(const std::filesystem::path& path, std::filesystem::path* fil
 // are turned to Y up; other files state their axes and unit. FBX and Collada files are read by the
 // helper program furrow-assimp.
 //
-// `path` may choose an animation; see SplitClipPath(). Only FBX and Collada support this.
+// `path` may choose an animation of a glTF, FBX or Collada file; see SplitClipPath().
 //
 // Errors: kNotFound, kIo, kParse, kSchema, kLimit, kNonFinite, kUnsupported. `where` is
 // "file:line" or "file: field".
