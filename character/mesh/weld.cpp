@@ -7,6 +7,8 @@
 #include <cstring>
 #include <unordered_map>
 
+#include <glm/geometric.hpp>
+
 namespace furrow::character {
 namespace {
 
@@ -49,9 +51,62 @@ bool MoveAlike(const Vertex& a, const Vertex& b) {
   return true;
 }
 
+// How the morph targets of a mesh move its vertices.
+class Morphs {
+ public:
+  explicit Morphs(const Mesh& mesh) : starts_(mesh.vertices.size() + 1, 0) {
+    for (const MorphTarget& target : mesh.morph_targets) {
+      for (const MorphDelta& delta : target.deltas) ++starts_[delta.vertex + 1];
+    }
+    for (std::size_t i = 1; i < starts_.size(); ++i) starts_[i] += starts_[i - 1];
+    moves_.resize(starts_.back());
+    std::vector<std::size_t> next(starts_.begin(), starts_.end() - 1);
+    // Targets ascend by shape, so each vertex lists its moves by shape.
+    for (const MorphTarget& target : mesh.morph_targets) {
+      for (const MorphDelta& delta : target.deltas) {
+        moves_[next[delta.vertex]++] = {target.shape, delta.position};
+      }
+    }
+  }
+
+  // True if every target moves both vertices alike.
+  [[nodiscard]] bool MoveAlike(std::uint32_t a, std::uint32_t b) const {
+    std::size_t i = starts_[a], j = starts_[b];
+    const std::size_t end_i = starts_[a + 1], end_j = starts_[b + 1];
+    while (i < end_i || j < end_j) {
+      const bool has_a = i < end_i && (j == end_j || moves_[i].shape <= moves_[j].shape);
+      const bool has_b = j < end_j && (i == end_i || moves_[j].shape <= moves_[i].shape);
+      const glm::vec3 of_a = has_a ? moves_[i].move : glm::vec3(0.0f);
+      const glm::vec3 of_b = has_b ? moves_[j].move : glm::vec3(0.0f);
+      i += has_a ? 1 : 0;
+      j += has_b ? 1 : 0;
+      if (!AreEqual(of_a, of_b)) return false;
+    }
+    return true;
+  }
+
+ private:
+  struct Move {
+    int shape = 0;
+    glm::vec3 move{0.0f};
+  };
+
+  // Quantised deltas of the two sides of a seam are equal; those of computed ones differ by
+  // rounding.
+  static bool AreEqual(const glm::vec3& a, const glm::vec3& b) {
+    constexpr float kShare = 1e-3f, kLeast = 2e-6f;  // metres
+    const float longer = std::max(glm::length(a), glm::length(b));
+    return glm::length(a - b) <= std::max(kShare * longer, kLeast);
+  }
+
+  std::vector<std::size_t> starts_;
+  std::vector<Move> moves_;
+};
+
 }  // namespace
 
 std::vector<std::uint32_t> WeldVertices(const Mesh& mesh) {
+  const Morphs morphs(mesh);
   std::unordered_map<PlaceKey, std::vector<std::uint32_t>, PlaceHash>
       at;  // the first vertices of each point
   std::vector<std::uint32_t> first(mesh.vertices.size());
@@ -59,7 +114,7 @@ std::vector<std::uint32_t> WeldVertices(const Mesh& mesh) {
     const Vertex& vertex = mesh.vertices[i];
     std::vector<std::uint32_t>& here = at[KeyOf(vertex.position)];
     const auto same = std::find_if(here.begin(), here.end(), [&](std::uint32_t other) {
-      return MoveAlike(vertex, mesh.vertices[other]);
+      return MoveAlike(vertex, mesh.vertices[other]) && morphs.MoveAlike(i, other);
     });
     first[i] = same == here.end() ? i : *same;
     if (same == here.end()) here.push_back(i);
