@@ -106,6 +106,7 @@ std::vector<Material> MakeGltfMaterials(const std::vector<gltf::Material>& from)
     Material& to = materials.emplace_back();
     to.name = material.name;
     to.kind = KindOf(material);
+    to.wrinkles = material.wrinkles;
     to.base_colour = material.base_colour;
     to.base_colour_texture = material.base_colour_image;
     to.normal_texture = material.normal_image;

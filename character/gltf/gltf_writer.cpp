@@ -267,6 +267,7 @@ class CharacterWriter {
       if (m.double_sided) material["doubleSided"] = true;
       if (m.thickness > 0.0f) AddThickness(m, &material);
       material["extras"] = {{gltf::kKindExtra, MaterialKindName(m.kind)}};
+      if (!m.wrinkles) material["extras"][gltf::kWrinklesExtra] = false;
       root_["materials"].push_back(std::move(material));
     }
   }

@@ -18,6 +18,9 @@ struct Material {
   enum class Kind { kSkin, kCloth, kEye, kHair, kOther };
   std::string name;
   Kind kind = Kind::kOther;
+  // False: the rig's wrinkle maps are not drawn on this material, because its UVs overlap those of
+  // the material that they were baked for.
+  bool wrinkles = true;
   glm::vec4 base_colour{1.0f};  // linear RGBA in [0, 1]; multiplies the texture
   // Textures are indices into Character::pictures; -1: none.
   int base_colour_texture = -1;  // sRGB

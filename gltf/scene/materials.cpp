@@ -27,6 +27,9 @@ class MaterialReader {
     if (from_.extras.IsObject() && from_.extras.Get(kKindExtra).IsString()) {
       to.kind = from_.extras.Get(kKindExtra).Get<std::string>();
     }
+    if (from_.extras.IsObject() && from_.extras.Get(kWrinklesExtra).IsBool()) {
+      to.wrinkles = from_.extras.Get(kWrinklesExtra).Get<bool>();
+    }
     for (std::size_t i = 0; i < std::min<std::size_t>(pbr.baseColorFactor.size(), 4); ++i) {
       const auto factor = static_cast<float>(pbr.baseColorFactor[i]);
       if (!std::isfinite(factor)) {

@@ -19,6 +19,8 @@ namespace furrow::gltf {
 
 // The extra in which Furrow keeps the kind of a material ("skin", "cloth", ...).
 inline constexpr char kKindExtra[] = "furrow_kind";
+// The extra, false, that keeps wrinkle maps off a material.
+inline constexpr char kWrinklesExtra[] = "furrow_wrinkles";
 
 // KHR_texture_transform: how UVs of the mesh become UVs of the image.
 struct UvTransform {
@@ -34,6 +36,7 @@ struct UvTransform {
 struct Material {
   std::string name;
   std::string kind;             // kKindExtra; may be empty
+  bool wrinkles = true;         // kWrinklesExtra
   glm::vec4 base_colour{1.0f};  // linear, clamped to [0, 1]
   int base_colour_image = kNone;
   int normal_image = kNone;

@@ -229,7 +229,7 @@ Status GpuCharacter::AddMaterials(const Character& character) {
     material.thickness = ColourTexture(character, source.thickness_texture, false);
     material.derivatives = DerivativeTexture(character, source.normal_texture);
     material.kind = source.kind;
-    material.group = GroupOf(character, source.kind);
+    material.group = GroupOf(character, source);
     // In units of the texture: the shader multiplies the texture by the material's base colour.
     material.cavity_albedo = block.cavity_albedo / std::max(source.base_colour.g, 1e-3f);
     material.alpha_test = source.alpha_cutoff > 0.0f;

@@ -82,8 +82,8 @@ void AddMaskRegions(const character::Character& character, const character::Pict
   for (int channel = 0; channel < 4; ++channel) {
     Coverage coverage(mask, channel);
     for (int material = 0; material < static_cast<int>(character.materials.size()); ++material) {
-      const auto kind = character.materials[static_cast<std::size_t>(material)].kind;
-      if (GroupOf(character, kind) == WrinkleGroup::kNone) continue;
+      const auto& surface = character.materials[static_cast<std::size_t>(material)];
+      if (GroupOf(character, surface) == WrinkleGroup::kNone) continue;
       character::Mesh part;
       for (const character::Mesh& mesh : character.meshes) {
         if (mesh.material == material) AddPart(mesh, &coverage, &part);

@@ -123,8 +123,9 @@ std::vector<glm::vec4> SubjectWeights(const WrinkleTable& table, int num_maps,
   return weights;
 }
 
-WrinkleGroup GroupOf(const character::Character& character, Material::Kind kind) {
-  switch (kind) {
+WrinkleGroup GroupOf(const character::Character& character, const Material& material) {
+  if (!material.wrinkles) return WrinkleGroup::kNone;
+  switch (material.kind) {
     case Material::Kind::kSkin: return WrinkleGroup::kSkin;
     case Material::Kind::kCloth: return WrinkleGroup::kCloth;
     case Material::Kind::kEye:

@@ -19,7 +19,7 @@ namespace furrow::render {
 // The surfaces that a wrinkle map is drawn on, as its rig says (WrinkleMap::surface). Maps for
 // cloth are drawn on skin if the character has no cloth. Eyes and hair have no wrinkles. Other
 // materials count as skin if the character marks no material as skin; otherwise they have no
-// wrinkles.
+// wrinkles. Materials without Material::wrinkles have none either.
 enum class WrinkleGroup { kSkin, kCloth, kNone };
 inline constexpr int kNumWrinkleGroups = 2;  // kNone has no table
 
@@ -100,9 +100,9 @@ struct PartMasks {
 [[nodiscard]] std::vector<glm::vec4> SubjectWeights(const WrinkleTable& table, int num_maps,
                                                     const WrinkleLayout& layout);
 
-// The group of a material of `kind` on this character.
+// The group of a material of this character.
 [[nodiscard]] WrinkleGroup GroupOf(const character::Character& character,
-                                   character::Material::Kind kind);
+                                   const character::Material& material);
 
 // Converts the wrinkle weights and driver values of a request's subjects to the tables that the
 // shaders read.

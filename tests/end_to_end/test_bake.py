@@ -125,11 +125,6 @@ class BadInputTest(BakeCase):
         del mesh["TEXCOORD_0"]
         self.refuse(BAD_INPUT, self.package(mesh), says=["sheet.glb: mesh 'sheet'", "no UVs", "unwrap"])
 
-    def test_overlapping_uvs(self):
-        mirrored = sheet(uv=lambda s, t: (min(s, 1 - s), t))
-        self.refuse(BAD_INPUT, self.package(mirrored),
-                    says=["sheet.glb: mesh 'sheet'", "UVs overlap on", "triangles"])
-
     def test_vertices_without_skin(self):
         loose = sheet(weights=lambda t: (0.0, 0.0) if t > 0.9 else (1 - t, t))
         self.refuse(BAD_INPUT, self.package(loose), says=["sheet.glb", "skin weights", "sum to 0"])
@@ -201,6 +196,12 @@ class BadInputTest(BakeCase):
 
 
 class SheetTest(BakeCase):
+    def test_mirrored_halves_are_baked_with_a_warning(self):
+        mirrored = sheet(uv=lambda s, t: (min(s, 1 - s), t))
+        message = self.bake(self.package(mirrored)).stderr.decode()
+        self.assertIn("mesh 'sheet': UVs overlap on", message)
+        self.assertIn("squash on skin", message)
+
     def test_writes_maps_a_rig_and_a_report(self):
         message = self.bake(self.package()).stderr.decode()
         self.assertIn("squash on skin", message)

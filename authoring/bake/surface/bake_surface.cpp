@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <glm/geometric.hpp>
+
+#include "authoring/bake/surface/uv_check.h"
 
 namespace furrow::authoring {
 namespace {
@@ -25,6 +28,10 @@ character::Material::Kind KindOf(const character::Character& character,
 
 // Unmarked materials count as skin if no material is marked as skin, as in the renderer.
 bool Belongs(const character::Character& character, const character::Mesh& mesh, bool cloth) {
+  if (mesh.material >= 0 &&
+      !character.materials[static_cast<std::size_t>(mesh.material)].wrinkles) {
+    return false;
+  }
   switch (KindOf(character, mesh)) {
     case character::Material::Kind::kSkin: return !cloth;
     case character::Material::Kind::kCloth: return cloth;
@@ -38,6 +45,29 @@ bool Belongs(const character::Character& character, const character::Mesh& mesh,
 float UvArea(const character::Vertex& a, const character::Vertex& b, const character::Vertex& c) {
   const glm::vec2 p = b.uv - a.uv, q = c.uv - a.uv;
   return 0.5f * std::abs(p.x * q.y - p.y * q.x);
+}
+
+// Where UVs overlap, the half at the larger x (the left half of a character that faces +Z) owns the
+// texels. Mirrored halves then show the folds of one half, and not patches of both.
+std::vector<SurfaceTexel> Rasterize(const character::Mesh& mesh, int size, std::int64_t* overlaps) {
+  std::vector<SurfaceTexel> texels = RasterizeSurface(mesh, size, size, overlaps);
+  const auto tolerable = kTolerableUvOverlap * static_cast<float>(texels.size());
+  if (static_cast<float>(*overlaps) <= tolerable) return texels;
+  std::vector<std::uint32_t> order(mesh.indices.size() / 3);
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_partition(order.begin(), order.end(), [&](std::uint32_t t) {
+    float x = 0.0f;
+    for (std::size_t k = 0; k < 3; ++k) x += mesh.vertices[mesh.indices[3 * t + k]].position.x;
+    return x >= 0.0f;
+  });
+  character::Mesh ordered;
+  ordered.vertices = mesh.vertices;
+  for (const std::uint32_t t : order) {
+    for (std::size_t k = 0; k < 3; ++k) ordered.indices.push_back(mesh.indices[3 * t + k]);
+  }
+  texels = RasterizeSurface(ordered, size, size);
+  for (SurfaceTexel& texel : texels) texel.triangle = order[texel.triangle];
+  return texels;
 }
 
 }  // namespace
@@ -101,7 +131,7 @@ BakeSurface::BakeSurface(std::span<const character::Mesh* const> meshes, float s
                          BakeProgress* progress)
     : surface_(meshes),
       solver_(surface_, smoothing, progress),
-      texels_(RasterizeSurface(surface_.mesh(), size, size, &overlaps_)),
+      texels_(Rasterize(surface_.mesh(), size, &overlaps_)),
       texel_metres_(TexelSides(size)) {}
 
 // The root of the ratio of areas around a vertex, on the surface and in the atlas. 0 without UVs.

@@ -26,20 +26,21 @@ Status Refuse(std::string what, std::string where, std::string todo) {
   return {StatusCode::kInvalidArgument, std::move(what), std::move(where), std::move(todo)};
 }
 
-// A texel that two triangles share can hold the folds of one of them only.
-Status CheckOverlap(const character::Character& character, const UvReport& uvs) {
-  if (!(uvs.overlapping > kTolerableUvOverlap) || !uvs.example) return {};
+// A texel that two triangles share can hold the folds of one of them only. That is right for
+// mirrored halves, whose folds are mirrored too, so an overlap prevents no bake.
+void WarnOfOverlap(const character::Character& character, const UvReport& uvs,
+                   std::vector<std::string>* warnings) {
+  if (!(uvs.overlapping > kTolerableUvOverlap) || !uvs.example) return;
   const UvReport::Overlap& at = *uvs.example;
   char place[64];
   std::snprintf(place, sizeof(place), "%.3f, %.3f", static_cast<double>(at.uv.x),
                 static_cast<double>(at.uv.y));
   const bool one = at.meshes[0] == at.meshes[1];
-  return Refuse("UVs overlap on " + Percent(uvs.overlapping) + " of the atlas: triangles " +
-                    std::to_string(at.triangles[0]) + " and " + std::to_string(at.triangles[1]) +
-                    (one ? "" : " of " + MeshName(character, at.meshes[1])) + " share (" + place +
-                    ")",
-                MeshName(character, at.meshes[0]),
-                "unwrap the mesh without overlaps; mirrored halves need texels of their own");
+  warnings->push_back(MeshName(character, at.meshes[0]) + ": UVs overlap on " +
+                      Percent(uvs.overlapping) + " of the atlas: triangles " +
+                      std::to_string(at.triangles[0]) + " and " + std::to_string(at.triangles[1]) +
+                      (one ? "" : " of " + MeshName(character, at.meshes[1])) + " share (" + place +
+                      "); both show the folds of the half at the larger x");
 }
 
 Status CheckSkin(const character::Character& character, int index) {
@@ -81,6 +82,7 @@ void Warn(const character::Character& character, const UvReport& uvs, std::span<
   count(uvs.outside_triangles, "has UVs outside [0, 1], which wrap around",
         "have UVs outside [0, 1], which wrap around");
   for (const int mesh : meshes) {
+    if (!character.meshes[static_cast<std::size_t>(mesh)].morph_targets.empty()) continue;
     const int joint = OnlyJoint(character.meshes[static_cast<std::size_t>(mesh)]);
     if (joint < 0) continue;
     warnings->push_back(MeshName(character, mesh) + " follows joint '" +
@@ -124,7 +126,7 @@ Status CheckSurfaces(const character::Character& character, std::span<const std:
       return Refuse("the " + kind + " has no UVs", MeshName(character, meshes.front()),
                     "unwrap it; wrinkle maps use its UV atlas");
     }
-    FURROW_RETURN_IF_ERROR(CheckOverlap(character, uvs));
+    WarnOfOverlap(character, uvs, warnings);
     Warn(character, uvs, meshes, kind, warnings);
   }
   return {};

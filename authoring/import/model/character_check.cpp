@@ -209,7 +209,9 @@ class Checker {
                                             : std::string();
       Find(Severity::kWarning, "uv-overlap", where,
            Number(100.0f * uvs.overlapping) + " % of the UV area is used twice" + place,
-           "give mirrored or stacked parts UVs of their own; a bake rejects overlaps");
+           "mirrored halves fold alike; give stacked parts, and halves that fold differently, UVs "
+           "of "
+           "their own");
     }
     if (uvs.outside_triangles > 0) {
       Find(Severity::kNote, "uv-outside", where,

@@ -46,8 +46,8 @@ struct CharacterReport {
 //
 // Codes
 //   errors    no-skin, uv-missing, unskinned-vertices, rig-binding
-//   warnings  uv-overlap (a bake refuses it), uv-flat, weights-sum, normals-missing,
-//             picture-missing, units, up-axis, joint-names, no-roles, rig, rig-picture
+//   warnings  uv-overlap (parts that share texels fold alike), uv-flat, weights-sum,
+//             normals-missing, picture-missing, units, up-axis, joint-names, no-roles, rig, rig-picture
 //   notes     degenerate-triangles, uv-outside, weights-truncated, tangents-missing, idle-shapes,
 //   roles-missing,
 //             no-face-joints, no-rig
