@@ -6,6 +6,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "authoring/shapes/shape_combinations.h"
+#include "base/ascii.h"
 #include "base/status.h"
 #include "wrinkle/fields/rig_field.h"
 #include "wrinkle/rig/full_pose.h"
@@ -24,6 +26,9 @@ using wrinkle::Transform;
 // kLeastMove (fraction of the skeleton's size).
 constexpr float kLeastTurn = 1e-3f;
 constexpr float kLeastMove = 1e-5f;
+
+// Weaker sources take the folds of the stronger ones. Folds of their own would run across those.
+constexpr float kLeastShapeGain = 0.7f;
 
 bool Wants(std::span<const std::string> maps, const std::string& map) {
   return maps.empty() || std::find(maps.begin(), maps.end(), map) != maps.end();
@@ -50,13 +55,18 @@ bool IsRest(std::span<const Transform> locals, const wrinkle::Skeleton& skeleton
 // Turns the driver values that feed a map into full poses of the character's own skeleton.
 class PoseCollector {
  public:
-  explicit PoseCollector(const character::Character& character) : character_(character) {}
+  PoseCollector(const character::Character& character, const ShapeFinder& find)
+      : character_(character), find_(find) {}
 
   Status Add(const wrinkle::Region& region, const wrinkle::Feed& feed,
              const wrinkle::Feed::Source& source) {
     const std::string value = source.driver + "." + source.value;
     const Driver* driver = FindDriver(character_.rig, source.driver);
     if (driver == nullptr) return {StatusCode::kNotFound, "there is no driver '" + value + "'"};
+    if (driver->kind == Driver::Kind::kBlendShape && !character_.shapes.empty()) {
+      AddShape(region, feed, source, driver->blend_shape);
+      return {};
+    }
     const auto pose = wrinkle::FullPose(character_.rig, *driver, source.value, character_.skeleton);
     if (pose.status().code() == StatusCode::kUnsupported) {
       Note(value + " has no joint pose; only strokes can give " + region.name + "." + feed.map +
@@ -71,13 +81,85 @@ class PoseCollector {
     found_.poses.push_back({.map = feed.map,
                             .region = region.name,
                             .skin_matrices = SkinMatrices(locals),
+                            .shape_weights = {},
                             .weight = std::min(source.gain, 1.0f)});
     return {};
+  }
+
+  // Adds the combinations of shapes that the sources of a feed lead.
+  void AddCombinations(const wrinkle::Region& region, const wrinkle::Feed& feed) {
+    if (character_.shapes.empty()) return;
+    for (const ShapeCombination& combination : ShapeCombinations()) {
+      float gain = 0.0f;
+      for (const std::string& lead : ShapesOf(combination.lead)) {
+        gain = std::max(gain, GainOf(feed, lead));
+      }
+      if (gain < kLeastShapeGain) continue;
+      std::vector<float> weights(character_.shapes.size(), 0.0f);
+      bool complete = true;
+      for (const ShapeCombination::Part& part : combination.parts) {
+        for (const std::string& name : ShapesOf(part.shape)) {
+          const int shape = find_(name);
+          complete = complete && Moves(shape);
+          if (complete) weights[static_cast<std::size_t>(shape)] = part.weight;
+        }
+      }
+      if (complete) AddShapes(region, feed, std::move(weights), gain);
+    }
   }
 
   CollectedPoses Take() { return std::move(found_); }
 
  private:
+  // A shape without a target moves nothing.
+  [[nodiscard]] bool Moves(int shape) const {
+    return shape >= 0 &&
+           std::any_of(character_.meshes.begin(), character_.meshes.end(),
+                       [&](const character::Mesh& mesh) {
+                         return std::any_of(mesh.morph_targets.begin(), mesh.morph_targets.end(),
+                                            [&](const auto& t) { return t.shape == shape; });
+                       });
+  }
+
+  // The largest gain with which a blend shape feeds a map; 0 if it does not.
+  [[nodiscard]] float GainOf(const wrinkle::Feed& feed, const std::string& shape) const {
+    float gain = 0.0f;
+    for (const wrinkle::Feed::Source& source : feed.sources) {
+      const Driver* driver = FindDriver(character_.rig, source.driver);
+      if (driver == nullptr || driver->kind != Driver::Kind::kBlendShape) continue;
+      if (!EqualsIgnoreCase(driver->blend_shape.blend_shape, shape)) continue;
+      gain = std::max(gain, source.gain);
+    }
+    return gain;
+  }
+
+  void AddShape(const wrinkle::Region& region, const wrinkle::Feed& feed,
+                const wrinkle::Feed::Source& source, const wrinkle::BlendShapeDriver& driver) {
+    const int shape = find_(driver.blend_shape);
+    if (!Moves(shape)) {
+      Note("the character has no shape '" + driver.blend_shape +
+           "' that moves it; only strokes can give it folds");
+      return;
+    }
+    if (source.gain < kLeastShapeGain) return;
+    std::vector<float> weights(character_.shapes.size(), 0.0f);
+    // Where the driver reaches 1. Coefficients beyond 1 are not a face.
+    const bool usual = driver.full > 0.0f && driver.full <= 1.0f;
+    weights[static_cast<std::size_t>(shape)] = usual ? driver.full : 1.0f;
+    AddShapes(region, feed, std::move(weights), source.gain);
+  }
+
+  void AddShapes(const wrinkle::Region& region, const wrinkle::Feed& feed,
+                 std::vector<float> weights, float gain) {
+    const auto rest = character_.skeleton.rest_pose();
+    found_.poses.push_back(
+        {.map = feed.map,
+         .region = region.name,
+         .skin_matrices = SkinMatrices(std::vector<Transform>(rest.begin(), rest.end())),
+         .shape_weights = std::move(weights),
+         .weight = std::min(gain, 1.0f)});
+  }
+
   // A pose driver at rest is a mistake of the rig. Other drivers have values without a pose, for
   // which folds must be drawn.
   Status AtRest(const Driver& driver, const std::string& value, const std::string& pose) {
@@ -113,6 +195,7 @@ class PoseCollector {
   }
 
   const character::Character& character_;
+  const ShapeFinder& find_;
   CollectedPoses found_;
 };
 
@@ -136,13 +219,19 @@ Status CheckMaps(const Rig& rig, std::span<const std::string> maps) {
 
 Result<CollectedPoses> CollectBakePoses(const character::Character& character,
                                         std::span<const std::string> maps) {
+  return CollectBakePoses(character, maps, FindShapesByName(character));
+}
+
+Result<CollectedPoses> CollectBakePoses(const character::Character& character,
+                                        std::span<const std::string> maps,
+                                        const ShapeFinder& find) {
   const Rig& rig = character.rig;
   if (rig.wrinkle_maps.empty() || rig.regions.empty()) {
     return Status(StatusCode::kNotFound, "the character has no wrinkle rig with regions and maps",
                   {}, "add one with --rig");
   }
   FURROW_RETURN_IF_ERROR(CheckMaps(rig, maps));
-  PoseCollector collector(character);
+  PoseCollector collector(character, find);
   for (std::size_t r = 0; r < rig.regions.size(); ++r) {
     const wrinkle::Region& region = rig.regions[r];
     for (std::size_t f = 0; f < region.feeds.size(); ++f) {
@@ -155,6 +244,7 @@ Result<CollectedPoses> CollectBakePoses(const character::Character& character,
           return status.At(FieldAt(FieldAt("regions", r) + ".feeds", f) + FieldAt(".sources", s));
         }
       }
+      collector.AddCombinations(region, feed);
     }
   }
   return collector.Take();

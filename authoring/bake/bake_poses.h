@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "authoring/bake/request/bake_request.h"
+#include "authoring/shapes/shape_finder.h"
 #include "character/character.h"
 
 namespace furrow::authoring {
@@ -13,8 +14,8 @@ namespace furrow::authoring {
 // The poses of a rig that a bake can use.
 struct CollectedPoses {
   std::vector<BakePose> poses;
-  // Drivers that feed a map but have no pose to bake, one sentence each: blend shapes, strain
-  // drivers, and limbs that are fully straight at rest.
+  // Drivers that feed a map but have no pose to bake, one sentence each: blend shapes that the
+  // character lacks, strain drivers, and limbs that are fully straight at rest.
   std::vector<std::string> notes;
 };
 
@@ -23,10 +24,17 @@ struct CollectedPoses {
 // matrix. The gain of a source in the rig, limited to 1, becomes the weight of the pose. `maps`:
 // names of the maps to collect poses for; empty: all.
 //
+// A driver of a blend shape poses the character's shape that `find` returns for its name. Such a
+// feed also gets the combinations (ShapeCombinations()) that its shapes lead. Shapes with a gain
+// below 0.7 give no pose: they show the folds of the others.
+//
 // Errors: kNotFound (no rig; a map that the rig lacks; a joint that the skeleton lacks),
 // kInvalidArgument (a reference pose equal to the rest pose, which cannot fold anything; a driver
 // that does not fit the skeleton). `where` is a field of the rig: "regions[3].feeds[0].sources[1]".
 [[nodiscard]] Result<CollectedPoses> CollectBakePoses(const character::Character& character,
                                                       std::span<const std::string> maps = {});
+[[nodiscard]] Result<CollectedPoses> CollectBakePoses(const character::Character& character,
+                                                      std::span<const std::string> maps,
+                                                      const ShapeFinder& find);
 
 }  // namespace furrow::authoring

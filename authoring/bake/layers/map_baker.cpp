@@ -70,7 +70,7 @@ std::vector<float> MapBaker::MaskOf(const std::string& region) const {
 
 void MapBaker::AddPose(const BakePose& pose) {
   const CompressionSolver::Field field =
-      surface_.solver().Solve(pose.skin_matrices, material_.max_compression);
+      surface_.solver().Solve(pose.skin_matrices, pose.shape_weights, material_.max_compression);
   worst_ = std::max(worst_, field.worst);
   // A pose may move the whole body but feeds only its own region.
   std::vector<float> weights = MaskOf(pose.region);

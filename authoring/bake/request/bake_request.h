@@ -23,6 +23,8 @@ struct BakePose {
   // One per joint of Character::skeleton: posed position = skin_matrix * rest position (model
   // space).
   std::vector<glm::mat4> skin_matrices;
+  // One per shape of the character, applied before skinning; shapes beyond the end rest.
+  std::vector<float> shape_weights = {};
   float weight = 1.0f;  // scales the compression of this pose, (0, 1]
 };
 

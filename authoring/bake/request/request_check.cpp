@@ -56,6 +56,15 @@ Status CheckPose(const character::Character& character, const BakePose& pose,
   if (!In(pose.weight, 1e-6f, 1.0f)) {
     return Refuse("the weight is " + Text(pose.weight) + "; it must be in (0, 1]", where);
   }
+  if (pose.shape_weights.size() > character.shapes.size()) {
+    return Refuse("more shape weights (" + std::to_string(pose.shape_weights.size()) +
+                      ") than shapes (" + std::to_string(character.shapes.size()) + ")",
+                  where);
+  }
+  if (!std::all_of(pose.shape_weights.begin(), pose.shape_weights.end(),
+                   [](float weight) { return std::isfinite(weight); })) {
+    return Status(StatusCode::kNonFinite, "a shape weight is not finite", where);
+  }
   for (const glm::mat4& matrix : pose.skin_matrices) {
     for (int k = 0; k < 16; ++k) {
       if (!std::isfinite(matrix[k / 4][k % 4])) {

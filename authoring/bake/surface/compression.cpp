@@ -161,13 +161,13 @@ void CompressionSolver::Gather(std::size_t vertex, float radius, SurfaceSearch* 
 }
 
 std::vector<CompressionSolver::Posed> CompressionSolver::Pose(
-    std::span<const glm::mat4> skin_matrices) const {
+    std::span<const glm::mat4> skin_matrices, std::span<const vec3> positions) const {
   const std::optional<std::vector<RigidMotion>> motions = RigidMotions(skin_matrices);
   std::vector<Posed> posed;
   posed.reserve(surface_.positions().size());
   for (std::size_t v = 0; v < surface_.positions().size(); ++v) {
     const character::Vertex& vertex = surface_.SourceOf(v);
-    const vec3 rest = surface_.positions()[v];
+    const vec3 rest = positions[v];
     if (motions) {
       const RigidMotion motion = Blend(*motions, vertex);
       posed.push_back({motion.Apply(rest), glm::mat3_cast(motion.rotation)});
@@ -206,14 +206,27 @@ Tensor2 CompressionSolver::StretchOf(std::size_t triangle, std::span<const Posed
                  std::clamp(small, 1.0f - limit, 1.0f + limit), stretch.largest_direction);
 }
 
+bool CompressionSolver::IsSliver(std::size_t triangle) const {
+  constexpr float kLongest = 12.0f;  // edge per height
+  const auto [a, b, c] = surface_.Corners(static_cast<std::uint32_t>(triangle));
+  const float edge = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
+  // The height on the longest edge is twice the area divided by the edge.
+  return edge * edge > kLongest * 2.0f * surface_.triangles()[triangle].area;
+}
+
 CompressionSolver::Field CompressionSolver::Solve(std::span<const glm::mat4> skin_matrices,
+                                                  std::span<const float> shape_weights,
                                                   float limit) const {
-  const std::vector<Posed> posed = Pose(skin_matrices);
+  const bool shaped = !shape_weights.empty();
+  const std::vector<vec3> morphed = shaped ? surface_.Morphed(shape_weights) : std::vector<vec3>();
+  const std::vector<Posed> posed =
+      Pose(skin_matrices, shaped ? std::span<const vec3>(morphed) : surface_.positions());
   Field field;
   std::vector<Tensor2> stretches;
   stretches.reserve(surface_.triangles().size());
   for (std::size_t t = 0; t < surface_.triangles().size(); ++t) {
-    stretches.push_back(StretchOf(t, posed, limit, &field.worst));
+    stretches.push_back(shaped && IsSliver(t) ? Tensor2{1.0f, 0.0f, 1.0f}
+                                              : StretchOf(t, posed, limit, &field.worst));
   }
   field.tensors.resize(surface_.positions().size());
   field.growth.resize(surface_.positions().size(), 1.0f);

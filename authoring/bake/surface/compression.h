@@ -49,9 +49,12 @@ class CompressionSolver {
     std::vector<float> growth;  // one per welded vertex: area relative to rest, [0, (1 + limit)^2]
     float worst = 0.0f;         // largest compression of any triangle, before averaging
   };
-  // Solves one pose. `skin_matrices`: one per joint of the skeleton. `limit`: a larger compression
-  // counts as this, (0, 1).
-  [[nodiscard]] Field Solve(std::span<const glm::mat4> skin_matrices, float limit) const;
+  // Solves one pose. `skin_matrices`: one per joint of the skeleton. `shape_weights`: one per shape
+  // of the character, or none. `limit`: a larger compression counts as this, (0, 1).
+  // Under shapes, slivers (longer than 12 times their height) count as unstrained, because the
+  // strain of their short side is noise.
+  [[nodiscard]] Field Solve(std::span<const glm::mat4> skin_matrices,
+                            std::span<const float> shape_weights, float limit) const;
 
   // The total number of triangles in the averages of all vertices.
   [[nodiscard]] std::size_t num_terms() const { return terms_.size(); }
@@ -68,7 +71,9 @@ class CompressionSolver {
     glm::vec3 position{0.0f};
     glm::mat3 turn{1.0f};
   };
-  [[nodiscard]] std::vector<Posed> Pose(std::span<const glm::mat4> skin_matrices) const;
+  [[nodiscard]] std::vector<Posed> Pose(std::span<const glm::mat4> skin_matrices,
+                                        std::span<const glm::vec3> positions) const;
+  [[nodiscard]] bool IsSliver(std::size_t triangle) const;
   [[nodiscard]] Tensor2 StretchOf(std::size_t triangle, std::span<const Posed> posed, float limit,
                                   float* worst) const;
   static void LimitTerms(std::vector<Term>* terms);

@@ -8,6 +8,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "authoring/shapes/morph.h"
 #include "character/mesh/weld.h"
 
 namespace furrow::authoring {
@@ -76,6 +77,31 @@ void Surface::Append(const character::Mesh& mesh) {
     }
     triangles_.push_back(triangle);
   }
+  AppendTargets(mesh, base);
+}
+
+// Targets of one shape become one target. Meshes come one after the other, so vertices ascend.
+void Surface::AppendTargets(const character::Mesh& mesh, std::uint32_t base) {
+  std::vector<character::MorphTarget>& all = mesh_.morph_targets;
+  for (const character::MorphTarget& target : mesh.morph_targets) {
+    auto place = std::find_if(all.begin(), all.end(),
+                              [&](const auto& known) { return known.shape >= target.shape; });
+    if (place == all.end() || place->shape != target.shape) {
+      place = all.insert(place, {.shape = target.shape, .deltas = {}});
+    }
+    for (character::MorphDelta delta : target.deltas) {
+      delta.vertex += base;
+      place->deltas.push_back(delta);
+    }
+  }
+}
+
+std::vector<vec3> Surface::Morphed(std::span<const float> shape_weights) const {
+  const std::vector<vec3> moved = MorphedPositions(mesh_, shape_weights);
+  std::vector<vec3> positions;
+  positions.reserve(source_.size());
+  for (const std::uint32_t vertex : source_) positions.push_back(moved[vertex]);
+  return positions;
 }
 
 // Pairs triangles by their welded edges. A third triangle on an edge stays unpaired, so

@@ -72,11 +72,14 @@ class Surface {
   // skeleton.
   explicit Surface(std::span<const character::Mesh* const> meshes);
 
-  // All meshes concatenated. The corners of triangle t are at indices 3 t, 3 t + 1 and 3 t + 2.
+  // All meshes concatenated, with their morph targets. The corners of triangle t are at indices 3
+  // t, 3 t + 1 and 3 t + 2.
   [[nodiscard]] const character::Mesh& mesh() const { return mesh_; }
   [[nodiscard]] std::span<const Triangle> triangles() const { return triangles_; }
   [[nodiscard]] std::span<const glm::vec3> positions() const { return positions_; }   // welded
   [[nodiscard]] std::span<const wrinkle::SurfaceAxes> axes() const { return axes_; }  // welded
+  // The positions of the welded vertices with morph targets applied; see MorphedPositions().
+  [[nodiscard]] std::vector<glm::vec3> Morphed(std::span<const float> shape_weights) const;
   // One of the vertices of mesh() that a welded vertex replaces.
   [[nodiscard]] const character::Vertex& SourceOf(std::size_t welded) const {
     return mesh_.vertices[source_[welded]];
@@ -107,6 +110,7 @@ class Surface {
 
  private:
   void Append(const character::Mesh& mesh);
+  void AppendTargets(const character::Mesh& mesh, std::uint32_t base);
   void Connect();
   void MakeAxes();
   void MakeTree();

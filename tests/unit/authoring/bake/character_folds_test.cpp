@@ -83,7 +83,7 @@ Result<Folded> Fold(character::Character character) {
   FURROW_RETURN_IF_ERROR(surface);
   folded.surface = std::move(*surface);
   folded.strain =
-      folded.surface->solver().Solve(pose->skin_matrices, Exact().skin.max_compression).tensors;
+      folded.surface->solver().Solve(pose->skin_matrices, {}, Exact().skin.max_compression).tensors;
   folded.map = toys::BakeFolds(*folded.character, {*pose}, Exact());
   return folded;
 }

@@ -320,7 +320,7 @@ TEST(CompressionSolver, LimitsItsMemoryOnFineMeshes) {
   const CompressionSolver solver(surface, 0.02f, &progress);  // about 900 triangles around a vertex
   EXPECT_LE(solver.num_terms(), 64 * surface.positions().size());
   const glm::mat4 squeeze[] = {toys::Squeeze(0.2f, 0.0f), toys::Squeeze(0.2f, 0.0f)};
-  for (const Tensor2& tensor : solver.Solve(squeeze, 0.5f).tensors) {
+  for (const Tensor2& tensor : solver.Solve(squeeze, {}, 0.5f).tensors) {
     EXPECT_NEAR(tensor.xx + tensor.yy, 0.2f, 1e-3f);
   }
 }
