@@ -2,9 +2,13 @@
 #include "authoring/import/model/face_frame.h"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
+#include <string>
 
 #include <glm/geometric.hpp>
+
+#include "base/ascii.h"
 
 namespace furrow::authoring {
 namespace {
@@ -73,12 +77,28 @@ int FaceMatch::Of(int model_joint) const {
              : joint[static_cast<std::size_t>(model_joint)];
 }
 
+bool IsAdornment(std::string_view name) {
+  constexpr const char* kWords[] = {"hair", "bang",  "ponytail", "braid", "strand", "ribbon",
+                                    "hat",  "glass", "earring",  "skirt", "hood",   "accessor",
+                                    "horn", "cloth", "helmet",   "veil"};
+  const std::string lower = AsciiLower(std::string(name));
+  return std::any_of(std::begin(kWords), std::end(kWords),
+                     [&](const char* word) { return lower.find(word) != std::string::npos; });
+}
+
 std::vector<int> FaceJoints(const Skeleton& skeleton, const FoundJoints& joints) {
   std::vector<int> face;
   const int head = joints.Last(JointRole::kHead);
+  std::vector<bool> worn(static_cast<std::size_t>(skeleton.num_joints()), false);
   for (int j = 0; head != kNoJoint && j < skeleton.num_joints(); ++j) {
-    const bool has_role = joints.roles[static_cast<std::size_t>(j)] != JointRole::kNone;
-    if (j != head && !has_role && skeleton.IsAncestor(head, j)) face.push_back(j);
+    const auto index = static_cast<std::size_t>(j);
+    if (j == head || !skeleton.IsAncestor(head, j)) continue;
+    // Parents come first, so a whole chain of hair follows its first joint.
+    const int parent = skeleton.joint_parents()[index];
+    worn[index] =
+        worn[static_cast<std::size_t>(parent)] || IsAdornment(skeleton.joint_names()[index]);
+    const bool has_role = joints.roles[index] != JointRole::kNone;
+    if (!has_role && !worn[index]) face.push_back(j);
   }
   return face;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -35,7 +36,9 @@ struct FaceMatch {
                                    const wrinkle::Skeleton& target,
                                    const FoundJoints& target_joints);
 
-// Indices of the joints below the head, without eyes and jaw.
+// Indices of the joints below the head, without eyes, jaw and what a head wears: hair, hats,
+// glasses, by their names (IsAdornment()) and those of the joints above them.
+[[nodiscard]] bool IsAdornment(std::string_view joint_name);
 [[nodiscard]] std::vector<int> FaceJoints(const wrinkle::Skeleton& skeleton,
                                           const FoundJoints& joints);
 
