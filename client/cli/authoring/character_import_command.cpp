@@ -9,12 +9,15 @@
 #include "authoring/import/character_package.h"
 #include "authoring/import/makehuman/makehuman.h"
 #include "authoring/import/model/import_model.h"
+#include "authoring/import/model/shape_face.h"
+#include "authoring/shapes/face_skin.h"
 #include "base/status.h"
 #include "base/text.h"
 #include "character/package/package.h"
 #include "client/cli/authoring/character_command.h"
 #include "client/cli/common/exit_code.h"
 #include "client/cli/common/inputs.h"
+#include "client/cli/common/interrupt.h"
 #include "client/cli/common/progress.h"
 #include "motion/pose_source.h"
 
@@ -57,6 +60,33 @@ int ImportFolder(const ImportArguments& arguments) {
   return kDone;
 }
 
+// Gives a face of blend shapes its masks, its part of the rig and its wrinkle maps.
+Status AddFaceOfShapes(const ImportArguments& arguments, character::Character* character) {
+  const auto arkit = LoadRigArgument("arkit");
+  FURROW_RETURN_IF_ERROR(arkit);
+  const authoring::ShapeFinder find = authoring::FindShapesByName(*character);
+  const int size = arguments.makehuman.texture_size;
+  const auto proposed = authoring::ProposeShapeFace(*arkit, find, size, character);
+  if (proposed.status().code() == StatusCode::kNotFound) {
+    PrintWarnings({"the face gets no wrinkles: " + proposed.status().ToString()});
+    return {};
+  }
+  FURROW_RETURN_IF_ERROR(proposed);
+  PrintNotes(*proposed);
+  constexpr int kSteps = 1000;
+  Progress bar("baking", kSteps);
+  const auto baked = authoring::BakeShapeFace(
+      find, size,
+      [&](float done) {
+        bar.Set(static_cast<std::int64_t>(done * kSteps));
+        return !Interrupted();
+      },
+      character);
+  FURROW_RETURN_IF_ERROR(baked);
+  PrintNotes(*baked);
+  return {};
+}
+
 // Attaches the requested rig, or a proposed one.
 Status AttachRigTo(const ImportArguments& arguments, character::Character* character) {
   if (!arguments.rig.empty()) {
@@ -65,17 +95,22 @@ Status AttachRigTo(const ImportArguments& arguments, character::Character* chara
     return character::AttachRig(std::move(*rig), ResolveRigPath(arguments.rig).parent_path(),
                                 character);
   }
+  const bool shapes = authoring::HasShapeFace(authoring::FindShapesByName(*character));
   auto proposal = ProposeFromDefault(character->skeleton, arguments.map);
-  if (proposal.status().code() == StatusCode::kNotFound) {
+  if (proposal.ok()) {
+    PrintNotes(proposal->remarks);
+    FURROW_RETURN_IF_ERROR(
+        character::AttachRig(std::move(proposal->rig), character->folder, character));
+  } else if (proposal.status().code() != StatusCode::kNotFound) {
+    return proposal.status();
+  } else if (!shapes) {
     PrintWarnings({"no rig could be proposed: " + proposal.status().ToString()});
-    return {};
   }
-  FURROW_RETURN_IF_ERROR(proposal);
-  PrintNotes(proposal->remarks);
-  return character::AttachRig(std::move(proposal->rig), character->folder, character);
+  return shapes ? AddFaceOfShapes(arguments, character) : Status();
 }
 
 int ImportFile(const ImportArguments& arguments) {
+  CatchInterrupts();
   const auto maps = rig::SkeletonMaps::Load(arguments.map);
   if (!maps.ok()) return Fail(maps.status());
   auto imported = authoring::ImportModel(arguments.in, *maps, arguments.model);
@@ -130,19 +165,20 @@ void AddCharacterImport(CLI::App& group, Action& action) {
   command->add_option(
       "--rig", arguments->rig,
       "Wrinkle rig for the package, by file or shipped name (default: a rig proposed "
-      "from the joints; for MakeHuman, the shipped rig makehuman)");
+      "from the joints and the blend shapes; for MakeHuman, the shipped rig makehuman)");
   command->add_option("--map", arguments->map,
                       "Skeleton map of the joint names, by name or file (default: the best match)");
-  command->add_flag(
-      "--repair", arguments->model.repair,
-      "Bind unskinned vertices like their neighbours");
+  command->add_flag("--repair", arguments->model.repair,
+                    "Bind unskinned vertices like their neighbours");
   command->add_option("--scale", arguments->model.scale,
                       "Metres per unit of the model (default: derived from its height)");
   command->add_option("--clothes", arguments->makehuman.clothes,
                       "MakeHuman: folder in clothes/ (default: the first by name)");
   command
-      ->add_option("--texture-size", arguments->makehuman.texture_size,
-                   "MakeHuman: texels per side of the textures")
+      ->add_option(
+          "--texture-size", arguments->makehuman.texture_size,
+          "Texels per side of the textures that the import paints: MakeHuman's, and the masks "
+          "and wrinkle maps of a face of blend shapes")
       ->check(CLI::Range(64, 4096))
       ->capture_default_str();
   command->callback([arguments, &action] { action = [arguments] { return Import(*arguments); }; });

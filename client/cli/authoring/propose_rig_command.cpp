@@ -5,8 +5,12 @@
 #include <utility>
 
 #include "authoring/import/model/import_model.h"
+#include "authoring/import/model/shape_face.h"
+#include "authoring/shapes/face_skin.h"
+#include "base/files.h"
 #include "base/status.h"
 #include "base/text.h"
+#include "character/pictures/picture_file.h"
 #include "client/cli/authoring/character_command.h"
 #include "client/cli/common/exit_code.h"
 #include "client/cli/common/inputs.h"
@@ -21,23 +25,71 @@ struct ProposeArguments {
   std::string map;
 };
 
-// Loads the skeleton of a recording, recognised by its extension, or of a model.
-Result<wrinkle::Skeleton> SkeletonOf(const std::string& file) {
+// What a rig is proposed for. A recording has no model.
+struct RigSubject {
+  wrinkle::Skeleton skeleton;
+  character::Character model;
+};
+
+// Loads the skeleton of a recording, recognised by its extension, or a model.
+Result<RigSubject> LoadRigSubject(const std::string& file) {
   const std::filesystem::path extension = std::filesystem::path(file).extension();
   if (extension == ".bvh" || extension == ".mcap" || extension == ".vrma") {
     auto clip = LoadClipArgument(file);
     FURROW_RETURN_IF_ERROR(clip);
-    return std::move(clip->skeleton);
+    return RigSubject{.skeleton = std::move(clip->skeleton), .model = {}};
   }
   auto model = authoring::OpenModel(file);
   FURROW_RETURN_IF_ERROR(model);
-  return std::move(model->character.skeleton);
+  wrinkle::Skeleton skeleton = model->character.skeleton;
+  return RigSubject{.skeleton = std::move(skeleton), .model = std::move(model->character)};
+}
+
+// Adds the face of a model with ARKit's blend shapes to a proposal, and writes its masks beside the
+// rig.
+Status ProposeFaceOfShapes(const ProposeArguments& arguments, character::Character character,
+                           authoring::RigProposal* proposal) {
+  constexpr int kMaskSize = 1024;
+  const auto arkit = LoadRigArgument("arkit");
+  FURROW_RETURN_IF_ERROR(arkit);
+  character.rig = std::move(proposal->rig);
+  // A rig beside the model names files; the model's own pictures keep their names.
+  for (character::Picture& picture : character.pictures) picture.name.clear();
+  const auto remarks = authoring::ProposeShapeFace(*arkit, authoring::FindShapesByName(character),
+                                                   kMaskSize, &character);
+  FURROW_RETURN_IF_ERROR(remarks);
+  proposal->remarks.insert(proposal->remarks.end(), remarks->begin(), remarks->end());
+  const std::filesystem::path folder = std::filesystem::path(arguments.out).parent_path();
+  for (const auto& [name, index] : character.rig_pictures) {
+    const auto png = character::EncodePng(character.pictures[static_cast<std::size_t>(index)]);
+    FURROW_RETURN_IF_ERROR(png);
+    FURROW_RETURN_IF_ERROR(WriteFileAtomically(folder / (name + ".png"), *png));
+    for (wrinkle::Region& region : character.rig.regions) {
+      if (region.mask.texture == name) region.mask.texture = name + ".png";
+    }
+  }
+  proposal->rig = std::move(character.rig);
+  return {};
+}
+
+// The rig for a skeleton, and for the face of the model that it belongs to, if there is one.
+Result<authoring::RigProposal> ProposeFor(const ProposeArguments& arguments, RigSubject subject) {
+  const bool shapes = authoring::HasShapeFace(authoring::FindShapesByName(subject.model));
+  auto proposal = ProposeFromDefault(subject.skeleton, arguments.map);
+  if (shapes && proposal.status().code() == StatusCode::kNotFound) {
+    proposal = authoring::RigProposal();
+  }
+  FURROW_RETURN_IF_ERROR(proposal);
+  if (shapes) {
+    FURROW_RETURN_IF_ERROR(ProposeFaceOfShapes(arguments, std::move(subject.model), &*proposal));
+  }
+  return proposal;
 }
 
 int Propose(const ProposeArguments& arguments) {
-  const auto skeleton = SkeletonOf(arguments.file);
-  if (!skeleton.ok()) return Fail(skeleton.status());
-  const auto proposal = ProposeFromDefault(*skeleton, arguments.map);
+  auto subject = LoadRigSubject(arguments.file);
+  if (!subject.ok()) return Fail(subject.status());
+  const auto proposal = ProposeFor(arguments, std::move(*subject));
   if (!proposal.ok()) return Fail(proposal.status().At(arguments.file));
   if (Status s = rig::SaveRig(proposal->rig, arguments.out); !s.ok()) return Fail(s);
   PrintNotes(proposal->remarks);

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "authoring/shapes/shape_finder.h"
+#include "base/status.h"
+#include "character/character.h"
+
+namespace furrow::authoring {
+
+// Proposes the wrinkle rig of a character with a face of blend shapes: the drivers, feeds and
+// exports of `arkit` (the shipped rig arkit), with masks painted from what the shapes move, and the
+// drivers, regions and maps of the character's present rig that its body's joints drive.
+//
+// - Masks: two pictures of `size` x `size` texels in the UVs of the face (PaintFaceMasks()).
+// - Atlases (ChooseAtlases()): other materials whose UVs overlap get no wrinkles.
+// - Regions of cloth need a material of cloth; else they are left out.
+// Returns remarks, one sentence each: shapes that are missing or move nothing, and materials
+// without wrinkles. Wrinkle maps have no pictures afterwards; see BakeShapeFace().
+// Errors: those of FaceSkin::Create(), which leave the character unchanged.
+[[nodiscard]] Result<std::vector<std::string>> ProposeShapeFace(const wrinkle::Rig& arkit,
+                                                                const ShapeFinder& find, int size,
+                                                                character::Character* character);
+
+// Bakes and embeds the wrinkle maps of the character's rig from the strain of its shapes, of their
+// combinations and of its joints. `size`: texels per side. `progress`: see Bake(). Returns warnings
+// of CheckSurfaces() and notes of CollectBakePoses().
+// Errors: those of these, of Bake() and of EmbedMaps().
+[[nodiscard]] Result<std::vector<std::string>> BakeShapeFace(
+    const ShapeFinder& find, int size, const std::function<bool(float)>& progress,
+    character::Character* character);
+
+// Selects, for skin and for cloth, the materials that share one wrinkle atlas, and clears
+// Material::wrinkles of the others: materials whose UVs overlap those of a material chosen before.
+// `first`: the material that comes first (-1: none); then the one with the largest surface. Returns
+// the names of the materials that lose their wrinkles.
+std::vector<std::string> ChooseAtlases(int first, character::Character* character);
+
+}  // namespace furrow::authoring
