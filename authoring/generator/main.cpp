@@ -3,7 +3,6 @@
 // furrow-make-character: writes share/furrow during the build of Furrow, or a single character.
 #include <cstdio>
 #include <filesystem>
-#include <map>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -34,16 +33,16 @@ furrow::Status MakeOne(std::string rigs, const std::string& out, const std::stri
 int main(int argc, char** argv) {
   CLI::App app("Generates characters");
   std::string rigs, share, elder, out;
+  std::string face = "joints";
   CharacterOptions options;
   app.add_option("RIGS", rigs, "Folder of rig files (default: the shipped folder)");
   app.add_option("SHARE", share, "Output folder for the default character, rigs and recordings");
   app.add_option("--elder", elder, "Output FILE.glb of the elder; also writes FILE.rig.json");
   app.add_option("--out", out, "Output FILE.glb of one character; also writes FILE.rig.json");
-  app.add_option("--face", options.face_kind,
-                 "What moves the face: joints, or blend-shapes (ARKit's 52, as morph targets) "
-                 "(default: joints)")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, FaceKind>{
-          {"joints", FaceKind::kJoints}, {"blend-shapes", FaceKind::kBlendShapes}}));
+  app.add_option("--face", face,
+                 "What moves the face: joints, or blend-shapes (ARKit's 52, as morph targets)")
+      ->check(CLI::IsMember({"joints", "blend-shapes"}))
+      ->capture_default_str();
   app.add_option("--sex", options.face.sex,
                  "Sex: -1 female, 0 neutral, 1 male; values in between blend")
       ->check(CLI::Range(-1.0f, 1.0f))
@@ -67,6 +66,7 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
+  options.face_kind = face == "joints" ? FaceKind::kJoints : FaceKind::kBlendShapes;
   if (out.empty() + share.empty() + elder.empty() != 2) {
     std::fprintf(stderr,
                  "furrow-make-character: give one of --out FILE.glb, --elder FILE.glb, and RIGS "
