@@ -147,6 +147,8 @@ class MaskMaker {
     const float low = frame_.brow - 0.25f * frame_.unit, high = frame_.brow + 0.3f * frame_.unit;
     for (std::size_t v = 0; v < both.size(); ++v) {
       const vec3& p = skin_.positions()[v];
+      // The forehead above is the brows'.
+      both[v] *= Fade(frame_.brow + 0.55f * frame_.unit, frame_.brow + 0.25f * frame_.unit, p.y);
       const float x = std::abs(p.x - skin_.middle()) / frame_.unit;
       const float place = Fade(0.32f, 0.1f, x) * Fade(low - 0.15f * frame_.unit, low, p.y) *
                           Fade(high + 0.25f * frame_.unit, high, p.y);

@@ -13,6 +13,7 @@
 
 #include "authoring/bake/surface/uv_check.h"
 #include "authoring/import/model/face_frame.h"
+#include "authoring/shapes/face_skin.h"
 #include "character/package/rig_report.h"
 #include "character/source_notes.h"
 
@@ -271,7 +272,11 @@ class Checker {
       Find(Severity::kNote, "roles-missing", {}, "no joint is the " + missing,
            "clothing regions of these joints have no driver");
     }
-    if (report_.face_joints == 0) {
+    const bool shapes = HasShapeFace(FindShapesByName(character_));
+    if (shapes) {
+      Find(Severity::kNote, "shape-face", {}, "the face has ARKit's blend shapes",
+           "the import gives it masks, a rig and wrinkle maps");
+    } else if (report_.face_joints == 0) {
       Find(Severity::kNote, "no-face-joints", {}, "there are no face joints",
            "facial wrinkles then require a tracker's blend shapes (rig 'arkit')");
     }

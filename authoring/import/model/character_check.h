@@ -47,10 +47,10 @@ struct CharacterReport {
 // Codes
 //   errors    no-skin, uv-missing, unskinned-vertices, rig-binding
 //   warnings  uv-overlap (parts that share texels fold alike), uv-flat, weights-sum,
-//             normals-missing, picture-missing, units, up-axis, joint-names, no-roles, rig, rig-picture
+//             normals-missing, picture-missing, units, up-axis, joint-names, no-roles, rig,
+//             rig-picture
 //   notes     degenerate-triangles, uv-outside, weights-truncated, tangents-missing, idle-shapes,
-//   roles-missing,
-//             no-face-joints, no-rig
+//             roles-missing, shape-face, no-face-joints, no-rig
 [[nodiscard]] CharacterReport CheckCharacter(const character::Character& character,
                                              const character::SourceNotes& notes,
                                              const rig::SkeletonMaps& maps, bool rig_given);

@@ -110,7 +110,7 @@ Result<ImportedModel> ImportModel(const fs::path& path, const rig::SkeletonMaps&
     }
     auto& list =
         settled || finding.severity == Severity::kNote ? imported.remarks : imported.warnings;
-    if (finding.code != "no-rig") list.push_back(Sentence(finding));
+    if (finding.code != "no-rig" && finding.code != "shape-face") list.push_back(Sentence(finding));
   }
   const float scale = options.scale.value_or(report.space.scale);
   // After the check, which reports the space of the file as it is.

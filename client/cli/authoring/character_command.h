@@ -12,11 +12,18 @@ void AddCharacterImport(CLI::App& group, Action& action);
 void AddCharacterCheck(CLI::App& group, Action& action);
 void AddProposeRig(CLI::App& group, Action& action);
 
+// The part of the default character's rig from which a rig is proposed.
+enum class ProposalPart {
+  kBody,         // for characters with a face of blend shapes
+  kBodyAndFace,  // with the drivers of face joints
+};
+
 // Proposes a rig for `skeleton` from the default character's rig. `map`: the skeleton map of the
 // joint names, by file or by name of a shipped map; empty: the best match. Errors: those of loading
 // the default character and the map, and of ProposeRig().
-[[nodiscard]] Result<authoring::RigProposal> ProposeFromDefault(const wrinkle::Skeleton& skeleton,
-                                                                const std::string& map);
+[[nodiscard]] Result<authoring::RigProposal> ProposeFromDefault(
+    const wrinkle::Skeleton& skeleton, const std::string& map,
+    ProposalPart part = ProposalPart::kBodyAndFace);
 
 // Prints "furrow: note: <text>" to standard error for each note.
 void PrintNotes(const std::vector<std::string>& notes);

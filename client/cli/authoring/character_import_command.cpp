@@ -96,7 +96,8 @@ Status AttachRigTo(const ImportArguments& arguments, character::Character* chara
                                 character);
   }
   const bool shapes = authoring::HasShapeFace(authoring::FindShapesByName(*character));
-  auto proposal = ProposeFromDefault(character->skeleton, arguments.map);
+  auto proposal = ProposeFromDefault(character->skeleton, arguments.map,
+                                     shapes ? ProposalPart::kBody : ProposalPart::kBodyAndFace);
   if (proposal.ok()) {
     PrintNotes(proposal->remarks);
     FURROW_RETURN_IF_ERROR(

@@ -75,7 +75,8 @@ Status ProposeFaceOfShapes(const ProposeArguments& arguments, character::Charact
 // The rig for a skeleton, and for the face of the model that it belongs to, if there is one.
 Result<authoring::RigProposal> ProposeFor(const ProposeArguments& arguments, RigSubject subject) {
   const bool shapes = authoring::HasShapeFace(authoring::FindShapesByName(subject.model));
-  auto proposal = ProposeFromDefault(subject.skeleton, arguments.map);
+  auto proposal = ProposeFromDefault(subject.skeleton, arguments.map,
+                                     shapes ? ProposalPart::kBody : ProposalPart::kBodyAndFace);
   if (shapes && proposal.status().code() == StatusCode::kNotFound) {
     proposal = authoring::RigProposal();
   }
@@ -103,13 +104,18 @@ int Propose(const ProposeArguments& arguments) {
 }  // namespace
 
 Result<authoring::RigProposal> ProposeFromDefault(const wrinkle::Skeleton& skeleton,
-                                                  const std::string& map) {
+                                                  const std::string& map, ProposalPart part) {
   const auto maps = rig::SkeletonMaps::Load(map);
   FURROW_RETURN_IF_ERROR(maps);
   const auto shipped = rig::SkeletonMaps::LoadShipped();
   FURROW_RETURN_IF_ERROR(shipped);
-  const auto model = LoadCharacterArgument({}, {});
+  auto model = LoadCharacterArgument({}, {});
   FURROW_RETURN_IF_ERROR(model);
+  if (part == ProposalPart::kBody) {
+    std::erase_if(model->rig.drivers, [](const wrinkle::Driver& driver) {
+      return driver.kind == wrinkle::Driver::Kind::kPose;
+    });
+  }
   const authoring::FoundJoints model_joints = authoring::FindJoints(model->skeleton, *shipped);
   const authoring::FoundJoints joints = authoring::FindJoints(skeleton, *maps);
   return authoring::ProposeRig(model->rig, {&model->skeleton, &model_joints}, {&skeleton, &joints});

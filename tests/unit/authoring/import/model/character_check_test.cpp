@@ -114,6 +114,11 @@ INSTANTIATE_TEST_SUITE_P(
               [](character::Character*, character::SourceNotes* n) {
                 n->idle_shapes = {"a", "b", "c", "d", "e", "f", "g"};
               }},
+        Fault{"shape-face", Severity::kNote, "has ARKit's blend shapes",
+              [](character::Character* c, character::SourceNotes*) {
+                c->shapes = {"browInnerUp", "browDown_L",   "browDown_R",  "eyeBlink_L",
+                             "eyeBlink_R",  "mouthSmile_L", "mouthSmile_R"};
+              }},
         Fault{"picture-missing", Severity::kWarning, "skin.png",
               [](character::Character*, character::SourceNotes* n) {
                 n->missing_pictures = {"skin.png: no such file"};
