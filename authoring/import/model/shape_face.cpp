@@ -219,7 +219,13 @@ Result<std::vector<std::string>> ProposeShapeFace(const wrinkle::Rig& arkit,
   UseMasks({AddRigPicture(std::move(pictures[0]), character),
             AddRigPicture(std::move(pictures[1]), character)},
            &rig);
-  BodyPart(std::move(character->rig), !MeshesOn(*character, true).empty()).AddTo(&rig);
+  const bool has_cloth = !MeshesOn(*character, true).empty();
+  if (!has_cloth && !character->rig.drivers.empty()) {
+    remarks.emplace_back(
+        "no material is cloth, so clothes do not fold; put 'cloth' into the names of their "
+        "materials");
+  }
+  BodyPart(std::move(character->rig), has_cloth).AddTo(&rig);
   character->rig = std::move(rig);
   return remarks;
 }
