@@ -108,6 +108,10 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Make(
         wrinkle::BlendShapePose::Create(*rig_, *character_, shapes.pose_names(), shapes_));
     definition->shape_program = std::make_shared<const wrinkle::ShapeProgram>(
         rig::MatchShapes(shape_matcher_, blend_shapes, shapes_));
+    definition->head_turn = std::make_shared<const wrinkle::HeadTurn>(
+        skeleton.num_joints() > 0
+            ? wrinkle::HeadTurn()
+            : wrinkle::HeadTurn::Create(*character_, match.character.roles, blend_shapes));
   }
   definition->binding = std::make_shared<const wrinkle::RigBinding>(*std::move(binding));
   definition->skeleton = std::move(skeleton);
@@ -165,6 +169,7 @@ void StreamDefinitions::Report(const StreamDefinition& stream,
   }
   draws_any |= stream.blend_shape_pose != nullptr && !stream.blend_shape_pose->empty();
   draws_any |= stream.shape_program != nullptr && !stream.shape_program->empty();
+  draws_any |= stream.head_turn != nullptr && !stream.head_turn->empty();
   if (character_ != nullptr && !draws_any) {
     spdlog::warn(
         "the stream and the character have no joint in common, so pictures show the rest pose; "

@@ -17,6 +17,7 @@
 #include "wrinkle/rig/rig.h"
 #include "wrinkle/rig/rig_joints.h"
 #include "wrinkle/shapes/blend_shape_pose.h"
+#include "wrinkle/shapes/head_turn.h"
 #include "wrinkle/shapes/shape_program.h"
 #include "wrinkle/skeleton/retarget.h"
 #include "wrinkle/skeleton/skeleton.h"
@@ -39,10 +40,11 @@ struct StreamDefinition {
   std::vector<std::int16_t> joint_of_wire;  // wire index -> index in `skeleton`
   rig::SkeletonMatch match;                 // how a skeleton map has matched the rig's joints
   std::shared_ptr<const wrinkle::RigBinding> binding;
-  // These three move the character by the stream's poses; null if nothing is rendered.
+  // These four move the character by the stream's poses; null if nothing is rendered.
   std::shared_ptr<const wrinkle::Retarget> retarget;
   std::shared_ptr<const wrinkle::BlendShapePose> blend_shape_pose;
   std::shared_ptr<const wrinkle::ShapeProgram> shape_program;
+  std::shared_ptr<const wrinkle::HeadTurn> head_turn;  // empty if the stream has joints
 };
 
 // Creates stream definitions and keeps the `capacity` most recently used ones, so that a sender

@@ -8,6 +8,7 @@
 
 #include "base/status.h"
 #include "wrinkle/shapes/blend_shape_pose.h"
+#include "wrinkle/shapes/head_turn.h"
 #include "wrinkle/shapes/shape_program.h"
 #include "wrinkle/skeleton/pose.h"
 #include "wrinkle/skeleton/retarget.h"
@@ -29,6 +30,7 @@ class CharacterPose {
     const Retarget& retarget;                     // from the stream's skeleton to this skeleton
     const BlendShapePose& joints;                 // the blend shapes' motion of this skeleton
     const ShapeProgram* shape_program = nullptr;  // null: the character has no shapes
+    const HeadTurn* head_turn = nullptr;          // null: the stream does not turn the head
   };
   // `joints` and `blend_shapes` are in the stream's order. Allocates only for more shapes than ever
   // before. After a failure model() and shapes() are undefined.

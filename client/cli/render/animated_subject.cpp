@@ -26,6 +26,11 @@ Result<std::unique_ptr<AnimatedSubject>> AnimatedSubject::Create(
   self->blend_shape_pose_ = wrinkle::BlendShapePose::Create(
       character.rig, character.skeleton, self->shapes_.pose_names(), character.shapes);
   self->shape_program_ = rig::MatchShapes(shapes, take.blend_shape_names, character.shapes);
+  // A recording with joints turns the head by them.
+  if (take.skeleton.num_joints() == 0) {
+    self->head_turn_ = wrinkle::HeadTurn::Create(character.skeleton, match.character.roles,
+                                                 take.blend_shape_names);
+  }
   // Pictures would all show the rest pose.
   if (take.blend_shape_names.empty() &&
       self->retarget_.unmatched_source().size() == take.skeleton.joint_names().size()) {
@@ -41,7 +46,7 @@ Status AnimatedSubject::Advance(int frame) {
   shapes_.Extend(&pose_.blend_shapes);
   const bool solved =
       solver_->Update(pose_, motion::CaptureStep(*clip_, frame)) == wrinkle::JobStatus::kOk &&
-      drawn_->Run({retarget_, blend_shape_pose_, &shape_program_}, pose_.joints,
+      drawn_->Run({retarget_, blend_shape_pose_, &shape_program_, &head_turn_}, pose_.joints,
                   pose_.blend_shapes) == wrinkle::JobStatus::kOk;
   if (!solved)
     return {StatusCode::kInternal, "frame " + std::to_string(frame) + " could not be solved"};

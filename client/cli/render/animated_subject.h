@@ -39,6 +39,7 @@ class AnimatedSubject {
   rig::RigShapes shapes_;
   wrinkle::BlendShapePose blend_shape_pose_;
   wrinkle::ShapeProgram shape_program_;
+  wrinkle::HeadTurn head_turn_;
   std::unique_ptr<wrinkle::SubjectSolver> solver_;
   wrinkle::LocalPose pose_;
   std::optional<wrinkle::CharacterPose> drawn_;
