@@ -15,7 +15,9 @@ constexpr Time kRetryInterval = std::chrono::seconds(1);
 void MocapStreams::OnFrame(Shard& shard, Peer& peer, const protocol::mocap::NeutralFrame& frame,
                            Time now) {
   // Without tracking, the sender repeats an old pose. Ignoring it lets the subject hold and decay.
-  if (!frame.tracked) return;
+  // A face alone is offered all the same, so that its state can be shown.
+  const bool is_face = frame.joints.empty() && !frame.blend_shapes.empty();
+  if (!frame.tracked && !is_face) return;
   Stream* stream = FindOrAdd(peer.id, frame.subject);
   if (stream == nullptr) {
     metrics_->Add(Counter::kMocapRefused);
@@ -35,6 +37,10 @@ void MocapStreams::OnFrame(Shard& shard, Peer& peer, const protocol::mocap::Neut
   }
   if (stream->rejected) {
     metrics_->Add(Counter::kMocapRefused);
+    return;
+  }
+  if (!frame.tracked) {
+    router_->OnNoFace(peer, header, now);
     return;
   }
   // From here on the frame takes the way of any other pose. It has no payload of this wire to

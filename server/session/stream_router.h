@@ -45,6 +45,11 @@ class StreamRouter {
   // the pose is partial. Requires the lock of `shard`.
   void AcceptPose(Shard& shard, Peer& peer, const protocol::Header& header,
                   const protocol::PoseFrame& pose, std::span<const std::uint8_t> payload, Time now);
+  // A frame arrived in which the tracker of a subject sees no face. Requires the lock of the peer's
+  // shard.
+  void OnNoFace(const Peer& peer, const protocol::Header& header, Time now) {
+    parts_.publishers->OnNoFace(peer, header, now);
+  }
   // Solves the waiting poses of a shard together and publishes them in order of arrival. Requires
   // the lock of `shard`.
   void PublishGathered(Shard& shard);

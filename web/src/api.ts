@@ -17,7 +17,7 @@ export interface SettingInfo {
 
 export interface SubjectInfo {
   name: string;
-  state: 'waiting' | 'live' | 'lost' | 'ended';
+  state: 'waiting' | 'live' | 'no_face' | 'lost' | 'ended';
   source: string;
   joints: number;
   blend_shapes: number;

@@ -26,6 +26,7 @@ test('each condition has its own sentence', () => {
     [{ notDrawn: 'no EGL device' }, 'bad', /does not render pictures/],
     [{ subjects: [{ name: 'demo', state: 'waiting', age_ms: 0 }] }, 'wait', /no pose yet/],
     [{ subjects: [{ name: 'demo', state: 'lost', age_ms: 4200 }] }, 'bad', /No data from “demo” for 4 s/],
+    [{ subjects: [{ name: 'demo', state: 'no_face', age_ms: 4200 }] }, 'wait', /“demo” sees no face/],
     [{ subjects: [{ name: 'demo', state: 'ended', age_ms: 0 }] }, 'wait', /No subject is streaming/],
     [{ hasPicture: false }, 'wait', /first picture/],
   ];

@@ -18,6 +18,7 @@ namespace {
 // In order of precedence: a subject that said goodbye may be lost, too.
 std::string_view StateOf(const Subject& subject) {
   if (subject.ended) return "ended";
+  if (subject.no_face) return "no_face";
   if (!subject.pipeline->has_pose()) return "waiting";
   return subject.lost ? "lost" : "live";
 }

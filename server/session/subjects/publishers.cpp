@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/session/subjects/publishers.h"
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
@@ -104,7 +105,7 @@ Subject* Publishers::Accept(Peer& peer, const StreamKey& key, const protocol::Sk
   // The time without poses counts from the offer, so that the subject is not lost before its first
   // pose.
   subject->last_pose = subject->last_update = now;
-  subject->ended = subject->lost = false;
+  subject->ended = subject->lost = subject->no_face = false;
   return subject;
 }
 
@@ -163,9 +164,17 @@ bool Publishers::OnSolved(const GatheredPose& pose) {
   }
   Subject& subject = *pose.subject;
   subject.last_pose = subject.last_update = pose.now;
-  subject.lost = false;
+  subject.lost = subject.no_face = false;
   subject.stats.OnPose(pose.header.sequence, pose.header.capture_time_us, pose.now);
   return true;
+}
+
+void Publishers::OnNoFace(const Peer& peer, const protocol::Header& header, Time now) {
+  Subject* subject = subjects_->Find(StreamKey{peer.id, header.session, header.stream});
+  if (subject == nullptr || subject->ended) return;
+  if (!subject->no_face) spdlog::info("subject '{}' shows no face", subject->name);
+  subject->no_face = true;
+  subject->last_no_face = now;
 }
 
 bool Publishers::IsNew(Subject& subject, const protocol::Header& header) {
@@ -207,12 +216,16 @@ void Publishers::OnGoodbye(const Peer& peer, const protocol::Header& header, Tim
 
 Publishers::Change Publishers::AgeSubject(Subject& subject, Time now) {
   const Time silence = now - subject.last_pose;
-  // Also ends a subject that never sent a pose.
-  if (silence > FromSeconds(limits_.idle_seconds)) return Change::kGone;
+  // Also ends a subject that never sent a pose. One without a face is still there.
+  const Time heard = std::max(subject.last_pose, subject.last_no_face);
+  if (now - heard > FromSeconds(limits_.idle_seconds)) return Change::kGone;
+  if (subject.no_face && now - subject.last_no_face >= FromSeconds(limits_.loss_seconds)) {
+    subject.no_face = subject.lost = false;  // now it is lost, which is reported below
+  }
   SubjectPipeline& pipeline = *subject.pipeline;
   if (!pipeline.has_pose()) return subject.ended ? Change::kGone : Change::kNone;
   if (!subject.ended && silence < FromSeconds(limits_.loss_seconds)) return Change::kNone;
-  if (!subject.lost && !subject.ended) {
+  if (!subject.lost && !subject.ended && !subject.no_face) {
     spdlog::warn("subject '{}' stopped sending and decays to neutral", subject.name);
     metrics_->Add(Counter::kSubjectsLost);
   }

@@ -47,6 +47,9 @@ class Publishers {
                                 const protocol::PoseFrame& pose);
   // Completes a solved pose. False: the solver rejected the pose, which is counted.
   [[nodiscard]] bool OnSolved(const GatheredPose& pose);
+  // Records that a stream arrives without a face. Its subject decays as if it were silent, but
+  // stays and is not reported as lost. Requires the lock of the stream's shard.
+  void OnNoFace(const Peer& peer, const protocol::Header& header, Time now);
   // Asks the sender of a pose for its skeleton, or, if another sender has taken over the subject,
   // rejects the stream. Replies at most once per stream and interval.
   void OnUnknownStream(Peer& peer, const protocol::Header& header, std::uint64_t skeleton_hash,

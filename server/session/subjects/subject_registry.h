@@ -54,6 +54,8 @@ struct Subject {
   std::unique_ptr<SubjectPipeline> pipeline;
   Time last_pose{0};               // arrival
   Time last_update{0};             // arrival or decay
+  Time last_no_face{0};            // arrival of the last frame without a face
+  bool no_face = false;            // the publisher sends, but its tracker sees no face
   bool ended = false;              // the publisher said goodbye: the subject decays, then leaves
   bool lost = false;               // no pose for Limits::loss_seconds: the subject decays
   bool needs_all_drivers = false;  // evaluate all drivers, not only subscribed ones

@@ -44,6 +44,9 @@ export function assess(situation: Situation): Condition {
   if (!situation.renders || situation.notDrawn !== '') {
     return condition('bad', 'This daemon does not render pictures', situation.notDrawn || 'Weights are still shown. Pictures need OpenGL 4.5 on the daemon’s machine.');
   }
+  if (subject.state === 'no_face') {
+    return condition('wait', `The tracker of “${subject.name}” sees no face`, 'Bring the face into the camera’s view.');
+  }
   if (subject.state === 'waiting') return condition('wait', `“${subject.name}” has sent no pose yet`);
   if (subject.state === 'lost') {
     return condition('bad', `No data from “${subject.name}” for ${Math.round(subject.age_ms / 1000)} s`, 'Check its publisher and the network.');

@@ -44,7 +44,7 @@ export class SessionPanel {
       h('th', { scope: 'row' },
         h('button', { type: 'button', class: 'link', onclick: () => this.onChoose(subject.name), 'aria-pressed': String(isChosen) }, subject.name),
         h('small', {}, subject.source)),
-      h('td', {}, h('span', { class: `state ${subject.state}` }, subject.state)),
+      h('td', {}, h('span', { class: `state ${subject.state}` }, subject.state.replace('_', ' '))),
       h('td', { class: 'number' }, subject.rate_hz.toFixed(0)),
       h('td', { class: 'number', title: `${subject.lost} lost, ${subject.late} late` }, share > 0 ? `${(100 * share).toFixed(1)} %` : '0'),
       h('td', { class: 'number' }, subject.jitter_ms.toFixed(1)));

@@ -62,5 +62,50 @@ TEST_F(MocapStreamsTest, FramesBecomeASubject) {
   EXPECT_TRUE(viewer.inbox.empty()) << "lost by its tracker: nothing new";
 }
 
+// A phone without a face is neither lost nor forgotten while it sends.
+TEST_F(MocapStreamsTest, AFaceOutOfViewIsAStateOfItsOwn) {
+  Limits limits;
+  limits.loss_seconds = 0.5;
+  limits.idle_seconds = 3;
+  Make(limits);
+  FakePeer tracker;
+  Connect(&tracker, Transport::kMocap);
+  protocol::mocap::NeutralFrame frame;
+  frame.subject = "phone";
+  frame.layout = 1;
+  frame.blend_shapes = {{"nose", 0.5f}};
+  frame.tracked = false;
+  const auto send = [&](int frames) {
+    for (int i = 0; i < frames; ++i, ++frame.sequence) {
+      Advance(0.2);
+      hub->OnMocapFrame(tracker.id, frame, now);
+      hub->Tick(now);
+    }
+  };
+  send(1);
+  ASSERT_EQ(hub->num_subjects(), 1u) << "listed before its first face";
+  const Subject& subject = *hub->subjects().all().front();
+  EXPECT_TRUE(subject.no_face);
+  EXPECT_FALSE(subject.pipeline->has_pose());
+  frame.tracked = true;
+  send(1);
+  EXPECT_FALSE(subject.no_face);
+  EXPECT_TRUE(subject.pipeline->has_pose());
+  frame.tracked = false;
+  send(30);  // 6 seconds
+  ASSERT_EQ(hub->num_subjects(), 1u) << "not idle";
+  EXPECT_TRUE(subject.no_face);
+  EXPECT_LT(subject.pipeline->wrinkle_weights()[1], 0.5f) << "decays";
+  EXPECT_EQ(Count(Counter::kSubjectsLost), 0u);
+  Advance(1);
+  hub->Tick(now);  // the phone is silent, too
+  EXPECT_FALSE(subject.no_face);
+  EXPECT_TRUE(subject.lost);
+  EXPECT_EQ(Count(Counter::kSubjectsLost), 1u);
+  frame.tracked = true;
+  send(1);
+  EXPECT_FALSE(subject.lost);
+}
+
 }  // namespace
 }  // namespace furrow::server
