@@ -6,7 +6,6 @@
 
 #include "base/ascii.h"
 #include "wrinkle/skeleton/finite.h"
-#include "wrinkle/skeleton/rest.h"
 
 namespace furrow::wrinkle {
 namespace {

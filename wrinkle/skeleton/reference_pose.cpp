@@ -3,7 +3,6 @@
 
 #include <glm/geometric.hpp>
 
-#include "wrinkle/skeleton/rest.h"
 
 namespace furrow::wrinkle {
 namespace {

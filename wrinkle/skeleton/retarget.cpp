@@ -10,7 +10,6 @@
 #include "wrinkle/skeleton/body_retarget.h"
 #include "wrinkle/skeleton/body_stance.h"
 #include "wrinkle/skeleton/finite.h"
-#include "wrinkle/skeleton/rest.h"
 
 namespace furrow::wrinkle {
 namespace {

@@ -7,7 +7,6 @@
 
 #include <glm/geometric.hpp>
 
-#include "wrinkle/skeleton/rest.h"
 #include "wrinkle/skeleton/retarget.h"
 
 namespace furrow::wrinkle {

@@ -73,4 +73,16 @@ class Skeleton {
   std::uint64_t hash_ = 0;
 };
 
+// The origin of `joint` in the rest pose, model space, in the skeleton's units. `joint` must exist.
+[[nodiscard]] inline glm::vec3 RestOrigin(const Skeleton& skeleton, int joint) {
+  return glm::vec3(skeleton.rest_model()[joint][3]);
+}
+
+// The rotation of `joint` in the rest pose, model space. kNoJoint, the parent of a root: the
+// identity.
+[[nodiscard]] inline glm::quat RestRotation(const Skeleton& skeleton, int joint) {
+  return joint == kNoJoint ? glm::quat(1.0f, 0.0f, 0.0f, 0.0f)
+                           : skeleton.rest_model_rotations()[joint];
+}
+
 }  // namespace furrow::wrinkle

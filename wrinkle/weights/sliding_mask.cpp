@@ -12,7 +12,6 @@
 #include "wrinkle/drivers/ball/ball_fields.h"
 #include "wrinkle/drivers/common/full_pose_builder.h"
 #include "wrinkle/skeleton/direction.h"
-#include "wrinkle/skeleton/rest.h"
 
 namespace furrow::wrinkle {
 namespace {
