@@ -8,14 +8,12 @@
 
 #include "base/status.h"
 #include "motion/clip/limits.h"
+#include "recording/wire_quat.h"
 
 namespace furrow::recording {
 namespace {
 
 glm::vec3 ToVec(const protocol::Vec3& v) { return {v.x, v.y, v.z}; }
-glm::quat ToUnitQuat(const protocol::Quat& q) {
-  return glm::normalize(glm::quat(q.w, q.x, q.y, q.z));
-}
 
 Result<wrinkle::Skeleton> ToSkeleton(const protocol::SkeletonOffer& offer, float scale) {
   if (offer.joints.empty()) return wrinkle::Skeleton();

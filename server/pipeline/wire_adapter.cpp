@@ -6,20 +6,12 @@
 #include <numeric>
 #include <span>
 
+#include "recording/wire_quat.h"
+
 namespace furrow::server {
 namespace {
 
 glm::vec3 ToVec(const protocol::Vec3& v) { return {v.x, v.y, v.z}; }
-
-// The wire allows lengths within 1e-3 of 1; the solver needs unit quaternions. A quaternion that is
-// already a unit one to float precision passes unchanged, since normalizing it again would change
-// its last bits, and with them the weights that `furrow solve` gives for the same recording.
-glm::quat ToUnitQuat(const protocol::Quat& q) {
-  constexpr float kUnit = 1e-6f;
-  const glm::quat rotation(q.w, q.x, q.y, q.z);
-  return std::abs(glm::dot(rotation, rotation) - 1.0f) <= kUnit ? rotation
-                                                                : glm::normalize(rotation);
-}
 
 // Indices come from the network and address arrays.
 bool IndicesFit(std::span<const std::uint16_t> indices, std::size_t count) {
@@ -51,7 +43,7 @@ StreamOffer ToStreamOffer(const protocol::SkeletonOffer& offer) {
     // The codec has checked that each parent comes before its children.
     desc.parent = joint.parent < 0 ? wrinkle::kNoJoint : joint.parent;
     desc.rest.translation = ToVec(joint.rest_translation);
-    desc.rest.rotation = ToUnitQuat(joint.rest_rotation);
+    desc.rest.rotation = recording::ToUnitQuat(joint.rest_rotation);
     desc.rest.scale = ToVec(joint.rest_scale);
     if (joint.has_tail) desc.tail = ToVec(joint.tail);
     result.joints.push_back(std::move(desc));
@@ -82,7 +74,7 @@ void ApplyPose(const protocol::PoseFrame& frame, const StreamDefinition& stream,
   for (std::size_t i = 0; i < frame.rotations.size(); ++i) {
     const auto joint =
         static_cast<std::size_t>(stream.joint_of_wire[IndexAt(frame.rotation_joints, i)]);
-    pose->joints[joint].rotation = ToUnitQuat(frame.rotations[i]);
+    pose->joints[joint].rotation = recording::ToUnitQuat(frame.rotations[i]);
   }
   for (std::size_t i = 0; i < frame.translations.size(); ++i) {
     const auto joint =
