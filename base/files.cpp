@@ -156,14 +156,12 @@ Status WriteFilesAtomically(std::span<const FileToWrite> files, Flush flush) {
 }
 
 Status CheckWritable(const fs::path& path) {
-  std::error_code ignored;
-  const bool existed = fs::exists(path, ignored);
-  errno = 0;
-  // Opening for appending tests permissions without a change to an existing file.
-  const bool opened = std::ofstream(path, std::ios::binary | std::ios::app).is_open();
-  if (!opened) return SystemError("cannot write", path, errno);
-  if (!existed) fs::remove(path, ignored);
-  return {};
+  if (IsDeviceOrPipe(path)) {
+    return ::access(path.c_str(), W_OK) == 0 ? Status() : SystemError("cannot write", path, errno);
+  }
+  // Atomic writing needs the right to create a file in the folder, not the right to write the file.
+  PendingFile unpublished;
+  return unpublished.Write({path, {}}, Flush::kNone);
 }
 
 }  // namespace furrow
