@@ -13,7 +13,7 @@ namespace furrow::client {
 struct Acceptance {
   enum class Kind {
     kAccepted = 0,
-    kRefused,       // the daemon rejects the skeleton or the subject; see `reason`
+    kRefused,       // rejected by the daemon, or the offer cannot be sent; see `reason`
     kError,         // the daemon replied with an error; see `reason`
     kNoAnswer,      // timeout, or the connection was closed
     kNoConnection,  // as kNoAnswer, and the last attempt found the port closed

@@ -112,7 +112,7 @@ void AddFrames(CLI::App& app, Action& action) {
       ->add_option("--view", options->request.view, "View: " + std::string(InfoOf("view").allowed))
       ->capture_default_str();
   command->add_option("--camera", options->request.camera_preset,
-                      "Camera: " + render::ListCameraPresets() + " (default: the daemon's)");
+                      "Camera: " + render::ListCameraPresets() + " (default: face)");
   command->callback([options, &action] { action = [options] { return Frames(*options); }; });
 }
 

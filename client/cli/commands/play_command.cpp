@@ -41,7 +41,7 @@ int NotAccepted(const client::Acceptance& answer, const std::string& host) {
     case Kind::kAccepted:
     case Kind::kCancelled: return kDone;
     case Kind::kRefused:
-      std::fprintf(stderr, "furrow: the daemon rejects the skeleton: %s\n", answer.reason.c_str());
+      std::fprintf(stderr, "furrow: the skeleton was not accepted: %s\n", answer.reason.c_str());
       return kBadInput;
     case Kind::kError:
       std::fprintf(stderr, "furrow: the daemon reports an error: %s\n", answer.reason.c_str());

@@ -60,7 +60,8 @@ void AddSubscriberOptions(CLI::App& command, LoadFlags& options) {
   count("--stalled", options.run.misbehavior.stalled, 0,
         "Number of extra TCP subscribers that never read");
   count("--churn", options.run.misbehavior.churn, 0,
-        "Number of extra TCP subscribers that disconnect and reconnect every half second");
+        "Number of extra TCP subscribers that connect and disconnect for half a second each, in "
+        "turn");
   command.add_option("--rig", options.input.rig,
                      "The daemon's wrinkle rig, by file or shipped name, to check the weights "
                      "(default: the default character's rig)");

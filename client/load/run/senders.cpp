@@ -33,7 +33,7 @@ Status ToStatus(const client::Acceptance& answer) {
     case Kind::kAccepted:
     case Kind::kCancelled: return {};
     case Kind::kRefused:
-      return {StatusCode::kInvalidArgument, "the daemon rejects the skeleton: " + answer.reason};
+      return {StatusCode::kInvalidArgument, "the skeleton was not accepted: " + answer.reason};
     case Kind::kError:
       return {StatusCode::kInvalidArgument, "the daemon reports an error: " + answer.reason};
     case Kind::kNoAnswer:

@@ -21,8 +21,8 @@ Status Read(const std::string& name, const std::string& text, Number low, Number
   const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (code != std::errc() || end != text.data() + text.size() || !(value >= low && value <= high)) {
     return Status(StatusCode::kInvalidArgument,
-                  "'" + text + "' is out of range [" + std::to_string(low) + ", " +
-                      std::to_string(high) + "]",
+                  "'" + text + "' is not a number from " + std::to_string(low) + " to " +
+                      std::to_string(high),
                   name);
   }
   *target = static_cast<Target>(value);
