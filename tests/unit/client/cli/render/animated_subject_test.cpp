@@ -36,7 +36,8 @@ std::shared_ptr<const motion::Clip> Recording() {
 }
 
 std::unique_ptr<AnimatedSubject> Animate(const character::Character& face) {
-  auto subject = AnimatedSubject::Create(face, Recording(), rig::SkeletonMatcher(), "take.csv");
+  auto subject = AnimatedSubject::Create(face, Recording(), rig::SkeletonMatcher(),
+                                         rig::ShapeMatcher(), "take.csv");
   EXPECT_TRUE(subject.ok()) << subject.status().ToString();
   return std::move(*subject);
 }
