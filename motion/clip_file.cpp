@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/ascii.h"
+#include "base/asset_path.h"
 #include "base/files.h"
 #include "base/status.h"
 #include "base/text.h"
@@ -23,11 +24,12 @@
 #include "motion/foreign/foreign_clip.h"
 #include "motion/gltf/gltf_animation.h"
 #include "motion/livelink/livelink_csv.h"
+#include "motion/makehuman/mhpose.h"
 
 namespace furrow::motion {
 namespace {
 
-enum class Format { kUnknown, kBvh, kGlb, kGltf, kVrma, kCsv, kFbx, kCollada };
+enum class Format { kUnknown, kBvh, kGlb, kGltf, kVrma, kCsv, kFbx, kCollada, kMhpose };
 
 Format FormatOf(const std::filesystem::path& path) {
   const std::string extension = AsciiLower(path.extension().string());
@@ -38,6 +40,7 @@ Format FormatOf(const std::filesystem::path& path) {
   if (extension == ".csv") return Format::kCsv;
   if (extension == ".fbx") return Format::kFbx;
   if (extension == ".dae") return Format::kCollada;
+  if (extension == ".mhpose") return Format::kMhpose;
   return Format::kUnknown;
 }
 
@@ -156,6 +159,42 @@ void KeepRootsAtOffset(Clip* clip) {
   }
 }
 
+// The names of the pose units of an expression, in MakeHuman's folder layout or in
+// FURROW_ASSET_PATH.
+Result<std::filesystem::path> FindPoseUnits(const std::filesystem::path& expression) {
+  constexpr const char* kFile = "face-poseunits.json";
+  const std::filesystem::path folder = expression.parent_path();
+  Result<std::filesystem::path> found = FindAsset(kFile, folder / ".." / "poseunits");
+  if (!found.ok()) found = FindAsset("poseunits/face-poseunits.json", folder);
+  if (!found.ok()) found = FindAsset(kFile, folder);
+  if (found.ok()) return found;
+  return Status(StatusCode::kNotFound,
+                "the pose units of the expression were not found (face-poseunits.json)",
+                expression.string(),
+                "keep the file in the folder expressions of MakeHuman's data, or add the folder "
+                "poseunits to FURROW_ASSET_PATH");
+}
+
+Result<Clip> LoadExpression(const std::filesystem::path& path, const LoadOptions& options,
+                            ClipReport* report) {
+  const Result<std::string> text = ReadFile(path, kMaxMhposeBytes);
+  FURROW_RETURN_IF_ERROR(text);
+  const Result<MhPose> pose = ParseMhpose(*text, path.string(), report);
+  FURROW_RETURN_IF_ERROR(pose);
+  const Result<std::filesystem::path> names_path = FindPoseUnits(path);
+  FURROW_RETURN_IF_ERROR(names_path);
+  const Result<std::string> names_text = ReadFile(*names_path, kMaxMhposeBytes);
+  FURROW_RETURN_IF_ERROR(names_text);
+  const auto names = ParsePoseUnitNames(*names_text, names_path->string());
+  FURROW_RETURN_IF_ERROR(names);
+  const Result<Clip> units =
+      LoadClip(names_path->parent_path() / "face-poseunits.bvh", options, report);
+  FURROW_RETURN_IF_ERROR(units);
+  Result<Clip> clip = BlendPoseUnits(*pose, *names, *units, path.string());
+  if (clip.ok() && clip->name.empty()) clip->name = path.stem().string();
+  return clip;
+}
+
 // Writers index by these counts, so a caller's inconsistent clip must not reach them.
 Status CheckSizes(const Clip& clip) {
   const std::size_t frames = clip.times.size();
@@ -196,8 +235,9 @@ Result<Clip> LoadClip(const std::filesystem::path& path, const LoadOptions& load
   Format format = FormatOf(file);
   if (format == Format::kUnknown) format = Sniff(file);
   if (format == Format::kUnknown) {
-    return UnknownFormat(file, "use .bvh, .glb, .gltf, .vrma, .csv, .fbx or .dae");
+    return UnknownFormat(file, "use .bvh, .glb, .gltf, .vrma, .csv, .fbx, .dae or .mhpose");
   }
+  if (format == Format::kMhpose) return LoadExpression(file, options, report);
   const Result<std::string> bytes = ReadFile(file, MaxBytes(format));
   FURROW_RETURN_IF_ERROR(bytes);
   format = FormatOf(*bytes, format);

@@ -16,9 +16,11 @@ void SplitClipPath(const std::filesystem::path& path, std::filesystem::path* fil
                    std::string* animation);
 
 // Loads a clip. The content decides the format for FBX, Collada and binary glTF, and else the
-// extension, in any case: .bvh, .glb, .gltf, .vrma, .csv (Live Link Face), .fbx or .dae. BVH files
-// are turned to Y up; other files state their axes and unit. FBX and Collada files are read by the
-// helper program furrow-assimp.
+// extension, in any case: .bvh, .glb, .gltf, .vrma, .csv (Live Link Face), .fbx, .dae or .mhpose
+// (an expression of MakeHuman: one frame). BVH files are turned to Y up; other files state their
+// axes and unit. FBX and Collada files are read by the helper program furrow-assimp. The pose units
+// of an expression, face-poseunits.json and .bvh, are searched in ../poseunits and poseunits
+// relative to the file, beside it, and in FURROW_ASSET_PATH.
 //
 // `path` may choose an animation of a glTF, FBX or Collada file; see SplitClipPath().
 //

@@ -21,6 +21,7 @@ class DocumentTest(unittest.TestCase):
         for name in ("take.bvh", "performance.bvh"):
             (self.root / name).symlink_to(PERFORMANCE)
         (self.root / "hero.glb").symlink_to(SHARE / "default.glb")
+        (self.root / "smile02.mhpose").symlink_to(SHARED / "makehuman" / "expressions" / "smile02.mhpose")
 
     def make_avatar(self):
         """Writes avatar.glb: a character of somebody else's, with a face of blend shapes."""

@@ -34,7 +34,8 @@ struct RigSubject {
 // Loads the skeleton of a recording, recognised by its extension, or a model.
 Result<RigSubject> LoadRigSubject(const std::string& file) {
   const std::filesystem::path extension = std::filesystem::path(file).extension();
-  if (extension == ".bvh" || extension == ".mcap" || extension == ".vrma") {
+  if (extension == ".bvh" || extension == ".mcap" || extension == ".vrma" ||
+      extension == ".mhpose") {
     auto clip = LoadClipArgument(file);
     FURROW_RETURN_IF_ERROR(clip);
     return RigSubject{.skeleton = std::move(clip->skeleton), .model = {}};

@@ -101,8 +101,8 @@ void AddConvert(CLI::App& app, Action& action) {
   command
       ->add_option(
           "IN", options->in,
-          "Recording to read: .bvh, .glb, .gltf, .vrma, .fbx, .dae, .csv (Live Link Face) or .mcap "
-          "(FILE.mcap#SUBJECT)")
+          "Recording to read: .bvh, .glb, .gltf, .vrma, .fbx, .dae, .csv (Live Link Face), "
+          ".mhpose (MakeHuman expression) or .mcap (FILE.mcap#SUBJECT)")
       ->required();
   command
       ->add_option(

@@ -127,6 +127,47 @@ TEST_F(MakeHumanExpressions, DifferFromEachOther) {
   }
 }
 
+// The expressions that emotions.bvh was composed from. emotions.bvh multiplies the pose units in
+// the other order than MakeHuman, so weights near the mouth differ by up to 0.17.
+TEST_F(MakeHumanExpressions, MhposeFilesRaiseTheExpectedWeights) {
+  const Result<std::string> text = ReadFile(kRig, kMaxTextFileBytes);
+  ASSERT_TRUE(text.ok());
+  const Result<wrinkle::Rig> rig =
+      rig::ParseRig(*text, kRig.string(), kMakeHuman / "poseunits", motion::CachedPoseSource());
+  ASSERT_TRUE(rig.ok()) << rig.status().ToString();
+  std::map<std::string, Weights> seen;
+  for (const char* name : {"smile02", "anger01", "sad01", "disgust01", "laugh01"}) {
+    const Result<motion::Clip> clip =
+        motion::LoadClip(kMakeHuman / "expressions" / (std::string(name) + ".mhpose"));
+    ASSERT_TRUE(clip.ok()) << clip.status().ToString();
+    Result<wrinkle::RigBinding> binding = wrinkle::RigBinding::Create(*rig, clip->skeleton, {});
+    ASSERT_TRUE(binding.ok()) << binding.status().ToString();
+    wrinkle::SubjectSolver solver(std::make_shared<wrinkle::RigBinding>(std::move(*binding)),
+                                  false);
+    wrinkle::LocalPose pose;
+    clip->GetPose(0, &pose);
+    ASSERT_EQ(solver.Update(pose, 1.0 / 30.0), wrinkle::JobStatus::kOk);
+    const auto names = solver.binding().weight_names();
+    for (std::size_t i = 0; i < names.size(); ++i)
+      seen[name][names[i]] = solver.wrinkle_weights()[i];
+  }
+  EXPECT_GT(seen["smile02"]["mouth_l.squash"], 0.7f);
+  EXPECT_GT(seen["smile02"]["eye_l.squash"], 0.4f);
+  EXPECT_LT(seen["smile02"]["glabella.squash"], 0.1f);
+  EXPECT_GT(seen["anger01"]["glabella.squash"], 0.9f);
+  EXPECT_GT(seen["anger01"]["brow_l.squash"], 0.7f);
+  EXPECT_GT(seen["disgust01"]["nose.squash"], 0.8f);
+  EXPECT_GT(seen["disgust01"]["mouth_r.stretch"], 0.5f);
+  EXPECT_GT(seen["laugh01"]["mouth_l.squash"], 0.7f);
+  EXPECT_GT(seen["laugh01"]["eye_r.squash"], 0.5f);
+  EXPECT_LT(seen["laugh01"]["brow_l.squash"], 0.05f);
+  // The order does not matter where the units turn different joints.
+  for (const auto& [name, weight] : seen["sad01"]) {
+    if (!IsFacial(name)) continue;
+    EXPECT_NEAR(weight, Get("sadness", name.c_str()), 0.02f) << name;
+  }
+}
+
 // MakeHuman's BVH files were made for a specific person, and base.obj is the mesh before it is
 // shaped. They have the same joints, parents and bone directions, but lengths differ by up to 5 cm.
 TEST(MakeHumanSkeleton, AgreesWithThePoseUnits) {
