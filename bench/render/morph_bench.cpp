@@ -34,14 +34,16 @@ character::Vertex OnTheHead(float u, float v) {
   return vertex;
 }
 
-// Moves the third of the sphere around `centre` by up to 1 cm and turns its normals.
+// Moves the third of the sphere around `centre` by up to 1 cm and turns its normals. Every other
+// shape moves inwards, so that the head keeps its size in the picture.
 character::MorphTarget CapAround(const glm::vec3& centre, const character::Mesh& mesh, int shape) {
+  const float height = shape % 2 == 0 ? 0.015f : -0.015f;
   character::MorphTarget target{.shape = shape, .deltas = {}};
   for (std::uint32_t i = 0; i < mesh.vertices.size(); ++i) {
     const glm::vec3& normal = mesh.vertices[i].normal;
     const float inside = glm::dot(normal, centre) - 1.0f / 3.0f;
     if (inside <= 0.0f) continue;
-    target.deltas.push_back({i, 0.015f * inside * normal, 0.2f * inside * centre});
+    target.deltas.push_back({i, height * inside * normal, 0.2f * inside * centre});
   }
   return target;
 }
