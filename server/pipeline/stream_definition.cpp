@@ -13,6 +13,8 @@
 namespace furrow::server {
 namespace {
 
+constexpr std::size_t kMaxWarnings = 8;  // of one binding that are logged one by one
+
 // "a, b and 3 more". The names come from senders, so a log line has a limit.
 std::string Join(std::span<const std::string> names, std::size_t at_most = 12) {
   std::string text;
@@ -133,6 +135,14 @@ void StreamDefinitions::Report(const StreamDefinition& stream,
   }
   const auto missing_joints = stream.binding->missing_joints();
   const auto missing_shapes = stream.binding->missing_blend_shapes();
+  const auto warnings = stream.binding->warnings();
+  for (std::size_t i = 0; i < std::min(warnings.size(), kMaxWarnings); ++i) {
+    spdlog::warn("{}", warnings[i]);
+  }
+  if (warnings.size() > kMaxWarnings) {
+    spdlog::warn("{} more warnings of this kind; 'furrow rig check --skeleton' lists all",
+                 warnings.size() - kMaxWarnings);
+  }
   // A stream without any joints comes from a face tracker, and one without any blend shapes from a
   // body tracker; nothing is missing.
   if (!missing_joints.empty() && stream.skeleton.num_joints() > 0) {

@@ -220,6 +220,23 @@ TEST(StreamDefinitions, BlendShapesMoveTheCharactersShapes) {
 }
 
 // A phone sends a face without joints. The default character's rig also reads joints of a body.
+TEST(StreamDefinitions, WarningsOfTheBindingAreLogged) {
+  auto rig = std::make_shared<wrinkle::Rig>(*KneeRig());
+  wrinkle::Driver elbow = rig->drivers[0];  // a hinge
+  ASSERT_EQ(elbow.kind, wrinkle::Driver::Kind::kHinge);
+  for (int i = 0; i < 10; ++i) {
+    elbow.name = "knee_" + std::to_string(i);
+    elbow.hinge.end = elbow.hinge.parent;  // not below the joint
+    rig->drivers.push_back(elbow);
+  }
+  StreamDefinitions definitions(rig, nullptr, 4);
+  LogCapture log;
+  ASSERT_TRUE(definitions.Get(ToStreamOffer(KneeOffer())).ok());
+  EXPECT_THAT(log.text(), HasSubstr("driver 'knee_0'")) << log.text();
+  EXPECT_THAT(log.text(), Not(HasSubstr("driver 'knee_9'")));
+  EXPECT_THAT(log.text(), HasSubstr("2 more warnings"));
+}
+
 TEST(StreamDefinitions, AFaceWithoutJointsLacksNothing) {
   auto rig = std::make_shared<wrinkle::Rig>(*KneeRig());
   wrinkle::Driver jaw;
