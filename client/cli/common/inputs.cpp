@@ -112,8 +112,8 @@ void WarnAboutMissing(const wrinkle::RigBinding& binding, const motion::Clip& cl
     for (std::size_t i = 1; i < std::min(names.size(), kNamed); ++i) text += ", " + names[i];
     PrintWarnings({text + (names.size() > kNamed ? ", ..." : "")});
   };
-  warn(binding.missing_joints(), "joint");
-  // A body recording without blend shapes lacks all of them on purpose.
+  // A recording of a face has no joints, and one of a body no blend shapes; nothing is missing.
+  if (clip.skeleton.num_joints() > 0) warn(binding.missing_joints(), "joint");
   if (!clip.blend_shape_names.empty()) warn(binding.missing_blend_shapes(), "blend shape");
 }
 
