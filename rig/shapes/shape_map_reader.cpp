@@ -399,7 +399,7 @@ bool HasShapeInMean(const MapFormula& formula, int arkit) {
 }
 
 // What a file does not say: a shape that equals ARKit's gives it back; several give their mean.
-// Shapes that stand in for others ("unless") come next, then shapes for both sides at once.
+// Substitutes ("unless") come next, then shapes for both sides at once.
 void DeriveToArkit(ShapeMap* map) {
   for (int arkit = 0; arkit < kNumArkitShapes; ++arkit) {
     std::vector<MapFormula>& formulas = map->to_arkit[static_cast<std::size_t>(arkit)];

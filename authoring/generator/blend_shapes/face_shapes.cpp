@@ -12,10 +12,10 @@
 #include <glm/mat4x4.hpp>
 
 #include "authoring/generator/head/head_shape.h"
-#include "authoring/shapes/arkit_shapes.h"
 #include "authoring/shapes/morph.h"
 #include "base/scalar.h"
 #include "character/mesh/weld.h"
+#include "rig/shapes/arkit_shapes.h"
 #include "wrinkle/skeleton/pose.h"
 #include "wrinkle/skeleton/reference_pose.h"
 
@@ -131,9 +131,9 @@ struct ShapePose {
 
 Result<std::vector<ShapePose>> ShapePoses(const character::Character& character) {
   std::vector<ShapePose> poses;
-  for (const char* name : ArkitShapes()) {
+  for (const std::string_view name : rig::ArkitShapes()) {
     Locals locals(character.skeleton.rest_pose().begin(), character.skeleton.rest_pose().end());
-    ShapePose pose{.name = name, .base = {}, .posed = {}};
+    ShapePose pose{.name = std::string(name), .base = {}, .posed = {}};
     if (pose.name == "mouthClose") FURROW_RETURN_IF_ERROR(Apply(character, "jawOpen", &locals));
     pose.base = SkinMatrices(character, locals);
     FURROW_RETURN_IF_ERROR(Apply(character, name, &locals));

@@ -15,11 +15,11 @@
 #include "authoring/bake/surface/bake_surface.h"
 #include "authoring/bake/surface/surface_check.h"
 #include "authoring/bake/surface/uv_check.h"
-#include "authoring/shapes/arkit_shapes.h"
 #include "authoring/shapes/face_skin.h"
 #include "authoring/shapes/region_masks.h"
 #include "authoring/shapes/shape_landmarks.h"
 #include "base/status.h"
+#include "rig/shapes/arkit_shapes.h"
 
 namespace furrow::authoring {
 namespace {
@@ -150,9 +150,8 @@ void UseMasks(const std::array<std::string, 2>& pictures, wrinkle::Rig* rig) {
 
 std::vector<std::string> MissingShapes(const FaceSkin& skin, const ShapeFinder& find) {
   std::vector<std::string> missing, still;
-  for (const char* name : ArkitShapes()) {
+  for (const std::string_view shape : rig::ArkitShapes()) {
     // These move eyes and tongue, which are not skin.
-    const std::string_view shape = name;
     if (shape.starts_with("eyeLook") || shape == "tongueOut") continue;
     if (find(shape) < 0) {
       missing.emplace_back(shape);

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "authoring/shapes/arkit_shapes.h"
 #include "authoring/shapes/shape_combinations.h"
+#include "rig/shapes/arkit_shapes.h"
 
 namespace furrow::authoring {
 namespace {
@@ -25,7 +25,8 @@ TEST(ShapeFinder, OtherShapesKeepOtherKeys) {
   EXPECT_NE(ShapeKey("mouthFunnel"), ShapeKey("mouthFunne_L"));
   EXPECT_EQ(ShapeKey("browInnerUp"), "browinnerup");
   std::set<std::string> keys;
-  for (const char* name : ArkitShapes()) EXPECT_TRUE(keys.insert(ShapeKey(name)).second) << name;
+  for (const std::string_view name : rig::ArkitShapes())
+    EXPECT_TRUE(keys.insert(ShapeKey(name)).second) << name;
   EXPECT_EQ(keys.size(), 52u);
 }
 
@@ -40,7 +41,7 @@ TEST(ShapeFinder, ReturnsMinusOneForUnknownNames) {
 
 TEST(ShapeCombinations, NameOnlyShapesOfArkit) {
   std::set<std::string> known;
-  for (const char* name : ArkitShapes()) known.insert(name);
+  for (const std::string_view name : rig::ArkitShapes()) known.insert(std::string(name));
   for (const ShapeCombination& combination : ShapeCombinations()) {
     bool leads = false;
     for (const ShapeCombination::Part& part : combination.parts) {

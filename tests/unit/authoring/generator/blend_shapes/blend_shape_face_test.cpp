@@ -14,10 +14,10 @@
 
 #include "authoring/generator/default_character.h"
 #include "authoring/generator/head/head_shape.h"
-#include "authoring/shapes/arkit_shapes.h"
 #include "authoring/shapes/morph.h"
 #include "rig/rig_check.h"
 #include "rig/rig_file.h"
+#include "rig/shapes/arkit_shapes.h"
 #include "wrinkle/shapes/blend_shape_pose.h"
 #include "wrinkle/skeleton/pose.h"
 #include "wrinkle/solver/solver.h"
@@ -117,7 +117,7 @@ character::Character* BlendShapeFaceTest::shaped_ = nullptr;
 
 TEST_F(BlendShapeFaceTest, HasTheNamesOfArkit) {
   ASSERT_EQ(shaped_->shapes.size(), 52u);
-  for (std::size_t i = 0; i < 52; ++i) EXPECT_EQ(shaped_->shapes[i], ArkitShapes()[i]);
+  for (std::size_t i = 0; i < 52; ++i) EXPECT_EQ(shaped_->shapes[i], rig::ArkitShapes()[i]);
   for (const character::Mesh& mesh : shaped_->meshes) {
     int last = -1;
     for (const character::MorphTarget& target : mesh.morph_targets) {
