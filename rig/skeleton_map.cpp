@@ -12,10 +12,10 @@
 #include <nlohmann/json.hpp>
 
 #include "base/ascii.h"
-#include "base/data_dir.h"
 #include "base/files.h"
 #include "base/status.h"
 #include "rig/hierarchy_roles.h"
+#include "rig/shipped_maps.h"
 
 namespace furrow::rig {
 namespace {
@@ -182,36 +182,27 @@ SkeletonRoles ApplySkeletonMap(const SkeletonMap& map, std::span<const std::stri
 
 SkeletonMaps::SkeletonMaps(std::vector<SkeletonMap> maps, bool chosen)
     : maps_(std::move(maps)), chosen_(chosen) {
-  // Directories list files in any order; a tie between maps must not depend on it.
+  // A tie between maps goes by their names, whatever their files are called.
   std::ranges::sort(maps_, {}, &SkeletonMap::name);
 }
 
 Result<SkeletonMaps> SkeletonMaps::LoadShipped() {
-  const auto folder = FindDataFile(kFolder);
-  FURROW_RETURN_IF_ERROR(folder);
+  const auto files = ListShippedMaps(kFolder);
+  FURROW_RETURN_IF_ERROR(files);
   std::vector<SkeletonMap> maps;
-  std::error_code error;
-  for (const auto& file : fs::directory_iterator(*folder, error)) {
-    if (file.path().extension() != ".json") continue;
-    auto map = LoadFile(file.path());
+  for (const fs::path& file : *files) {
+    auto map = LoadFile(file);
     FURROW_RETURN_IF_ERROR(map);
     maps.push_back(*std::move(map));
   }
-  if (error) return Status(StatusCode::kIo, error.message(), folder->string());
   return SkeletonMaps(std::move(maps));
 }
 
 Result<SkeletonMaps> SkeletonMaps::Load(const std::string& name_or_file) {
   if (name_or_file.empty()) return LoadShipped();
-  std::error_code error;
-  fs::path path = name_or_file;
-  // A slash marks a path, so a missing file is not mistaken for the name of a shipped map.
-  if (!fs::is_regular_file(path, error) && name_or_file.find('/') == std::string::npos) {
-    const auto shipped = FindDataFile(std::string(kFolder) + "/" + name_or_file + ".json");
-    FURROW_RETURN_IF_ERROR(shipped);
-    path = *shipped;
-  }
-  auto map = LoadFile(path);
+  const auto path = FindMap(kFolder, name_or_file);
+  FURROW_RETURN_IF_ERROR(path);
+  auto map = LoadFile(*path);
   FURROW_RETURN_IF_ERROR(map);
   std::vector<SkeletonMap> maps;
   maps.push_back(*std::move(map));

@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <utility>
 
-#include "base/data_dir.h"
 #include "base/files.h"
 #include "base/status.h"
+#include "rig/shipped_maps.h"
 
 namespace furrow::rig {
 namespace {
@@ -31,32 +31,23 @@ int MapFormula::RenamedShape() const {
 }
 
 Result<std::vector<ShapeMap>> LoadShippedShapeMaps() {
-  const auto folder = FindDataFile(kShapeMapFolder);
-  FURROW_RETURN_IF_ERROR(folder);
+  const auto files = ListShippedMaps(kShapeMapFolder);
+  FURROW_RETURN_IF_ERROR(files);
   std::vector<ShapeMap> maps;
-  std::error_code error;
-  for (const auto& file : fs::directory_iterator(*folder, error)) {
-    if (file.path().extension() != ".json") continue;
-    auto map = LoadShapeMapFile(file.path());
+  for (const fs::path& file : *files) {
+    auto map = LoadShapeMapFile(file);
     FURROW_RETURN_IF_ERROR(map);
     maps.push_back(*std::move(map));
   }
-  if (error) return Status(StatusCode::kIo, error.message(), folder->string());
-  // Directories list files in any order; a tie between maps must not depend on it.
+  // A tie between maps goes by their names, whatever their files are called.
   std::ranges::sort(maps, {}, &ShapeMap::name);
   return maps;
 }
 
 Result<ShapeMap> LoadShapeMap(const std::string& name_or_file) {
-  std::error_code error;
-  fs::path path = name_or_file;
-  // A slash marks a path, so a missing file is not mistaken for the name of a shipped map.
-  if (!fs::is_regular_file(path, error) && name_or_file.find('/') == std::string::npos) {
-    const auto shipped = FindDataFile(std::string(kShapeMapFolder) + "/" + name_or_file + ".json");
-    FURROW_RETURN_IF_ERROR(shipped);
-    path = *shipped;
-  }
-  return LoadShapeMapFile(path);
+  const auto path = FindMap(kShapeMapFolder, name_or_file);
+  FURROW_RETURN_IF_ERROR(path);
+  return LoadShapeMapFile(*path);
 }
 
 }  // namespace furrow::rig
