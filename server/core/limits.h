@@ -7,8 +7,9 @@ namespace furrow::server {
 // rates and times in (0, 1e9]; ValidateConfig() checks them. Each limit applies to the whole daemon
 // unless its comment names something smaller.
 struct Limits {
-  int max_connections = 256;          // TCP connections
-  int max_udp_peers = 4096;           // UDP addresses remembered, over all threads; a full table evicts an idle one
+  int max_connections = 256;  // TCP connections
+  int max_udp_peers =
+      4096;  // UDP addresses remembered, over all threads; a full table evicts an idle one
   int max_subjects = 1024;            // subjects published at a time
   int max_skeletons = 256;            // bound skeletons kept for reuse
   int max_subscriptions = 64;         // per peer, at most 65,535

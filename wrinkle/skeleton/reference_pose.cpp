@@ -3,7 +3,6 @@
 
 #include <glm/geometric.hpp>
 
-
 namespace furrow::wrinkle {
 namespace {
 

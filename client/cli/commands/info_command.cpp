@@ -159,7 +159,8 @@ void AddInfo(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand(
       "info", "Describe a recording: subjects, rates, gaps, duration and completeness");
   command
-      ->add_option("FILE", *path, "Recording: .bvh, .glb, .gltf, .vrma, .fbx, .dae, .csv, .mhpose or .mcap")
+      ->add_option("FILE", *path,
+                   "Recording: .bvh, .glb, .gltf, .vrma, .fbx, .dae, .csv, .mhpose or .mcap")
       ->required();
   AddReadOptions(*command, *read);
   command->callback([path, read, &action] {

@@ -19,9 +19,10 @@ void AddShapeMap(CLI::App& command, std::string& value) {
 
 void AddReadOptions(CLI::App& command, motion::LoadOptions& options) {
   command
-      .add_option("--animation", options.animation,
-                  "Animation of a glTF, FBX or Collada file, by name or number from 0 (default: the "
-                  "first)")
+      .add_option(
+          "--animation", options.animation,
+          "Animation of a glTF, FBX or Collada file, by name or number from 0 (default: the "
+          "first)")
       ->type_name("NAME|INDEX");
   command
       .add_option_function<std::string>(
