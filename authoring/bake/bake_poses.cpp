@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include <glm/geometric.hpp>
 
@@ -55,8 +56,8 @@ bool IsRest(std::span<const Transform> locals, const wrinkle::Skeleton& skeleton
 // Turns the driver values that feed a map into full poses of the character's own skeleton.
 class PoseCollector {
  public:
-  PoseCollector(const character::Character& character, const ShapeFinder& find)
-      : character_(character), find_(find) {}
+  PoseCollector(const character::Character& character, const ArkitFace& face)
+      : character_(character), face_(face) {}
 
   Status Add(const wrinkle::Region& region, const wrinkle::Feed& feed,
              const wrinkle::Feed::Source& source) {
@@ -95,32 +96,28 @@ class PoseCollector {
         gain = std::max(gain, GainOf(feed, lead));
       }
       if (gain < kLeastShapeGain) continue;
-      std::vector<float> weights(character_.shapes.size(), 0.0f);
-      bool complete = true;
+      std::vector<ArkitFace::Coefficient> coefficients;
       for (const ShapeCombination::Part& part : combination.parts) {
-        for (const std::string& name : ShapesOf(part.shape)) {
-          const int shape = find_(name);
-          complete = complete && Moves(shape);
-          if (complete) weights[static_cast<std::size_t>(shape)] = part.weight;
+        for (std::string& name : ShapesOf(part.shape)) {
+          coefficients.emplace_back(std::move(name), part.weight);
         }
       }
-      if (complete) AddShapes(region, feed, std::move(weights), gain);
+      const bool complete = std::all_of(coefficients.begin(), coefficients.end(),
+                                        [&](const auto& c) { return face_.Has(c.first); });
+      if (complete) AddShapes(region, feed, face_.Weights(coefficients), gain);
     }
   }
 
-  CollectedPoses Take() { return std::move(found_); }
-
- private:
-  // A shape without a target moves nothing.
-  [[nodiscard]] bool Moves(int shape) const {
-    return shape >= 0 &&
-           std::any_of(character_.meshes.begin(), character_.meshes.end(),
-                       [&](const character::Mesh& mesh) {
-                         return std::any_of(mesh.morph_targets.begin(), mesh.morph_targets.end(),
-                                            [&](const auto& t) { return t.shape == shape; });
-                       });
+  CollectedPoses Take() {
+    std::string names;
+    for (const std::string& name : missing_) names += (names.empty() ? "" : ", ") + name;
+    if (!names.empty()) {
+      Note("no shape of the character means " + names + "; only strokes can give these folds");
+    }
+    return std::move(found_);
   }
 
+ private:
   // The largest gain with which a blend shape feeds a map; 0 if it does not.
   [[nodiscard]] float GainOf(const wrinkle::Feed& feed, const std::string& shape) const {
     float gain = 0.0f;
@@ -135,18 +132,15 @@ class PoseCollector {
 
   void AddShape(const wrinkle::Region& region, const wrinkle::Feed& feed,
                 const wrinkle::Feed::Source& source, const wrinkle::BlendShapeDriver& driver) {
-    const int shape = find_(driver.blend_shape);
-    if (!Moves(shape)) {
-      Note("the character has no shape '" + driver.blend_shape +
-           "' that moves it; only strokes can give it folds");
+    if (!face_.Has(driver.blend_shape)) {
+      missing_.insert(driver.blend_shape);
       return;
     }
     if (source.gain < kLeastShapeGain) return;
-    std::vector<float> weights(character_.shapes.size(), 0.0f);
     // Where the driver reaches 1. Coefficients beyond 1 are not a face.
     const bool usual = driver.full > 0.0f && driver.full <= 1.0f;
-    weights[static_cast<std::size_t>(shape)] = usual ? driver.full : 1.0f;
-    AddShapes(region, feed, std::move(weights), source.gain);
+    const ArkitFace::Coefficient full(driver.blend_shape, usual ? driver.full : 1.0f);
+    AddShapes(region, feed, face_.Weights(std::span(&full, 1)), source.gain);
   }
 
   void AddShapes(const wrinkle::Region& region, const wrinkle::Feed& feed,
@@ -195,8 +189,9 @@ class PoseCollector {
   }
 
   const character::Character& character_;
-  const ShapeFinder& find_;
+  const ArkitFace& face_;
   CollectedPoses found_;
+  std::set<std::string> missing_;  // blend shapes of drivers
 };
 
 Status CheckMaps(const Rig& rig, std::span<const std::string> maps) {
@@ -219,19 +214,18 @@ Status CheckMaps(const Rig& rig, std::span<const std::string> maps) {
 
 Result<CollectedPoses> CollectBakePoses(const character::Character& character,
                                         std::span<const std::string> maps) {
-  return CollectBakePoses(character, maps, FindShapesByName(character));
+  return CollectBakePoses(character, maps, ArkitFace(character, rig::ShapeMatcher()));
 }
 
 Result<CollectedPoses> CollectBakePoses(const character::Character& character,
-                                        std::span<const std::string> maps,
-                                        const ShapeFinder& find) {
+                                        std::span<const std::string> maps, const ArkitFace& face) {
   const Rig& rig = character.rig;
   if (rig.wrinkle_maps.empty() || rig.regions.empty()) {
     return Status(StatusCode::kNotFound, "the character has no wrinkle rig with regions and maps",
                   {}, "add one with --rig");
   }
   FURROW_RETURN_IF_ERROR(CheckMaps(rig, maps));
-  PoseCollector collector(character, find);
+  PoseCollector collector(character, face);
   for (std::size_t r = 0; r < rig.regions.size(); ++r) {
     const wrinkle::Region& region = rig.regions[r];
     for (std::size_t f = 0; f < region.feeds.size(); ++f) {

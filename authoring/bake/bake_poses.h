@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "authoring/bake/request/bake_request.h"
-#include "authoring/shapes/shape_finder.h"
+#include "authoring/shapes/arkit_face.h"
 #include "character/character.h"
 
 namespace furrow::authoring {
@@ -24,9 +24,10 @@ struct CollectedPoses {
 // matrix. The gain of a source in the rig, limited to 1, becomes the weight of the pose. `maps`:
 // names of the maps to collect poses for; empty: all.
 //
-// A driver of a blend shape poses the character's shape that `find` returns for its name. Such a
-// feed also gets the combinations (ShapeCombinations()) that its shapes lead. Shapes with a gain
-// below 0.7 give no pose: they show the folds of the others.
+// A driver of a blend shape poses the character's shapes that `face`, made from the character,
+// names for it (default: equal names). Such a feed also gets the combinations (ShapeCombinations())
+// that its shapes lead. Shapes with a gain below 0.7 give no pose: they show the folds of the
+// others.
 //
 // Errors: kNotFound (no rig; a map that the rig lacks; a joint that the skeleton lacks),
 // kInvalidArgument (a reference pose equal to the rest pose, which cannot fold anything; a driver
@@ -35,6 +36,6 @@ struct CollectedPoses {
                                                       std::span<const std::string> maps = {});
 [[nodiscard]] Result<CollectedPoses> CollectBakePoses(const character::Character& character,
                                                       std::span<const std::string> maps,
-                                                      const ShapeFinder& find);
+                                                      const ArkitFace& face);
 
 }  // namespace furrow::authoring

@@ -16,23 +16,16 @@ constexpr float kHeadPerEyes = 3.6f;  // a head of 230 mm, pupils 64 mm apart
 constexpr float kLeastMove = 1e-4f;   // of the head's height: less is not a motion
 constexpr float kLeastEyes = 1e-6f;   // metres
 
-const character::MorphTarget* TargetOf(const character::Mesh& mesh, int shape) {
-  const auto found = std::find_if(mesh.morph_targets.begin(), mesh.morph_targets.end(),
-                                  [&](const auto& target) { return target.shape == shape; });
-  return found == mesh.morph_targets.end() ? nullptr : &*found;
-}
-
-// The number of vertices that one of two shapes moves.
-std::size_t CountMoved(const character::Mesh& mesh, int left, int right) {
-  std::size_t count = 0;
-  for (const int shape : {left, right}) {
-    const character::MorphTarget* target = shape < 0 ? nullptr : TargetOf(mesh, shape);
-    if (target == nullptr) continue;
-    count += static_cast<std::size_t>(
-        std::count_if(target->deltas.begin(), target->deltas.end(),
-                      [](const auto& delta) { return glm::length(delta.position) > 0.0f; }));
+// The number of vertices that shapes with a weight move.
+std::size_t CountMoved(const character::Mesh& mesh, std::span<const float> weights) {
+  std::vector<bool> moved(mesh.vertices.size(), false);
+  for (const character::MorphTarget& target : mesh.morph_targets) {
+    if (weights[static_cast<std::size_t>(target.shape)] == 0.0f) continue;
+    for (const character::MorphDelta& delta : target.deltas) {
+      if (glm::length(delta.position) > 0.0f) moved[delta.vertex] = true;
+    }
   }
-  return count;
+  return static_cast<std::size_t>(std::count(moved.begin(), moved.end(), true));
 }
 
 vec3 ArgMax(std::span<const vec3> positions, const std::vector<vec3>& moves) {
@@ -45,24 +38,17 @@ vec3 ArgMax(std::span<const vec3> positions, const std::vector<vec3>& moves) {
 
 }  // namespace
 
-bool HasShapeFace(const ShapeFinder& find) {
-  constexpr const char* kNeeded[] = {"browInnerUp",    "browDownLeft",  "browDownRight",
-                                     "eyeBlinkLeft",   "eyeBlinkRight", "mouthSmileLeft",
-                                     "mouthSmileRight"};
-  return std::all_of(std::begin(kNeeded), std::end(kNeeded),
-                     [&](const char* name) { return find(name) >= 0; });
-}
-
-Result<FaceSkin> FaceSkin::Create(const character::Character& character, const ShapeFinder& find) {
-  if (!HasShapeFace(find)) {
+Result<FaceSkin> FaceSkin::Create(const character::Character& character, const ArkitFace& face) {
+  if (!HasShapeFace(face)) {
     return Status(StatusCode::kNotFound,
                   "the blend shapes browInnerUp, browDown, eyeBlink and mouthSmile are not all "
                   "there",
-                  character.name, "name the shapes as ARKit does");
+                  character.name,
+                  "name the shapes as ARKit does, or as another vocabulary of docs/SHAPES.md");
   }
   FaceSkin skin;
   skin.character_ = &character;
-  skin.find_ = find;
+  skin.face_ = &face;
   skin.FindMeshes();
   if (skin.meshes_.empty()) {
     return Status(StatusCode::kNotFound, "no mesh is moved by both browDown and mouthSmile",
@@ -75,12 +61,15 @@ Result<FaceSkin> FaceSkin::Create(const character::Character& character, const S
 
 void FaceSkin::FindMeshes() {
   const auto& meshes = character_->meshes;
+  using Both = std::array<ArkitFace::Coefficient, 2>;
+  const auto brow_shapes = face_->Weights(Both{{{"browDownLeft", 1.0f}, {"browDownRight", 1.0f}}});
+  const auto mouth_shapes =
+      face_->Weights(Both{{{"mouthSmileLeft", 1.0f}, {"mouthSmileRight", 1.0f}}});
   std::size_t most = 0;
   int best = -1;
   for (std::size_t m = 0; m < meshes.size(); ++m) {
-    const std::size_t brows = CountMoved(meshes[m], find_("browDownLeft"), find_("browDownRight"));
-    const std::size_t mouth =
-        CountMoved(meshes[m], find_("mouthSmileLeft"), find_("mouthSmileRight"));
+    const std::size_t brows = CountMoved(meshes[m], brow_shapes);
+    const std::size_t mouth = CountMoved(meshes[m], mouth_shapes);
     // A beard or a mask that moves with both is smaller than the skin below it.
     if (std::min(brows, mouth) <= most) continue;
     most = std::min(brows, mouth);
@@ -138,16 +127,21 @@ Status FaceSkin::MeasureEyes() {
 
 // Seams weld to one vertex, whose halves have equal deltas; the last one counts.
 std::vector<vec3> FaceSkin::AllMoves(std::string_view name) const {
-  const int shape = find_(name);
-  if (shape < 0) return {};
+  const std::vector<float> weights = face_->Weights(name);
   std::vector<vec3> moves(positions_.size(), vec3(0.0f));
   bool any = false;
   for (std::size_t m = 0; m < meshes_.size(); ++m) {
-    const character::MorphTarget* target =
-        TargetOf(character_->meshes[static_cast<std::size_t>(meshes_[m])], shape);
-    if (target == nullptr) continue;
-    any = true;
-    for (const character::MorphDelta& d : target->deltas) moves[welded_[m][d.vertex]] = d.position;
+    const character::Mesh& mesh = character_->meshes[static_cast<std::size_t>(meshes_[m])];
+    std::vector<vec3> of_mesh(mesh.vertices.size(), vec3(0.0f));
+    for (const character::MorphTarget& target : mesh.morph_targets) {
+      const float weight = weights[static_cast<std::size_t>(target.shape)];
+      if (weight == 0.0f) continue;
+      any = true;
+      for (const character::MorphDelta& d : target.deltas) of_mesh[d.vertex] += weight * d.position;
+    }
+    for (std::size_t v = 0; v < of_mesh.size(); ++v) {
+      if (of_mesh[v] != vec3(0.0f)) moves[welded_[m][v]] = of_mesh[v];
+    }
   }
   return any ? moves : std::vector<vec3>();
 }

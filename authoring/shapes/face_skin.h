@@ -8,7 +8,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "authoring/shapes/shape_finder.h"
+#include "authoring/shapes/arkit_face.h"
 #include "base/status.h"
 #include "character/character.h"
 
@@ -18,10 +18,10 @@ namespace furrow::authoring {
 // move, and the other meshes of the same material. Eyes, hair, lashes and teeth are not skin.
 class FaceSkin {
  public:
-  // `character` must outlive the result. `find`: see ShapeFinder. Error: kNotFound (a shape of
-  // HasShapeFace() is missing, or no mesh is moved by both brows and mouth).
+  // `character` and `face`, which is made from it, must outlive the result. Error: kNotFound (a
+  // shape of HasShapeFace() is missing, or no mesh is moved by both brows and mouth).
   [[nodiscard]] static Result<FaceSkin> Create(const character::Character& character,
-                                               const ShapeFinder& find);
+                                               const ArkitFace& face);
 
   // Indices into Character::meshes, and the material that they share (-1: none).
   [[nodiscard]] std::span<const int> meshes() const { return meshes_; }
@@ -36,8 +36,8 @@ class FaceSkin {
   }
 
   // How far ARKit's blend shape `name` moves each vertex at weight 1, metres. Empty if the
-  // character lacks the shape, or if it moves the skin by less than 1e-4 of the head's height: a
-  // name proves nothing.
+  // character has nothing like it (ArkitFace::Has()), or if it moves the skin by less than 1e-4 of
+  // the head's height: a name proves nothing.
   [[nodiscard]] std::vector<glm::vec3> Moves(std::string_view name) const;
 
   // The x between the eyes, and the distance between the upper lids of both eyes, metres.
@@ -52,7 +52,7 @@ class FaceSkin {
   [[nodiscard]] std::vector<glm::vec3> AllMoves(std::string_view name) const;
 
   const character::Character* character_ = nullptr;
-  ShapeFinder find_;
+  const ArkitFace* face_ = nullptr;
   std::vector<int> meshes_;
   int material_ = -1;
   std::vector<glm::vec3> positions_;
@@ -61,9 +61,5 @@ class FaceSkin {
   float middle_ = 0.0f;
   float eye_distance_ = 0.0f;
 };
-
-// True if the character has the shapes without which a face is not recognised: browInnerUp, and
-// browDown, eyeBlink and mouthSmile of both sides.
-[[nodiscard]] bool HasShapeFace(const ShapeFinder& find);
 
 }  // namespace furrow::authoring

@@ -25,15 +25,21 @@ constexpr std::array<std::pair<std::string_view, Kind>, 5> kKindNames = {{{"skin
                                                                           {"other", Kind::kOther}}};
 
 // The first match counts: "eyebrow" and "eyelash" are hair, not eyes.
-constexpr std::array<std::pair<std::string_view, Kind>, 22> kHints = {
-    {{"lash", Kind::kHair},   {"brow", Kind::kHair},    {"hair", Kind::kHair},
-     {"beard", Kind::kHair},  {"eye", Kind::kEye},      {"cornea", Kind::kEye},
-     {"iris", Kind::kEye},    {"cloth", Kind::kCloth},  {"suit", Kind::kCloth},
-     {"shirt", Kind::kCloth}, {"jeans", Kind::kCloth},  {"trouser", Kind::kCloth},
-     {"pants", Kind::kCloth}, {"jacket", Kind::kCloth}, {"sweater", Kind::kCloth},
-     {"dress", Kind::kCloth}, {"fabric", Kind::kCloth}, {"sleeve", Kind::kCloth},
-     {"skin", Kind::kSkin},   {"face", Kind::kSkin},    {"head", Kind::kSkin},
-     {"body", Kind::kSkin}}};
+constexpr std::array<std::pair<std::string_view, Kind>, 42> kHints = {
+    {{"lash", Kind::kHair},     {"brow", Kind::kHair},      {"hair", Kind::kHair},
+     {"beard", Kind::kHair},    {"eye", Kind::kEye},        {"cornea", Kind::kEye},
+     {"iris", Kind::kEye},      {"teeth", Kind::kOther},    {"tooth", Kind::kOther},
+     {"tongue", Kind::kOther},  {"mouth", Kind::kOther},    {"shoe", Kind::kOther},
+     {"boot", Kind::kOther},    {"footwear", Kind::kOther}, {"glasses", Kind::kOther},
+     {"helmet", Kind::kOther},  {"cloth", Kind::kCloth},    {"outfit", Kind::kCloth},
+     {"garment", Kind::kCloth}, {"uniform", Kind::kCloth},  {"costume", Kind::kCloth},
+     {"skirt", Kind::kCloth},   {"coat", Kind::kCloth},     {"hoodie", Kind::kCloth},
+     {"blouse", Kind::kCloth},  {"shorts", Kind::kCloth},   {"vest", Kind::kCloth},
+     {"sock", Kind::kCloth},    {"suit", Kind::kCloth},     {"shirt", Kind::kCloth},
+     {"jeans", Kind::kCloth},   {"trouser", Kind::kCloth},  {"pants", Kind::kCloth},
+     {"jacket", Kind::kCloth},  {"sweater", Kind::kCloth},  {"dress", Kind::kCloth},
+     {"fabric", Kind::kCloth},  {"sleeve", Kind::kCloth},   {"skin", Kind::kSkin},
+     {"face", Kind::kSkin},     {"head", Kind::kSkin},      {"body", Kind::kSkin}}};
 
 Result<Picture> ReadPicture(const gltf::Document& document, std::size_t index,
                             const std::string& name) {

@@ -13,7 +13,7 @@
 
 #include "authoring/bake/surface/uv_check.h"
 #include "authoring/import/model/face_frame.h"
-#include "authoring/shapes/face_skin.h"
+#include "authoring/shapes/arkit_face.h"
 #include "character/package/rig_report.h"
 #include "character/source_notes.h"
 
@@ -67,8 +67,8 @@ bool IsDegenerate(const character::Mesh& mesh, std::size_t triangle) {
 class Checker {
  public:
   Checker(const character::Character& character, const character::SourceNotes& notes,
-          bool rig_given)
-      : character_(character), notes_(notes), rig_given_(rig_given) {}
+          const rig::ShapeMatcher& shapes, bool rig_given)
+      : character_(character), notes_(notes), shapes_(shapes), rig_given_(rig_given) {}
 
   CharacterReport Run(const rig::SkeletonMaps& maps) {
     report_.name = character_.name;
@@ -272,7 +272,7 @@ class Checker {
       Find(Severity::kNote, "roles-missing", {}, "no joint is the " + missing,
            "clothing regions of these joints have no driver");
     }
-    const bool shapes = HasShapeFace(FindShapesByName(character_));
+    const bool shapes = HasShapeFace(ArkitFace(character_, shapes_));
     if (shapes) {
       Find(Severity::kNote, "shape-face", {}, "the face has ARKit's blend shapes",
            "the import gives it masks, a rig and wrinkle maps");
@@ -309,6 +309,7 @@ class Checker {
 
   const character::Character& character_;
   const character::SourceNotes& notes_;
+  const rig::ShapeMatcher& shapes_;
   const bool rig_given_;
   CharacterReport report_;
 };
@@ -328,8 +329,8 @@ std::size_t CharacterReport::Count(Severity severity) const {
 
 CharacterReport CheckCharacter(const character::Character& character,
                                const character::SourceNotes& notes, const rig::SkeletonMaps& maps,
-                               bool rig_given) {
-  return Checker(character, notes, rig_given).Run(maps);
+                               bool rig_given, const rig::ShapeMatcher& shapes) {
+  return Checker(character, notes, shapes, rig_given).Run(maps);
 }
 
 std::size_t CountDegenerateTriangles(const character::Mesh& mesh) {

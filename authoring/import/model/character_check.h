@@ -9,6 +9,7 @@
 #include "authoring/import/model/joint_finder.h"
 #include "character/character.h"
 #include "character/source_notes.h"
+#include "rig/shapes/shape_match.h"
 
 namespace furrow::authoring {
 
@@ -41,8 +42,9 @@ struct CharacterReport {
 };
 
 // Checks a character that was read leniently, together with the notes of its reader. `maps`:
-// skeleton maps that give joints their roles by name. `rig_given`: the character has a rig to
-// check; else the report has the note no-rig.
+// skeleton maps that give joints their roles by name; `shapes`: shape maps that know blend shapes
+// by other names than ARKit's. `rig_given`: the character has a rig to check; else the report has
+// the note no-rig.
 //
 // Codes
 //   errors    no-skin, uv-missing, unskinned-vertices, rig-binding
@@ -53,7 +55,8 @@ struct CharacterReport {
 //             roles-missing, shape-face, no-face-joints, no-rig
 [[nodiscard]] CharacterReport CheckCharacter(const character::Character& character,
                                              const character::SourceNotes& notes,
-                                             const rig::SkeletonMaps& maps, bool rig_given);
+                                             const rig::SkeletonMaps& maps, bool rig_given,
+                                             const rig::ShapeMatcher& shapes = {});
 
 // Counts triangles without area: coinciding corners or corners on one line. Triangles that a morph
 // target opens do not count.

@@ -96,7 +96,8 @@ Result<ImportedModel> ImportModel(const fs::path& path, const rig::SkeletonMaps&
   FURROW_RETURN_IF_ERROR(opened);
   DropDegenerates(&*opened);
   if (options.repair) BindUnskinned(&*opened);
-  const CharacterReport report = CheckCharacter(opened->character, opened->notes, maps, false);
+  const CharacterReport report =
+      CheckCharacter(opened->character, opened->notes, maps, false, options.shapes);
   ImportedModel imported;
   imported.remarks = std::move(opened->remarks);
   imported.warnings = opened->character.warnings;

@@ -10,6 +10,7 @@
 #include "base/status.h"
 #include "character/character.h"
 #include "character/source_notes.h"
+#include "rig/shapes/shape_match.h"
 #include "rig/skeleton_map.h"
 
 namespace furrow::authoring {
@@ -33,6 +34,7 @@ struct OpenedModel {
 struct ModelOptions {
   bool repair = false;         // binds unskinned vertices
   std::optional<float> scale;  // metres per unit of the file; empty: derived from the height
+  rig::ShapeMatcher shapes;    // shape maps that know blend shapes by other names than ARKit's
 };
 
 // A model that is ready for drawing.

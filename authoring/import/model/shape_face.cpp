@@ -148,12 +148,12 @@ void UseMasks(const std::array<std::string, 2>& pictures, wrinkle::Rig* rig) {
   }
 }
 
-std::vector<std::string> MissingShapes(const FaceSkin& skin, const ShapeFinder& find) {
+std::vector<std::string> MissingShapes(const FaceSkin& skin, const ArkitFace& face) {
   std::vector<std::string> missing, still;
   for (const std::string_view shape : rig::ArkitShapes()) {
-    // These move eyes and tongue, which are not skin.
-    if (shape.starts_with("eyeLook") || shape == "tongueOut") continue;
-    if (find(shape) < 0) {
+    // These move eyes and tongue, which are not skin, or act on an open jaw only.
+    if (shape.starts_with("eyeLook") || shape == "tongueOut" || shape == "mouthClose") continue;
+    if (!face.Has(shape)) {
       missing.emplace_back(shape);
     } else if (skin.Moves(shape).empty()) {
       still.emplace_back(shape);
@@ -199,12 +199,11 @@ std::vector<std::string> ChooseAtlases(int first, Character* character) {
   return without;
 }
 
-Result<std::vector<std::string>> ProposeShapeFace(const wrinkle::Rig& arkit,
-                                                  const ShapeFinder& find, int size,
-                                                  Character* character) {
-  const auto skin = FaceSkin::Create(*character, find);
+Result<std::vector<std::string>> ProposeShapeFace(const wrinkle::Rig& arkit, const ArkitFace& face,
+                                                  int size, Character* character) {
+  const auto skin = FaceSkin::Create(*character, face);
   FURROW_RETURN_IF_ERROR(skin);
-  std::vector<std::string> remarks = MissingShapes(*skin, find);
+  std::vector<std::string> remarks = MissingShapes(*skin, face);
   const FaceMasks masks = ProposeFaceMasks(*skin, FindShapeLandmarks(*skin));
   auto pictures = PaintFaceMasks(*character, *skin, masks, size);
   MarkFace(skin->material(), character);
@@ -229,12 +228,12 @@ Result<std::vector<std::string>> ProposeShapeFace(const wrinkle::Rig& arkit,
   return remarks;
 }
 
-Result<std::vector<std::string>> BakeShapeFace(const ShapeFinder& find, int size,
+Result<std::vector<std::string>> BakeShapeFace(const ArkitFace& face, int size,
                                                const std::function<bool(float)>& progress,
                                                Character* character) {
   std::vector<std::string> remarks;
   FURROW_RETURN_IF_ERROR(CheckSurfaces(*character, {}, &remarks));
-  auto poses = CollectBakePoses(*character, {}, find);
+  auto poses = CollectBakePoses(*character, {}, face);
   FURROW_RETURN_IF_ERROR(poses);
   remarks.insert(remarks.end(), poses->notes.begin(), poses->notes.end());
   BakeOptions options;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "authoring/shapes/shape_finder.h"
+#include "authoring/shapes/arkit_face.h"
 #include "base/status.h"
 #include "character/character.h"
 
@@ -20,9 +20,10 @@ namespace furrow::authoring {
 // - Regions of cloth need a material of cloth; else they are left out.
 // Returns remarks, one sentence each: shapes that are missing or move nothing, and materials
 // without wrinkles. Wrinkle maps have no pictures afterwards; see BakeShapeFace().
-// Errors: those of FaceSkin::Create(), which leave the character unchanged.
+// `face`: made from the character. Errors: those of FaceSkin::Create(), which leave the character
+// unchanged.
 [[nodiscard]] Result<std::vector<std::string>> ProposeShapeFace(const wrinkle::Rig& arkit,
-                                                                const ShapeFinder& find, int size,
+                                                                const ArkitFace& face, int size,
                                                                 character::Character* character);
 
 // Bakes and embeds the wrinkle maps of the character's rig from the strain of its shapes, of their
@@ -30,7 +31,7 @@ namespace furrow::authoring {
 // of CheckSurfaces() and notes of CollectBakePoses().
 // Errors: those of these, of Bake() and of EmbedMaps().
 [[nodiscard]] Result<std::vector<std::string>> BakeShapeFace(
-    const ShapeFinder& find, int size, const std::function<bool(float)>& progress,
+    const ArkitFace& face, int size, const std::function<bool(float)>& progress,
     character::Character* character);
 
 // Selects, for skin and for cloth, the materials that share one wrinkle atlas, and clears

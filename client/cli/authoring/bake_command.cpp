@@ -89,7 +89,10 @@ Result<BakeJob> Prepare(const BakeArguments& arguments) {
   auto character = LoadCharacterArgument(arguments.character, arguments.rig, arguments.read);
   FURROW_RETURN_IF_ERROR(character);
   job.character = std::move(*character);
-  auto poses = authoring::CollectBakePoses(job.character, arguments.maps);
+  const auto shapes = LoadShapeMatcher({});
+  FURROW_RETURN_IF_ERROR(shapes);
+  auto poses = authoring::CollectBakePoses(job.character, arguments.maps,
+                                           authoring::ArkitFace(job.character, *shapes));
   if (!poses.ok()) {
     const Status s = poses.status();
     const std::string field = s.where().empty() ? "" : ": " + s.where();

@@ -53,8 +53,10 @@ int Check(const CheckArguments& arguments) {
   if (!rig_given.ok()) return Fail(rig_given.status());
   PrintNotes(opened->remarks);
   PrintWarnings(opened->character.warnings);
+  const auto shapes = LoadShapeMatcher({});
+  if (!shapes.ok()) return Fail(shapes.status());
   const authoring::CharacterReport report =
-      authoring::CheckCharacter(opened->character, opened->notes, *maps, *rig_given);
+      authoring::CheckCharacter(opened->character, opened->notes, *maps, *rig_given, *shapes);
   const std::string text = arguments.json ? ToJson(report) : ToText(report);
   if (Status s = WriteStandardOutput(
           std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));

@@ -10,7 +10,7 @@
 #include "authoring/import/makehuman/makehuman.h"
 #include "authoring/import/model/import_model.h"
 #include "authoring/import/model/shape_face.h"
-#include "authoring/shapes/face_skin.h"
+#include "authoring/shapes/arkit_face.h"
 #include "base/status.h"
 #include "base/text.h"
 #include "character/package/package.h"
@@ -61,22 +61,23 @@ int ImportFolder(const ImportArguments& arguments) {
 }
 
 // Gives a face of blend shapes its masks, its part of the rig and its wrinkle maps.
-Status AddFaceOfShapes(const ImportArguments& arguments, character::Character* character) {
+Status AddFaceOfShapes(const ImportArguments& arguments, const authoring::ArkitFace& face,
+                       character::Character* character) {
   const auto arkit = LoadRigArgument("arkit");
   FURROW_RETURN_IF_ERROR(arkit);
-  const authoring::ShapeFinder find = authoring::FindShapesByName(*character);
   const int size = arguments.makehuman.texture_size;
-  const auto proposed = authoring::ProposeShapeFace(*arkit, find, size, character);
+  const auto proposed = authoring::ProposeShapeFace(*arkit, face, size, character);
   if (proposed.status().code() == StatusCode::kNotFound) {
     PrintWarnings({"the face gets no wrinkles: " + proposed.status().ToString()});
     return {};
   }
   FURROW_RETURN_IF_ERROR(proposed);
+  if (!face.description().empty()) PrintNotes({face.description()});
   PrintNotes(*proposed);
   constexpr int kSteps = 1000;
   Progress bar("baking", kSteps);
   const auto baked = authoring::BakeShapeFace(
-      find, size,
+      face, size,
       [&](float done) {
         bar.Set(static_cast<std::int64_t>(done * kSteps));
         return !Interrupted();
@@ -95,7 +96,8 @@ Status AttachRigTo(const ImportArguments& arguments, character::Character* chara
     return character::AttachRig(std::move(*rig), ResolveRigPath(arguments.rig).parent_path(),
                                 character);
   }
-  const bool shapes = authoring::HasShapeFace(authoring::FindShapesByName(*character));
+  const authoring::ArkitFace face(*character, arguments.model.shapes);
+  const bool shapes = authoring::HasShapeFace(face);
   auto proposal = ProposeFromDefault(character->skeleton, arguments.map,
                                      shapes ? ProposalPart::kBody : ProposalPart::kBodyAndFace);
   if (proposal.ok()) {
@@ -107,11 +109,14 @@ Status AttachRigTo(const ImportArguments& arguments, character::Character* chara
   } else if (!shapes) {
     PrintWarnings({"no rig could be proposed: " + proposal.status().ToString()});
   }
-  return shapes ? AddFaceOfShapes(arguments, character) : Status();
+  return shapes ? AddFaceOfShapes(arguments, face, character) : Status();
 }
 
-int ImportFile(const ImportArguments& arguments) {
+int ImportFile(ImportArguments arguments) {
   CatchInterrupts();
+  auto shapes = LoadShapeMatcher({});
+  if (!shapes.ok()) return Fail(shapes.status());
+  arguments.model.shapes = std::move(*shapes);
   const auto maps = rig::SkeletonMaps::Load(arguments.map);
   if (!maps.ok()) return Fail(maps.status());
   auto imported = authoring::ImportModel(arguments.in, *maps, arguments.model);

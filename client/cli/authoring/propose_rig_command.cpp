@@ -6,7 +6,7 @@
 
 #include "authoring/import/model/import_model.h"
 #include "authoring/import/model/shape_face.h"
-#include "authoring/shapes/face_skin.h"
+#include "authoring/shapes/arkit_face.h"
 #include "base/files.h"
 #include "base/status.h"
 #include "base/text.h"
@@ -48,16 +48,15 @@ Result<RigSubject> LoadRigSubject(const std::string& file) {
 
 // Adds the face of a model with ARKit's blend shapes to a proposal, and writes its masks beside the
 // rig.
-Status ProposeFaceOfShapes(const ProposeArguments& arguments, character::Character character,
-                           authoring::RigProposal* proposal) {
+Status ProposeFaceOfShapes(const ProposeArguments& arguments, const authoring::ArkitFace& face,
+                           character::Character character, authoring::RigProposal* proposal) {
   constexpr int kMaskSize = 1024;
   const auto arkit = LoadRigArgument("arkit");
   FURROW_RETURN_IF_ERROR(arkit);
   character.rig = std::move(proposal->rig);
   // A rig beside the model names files; the model's own pictures keep their names.
   for (character::Picture& picture : character.pictures) picture.name.clear();
-  const auto remarks = authoring::ProposeShapeFace(*arkit, authoring::FindShapesByName(character),
-                                                   kMaskSize, &character);
+  const auto remarks = authoring::ProposeShapeFace(*arkit, face, kMaskSize, &character);
   FURROW_RETURN_IF_ERROR(remarks);
   proposal->remarks.insert(proposal->remarks.end(), remarks->begin(), remarks->end());
   const std::filesystem::path folder = std::filesystem::path(arguments.out).parent_path();
@@ -75,7 +74,10 @@ Status ProposeFaceOfShapes(const ProposeArguments& arguments, character::Charact
 
 // The rig for a skeleton, and for the face of the model that it belongs to, if there is one.
 Result<authoring::RigProposal> ProposeFor(const ProposeArguments& arguments, RigSubject subject) {
-  const bool shapes = authoring::HasShapeFace(authoring::FindShapesByName(subject.model));
+  const auto matcher = LoadShapeMatcher({});
+  FURROW_RETURN_IF_ERROR(matcher);
+  const authoring::ArkitFace face(subject.model, *matcher);
+  const bool shapes = authoring::HasShapeFace(face);
   auto proposal = ProposeFromDefault(subject.skeleton, arguments.map,
                                      shapes ? ProposalPart::kBody : ProposalPart::kBodyAndFace);
   if (shapes && proposal.status().code() == StatusCode::kNotFound) {
@@ -83,7 +85,8 @@ Result<authoring::RigProposal> ProposeFor(const ProposeArguments& arguments, Rig
   }
   FURROW_RETURN_IF_ERROR(proposal);
   if (shapes) {
-    FURROW_RETURN_IF_ERROR(ProposeFaceOfShapes(arguments, std::move(subject.model), &*proposal));
+    FURROW_RETURN_IF_ERROR(
+        ProposeFaceOfShapes(arguments, face, std::move(subject.model), &*proposal));
   }
   return proposal;
 }

@@ -86,7 +86,7 @@ TEST(ShapeBake, RejectsBadShapeWeights) {
 
 TEST(ShapeBake, PosesTheShapesThatDriversName) {
   character::Character character = Squeezable();
-  character.shapes = {"Press_L"};
+  character.shapes = {"PressLeft"};
   wrinkle::Rig& rig = character.rig;
   rig.drivers.resize(2);
   for (wrinkle::Driver& driver : rig.drivers) driver.kind = wrinkle::Driver::Kind::kBlendShape;
@@ -102,7 +102,7 @@ TEST(ShapeBake, PosesTheShapesThatDriversName) {
   EXPECT_EQ(found->poses[0].weight, 0.8f);
   EXPECT_EQ(found->poses[0].skin_matrices.size(), 2u);
   ASSERT_EQ(found->notes.size(), 1u);
-  EXPECT_THAT(found->notes[0], HasSubstr("no shape 'pressRight'"));
+  EXPECT_THAT(found->notes[0], HasSubstr("no shape of the character means pressRight;"));
 }
 
 // Closed lips share their positions and joints. Only a shape parts them.

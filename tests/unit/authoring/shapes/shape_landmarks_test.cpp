@@ -10,7 +10,7 @@
 #include "authoring/generator/blend_shapes/blend_shape_face.h"
 #include "authoring/generator/default_character.h"
 #include "authoring/generator/head/head_shape.h"
-#include "authoring/shapes/shape_finder.h"
+#include "authoring/shapes/arkit_face.h"
 #include "rig/rig_file.h"
 
 namespace furrow::authoring {
@@ -23,15 +23,21 @@ class ShapeLandmarksTest : public ::testing::Test {
     ASSERT_TRUE(rig.ok()) << rig.status().ToString();
     face_ = new character::Character(MakeDefaultCharacter(*rig, {.texture_size = 64}));
     ASSERT_TRUE(MakeBlendShapeFace(face_).ok());
+    arkit_ = new ArkitFace(*face_, rig::ShapeMatcher());
   }
-  static void TearDownTestSuite() { delete face_; }
+  static void TearDownTestSuite() {
+    delete arkit_;
+    delete face_;
+  }
   static character::Character* face_;
+  static ArkitFace* arkit_;
 };
 character::Character* ShapeLandmarksTest::face_ = nullptr;
+ArkitFace* ShapeLandmarksTest::arkit_ = nullptr;
 
 // The default head has known proportions: head_shape.h, in centimetres from between the eyes.
 TEST_F(ShapeLandmarksTest, LieAtTheirPlacesOnTheDefaultHead) {
-  const auto skin = FaceSkin::Create(*face_, FindShapesByName(*face_));
+  const auto skin = FaceSkin::Create(*face_, *arkit_);
   ASSERT_TRUE(skin.ok()) << skin.status().ToString();
   EXPECT_NEAR(skin->middle(), 0.0f, 0.002f);
   EXPECT_NEAR(skin->eye_distance(), 0.02f * kEyeCentre.x, 0.006f);
@@ -57,7 +63,7 @@ TEST_F(ShapeLandmarksTest, LieAtTheirPlacesOnTheDefaultHead) {
 }
 
 TEST_F(ShapeLandmarksTest, OnlyTheMeshThatBrowsAndMouthMoveIsSkin) {
-  const auto skin = FaceSkin::Create(*face_, FindShapesByName(*face_));
+  const auto skin = FaceSkin::Create(*face_, *arkit_);
   ASSERT_TRUE(skin.ok());
   ASSERT_EQ(skin->meshes().size(), 1u);
   EXPECT_EQ(face_->meshes[static_cast<std::size_t>(skin->meshes()[0])].name, "head");
@@ -76,7 +82,8 @@ TEST_F(ShapeLandmarksTest, ExchangedEyesAreNoFace) {
       name = "eyeBlinkLeft";
     }
   }
-  const auto skin = FaceSkin::Create(face, FindShapesByName(face));
+  const ArkitFace arkit(face, rig::ShapeMatcher());
+  const auto skin = FaceSkin::Create(face, arkit);
   EXPECT_EQ(skin.status().code(), StatusCode::kNotFound);
 }
 
@@ -85,7 +92,8 @@ TEST_F(ShapeLandmarksTest, MissingShapesLeaveTheirLandmarksEmpty) {
   for (std::string& name : face.shapes) {
     if (name.starts_with("noseSneer") || name == "jawOpen") name += "X";
   }
-  const auto skin = FaceSkin::Create(face, FindShapesByName(face));
+  const ArkitFace arkit(face, rig::ShapeMatcher());
+  const auto skin = FaceSkin::Create(face, arkit);
   ASSERT_TRUE(skin.ok());
   const ShapeLandmarks at = FindShapeLandmarks(*skin);
   EXPECT_FALSE(at.nose_wing.left);

@@ -23,6 +23,7 @@
 #include "authoring/shapes/region_masks.h"
 #include "rig/rig_check.h"
 #include "rig/rig_file.h"
+#include "tests/unit/rig/shapes/shipped_shape_maps.h"
 #include "wrinkle/solver/solver.h"
 
 namespace furrow::authoring {
@@ -36,6 +37,11 @@ wrinkle::Rig Shipped(const std::string& name) {
   auto rig = rig::LoadRig(std::filesystem::path(FURROW_SOURCE_DIR) / "rig/rigs" / (name + ".json"));
   EXPECT_TRUE(rig.ok()) << rig.status().ToString();
   return rig.ok() ? std::move(rig).value() : wrinkle::Rig();
+}
+
+ArkitFace ArkitFaceOf(const character::Character& character) {
+  static const rig::ShapeMatcher matcher = rig::ShippedShapeMatcher();
+  return ArkitFace(character, matcher);
 }
 
 // The default head as others would export it: shapes, textures and a body's joints, but no rig and
@@ -54,8 +60,7 @@ class ShapeFaceTest : public ::testing::Test {
 
   static character::Character Proposed(std::vector<std::string>* remarks = nullptr) {
     character::Character character = *avatar_;
-    const auto said =
-        ProposeShapeFace(Shipped("arkit"), FindShapesByName(character), 256, &character);
+    const auto said = ProposeShapeFace(Shipped("arkit"), ArkitFaceOf(character), 256, &character);
     EXPECT_TRUE(said.ok()) << said.status().ToString();
     if (remarks != nullptr && said.ok()) *remarks = *said;
     return character;
@@ -139,7 +144,7 @@ TEST_F(ShapeFaceTest, KeepsTheBodysDrivers) {
   for (wrinkle::Region& region : c.rig.regions) {
     region.mask = wrinkle::Mask{.kind = wrinkle::Mask::Kind::kSkinning, .texture = {}};
   }
-  ASSERT_TRUE(ProposeShapeFace(Shipped("arkit"), FindShapesByName(c), 64, &c).ok());
+  ASSERT_TRUE(ProposeShapeFace(Shipped("arkit"), ArkitFaceOf(c), 64, &c).ok());
   EXPECT_TRUE(rig::CheckRig(c.rig).ok()) << rig::CheckRig(c.rig).ToString();
   std::set<std::string> names;
   for (const wrinkle::Region& region : c.rig.regions) EXPECT_TRUE(names.insert(region.name).second);
@@ -157,10 +162,31 @@ TEST_F(ShapeFaceTest, FindsShapesUnderOtherSpellings) {
     if (shape.ends_with("Left")) shape = "Face|" + shape.substr(0, shape.size() - 4) + "_L";
     if (shape.ends_with("Right")) shape = "Face|" + shape.substr(0, shape.size() - 5) + "_R";
   }
-  const auto find = FindShapesByName(c);
-  EXPECT_TRUE(HasShapeFace(find));
-  EXPECT_EQ(find("mouthSmileLeft"), FindShapesByName(*avatar_)("mouthSmileLeft"));
-  EXPECT_EQ(find("mouthSmile"), -1);
+  const ArkitFace face = ArkitFaceOf(c);
+  EXPECT_TRUE(HasShapeFace(face));
+  EXPECT_EQ(face.Weights("mouthSmileLeft"), ArkitFaceOf(*avatar_).Weights("mouthSmileLeft"));
+  EXPECT_FALSE(face.Has("mouthSmile"));
+}
+
+// The same face in Character Creator's vocabulary gets the same masks.
+TEST_F(ShapeFaceTest, ReadsOtherVocabularies) {
+  character::Character c = *avatar_;
+  const std::map<std::string, std::string> kNames = {
+      {"browInnerUp", "A01_Brow_Inner_Up"},        {"browDownLeft", "A02_Brow_Down_Left"},
+      {"browDownRight", "A03_Brow_Down_Right"},    {"eyeBlinkLeft", "A14_Eye_Blink_Left"},
+      {"eyeBlinkRight", "A15_Eye_Blink_Right"},    {"mouthSmileLeft", "A38_Mouth_Smile_Left"},
+      {"mouthSmileRight", "A39_Mouth_Smile_Right"}};
+  for (std::string& shape : c.shapes) {
+    if (kNames.contains(shape)) shape = kNames.at(shape);
+  }
+  const ArkitFace face = ArkitFaceOf(c);
+  EXPECT_THAT(face.description(), HasSubstr("'cc3'"));
+  ASSERT_TRUE(ProposeShapeFace(Shipped("arkit"), face, 256, &c).ok());
+  const character::Character same = Proposed();
+  for (const char* name : {"face_masks_a", "face_masks_b"}) {
+    EXPECT_EQ(c.pictures[c.FindRigPicture(name)].pixels,
+              same.pictures[same.FindRigPicture(name)].pixels);
+  }
 }
 
 TEST_F(ShapeFaceTest, SaysWhichShapesAreMissingOrStill) {
@@ -170,10 +196,13 @@ TEST_F(ShapeFaceTest, SaysWhichShapesAreMissingOrStill) {
   };
   const int puff = index("cheekPuff");
   for (character::Mesh& mesh : c.meshes) {
-    std::erase_if(mesh.morph_targets, [&](const auto& t) { return t.shape == puff; });
+    for (character::MorphTarget& target : mesh.morph_targets) {
+      if (target.shape != puff) continue;
+      for (character::MorphDelta& delta : target.deltas) delta.position *= 1e-6f;
+    }
   }
   c.shapes[static_cast<std::size_t>(index("noseSneerLeft"))] = "other";
-  const auto remarks = ProposeShapeFace(Shipped("arkit"), FindShapesByName(c), 64, &c);
+  const auto remarks = ProposeShapeFace(Shipped("arkit"), ArkitFaceOf(c), 64, &c);
   ASSERT_TRUE(remarks.ok());
   EXPECT_THAT(*remarks, Contains(HasSubstr("lacks the blend shapes noseSneerLeft;")));
   EXPECT_THAT(*remarks, Contains(HasSubstr("cheekPuff exist, but do not move")));
@@ -184,14 +213,14 @@ TEST_F(ShapeFaceTest, WithoutBrowsThereIsNoFace) {
   for (std::string& shape : c.shapes) {
     if (shape == "browDownLeft") shape = "other";
   }
-  const auto remarks = ProposeShapeFace(Shipped("arkit"), FindShapesByName(c), 64, &c);
+  const auto remarks = ProposeShapeFace(Shipped("arkit"), ArkitFaceOf(c), 64, &c);
   EXPECT_EQ(remarks.status().code(), StatusCode::kNotFound);
   EXPECT_TRUE(c.rig.drivers.empty());
 }
 
 TEST_F(ShapeFaceTest, SingleShapesAndCombinationsArePosed) {
   const character::Character c = Proposed();
-  const auto poses = CollectBakePoses(c);
+  const auto poses = CollectBakePoses(c, {}, ArkitFaceOf(c));
   ASSERT_TRUE(poses.ok()) << poses.status().ToString();
   EXPECT_THAT(poses->notes, IsEmpty());
   int several = 0, brow = 0;
@@ -208,7 +237,7 @@ TEST_F(ShapeFaceTest, SingleShapesAndCombinationsArePosed) {
 // The share of the texels of a region that the folds of a map raise or lower.
 TEST_F(ShapeFaceTest, FoldsLieInTheRegionsOfTheirShapes) {
   character::Character c = Proposed();
-  const auto said = BakeShapeFace(FindShapesByName(c), 256, {}, &c);
+  const auto said = BakeShapeFace(ArkitFaceOf(c), 256, {}, &c);
   ASSERT_TRUE(said.ok()) << said.status().ToString();
   EXPECT_TRUE(rig::CheckRig(c.rig).ok());
   const std::map<std::string, std::vector<std::string>> kFolds = {
@@ -249,7 +278,7 @@ TEST_F(ShapeFaceTest, OverlappingMaterialsLeaveTheFaceItsWrinkles) {
   copy.material = static_cast<int>(c.materials.size());
   c.materials.push_back(body);
   c.meshes.push_back(copy);
-  const auto remarks = ProposeShapeFace(Shipped("arkit"), FindShapesByName(c), 64, &c);
+  const auto remarks = ProposeShapeFace(Shipped("arkit"), ArkitFaceOf(c), 64, &c);
   ASSERT_TRUE(remarks.ok());
   EXPECT_THAT(*remarks, Contains(HasSubstr("no wrinkles on body")));
   EXPECT_TRUE(c.materials[static_cast<std::size_t>(face)].wrinkles);
@@ -269,7 +298,7 @@ TEST_F(ShapeFaceTest, MirroredHalvesShareTheirMasks) {
     if (std::abs(p.x) > 12.0f) continue;
     vertex.uv = {0.05f + 0.28f * std::abs(std::atan2(p.x, p.z)), 0.5f - 0.02f * p.y};
   }
-  ASSERT_TRUE(ProposeShapeFace(Shipped("arkit"), FindShapesByName(c), 128, &c).ok());
+  ASSERT_TRUE(ProposeShapeFace(Shipped("arkit"), ArkitFaceOf(c), 128, &c).ok());
   for (const char* name : {"face_masks_a", "face_masks_b"}) {
     const character::Picture& mask = c.pictures[c.FindRigPicture(name)];
     const std::size_t first = std::string(name) == "face_masks_a" ? 0 : 2;
