@@ -146,6 +146,18 @@ std::vector<vec3> FaceSkin::AllMoves(std::string_view name) const {
   return any ? moves : std::vector<vec3>();
 }
 
+std::vector<std::array<std::uint32_t, 3>> FaceSkin::Triangles() const {
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  for (std::size_t m = 0; m < meshes_.size(); ++m) {
+    const auto& indices = character_->meshes[static_cast<std::size_t>(meshes_[m])].indices;
+    for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
+      triangles.push_back(
+          {welded_[m][indices[i]], welded_[m][indices[i + 1]], welded_[m][indices[i + 2]]});
+    }
+  }
+  return triangles;
+}
+
 std::vector<vec3> FaceSkin::Moves(std::string_view name) const {
   std::vector<vec3> moves = AllMoves(name);
   const float least = kLeastMove * kHeadPerEyes * eye_distance_;

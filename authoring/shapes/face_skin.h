@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -34,6 +35,9 @@ class FaceSkin {
   [[nodiscard]] std::span<const std::uint32_t> Around(std::size_t vertex) const {
     return neighbours_[vertex];
   }
+
+  // The triangles of all meshes, as welded vertices.
+  [[nodiscard]] std::vector<std::array<std::uint32_t, 3>> Triangles() const;
 
   // How far ARKit's blend shape `name` moves each vertex at weight 1, metres. Empty if the
   // character has nothing like it (ArkitFace::Has()), or if it moves the skin by less than 1e-4 of

@@ -9,6 +9,7 @@
 
 #include "authoring/paint/canvas.h"
 #include "authoring/paint/surface_texels.h"
+#include "authoring/shapes/face_measures.h"
 #include "base/scalar.h"
 
 namespace furrow::authoring {
@@ -27,32 +28,11 @@ float Fade(float from, float to, float x) {
   return from < to ? Smoothstep(from, to, x) : 1.0f - Smoothstep(to, from, x);
 }
 
-// Heights and widths of the face, metres. Places that no shape shows follow from the others by the
-// proportions of an adult face.
-struct Frame {
-  float unit;  // eye distance
-  float lid, brow, corner, wing, wing_x;
-
-  Frame(const FaceSkin& skin, const ShapeLandmarks& at) : unit(skin.eye_distance()) {
-    const auto y = [](const LandmarkPair& pair, float otherwise) {
-      if (!pair.left || !pair.right) return otherwise;
-      return 0.5f * (pair.left->y + pair.right->y);
-    };
-    lid = y(at.upper_lid, 0.0f);
-    brow = std::max(y(at.brow_inner, lid + 0.35f * unit), lid + 0.15f * unit);
-    corner = std::min(y(at.mouth_corner, lid - 1.1f * unit), lid - 0.5f * unit);
-    const float between = corner + 0.45f * (lid - corner);
-    wing = std::clamp(y(at.nose_wing, between), corner + 0.25f * (lid - corner),
-                      lid - 0.25f * (lid - corner));
-    wing_x = 0.3f * unit;
-  }
-};
-
 class MaskMaker {
  public:
   MaskMaker(const FaceSkin& skin, const ShapeLandmarks& landmarks)
-      : skin_(skin), frame_(skin, landmarks) {
-    const float ramp = kSideRamp * frame_.unit;
+      : skin_(skin), face_(MeasureFace(skin, landmarks)) {
+    const float ramp = kSideRamp * face_.eye_distance;
     for (const vec3& p : skin.positions()) {
       left_.push_back(Smoothstep(-ramp, ramp, p.x - skin.middle()));
     }
@@ -124,8 +104,8 @@ class MaskMaker {
   // Brow and forehead. The shapes of the brow also move the upper lid, which is the eye's.
   Values Brow(bool left) const {
     const Values above = Window([&](float, float y) {
-      return Fade(frame_.lid + 0.15f * (frame_.brow - frame_.lid),
-                  frame_.lid + 0.65f * (frame_.brow - frame_.lid), y);
+      return Fade(face_.lid + 0.15f * (face_.brow - face_.lid),
+                  face_.lid + 0.65f * (face_.brow - face_.lid), y);
     });
     Values mask =
         Largest({Sided("browDown", left), Sided("browOuterUp", left), "browInnerUp"}, above);
@@ -144,14 +124,16 @@ class MaskMaker {
       most = std::max(most, both[v]);
     }
     // Shapes that end at the middle have no product, so the place decides.
-    const float low = frame_.brow - 0.25f * frame_.unit, high = frame_.brow + 0.3f * frame_.unit;
+    const float low = face_.brow - 0.25f * face_.eye_distance,
+                high = face_.brow + 0.3f * face_.eye_distance;
     for (std::size_t v = 0; v < both.size(); ++v) {
       const vec3& p = skin_.positions()[v];
       // The forehead above is the brows'.
-      both[v] *= Fade(frame_.brow + 0.55f * frame_.unit, frame_.brow + 0.25f * frame_.unit, p.y);
-      const float x = std::abs(p.x - skin_.middle()) / frame_.unit;
-      const float place = Fade(0.32f, 0.1f, x) * Fade(low - 0.15f * frame_.unit, low, p.y) *
-                          Fade(high + 0.25f * frame_.unit, high, p.y);
+      both[v] *= Fade(face_.brow + 0.55f * face_.eye_distance,
+                      face_.brow + 0.25f * face_.eye_distance, p.y);
+      const float x = std::abs(p.x - skin_.middle()) / face_.eye_distance;
+      const float place = Fade(0.32f, 0.1f, x) * Fade(low - 0.15f * face_.eye_distance, low, p.y) *
+                          Fade(high + 0.25f * face_.eye_distance, high, p.y);
       const float near = std::max(left[v], right[v]);
       both[v] = std::max(most > 0.05f ? both[v] / most : 0.0f, place * near);
     }
@@ -161,9 +143,9 @@ class MaskMaker {
   // The sneer moves the cheek farthest, so the nose has a window of its own.
   Values Nose() const {
     const Values window = Window([&](float x, float y) {
-      return Fade(1.9f * frame_.wing_x, 1.2f * frame_.wing_x, std::abs(x)) *
-             Fade(frame_.wing - 0.2f * frame_.unit, frame_.wing, y) *
-             Fade(frame_.lid + 0.15f * frame_.unit, frame_.lid - 0.1f * frame_.unit, y);
+      return Fade(1.9f * face_.wing_x, 1.2f * face_.wing_x, std::abs(x)) *
+             Fade(face_.wing - 0.2f * face_.eye_distance, face_.wing, y) *
+             Fade(face_.lid + 0.15f * face_.eye_distance, face_.lid - 0.1f * face_.eye_distance, y);
     });
     return Largest({"noseSneerLeft", "noseSneerRight"}, window);
   }
@@ -171,8 +153,10 @@ class MaskMaker {
   // Lower lid, pouch and crow's feet, without the rims of the lids.
   Values Eye(bool left) const {
     const Values window = Window([&](float, float y) {
-      return Fade(frame_.brow + 0.1f * frame_.unit, frame_.brow - 0.1f * frame_.unit, y) *
-             Fade(frame_.wing - 0.1f * frame_.unit, frame_.wing + 0.2f * frame_.unit, y);
+      return Fade(face_.brow + 0.1f * face_.eye_distance, face_.brow - 0.1f * face_.eye_distance,
+                  y) *
+             Fade(face_.wing - 0.1f * face_.eye_distance, face_.wing + 0.2f * face_.eye_distance,
+                  y);
     });
     Values mask = Largest({Sided("cheekSquint", left), Sided("eyeSquint", left)}, window);
     const Values lid = Acts(Sided("eyeBlink", left), Values(mask.size(), 1.0f));
@@ -183,7 +167,8 @@ class MaskMaker {
 
   Values Mouth(bool left) const {
     const Values window = Window([&](float, float y) {
-      return Fade(frame_.wing + 0.45f * frame_.unit, frame_.wing + 0.1f * frame_.unit, y);
+      return Fade(face_.wing + 0.45f * face_.eye_distance, face_.wing + 0.1f * face_.eye_distance,
+                  y);
     });
     Values mask =
         Largest({Sided("mouthSmile", left), Sided("mouthFrown", left), "mouthPucker"}, window);
@@ -213,7 +198,7 @@ class MaskMaker {
   }
 
   const FaceSkin& skin_;
-  Frame frame_;
+  FaceMeasures face_;
   Values left_;
 };
 

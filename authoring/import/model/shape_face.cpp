@@ -18,7 +18,9 @@
 #include "authoring/shapes/face_skin.h"
 #include "authoring/shapes/region_masks.h"
 #include "authoring/shapes/shape_landmarks.h"
+#include "authoring/shapes/stroke_transfer.h"
 #include "base/status.h"
+#include "base/text.h"
 #include "rig/shapes/arkit_shapes.h"
 
 namespace furrow::authoring {
@@ -228,7 +230,8 @@ Result<std::vector<std::string>> ProposeShapeFace(const wrinkle::Rig& arkit, con
   return remarks;
 }
 
-Result<std::vector<std::string>> BakeShapeFace(const ArkitFace& face, int size,
+Result<std::vector<std::string>> BakeShapeFace(const ArkitFace& face,
+                                               std::span<const BakeStroke> strokes, int size,
                                                const std::function<bool(float)>& progress,
                                                Character* character) {
   std::vector<std::string> remarks;
@@ -236,10 +239,20 @@ Result<std::vector<std::string>> BakeShapeFace(const ArkitFace& face, int size,
   auto poses = CollectBakePoses(*character, {}, face);
   FURROW_RETURN_IF_ERROR(poses);
   remarks.insert(remarks.end(), poses->notes.begin(), poses->notes.end());
+  const auto skin = FaceSkin::Create(*character, face);
+  FURROW_RETURN_IF_ERROR(skin);
+  const FaceMeasures measures = MeasureFace(*skin, FindShapeLandmarks(*skin));
+  std::vector<BakeStroke> drawn = FirmCheeks();
+  drawn.insert(drawn.end(), strokes.begin(), strokes.end());
+  const TransferredStrokes moved =
+      TransferStrokes(drawn, DefaultFaceMeasures(), measures, *skin, character->rig);
+  if (moved.lost > 0) {
+    remarks.push_back(Counted(moved.lost, "drawn fold") + " found no skin on this face");
+  }
   BakeOptions options;
   options.size = size;
   options.threads = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 64);
-  const auto maps = Bake(*character, poses->poses, {}, options, progress);
+  const auto maps = Bake(*character, poses->poses, moved.strokes, options, progress);
   FURROW_RETURN_IF_ERROR(maps);
   FURROW_RETURN_IF_ERROR(EmbedMaps(*maps, character));
   return remarks;

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "authoring/bake/request/bake_request.h"
 #include "authoring/shapes/arkit_face.h"
 #include "base/status.h"
 #include "character/character.h"
@@ -27,12 +29,13 @@ namespace furrow::authoring {
                                                                 character::Character* character);
 
 // Bakes and embeds the wrinkle maps of the character's rig from the strain of its shapes, of their
-// combinations and of its joints. `size`: texels per side. `progress`: see Bake(). Returns warnings
-// of CheckSurfaces() and notes of CollectBakePoses().
-// Errors: those of these, of Bake() and of EmbedMaps().
+// combinations and of its joints, and from `strokes`, which are drawn on the default character's
+// face and move to this one (TransferStrokes()). `size`: texels per side. `progress`: see Bake().
+// Returns warnings of CheckSurfaces() and notes of CollectBakePoses().
+// Errors: those of these, of FaceSkin::Create(), Bake() and EmbedMaps().
 [[nodiscard]] Result<std::vector<std::string>> BakeShapeFace(
-    const ArkitFace& face, int size, const std::function<bool(float)>& progress,
-    character::Character* character);
+    const ArkitFace& face, std::span<const BakeStroke> strokes, int size,
+    const std::function<bool(float)>& progress, character::Character* character);
 
 // Selects, for skin and for cloth, the materials that share one wrinkle atlas, and clears
 // Material::wrinkles of the others: materials whose UVs overlap those of a material chosen before.

@@ -6,6 +6,7 @@
 #include <optional>
 #include <system_error>
 
+#include "authoring/bake/strokes_file.h"
 #include "authoring/import/character_package.h"
 #include "authoring/import/makehuman/makehuman.h"
 #include "authoring/import/model/import_model.h"
@@ -60,6 +61,14 @@ int ImportFolder(const ImportArguments& arguments) {
   return kDone;
 }
 
+// The folds that are drawn on the default character's face.
+Result<std::vector<authoring::BakeStroke>> LoadDefaultStrokes() {
+  const auto rig = LoadRigArgument("default");
+  FURROW_RETURN_IF_ERROR(rig);
+  return authoring::LoadStrokes(ResolveRigPath("default").parent_path() / "default.strokes.json",
+                                *rig);
+}
+
 // Gives a face of blend shapes its masks, its part of the rig and its wrinkle maps.
 Status AddFaceOfShapes(const ImportArguments& arguments, const authoring::ArkitFace& face,
                        character::Character* character) {
@@ -74,10 +83,12 @@ Status AddFaceOfShapes(const ImportArguments& arguments, const authoring::ArkitF
   FURROW_RETURN_IF_ERROR(proposed);
   if (!face.description().empty()) PrintNotes({face.description()});
   PrintNotes(*proposed);
+  const auto strokes = LoadDefaultStrokes();
+  FURROW_RETURN_IF_ERROR(strokes);
   constexpr int kSteps = 1000;
   Progress bar("baking", kSteps);
   const auto baked = authoring::BakeShapeFace(
-      face, size,
+      face, *strokes, size,
       [&](float done) {
         bar.Set(static_cast<std::int64_t>(done * kSteps));
         return !Interrupted();

@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "authoring/bake/bake_poses.h"
+#include "authoring/bake/strokes_file.h"
 #include "authoring/bake/surface/bake_surface.h"
 #include "authoring/bake/surface/surface_check.h"
 #include "authoring/generator/blend_shapes/blend_shape_face.h"
@@ -237,7 +238,11 @@ TEST_F(ShapeFaceTest, SingleShapesAndCombinationsArePosed) {
 // The share of the texels of a region that the folds of a map raise or lower.
 TEST_F(ShapeFaceTest, FoldsLieInTheRegionsOfTheirShapes) {
   character::Character c = Proposed();
-  const auto said = BakeShapeFace(ArkitFaceOf(c), 256, {}, &c);
+  const auto strokes =
+      LoadStrokes(std::filesystem::path(FURROW_SOURCE_DIR) / "rig/rigs/default.strokes.json",
+                  Shipped("default"));
+  ASSERT_TRUE(strokes.ok()) << strokes.status().ToString();
+  const auto said = BakeShapeFace(ArkitFaceOf(c), *strokes, 256, {}, &c);
   ASSERT_TRUE(said.ok()) << said.status().ToString();
   EXPECT_TRUE(rig::CheckRig(c.rig).ok());
   const std::map<std::string, std::vector<std::string>> kFolds = {
