@@ -2,6 +2,7 @@
 #include "rig/skeleton_match.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <span>
 
@@ -77,6 +78,15 @@ class RoleParts {
   const wrinkle::JointRoles& stream_;
 };
 
+// "+X" for a direction along a model axis.
+std::string AxisName(const glm::vec3& direction) {
+  int axis = 0;
+  for (int i = 1; i < 3; ++i) {
+    if (std::abs(direction[i]) > std::abs(direction[axis])) axis = i;
+  }
+  return std::string(1, direction[axis] < 0.0f ? '-' : '+') + "XYZ"[axis];
+}
+
 }  // namespace
 
 bool SkeletonMatch::Reads(std::string_view stream_joint) const {
@@ -112,6 +122,7 @@ SkeletonMatch SkeletonMatcher::Match(const wrinkle::Skeleton& stream, const wrin
   match.stream = streams_.RolesOrGuess(stream);
   if (character != nullptr) match.character = characters_.RolesOrGuess(*character);
   if (match.stream.roles.empty()) return match;
+  match.stance = wrinkle::FindRestStance(stream, match.stream.roles);
 
   // The roles of a rig's joints follow from their names alone, since a rig has no skeleton.
   const std::set<std::string> joints = wrinkle::JointsOf(rig);
@@ -165,6 +176,36 @@ std::string Describe(const SkeletonRoles& roles) {
   }
   if (!missing.empty()) text += "; missing: " + JoinRoles(missing);
   return text;
+}
+
+std::string Describe(const SkeletonMatch& match) {
+  std::string text = Describe(match.stream);
+  if (text.empty() || match.turn() == wrinkle::RestStance().turn) return text;
+  const glm::quat back = glm::conjugate(match.turn());
+  return text + "; the rest pose faces " + AxisName(back * glm::vec3(0.0f, 0.0f, 1.0f)) +
+         ", up is " + AxisName(back * glm::vec3(0.0f, 1.0f, 0.0f));
+}
+
+std::vector<std::string> WarningsOf(const SkeletonMatch& match) {
+  std::vector<std::string> warnings;
+  if (match.stream.map == kFromHierarchy) {
+    warnings.emplace_back(
+        "no skeleton map knows the joint names, so their roles are guessed from the hierarchy; if "
+        "the body moves wrong, write a map with 'furrow rig propose-map' and choose it with "
+        "--skeleton-map");
+  }
+  if (match.stance && match.stance->is_folded) {
+    warnings.emplace_back(
+        "the legs point the same way as the trunk at rest, so the rest pose says nothing about the "
+        "body; take a frame in which the performer stands upright as the rest pose, with "
+        "--rest-frame");
+  }
+  if (match.stance && match.stance->toes_point_back) {
+    warnings.emplace_back(
+        "the toes point backwards at rest, so left and right are probably exchanged; choose "
+        "another skeleton map, or write one with 'furrow rig propose-map'");
+  }
+  return warnings;
 }
 
 }  // namespace furrow::rig

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -23,11 +24,21 @@ struct SkeletonMatch {
   // spine of five joints does the part of one with two. Only for joints that twist drivers read.
   std::vector<wrinkle::RoleChain> role_chains;
 
+  // How the stream's skeleton stands at rest; nullopt if its roles do not tell.
+  std::optional<wrinkle::RestStance> stance;
+
   // True if a joint of the rig is matched with this joint of the stream by its role.
   [[nodiscard]] bool Reads(std::string_view stream_joint) const;
+  // RestStance::turn, or none.
+  [[nodiscard]] glm::quat turn() const {
+    return stance ? stance->turn : wrinkle::RestStance().turn;
+  }
   // The options that bind the rig to the stream; they refer to this object.
   [[nodiscard]] wrinkle::BindOptions Options(bool allow_missing) const {
-    return {.allow_missing = allow_missing, .aliases = aliases, .role_chains = role_chains};
+    return {.allow_missing = allow_missing,
+            .aliases = aliases,
+            .role_chains = role_chains,
+            .turn = turn()};
   }
 };
 
@@ -66,5 +77,10 @@ class SkeletonMatcher {
 // and jaw are listed as missing only if some of them are present. Empty if no map fits the
 // skeleton.
 [[nodiscard]] std::string Describe(const SkeletonRoles& roles);
+// The same for a match, with the axes of the rest pose if they are not Furrow's: "...; the rest
+// pose faces -X, up is +Z".
+[[nodiscard]] std::string Describe(const SkeletonMatch& match);
+// What is probably wrong with a match, one sentence each, with the way out.
+[[nodiscard]] std::vector<std::string> WarningsOf(const SkeletonMatch& match);
 
 }  // namespace furrow::rig

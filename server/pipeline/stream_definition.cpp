@@ -127,9 +127,10 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Make(
 // Once per definition, so that repeated offers do not flood the log.
 void StreamDefinitions::Report(const StreamDefinition& stream,
                                const rig::SkeletonMatch& match) const {
-  if (const std::string text = rig::Describe(match.stream); !text.empty()) {
+  if (const std::string text = rig::Describe(match); !text.empty()) {
     spdlog::info("{}", text);
   }
+  for (const std::string& warning : rig::WarningsOf(match)) spdlog::warn("{}", warning);
   if (const std::string text = stream.shapes.Description(); !text.empty()) {
     spdlog::info("{}", text);
   }

@@ -45,12 +45,13 @@ std::optional<glm::vec3> Up(const Body& body) {
   for (const JointRole top : {kHead, kNeck, kUpperChest, kChest, kSpine}) {
     if (const auto span = body.RestSpan(kHips, top)) return span;
   }
-  return std::nullopt;
+  // A tracker of faces has no trunk.
+  return body.RestSpan(kNeck, kHead);
 }
 
 // From right to left, by the first pair of joints that exists on both sides.
 std::optional<glm::vec3> Leftward(const Body& body) {
-  for (const JointRole role : {kRightUpperLeg, kRightUpperArm, kRightShoulder}) {
+  for (const JointRole role : {kRightUpperLeg, kRightUpperArm, kRightShoulder, kRightEye}) {
     if (const auto span = body.RestSpan(role, MirrorOf(role))) return span;
   }
   return std::nullopt;
@@ -189,6 +190,14 @@ glm::quat QuarterTurn(const Body& source, const Body& target) {
   const auto to = BodyAxes(target);
   if (!from || !to) return {1.0f, 0.0f, 0.0f, 0.0f};
   return glm::normalize(glm::quat_cast(*to * glm::transpose(*from)));
+}
+
+std::optional<glm::quat> TurnOfAxes(const Body& body) {
+  const auto axes = BodyAxes(body);
+  if (!axes) return std::nullopt;
+  // Exactly the identity for a body in Furrow's axes, so that nothing changes for it.
+  if (*axes == glm::mat3(1.0f)) return glm::quat(1.0f, 0.0f, 0.0f, 0.0f);
+  return glm::normalize(glm::quat_cast(glm::transpose(*axes)));
 }
 
 std::vector<glm::quat> AlignedStance(const Body& source, const Body& target,

@@ -57,6 +57,10 @@ class Body {
 [[nodiscard]] std::vector<glm::quat> AlignedStance(const Body& source, const Body& target,
                                                    const glm::quat& turn);
 
+// The turn from the body's model space to Furrow's (+Y up, facing +Z), in quarter turns. nullopt if
+// the trunk or both sides are unknown.
+[[nodiscard]] std::optional<glm::quat> TurnOfAxes(const Body& body);
+
 // The length of a stretched leg, from the height of the hips' joint to the last joint that both
 // bodies have (the toes, or else the foot). Mean of both sides; 0 if one body has no legs.
 [[nodiscard]] float LegLength(const Body& body, const Body& other);

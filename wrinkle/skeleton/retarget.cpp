@@ -153,6 +153,21 @@ void Retarget::Plan(const Skeleton& source, const Skeleton& target, std::span<co
   }
 }
 
+std::optional<RestStance> FindRestStance(const Skeleton& skeleton, const JointRoles& roles) {
+  const Body body(skeleton, roles);
+  const auto turn = TurnOfAxes(body);
+  if (!turn) return std::nullopt;
+  glm::vec3 toes(0.0f), legs(0.0f);
+  for (const JointRole foot : {JointRole::kLeftFoot, JointRole::kRightFoot}) {
+    toes += body.RestSpan(foot, BoneEnd(foot)).value_or(glm::vec3(0.0f));
+    legs += body.RestSpan(JointRole::kHips, foot).value_or(glm::vec3(0.0f));
+  }
+  const glm::vec3 down = *turn * legs;
+  if (down.y > 0.5f * glm::length(down)) return RestStance{.is_folded = true};
+  const glm::vec3 ahead = *turn * toes;
+  return RestStance{.turn = *turn, .toes_point_back = ahead.z < -0.5f * glm::length(ahead)};
+}
+
 Retarget Retarget::Create(const Skeleton& source, const Skeleton& target,
                           std::span<const std::pair<std::string, std::string>> aliases) {
   const std::vector<int> match = MatchJoints(source, target, aliases);

@@ -18,6 +18,24 @@ namespace furrow::wrinkle {
 // with extent.
 [[nodiscard]] float SkeletonSize(const Skeleton& skeleton, const Skeleton* other = nullptr);
 
+// How a skeleton stands at rest.
+struct RestStance {
+  // From the skeleton's model space to Furrow's (+Y up, facing +Z), in quarter turns.
+  glm::quat turn{1.0f, 0.0f, 0.0f, 0.0f};
+  // The toes point backwards, as seen from the sides that the roles state. Then left and right are
+  // probably exchanged.
+  bool toes_point_back = false;
+  // The legs point the way the trunk points, so this is no pose of a body, and `turn` is none. Some
+  // files rest with all bones along one axis.
+  bool is_folded = false;
+};
+
+// Finds the stance from the rest places of joints with roles: up from the hips to the trunk or the
+// head, left from the right leg, arm, shoulder or eye to the left one. A lean or a turn of less
+// than 45 degrees counts as a stance and not as other axes. nullopt: the roles do not tell.
+[[nodiscard]] std::optional<RestStance> FindRestStance(const Skeleton& skeleton,
+                                                       const JointRoles& roles);
+
 class BodyRetarget;
 
 // Carries poses from one skeleton to another. Created once per stream, then run once per pose.

@@ -212,4 +212,25 @@ bool Skeleton::IsAncestor(int ancestor, int joint) const {
   return joint == ancestor && joint >= 0;
 }
 
+Skeleton TurnRoots(const Skeleton& skeleton, const glm::quat& turn) {
+  std::vector<Transform> rest(skeleton.rest_pose().begin(), skeleton.rest_pose().end());
+  TurnRoots(skeleton, turn, rest);
+  std::vector<JointDesc> joints;
+  for (std::size_t i = 0; i < rest.size(); ++i) {
+    joints.push_back(
+        {skeleton.joint_names()[i], skeleton.joint_parents()[i], rest[i], skeleton.tails()[i]});
+  }
+  Result<Skeleton> turned = Skeleton::Create(std::move(joints));
+  // A skeleton stays valid when it turns; one without joints has nothing to turn.
+  return turned.ok() ? *std::move(turned) : skeleton;
+}
+
+void TurnRoots(const Skeleton& skeleton, const glm::quat& turn, std::span<Transform> locals) {
+  for (std::size_t i = 0; i < locals.size(); ++i) {
+    if (skeleton.joint_parents()[i] != kNoJoint) continue;
+    locals[i].rotation = glm::normalize(turn * locals[i].rotation);
+    locals[i].translation = turn * locals[i].translation;
+  }
+}
+
 }  // namespace furrow::wrinkle

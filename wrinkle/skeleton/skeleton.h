@@ -85,4 +85,9 @@ class Skeleton {
                            : skeleton.rest_model_rotations()[joint];
 }
 
+// The same joints, turned as a whole about the origin of model space: only roots change.
+[[nodiscard]] Skeleton TurnRoots(const Skeleton& skeleton, const glm::quat& turn);
+// Turns a pose of the skeleton in the same way. `locals`: num_joints() local transforms.
+void TurnRoots(const Skeleton& skeleton, const glm::quat& turn, std::span<Transform> locals);
+
 }  // namespace furrow::wrinkle

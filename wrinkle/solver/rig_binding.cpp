@@ -79,15 +79,17 @@ Result<RigBinding> RigBinding::Create(const Rig& rig, const Skeleton& skeleton,
   FURROW_RETURN_IF_ERROR(CheckRigFields(rig));
   auto data = std::make_unique<BindingData>();
   data->rig = rig;
-  data->skeleton = skeleton;
+  // Drivers compare joints with joints above them, so only the rest pose needs to turn.
+  const bool turned = options.turn != glm::quat(1.0f, 0.0f, 0.0f, 0.0f);
+  data->skeleton = turned ? TurnRoots(skeleton, options.turn) : skeleton;
   const BindSource source = SourceOf(rig, blend_shape_names);
-  BindContext context(source, skeleton, options, &data->chains);
+  BindContext context(source, data->skeleton, options, &data->chains);
   FURROW_RETURN_IF_ERROR(context.ResolveAnchorAndPoses());
   ValueIndex value_index;
   FURROW_RETURN_IF_ERROR(BindDrivers(rig, &context, data.get(), &value_index));
   // WeightTable checks the names in feeds; InfluenceTable relies on them.
   FURROW_RETURN_IF_ERROR(data->weights.Bind(rig, value_index));
-  data->influences.Bind(rig, skeleton, value_index);
+  data->influences.Bind(rig, data->skeleton, value_index);
   PlanLanes(data.get());
   data->missing_joints = std::move(context.missing_joints());
   data->missing_blend_shapes = std::move(context.missing_blend_shapes());

@@ -43,7 +43,7 @@ int SolveFile(const SolveOptions& options) {
   if (!rig.ok()) return Fail(rig.status());
   const auto matcher = LoadSkeletonMatcher(options.skeleton_map);
   if (!matcher.ok()) return Fail(matcher.status());
-  const auto match = matcher->Match(clip->skeleton, *rig, nullptr);
+  const auto match = MatchJoints(*matcher, *clip, *rig);
   const auto shape_matcher = LoadShapeMatcher(options.shape_map);
   if (!shape_matcher.ok()) return Fail(shape_matcher.status());
   const rig::RigShapes shapes = MatchBlendShapes(*shape_matcher, *clip, *rig);

@@ -94,6 +94,16 @@ Result<rig::ShapeMatcher> LoadShapeMatcher(const std::string& map) {
   return rig::ShapeMatcher();
 }
 
+rig::SkeletonMatch MatchJoints(const rig::SkeletonMatcher& matcher, const motion::Clip& clip,
+                               const wrinkle::Rig& rig, const wrinkle::Skeleton* character) {
+  rig::SkeletonMatch match = matcher.Match(clip.skeleton, rig, character);
+  const bool maps = !match.aliases.empty() || match.turn() != wrinkle::RestStance().turn;
+  // To standard error, because commands write their results to standard output.
+  if (maps) std::fprintf(stderr, "furrow: %s\n", rig::Describe(match).c_str());
+  if (maps) PrintWarnings(rig::WarningsOf(match));
+  return match;
+}
+
 rig::RigShapes MatchBlendShapes(const rig::ShapeMatcher& matcher, const motion::Clip& clip,
                                 const wrinkle::Rig& rig) {
   rig::RigShapes shapes(matcher, clip.blend_shape_names, rig);

@@ -49,6 +49,13 @@ void PrintWarnings(const std::vector<std::string>& warnings);
 // printed.
 [[nodiscard]] Result<rig::SkeletonMatcher> LoadSkeletonMatcher(const std::string& map);
 
+// Finds the joints that `rig` reads in the recording. Prints which map is used and how well it
+// fits, unless all joints have the rig's names. `character` may be null; see
+// SkeletonMatcher::Match().
+[[nodiscard]] rig::SkeletonMatch MatchJoints(const rig::SkeletonMatcher& matcher,
+                                             const motion::Clip& clip, const wrinkle::Rig& rig,
+                                             const wrinkle::Skeleton* character = nullptr);
+
 // Loads the shape map of --shape-map in the same way. Without shipped maps, blend shapes match by
 // equal names.
 [[nodiscard]] Result<rig::ShapeMatcher> LoadShapeMatcher(const std::string& map);

@@ -75,7 +75,7 @@ Result<std::shared_ptr<const wrinkle::RigBinding>> BindRig(const LoadInput& inpu
   FURROW_RETURN_IF_ERROR(rig);
   const auto matcher = LoadSkeletonMatcher(input.skeleton_map);
   FURROW_RETURN_IF_ERROR(matcher);
-  const auto match = matcher->Match(clip.skeleton, *rig, nullptr);
+  const auto match = MatchJoints(*matcher, clip, *rig);
   const auto shape_matcher = LoadShapeMatcher(input.shape_map);
   FURROW_RETURN_IF_ERROR(shape_matcher);
   *shapes = MatchBlendShapes(*shape_matcher, clip, *rig);

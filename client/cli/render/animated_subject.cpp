@@ -13,7 +13,7 @@ Result<std::unique_ptr<AnimatedSubject>> AnimatedSubject::Create(
   auto self = std::make_unique<AnimatedSubject>();
   self->clip_ = std::move(clip);
   const motion::Clip& take = *self->clip_;
-  const auto match = matcher.Match(take.skeleton, character.rig, &character.skeleton);
+  const auto match = MatchJoints(matcher, take, character.rig, &character.skeleton);
   self->shapes_ = MatchBlendShapes(shapes, take, character.rig);
   auto binding =
       wrinkle::RigBinding::Create(character.rig, take.skeleton, self->shapes_.driver_names(),

@@ -65,8 +65,12 @@ void UseJointNamesOfRig(const StreamDefinition& stream, wrinkle::ReferencePose* 
 Result<wrinkle::Rig> WithReferencePose(const wrinkle::Rig& rig, const Subject& subject,
                                        const std::string& pose, bool* added) {
   const SubjectPipeline& pipeline = *subject.pipeline;
-  auto captured =
-      rig::ReferencePoseFromFrame(pose, {pipeline.stream().skeleton, pipeline.solved_pose()});
+  // Reference poses are in Furrow's model axes, which may not be those of the stream.
+  const glm::quat turn = pipeline.stream().match.turn();
+  wrinkle::PoseFrame frame{wrinkle::TurnRoots(pipeline.stream().skeleton, turn),
+                           pipeline.solved_pose()};
+  wrinkle::TurnRoots(frame.skeleton, turn, frame.pose.joints);
+  auto captured = rig::ReferencePoseFromFrame(pose, frame);
   FURROW_RETURN_IF_ERROR(captured);
   UseJointNamesOfRig(pipeline.stream(), &*captured);
   // A copy: other subjects read the present rig until SetRig() replaces it.

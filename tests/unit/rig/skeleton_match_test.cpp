@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rig/skeleton_match.h"
 
+#include <algorithm>
 #include <memory>
+#include <random>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "authoring/generator/default_character.h"
 #include "base/scalar.h"
 #include "rig/rig_file.h"
 #include "tests/unit/rig/shipped_matcher.h"
@@ -15,7 +18,9 @@ namespace furrow::rig {
 namespace {
 
 using testing::ElementsAre;
+using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 // A body whose torso, neck and head are `column`, from bottom to top, after the hips.
 class Body {
@@ -148,6 +153,83 @@ TEST_F(SkeletonMatching, OnlyTwistDriversReadWholeChains) {
   EXPECT_THAT(joints, ElementsAre("chest", "neck", "spine"));
   EXPECT_TRUE(match.Reads("spine04"));
   EXPECT_FALSE(match.Reads("clavicle.L"));
+}
+
+// Quarter turns about all axes: files that are Z-up, and bodies that face any side.
+std::vector<glm::quat> QuarterTurns() {
+  std::vector<glm::quat> turns;
+  const glm::vec3 axes[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (const glm::vec3& axis : axes) {
+    for (const float degrees : {90.0f, 180.0f, -90.0f}) {
+      turns.push_back(glm::angleAxis(degrees * kDegrees, axis));
+    }
+  }
+  turns.push_back(turns[3] * turns[0]);
+  turns.push_back(turns[0] * turns[5]);
+  return turns;
+}
+
+// The axes of a file change nothing: neither axes, sides and poses of the rig, nor its weights.
+TEST_F(SkeletonMatching, ValuesDoNotDependOnTheAxesOfTheFile) {
+  const wrinkle::Rig rig = Shipped("default.json");
+  const wrinkle::Skeleton upright =
+      authoring::MakeDefaultCharacter(rig, {.texture_size = 64}).skeleton;
+  const auto values = [&](const wrinkle::Skeleton& skeleton, const wrinkle::LocalPose& pose) {
+    const SkeletonMatch match = matcher_.Match(skeleton, rig, nullptr);
+    auto binding = wrinkle::RigBinding::Create(rig, skeleton, {}, match.Options(true));
+    EXPECT_TRUE(binding.ok()) << binding.status().ToString();
+    wrinkle::SubjectSolver solver(std::make_shared<const wrinkle::RigBinding>(*std::move(binding)),
+                                  false);
+    EXPECT_EQ(solver.Update(pose, 0.0), wrinkle::JobStatus::kOk);
+    return std::vector<float>(solver.driver_values().begin(), solver.driver_values().end());
+  };
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
+  wrinkle::LocalPose pose;
+  pose.SetRest(upright);
+  for (wrinkle::Transform& local : pose.joints) {
+    const glm::vec3 axis(uniform(random), uniform(random), uniform(random));
+    local.rotation = local.rotation * glm::angleAxis(0.5f * uniform(random), glm::normalize(axis));
+    local.translation += 0.004f * glm::vec3(uniform(random), uniform(random), uniform(random));
+  }
+  const std::vector<float> wanted = values(upright, pose);
+  EXPECT_GT(std::ranges::count_if(wanted, [](float v) { return v > 0.1f; }), 10);
+  for (const glm::quat& turn : QuarterTurns()) {
+    const wrinkle::Skeleton turned = wrinkle::TurnRoots(upright, turn);
+    wrinkle::LocalPose other = pose;
+    wrinkle::TurnRoots(upright, turn, other.joints);
+    const std::vector<float> found = values(turned, other);
+    ASSERT_EQ(found.size(), wanted.size());
+    for (std::size_t i = 0; i < wanted.size(); ++i) EXPECT_NEAR(found[i], wanted[i], 2e-4f) << i;
+  }
+}
+
+TEST_F(SkeletonMatching, DescribesOtherAxesAndExchangedSides) {
+  const wrinkle::Rig rig = Shipped("default.json");
+  const wrinkle::Skeleton upright =
+      authoring::MakeDefaultCharacter(rig, {.texture_size = 64}).skeleton;
+  EXPECT_THAT(Describe(matcher_.Match(upright, rig, nullptr)), Not(HasSubstr("faces")));
+  const wrinkle::Skeleton lying =
+      wrinkle::TurnRoots(upright, glm::angleAxis(90.0f * kDegrees, glm::vec3(1, 0, 0)));
+  const SkeletonMatch match = matcher_.Match(lying, rig, nullptr);
+  EXPECT_THAT(Describe(match), HasSubstr("the rest pose faces -Y, up is +Z"));
+  EXPECT_THAT(WarningsOf(match), IsEmpty());
+
+  std::vector<wrinkle::JointDesc> mirrored;
+  for (int j = 0; j < upright.num_joints(); ++j) {
+    const auto at = static_cast<std::size_t>(j);
+    std::string name = upright.joint_names()[at];
+    if (name.ends_with("_l")) {
+      name.back() = 'r';
+    } else if (name.ends_with("_r")) {
+      name.back() = 'l';
+    }
+    mirrored.push_back({name, upright.joint_parents()[at], upright.rest_pose()[at], {}});
+  }
+  const auto exchanged = wrinkle::Skeleton::Create(mirrored);
+  ASSERT_TRUE(exchanged.ok());
+  EXPECT_THAT(WarningsOf(matcher_.Match(*exchanged, rig, nullptr)),
+              ElementsAre(HasSubstr("the toes point backwards")));
 }
 
 }  // namespace

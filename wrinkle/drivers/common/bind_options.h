@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include <glm/gtc/quaternion.hpp>
+
 namespace furrow::wrinkle {
 
 // The joints of a skeleton that together do what one joint of a rig does, parents first: three
@@ -26,6 +28,9 @@ struct BindOptions {
   // For twist drivers, which add the joints of a chain. A chain wins over a joint with the rig's
   // name.
   std::span<const RoleChain> role_chains;
+  // From the skeleton's model space to Furrow's (+Y up, facing +Z), in which rigs state axes, sides
+  // and reference poses; see FindRestStance(). Poses keep the skeleton's own model space.
+  glm::quat turn{1.0f, 0.0f, 0.0f, 0.0f};
 };
 
 }  // namespace furrow::wrinkle

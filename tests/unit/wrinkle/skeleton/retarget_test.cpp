@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/wrinkle/humanoid.h"
 #include "tests/unit/wrinkle/test_characters.h"
 
 namespace furrow::wrinkle {
@@ -140,6 +141,51 @@ TEST(SkeletonSize, IsNotZeroWhileThereIsExtent) {
   EXPECT_FLOAT_EQ(SkeletonSize(a), 2.0f);
   const Skeleton b = MakeSkeleton({{"q", "", {}, {}}, {"x", "q", {0, 1, 0}, {}}});
   EXPECT_FLOAT_EQ(SkeletonSize(b, &a), 1.0f);  // nothing shared: all of its own
+}
+
+TEST(RestStance, TurnsAnyAxesToFurrows) {
+  const glm::vec3 axes[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (const glm::vec3& axis : axes) {
+    for (const float degrees : {0.0f, 90.0f, 180.0f, 270.0f, 20.0f}) {
+      Humanoid body = MakeHumanoid();
+      const glm::quat turn = glm::angleAxis(glm::radians(degrees), axis);
+      body.Transform(turn, 1.0f, glm::vec3(1.0f, 2.0f, 3.0f));
+      const auto stance = FindRestStance(body.Build(), body.Roles());
+      ASSERT_TRUE(stance.has_value());
+      EXPECT_FALSE(stance->toes_point_back);
+      // A turn of 20 degrees is a stance, and not other axes.
+      const glm::quat left = degrees == 20.0f ? stance->turn : stance->turn * turn;
+      EXPECT_NEAR(std::abs(left.w), 1.0f, 1e-4f) << degrees;
+    }
+  }
+}
+
+// LaFAN1's files rest with all bones along +X.
+TEST(RestStance, ABodyOnOneLineIsFolded) {
+  Humanoid body = MakeHumanoid();
+  for (const char* leg : {"leftUpperLeg", "rightUpperLeg"}) {
+    body.Turn(leg, 180.0f, glm::vec3(1.0f, 0.0f, 0.0f));
+  }
+  body.Transform(glm::angleAxis(glm::radians(-90.0f), glm::vec3(0, 0, 1)), 1.0f, glm::vec3(0.0f));
+  const auto stance = FindRestStance(body.Build(), body.Roles());
+  ASSERT_TRUE(stance.has_value());
+  EXPECT_TRUE(stance->is_folded);
+  EXPECT_EQ(stance->turn, glm::quat(1.0f, 0.0f, 0.0f, 0.0f));
+}
+
+TEST(RestStance, ToesTellThatSidesAreExchanged) {
+  Humanoid body = MakeHumanoid();
+  JointRoles roles = body.Roles();
+  for (JointRole& role : roles) role = MirrorOf(role);
+  const auto stance = FindRestStance(body.Build(), roles);
+  ASSERT_TRUE(stance.has_value());
+  EXPECT_TRUE(stance->toes_point_back);
+}
+
+TEST(RestStance, IsUnknownWithoutATrunkOrSides) {
+  const Humanoid body = MakeHumanoid();
+  EXPECT_FALSE(FindRestStance(body.Build(), JointRoles(body.joints.size(), JointRole::kNone)));
+  EXPECT_FALSE(FindRestStance(Skeleton(), {}));
 }
 
 }  // namespace
