@@ -8,9 +8,9 @@
 
 #include <glm/vec3.hpp>
 
+#include "authoring/import/makehuman/formats/mhclo.h"
+#include "authoring/import/makehuman/formats/obj.h"
 #include "authoring/import/makehuman/mesh_builder.h"
-#include "authoring/import/makehuman/mhclo.h"
-#include "authoring/import/makehuman/obj.h"
 #include "authoring/import/makehuman/skin_weights.h"
 #include "character/character.h"
 #include "wrinkle/skeleton/skeleton.h"

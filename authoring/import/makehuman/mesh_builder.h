@@ -9,7 +9,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include "authoring/import/makehuman/obj.h"
+#include "authoring/import/makehuman/formats/obj.h"
 #include "authoring/import/makehuman/skin_weights.h"
 #include "character/character.h"
 

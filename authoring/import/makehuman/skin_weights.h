@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "authoring/import/makehuman/mhclo.h"
-#include "authoring/import/makehuman/mhskel.h"
+#include "authoring/import/makehuman/formats/mhclo.h"
+#include "authoring/import/makehuman/formats/mhskel.h"
 #include "authoring/skinning/influences.h"
 #include "base/status.h"
 #include "wrinkle/skeleton/skeleton.h"

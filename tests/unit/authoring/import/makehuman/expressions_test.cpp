@@ -14,8 +14,8 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "authoring/import/makehuman/mhskel.h"
-#include "authoring/import/makehuman/obj.h"
+#include "authoring/import/makehuman/formats/mhskel.h"
+#include "authoring/import/makehuman/formats/obj.h"
 #include "base/files.h"
 #include "motion/clip/clip.h"
 #include "motion/clip_file.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "authoring/import/makehuman/obj.h"
+#include "authoring/import/makehuman/formats/obj.h"
 
 #include <memory>
 #include <string>

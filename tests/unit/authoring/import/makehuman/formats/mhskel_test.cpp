@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "authoring/import/makehuman/mhskel.h"
+#include "authoring/import/makehuman/formats/mhskel.h"
 
 #include <memory>
 #include <string>

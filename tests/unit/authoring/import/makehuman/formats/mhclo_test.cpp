@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "authoring/import/makehuman/mhclo.h"
+#include "authoring/import/makehuman/formats/mhclo.h"
 
 #include <memory>
 #include <string>
