@@ -8,7 +8,7 @@ import subprocess
 import tempfile
 import unittest
 
-from furrow_testing import BIN, GUARD, SHARE, SHARED, Daemon, commands, finish, furrow, spawn
+from furrow_testing import BIN, GUARD, SHARE, SHARED, SOURCE, Daemon, commands, finish, furrow, spawn
 
 PERFORMANCE = SHARE / "recordings" / "performance.bvh"
 
@@ -45,6 +45,7 @@ class DocumentTest(unittest.TestCase):
         if not SHARED.exists():
             self.skipTest(f"{SHARED} is missing")
         self.make_avatar()
+        (self.root / "ada.mhm").symlink_to(SOURCE / "tests" / "fuzz" / "seeds" / "mhm" / "save")
         seen = []
         for words in commands("docs/HOWTO-import.md"):
             words = [str(SHARED / "makehuman") if w == "path/to/makehuman" else w for w in words]

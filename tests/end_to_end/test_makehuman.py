@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Imports MakeHuman's character and plays five expressions to the daemon."""
+"""Imports MakeHuman's character and saved people, and plays five expressions to the daemon."""
 import math
 import pathlib
 import tempfile
@@ -99,6 +99,41 @@ class MakeHumanTest(unittest.TestCase):
         text = result.stdout.decode()
         strongest = max(facial(self.solved.names), key=lambda n: self.solved.column(n)[60])
         self.assertIn(strongest, text)
+
+
+class SavedPersonTest(unittest.TestCase):
+    def setUp(self):
+        self.data = needs_shared("makehuman", "targets").parent
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = pathlib.Path(folder.name)
+        self.save = self.root / "ada.mhm"
+        self.save.write_text((SOURCE / "tests" / "fuzz" / "seeds" / "mhm" / "save").read_text())
+
+    def test_a_save_becomes_a_package_that_passes_the_check(self):
+        package = self.root / "ada.glb"
+        result = furrow("character", "import", self.save, "--data", self.data, "--out", package, "--texture-size", 256,
+                        check=0)
+        said = result.stderr.decode()
+        self.assertIn("shape: 2 targets", said)
+        self.assertIn("clothes 'male_casualsuit01'", said)
+        self.assertIn("no targets for minmuscle, maxweight", said)
+        self.assertIn("2 modifiers without a target", said)
+        self.assertIn("hair 'short02' has no picture", said)
+        furrow("character", "check", package, check=0)
+
+    def test_the_data_folder_is_found_beside_the_save(self):
+        (self.root / "data").symlink_to(self.data)
+        furrow("character", "import", self.save, "--out", self.root / "ada.glb", "--texture-size", 64, check=0)
+
+    def test_bad_saves_and_folders_are_named(self):
+        out = self.root / "ada.glb"
+        result = furrow("character", "import", self.save, "--out", out, check=3, env={"FURROW_ASSET_PATH": ""})
+        self.assertIn("--data", result.stderr.decode())
+        self.save.write_text("version v1.2.0\nmodifier macrodetails/Age much\n")
+        result = furrow("character", "import", self.save, "--data", self.data, "--out", out, check=3)
+        self.assertIn("ada.mhm:2: 'much' is not a number", result.stderr.decode())
+        self.assertFalse(out.exists())
 
 
 if __name__ == "__main__":

@@ -130,7 +130,8 @@ std::vector<std::uint32_t> FacesOf(const ObjMesh& obj, std::string_view group) {
 }
 
 character::Mesh BuildSkin(const BaseMesh& base, const wrinkle::Skeleton& skeleton,
-                          const std::vector<bool>& deleted, int material, int* hidden_faces) {
+                          const std::vector<bool>& deleted, int material, int* hidden_faces,
+                          std::vector<UvMove>* uv_moves) {
   const std::vector<std::uint32_t> faces = FacesOf(base.obj, "body");
   const std::vector<glm::vec3> normals = SmoothNormals(base.obj, base.positions, faces);
   MeshSource source;
@@ -144,6 +145,7 @@ character::Mesh BuildSkin(const BaseMesh& base, const wrinkle::Skeleton& skeleto
   }
   *hidden_faces = static_cast<int>(faces.size() - source.faces.size());
   ArrangeIslands(base, skeleton, source.faces, &source);
+  if (uv_moves != nullptr) *uv_moves = source.uv_moves;
   return BuildMesh("skin", material, source);
 }
 

@@ -31,10 +31,11 @@ struct BaseMesh {
 // Builds the skin: the group "body" without faces that clothes hide. `deleted`: for each base
 // vertex, whether clothes hide it; empty: none. `material`: index of the material. `hidden_faces`
 // receives the number of omitted faces. UV islands are rearranged so that the face, which needs the
-// most detail, fills three quarters of the picture.
+// most detail, fills three quarters of the picture. `uv_moves` (may be null) receives the moves of
+// the islands, from left to right.
 [[nodiscard]] character::Mesh BuildSkin(const BaseMesh& base, const wrinkle::Skeleton& skeleton,
                                         const std::vector<bool>& deleted, int material,
-                                        int* hidden_faces);
+                                        int* hidden_faces, std::vector<UvMove>* uv_moves = nullptr);
 
 // Builds a mesh from a group of helpers without changes (the tongue).
 [[nodiscard]] character::Mesh BuildHelper(const BaseMesh& base, std::string_view group,

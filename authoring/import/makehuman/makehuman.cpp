@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <bit>
 #include <optional>
+#include <span>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -15,17 +17,22 @@
 #include "authoring/import/makehuman/body_parts.h"
 #include "authoring/import/makehuman/face_folds.h"
 #include "authoring/import/makehuman/face_landmarks.h"
-#include "authoring/import/makehuman/formats/mhclo.h"
+#include "authoring/import/makehuman/formats/mhm.h"
 #include "authoring/import/makehuman/formats/mhskel.h"
 #include "authoring/import/makehuman/formats/obj.h"
 #include "authoring/import/makehuman/hair.h"
 #include "authoring/import/makehuman/prop_paint.h"
+#include "authoring/import/makehuman/proxy.h"
+#include "authoring/import/makehuman/save/asset_library.h"
+#include "authoring/import/makehuman/save/person.h"
+#include "authoring/import/makehuman/saved_parts.h"
 #include "authoring/import/makehuman/skin_paint.h"
 #include "authoring/paint/surface_texels.h"
 #include "authoring/paint/teeth.h"
 #include "base/data_dir.h"
 #include "base/files.h"
 #include "base/status.h"
+#include "base/text.h"
 #include "character/package/package.h"
 #include "rig/rig_check.h"
 #include "rig/rig_file.h"
@@ -37,6 +44,16 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr float kMetresPerUnit = 0.1f;  // MakeHuman uses decimetres
+
+float AreaOf(const character::Mesh& mesh) {
+  float area = 0.0f;
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    const glm::vec3& a = mesh.vertices[mesh.indices[i]].position;
+    area += 0.5f * glm::length(glm::cross(mesh.vertices[mesh.indices[i + 1]].position - a,
+                                          mesh.vertices[mesh.indices[i + 2]].position - a));
+  }
+  return area;
+}
 
 // One run of the importer: reads, fits, cuts and paints.
 class MakeHumanImport {
@@ -51,9 +68,10 @@ class MakeHumanImport {
                                                       "; it must be in [64, 4096]");
     character_.name = "makehuman";
     using Step = Status (MakeHumanImport::*)();
-    for (const Step step : {&MakeHumanImport::ReadBase, &MakeHumanImport::ReadGarment,
-                            &MakeHumanImport::ReadRig, &MakeHumanImport::BuildBody,
-                            &MakeHumanImport::BuildGarment, &MakeHumanImport::BakeMaps}) {
+    for (const Step step :
+         {&MakeHumanImport::ReadSave, &MakeHumanImport::ReadBase, &MakeHumanImport::ReadParts,
+          &MakeHumanImport::ReadRig, &MakeHumanImport::BuildBody, &MakeHumanImport::BuildParts,
+          &MakeHumanImport::BakeMaps}) {
       FURROW_RETURN_IF_ERROR((this->*step)());
     }
     FinishReport();
@@ -62,6 +80,22 @@ class MakeHumanImport {
   }
 
  private:
+  Status ReadSave() {
+    if (options_.save.empty()) return {};
+    const Result<std::string> text = ReadFile(options_.save, kMaxMhmBytes);
+    FURROW_RETURN_IF_ERROR(text);
+    Result<MhmSave> save = ParseMhm(*text, options_.save.string());
+    FURROW_RETURN_IF_ERROR(save);
+    save_ = std::move(*save);
+    Append(save_->warnings);
+    character_.name = save_->name.empty() ? options_.save.stem().string() : save_->name;
+    if (!save_->skeleton.empty() && fs::path(save_->skeleton).stem() != "default")
+      report_.warnings.push_back("the skeleton '" + save_->skeleton +
+                                 "' is not imported; the default rig, which has the joints of "
+                                 "the face, is used instead");
+    return {};
+  }
+
   // The skeleton needs the positions, and the skin weights need the joints, hence the order.
   Status ReadBase() {
     const fs::path obj_path = folder_ / "3dobjs" / "base.obj";
@@ -70,6 +104,7 @@ class MakeHumanImport {
     Result<ObjMesh> obj = ParseObj(*obj_text, obj_path.string());
     FURROW_RETURN_IF_ERROR(obj);
     base_.obj = std::move(*obj);
+    FURROW_RETURN_IF_ERROR(Shape());
     FURROW_RETURN_IF_ERROR(PlaceBase(obj_path));
 
     const fs::path skeleton_path = folder_ / "rigs" / "default.mhskel";
@@ -96,6 +131,17 @@ class MakeHumanImport {
         BindBaseMesh(*weights, character_.skeleton, base_.positions.size(), weights_path.string());
     FURROW_RETURN_IF_ERROR(skin);
     base_.skin = std::move(*skin);
+    return {};
+  }
+
+  Status Shape() {
+    if (!save_) return {};
+    const Result<PersonShape> shape = ShapePerson(folder_, *save_, base_.obj.positions);
+    FURROW_RETURN_IF_ERROR(shape);
+    Append(shape->warnings);
+    report_.notes.push_back(
+        "shape: " + Counted(static_cast<std::uint64_t>(shape->targets), "target") + ", " +
+        Counted(static_cast<std::uint64_t>(shape->modifiers), "modifier") + " besides the macros");
     return {};
   }
 
@@ -134,7 +180,8 @@ class MakeHumanImport {
     return *std::min_element(found.begin(), found.end());
   }
 
-  Status ReadGarment() {
+  Status ReadParts() {
+    if (save_) return ReadPartsOfSave();
     const Result<fs::path> path = FindGarment();
     FURROW_RETURN_IF_ERROR(path);
     if (path->empty()) {
@@ -142,22 +189,30 @@ class MakeHumanImport {
                                  " contains no clothes; the body stays bare");
       return {};
     }
-    const Result<std::string> text = ReadFile(*path, kMaxTextFileBytes);
-    FURROW_RETURN_IF_ERROR(text);
-    Result<Mhclo> garment = ParseMhclo(*text, path->string(), base_.positions.size());
+    Result<Proxy> garment = ReadProxy(*path, base_.positions.size());
     FURROW_RETURN_IF_ERROR(garment);
-    const fs::path obj_path = path->parent_path() / garment->obj_file;
-    const Result<std::string> obj_text = ReadFile(obj_path, kMaxTextFileBytes);
-    FURROW_RETURN_IF_ERROR(obj_text);
-    Result<ObjMesh> obj = ParseObj(*obj_text, obj_path.string());
-    FURROW_RETURN_IF_ERROR(obj);
-    if (obj->positions.size() != garment->vertices.size())
-      return Status(StatusCode::kSchema,
-                    "lists " + std::to_string(garment->vertices.size()) + " vertices, but " +
-                        garment->obj_file + " has " + std::to_string(obj->positions.size()),
-                    path->string());
-    garment_ = std::move(*garment);
-    garment_obj_ = std::move(*obj);
+    SavedPart part;
+    part.kind = "clothes";
+    part.painted = true;
+    part.proxy = std::move(*garment);
+    parts_.push_back(std::move(part));
+    return {};
+  }
+
+  Status ReadPartsOfSave() {
+    std::vector<fs::path> folders{folder_};
+    folders.insert(folders.end(), options_.asset_folders.begin(), options_.asset_folders.end());
+    AssetLibrary library(std::move(folders));
+    parts_ = ReadSavedParts(*save_, &library, base_.positions.size(), options_.texture_size,
+                            &report_.warnings);
+    skin_picture_ = ReadSavedSkin(*save_, library, &report_.warnings);
+    std::string names;
+    for (const SavedPart& part : parts_) {
+      names += (names.empty() ? "" : ", ") + part.kind + " '" + part.name + "'";
+    }
+    report_.notes.push_back("parts: " + (names.empty() ? "none" : names));
+    report_.notes.push_back(skin_picture_ ? "skin: the picture of " + save_->skin_material
+                                          : "skin: painted");
     return {};
   }
 
@@ -185,21 +240,45 @@ class MakeHumanImport {
     const int size = options_.texture_size;
     character::Material skin{
         .name = "skin", .kind = character::Material::Kind::kSkin, .roughness = 0.5f};
+    const bool hide = !save_ || save_->clothes_hide_faces;
+    std::vector<UvMove> moves;
     character_.meshes.push_back(BuildSkin(base_, character_.skeleton,
-                                          garment_ ? garment_->deleted : std::vector<bool>(), 0,
-                                          &report_.hidden_faces));
+                                          hide ? HiddenBy(parts_) : std::vector<bool>(), 0,
+                                          &report_.hidden_faces, &moves));
     const std::vector<SurfaceTexel> texels = RasterizeSurface(character_.meshes.back(), size, size);
-    skin.base_colour_texture = AddPicture(PaintMakeHumanSkin(texels, face_, size));
+    skin.base_colour_texture = AddPicture(SkinColours(texels, moves));
     skin.normal_texture = AddPicture(PaintMakeHumanSkinNormals(texels, face_, size));
     character_.materials.push_back(skin);
     FaceMasks masks = PaintFaceMasks(texels, face_, size);
     AddPicture(std::move(masks.first));
     AddPicture(std::move(masks.second));
     strokes_ = FaceStrokes(face_, texels);
-    BuildEyes();
+    if (!HasKind(parts_, "eyes")) BuildEyes();
     BuildMouth();
-    BuildHairAndLashes();
+    if (Grows("hair")) BuildHair();
+    if (Grows("eyelashes")) BuildLashesOfBase();
     return {};
+  }
+
+  // True if the import makes the part itself: the save has it, but the folder lacks it.
+  bool Grows(std::string_view kind) const {
+    if (!save_) return true;
+    const bool named = std::any_of(save_->parts.begin(), save_->parts.end(),
+                                   [&](const MhmSave::Part& part) { return part.kind == kind; });
+    return named && !HasKind(parts_, kind);
+  }
+
+  // Scalp and brows are painted unless the save has other ones.
+  character::Picture SkinColours(const std::vector<SurfaceTexel>& texels,
+                                 const std::vector<UvMove>& moves) const {
+    const int size = options_.texture_size;
+    SkinLook look;
+    look.scalp = !save_ || HasKind(parts_, "hair") || Grows("hair");
+    look.brows = !HasKind(parts_, "eyebrows");
+    if (!skin_picture_) return PaintMakeHumanSkin(texels, face_, look, size);
+    character::Picture picture = MoveSkinPicture(*skin_picture_, texels, moves, size);
+    if (Grows("eyebrows")) PaintMakeHumanBrows(texels, face_, look, &picture);
+    return picture;
   }
 
   void BuildEyes() {
@@ -218,7 +297,7 @@ class MakeHumanImport {
     }
   }
 
-  void BuildHairAndLashes() {
+  void BuildHair() {
     character::Material hair{
         .name = "hair", .kind = character::Material::Kind::kHair, .roughness = 0.45f};
     hair.double_sided = true;
@@ -226,6 +305,9 @@ class MakeHumanImport {
         AddPicture(PaintMakeHumanHair(std::max(options_.texture_size / 2, 64)));
     const character::Mesh& skin = character_.meshes.front();
     AddPart(BuildMakeHumanHair(skin, face_, AddMaterial(hair)));
+  }
+
+  void BuildLashesOfBase() {
     character::Material lashes{
         .name = "lashes", .kind = character::Material::Kind::kHair, .roughness = 0.6f};
     lashes.double_sided = true;
@@ -240,51 +322,56 @@ class MakeHumanImport {
   }
 
   void BuildMouth() {
-    character::Material teeth{.name = "teeth", .roughness = 0.3f};
-    teeth.base_colour_texture =
-        AddPicture(PaintTeeth(0.1f, std::max(options_.texture_size / 2, 64)));
-    const int material = AddMaterial(teeth);
-    AddPart(BuildTeeth(base_, "helper-upper-teeth", true, material));
-    AddPart(BuildTeeth(base_, "helper-lower-teeth", false, material));
+    if (!HasKind(parts_, "teeth")) {
+      character::Material teeth{.name = "teeth", .roughness = 0.3f};
+      teeth.base_colour_texture =
+          AddPicture(PaintTeeth(0.1f, std::max(options_.texture_size / 2, 64)));
+      const int material = AddMaterial(teeth);
+      AddPart(BuildTeeth(base_, "helper-upper-teeth", true, material));
+      AddPart(BuildTeeth(base_, "helper-lower-teeth", false, material));
+    }
+    if (HasKind(parts_, "tongue")) return;
     const int tongue = AddMaterial(
         {.name = "tongue", .base_colour = glm::vec4(0.20f, 0.05f, 0.05f, 1.0f), .roughness = 0.5f});
     AddPart(BuildHelper(base_, "helper-tongue", tongue));
   }
 
-  Status BuildGarment() {
-    if (!garment_) return {};
-    const std::vector<glm::vec3> positions = FitGarment(*garment_, base_.positions);
-    for (const glm::vec3& p : positions) {
-      // Finite factors and offsets may still multiply to anything. The comparison is false for NaN.
-      constexpr float kFar = 100.0f;  // metres
-      if (!(glm::length(p) < kFar))
-        return Status(StatusCode::kInvalidArgument,
-                      "the garment '" + garment_->name + "' is 100 m or more away from the body",
-                      garment_->obj_file, "check the scales and offsets in its .mhclo file");
+  // Clothes hide what is worn under them.
+  Status BuildParts() {
+    const bool hide = save_ && save_->clothes_hide_faces;
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      const SavedPart& part = parts_[i];
+      const bool layered = hide && part.kind == "clothes";
+      const Result<FittedProxy> fitted =
+          FitProxy(part.proxy, base_, part.name.empty() ? part.kind : part.name,
+                   layered ? HiddenBy(std::span(parts_).subspan(i + 1)) : std::vector<bool>());
+      FURROW_RETURN_IF_ERROR(fitted);
+      report_.unweighted_vertices += fitted->unweighted;
+      report_.truncated_vertices += fitted->truncated;
+      if (fitted->mesh.indices.empty()) continue;  // hidden under other clothes
+      character::Mesh mesh = fitted->mesh;
+      mesh.material = part.painted ? AddPaintedCloth(mesh) : AddLook(part);
+      character_.meshes.push_back(std::move(mesh));
     }
-    const SkinWeights skin = BindGarment(*garment_, base_.skin);
-    std::vector<std::uint32_t> faces(garment_obj_.faces.size());
-    for (std::uint32_t f = 0; f < faces.size(); ++f) faces[f] = f;
-    const std::vector<glm::vec3> normals = SmoothNormals(garment_obj_, positions, faces);
-    MeshSource source;
-    source.obj = &garment_obj_;
-    source.positions = positions;
-    source.normals = normals;
-    source.influences = skin.vertices;
-    source.faces = std::move(faces);
+    return {};
+  }
+
+  int AddPaintedCloth(const character::Mesh& mesh) {
     const int size = options_.texture_size;
-    character::Mesh mesh = BuildMesh("clothes", 0, source);
     const std::vector<SurfaceTexel> texels = RasterizeSurface(mesh, size, size);
     character::Material cloth{
         .name = "cloth", .kind = character::Material::Kind::kCloth, .roughness = 0.85f};
     cloth.double_sided = true;  // cuffs and collars show their inside
     cloth.base_colour_texture = AddPicture(PaintCloth(texels, Waist(), size));
     cloth.normal_texture = AddPicture(PaintWeaveNormals(texels, size));
-    mesh.material = AddMaterial(cloth);
-    AddPart(std::move(mesh));
-    report_.unweighted_vertices += skin.unweighted;
-    report_.truncated_vertices += skin.truncated;
-    return {};
+    return AddMaterial(cloth);
+  }
+
+  int AddLook(const SavedPart& part) {
+    character::Material material = MaterialOf(part);
+    if (part.colour) material.base_colour_texture = AddPicture(*part.colour);
+    if (part.normal) material.normal_texture = AddPicture(*part.normal);
+    return AddMaterial(material);
   }
 
   // Where the spine leaves the pelvis; half the body's height where there is no such joint.
@@ -294,8 +381,25 @@ class MakeHumanImport {
     return character_.skeleton.rest_model()[static_cast<std::size_t>(joint)][3].y;
   }
 
+  // All cloth shares one map, so that garments with UVs of their own would show each other's folds.
+  void ChooseWrinkledGarment() {
+    float most = -1.0f;
+    int chosen = -1;
+    for (const character::Mesh& mesh : character_.meshes) {
+      character::Material& material = character_.materials[static_cast<std::size_t>(mesh.material)];
+      if (material.kind != character::Material::Kind::kCloth) continue;
+      material.wrinkles = false;
+      const float area = AreaOf(mesh);
+      if (area <= most) continue;
+      most = area;
+      chosen = mesh.material;
+    }
+    if (chosen >= 0) character_.materials[static_cast<std::size_t>(chosen)].wrinkles = true;
+  }
+
   // Wrinkle maps: strokes where the face's folds are known, strain elsewhere and on the cloth.
   Status BakeMaps() {
+    ChooseWrinkledGarment();
     for (const wrinkle::Region& region : character_.rig.regions) UsePicture(region.mask.texture);
     // A rig of another's making may do without the face's maps.
     std::erase_if(strokes_, [this](const BakeStroke& stroke) {
@@ -355,6 +459,10 @@ class MakeHumanImport {
                                  " vertices have no weights and follow the root joint");
   }
 
+  void Append(const std::vector<std::string>& warnings) {
+    report_.warnings.insert(report_.warnings.end(), warnings.begin(), warnings.end());
+  }
+
   // A part that the folder lacks is left out, and said.
   void AddPart(character::Mesh mesh) {
     if (mesh.indices.empty()) {
@@ -377,8 +485,9 @@ class MakeHumanImport {
   fs::path folder_;
   const ImportOptions& options_;
   BaseMesh base_;
-  std::optional<Mhclo> garment_;
-  ObjMesh garment_obj_;
+  std::optional<MhmSave> save_;
+  std::vector<SavedPart> parts_;
+  std::optional<character::Picture> skin_picture_;
   FaceLandmarks face_;
   std::vector<BakeStroke> strokes_;
   character::Character character_;

@@ -14,8 +14,14 @@ namespace furrow::authoring {
 
 // The options of ImportMakeHuman().
 struct ImportOptions {
-  // The garment: a folder in <folder>/clothes. Empty: the first by name, if there is one.
+  // The garment: a folder in <folder>/clothes. Empty: the first by name, if there is one. Not used
+  // with a save, which names its garments itself.
   std::string clothes;
+  // A .mhm file: the person to make. Empty: the base mesh without a person's shape.
+  std::filesystem::path save;
+  // Further data folders, in which the parts and materials of the save are also looked for, such as
+  // that of MakeHuman's user.
+  std::vector<std::filesystem::path> asset_folders;
   // The wrinkle rig to embed. Empty: makehuman.json of Furrow's data folder.
   std::filesystem::path rig;
   // Reads the frames of <folder>/poseunits that the rig names, for example
@@ -34,9 +40,10 @@ struct ImportReport {
   int joints = 0;
   int vertices = 0;  // after splitting at UV seams
   int triangles = 0;
-  int hidden_faces = 0;         // faces of the body under the clothes
-  int unweighted_vertices = 0;  // vertices without weights, drawn or not; they follow the root
-  int truncated_vertices = 0;   // vertices with more than four joints; the weakest were dropped
+  int hidden_faces = 0;            // faces of the body under the clothes
+  int unweighted_vertices = 0;     // vertices without weights, drawn or not; they follow the root
+  int truncated_vertices = 0;      // vertices with more than four joints; the weakest were dropped
+  std::vector<std::string> notes;  // what was made of a save
   std::vector<std::string> warnings;
 };
 
@@ -51,9 +58,13 @@ struct ImportReport {
 //   strokes at the usual folds of a face.
 // - The rig is bound to the skeleton once, which detects a rig that does not fit the folder.
 //
+// With a save, the folder's targets shape the base mesh first, and joints, clothes and all else are
+// fitted to that shape. The save's parts and materials replace what is painted, where the folder
+// has them with their pictures. Everything that it lacks is a warning.
+//
 // `report` (may be null) is set on success only. Errors name the file and the line or field:
 // kNotFound (a file, a joint), kParse, kSchema, kNonFinite, kInvalidArgument (an index or option
-// out of range), kLimit, kIo, and those of Bake().
+// out of range), kLimit, kIo, and those of ParseMhm(), ShapePerson() and Bake().
 [[nodiscard]] Result<character::Character> ImportMakeHuman(const std::filesystem::path& folder,
                                                            const ImportOptions& options = {},
                                                            ImportReport* report = nullptr);

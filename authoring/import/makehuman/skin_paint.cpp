@@ -135,7 +135,7 @@ float LidShade(const glm::vec3& p, const FaceLandmarks& face) {
   return shade;
 }
 
-glm::vec3 SkinColour(const SurfaceTexel& texel, const FaceLandmarks& face) {
+glm::vec3 SkinColour(const SurfaceTexel& texel, const FaceLandmarks& face, const SkinLook& look) {
   const glm::vec3& p = texel.position;
   const float blotches = ValueNoise(p / face.Millimetres(11.0f)) - 0.5f;
   const float speckle = ValueNoise(p / face.Millimetres(1.7f)) - 0.5f;
@@ -151,8 +151,9 @@ glm::vec3 SkinColour(const SurfaceTexel& texel, const FaceLandmarks& face) {
   colour = glm::mix(colour, kLips, Lips(p, face) * front);
   colour = glm::mix(colour, kMouth, MouthInside(p, face));
   const float grain = ValueNoise(p / face.Millimetres(0.9f));
-  colour = glm::mix(colour, kStubble, ScalpAmount(p, face) * (0.75f + 0.25f * grain));
-  colour = glm::mix(colour, kBrow, 0.92f * Brow(p, face) * front);
+  if (look.scalp)
+    colour = glm::mix(colour, kStubble, ScalpAmount(p, face) * (0.75f + 0.25f * grain));
+  if (look.brows) colour = glm::mix(colour, kBrow, 0.92f * Brow(p, face) * front);
   return colour * (1.0f + 0.05f * blotches + 0.05f * speckle);
 }
 
@@ -203,13 +204,25 @@ float ScalpAmount(const glm::vec3& p, const FaceLandmarks& face) {
 }
 
 character::Picture PaintMakeHumanSkin(const std::vector<SurfaceTexel>& texels,
-                                      const FaceLandmarks& face, int size) {
+                                      const FaceLandmarks& face, const SkinLook& look, int size) {
   character::Picture picture = BlankPicture("skin_colour", size, size, 3);
   for (const SurfaceTexel& texel : texels) {
-    SetTexel(&picture, texel.x, texel.y, glm::vec4(SkinColour(texel, face), 1.0f));
+    SetTexel(&picture, texel.x, texel.y, glm::vec4(SkinColour(texel, face, look), 1.0f));
   }
   Dilate(&picture, texels, kSeamTexels);
   return picture;
+}
+
+void PaintMakeHumanBrows(const std::vector<SurfaceTexel>& texels, const FaceLandmarks& face,
+                         const SkinLook& look, character::Picture* picture) {
+  if (!look.brows) return;
+  for (const SurfaceTexel& texel : texels) {
+    const float amount = 0.92f * Brow(texel.position, face) * Front(texel);
+    if (amount <= 0.0f) continue;
+    std::uint8_t* out = TexelAt(picture, texel.x, texel.y);
+    for (int c = 0; c < 3; ++c)
+      out[c] = ToByte(glm::mix(static_cast<float>(out[c]) / 255.0f, kBrow[c], amount));
+  }
 }
 
 character::Picture PaintMakeHumanSkinNormals(const std::vector<SurfaceTexel>& texels,

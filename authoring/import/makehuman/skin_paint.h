@@ -13,12 +13,23 @@ namespace furrow::authoring {
 // hairline is high above the brows and lower at the temples; ears are free of hair.
 [[nodiscard]] float ScalpAmount(const glm::vec3& p, const FaceLandmarks& face);
 
+// What the painted skin of a person shows.
+struct SkinLook {
+  bool scalp = true;  // a shaved scalp
+  bool brows = true;
+};
+
 // Paints the colour of the skin, 8-bit sRGB, by the position of each texel relative to the
 // landmarks (MakeHuman's pictures are not read). `texels`: those that the skin covers. `size`:
 // width and height, texels. The colour has regional hues (cheeks, nose and ears redder, chin and
 // forehead yellower), lips, brows, a shaved scalp, and blotches at two scales.
 [[nodiscard]] character::Picture PaintMakeHumanSkin(const std::vector<SurfaceTexel>& texels,
-                                                    const FaceLandmarks& face, int size);
+                                                    const FaceLandmarks& face, const SkinLook& look,
+                                                    int size);
+
+// Paints only the brows onto `picture`, 8-bit sRGB.
+void PaintMakeHumanBrows(const std::vector<SurfaceTexel>& texels, const FaceLandmarks& face,
+                         const SkinLook& look, character::Picture* picture);
 
 // Paints pores and fine furrows as a tangent-space normal map, 8 bits, green up.
 [[nodiscard]] character::Picture PaintMakeHumanSkinNormals(const std::vector<SurfaceTexel>& texels,

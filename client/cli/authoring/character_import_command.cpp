@@ -5,13 +5,16 @@
 #include <memory>
 #include <optional>
 #include <system_error>
+#include <vector>
 
 #include "authoring/bake/strokes_file.h"
 #include "authoring/import/character_package.h"
 #include "authoring/import/makehuman/makehuman.h"
+#include "authoring/import/makehuman/save/data_folders.h"
 #include "authoring/import/model/import_model.h"
 #include "authoring/import/model/shape_face.h"
 #include "authoring/shapes/arkit_face.h"
+#include "base/ascii.h"
 #include "base/status.h"
 #include "base/text.h"
 #include "character/package/package.h"
@@ -30,12 +33,13 @@ struct ImportArguments {
   std::string out;
   std::string rig;
   std::string map;
+  std::vector<std::string> data_folders;
   authoring::ImportOptions makehuman;
   authoring::ModelOptions model;
 };
 
-int ImportFolder(const ImportArguments& arguments) {
-  authoring::ImportOptions options = arguments.makehuman;
+int ImportFolder(const std::filesystem::path& folder, const ImportArguments& arguments,
+                 authoring::ImportOptions options) {
   options.rig = arguments.rig.empty() ? std::filesystem::path() : ResolveRigPath(arguments.rig);
   options.poses = motion::CachedPoseSource();
   Progress progress("importing", 100);
@@ -44,10 +48,11 @@ int ImportFolder(const ImportArguments& arguments) {
     return true;
   };
   authoring::ImportReport report;
-  const auto character = authoring::ImportMakeHuman(arguments.in, options, &report);
+  const auto character = authoring::ImportMakeHuman(folder, options, &report);
   if (!character.ok()) return Fail(character.status());
   if (Status status = authoring::WriteCharacterPackage(*character, arguments.out); !status.ok())
     return Fail(status);
+  PrintNotes(report.notes);
   PrintWarnings(report.warnings);
   std::fprintf(
       stderr,
@@ -59,6 +64,17 @@ int ImportFolder(const ImportArguments& arguments) {
       Counted(report.hidden_faces, "body face").c_str(),
       Counted(report.unweighted_vertices, "vertex", "vertices").c_str(), report.truncated_vertices);
   return kDone;
+}
+
+int ImportSave(const ImportArguments& arguments) {
+  const std::vector<std::filesystem::path> given(arguments.data_folders.begin(),
+                                                 arguments.data_folders.end());
+  const auto folders = authoring::FindDataFolders(arguments.in, given);
+  if (!folders.ok()) return Fail(folders.status());
+  authoring::ImportOptions options = arguments.makehuman;
+  options.save = arguments.in;
+  options.asset_folders = folders->assets;
+  return ImportFolder(folders->base, arguments, options);
 }
 
 // The folds that are drawn on the default character's face.
@@ -157,9 +173,12 @@ int ImportFile(ImportArguments arguments) {
 }
 
 int Import(const ImportArguments& arguments) {
+  const std::filesystem::path in(arguments.in);
   std::error_code error;
-  return std::filesystem::is_directory(arguments.in, error) ? ImportFolder(arguments)
-                                                            : ImportFile(arguments);
+  if (std::filesystem::is_directory(in, error))
+    return ImportFolder(in, arguments, arguments.makehuman);
+  return EqualsIgnoreCase(in.extension().string(), ".mhm") ? ImportSave(arguments)
+                                                           : ImportFile(arguments);
 }
 
 }  // namespace
@@ -168,12 +187,13 @@ void AddCharacterImport(CLI::App& group, Action& action) {
   auto arguments = std::make_shared<ImportArguments>();
   CLI::App* command = group.add_subcommand(
       "import",
-      "Make a character package from a skinned model (glTF, VRM, FBX, Collada, ...) or from "
-      "MakeHuman's data folder");
+      "Make a character package from a skinned model (glTF, VRM, FBX, Collada, ...), from a "
+      "person that MakeHuman saved (.mhm), or from MakeHuman's data folder");
   command
       ->add_option(
           "IN", arguments->in,
-          "Model file, or the MakeHuman folder with 3dobjs/, rigs/, poseunits/ and clothes/")
+          "Model file, .mhm file, or the MakeHuman folder with 3dobjs/, rigs/, poseunits/ and "
+          "clothes/")
       ->required();
   command
       ->add_option("--out", arguments->out,
@@ -190,7 +210,10 @@ void AddCharacterImport(CLI::App& group, Action& action) {
   command->add_option("--scale", arguments->model.scale,
                       "Metres per unit of the model (default: derived from its height)");
   command->add_option("--clothes", arguments->makehuman.clothes,
-                      "MakeHuman: folder in clothes/ (default: the first by name)");
+                      "MakeHuman's folder: garment in clothes/ (default: the first by name)");
+  command->add_option("--data", arguments->data_folders,
+                      "Data folder of MakeHuman for a .mhm file (repeatable; default: near the "
+                      "file or in FURROW_ASSET_PATH)");
   command
       ->add_option(
           "--texture-size", arguments->makehuman.texture_size,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "authoring/import/makehuman/formats/mhclo.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -63,7 +64,21 @@ class MhcloParser {
     if (word == "x_scale") return Scale(0);
     if (word == "y_scale") return Scale(1);
     if (word == "z_scale") return Scale(2);
-    return {};  // material, tag, z_depth, ...: not used
+    if (word == "material" && words_.size() > 1) Material();
+    if (word == "z_depth" && words_.size() > 1) {
+      const std::optional<long> depth = ToInteger(words_[1]);
+      if (depth) garment_.z_depth = static_cast<int>(std::clamp(*depth, -1000l, 1000l));
+    }
+    return {};  // tag, basemesh, ...: not used
+  }
+
+  // File names may contain blanks.
+  void Material() {
+    garment_.material.assign(words_[1]);
+    for (std::size_t i = 2; i < words_.size(); ++i) {
+      garment_.material += ' ';
+      garment_.material += words_[i];
+    }
   }
 
   Status Error(StatusCode code, std::string what) const {

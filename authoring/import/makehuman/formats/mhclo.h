@@ -34,6 +34,8 @@ struct Mhclo {
   std::string name;
   std::string obj_file;                        // file beside the .mhclo, without folders
   std::array<std::optional<Scale>, 3> scales;  // x, y, z; empty: 1
+  std::string material;                        // .mhmat file, relative to the .mhclo; may be empty
+  int z_depth = 50;                            // larger numbers are worn above smaller ones
   std::vector<GarmentVertex> vertices;         // in the order of the .obj
   std::vector<bool> deleted;                   // per base vertex: the garment hides it
 };
