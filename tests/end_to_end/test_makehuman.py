@@ -126,6 +126,14 @@ class SavedPersonTest(unittest.TestCase):
         (self.root / "data").symlink_to(self.data)
         furrow("character", "import", self.save, "--out", self.root / "ada.glb", "--texture-size", 64, check=0)
 
+    def test_a_person_without_clothes_has_no_folds_of_cloth(self):
+        lines = [line for line in self.save.read_text().splitlines() if not line.startswith("clothes ")]
+        self.save.write_text("\n".join(lines) + "\n")
+        package = self.root / "ada.glb"
+        furrow("character", "import", self.save, "--data", self.data, "--out", package, "--texture-size", 64, check=0)
+        self.assertNotIn("folds", package.with_suffix(".rig.json").read_text())
+        furrow("character", "check", package, check=0)
+
     def test_bad_saves_and_folders_are_named(self):
         out = self.root / "ada.glb"
         result = furrow("character", "import", self.save, "--out", out, check=3, env={"FURROW_ASSET_PATH": ""})

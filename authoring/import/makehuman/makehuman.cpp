@@ -24,6 +24,7 @@
 #include "authoring/import/makehuman/prop_paint.h"
 #include "authoring/import/makehuman/proxy.h"
 #include "authoring/import/makehuman/save/asset_library.h"
+#include "authoring/import/makehuman/save/bare_body.h"
 #include "authoring/import/makehuman/save/person.h"
 #include "authoring/import/makehuman/saved_parts.h"
 #include "authoring/import/makehuman/skin_paint.h"
@@ -382,6 +383,7 @@ class MakeHumanImport {
   }
 
   // All cloth shares one map, so that garments with UVs of their own would show each other's folds.
+  // Without clothes, the rig's maps of cloth go.
   void ChooseWrinkledGarment() {
     float most = -1.0f;
     int chosen = -1;
@@ -394,7 +396,8 @@ class MakeHumanImport {
       most = area;
       chosen = mesh.material;
     }
-    if (chosen >= 0) character_.materials[static_cast<std::size_t>(chosen)].wrinkles = true;
+    if (chosen < 0) return RemoveClothMaps(&character_.rig);
+    character_.materials[static_cast<std::size_t>(chosen)].wrinkles = true;
   }
 
   // Wrinkle maps: strokes where the face's folds are known, strain elsewhere and on the cloth.
