@@ -8,7 +8,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "authoring/import/makehuman/prop_paint.h"
+#include "authoring/import/makehuman/face/prop_paint.h"
 #include "authoring/paint/teeth.h"
 #include "character/mesh/tangents.h"
 

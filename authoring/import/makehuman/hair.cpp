@@ -10,7 +10,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "authoring/import/makehuman/skin_paint.h"
+#include "authoring/import/makehuman/face/skin_paint.h"
 #include "authoring/paint/canvas.h"
 #include "authoring/paint/noise.h"
 #include "character/mesh/tangents.h"
@@ -181,9 +181,10 @@ character::Mesh BuildLashes(const BaseMesh& base, std::string_view group, const 
   return lashes;
 }
 
-character::Picture PaintMakeHumanHair(int size) {
+character::Picture PaintMakeHumanHair(const SkinLook& look, int size) {
   constexpr glm::vec3 kDark{0.15f, 0.105f, 0.075f};
   constexpr glm::vec3 kLight{0.36f, 0.26f, 0.185f};
+  const glm::vec3 dark = HairColour(kDark, look), bright = HairColour(kLight, look);
   character::Picture picture = BlankPicture("hair_colour", size, size, 3);
   for (int y = 0; y < size; ++y) {
     for (int x = 0; x < size; ++x) {
@@ -193,7 +194,7 @@ character::Picture PaintMakeHumanHair(int size) {
       const float lock = ValueNoise({u * 14.0f, 0.5f, 3.5f});
       const float light = 0.55f * strand * (1.0f - 0.6f * root) + 0.35f * lock;
       SetTexel(&picture, x, y,
-               glm::vec4(glm::mix(kDark, kLight, std::clamp(light, 0.0f, 1.0f)), 1.0f));
+               glm::vec4(glm::mix(dark, bright, std::clamp(light, 0.0f, 1.0f)), 1.0f));
     }
   }
   return picture;

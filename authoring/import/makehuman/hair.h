@@ -4,7 +4,8 @@
 #include <string_view>
 
 #include "authoring/import/makehuman/body_parts.h"
-#include "authoring/import/makehuman/face_landmarks.h"
+#include "authoring/import/makehuman/face/face_landmarks.h"
+#include "authoring/import/makehuman/face/skin_paint.h"
 #include "character/character.h"
 
 namespace furrow::authoring {
@@ -24,7 +25,7 @@ namespace furrow::authoring {
 
 // The colour of the hair, 8-bit sRGB. Strands run from the tips (top) to the roots (bottom).
 // `size`: width and height, texels.
-[[nodiscard]] character::Picture PaintMakeHumanHair(int size);
+[[nodiscard]] character::Picture PaintMakeHumanHair(const SkinLook& look, int size);
 
 // Alpha below which a lash is not drawn, for Material::alpha_cutoff. 0.4 keeps a fringe where
 // distant lashes are finer than texels.

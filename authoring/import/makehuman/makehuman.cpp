@@ -15,21 +15,21 @@
 #include "authoring/bake/bake_pictures.h"
 #include "authoring/bake/bake_poses.h"
 #include "authoring/import/makehuman/body_parts.h"
-#include "authoring/import/makehuman/face_folds.h"
-#include "authoring/import/makehuman/face_landmarks.h"
+#include "authoring/import/makehuman/face/face_folds.h"
+#include "authoring/import/makehuman/face/face_landmarks.h"
+#include "authoring/import/makehuman/face/prop_paint.h"
+#include "authoring/import/makehuman/face/skin_paint.h"
 #include "authoring/import/makehuman/formats/mhm.h"
 #include "authoring/import/makehuman/formats/mhskel.h"
 #include "authoring/import/makehuman/formats/obj.h"
-#include "authoring/import/makehuman/hair.h"
-#include "authoring/import/makehuman/prop_paint.h"
+#include "authoring/import/makehuman/own_parts.h"
 #include "authoring/import/makehuman/proxy.h"
 #include "authoring/import/makehuman/save/asset_library.h"
 #include "authoring/import/makehuman/save/bare_body.h"
 #include "authoring/import/makehuman/save/person.h"
+#include "authoring/import/makehuman/save/person_look.h"
 #include "authoring/import/makehuman/saved_parts.h"
-#include "authoring/import/makehuman/skin_paint.h"
 #include "authoring/paint/surface_texels.h"
-#include "authoring/paint/teeth.h"
 #include "base/data_dir.h"
 #include "base/files.h"
 #include "base/status.h"
@@ -247,18 +247,25 @@ class MakeHumanImport {
                                           hide ? HiddenBy(parts_) : std::vector<bool>(), 0,
                                           &report_.hidden_faces, &moves));
     const std::vector<SurfaceTexel> texels = RasterizeSurface(character_.meshes.back(), size, size);
-    skin.base_colour_texture = AddPicture(SkinColours(texels, moves));
-    skin.normal_texture = AddPicture(PaintMakeHumanSkinNormals(texels, face_, size));
+    skin.base_colour_texture = AddPicture(SkinColours(texels, moves), &character_);
+    skin.normal_texture = AddPicture(PaintMakeHumanSkinNormals(texels, face_, size), &character_);
     character_.materials.push_back(skin);
     FaceMasks masks = PaintFaceMasks(texels, face_, size);
-    AddPicture(std::move(masks.first));
-    AddPicture(std::move(masks.second));
+    AddPicture(std::move(masks.first), &character_);
+    AddPicture(std::move(masks.second), &character_);
     strokes_ = FaceStrokes(face_, texels);
-    if (!HasKind(parts_, "eyes")) BuildEyes();
-    BuildMouth();
-    if (Grows("hair")) BuildHair();
-    if (Grows("eyelashes")) BuildLashesOfBase();
+    BuildOwnParts();
     return {};
+  }
+
+  void BuildOwnParts() {
+    const PartSource source{
+        base_, face_, Look(), options_.texture_size, &character_, &report_.warnings};
+    if (!HasKind(parts_, "eyes")) AddOwnEyes(source);
+    if (!HasKind(parts_, "teeth")) AddOwnTeeth(source);
+    if (!HasKind(parts_, "tongue")) AddOwnTongue(source);
+    if (Grows("hair")) AddOwnHair(source);
+    if (Grows("eyelashes")) AddOwnLashes(source);
   }
 
   // True if the import makes the part itself: the save has it, but the folder lacks it.
@@ -270,71 +277,25 @@ class MakeHumanImport {
   }
 
   // Scalp and brows are painted unless the save has other ones.
+  SkinLook Look() const {
+    SkinLook look;
+    if (!save_) return look;
+    look.scalp = HasKind(parts_, "hair") || Grows("hair");
+    look.brows = !HasKind(parts_, "eyebrows");
+    const PersonLook person = LookOf(*save_);
+    look.old = person.old;
+    look.asian = person.asian;
+    look.african = person.african;
+    return look;
+  }
+
   character::Picture SkinColours(const std::vector<SurfaceTexel>& texels,
                                  const std::vector<UvMove>& moves) const {
     const int size = options_.texture_size;
-    SkinLook look;
-    look.scalp = !save_ || HasKind(parts_, "hair") || Grows("hair");
-    look.brows = !HasKind(parts_, "eyebrows");
-    if (!skin_picture_) return PaintMakeHumanSkin(texels, face_, look, size);
+    if (!skin_picture_) return PaintMakeHumanSkin(texels, face_, Look(), size);
     character::Picture picture = MoveSkinPicture(*skin_picture_, texels, moves, size);
-    if (Grows("eyebrows")) PaintMakeHumanBrows(texels, face_, look, &picture);
+    if (Grows("eyebrows")) PaintMakeHumanBrows(texels, face_, Look(), &picture);
     return picture;
-  }
-
-  void BuildEyes() {
-    character::Material material{
-        .name = "eye", .kind = character::Material::Kind::kEye, .roughness = 0.12f};
-    material.base_colour_texture = AddPicture(PaintEye(std::max(options_.texture_size / 2, 64)));
-    const int index = AddMaterial(material);
-    constexpr const char* kGroups[2] = {"helper-l-eye", "helper-r-eye"};
-    constexpr const char* kJoints[2] = {"eye.L", "eye.R"};
-    for (std::size_t s = 0; s < 2; ++s) {
-      const FaceLandmarks::Side& side = face_.sides[s];
-      const glm::vec3 sight = side.pupil - side.eye;
-      const glm::vec3 forward =
-          glm::length(sight) > 1e-6f ? glm::normalize(sight) : glm::vec3(0.0f, 0.0f, 1.0f);
-      AddPart(BuildEye(base_, kGroups[s], character_.skeleton.Find(kJoints[s]), forward, index));
-    }
-  }
-
-  void BuildHair() {
-    character::Material hair{
-        .name = "hair", .kind = character::Material::Kind::kHair, .roughness = 0.45f};
-    hair.double_sided = true;
-    hair.base_colour_texture =
-        AddPicture(PaintMakeHumanHair(std::max(options_.texture_size / 2, 64)));
-    const character::Mesh& skin = character_.meshes.front();
-    AddPart(BuildMakeHumanHair(skin, face_, AddMaterial(hair)));
-  }
-
-  void BuildLashesOfBase() {
-    character::Material lashes{
-        .name = "lashes", .kind = character::Material::Kind::kHair, .roughness = 0.6f};
-    lashes.double_sided = true;
-    lashes.alpha_cutoff = kLashCutoff;
-    lashes.base_colour_texture = AddPicture(PaintLashes(std::max(options_.texture_size / 2, 64)));
-    const int material = AddMaterial(lashes);
-    for (int s = 0; s < 2; ++s) {
-      const std::string group = s == 0 ? "helper-l-eyelashes-" : "helper-r-eyelashes-";
-      AddPart(BuildLashes(base_, group + "1", face_.sides[s].eye, 0.6f, material));
-      AddPart(BuildLashes(base_, group + "2", face_.sides[s].eye, 1.0f, material));
-    }
-  }
-
-  void BuildMouth() {
-    if (!HasKind(parts_, "teeth")) {
-      character::Material teeth{.name = "teeth", .roughness = 0.3f};
-      teeth.base_colour_texture =
-          AddPicture(PaintTeeth(0.1f, std::max(options_.texture_size / 2, 64)));
-      const int material = AddMaterial(teeth);
-      AddPart(BuildTeeth(base_, "helper-upper-teeth", true, material));
-      AddPart(BuildTeeth(base_, "helper-lower-teeth", false, material));
-    }
-    if (HasKind(parts_, "tongue")) return;
-    const int tongue = AddMaterial(
-        {.name = "tongue", .base_colour = glm::vec4(0.20f, 0.05f, 0.05f, 1.0f), .roughness = 0.5f});
-    AddPart(BuildHelper(base_, "helper-tongue", tongue));
   }
 
   // Clothes hide what is worn under them.
@@ -363,16 +324,16 @@ class MakeHumanImport {
     character::Material cloth{
         .name = "cloth", .kind = character::Material::Kind::kCloth, .roughness = 0.85f};
     cloth.double_sided = true;  // cuffs and collars show their inside
-    cloth.base_colour_texture = AddPicture(PaintCloth(texels, Waist(), size));
-    cloth.normal_texture = AddPicture(PaintWeaveNormals(texels, size));
-    return AddMaterial(cloth);
+    cloth.base_colour_texture = AddPicture(PaintCloth(texels, Waist(), size), &character_);
+    cloth.normal_texture = AddPicture(PaintWeaveNormals(texels, size), &character_);
+    return AddMaterial(cloth, &character_);
   }
 
   int AddLook(const SavedPart& part) {
     character::Material material = MaterialOf(part);
-    if (part.colour) material.base_colour_texture = AddPicture(*part.colour);
-    if (part.normal) material.normal_texture = AddPicture(*part.normal);
-    return AddMaterial(material);
+    if (part.colour) material.base_colour_texture = AddPicture(*part.colour, &character_);
+    if (part.normal) material.normal_texture = AddPicture(*part.normal, &character_);
+    return AddMaterial(material, &character_);
   }
 
   // Where the spine leaves the pelvis; half the body's height where there is no such joint.
@@ -422,12 +383,18 @@ class MakeHumanImport {
     const Result<BakedMaps> baked =
         Bake(character_, poses->poses, strokes_, options, options_.progress);
     FURROW_RETURN_IF_ERROR(baked);
+    FURROW_RETURN_IF_ERROR(AddMapPictures(*baked));
+    LeaveFolds();
+    return {};
+  }
+
+  Status AddMapPictures(const BakedMaps& baked) {
     for (wrinkle::WrinkleMap& map : character_.rig.wrinkle_maps) {
-      for (const BakedMap& from : baked->maps) {
+      for (const BakedMap& from : baked.maps) {
         if (from.map != map.name) continue;
         Result<std::vector<character::Picture>> pictures = WrinkleMapPictures(from, map);
         FURROW_RETURN_IF_ERROR(pictures);
-        for (character::Picture& picture : *pictures) AddPicture(std::move(picture));
+        for (character::Picture& picture : *pictures) AddPicture(std::move(picture), &character_);
       }
       for (const std::string* name :
            {&map.normal, &map.derivative, &map.height, &map.colour, &map.cavity}) {
@@ -435,6 +402,20 @@ class MakeHumanImport {
       }
     }
     return {};
+  }
+
+  // Half of the folds of an old face stay when it rests.
+  void LeaveFolds() {
+    const float old = Look().old;
+    if (old <= 0.0f) return;
+    for (const wrinkle::WrinkleMap& map : character_.rig.wrinkle_maps) {
+      const int folds = character_.FindRigPicture(map.normal);
+      if (folds < 0 || map.surface != wrinkle::WrinkleMap::Surface::kSkin) continue;
+      AddRestFolds(
+          character_.pictures[static_cast<std::size_t>(folds)], 0.5f * old * old,
+          &character_
+               .pictures[static_cast<std::size_t>(character_.materials.front().normal_texture)]);
+    }
   }
 
   // A picture that the rig names is one of those made here.
@@ -464,25 +445,6 @@ class MakeHumanImport {
 
   void Append(const std::vector<std::string>& warnings) {
     report_.warnings.insert(report_.warnings.end(), warnings.begin(), warnings.end());
-  }
-
-  // A part that the folder lacks is left out, and said.
-  void AddPart(character::Mesh mesh) {
-    if (mesh.indices.empty()) {
-      report_.warnings.push_back("base.obj has no group '" + mesh.name + "'; skipped");
-      return;
-    }
-    character_.meshes.push_back(std::move(mesh));
-  }
-
-  int AddMaterial(character::Material material) {
-    character_.materials.push_back(std::move(material));
-    return static_cast<int>(character_.materials.size()) - 1;
-  }
-
-  int AddPicture(character::Picture picture) {
-    character_.pictures.push_back(std::move(picture));
-    return static_cast<int>(character_.pictures.size()) - 1;
   }
 
   fs::path folder_;

@@ -2,10 +2,12 @@
 #include "authoring/import/makehuman/saved_parts.h"
 
 #include <algorithm>
+#include <array>
 #include <string>
 
 #include <gtest/gtest.h>
 
+#include "authoring/import/makehuman/face/skin_paint.h"
 #include "authoring/import/makehuman/makehuman.h"
 #include "authoring/import/makehuman/picture_fit.h"
 #include "character/pictures/picture_file.h"
@@ -118,6 +120,51 @@ TEST(ImportSave, PartsThatTheSaveLacksAreNotMade) {
   EXPECT_EQ(FindMesh(*bald, "cap"), nullptr);
   EXPECT_NE(FindMesh(*bald, "helper-l-eye"), nullptr);
   EXPECT_EQ(report.hidden_faces, 0);
+}
+
+// The mean colour of the painted skin, and of the hair, for a save with these lines.
+std::array<glm::vec3, 2> PaintedColours(const SaveFolder& folder, const std::string& lines) {
+  folder.Write("save.mhm", "version v1.2.0\nhair none x\n" + lines);
+  const Result<character::Character> person = folder.Import();
+  EXPECT_TRUE(person.ok()) << person.status().ToString();
+  std::array<glm::vec3, 2> means{glm::vec3(0.0f), glm::vec3(0.0f)};
+  if (!person.ok()) return means;
+  for (const character::Picture& picture : person->pictures) {
+    if (picture.name != "skin_colour" && picture.name != "hair_colour") continue;
+    glm::vec3& mean = means[picture.name == "skin_colour" ? 0 : 1];
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i)
+      mean[static_cast<int>(i % 3)] += static_cast<float>(picture.pixels[i]);
+    mean /= static_cast<float>(picture.pixels.size() / 3);
+  }
+  return means;
+}
+
+TEST(ImportSave, PaintedSkinAndHairFollowRaceAndAge) {
+  const SaveFolder folder;
+  const std::string race = "modifier macrodetails/African 0\nmodifier macrodetails/Asian 0\n";
+  const auto young = PaintedColours(folder, race);
+  const auto old = PaintedColours(folder, race + "modifier macrodetails/Age 1\n");
+  const auto african =
+      PaintedColours(folder, "modifier macrodetails/Caucasian 0\nmodifier macrodetails/Asian 0\n");
+  EXPECT_LT(african[0].r, 0.7f * young[0].r);
+  EXPECT_LT(african[1].r, 0.6f * young[1].r);
+  EXPECT_GT(old[1].b, 2.0f * young[1].b);
+  EXPECT_LT(old[1].r - old[1].b, 0.2f * old[1].r);  // grey
+}
+
+TEST(AddRestFolds, AddsSlopes) {
+  character::Picture flat, folds;
+  flat.width = flat.height = folds.width = folds.height = 1;
+  flat.channels = folds.channels = 3;
+  flat.pixels = {128, 128, 255};
+  folds.pixels = {217, 128, 217};  // slope 1 along x
+  AddRestFolds(folds, 0.5f, &flat);
+  EXPECT_NEAR(flat.pixels[0] / 127.5f - 1.0f, 0.447f, 0.02f);
+  EXPECT_NEAR(flat.pixels[2] / 127.5f - 1.0f, 0.894f, 0.02f);
+  folds.pixels = {128, 128, 255};
+  const auto before = flat.pixels;
+  AddRestFolds(folds, 0.5f, &flat);
+  EXPECT_EQ(flat.pixels, before);
 }
 
 TEST(ImportSave, ClothesHideWhatIsUnderThem) {

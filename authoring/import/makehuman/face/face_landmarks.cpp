@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "authoring/import/makehuman/face_landmarks.h"
+#include "authoring/import/makehuman/face/face_landmarks.h"
 
 #include <string>
 #include <string_view>

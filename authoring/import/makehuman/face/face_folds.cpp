@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "authoring/import/makehuman/face_folds.h"
+#include "authoring/import/makehuman/face/face_folds.h"
 
 #include <array>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "authoring/import/makehuman/skin_paint.h"
+#include "authoring/import/makehuman/face/skin_paint.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "authoring/import/makehuman/polyline.h"
+#include "authoring/import/makehuman/face/polyline.h"
 #include "authoring/paint/canvas.h"
 #include "authoring/paint/noise.h"
 
@@ -135,6 +135,24 @@ float LidShade(const glm::vec3& p, const FaceLandmarks& face) {
   return shade;
 }
 
+// The factors of an asian's and an african's skin, relative to kSkin.
+glm::vec3 ToneOf(const SkinLook& look) {
+  constexpr glm::vec3 kAsian{1.01f, 1.02f, 0.93f};
+  constexpr glm::vec3 kAfrican{0.54f, 0.49f, 0.45f};
+  return glm::vec3(1.0f) + look.asian * (kAsian - 1.0f) + look.african * (kAfrican - 1.0f);
+}
+
+// Old skin is paler and yellower, with spots on forehead and cheeks.
+glm::vec3 Aged(const glm::vec3& colour, const glm::vec3& p, const FaceLandmarks& face, float old) {
+  if (old <= 0.0f) return colour;
+  constexpr glm::vec3 kPale{0.80f, 0.66f, 0.56f};
+  constexpr glm::vec3 kSpot{0.60f, 0.43f, 0.32f};
+  const float spots = glm::smoothstep(0.72f, 0.80f, ValueNoise(p / face.Millimetres(5.0f)));
+  const float where = ValueNoise(p / face.Millimetres(26.0f) + glm::vec3(7.5f));
+  const glm::vec3 pale = glm::mix(colour, kPale, 0.35f * old);
+  return glm::mix(pale, kSpot, 0.45f * old * spots * glm::smoothstep(0.4f, 0.7f, where));
+}
+
 glm::vec3 SkinColour(const SurfaceTexel& texel, const FaceLandmarks& face, const SkinLook& look) {
   const glm::vec3& p = texel.position;
   const float blotches = ValueNoise(p / face.Millimetres(11.0f)) - 0.5f;
@@ -147,13 +165,16 @@ glm::vec3 SkinColour(const SurfaceTexel& texel, const FaceLandmarks& face, const
   colour = glm::mix(colour, kYellow, 0.5f * yellow);
   colour = glm::mix(colour, kRed, Redness(p, face) + 0.25f * blotches);
   const float front = Front(texel);
+  colour = Aged(colour, p, face, look.old);
   colour = glm::mix(colour, kLids, 0.55f * LidShade(p, face) * front);
   colour = glm::mix(colour, kLips, Lips(p, face) * front);
   colour = glm::mix(colour, kMouth, MouthInside(p, face));
   const float grain = ValueNoise(p / face.Millimetres(0.9f));
+  colour *= ToneOf(look);
   if (look.scalp)
-    colour = glm::mix(colour, kStubble, ScalpAmount(p, face) * (0.75f + 0.25f * grain));
-  if (look.brows) colour = glm::mix(colour, kBrow, 0.92f * Brow(p, face) * front);
+    colour = glm::mix(colour, HairColour(kStubble, look),
+                      ScalpAmount(p, face) * (0.75f + 0.25f * grain));
+  if (look.brows) colour = glm::mix(colour, HairColour(kBrow, look), 0.92f * Brow(p, face) * front);
   return colour * (1.0f + 0.05f * blotches + 0.05f * speckle);
 }
 
@@ -203,6 +224,14 @@ float ScalpAmount(const glm::vec3& p, const FaceLandmarks& face) {
   return ScalpOf(p, face) * off_ear;
 }
 
+glm::vec3 HairColour(const glm::vec3& colour, const SkinLook& look) {
+  constexpr glm::vec3 kGrey{0.60f, 0.58f, 0.56f};
+  const glm::vec3 young = glm::mix(colour, 0.4f * colour, look.asian + look.african);
+  // Light strands stay lighter than dark ones.
+  const float light = 0.55f + 1.2f * (colour.r + colour.g + colour.b) / 3.0f;
+  return glm::mix(young, kGrey * light, glm::smoothstep(0.35f, 0.95f, look.old));
+}
+
 character::Picture PaintMakeHumanSkin(const std::vector<SurfaceTexel>& texels,
                                       const FaceLandmarks& face, const SkinLook& look, int size) {
   character::Picture picture = BlankPicture("skin_colour", size, size, 3);
@@ -216,12 +245,13 @@ character::Picture PaintMakeHumanSkin(const std::vector<SurfaceTexel>& texels,
 void PaintMakeHumanBrows(const std::vector<SurfaceTexel>& texels, const FaceLandmarks& face,
                          const SkinLook& look, character::Picture* picture) {
   if (!look.brows) return;
+  const glm::vec3 brow = HairColour(kBrow, look);
   for (const SurfaceTexel& texel : texels) {
     const float amount = 0.92f * Brow(texel.position, face) * Front(texel);
     if (amount <= 0.0f) continue;
     std::uint8_t* out = TexelAt(picture, texel.x, texel.y);
     for (int c = 0; c < 3; ++c)
-      out[c] = ToByte(glm::mix(static_cast<float>(out[c]) / 255.0f, kBrow[c], amount));
+      out[c] = ToByte(glm::mix(static_cast<float>(out[c]) / 255.0f, brow[c], amount));
   }
 }
 
@@ -248,6 +278,28 @@ character::Picture PaintMakeHumanSkinNormals(const std::vector<SurfaceTexel>& te
   }
   Dilate(&picture, texels, kSeamTexels);
   return picture;
+}
+
+void AddRestFolds(const character::Picture& folds, float amount, character::Picture* normals) {
+  for (int y = 0; y < normals->height; ++y) {
+    for (int x = 0; x < normals->width; ++x) {
+      const glm::vec2 uv((static_cast<float>(x) + 0.5f) / static_cast<float>(normals->width),
+                         (static_cast<float>(y) + 0.5f) / static_cast<float>(normals->height));
+      std::uint8_t* out = TexelAt(normals, x, y);
+      glm::vec3 skin, fold;
+      for (int c = 0; c < 3; ++c) {
+        skin[c] = static_cast<float>(out[c]) / 127.5f - 1.0f;
+        fold[c] = 2.0f * ChannelAt(folds, uv, c) - 1.0f;
+      }
+      // 128 of 255 is not quite flat.
+      if (std::abs(fold.x) < 0.01f && std::abs(fold.y) < 0.01f) continue;
+      const float up = std::max(fold.z, 0.1f);
+      const glm::vec3 sum(skin.x / std::max(skin.z, 0.1f) + amount * fold.x / up,
+                          skin.y / std::max(skin.z, 0.1f) + amount * fold.y / up, 1.0f);
+      const glm::vec3 n = glm::normalize(sum);
+      for (int c = 0; c < 3; ++c) out[c] = ToByte(n[c] * 0.5f + 0.5f);
+    }
+  }
 }
 
 FaceMasks PaintFaceMasks(const std::vector<SurfaceTexel>& texels, const FaceLandmarks& face,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "authoring/import/makehuman/prop_paint.h"
+#include "authoring/import/makehuman/face/prop_paint.h"
 
 #include <algorithm>
 #include <cmath>

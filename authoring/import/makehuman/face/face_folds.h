@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "authoring/bake/request/bake_request.h"
-#include "authoring/import/makehuman/face_landmarks.h"
+#include "authoring/import/makehuman/face/face_landmarks.h"
 #include "authoring/paint/surface_texels.h"
 
 namespace furrow::authoring {
