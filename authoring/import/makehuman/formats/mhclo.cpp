@@ -38,7 +38,7 @@ class MhcloParser {
   }
 
  private:
-  enum class Section { kHeader, kVertices, kDeleted };
+  enum class Section { kHeader, kVertices, kDeleted, kOther };
 
   Status Statement() {
     const std::string_view word = words_.front();
@@ -48,9 +48,11 @@ class MhcloParser {
     if (number && section_ == Section::kVertices) return Vertex();
     if (number && section_ == Section::kDeleted) return Deleted();
     if (number)
-      return Error(StatusCode::kParse, "expected a keyword such as 'verts', found a number");
-    section_ = Section::kHeader;
-    return Keyword(word);
+      return section_ == Section::kOther
+                 ? Status()
+                 : Error(StatusCode::kParse, "expected a keyword such as 'verts', found a number");
+    if (word == "weights") return Enter(Section::kOther);
+    return Keyword(word);  // does not end the section
   }
 
   Status Enter(Section section) {

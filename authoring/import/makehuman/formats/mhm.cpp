@@ -72,6 +72,10 @@ class MhmParser {
     if (!known)
       return Status(StatusCode::kSchema, "the file has no line of a MakeHuman save",
                     std::string(source_), "use a .mhm file that MakeHuman wrote");
+    if (save_.modifiers.empty())
+      save_.warnings.push_back(std::string(source_) +
+                               ": the save has no modifiers, so the person is average; saves "
+                               "older than version 1.0 must be saved again in a newer MakeHuman");
     if (unwarned_ > 0)
       save_.warnings.push_back(std::string(source_) + ": " + Counted(unwarned_, "more warning"));
     return std::move(save_);
@@ -136,7 +140,7 @@ class MhmParser {
     if (clamped != *value)
       Warn("the value " + std::string(words_.back()) + " is outside [-1, 1]; " +
            (clamped > 0.0f ? "1" : "-1") + " is used");
-    const std::string name = Clean(words_[1]);
+    const std::string name = Rest(1, words_.size() - 1);  // may contain blanks
     const auto [it, added] = index_.emplace(name, save_.modifiers.size());
     if (!added) {
       save_.modifiers[it->second].value = clamped;

@@ -126,13 +126,19 @@ std::string GroupOf(const MhmSave::Modifier& modifier) {
   std::string name = modifier.name;
   std::replace(name.begin(), name.end(), '/', '-');
   const std::size_t bar = name.find('|');
-  if (bar == std::string::npos) return modifier.value > 0.0f ? name : std::string();
+  if (bar == std::string::npos) return name;
   const std::size_t hyphen = name.rfind('-', bar);
   if (hyphen == std::string::npos) return {};
   const std::string stem = name.substr(0, hyphen + 1);
   // "low|middle|high" has a middle target, which no modifier of MakeHuman uses.
   return modifier.value < 0.0f ? stem + name.substr(hyphen + 1, bar - hyphen - 1)
                                : stem + name.substr(name.rfind('|') + 1);
+}
+
+// One-sided modifiers begin at 0.
+bool HasEffect(const MhmSave::Modifier& modifier) {
+  const bool two_sided = modifier.name.find('|') != std::string::npos;
+  return two_sided ? modifier.value != 0.0f : modifier.value > 0.0f;
 }
 
 void ChooseMacros(const TargetLibrary& library, const MacroFactors& factors, TargetChoice* choice) {
@@ -236,7 +242,7 @@ TargetChoice ChooseTargets(const MhmSave& save, const TargetLibrary& library) {
                               "; the person stays average there");
   std::vector<std::string> skipped;
   for (const MhmSave::Modifier& modifier : save.modifiers) {
-    if (IsMacroModifier(modifier.name) || modifier.value == 0.0f) continue;
+    if (IsMacroModifier(modifier.name) || !HasEffect(modifier)) continue;
     const std::vector<TargetFile>& files = library.InGroup(GroupOf(modifier));
     if (files.empty()) {
       skipped.push_back(CutText(modifier.name, 80));

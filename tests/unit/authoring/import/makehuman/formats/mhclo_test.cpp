@@ -25,6 +25,19 @@ constexpr char kGarment[] =
     "0 2 - 3 \n";
 const std::vector<glm::vec3> kBase{{-1, 0, 0}, {1, 0, 0}, {0, 4, 0}, {0, 0, 8}};
 
+// Several of MakeHuman's hairs name their material between 'verts' and the first vertex.
+TEST(ImportMhclo, KeywordsDoNotEndASection) {
+  const Result<Mhclo> garment = ParseMhclo(
+      "obj_file a.obj\nverts 0\nmaterial my hair.mhmat\n1\nz_depth 70\n2\nweights head\n"
+      "0 0.5\ndelete_verts\ntag x\n3\n",
+      "g", kBase.size());
+  ASSERT_TRUE(garment.ok()) << garment.status().ToString();
+  EXPECT_EQ(garment->vertices.size(), 2u);
+  EXPECT_EQ(garment->material, "my hair.mhmat");
+  EXPECT_EQ(garment->z_depth, 70);
+  EXPECT_EQ(garment->deleted, (std::vector<bool>{false, false, false, true}));
+}
+
 TEST(ImportMhclo, FitsByBarycentricWeightsAndScaledOffsets) {
   const Result<Mhclo> garment = ParseMhclo(kGarment, "g", kBase.size());
   ASSERT_TRUE(garment.ok()) << garment.status().ToString();

@@ -61,8 +61,23 @@ TEST(ParseMhm, SaysWhatHasNoEffect) {
   EXPECT_EQ(save->warnings[4].rfind("a.mhm:6: ", 0), 0u);
 }
 
+TEST(ParseMhm, NamesOfModifiersMayContainBlanks) {
+  const Result<MhmSave> save = ParseMhm("modifier Upper Face AUs/4 0.5\n", "a.mhm");
+  ASSERT_TRUE(save.ok()) << save.status().ToString();
+  EXPECT_EQ(save->modifiers[0].name, "Upper Face AUs/4");
+  EXPECT_FLOAT_EQ(save->modifiers[0].value, 0.5f);
+}
+
+// Saves of MakeHuman 1.0 alpha have lines of other kinds.
+TEST(ParseMhm, SaysThatASaveIsTooOld) {
+  const Result<MhmSave> save =
+      ParseMhm("version 1.0.0\ngender 0.0\ndetail nose-scale-horiz-incr 0.3\n", "a.mhm");
+  ASSERT_TRUE(save.ok());
+  EXPECT_NE(save->warnings.back().find("no modifiers"), std::string::npos);
+}
+
 TEST(ParseMhm, WarningsAreBoundedAndCounted) {
-  std::string text = "version v1.2.0\n";
+  std::string text = "modifier a/b 1\n";
   for (int i = 0; i < 100; ++i) text += "what is this\n";
   const Result<MhmSave> save = ParseMhm(text, "a.mhm");
   ASSERT_TRUE(save.ok());

@@ -113,6 +113,15 @@ TEST(ChooseTargets, TheSignSelectsTheSideOfAModifier) {
   EXPECT_FLOAT_EQ(weights.at("nose-hump-incr"), 0.5f);
 }
 
+TEST(ChooseTargets, OneSidedModifiersBeginAtZero) {
+  const Targets targets({"head/head-oval"});
+  MhmSave save;
+  save.modifiers = {{"head/head-oval", -0.5f}};
+  std::vector<std::string> warnings;
+  EXPECT_TRUE(targets.Choose(save, &warnings).empty());
+  EXPECT_TRUE(warnings.empty());
+}
+
 // A detail may depend on macros, too.
 TEST(ChooseTargets, MacroWordsScaleDetails) {
   const Targets targets({"stomach/female-young-stomach-tone-incr"});
