@@ -13,7 +13,8 @@ struct PersonLook {
   float african = 0.0f;
 };
 
-// The look of the person in `save`.
+// The look of the person in `save`. The name of its skin counts more than its macro values, since
+// many people have a skin such as "old_african_female" and average macro values.
 [[nodiscard]] PersonLook LookOf(const MhmSave& save);
 
 }  // namespace furrow::authoring
