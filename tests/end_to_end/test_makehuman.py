@@ -119,7 +119,7 @@ class SavedPersonTest(unittest.TestCase):
         self.assertIn("clothes 'male_casualsuit01'", said)
         self.assertIn("no targets for minmuscle, maxweight", said)
         self.assertIn("2 modifiers without a target", said)
-        self.assertIn("hair 'short02' has no picture", said)
+        self.assertIn("the picture of hair 'short02' is painted", said)
         furrow("character", "check", package, check=0)
 
     def test_the_data_folder_is_found_beside_the_save(self):

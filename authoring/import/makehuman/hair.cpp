@@ -200,6 +200,24 @@ character::Picture PaintMakeHumanHair(const SkinLook& look, int size) {
   return picture;
 }
 
+character::Picture PaintHairStrands(const SkinLook& look, int size) {
+  constexpr float kStrands = 160.0f;
+  const character::Picture colour = PaintMakeHumanHair(look, size);
+  character::Picture picture = BlankPicture("hair_colour", size, size, 4);
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      const float u = static_cast<float>(x) / static_cast<float>(size);
+      const float v = static_cast<float>(y) / static_cast<float>(size);
+      const float gap = ValueNoise({u * kStrands, v * 4.0f, 11.5f});
+      const std::uint8_t* from = &colour.pixels[static_cast<std::size_t>(y * size + x) * 3];
+      std::uint8_t* out = TexelAt(&picture, x, y);
+      std::copy_n(from, 3, out);
+      out[3] = gap < 0.16f ? 0 : 255;
+    }
+  }
+  return picture;
+}
+
 character::Picture PaintLashes(int size) {
   constexpr int kLashes = 34;
   character::Picture picture = BlankPicture("lash_colour", size, size, 4);

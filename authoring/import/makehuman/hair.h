@@ -27,6 +27,11 @@ namespace furrow::authoring {
 // `size`: width and height, texels.
 [[nodiscard]] character::Picture PaintMakeHumanHair(const SkinLook& look, int size);
 
+// The colour and alpha of strands that run down the picture, 8-bit sRGB, for the strips of a
+// foreign hairstyle. A few strands are missing, so that the strips do not look like paper. `size`:
+// width and height, texels.
+[[nodiscard]] character::Picture PaintHairStrands(const SkinLook& look, int size);
+
 // Alpha below which a lash is not drawn, for Material::alpha_cutoff. 0.4 keeps a fringe where
 // distant lashes are finer than texels.
 inline constexpr float kLashCutoff = 0.4f;

@@ -22,6 +22,7 @@
 #include "authoring/import/makehuman/formats/mhm.h"
 #include "authoring/import/makehuman/formats/mhskel.h"
 #include "authoring/import/makehuman/formats/obj.h"
+#include "authoring/import/makehuman/hair.h"
 #include "authoring/import/makehuman/own_parts.h"
 #include "authoring/import/makehuman/proxy.h"
 #include "authoring/import/makehuman/save/asset_library.h"
@@ -312,7 +313,8 @@ class MakeHumanImport {
       report_.truncated_vertices += fitted->truncated;
       if (fitted->mesh.indices.empty()) continue;  // hidden under other clothes
       character::Mesh mesh = fitted->mesh;
-      mesh.material = part.painted ? AddPaintedCloth(mesh) : AddLook(part);
+      const bool cloth = part.painted && part.kind == "clothes";
+      mesh.material = cloth ? AddPaintedCloth(mesh) : AddLook(part);
       character_.meshes.push_back(std::move(mesh));
     }
     return {};
@@ -331,6 +333,9 @@ class MakeHumanImport {
 
   int AddLook(const SavedPart& part) {
     character::Material material = MaterialOf(part);
+    if (part.painted)
+      material.base_colour_texture = AddPicture(
+          PaintHairStrands(Look(), std::max(options_.texture_size / 2, 64)), &character_);
     if (part.colour) material.base_colour_texture = AddPicture(*part.colour, &character_);
     if (part.normal) material.normal_texture = AddPicture(*part.normal, &character_);
     return AddMaterial(material, &character_);

@@ -57,7 +57,8 @@ class PartReader {
     part.name = wanted.name;
     part.proxy = std::move(*proxy);
     if (const Status look = ReadLook(wanted, &part); !look.ok()) {
-      if (wanted.kind != "clothes") return Without(wanted, "has no picture: " + look.ToString());
+      if (wanted.kind != "clothes" && wanted.kind != "hair")
+        return Without(wanted, "has no picture: " + look.ToString());
       warnings_.push_back("the picture of " + Named(wanted) + " is painted: " + look.ToString());
       part.painted = true;
     }
@@ -176,10 +177,11 @@ character::Material MaterialOf(const SavedPart& part) {
   material.name = part.kind + "_" + part.name;
   material.kind = kind.kind;
   material.roughness = kind.roughness;
-  for (int c = 0; c < 3; ++c) material.base_colour[c] = LinearFromSrgb(part.tint[c]);
+  for (int c = 0; c < 3 && !part.painted; ++c)
+    material.base_colour[c] = LinearFromSrgb(part.tint[c]);
   material.double_sided =
       part.double_sided || kind.kind == Kind::kCloth || kind.kind == Kind::kHair;
-  const bool alpha = part.colour && part.colour->channels == 4;
+  const bool alpha = part.painted ? part.kind == "hair" : part.colour && part.colour->channels == 4;
   if (alpha && (part.transparent || kind.kind == Kind::kHair)) material.alpha_cutoff = 0.4f;
   return material;
 }

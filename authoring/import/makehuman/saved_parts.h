@@ -28,13 +28,13 @@ struct SavedPart {
   glm::vec3 tint{1.0f};                      // sRGB; multiplies the picture
   bool transparent = false;
   bool double_sided = false;
-  bool painted = false;  // a garment without a picture; the import paints cloth
+  bool painted = false;  // a garment or hair without its picture; the import paints one
 };
 
 // Finds and reads the parts of a save. Each part is used whole or not at all:
 //
-// - A garment without its picture is painted. All other parts need the picture, since their shape
-//   is in its alpha; without it Furrow's own part is used instead.
+// - A garment without its picture is painted as cloth, hair as strands. All other parts need the
+//   picture, since their shape is in its alpha; without it Furrow's own part is used instead.
 // - Clothes are sorted from the inside to the outside.
 // - Pictures larger than `texture_size` are reduced to at most that width and height.
 //

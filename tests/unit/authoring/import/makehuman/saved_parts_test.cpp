@@ -102,11 +102,28 @@ TEST(ImportSave, GoesOnWithoutPictures) {
   ImportReport report;
   const Result<character::Character> ada = folder.Import(&report);
   ASSERT_TRUE(ada.ok()) << ada.status().ToString();
-  EXPECT_EQ(FindMesh(*ada, "bob"), nullptr);
-  EXPECT_NE(FindMesh(*ada, "hair"), nullptr);
-  EXPECT_TRUE(Mentions(report.warnings, "hair 'bob' has no picture"));
+  const character::Mesh* hair = FindMesh(*ada, "bob");
+  ASSERT_NE(hair, nullptr);  // with painted strands
+  const character::Material& look = ada->materials[static_cast<std::size_t>(hair->material)];
+  EXPECT_GT(look.alpha_cutoff, 0.0f);
+  EXPECT_EQ(ada->pictures[static_cast<std::size_t>(look.base_colour_texture)].channels, 4);
+  EXPECT_TRUE(Mentions(report.warnings, "the picture of hair 'bob' is painted"));
   EXPECT_TRUE(Mentions(report.warnings, "git lfs pull"));
   EXPECT_TRUE(Mentions(report.warnings, "the picture of clothes 'cap' is painted"));
+}
+
+TEST(ImportSave, OwnPartsReplaceThoseThatTheFolderLacks) {
+  const SaveFolder folder;
+  folder.Remove("hair/bob/bob.obj");
+  folder.Write("save.mhm", folder.Read("save.mhm") + "eyes round none\n");
+  ImportReport report;
+  const Result<character::Character> ada = folder.Import(&report);
+  ASSERT_TRUE(ada.ok()) << ada.status().ToString();
+  EXPECT_EQ(FindMesh(*ada, "bob"), nullptr);
+  EXPECT_NE(FindMesh(*ada, "hair"), nullptr);
+  EXPECT_NE(FindMesh(*ada, "helper-l-eye"), nullptr);
+  EXPECT_TRUE(Mentions(report.warnings, "hair 'bob' is not readable"));
+  EXPECT_TRUE(Mentions(report.warnings, "eyes 'round' is not in the data folder"));
 }
 
 TEST(ImportSave, PartsThatTheSaveLacksAreNotMade) {
