@@ -141,6 +141,10 @@ class SavedPersonTest(unittest.TestCase):
         self.save.write_text("version v1.2.0\nmodifier macrodetails/Age much\n")
         result = furrow("character", "import", self.save, "--data", self.data, "--out", out, check=3)
         self.assertIn("ada.mhm:2: 'much' is not a number", result.stderr.decode())
+        result = furrow("character", "import", self.data, "--data", self.data, "--out", out, check=3)
+        self.assertIn("--data applies to .mhm files only", result.stderr.decode())
+        result = furrow("character", "import", self.save, "--clothes", "x", "--out", out, check=3)
+        self.assertIn("--clothes does not apply", result.stderr.decode())
         self.assertFalse(out.exists())
 
 

@@ -172,13 +172,24 @@ int ImportFile(ImportArguments arguments) {
   return kDone;
 }
 
+// Options that the input would ignore.
+Status CheckOptions(const ImportArguments& arguments, bool is_save) {
+  if (is_save && !arguments.makehuman.clothes.empty())
+    return {StatusCode::kInvalidArgument, "--clothes does not apply to a .mhm file", arguments.in,
+            "the file names the clothes itself"};
+  if (!is_save && !arguments.data_folders.empty())
+    return {StatusCode::kInvalidArgument, "--data applies to .mhm files only", arguments.in};
+  return {};
+}
+
 int Import(const ImportArguments& arguments) {
   const std::filesystem::path in(arguments.in);
   std::error_code error;
+  const bool is_save = EqualsIgnoreCase(in.extension().string(), ".mhm");
+  if (const Status status = CheckOptions(arguments, is_save); !status.ok()) return Fail(status);
   if (std::filesystem::is_directory(in, error))
     return ImportFolder(in, arguments, arguments.makehuman);
-  return EqualsIgnoreCase(in.extension().string(), ".mhm") ? ImportSave(arguments)
-                                                           : ImportFile(arguments);
+  return is_save ? ImportSave(arguments) : ImportFile(arguments);
 }
 
 }  // namespace
