@@ -14,20 +14,17 @@
 #include "authoring/bake/bake.h"
 #include "authoring/bake/bake_pictures.h"
 #include "authoring/bake/bake_poses.h"
+#include "authoring/import/makehuman/base_reader.h"
 #include "authoring/import/makehuman/body_parts.h"
 #include "authoring/import/makehuman/face/face_folds.h"
-#include "authoring/import/makehuman/face/face_landmarks.h"
 #include "authoring/import/makehuman/face/prop_paint.h"
 #include "authoring/import/makehuman/face/skin_paint.h"
 #include "authoring/import/makehuman/formats/mhm.h"
-#include "authoring/import/makehuman/formats/mhskel.h"
-#include "authoring/import/makehuman/formats/obj.h"
 #include "authoring/import/makehuman/hair.h"
 #include "authoring/import/makehuman/own_parts.h"
 #include "authoring/import/makehuman/proxy.h"
 #include "authoring/import/makehuman/save/asset_library.h"
 #include "authoring/import/makehuman/save/bare_body.h"
-#include "authoring/import/makehuman/save/person.h"
 #include "authoring/import/makehuman/save/person_look.h"
 #include "authoring/import/makehuman/saved_parts.h"
 #include "authoring/paint/surface_texels.h"
@@ -44,8 +41,6 @@ namespace furrow::authoring {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr float kMetresPerUnit = 0.1f;  // MakeHuman uses decimetres
 
 float AreaOf(const character::Mesh& mesh) {
   float area = 0.0f;
@@ -71,7 +66,7 @@ class MakeHumanImport {
     character_.name = "makehuman";
     using Step = Status (MakeHumanImport::*)();
     for (const Step step :
-         {&MakeHumanImport::ReadSave, &MakeHumanImport::ReadBase, &MakeHumanImport::ReadParts,
+         {&MakeHumanImport::ReadSave, &MakeHumanImport::FitBase, &MakeHumanImport::ReadParts,
           &MakeHumanImport::ReadRig, &MakeHumanImport::BuildBody, &MakeHumanImport::BuildParts,
           &MakeHumanImport::BakeMaps}) {
       FURROW_RETURN_IF_ERROR((this->*step)());
@@ -98,71 +93,20 @@ class MakeHumanImport {
     return {};
   }
 
-  // The skeleton needs the positions, and the skin weights need the joints, hence the order.
-  Status ReadBase() {
-    const fs::path obj_path = folder_ / "3dobjs" / "base.obj";
-    const Result<std::string> obj_text = ReadFile(obj_path, kMaxTextFileBytes);
-    FURROW_RETURN_IF_ERROR(obj_text);
-    Result<ObjMesh> obj = ParseObj(*obj_text, obj_path.string());
-    FURROW_RETURN_IF_ERROR(obj);
-    base_.obj = std::move(*obj);
-    FURROW_RETURN_IF_ERROR(Shape());
-    FURROW_RETURN_IF_ERROR(PlaceBase(obj_path));
-
-    const fs::path skeleton_path = folder_ / "rigs" / "default.mhskel";
-    const Result<std::string> skeleton_text = ReadFile(skeleton_path, kMaxTextFileBytes);
-    FURROW_RETURN_IF_ERROR(skeleton_text);
-    const Result<MhSkeleton> mh_skeleton = ParseMhskel(*skeleton_text, skeleton_path.string());
-    FURROW_RETURN_IF_ERROR(mh_skeleton);
-    Result<wrinkle::Skeleton> skeleton =
-        BuildSkeleton(*mh_skeleton, base_.positions, skeleton_path.string());
-    FURROW_RETURN_IF_ERROR(skeleton);
-    character_.skeleton = std::move(*skeleton);
+  Status FitBase() {
+    Result<FittedBase> base = ReadBase(folder_, save_ ? &*save_ : nullptr);
+    FURROW_RETURN_IF_ERROR(base);
+    base_ = std::move(base->mesh);
+    face_ = base->face;
+    character_.skeleton = std::move(base->skeleton);
     for (const glm::mat4& model : character_.skeleton.rest_model())
       character_.inverse_bind_matrices.push_back(glm::inverse(model));
-    const Result<FaceLandmarks> face = FindFaceLandmarks(character_.skeleton);
-    if (!face.ok()) return face.status().At(skeleton_path.string());
-    face_ = *face;
-
-    const fs::path weights_path = folder_ / "rigs" / "default_weights.mhw";
-    const Result<std::string> weights_text = ReadFile(weights_path, kMaxTextFileBytes);
-    FURROW_RETURN_IF_ERROR(weights_text);
-    const Result<MhWeights> weights = ParseMhw(*weights_text, weights_path.string());
-    FURROW_RETURN_IF_ERROR(weights);
-    Result<SkinWeights> skin =
-        BindBaseMesh(*weights, character_.skeleton, base_.positions.size(), weights_path.string());
-    FURROW_RETURN_IF_ERROR(skin);
-    base_.skin = std::move(*skin);
-    return {};
-  }
-
-  Status Shape() {
     if (!save_) return {};
-    const Result<PersonShape> shape = ShapePerson(folder_, *save_, base_.obj.positions);
-    FURROW_RETURN_IF_ERROR(shape);
-    Append(shape->warnings);
+    Append(base->shape.warnings);
     report_.notes.push_back(
-        "shape: " + Counted(static_cast<std::uint64_t>(shape->targets), "target") + ", " +
-        Counted(static_cast<std::uint64_t>(shape->modifiers), "modifier") + " besides the macros");
-    return {};
-  }
-
-  // Converts to metres and puts the lowest point of the body on the ground. Helpers do not count,
-  // since a skirt may hang lower.
-  Status PlaceBase(const fs::path& path) {
-    const std::vector<std::uint32_t> body = FacesOf(base_.obj, "body");
-    if (body.empty())
-      return Status(StatusCode::kSchema, "the mesh has no group 'body'", path.string(),
-                    "use MakeHuman's base mesh");
-    float ground = base_.obj.positions[base_.obj.corners[0].position].y;
-    for (const std::uint32_t f : body) {
-      const ObjMesh::Face& face = base_.obj.faces[f];
-      for (std::size_t i = 0; i < face.num_corners; ++i)
-        ground = std::min(ground,
-                          base_.obj.positions[base_.obj.corners[face.first_corner + i].position].y);
-    }
-    base_.positions = base_.obj.positions;
-    for (glm::vec3& p : base_.positions) p = (p - glm::vec3(0.0f, ground, 0.0f)) * kMetresPerUnit;
+        "shape: " + Counted(static_cast<std::uint64_t>(base->shape.targets), "target") + ", " +
+        Counted(static_cast<std::uint64_t>(base->shape.modifiers), "modifier") +
+        " besides the macros");
     return {};
   }
 
