@@ -105,11 +105,16 @@ float Brow(const glm::vec3& p, const FaceLandmarks& face) {
   return amount;
 }
 
-// The inside of the mouth: a ball behind the lips.
-float MouthInside(const glm::vec3& p, const FaceLandmarks& face) {
+// The inside of the mouth: a ball behind the lips. In flat faces, such as a child's, it reaches
+// through the cheeks, which face away from its centre.
+float MouthInside(const SurfaceTexel& texel, const FaceLandmarks& face) {
   glm::vec3 middle = glm::mix(face.upper_lip, face.lower_lip, 0.5f);
   middle.z -= face.Millimetres(36.0f);
-  return FadeOut(glm::distance(p, middle), face.Millimetres(27.0f), face.Millimetres(34.0f));
+  const glm::vec3 out = texel.position - middle;
+  const float distance = glm::length(out);
+  const float outward = glm::dot(out, texel.normal) / std::max(distance, 1e-6f);
+  return FadeOut(distance, face.Millimetres(27.0f), face.Millimetres(34.0f)) *
+         glm::smoothstep(0.75f, 0.25f, outward);
 }
 
 float ScalpOf(const glm::vec3& p, const FaceLandmarks& face) {
@@ -168,7 +173,7 @@ glm::vec3 SkinColour(const SurfaceTexel& texel, const FaceLandmarks& face, const
   colour = Aged(colour, p, face, look.old);
   colour = glm::mix(colour, kLids, 0.55f * LidShade(p, face) * front);
   colour = glm::mix(colour, kLips, Lips(p, face) * front);
-  colour = glm::mix(colour, kMouth, MouthInside(p, face));
+  colour = glm::mix(colour, kMouth, MouthInside(texel, face));
   const float grain = ValueNoise(p / face.Millimetres(0.9f));
   colour *= ToneOf(look);
   if (look.scalp)
@@ -228,7 +233,7 @@ glm::vec3 HairColour(const glm::vec3& colour, const SkinLook& look) {
   constexpr glm::vec3 kGrey{0.60f, 0.58f, 0.56f};
   const glm::vec3 young = glm::mix(colour, 0.4f * colour, look.asian + look.african);
   // Light strands stay lighter than dark ones.
-  const float light = 0.55f + 1.2f * (colour.r + colour.g + colour.b) / 3.0f;
+  const float light = 0.35f + 2.2f * (colour.r + colour.g + colour.b) / 3.0f;
   return glm::mix(young, kGrey * light, glm::smoothstep(0.35f, 0.95f, look.old));
 }
 
