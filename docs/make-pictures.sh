@@ -5,10 +5,13 @@
 #
 # FURROW_SHARED_DATA (default ../shared/data): MakeHuman's data and a recording for its skeleton. If that
 # folder is missing, the pictures of the MakeHuman character stay as they are.
+# MAKEHUMAN_DATA: the data folder of MakeHuman's source with its assets, for the picture of saved people, which stays as
+# it is without one.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 build=${1:-build/release}
 shared=${FURROW_SHARED_DATA:-../shared/data}
+people=${MAKEHUMAN_DATA:-}
 furrow=$build/bin/furrow
 share=$build/share/furrow
 recordings=$share/recordings
@@ -215,6 +218,34 @@ makehuman() {
   bodies makehuman --character "$work/makehuman.glb"
 }
 
+# person NAME GENDER AGE AFRICAN ASIAN CAUCASIAN MUSCLE WEIGHT HAIR: a save of MakeHuman, imported to $work/NAME.glb
+person() {
+  printf '%s\n' "version v1.2.0" "modifier macrodetails/Gender $2" "modifier macrodetails/Age $3" \
+    "modifier macrodetails/African $4" "modifier macrodetails/Asian $5" "modifier macrodetails/Caucasian $6" \
+    "modifier macrodetails-universal/Muscle $7" "modifier macrodetails-universal/Weight $8" \
+    "hair $9" "eyelashes eyelashes02" "eyes HighPolyEyes" "clothes male_casualsuit01" >"$work/$1.mhm"
+  "$furrow" character import "$work/$1.mhm" --data "$people" --out "$work/$1.glb"
+}
+
+makehuman_people() {
+  export FURROW_ASSET_PATH="$shared/makehuman/poseunits"
+  person child 0 0.19 0 0 1 0.5 0.5 ponytail01
+  person heavy 1 0.6 0 0 1 0.3 1 short02
+  person asian 0 0.5 0 1 0 0.5 0.5 long01
+  person african 0 0.45 1 0 0 0.5 0.4 braid01
+  person muscular 1 0.5 0 0 1 1 0.5 short01
+  person old 0 0.97 0 0 1 0.4 0.5 ponytail01
+  local names=() frame name
+  for frame in 0 60; do
+    for name in child heavy asian african muscular old; do
+      still "${name}_$frame" "$shared/performances/emotions.bvh" --frames "$frame" --character "$work/$name.glb" \
+        --camera face
+      names+=("${name}_$frame")
+    done
+  done
+  sheet makehuman_people 6x2 1440 "${names[@]}"
+}
+
 if (($# > 1)); then
   for name in "${@:2}"; do "$name"; done
   exit
@@ -237,6 +268,7 @@ default_faces elder elder
 bodies default
 if [[ -d $shared/makehuman && -f $shared/performances/emotions.bvh ]]; then
   makehuman
+  if [[ -n $people ]]; then makehuman_people; fi
 else
   echo "make-pictures: $shared/makehuman is missing; the MakeHuman pictures stay as they are" >&2
 fi
