@@ -147,7 +147,14 @@ std::vector<SavedPart> ReadSavedParts(const MhmSave& save, AssetLibrary* library
   PartReader reader(save, library, num_base_vertices, texture_size, warnings);
   std::vector<SavedPart> parts;
   for (const MhmSave::Part& wanted : save.parts) {
-    if (auto part = reader.Read(wanted)) parts.push_back(std::move(*part));
+    auto part = reader.Read(wanted);
+    if (!part) continue;
+    // A person wears a garment once, and has one of everything else: the last.
+    std::erase_if(parts, [&](const SavedPart& other) {
+      return other.kind == part->kind &&
+             (part->kind != "clothes" || other.proxy.file == part->proxy.file);
+    });
+    parts.push_back(std::move(*part));
   }
   std::stable_sort(parts.begin(), parts.end(), [](const SavedPart& a, const SavedPart& b) {
     return a.proxy.fit.z_depth < b.proxy.fit.z_depth;

@@ -35,7 +35,8 @@ struct SavedPart {
 //
 // - A garment without its picture is painted as cloth, hair as strands. All other parts need the
 //   picture, since their shape is in its alpha; without it Furrow's own part is used instead.
-// - Clothes are sorted from the inside to the outside.
+// - Clothes are sorted from the inside to the outside. A repeated garment is worn once; of other
+//   parts of one kind, the last is used, as in MakeHuman.
 // - Pictures larger than `texture_size` are reduced to at most that width and height.
 //
 // `num_base_vertices`: of the base mesh. A part that is not found or not readable is a warning that

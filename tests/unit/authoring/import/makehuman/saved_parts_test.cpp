@@ -112,6 +112,23 @@ TEST(ImportSave, GoesOnWithoutPictures) {
   EXPECT_TRUE(Mentions(report.warnings, "the picture of clothes 'cap' is painted"));
 }
 
+TEST(ImportSave, RepeatedPartsCountOnce) {
+  const SaveFolder folder;
+  folder.Write("hair/long/bob.obj", folder.Read("hair/bob/bob.obj"));
+  folder.Write("hair/long/bob.png", folder.Read("hair/bob/bob.png"));
+  folder.Write("hair/long/bob.mhmat", folder.Read("hair/bob/bob.mhmat"));
+  folder.Write("hair/long/long.mhclo",
+               "name long\nobj_file bob.obj\nmaterial bob.mhmat\nverts 0\n0\n8\n16\n");
+  folder.Write("save.mhm", folder.Read("save.mhm") + "hair long x\nclothes cap c\n");
+  const Result<character::Character> ada = folder.Import();
+  ASSERT_TRUE(ada.ok()) << ada.status().ToString();
+  EXPECT_EQ(FindMesh(*ada, "bob"), nullptr);
+  EXPECT_NE(FindMesh(*ada, "long"), nullptr);
+  EXPECT_EQ(std::count_if(ada->meshes.begin(), ada->meshes.end(),
+                          [](const character::Mesh& mesh) { return mesh.name == "cap"; }),
+            1);
+}
+
 TEST(ImportSave, OwnPartsReplaceThoseThatTheFolderLacks) {
   const SaveFolder folder;
   folder.Remove("hair/bob/bob.obj");
