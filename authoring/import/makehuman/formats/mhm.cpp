@@ -72,16 +72,25 @@ class MhmParser {
     if (!known)
       return Status(StatusCode::kSchema, "the file has no line of a MakeHuman save",
                     std::string(source_), "use a .mhm file that MakeHuman wrote");
-    if (save_.modifiers.empty())
-      save_.warnings.push_back(std::string(source_) +
-                               ": the save has no modifiers, so the person is average; saves "
-                               "older than version 1.0 must be saved again in a newer MakeHuman");
+    CheckAge();
     if (unwarned_ > 0)
       save_.warnings.push_back(std::string(source_) + ": " + Counted(unwarned_, "more warning"));
     return std::move(save_);
   }
 
  private:
+  void CheckAge() {
+    const std::string where(source_);
+    if (save_.modifiers.empty()) {
+      save_.warnings.push_back(where +
+                               ": the save has no modifiers, so the person is average; saves "
+                               "older than version 1.0 must be saved again in a newer MakeHuman");
+    } else if (save_.version.starts_with("v1.0") || save_.version.starts_with("1.0")) {
+      save_.warnings.push_back(where + ": the save is of version " + Quoted(save_.version) +
+                               "; modifiers that version 1.1 renamed are skipped");
+    }
+  }
+
   // True if the line is one of a save.
   Result<bool> Statement() {
     const std::string_view kind = words_.front();

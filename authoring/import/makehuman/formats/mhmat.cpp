@@ -53,10 +53,9 @@ class MhmatParser {
       material_.transparent = IsYes(words_[1]);
     else if (key == "backfaceCull")
       material_.double_sided = !IsYes(words_[1]);
-    else if (key == "autoBlendSkin")
-      material_.blend_skin = IsYes(words_[1]);
     else
-      is_known = key == "shader" || key == "shininess" || key == "opacity";
+      is_known =
+          key == "shader" || key == "shininess" || key == "opacity" || key == "autoBlendSkin";
     known_ = known_ || is_known;
     return {};
   }

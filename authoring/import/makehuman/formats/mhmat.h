@@ -19,7 +19,6 @@ struct MhMaterial {
   std::string normal_picture;
   bool transparent = false;   // the alpha of the picture matters
   bool double_sided = false;  // back faces are drawn
-  bool blend_skin = false;    // MakeHuman colours this skin by the person's ethnicity
 };
 
 // Parses a .mhmat file. `source`: the file name in errors. Unknown lines are skipped: MakeHuman's

@@ -74,6 +74,10 @@ TEST(ParseMhm, SaysThatASaveIsTooOld) {
       ParseMhm("version 1.0.0\ngender 0.0\ndetail nose-scale-horiz-incr 0.3\n", "a.mhm");
   ASSERT_TRUE(save.ok());
   EXPECT_NE(save->warnings.back().find("no modifiers"), std::string::npos);
+  const Result<MhmSave> first = ParseMhm("version v1.0.2\nmodifier a/b 1\n", "a.mhm");
+  ASSERT_TRUE(first.ok());
+  ASSERT_EQ(first->warnings.size(), 1u);
+  EXPECT_NE(first->warnings[0].find("'v1.0.2'"), std::string::npos);
 }
 
 TEST(ParseMhm, WarningsAreBoundedAndCounted) {

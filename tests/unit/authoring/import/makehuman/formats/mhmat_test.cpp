@@ -12,7 +12,7 @@ TEST(ParseMhmat, ReadsWhatIsDrawn) {
   const Result<MhMaterial> material = ParseMhmat(
       "# comment\n// another\nname short02\ndiffuseColor 1.0 0.5 2\ntransparent True\n"
       "backfaceCull False\ndiffuseTexture textures\\my hair.png\nnormalmapTexture n.png\n"
-      "shader data/shaders/glsl/litsphere\nshaderConfig diffuse True\nautoBlendSkin true\n",
+      "shader data/shaders/glsl/litsphere\nshaderConfig diffuse True\n",
       "a.mhmat");
   ASSERT_TRUE(material.ok()) << material.status().ToString();
   EXPECT_EQ(material->name, "short02");
@@ -21,7 +21,6 @@ TEST(ParseMhmat, ReadsWhatIsDrawn) {
   EXPECT_EQ(material->normal_picture, "n.png");
   EXPECT_TRUE(material->transparent);
   EXPECT_TRUE(material->double_sided);
-  EXPECT_TRUE(material->blend_skin);
 }
 
 TEST(ParseMhmat, RejectsWithTheLine) {
