@@ -63,7 +63,8 @@ class Matching {
     }
     return false;
   }
-  void LimitMouthClose(const ShapeVocabulary& targets);
+  // `always`: even if the stream has it by its own name.
+  void LimitMouthClose(const ShapeVocabulary& targets, bool always);
   void Combine(const ShapeVocabulary* targets);
   [[nodiscard]] ShapeMatch Finish(const ShapeVocabulary* stream, const ShapeVocabulary* targets) &&;
 
@@ -222,10 +223,11 @@ std::optional<std::size_t> Matching::TargetOf(const ShapeVocabulary& targets, in
 }
 
 // ARKit's mouthClose brings the lips together on an open jaw.
-void Matching::LimitMouthClose(const ShapeVocabulary& targets) {
+void Matching::LimitMouthClose(const ShapeVocabulary& targets, bool always) {
   const auto close = TargetOf(targets, FindArkitShape("mouthClose"));
   const auto jaw = TargetOf(targets, FindArkitShape("jawOpen"));
-  if (!close || !jaw || match_.by[*close] == By::kSameName) return;
+  if (!close || !jaw) return;
+  if (match_.by[*close] == By::kSameName && !always) return;
   built_[*close].at_most = ShapeInput{.from = ShapeInput::From::kShape,
                                       .use = ShapeInput::Use::kClamped,
                                       .index = static_cast<std::uint32_t>(*jaw)};
@@ -320,10 +322,32 @@ const ShapeVocabulary* ShapeMatcher::VocabularyOf(std::span<const std::string> s
 
 ShapeMatch ShapeMatcher::Match(std::span<const std::string> stream,
                                std::span<const std::string> targets) const {
+  return MatchTo(stream, targets, /*is_face=*/false);
+}
+
+ShapeMatch ShapeMatcher::MatchFace(std::span<const std::string> stream,
+                                   std::span<const std::string> shapes) const {
+  return MatchTo(stream, shapes, /*is_face=*/true);
+}
+
+std::vector<std::string> ShapeMatcher::AllNamesOf(std::span<const std::string> shapes) const {
+  std::vector<std::string> names(shapes.begin(), shapes.end());
+  const ShapeVocabulary* own = BestVocabulary(vocabularies_, shapes, 1);
+  for (const std::string& shape : shapes) {
+    const int arkit = RenamedBy(own, shape).value_or(-1);
+    if (arkit >= 0) names.emplace_back(ArkitShapes()[static_cast<std::size_t>(arkit)]);
+  }
+  return names;
+}
+
+ShapeMatch ShapeMatcher::MatchTo(std::span<const std::string> stream,
+                                 std::span<const std::string> targets, bool is_face) const {
   Matching matching(stream, targets);
   matching.TakeEqualNames();
   // Most streams have the rig's own names. Translating costs a millisecond or more.
-  if (!matching.HasOpenTargets()) return std::move(matching).Finish(nullptr, nullptr);
+  if (!matching.HasOpenTargets() && !is_face) {
+    return std::move(matching).Finish(nullptr, nullptr);
+  }
   const ShapeVocabulary* from = VocabularyOf(stream);
   const ShapeVocabulary* to = BestVocabulary(vocabularies_, targets, 1);
   // The targets' own map first: it knows the spelling that is asked for.
@@ -334,14 +358,14 @@ ShapeMatch ShapeMatcher::Match(std::span<const std::string> stream,
   for (const ShapeVocabulary& other : vocabularies_) {
     if (&other != to) matching.TranslateToTargets(other, /*only_complete=*/true);
   }
-  if (to != nullptr) matching.LimitMouthClose(*to);
+  if (to != nullptr) matching.LimitMouthClose(*to, is_face);
   matching.Combine(to);
   return std::move(matching).Finish(from, to);
 }
 
 wrinkle::ShapeProgram MatchShapes(const ShapeMatcher& matcher, std::span<const std::string> stream,
                                   std::span<const std::string> targets) {
-  return matcher.Match(stream, targets).program;
+  return matcher.MatchFace(stream, targets).program;
 }
 
 std::string Describe(const ShapeMatch& match) {

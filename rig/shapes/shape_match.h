@@ -65,16 +65,27 @@ class ShapeMatcher {
   [[nodiscard]] ShapeMatch Match(std::span<const std::string> stream,
                                  std::span<const std::string> targets) const;
 
+  // The same for the shapes of a face. There, mouthClose is always at most jawOpen: it brings the
+  // lips together on an open jaw, and alone it would push each lip through the other.
+  [[nodiscard]] ShapeMatch MatchFace(std::span<const std::string> stream,
+                                     std::span<const std::string> shapes) const;
+
+  // The names of a face's shapes, followed by ARKit's names of those that mean one of ARKit's.
+  [[nodiscard]] std::vector<std::string> AllNamesOf(std::span<const std::string> shapes) const;
+
   [[nodiscard]] std::span<const ShapeVocabulary> vocabularies() const { return vocabularies_; }
   // The vocabulary of a stream's names; null if none fits.
   [[nodiscard]] const ShapeVocabulary* VocabularyOf(std::span<const std::string> stream) const;
 
  private:
+  [[nodiscard]] ShapeMatch MatchTo(std::span<const std::string> stream,
+                                   std::span<const std::string> targets, bool is_face) const;
+
   std::vector<ShapeVocabulary> vocabularies_;  // sorted by name, then the chosen one
   bool chosen_ = false;
 };
 
-// The program that moves a face's shapes by a stream: ShapeMatcher::Match().program.
+// The program that moves a face's shapes by a stream: ShapeMatcher::MatchFace().program.
 [[nodiscard]] wrinkle::ShapeProgram MatchShapes(const ShapeMatcher& matcher,
                                                 std::span<const std::string> stream,
                                                 std::span<const std::string> targets);

@@ -106,8 +106,9 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Make(
   if (character_ != nullptr) {
     definition->retarget =
         std::make_shared<const wrinkle::Retarget>(rig::MakeRetarget(match, skeleton, *character_));
-    definition->blend_shape_pose = std::make_shared<const wrinkle::BlendShapePose>(
-        wrinkle::BlendShapePose::Create(*rig_, *character_, shapes.pose_names(), shapes_));
+    definition->blend_shape_pose =
+        std::make_shared<const wrinkle::BlendShapePose>(wrinkle::BlendShapePose::Create(
+            *rig_, *character_, shapes.pose_names(), shape_matcher_.AllNamesOf(shapes_)));
     definition->shape_program = std::make_shared<const wrinkle::ShapeProgram>(
         rig::MatchShapes(shape_matcher_, blend_shapes, shapes_));
     definition->head_turn = std::make_shared<const wrinkle::HeadTurn>(

@@ -23,8 +23,9 @@ Result<std::unique_ptr<AnimatedSubject>> AnimatedSubject::Create(
   self->solver_ = std::make_unique<wrinkle::SubjectSolver>(
       std::make_shared<const wrinkle::RigBinding>(std::move(*binding)));
   self->retarget_ = rig::MakeRetarget(match, take.skeleton, character.skeleton);
-  self->blend_shape_pose_ = wrinkle::BlendShapePose::Create(
-      character.rig, character.skeleton, self->shapes_.pose_names(), character.shapes);
+  self->blend_shape_pose_ =
+      wrinkle::BlendShapePose::Create(character.rig, character.skeleton, self->shapes_.pose_names(),
+                                      shapes.AllNamesOf(character.shapes));
   self->shape_program_ = rig::MatchShapes(shapes, take.blend_shape_names, character.shapes);
   // A recording with joints turns the head by them.
   if (take.skeleton.num_joints() == 0) {

@@ -390,5 +390,34 @@ TEST(ShapeMatch, AChosenMapNeedsNoMinimum) {
   EXPECT_EQ(Matcher().Match(Names{"Joy"}, Names{"mouthSmileLeft"}).by.at(0), ShapeBy::kNothing);
 }
 
+// Apple's mouthClose brings the lips together on an open jaw. A face does nothing with the rest.
+TEST(ShapeMatch, MouthCloseOfAFaceNeedsAnOpenJaw) {
+  const ShapeMatcher matcher = ShippedShapeMatcher();
+  const std::vector<std::string> names = ArkitNamesForTests();
+  const auto close = static_cast<std::size_t>(FindArkitShape("mouthClose"));
+  const auto jaw = static_cast<std::size_t>(FindArkitShape("jawOpen"));
+  std::vector<float> sent(names.size(), 0.0f), face(names.size()), rig(names.size());
+  sent[close] = 0.8f;
+  for (const float open : {0.0f, 0.3f, 1.0f}) {
+    sent[jaw] = open;
+    ASSERT_EQ(matcher.MatchFace(names, names).program.Run(sent, face), wrinkle::JobStatus::kOk);
+    ASSERT_EQ(matcher.Match(names, names).program.Run(sent, rig), wrinkle::JobStatus::kOk);
+    EXPECT_FLOAT_EQ(face[close], std::min(open, 0.8f));
+    EXPECT_FLOAT_EQ(rig[close], 0.8f) << "rigs read what the stream sends";
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (i != close) EXPECT_EQ(face[i], sent[i]);
+    }
+  }
+}
+
+// An eyeball that a shape turns must not be turned by its joint as well, whatever the shape's name.
+TEST(ShapeMatch, AllNamesOfAFaceIncludeArkits) {
+  const std::vector<std::string> shapes = {"Eye_L_Look_R", "Jaw_Open", "Brow_Drop_L", "scar"};
+  const std::vector<std::string> names = ShippedShapeMatcher().AllNamesOf(shapes);
+  EXPECT_THAT(names, testing::ElementsAre("Eye_L_Look_R", "Jaw_Open", "Brow_Drop_L", "scar",
+                                          "eyeLookInLeft", "jawOpen", "browDownLeft"));
+  EXPECT_EQ(ShapeMatcher().AllNamesOf(shapes), shapes);
+}
+
 }  // namespace
 }  // namespace furrow::rig
