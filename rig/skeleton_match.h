@@ -80,7 +80,7 @@ class SkeletonMatcher {
 // The same for a match, with the axes of the rest pose if they are not Furrow's: "...; the rest
 // pose faces -X, up is +Z".
 [[nodiscard]] std::string Describe(const SkeletonMatch& match);
-// What is probably wrong with a match, one sentence each, with the way out.
+// Probable faults of a match, one sentence each, with what to do.
 [[nodiscard]] std::vector<std::string> WarningsOf(const SkeletonMatch& match);
 
 }  // namespace furrow::rig

@@ -25,8 +25,8 @@ struct RestStance {
   // The toes point backwards, as seen from the sides that the roles state. Then left and right are
   // probably exchanged.
   bool toes_point_back = false;
-  // The legs point the way the trunk points, so this is no pose of a body, and `turn` is none. Some
-  // files rest with all bones along one axis.
+  // The legs point the same way as the trunk, as in files that rest with all bones along one axis.
+  // `turn` is then the identity.
   bool is_folded = false;
 };
 
