@@ -57,8 +57,11 @@ export interface Capture {
   pose: string;
 }
 
+export type NeutralPart = 'face' | 'body' | 'both';
+
 export interface CaptureResult {
   pose: string;
+  part?: NeutralPart;
   preview: boolean;
   added: boolean;
   weights: { name: string; before: number; after: number }[];
@@ -160,8 +163,9 @@ export const api = {
   rig: (subject: string) => call<RigInfo>(`api/rig?${query({ subject })}`),
   explain: (subject: string, weight: string) =>
     call<Explanation>(`api/explain?${query({ subject, weight })}`),
-  capture: (subject: string, pose: string, preview: boolean) =>
-    call<CaptureResult>('api/capture', 'POST', { subject, pose, preview }),
+  /** `part` belongs to the pose 'neutral'; undefined: the daemon chooses. */
+  capture: (subject: string, pose: string, preview: boolean, part?: NeutralPart) =>
+    call<CaptureResult>('api/capture', 'POST', { subject, pose, preview, ...(part ? { part } : {}) }),
   undoCapture: () => call<{ captures: Capture[] }>('api/capture/undo', 'POST', {}),
   playback: () => call<Playback>('api/playback'),
   patchPlayback: (values: Partial<Pick<Playback, 'playing' | 'loop' | 'speed' | 'position_s'>>) =>

@@ -121,11 +121,20 @@ ApiReply CaptureApi::PostCapture(const ApiRequest& request, Hub& hub, Time now) 
   const Json subject_name = object->value("subject", Json(""));
   const Json pose = object->value("pose", Json());
   const Json preview = object->value("preview", Json(false));
+  const Json part_name = object->value("part", Json());
   if (!subject_name.is_string()) return ErrorReply(400, "schema", "subject", "must be text");
   if (!preview.is_boolean()) return ErrorReply(400, "schema", "preview", "must be true or false");
   if (!pose.is_string() || !IsPoseName(pose.get<std::string>())) {
     return ErrorReply(400, "schema", "pose",
                       "must be 'neutral' or a name of letters, digits, '_' and '-'");
+  }
+  std::optional<NeutralPart> part;
+  if (!part_name.is_null()) {
+    if (part_name.is_string()) part = ParseNeutralPart(part_name.get<std::string>());
+    if (!part || pose != kNeutral) {
+      return ErrorReply(400, "schema", "part",
+                        "must be 'face', 'body' or 'both', and belongs to the pose 'neutral'");
+    }
   }
   // The reply shows all weights, not only those that somebody subscribes to.
   Subject* subject = hub.RequireAllDrivers(subject_name.get<std::string>());
@@ -133,26 +142,31 @@ ApiReply CaptureApi::PostCapture(const ApiRequest& request, Hub& hub, Time now) 
   if (!subject->pipeline->has_pose()) {
     return ErrorReply(409, "conflict", "subject", "the subject has sent no pose yet");
   }
-  if (pose == kNeutral) return CaptureNeutral(hub, *subject, preview.get<bool>(), now);
+  if (pose == kNeutral) return CaptureNeutral(hub, *subject, part, preview.get<bool>(), now);
   return CapturePose(hub, *subject, pose.get<std::string>(), preview.get<bool>(), now);
 }
 
-ApiReply CaptureApi::CaptureNeutral(Hub& hub, Subject& subject, bool preview, Time now) {
+ApiReply CaptureApi::CaptureNeutral(Hub& hub, Subject& subject, std::optional<NeutralPart> wanted,
+                                    bool preview, Time now) {
   const SubjectPipeline& pipeline = *subject.pipeline;
+  const NeutralPart part = wanted.value_or(DefaultNeutralPart(pipeline.stream()));
+  const wrinkle::LocalPose neutral =
+      CaptureNeutralPart(part, pipeline.stream(), pipeline.pose(), pipeline.neutral_pose());
   const Values before = WeightsOf(subject);
   const std::optional<Values> after =
-      // A pose measured from itself: what remains are the weights of a relaxed face.
-      SolvePreview(pipeline.shared_stream(), pipeline.pose(), pipeline.pose());
+      // The part measured from itself: what remains are the weights of a relaxed performer.
+      SolvePreview(pipeline.shared_stream(), pipeline.pose(), neutral);
   if (!after)
     return ErrorReply(500, "internal", "", "the solver refused the pose as its own neutral pose");
   if (!preview) {
     // Taken before SetNeutral() replaces it; Undo() puts it back.
     std::optional<wrinkle::LocalPose> former = pipeline.neutral_pose();
-    hub.SetNeutral(subject, pipeline.pose(), now);
+    hub.SetNeutral(subject, neutral, now);
     Remember({kNeutral, subject.name, subject.skeleton_hash, std::move(former), nullptr});
   }
   return JsonReply(
       {{"pose", kNeutral},
+       {"part", ToString(part)},
        {"preview", preview},
        {"added", false},
        {"weights", ChangesJson(pipeline.stream().binding->weight_names(), before, *after)},

@@ -12,6 +12,7 @@
 #include "server/core/time.h"
 #include "server/http/api/json_reply.h"
 #include "server/http/request/api_types.h"
+#include "server/pipeline/neutral_part.h"
 #include "server/session/hub.h"
 
 namespace furrow::server {
@@ -38,7 +39,9 @@ class CaptureApi {
     std::shared_ptr<const wrinkle::Rig> rig;    // the rig before; null: a neutral was captured
   };
 
-  [[nodiscard]] ApiReply CaptureNeutral(Hub& hub, Subject& subject, bool preview, Time now);
+  // `wanted`: empty for DefaultNeutralPart().
+  [[nodiscard]] ApiReply CaptureNeutral(Hub& hub, Subject& subject,
+                                        std::optional<NeutralPart> wanted, bool preview, Time now);
   [[nodiscard]] ApiReply CapturePose(Hub& hub, Subject& subject, const std::string& pose,
                                      bool preview, Time now);
   void Remember(Capture capture);

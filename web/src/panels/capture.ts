@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Captures the live pose as the performer's neutral pose or as a reference pose of the rig.
-import { api, type Capture, type CaptureResult, wordsOf } from '../api';
+import { api, type Capture, type CaptureResult, type NeutralPart, wordsOf } from '../api';
 import { button, h, select, setOptions } from '../ui/dom';
 import type { Toasts } from '../ui/toast';
 
 const NEW = '+';
+const NEUTRAL = 'neutral';
+const AUTO = '';
 
 export class CapturePanel {
   readonly element: HTMLElement;
   private readonly pose: HTMLSelectElement;
   private readonly newName = h('input', { type: 'text', 'aria-label': 'Name of the new pose', placeholder: 'name', hidden: true, maxlength: 64 });
+  private readonly part: HTMLSelectElement;
   private readonly undo: HTMLButtonElement;
   private readonly save: HTMLAnchorElement;
   private readonly error = h('p', { class: 'error', role: 'alert' });
@@ -20,12 +23,14 @@ export class CapturePanel {
     this.pose = select('Save the pose as', [], () => {
       this.newName.hidden = this.pose.value !== NEW;
       if (!this.newName.hidden) this.newName.focus();
+      this.part.hidden = this.pose.value !== NEUTRAL;
     });
+    this.part = select('Part of the performer', [[AUTO, 'face if there is one'], ['face', 'face only'], ['body', 'body only'], ['both', 'face and body']], () => undefined);
     this.undo = button('Undo', () => void this.undoCapture(), { disabled: true });
     this.save = h('a', { href: api.rigFile, download: 'rig.json', class: 'button' }, 'Download rig');
     this.element = h('div', { class: 'capture' },
       h('p', {}, 'Hold the expression, then click Capture. The pose becomes the neutral pose of this performer, from which all poses are measured, or a reference pose of the wrinkle rig, which its drivers use.'),
-      h('div', { class: 'row' }, this.pose, this.newName),
+      h('div', { class: 'row' }, this.pose, this.newName, this.part),
       h('div', { class: 'row' },
         button('Preview', () => void this.capturePose(true), { title: 'Show the resulting weights without changing anything' }),
         button('Capture', () => void this.capturePose(false), { class: 'primary' }), this.undo, this.save),
@@ -35,9 +40,10 @@ export class CapturePanel {
 
   async load(): Promise<void> {
     const rig = await api.rig(this.subject());
-    const poses = [...new Set(['neutral', ...rig.reference_poses])];
+    const poses = [...new Set([NEUTRAL, ...rig.reference_poses])];
     setOptions(this.pose, [...poses.map((name) => [name, name] as const), [NEW, 'a new pose…']]);
     this.newName.hidden = this.pose.value !== NEW;
+    this.part.hidden = this.pose.value !== NEUTRAL;
     this.showCaptures(rig.captures);
     this.save.textContent = rig.changed ? 'Download changed rig' : 'Download rig';
   }
@@ -47,10 +53,11 @@ export class CapturePanel {
     this.error.textContent = pose === '' ? 'Enter a name for the new pose.' : '';
     if (pose === '') return;
     try {
-      const result = await api.capture(this.subject(), pose, preview);
+      const part = pose === NEUTRAL && this.part.value !== AUTO ? (this.part.value as NeutralPart) : undefined;
+      const result = await api.capture(this.subject(), pose, preview, part);
       this.showResult(result);
       if (preview) return;
-      this.toasts.say(`Captured as “${result.pose}”`);
+      this.toasts.say(result.part ? `Captured as “${result.pose}” (${result.part})` : `Captured as “${result.pose}”`);
       this.onChanged();
       await this.load();
     } catch (error) {

@@ -63,6 +63,25 @@ TEST_F(ApiCaptureTest, UndoRestoresThePreviousNeutral) {
   EXPECT_NEAR(brow(), 0.75f, 1e-5f);
 }
 
+TEST_F(ApiCaptureTest, APartOfTheNeutralIsCaptured) {
+  EXPECT_EQ(Capture("neutral")["part"], "face") << "the stream has blend shapes";
+  EXPECT_NEAR(brow(), 0.0f, 1e-5f);
+  Undo();
+  const Json body = {{"subject", "ann"}, {"pose", "neutral"}, {"part", "body"}};
+  EXPECT_EQ(Ask("/api/capture", body)["part"], "body");
+  EXPECT_NEAR(brow(), 0.5f, 1e-5f) << "the face keeps its neutral";
+}
+
+TEST_F(ApiCaptureTest, UnknownPartsAreRefused) {
+  for (const Json& part : {Json("arms"), Json(1), Json(true)}) {
+    const Json body = {{"subject", "ann"}, {"pose", "neutral"}, {"part", part}};
+    EXPECT_EQ(Ask("/api/capture", body, 400)["error"]["field"], "part");
+  }
+  const Json other = {{"subject", "ann"}, {"pose", "squash"}, {"part", "face"}};
+  EXPECT_EQ(Ask("/api/capture", other, 400)["error"]["field"], "part");
+  EXPECT_FALSE(pipeline().neutral_pose().has_value());
+}
+
 TEST_F(ApiCaptureTest, UndoIgnoresTheNeutralOfAnotherSkeleton) {
   Capture("neutral");
   Capture("neutral");
