@@ -68,7 +68,10 @@ class Checker {
  public:
   Checker(const character::Character& character, const character::SourceNotes& notes,
           const rig::ShapeMatcher& shapes, bool rig_given)
-      : character_(character), notes_(notes), shapes_(shapes), rig_given_(rig_given) {}
+      : character_(character),
+        notes_(notes),
+        has_shape_face_(HasShapeFace(ArkitFace(character, shapes))),
+        rig_given_(rig_given) {}
 
   CharacterReport Run(const rig::SkeletonMaps& maps) {
     report_.name = character_.name;
@@ -115,7 +118,10 @@ class Checker {
   void CheckMeshes() {
     const bool skinned = std::any_of(notes_.meshes.begin(), notes_.meshes.end(),
                                      [](const character::MeshNotes& mesh) { return mesh.skinned; });
-    if (!skinned) {
+    if (!skinned && has_shape_face_) {
+      Find(Severity::kNote, "no-skin", {},
+           "no mesh is skinned, so only its blend shapes move the face");
+    } else if (!skinned) {
       Find(Severity::kError, "no-skin", {}, "no mesh is skinned, so nothing can fold",
            "bind the mesh to its skeleton and export both");
     }
@@ -272,8 +278,7 @@ class Checker {
       Find(Severity::kNote, "roles-missing", {}, "no joint is the " + missing,
            "clothing regions of these joints have no driver");
     }
-    const bool shapes = HasShapeFace(ArkitFace(character_, shapes_));
-    if (shapes) {
+    if (has_shape_face_) {
       Find(Severity::kNote, "shape-face", {}, "the face has ARKit's blend shapes",
            "the import gives it masks, a rig and wrinkle maps");
     } else if (report_.face_joints == 0) {
@@ -309,7 +314,7 @@ class Checker {
 
   const character::Character& character_;
   const character::SourceNotes& notes_;
-  const rig::ShapeMatcher& shapes_;
+  const bool has_shape_face_;
   const bool rig_given_;
   CharacterReport report_;
 };

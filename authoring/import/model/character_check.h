@@ -47,7 +47,8 @@ struct CharacterReport {
 // the note no-rig.
 //
 // Codes
-//   errors    no-skin, uv-missing, unskinned-vertices, rig-binding
+//   errors    no-skin (a note if blend shapes move the face), uv-missing, unskinned-vertices,
+//             rig-binding
 //   warnings  uv-overlap (parts that share texels fold alike), uv-flat, weights-sum,
 //             normals-missing, picture-missing, units, up-axis, joint-names, no-roles, rig,
 //             rig-picture

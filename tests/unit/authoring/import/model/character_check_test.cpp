@@ -47,6 +47,31 @@ TEST(CharacterCheck, GoodBodyLacksOnlyFaceAndRig) {
   EXPECT_EQ(report.joints.num_roles, 19);
 }
 
+// Gives the mesh the shapes by which a face is recognised.
+void AddShapeFace(character::Character* character) {
+  character->shapes = {"browInnerUp",   "browDownLeft",   "browDownRight",  "eyeBlinkLeft",
+                       "eyeBlinkRight", "mouthSmileLeft", "mouthSmileRight"};
+  for (int shape = 0; shape < 7; ++shape) {
+    character::MorphTarget& target = character->meshes[0].morph_targets.emplace_back();
+    target.shape = shape;
+    target.deltas.push_back({.vertex = 0, .position = {0.0f, 0.01f, 0.0f}});
+  }
+}
+
+// Heads without a skeleton are common: scans, and test files of trackers.
+TEST(CharacterCheck, AFaceOfBlendShapesNeedsNoSkin) {
+  character::Character face = ToyBody();
+  AddShapeFace(&face);
+  character::SourceNotes notes = GoodNotes();
+  for (character::MeshNotes& mesh : notes.meshes) mesh.skinned = false;
+  const CharacterReport report = CheckCharacter(face, notes, Maps(), false);
+  const Finding* finding = FindFinding(report, "no-skin");
+  ASSERT_NE(finding, nullptr);
+  EXPECT_EQ(finding->severity, Severity::kNote);
+  EXPECT_EQ(report.Count(Severity::kError), 0u) << ToText(report);
+  EXPECT_NE(FindFinding(report, "shape-face"), nullptr);
+}
+
 struct Fault {
   const char* code;
   Severity severity;
@@ -115,10 +140,7 @@ INSTANTIATE_TEST_SUITE_P(
                 n->idle_shapes = {"a", "b", "c", "d", "e", "f", "g"};
               }},
         Fault{"shape-face", Severity::kNote, "has ARKit's blend shapes",
-              [](character::Character* c, character::SourceNotes*) {
-                c->shapes = {"browInnerUp", "browDown_L",   "browDown_R",  "eyeBlink_L",
-                             "eyeBlink_R",  "mouthSmile_L", "mouthSmile_R"};
-              }},
+              [](character::Character* c, character::SourceNotes*) { AddShapeFace(c); }},
         Fault{"picture-missing", Severity::kWarning, "skin.png",
               [](character::Character*, character::SourceNotes* n) {
                 n->missing_pictures = {"skin.png: no such file"};
