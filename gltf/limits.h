@@ -35,6 +35,7 @@ inline constexpr std::size_t kMaxMorphDeltas = 16u << 20;      // kept: vertices
 inline constexpr std::size_t kMaxChannels = 65'536;
 inline constexpr std::size_t kMaxAnimationNumbers = 128'000'000;  // all keys of all channels
 inline constexpr std::size_t kMaxVrmNodes = 2048;                 // human bones; expressions
+inline constexpr std::size_t kMaxVrmBinds = 65'536;               // of all expressions
 
 // Further warnings are counted and summarised in one line.
 inline constexpr std::size_t kMaxWarnings = 32;

@@ -77,6 +77,32 @@ class Cursor {
   std::size_t next_ = 0;
 };
 
+void AddScaled(const std::vector<MorphDelta>& from, float weight, std::vector<MorphDelta>* to) {
+  for (MorphDelta delta : from) {
+    delta.position *= weight;
+    delta.normal *= weight;
+    delta.tangent *= weight;
+    to->push_back(delta);
+  }
+}
+
+// One delta per vertex, the sum of those in the list, in ascending order.
+void MergeDeltas(std::vector<MorphDelta>* deltas) {
+  std::stable_sort(deltas->begin(), deltas->end(),
+                   [](const MorphDelta& a, const MorphDelta& b) { return a.vertex < b.vertex; });
+  std::vector<MorphDelta> merged;
+  for (const MorphDelta& delta : *deltas) {
+    if (merged.empty() || merged.back().vertex != delta.vertex) {
+      merged.push_back(delta);
+      continue;
+    }
+    merged.back().position += delta.position;
+    merged.back().normal += delta.normal;
+    merged.back().tangent += delta.tangent;
+  }
+  *deltas = std::move(merged);
+}
+
 // The least element that a cursor has not taken yet.
 std::optional<std::size_t> NextElement(const std::vector<Cursor>& cursors) {
   std::optional<std::size_t> next;
@@ -96,7 +122,7 @@ Status GltfMorphTargets::Read(const gltf::Mesh& from, const gltf::Primitive& pri
   if (primitive.morph_targets.empty()) return {};
   const float zero = ZeroLength(*mesh);
   const std::vector<bool> used = UsedVertices(*mesh);
-  std::vector<std::pair<MorphTarget, bool>> found;  // with the flag for ComputeMorphNormals()
+  std::vector<Found> found;
   for (std::size_t i = 0; i < primitive.morph_targets.size(); ++i) {
     const gltf::MorphTarget& target = primitive.morph_targets[i];
     const std::string where = at + ".targets[" + std::to_string(i) + "]";
@@ -112,22 +138,52 @@ Status GltfMorphTargets::Read(const gltf::Mesh& from, const gltf::Primitive& pri
     deltas_ -= to.deltas.size();
     to.shape = ShapeOf(from.morph_target_names[i]);
     if (to.shape < 0) continue;
-    found.emplace_back(std::move(to), !base.has_normals || target.normal == gltf::kNone);
+    found.push_back(
+        {std::move(to), static_cast<int>(i), !base.has_normals || target.normal == gltf::kNone});
   }
+  FURROW_RETURN_IF_ERROR(AddMixes(from, at, &found));
   std::sort(found.begin(), found.end(),
-            [](const auto& a, const auto& b) { return a.first.shape < b.first.shape; });
+            [](const Found& a, const Found& b) { return a.target.shape < b.target.shape; });
   std::vector<bool> lacking;
   std::size_t before = 0;
-  for (auto& [target, lacks] : found) {
-    before += target.deltas.size();
-    mesh->morph_targets.push_back(std::move(target));
-    lacking.push_back(lacks);
+  for (Found& one : found) {
+    before += one.target.deltas.size();
+    mesh->morph_targets.push_back(std::move(one.target));
+    lacking.push_back(one.lacks_normals);
   }
   Status status = ComputeMorphNormals(lacking, before + deltas_, mesh);
   if (!status.ok()) return status.At(at + ".targets");
   std::size_t after = 0;
   for (const MorphTarget& target : mesh->morph_targets) after += target.deltas.size();
   deltas_ -= after - before;
+  return {};
+}
+
+Status GltfMorphTargets::AddMixes(const gltf::Mesh& from, const std::string& at,
+                                  std::vector<Found>* found) {
+  const std::size_t num_targets = found->size();
+  for (const gltf::MorphMix& mix : from.mixes) {
+    Found sum;
+    std::size_t count = 0;
+    for (const auto& [index, weight] : mix.targets) {
+      for (std::size_t f = 0; f < num_targets; ++f) {
+        const Found& part = (*found)[f];
+        if (part.index != index) continue;
+        count += part.target.deltas.size();
+        if (count > deltas_) {
+          return {StatusCode::kLimit, "the expressions move too many vertices", at + ".targets",
+                  "reduce the mesh, or the number of its expressions"};
+        }
+        AddScaled(part.target.deltas, weight, &sum.target.deltas);
+        sum.lacks_normals |= part.lacks_normals;
+      }
+    }
+    if (sum.target.deltas.empty()) continue;
+    MergeDeltas(&sum.target.deltas);
+    deltas_ -= sum.target.deltas.size();
+    sum.target.shape = ShapeOf(mix.name);
+    if (sum.target.shape >= 0) found->push_back(std::move(sum));
+  }
   return {};
 }
 

@@ -24,6 +24,7 @@ namespace furrow::character {
 // - Vertices without a triangle have no deltas. Exporters that share one vertex list among
 //   primitives write the same targets into each of them.
 // - A shape that moves nothing is left out; see idle_names().
+// - An expression of a VRM avatar is a shape of its own, the sum of the targets that it binds.
 // - Shapes beyond kMaxShapes are left out; see num_surplus().
 class GltfMorphTargets {
  public:
@@ -50,6 +51,14 @@ class GltfMorphTargets {
   [[nodiscard]] std::size_t num_surplus() const { return surplus_.size(); }
 
  private:
+  // A target of the present primitive.
+  struct Found {
+    MorphTarget target;
+    int index = -1;              // in the file; -1: a mix
+    bool lacks_normals = false;  // for ComputeMorphNormals()
+  };
+  // Adds the mixes of the mesh, each as a target of its own.
+  Status AddMixes(const gltf::Mesh& from, const std::string& at, std::vector<Found>* found);
   Status ReadDeltas(const gltf::MorphTarget& target, const std::string& at, const Base& base,
                     const Mesh& mesh, std::vector<MorphDelta>* deltas);
   Status OpenDeltas(int accessor, const char* name, const std::string& at, const Mesh& mesh,

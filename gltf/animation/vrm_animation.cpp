@@ -3,16 +3,11 @@
 
 #include <tiny_gltf.h>
 
+#include "gltf/document/json_value.h"
 #include "gltf/limits.h"
 
 namespace furrow::gltf {
 namespace {
-
-// tinygltf asserts that Get() is called on an object, and the file decides what is one.
-const tinygltf::Value& Member(const tinygltf::Value& object, const char* key) {
-  static const tinygltf::Value kNull;
-  return object.IsObject() ? object.Get(key) : kNull;
-}
 
 // The node index in {"node": 3}.
 Result<int> NodeOf(const Document& document, const tinygltf::Value& object,

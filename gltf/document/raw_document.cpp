@@ -334,8 +334,19 @@ class RawReader {
     return {};
   }
 
+  // Of VRM's extensions, characters need the expressions.
+  static void KeepExpressions(const Json& extensions, Json* reduced) {
+    constexpr std::pair<const char*, const char*> kParts[] = {{"VRM", "blendShapeMaster"},
+                                                              {"VRMC_vrm", "expressions"}};
+    for (const auto& [name, part] : kParts) {
+      const Json* vrm = Find(extensions, name);
+      const Json* kept = vrm != nullptr ? Find(*vrm, part) : nullptr;
+      if (kept != nullptr) (*reduced)["extensions"][name][part] = *kept;
+    }
+  }
+
   // Copies what the reader needs. tinygltf parses extensions of nodes and accessors strictly, and
-  // this code uses none of them, so only those of materials and the root's VRM animation stay.
+  // this code uses none of them, so only those of materials and VRM's at the root stay.
   void WriteReducedJson() {
     static constexpr const char* kAnimationParts[] = {"nodes", "skins", "animations", "accessors"};
     static constexpr const char* kCharacterParts[] = {
@@ -357,6 +368,7 @@ class RawReader {
     const Json* vrm =
         extensions != nullptr && animation ? Find(*extensions, "VRMC_vrm_animation") : nullptr;
     if (vrm != nullptr) reduced["extensions"]["VRMC_vrm_animation"] = *vrm;
+    if (extensions != nullptr && !animation) KeepExpressions(*extensions, &reduced);
     AddViewStandIns(&reduced);
     // Replaces malformed UTF-8, for which dump() would throw.
     result_.json = reduced.dump(-1, ' ', false, Json::error_handler_t::replace);

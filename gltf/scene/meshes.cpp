@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gltf/scene/meshes.h"
 
+#include <span>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
 
 #include <tiny_gltf.h>
 
+#include "base/ascii.h"
+#include "base/status.h"
 #include "base/text.h"
 #include "gltf/limits.h"
+#include "gltf/scene/vrm_expressions.h"
 
 namespace furrow::gltf {
 namespace {
@@ -50,6 +54,23 @@ Primitive ReadPrimitive(const tinygltf::Primitive& from, std::size_t num_names) 
   return to;
 }
 
+void AddMixes(std::span<const VrmExpression> expressions, std::vector<Mesh>* meshes) {
+  std::unordered_set<std::string> taken;
+  for (const Mesh& mesh : *meshes) {
+    for (const std::string& name : mesh.morph_target_names) taken.insert(AsciiLower(name));
+  }
+  for (const VrmExpression& expression : expressions) {
+    if (!taken.insert(AsciiLower(expression.name)).second) continue;
+    for (const VrmExpression::Bind& bind : expression.binds) {
+      std::vector<MorphMix>& mixes = (*meshes)[static_cast<std::size_t>(bind.mesh)].mixes;
+      if (mixes.empty() || mixes.back().name != expression.name) {
+        mixes.push_back({expression.name, {}});
+      }
+      mixes.back().targets.emplace_back(bind.target, bind.weight);
+    }
+  }
+}
+
 }  // namespace
 
 Result<std::vector<Mesh>> ReadMeshes(Document* document) {
@@ -70,6 +91,9 @@ Result<std::vector<Mesh>> ReadMeshes(Document* document) {
       mesh.primitives.push_back(ReadPrimitive(part, mesh.morph_target_names.size()));
     }
   }
+  const auto expressions = ReadVrmExpressions(document);
+  FURROW_RETURN_IF_ERROR(expressions);
+  AddMixes(*expressions, &meshes);
   return meshes;
 }
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/status.h"
@@ -28,10 +29,17 @@ struct Primitive {
   std::vector<MorphTarget> morph_targets;  // at most Mesh::morph_target_names
 };
 
+// Morph targets of one mesh that an expression moves together.
+struct MorphMix {
+  std::string name;
+  std::vector<std::pair<int, float>> targets;  // index in morph_target_names, weight
+};
+
 struct Mesh {
   std::string name;  // "mesh_<index>" if the file has none
   std::vector<Primitive> primitives;
   std::vector<std::string> morph_target_names;  // unique; see ReadMeshes()
+  std::vector<MorphMix> mixes;                  // VRM's expressions; see ReadMeshes()
 };
 
 // All meshes of a document with Contents::kCharacter.
@@ -40,7 +48,10 @@ struct Mesh {
 // mesh has already gets "_2", "_3" and so on, and a warning. Names longer than kMaxNameBytes are
 // cut.
 //
-// Errors: kSchema (a material that does not exist).
+// An expression of VRM (ReadVrmExpressions()) becomes a mix of each mesh that it moves, unless a
+// morph target of the document already has its name, in any case.
+//
+// Errors: kSchema (a material that does not exist); those of ReadVrmExpressions().
 [[nodiscard]] Result<std::vector<Mesh>> ReadMeshes(Document* document);
 
 }  // namespace furrow::gltf

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "character/package/package.h"
+#include "gltf/limits.h"
 #include "tests/unit/gltf/gltf_testing.h"
 
 namespace furrow::character {
@@ -267,6 +268,101 @@ TEST(GltfMorphTargets, InvalidOnesAreNotWritten) {
   EXPECT_EQ(code({{0, {delta, delta}}}), StatusCode::kInvalidArgument);
   EXPECT_EQ(code({{0, {{9, glm::vec3(1.0f), {}, {}}}}}), StatusCode::kInvalidArgument);
   EXPECT_EQ(code({{0, {}}}), StatusCode::kInvalidArgument);
+}
+
+// Two targets that move vertices 1 and 2, and vertex 2.
+HandMadeGltf VrmFace() {
+  HandMadeGltf gltf = SquareMesh();
+  AddTarget("m0",
+            {{"POSITION", gltf.AddFloats({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0}, "VEC3")}},
+            &gltf);
+  AddTarget("m1",
+            {{"POSITION", gltf.AddFloats({0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0}, "VEC3")}},
+            &gltf);
+  return gltf;
+}
+
+glm::vec3 MoveOf(const Character& character, const std::string& shape, std::uint32_t vertex) {
+  for (const MorphTarget& target : character.meshes[0].morph_targets) {
+    if (character.shapes[static_cast<std::size_t>(target.shape)] != shape) continue;
+    for (const MorphDelta& delta : target.deltas) {
+      if (delta.vertex == vertex) return delta.position;
+    }
+  }
+  return glm::vec3(0.0f);
+}
+
+TEST(GltfMorphTargets, ExpressionsOfVrm0AreShapes) {
+  HandMadeGltf gltf = VrmFace();
+  gltf.json["extensions"]["VRM"]["blendShapeMaster"]["blendShapeGroups"] = {
+      {{"presetName", "joy"},
+       {"name", "Joy"},
+       {"binds",
+        {{{"mesh", 0}, {"index", 0}, {"weight", 50}},
+         {{"mesh", 0}, {"index", 1}, {"weight", 100}}}}},
+      {{"presetName", "unknown"},
+       {"name", "Wink"},
+       {"binds", {{{"mesh", 0}, {"index", 1}, {"weight", 100}}}}},
+      {{"presetName", "a"}, {"name", "A"}, {"binds", json::array()}},
+      {{"presetName", "o"}, {"binds", {{{"mesh", 7}, {"index", 1}, {"weight", 100}}}}},
+      {{"presetName", "M1"}, {"binds", {{{"mesh", 0}, {"index", 0}, {"weight", 100}}}}}};
+  const auto character = Parse(gltf);
+  ASSERT_TRUE(character.ok()) << character.status().ToString();
+  EXPECT_THAT(character->shapes, ElementsAre("m0", "m1", "joy", "Wink")) << "M1 is m1's own name";
+  EXPECT_EQ(MoveOf(*character, "joy", 1), glm::vec3(0.5f, 0, 0));
+  EXPECT_EQ(MoveOf(*character, "joy", 2), glm::vec3(0, 0.5f, 1));
+  EXPECT_EQ(MoveOf(*character, "Wink", 2), glm::vec3(0, 0, 1));
+  EXPECT_EQ(MoveOf(*character, "m0", 1), glm::vec3(1, 0, 0));
+  EXPECT_THAT(character->warnings,
+              ElementsAre(HasSubstr("1 ignored bind of expressions to morph targets")));
+}
+
+TEST(GltfMorphTargets, ExpressionsOfVrm1AreShapes) {
+  HandMadeGltf gltf = VrmFace();
+  gltf.json["extensions"]["VRMC_vrm"]["expressions"] = {
+      {"preset",
+       {{"happy",
+         {{"isBinary", true},
+          {"overrideMouth", "block"},
+          {"overrideBlink", "none"},
+          {"morphTargetBinds", {{{"node", 0}, {"index", 0}, {"weight", 0.25}}}},
+          {"materialColorBinds", {{{"material", 0}}}}}}}},
+      {"custom",
+       {{"wink", {{"morphTargetBinds", {{{"node", 0}, {"index", 1}, {"weight", 9e99}}}}}}}}};
+  const auto character = Parse(gltf);
+  ASSERT_TRUE(character.ok()) << character.status().ToString();
+  EXPECT_THAT(character->shapes, ElementsAre("m0", "m1", "happy", "wink"));
+  EXPECT_EQ(MoveOf(*character, "happy", 1), glm::vec3(0.25f, 0, 0));
+  EXPECT_EQ(MoveOf(*character, "wink", 2), glm::vec3(0, 0, 1)) << "weights end at 1";
+  EXPECT_THAT(character->warnings, SizeIs(3)) << "a material, a switch, a rule";
+}
+
+// Anything may stand where VRM expects lists and numbers.
+TEST(GltfMorphTargets, BrokenExpressionsAreIgnored) {
+  for (const json& part :
+       {json(1), json("x"), json::array({1, "x", nullptr}), json::object(),
+        json::array({{{"presetName", 3}, {"binds", 4}}, {{"name", "n"}, {"binds", {1, nullptr}}}}),
+        json::array(
+            {{{"name", "n"}, {"binds", {{{"mesh", -1}, {"index", 1e300}, {"weight", "x"}}}}}})}) {
+    HandMadeGltf gltf = VrmFace();
+    gltf.json["extensions"]["VRM"]["blendShapeMaster"]["blendShapeGroups"] = part;
+    const auto character = Parse(gltf);
+    ASSERT_TRUE(character.ok()) << part << character.status().ToString();
+    EXPECT_THAT(character->shapes, ElementsAre("m0", "m1")) << part;
+    gltf = VrmFace();
+    gltf.json["extensions"]["VRMC_vrm"]["expressions"] = {{"preset", part},
+                                                          {"custom", {{"n", part}}}};
+    const auto other = Parse(gltf);
+    ASSERT_TRUE(other.ok()) << part << other.status().ToString();
+    EXPECT_THAT(other->shapes, ElementsAre("m0", "m1")) << part;
+  }
+}
+
+TEST(GltfMorphTargets, TooManyExpressionsAreAnError) {
+  HandMadeGltf gltf = VrmFace();
+  json& groups = gltf.json["extensions"]["VRM"]["blendShapeMaster"]["blendShapeGroups"];
+  for (std::size_t i = 0; i <= gltf::kMaxVrmNodes; ++i) groups.push_back({{"name", "x"}});
+  EXPECT_EQ(Parse(gltf).status().code(), StatusCode::kLimit);
 }
 
 }  // namespace
