@@ -262,11 +262,11 @@ void AddRender(CLI::App& app, Action& action) {
                                           "Recordings: BVH, glTF/GLB, VRMA, FBX, Collada, Live "
                                           "Link Face CSV or a take (.mcap); several "
                                           "files are drawn as several subjects in one picture");
-  CLI::Option* pose =
-      command->add_option("--pose", options->pose,
-                          "Draw one picture of the rig's reference poses instead of FILE: "
-                          "NAME[=WEIGHT],... or neutral; "
-                          "the name of a wrinkle map stands for all poses that feed it");
+  CLI::Option* pose = command->add_option(
+      "--pose", options->pose,
+      "Draw one picture of the rig's reference poses and of blend shapes instead of "
+      "FILE: NAME[=WEIGHT],... or neutral; the name of a wrinkle map stands for "
+      "all poses that feed it, and mouthSmile for both sides");
   file->excludes(pose);
   command->add_option("--out", options->out, "Folder for the pictures, created if missing")
       ->required();

@@ -3,11 +3,15 @@
 
 #include <algorithm>
 #include <charconv>
+#include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "base/ascii.h"
 #include "base/status.h"
 #include "rig/rig_reference_pose.h"
+#include "rig/shapes/arkit_shapes.h"
 #include "wrinkle/skeleton/reference_pose.h"
 
 namespace furrow::cli {
@@ -70,6 +74,35 @@ std::vector<WeightedPose> PosesOfMap(const wrinkle::Rig& rig, std::string_view m
   return parts;
 }
 
+// A sum of reference poses and of blend shapes.
+struct Mix {
+  std::vector<WeightedPose> poses;
+  std::vector<std::pair<std::string, float>> shapes;  // name, coefficient
+};
+
+// ARKit's names, so that shape maps know the vocabulary, and those of the rig's drivers.
+std::vector<std::string> BlendShapesOf(const wrinkle::Rig& rig) {
+  std::vector<std::string> names(rig::ArkitShapes().begin(), rig::ArkitShapes().end());
+  for (const wrinkle::Driver& driver : rig.drivers) {
+    if (driver.kind != wrinkle::Driver::Kind::kBlendShape) continue;
+    const std::string& name = driver.blend_shape.blend_shape;
+    const auto same = [&](const std::string& other) { return EqualsIgnoreCase(name, other); };
+    if (std::none_of(names.begin(), names.end(), same)) names.push_back(name);
+  }
+  return names;
+}
+
+// The blend shape of this name in any case, or else those of both sides.
+std::vector<std::string> ShapesNamed(std::span<const std::string> known, std::string_view name) {
+  const std::string left = std::string(name) + "Left", right = std::string(name) + "Right";
+  std::vector<std::string> found;
+  for (const std::string& shape : known) {
+    if (EqualsIgnoreCase(shape, name)) return {shape};
+    if (EqualsIgnoreCase(shape, left) || EqualsIgnoreCase(shape, right)) found.push_back(shape);
+  }
+  return found;
+}
+
 std::vector<WeightedPose> PosesOf(const wrinkle::Rig& rig, const Term& term) {
   const std::string name(term.name);
   if (const auto* pose = FindPose(rig, name)) return {{pose, term.weight}};
@@ -84,11 +117,13 @@ Status Unknown(const wrinkle::Rig& rig, std::string_view name) {
   for (const wrinkle::ReferencePose& pose : rig.reference_poses) known += ", " + pose.name;
   return {StatusCode::kNotFound,
           "the rig has no reference pose '" + std::string(name) +
-              "' and no wrinkle map of this name that poses feed; valid names: " + known};
+              "' and no wrinkle map of this name that poses feed; valid names: " + known +
+              ", and ARKit's blend shapes (browInnerUp, mouthSmile, ...)"};
 }
 
-Result<std::vector<WeightedPose>> ParsePoses(const wrinkle::Rig& rig, std::string_view text) {
-  std::vector<WeightedPose> parts;
+Result<Mix> ParseMix(const wrinkle::Rig& rig, std::string_view text) {
+  const std::vector<std::string> known = BlendShapesOf(rig);
+  Mix mix;
   for (std::size_t at = 0; at <= text.size();) {
     const std::size_t comma = std::min(text.find(',', at), text.size());
     const auto term = ParseTerm(text.substr(at, comma - at));
@@ -96,24 +131,33 @@ Result<std::vector<WeightedPose>> ParsePoses(const wrinkle::Rig& rig, std::strin
     at = comma + 1;
     const auto poses = PosesOf(rig, *term);
     if (poses.empty() && term->name == "neutral") continue;  // adds nothing
-    if (poses.empty()) return Unknown(rig, term->name);
-    parts.insert(parts.end(), poses.begin(), poses.end());
+    mix.poses.insert(mix.poses.end(), poses.begin(), poses.end());
+    if (!poses.empty()) continue;
+    const std::vector<std::string> shapes = ShapesNamed(known, term->name);
+    if (shapes.empty()) return Unknown(rig, term->name);
+    for (const std::string& shape : shapes) mix.shapes.emplace_back(shape, term->weight);
   }
-  return parts;
+  return mix;
 }
 
 }  // namespace
 
 Result<motion::Clip> PoseClip(const character::Character& character, const std::string& text) {
-  const auto parts = ParsePoses(character.rig, text);
-  FURROW_RETURN_IF_ERROR(parts);
+  const auto mix = ParseMix(character.rig, text);
+  FURROW_RETURN_IF_ERROR(mix);
   motion::Clip clip;
   clip.name = text;
   clip.skeleton = character.skeleton;
   clip.times = {0.0};
   clip.locals.assign(clip.skeleton.rest_pose().begin(), clip.skeleton.rest_pose().end());
-  const wrinkle::ReferencePose mix = rig::MixReferencePoses(text, *parts);
-  FURROW_RETURN_IF_ERROR(wrinkle::ApplyReferencePose(mix, clip.skeleton, clip.locals));
+  const wrinkle::ReferencePose pose = rig::MixReferencePoses(text, mix->poses);
+  FURROW_RETURN_IF_ERROR(wrinkle::ApplyReferencePose(pose, clip.skeleton, clip.locals));
+  if (mix->shapes.empty()) return clip;
+  clip.blend_shape_names = BlendShapesOf(character.rig);
+  for (const std::string& name : clip.blend_shape_names) {
+    float& coefficient = clip.blend_shapes.emplace_back(0.0f);
+    for (const auto& [shape, weight] : mix->shapes) coefficient += shape == name ? weight : 0.0f;
+  }
   return clip;
 }
 

@@ -10,11 +10,13 @@
 namespace furrow::cli {
 
 // Returns a clip with one frame on the character's skeleton: a weighted sum of the rig's reference
-// poses.
+// poses and of blend shapes.
 //
 // `text` is "neutral" or "NAME[=WEIGHT],..." with weights in [-4, 4] (default 1). NAME is a
-// reference pose; a pair of poses with the suffixes "_l" and "_r", without the suffix; or a wrinkle
-// map, which stands for all poses that feed it. Errors: kNotFound (lists the valid names), kParse.
+// reference pose; a pair of poses with the suffixes "_l" and "_r", without the suffix; a wrinkle
+// map, which stands for all poses that feed it; or a blend shape of ARKit or of the rig's drivers,
+// in any case, of which "mouthSmile" means both sides. Errors: kNotFound (lists the valid names),
+// kParse.
 [[nodiscard]] Result<motion::Clip> PoseClip(const character::Character& character,
                                             const std::string& text);
 

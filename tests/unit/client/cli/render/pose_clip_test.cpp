@@ -65,6 +65,31 @@ TEST(PoseClip, ANameWithoutSideMeansBothSidesAndAMapAllItsPoses) {
   }
 }
 
+TEST(PoseClip, BlendShapesMayBeNamed) {
+  const auto clip = PoseClip(Brows(), "nod,mouthSmile=0.5,JAWOPEN,jawOpen=0.25");
+  ASSERT_TRUE(clip.ok()) << clip.status().ToString();
+  EXPECT_FLOAT_EQ(clip->locals[0].translation.z, 3.0f);
+  ASSERT_EQ(clip->blend_shapes.size(), clip->blend_shape_names.size());
+  for (std::size_t i = 0; i < clip->blend_shapes.size(); ++i) {
+    const std::string& name = clip->blend_shape_names[i];
+    const float wanted = name.starts_with("mouthSmile") ? 0.5f : name == "jawOpen" ? 1.25f : 0.0f;
+    EXPECT_FLOAT_EQ(clip->blend_shapes[i], wanted) << name;
+  }
+  EXPECT_TRUE(PoseClip(Brows(), "nod")->blend_shape_names.empty());
+}
+
+TEST(PoseClip, BlendShapesOfDriversMayBeNamed) {
+  character::Character character = Brows();
+  wrinkle::Driver& driver = character.rig.drivers.emplace_back();
+  driver.name = "scar";
+  driver.kind = wrinkle::Driver::Kind::kBlendShape;
+  driver.blend_shape.blend_shape = "scarFold";
+  const auto clip = PoseClip(character, "scarfold=0.75");
+  ASSERT_TRUE(clip.ok()) << clip.status().ToString();
+  EXPECT_EQ(clip->blend_shape_names.back(), "scarFold");
+  EXPECT_FLOAT_EQ(clip->blend_shapes.back(), 0.75f);
+}
+
 TEST(PoseClip, AnUnknownNameIsAnErrorThatListsTheValidNames) {
   const auto unknown = PoseClip(Brows(), "lower_l,smirk");
   EXPECT_EQ(unknown.status().code(), StatusCode::kNotFound);
