@@ -188,7 +188,8 @@ std::string Describe(const SkeletonMatch& match) {
 
 std::vector<std::string> WarningsOf(const SkeletonMatch& match) {
   std::vector<std::string> warnings;
-  if (match.stream.map == kFromHierarchy) {
+  // Guesses do not matter to a rig that finds all joints by their names.
+  if (match.stream.map == kFromHierarchy && !match.aliases.empty()) {
     warnings.emplace_back(
         "no skeleton map knows the joint names, so their roles are guessed from the hierarchy; if "
         "the body moves wrong, write a map with 'furrow rig propose-map' and choose it with "

@@ -59,7 +59,10 @@ int DescribeClip(const std::string& path, const motion::LoadOptions& read) {
   if (clip->skeleton.num_joints() > 0) {
     const auto matcher = LoadSkeletonMatcher({});
     if (!matcher.ok()) return Fail(matcher.status());
-    const std::string roles = rig::Describe(matcher->RolesOf(clip->skeleton));
+    // Without a rig, the match has the roles and the axes alone.
+    const rig::SkeletonMatch match = matcher->Match(clip->skeleton, wrinkle::Rig(), nullptr);
+    const std::string roles = rig::Describe(match);
+    PrintWarnings(rig::WarningsOf(match));
     std::printf("  joints      %s\n",
                 roles.empty() ? "no skeleton map fits; 'furrow rig propose-map' writes a start"
                               : roles.c_str());

@@ -100,7 +100,7 @@ rig::SkeletonMatch MatchJoints(const rig::SkeletonMatcher& matcher, const motion
   const bool maps = !match.aliases.empty() || match.turn() != wrinkle::RestStance().turn;
   // To standard error, because commands write their results to standard output.
   if (maps) std::fprintf(stderr, "furrow: %s\n", rig::Describe(match).c_str());
-  if (maps) PrintWarnings(rig::WarningsOf(match));
+  PrintWarnings(rig::WarningsOf(match));
   return match;
 }
 
