@@ -232,6 +232,7 @@ Result<std::vector<std::string>> ProposeShapeFace(const wrinkle::Rig& arkit, con
 
 Result<std::vector<std::string>> BakeShapeFace(const ArkitFace& face,
                                                std::span<const BakeStroke> strokes, int size,
+                                               float depth,
                                                const std::function<bool(float)>& progress,
                                                Character* character) {
   std::vector<std::string> remarks;
@@ -251,6 +252,7 @@ Result<std::vector<std::string>> BakeShapeFace(const ArkitFace& face,
   }
   BakeOptions options;
   options.size = size;
+  options.depth = depth;
   options.threads = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 64);
   const auto maps = Bake(*character, poses->poses, moved.strokes, options, progress);
   FURROW_RETURN_IF_ERROR(maps);

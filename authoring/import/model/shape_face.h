@@ -30,11 +30,11 @@ namespace furrow::authoring {
 
 // Bakes and embeds the wrinkle maps of the character's rig from the strain of its shapes, of their
 // combinations and of its joints, and from `strokes`, which are drawn on the default character's
-// face and move to this one (TransferStrokes()). `size`: texels per side. `progress`: see Bake().
-// Returns warnings of CheckSurfaces() and notes of CollectBakePoses().
-// Errors: those of these, of FaceSkin::Create(), Bake() and EmbedMaps().
+// face and move to this one (TransferStrokes()). `size`: texels per side. `depth`: factor for all
+// heights, [0, 4]. `progress`: see Bake(). Returns warnings of CheckSurfaces() and notes of
+// CollectBakePoses(). Errors: those of these, of FaceSkin::Create(), Bake() and EmbedMaps().
 [[nodiscard]] Result<std::vector<std::string>> BakeShapeFace(
-    const ArkitFace& face, std::span<const BakeStroke> strokes, int size,
+    const ArkitFace& face, std::span<const BakeStroke> strokes, int size, float depth,
     const std::function<bool(float)>& progress, character::Character* character);
 
 // Selects, for skin and for cloth, the materials that share one wrinkle atlas, and clears

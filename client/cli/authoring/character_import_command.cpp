@@ -36,6 +36,7 @@ struct ImportArguments {
   std::vector<std::string> data_folders;
   authoring::ImportOptions makehuman;
   authoring::ModelOptions model;
+  float depth = 1.0f;  // of the folds of a face of blend shapes
 };
 
 int ImportFolder(const std::filesystem::path& folder, const ImportArguments& arguments,
@@ -104,7 +105,7 @@ Status AddFaceOfShapes(const ImportArguments& arguments, const authoring::ArkitF
   constexpr int kSteps = 1000;
   Progress bar("baking", kSteps);
   const auto baked = authoring::BakeShapeFace(
-      face, *strokes, size,
+      face, *strokes, size, arguments.depth,
       [&](float done) {
         bar.Set(static_cast<std::int64_t>(done * kSteps));
         return !Interrupted();
@@ -231,6 +232,13 @@ void AddCharacterImport(CLI::App& group, Action& action) {
           "Texels per side of the textures that the import paints: MakeHuman's, and the masks "
           "and wrinkle maps of a face of blend shapes")
       ->check(CLI::Range(64, 4096))
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--depth", arguments->depth,
+          "Factor for the depth of the folds of a face of blend shapes: below 1 for a child "
+          "or a cartoon, above 1 for an old face")
+      ->check(CLI::Range(0.0f, 4.0f))
       ->capture_default_str();
   command->callback([arguments, &action] { action = [arguments] { return Import(*arguments); }; });
 }

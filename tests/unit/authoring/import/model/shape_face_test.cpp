@@ -242,7 +242,7 @@ TEST_F(ShapeFaceTest, FoldsLieInTheRegionsOfTheirShapes) {
       LoadStrokes(std::filesystem::path(FURROW_SOURCE_DIR) / "rig/rigs/default.strokes.json",
                   Shipped("default"));
   ASSERT_TRUE(strokes.ok()) << strokes.status().ToString();
-  const auto said = BakeShapeFace(ArkitFaceOf(c), *strokes, 256, {}, &c);
+  const auto said = BakeShapeFace(ArkitFaceOf(c), *strokes, 256, 1.0f, {}, &c);
   ASSERT_TRUE(said.ok()) << said.status().ToString();
   EXPECT_TRUE(rig::CheckRig(c.rig).ok());
   const std::map<std::string, std::vector<std::string>> kFolds = {
