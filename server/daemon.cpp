@@ -20,6 +20,7 @@
 #include <spdlog/spdlog.h>
 
 #include "base/status.h"
+#include "character/mesh/moved_surface.h"
 #include "rig/rig_file.h"
 #include "server/assets.h"
 #include "server/core/status_line.h"
@@ -84,6 +85,7 @@ class Daemon {
   const Config& config_;
   const RunOptions& options_;
   Assets assets_;
+  wrinkle::MovedSurface surface_;  // the character's; empty without shapes
   Metrics own_metrics_;
   Metrics* const metrics_;
   std::uint64_t session_ = 0;
@@ -154,7 +156,11 @@ void Daemon::MakeHub() {
   // Without a renderer no stream is retargeted to the character, which saves work for each
   // skeleton.
   parts.character = render_ != nullptr ? &assets_.character->skeleton : nullptr;
-  if (render_ != nullptr) parts.shapes = assets_.character->shapes;
+  if (render_ != nullptr && !assets_.character->shapes.empty()) {
+    parts.shapes = assets_.character->shapes;
+    surface_ = character::FindMovedSurface(assets_.character->meshes);
+    parts.surface = &surface_;
+  }
   parts.skeletons = assets_.skeletons;
   parts.shape_matcher = assets_.shape_matcher;
   parts.pictures = render_.get();

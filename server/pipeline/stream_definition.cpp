@@ -9,6 +9,7 @@
 
 #include "base/ascii.h"
 #include "base/status.h"
+#include "rig/shapes/face_joints.h"
 
 namespace furrow::server {
 namespace {
@@ -115,6 +116,15 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Make(
         skeleton.num_joints() > 0
             ? wrinkle::HeadTurn()
             : wrinkle::HeadTurn::Create(*character_, match.character.roles, blend_shapes));
+    // Only faces without blend shapes of their own: two sources would add up.
+    wrinkle::JointShapes joint_shapes;
+    if (surface_ != nullptr && definition->shape_program->empty()) {
+      joint_shapes = rig::MatchFaceJoints(
+          {skeleton, match.stream.roles, match.turn(), definition->retarget->unmatched_source()},
+          {*character_, match.character.roles, *surface_, shapes_}, shape_matcher_);
+    }
+    definition->joint_shapes =
+        std::make_shared<const wrinkle::JointShapes>(std::move(joint_shapes));
   }
   definition->binding = std::make_shared<const wrinkle::RigBinding>(*std::move(binding));
   definition->skeleton = std::move(skeleton);
@@ -135,6 +145,8 @@ void StreamDefinitions::Report(const StreamDefinition& stream,
   if (const std::string text = stream.shapes.Description(); !text.empty()) {
     spdlog::info("{}", text);
   }
+  const bool has_face = stream.joint_shapes != nullptr && !stream.joint_shapes->empty();
+  if (has_face) spdlog::info("{}", stream.joint_shapes->Description());
   const auto missing_joints = stream.binding->missing_joints();
   const auto missing_shapes = stream.binding->missing_blend_shapes();
   const auto warnings = stream.binding->warnings();
@@ -163,7 +175,8 @@ void StreamDefinitions::Report(const StreamDefinition& stream,
   for (const std::string& name : stream.skeleton.joint_names()) {
     const bool drawn = stream.retarget && std::ranges::find(unmatched, name) == unmatched.end();
     const bool read = rig_joints_.contains(name) || match.Reads(name);
-    if (!drawn && !read) ignored.push_back(name);
+    const bool moves = has_face && stream.joint_shapes->Moves(stream.skeleton.Find(name));
+    if (!drawn && !read && !moves) ignored.push_back(name);
     draws_any |= drawn;
     feeds_any |= read;
   }

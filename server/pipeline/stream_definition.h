@@ -18,6 +18,7 @@
 #include "wrinkle/rig/rig_joints.h"
 #include "wrinkle/shapes/blend_shape_pose.h"
 #include "wrinkle/shapes/head_turn.h"
+#include "wrinkle/shapes/joint_shapes.h"
 #include "wrinkle/shapes/shape_program.h"
 #include "wrinkle/skeleton/retarget.h"
 #include "wrinkle/skeleton/skeleton.h"
@@ -40,11 +41,12 @@ struct StreamDefinition {
   std::vector<std::int16_t> joint_of_wire;  // wire index -> index in `skeleton`
   rig::SkeletonMatch match;                 // how a skeleton map has matched the rig's joints
   std::shared_ptr<const wrinkle::RigBinding> binding;
-  // These four move the character by the stream's poses; null if nothing is rendered.
+  // These five move the character by the stream's poses; null if nothing is rendered.
   std::shared_ptr<const wrinkle::Retarget> retarget;
   std::shared_ptr<const wrinkle::BlendShapePose> blend_shape_pose;
   std::shared_ptr<const wrinkle::ShapeProgram> shape_program;
-  std::shared_ptr<const wrinkle::HeadTurn> head_turn;  // empty if the stream has joints
+  std::shared_ptr<const wrinkle::HeadTurn> head_turn;        // empty if the stream has joints
+  std::shared_ptr<const wrinkle::JointShapes> joint_shapes;  // empty if blend shapes move shapes
 };
 
 // Creates stream definitions and keeps the `capacity` most recently used ones, so that a sender
@@ -53,16 +55,18 @@ class StreamDefinitions {
  public:
   // `character`: outlives this object; null: nothing is rendered. `matcher` finds the joints of
   // skeletons with other joint names than the rig and the character, `shape_matcher` blend shapes
-  // with other names than theirs. `shapes`: the character's; outlive this object.
+  // with other names than theirs. `shapes` and `surface`: the character's; outlive this object.
   StreamDefinitions(std::shared_ptr<const wrinkle::Rig> rig, const wrinkle::Skeleton* character,
                     std::size_t capacity, rig::SkeletonMatcher matcher = {},
-                    rig::ShapeMatcher shape_matcher = {}, std::span<const std::string> shapes = {})
+                    rig::ShapeMatcher shape_matcher = {}, std::span<const std::string> shapes = {},
+                    const wrinkle::MovedSurface* surface = nullptr)
       : rig_(std::move(rig)),
         character_(character),
         capacity_(capacity),
         matcher_(std::move(matcher)),
         shape_matcher_(std::move(shape_matcher)),
         shapes_(shapes),
+        surface_(surface),
         rig_joints_(wrinkle::JointsOf(*rig_)) {}
 
   // Returns the definition of a stream, creating it if needed. `may_make` is called before a new
@@ -97,6 +101,7 @@ class StreamDefinitions {
   rig::SkeletonMatcher matcher_;
   rig::ShapeMatcher shape_matcher_;
   std::span<const std::string> shapes_;
+  const wrinkle::MovedSurface* surface_;
   std::set<std::string> rig_joints_;                          // all joints that the rig reads
   std::list<std::shared_ptr<const StreamDefinition>> known_;  // most recently used first
 };

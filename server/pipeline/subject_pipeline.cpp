@@ -131,6 +131,7 @@ std::shared_ptr<const Snapshot> SubjectPipeline::TakeSnapshot(std::int64_t age_u
   snapshot->blend_shape_pose = stream_->blend_shape_pose;
   snapshot->shape_program = stream_->shape_program;
   snapshot->head_turn = stream_->head_turn;
+  snapshot->joint_shapes = stream_->joint_shapes;
   snapshot->joints = pose_.joints;
   snapshot->blend_shapes = pose_.blend_shapes;
   snapshot->wrinkle_weights.assign(weights.begin(), weights.end());

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/cli/render/animated_subject.h"
 
+#include <cstdio>
+
 #include "base/status.h"
+#include "character/mesh/moved_surface.h"
 #include "client/cli/common/inputs.h"
 #include "motion/clip/capture_time.h"
+#include "rig/shapes/face_joints.h"
 
 namespace furrow::cli {
 
@@ -32,6 +36,16 @@ Result<std::unique_ptr<AnimatedSubject>> AnimatedSubject::Create(
     self->head_turn_ = wrinkle::HeadTurn::Create(character.skeleton, match.character.roles,
                                                  take.blend_shape_names);
   }
+  if (self->shape_program_.empty() && !character.shapes.empty()) {
+    self->joint_shapes_ = rig::MatchFaceJoints(
+        {take.skeleton, match.stream.roles, match.turn(), self->retarget_.unmatched_source()},
+        {character.skeleton, match.character.roles, character::FindMovedSurface(character.meshes),
+         character.shapes},
+        shapes);
+  }
+  if (!self->joint_shapes_.empty()) {
+    std::fprintf(stderr, "furrow: %s\n", self->joint_shapes_.Description().c_str());
+  }
   // Pictures would all show the rest pose.
   if (take.blend_shape_names.empty() &&
       self->retarget_.unmatched_source().size() == take.skeleton.joint_names().size()) {
@@ -47,8 +61,8 @@ Status AnimatedSubject::Advance(int frame) {
   shapes_.Extend(&pose_.blend_shapes);
   const bool solved =
       solver_->Update(pose_, motion::CaptureStep(*clip_, frame)) == wrinkle::JobStatus::kOk &&
-      drawn_->Run({retarget_, blend_shape_pose_, &shape_program_, &head_turn_}, pose_.joints,
-                  pose_.blend_shapes) == wrinkle::JobStatus::kOk;
+      drawn_->Run({retarget_, blend_shape_pose_, &shape_program_, &head_turn_, &joint_shapes_},
+                  pose_.joints, pose_.blend_shapes) == wrinkle::JobStatus::kOk;
   if (!solved)
     return {StatusCode::kInternal, "frame " + std::to_string(frame) + " could not be solved"};
   return {};

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "wrinkle/shapes/joint_shapes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/ascii.h"
+#include "wrinkle/skeleton/finite.h"
+
+namespace furrow::wrinkle {
+namespace {
+
+// Of each shape's own motion, and of the mean over the shapes: the second keeps shapes that hardly
+// move a landmark from explaining noise.
+constexpr float kOwnRidge = 0.01f;
+constexpr float kMeanRidge = 0.001f;
+constexpr int kMaxSweeps = 200;
+constexpr float kSettled = 1e-5f;  // change of a weight in one sweep
+
+const MovedSurface::Point* NearestPoint(const MovedSurface& surface, const glm::vec3& place,
+                                        float reach) {
+  const MovedSurface::Point* nearest = nullptr;
+  float least = reach * reach;
+  for (const MovedSurface::Point& point : surface.points) {
+    const glm::vec3 apart = point.position - place;
+    const float squared = glm::dot(apart, apart);
+    if (squared > least) continue;
+    least = squared;
+    nearest = &point;
+  }
+  return nearest;
+}
+
+}  // namespace
+
+JointShapes JointShapes::Create(const Skeleton& source, const std::vector<bool>& moved,
+                                std::span<const FaceLandmark> landmarks, const Scaling& scaling,
+                                const MovedSurface& surface, std::span<const std::string> shapes) {
+  JointShapes result;
+  result.num_joints_ = static_cast<std::size_t>(source.num_joints());
+  result.num_shapes_ = shapes.size();
+  result.scale_ = scaling.scale;
+  result.FindMoved(source, moved);
+  std::vector<const MovedSurface::Point*> points;
+  for (const FaceLandmark& landmark : landmarks) {
+    const auto found = std::ranges::find(result.moved_, landmark.joint, &Moved::joint);
+    const auto* point = NearestPoint(surface, landmark.on_target, scaling.reach);
+    if (found == result.moved_.end() || point == nullptr || points.size() == kMaxLandmarks) {
+      continue;
+    }
+    int frame = landmark.joint;
+    glm::vec3 rest = landmark.point;
+    while (frame != kNoJoint && moved[static_cast<std::size_t>(frame)]) {
+      rest = glm::vec3(ToMatrix(source.rest_pose()[frame]) * glm::vec4(rest, 1.0f));
+      frame = source.joint_parents()[frame];
+    }
+    result.landmarks_.push_back({static_cast<std::size_t>(found - result.moved_.begin()),
+                                 landmark.point, rest, scaling.turn * RestRotation(source, frame)});
+    points.push_back(point);
+  }
+  result.ChooseShapes(points, 0.05f * scaling.reach, shapes);
+  result.BuildEquations(points);
+  return result;
+}
+
+std::string JointShapes::Description() const {
+  return std::to_string(num_landmarks()) + " points of the stream's face move " +
+         std::to_string(num_solved()) + " shapes";
+}
+
+bool JointShapes::Moves(int joint) const {
+  return !empty() && std::ranges::find(moved_, joint, &Moved::joint) != moved_.end();
+}
+
+void JointShapes::FindMoved(const Skeleton& source, const std::vector<bool>& moved) {
+  for (int joint = 0; joint < source.num_joints(); ++joint) {
+    if (!moved[static_cast<std::size_t>(joint)] || moved_.size() == kMaxMovedJoints) continue;
+    const auto above = std::ranges::find(moved_, source.joint_parents()[joint], &Moved::joint);
+    moved_.push_back(
+        {joint, above == moved_.end() ? kNoJoint : static_cast<int>(above - moved_.begin())});
+  }
+}
+
+void JointShapes::ChooseShapes(std::span<const MovedSurface::Point* const> points, float least,
+                               std::span<const std::string> shapes) {
+  std::vector<float> most(shapes.size(), 0.0f);
+  for (const MovedSurface::Point* point : points) {
+    for (const auto& [shape, delta] : point->deltas) {
+      if (shape < most.size()) most[shape] = std::max(most[shape], glm::length(delta));
+    }
+  }
+  for (std::uint32_t shape = 0; shape < shapes.size(); ++shape) {
+    if (most[shape] > least) solved_.push_back(shape);
+  }
+  std::ranges::stable_sort(solved_, std::greater(), [&](std::uint32_t i) { return most[i]; });
+  if (solved_.size() > kMaxSolved) solved_.resize(kMaxSolved);
+  std::ranges::sort(solved_);
+  for (std::size_t i = 0; i < solved_.size(); ++i) {
+    if (EqualsIgnoreCase(shapes[solved_[i]], "jawOpen")) jaw_open_ = static_cast<int>(i);
+    if (EqualsIgnoreCase(shapes[solved_[i]], "mouthClose")) mouth_close_ = static_cast<int>(i);
+  }
+}
+
+void JointShapes::BuildEquations(std::span<const MovedSurface::Point* const> points) {
+  const std::size_t n = solved_.size();
+  deltas_.assign(points.size() * n, glm::vec3(0.0f));
+  for (std::size_t row = 0; row < points.size(); ++row) {
+    for (const auto& [shape, delta] : points[row]->deltas) {
+      const auto place = std::ranges::lower_bound(solved_, shape);
+      if (place == solved_.end() || *place != shape) continue;
+      deltas_[row * n + static_cast<std::size_t>(place - solved_.begin())] = delta;
+    }
+  }
+  gram_.assign(n * n, 0.0f);
+  float trace = 0.0f;
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j < n; ++j) {
+      for (std::size_t row = 0; row < points.size(); ++row) {
+        gram_[i * n + j] += glm::dot(deltas_[row * n + i], deltas_[row * n + j]);
+      }
+    }
+    trace += gram_[i * n + i];
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    gram_[i * n + i] += kOwnRidge * gram_[i * n + i] + kMeanRidge * trace / static_cast<float>(n);
+  }
+}
+
+JobStatus JointShapes::Run(std::span<const Transform> joints, std::span<float> weights) const {
+  if (joints.size() < num_joints_ || weights.size() < num_shapes_) return JobStatus::kSizeMismatch;
+  std::array<glm::mat4, kMaxMovedJoints> frames;
+  for (std::size_t i = 0; i < moved_.size(); ++i) {
+    const glm::mat4 local = ToMatrix(joints[static_cast<std::size_t>(moved_[i].joint)]);
+    const int parent = moved_[i].parent;
+    frames[i] = parent == kNoJoint ? local : frames[static_cast<std::size_t>(parent)] * local;
+  }
+  const std::size_t n = solved_.size();
+  std::array<float, kMaxSolved> rhs{};
+  for (std::size_t row = 0; row < landmarks_.size(); ++row) {
+    const Landmark& landmark = landmarks_[row];
+    const glm::vec3 now(frames[landmark.moved] * glm::vec4(landmark.point, 1.0f));
+    const glm::vec3 apart = landmark.to_target * (scale_ * (now - landmark.rest));
+    for (std::size_t i = 0; i < n; ++i) rhs[i] += glm::dot(deltas_[row * n + i], apart);
+  }
+  if (!AllFinite(std::span<const float>(rhs))) return JobStatus::kNonFinite;
+  std::array<float, kMaxSolved> solution{};
+  Solve(rhs, solution);
+  std::ranges::fill(weights.first(num_shapes_), 0.0f);
+  for (std::size_t i = 0; i < n; ++i) weights[solved_[i]] = solution[i];
+  return JobStatus::kOk;
+}
+
+void JointShapes::Solve(std::span<const float> rhs, std::span<float> solution) const {
+  const int n = static_cast<int>(solved_.size());
+  for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
+    float change = 0.0f;
+    for (int i = 0; i < n; ++i) {
+      const float* row = &gram_[static_cast<std::size_t>(i * n)];
+      float rest = rhs[i];
+      for (int j = 0; j < n; ++j) rest -= row[j] * solution[j];
+      const float most = i == mouth_close_ && jaw_open_ >= 0 ? solution[jaw_open_] : 1.0f;
+      const float weight = std::clamp(solution[i] + rest / row[i], 0.0f, most);
+      change = std::max(change, std::abs(weight - solution[i]));
+      solution[i] = weight;
+    }
+    if (change < kSettled) return;
+  }
+}
+
+}  // namespace furrow::wrinkle
