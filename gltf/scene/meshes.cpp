@@ -71,15 +71,40 @@ void AddMixes(std::span<const VrmExpression> expressions, std::vector<Mesh>* mes
   }
 }
 
+// By index. Optimisers drop the names of meshes and keep those of nodes, or hang the mesh below a
+// node that keeps the name.
+std::vector<std::string> MeshNames(const tinygltf::Model& model) {
+  std::vector<std::string> names;
+  for (const tinygltf::Mesh& mesh : model.meshes) names.push_back(mesh.name);
+  const auto name_by = [&](int node, const std::string& name) {
+    if (node < 0 || static_cast<std::size_t>(node) >= model.nodes.size()) return;
+    const int mesh = model.nodes[static_cast<std::size_t>(node)].mesh;
+    if (mesh < 0 || static_cast<std::size_t>(mesh) >= names.size()) return;
+    std::string& known = names[static_cast<std::size_t>(mesh)];
+    if (known.empty()) known = name.substr(0, kMaxNameBytes);
+  };
+  for (std::size_t i = 0; i < model.nodes.size(); ++i) {
+    name_by(static_cast<int>(i), model.nodes[i].name);
+  }
+  for (const tinygltf::Node& node : model.nodes) {
+    for (const int child : node.children) name_by(child, node.name);
+  }
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (names[i].empty()) names[i] = "mesh_" + std::to_string(i);
+  }
+  return names;
+}
+
 }  // namespace
 
 Result<std::vector<Mesh>> ReadMeshes(Document* document) {
   const tinygltf::Model& model = document->model();
+  const std::vector<std::string> names = MeshNames(model);
   std::vector<Mesh> meshes;
   for (const tinygltf::Mesh& from : model.meshes) {
     const std::string index = std::to_string(meshes.size());
     Mesh& mesh = meshes.emplace_back();
-    mesh.name = from.name.empty() ? "mesh_" + index : from.name;
+    mesh.name = names[meshes.size() - 1];
     mesh.morph_target_names = UniqueTargetNames(static_cast<int>(meshes.size()) - 1, document);
     for (const tinygltf::Primitive& part : from.primitives) {
       if (part.material < kNone || part.material >= static_cast<int>(model.materials.size())) {

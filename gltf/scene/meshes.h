@@ -36,7 +36,8 @@ struct MorphMix {
 };
 
 struct Mesh {
-  std::string name;  // "mesh_<index>" if the file has none
+  // Else that of the first node with this mesh, else that of a node above one, else "mesh_<index>".
+  std::string name;
   std::vector<Primitive> primitives;
   std::vector<std::string> morph_target_names;  // unique; see ReadMeshes()
   std::vector<MorphMix> mixes;                  // VRM's expressions; see ReadMeshes()

@@ -148,8 +148,8 @@ class Checker {
   void CheckMesh(const character::Mesh& mesh, const character::MeshNotes& notes) {
     const std::string where = "mesh '" + mesh.name + "'";
     if (!notes.has_uvs) {
-      Find(Severity::kError, "uv-missing", where, "there are no UVs, which wrinkle maps require",
-           "unwrap it without overlaps");
+      const bool others_have = std::ranges::any_of(notes_.meshes, &character::MeshNotes::has_uvs);
+      FindMissingUvs(where, "there are no UVs, which wrinkle maps require", others_have);
     }
     if (notes.unskinned_vertices > 0) {
       Find(Severity::kError, "unskinned-vertices", where,
@@ -191,20 +191,29 @@ class Checker {
       if (m < notes_.meshes.size() && !notes_.meshes[m].has_uvs) continue;
       meshes_of[character_.meshes[m].material].push_back(static_cast<int>(m));
     }
+    std::vector<std::pair<std::string, UvReport>> atlases;
     for (const auto& [material, meshes] : meshes_of) {
       const character::Material* known =
           material < 0 ? nullptr : &character_.materials[static_cast<std::size_t>(material)];
       const bool wrinkles = known != nullptr && (known->kind == character::Material::Kind::kSkin ||
                                                  known->kind == character::Material::Kind::kCloth);
-      if (wrinkles) CheckAtlas("material '" + known->name + "'", meshes);
+      if (!wrinkles) continue;
+      atlases.emplace_back("material '" + known->name + "'", CheckUvs(character_, meshes));
     }
+    const bool any_folds =
+        std::ranges::any_of(atlases, [](const auto& atlas) { return !atlas.second.no_uvs(); });
+    for (const auto& [where, uvs] : atlases) CheckAtlas(where, uvs, any_folds);
   }
 
-  void CheckAtlas(const std::string& where, const std::vector<int>& meshes) {
-    const UvReport uvs = CheckUvs(character_, meshes);
+  // Parts without UVs stay flat, which only matters if nothing else folds.
+  void FindMissingUvs(const std::string& where, const std::string& what, bool others_fold) {
+    Find(others_fold ? Severity::kWarning : Severity::kError, "uv-missing", where,
+         what + (others_fold ? "; it gets no wrinkles" : ""), "unwrap it without overlaps");
+  }
+
+  void CheckAtlas(const std::string& where, const UvReport& uvs, bool others_fold) {
     if (uvs.no_uvs()) {
-      Find(Severity::kError, "uv-missing", where, "all UVs are at one point",
-           "unwrap it without overlaps");
+      FindMissingUvs(where, "all UVs are at one point", others_fold);
     } else if (uvs.unmapped_triangles > 0) {
       Find(Severity::kWarning, "uv-flat", where,
            Count(uvs.unmapped_triangles, "triangle has", "triangles have") + " no area in the UVs",

@@ -4,6 +4,7 @@
 #include <string_view>
 #include <utility>
 
+#include "authoring/bake/surface/uv_check.h"
 #include "authoring/import/model/foreign_model.h"
 #include "base/ascii.h"
 #include "base/files.h"
@@ -68,6 +69,24 @@ void DropDegenerates(OpenedModel* model) {
   }
 }
 
+// Materials without UVs take no wrinkle maps; all their texels would be one.
+void RestWithoutUvs(OpenedModel* model) {
+  character::Character& character = model->character;
+  for (std::size_t material = 0; material < character.materials.size(); ++material) {
+    std::vector<int> meshes;
+    bool has_uvs = true;
+    for (std::size_t m = 0; m < character.meshes.size(); ++m) {
+      if (character.meshes[m].material != static_cast<int>(material)) continue;
+      meshes.push_back(static_cast<int>(m));
+      has_uvs &= model->notes.meshes[m].has_uvs;
+    }
+    if (meshes.empty()) continue;
+    if (!has_uvs || CheckUvs(character, meshes).no_uvs()) {
+      character.materials[material].wrinkles = false;
+    }
+  }
+}
+
 // The lenient reader has already bound these vertices. Without --repair, they are an error.
 void BindUnskinned(OpenedModel* model) {
   int bound = 0;
@@ -113,6 +132,7 @@ Result<ImportedModel> ImportModel(const fs::path& path, const rig::SkeletonMaps&
         settled || finding.severity == Severity::kNote ? imported.remarks : imported.warnings;
     if (finding.code != "no-rig" && finding.code != "shape-face") list.push_back(Sentence(finding));
   }
+  RestWithoutUvs(&*opened);
   const float scale = options.scale.value_or(report.space.scale);
   // After the check, which reports the space of the file as it is.
   if (report.space.rotation != glm::mat3(1.0f) || scale != 1.0f) {

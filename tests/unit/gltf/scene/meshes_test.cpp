@@ -56,6 +56,18 @@ TEST(Meshes, NameTheirMorphTargets) {
   EXPECT_EQ(targets[1].tangent, kNone);
 }
 
+TEST(Meshes, WithoutANameHaveThatOfTheirNode) {
+  HandMadeGltf gltf = Morphing(1);
+  EXPECT_EQ(MeshesOf(gltf).meshes[0].name, "face");
+  gltf.json["meshes"][0].erase("name");
+  gltf.json["nodes"] = {{{"name", "empty"}}, {{"name", "Teeth_Geo"}, {"mesh", 0}}};
+  EXPECT_EQ(MeshesOf(gltf).meshes[0].name, "Teeth_Geo");
+  gltf.json["nodes"] = {{{"mesh", 0}}, {{"name", "Teeth_Geo"}, {"children", {0}}}};
+  EXPECT_EQ(MeshesOf(gltf).meshes[0].name, "Teeth_Geo");
+  gltf.json["nodes"] = {{{"mesh", 0}}};
+  EXPECT_EQ(MeshesOf(gltf).meshes[0].name, "mesh_0");
+}
+
 TEST(Meshes, NumberRepeatedTargetNames) {
   HandMadeGltf gltf = Morphing(4);
   gltf.json["meshes"][0]["extras"]["targetNames"] = {"a", "a", "b", "a"};

@@ -72,6 +72,20 @@ TEST(CharacterCheck, AFaceOfBlendShapesNeedsNoSkin) {
   EXPECT_NE(FindFinding(report, "shape-face"), nullptr);
 }
 
+// An error only if nothing else has UVs.
+TEST(CharacterCheck, APartWithoutUvsIsAWarning) {
+  character::Character body = ToyBody();
+  body.meshes.push_back(body.meshes[0]);
+  character::SourceNotes notes = GoodNotes();
+  notes.meshes.push_back(notes.meshes[0]);
+  notes.meshes[1].has_uvs = false;
+  const CharacterReport report = CheckCharacter(body, notes, Maps(), false);
+  EXPECT_EQ(report.Count(Severity::kError), 0u) << ToText(report);
+  const Finding* finding = FindFinding(report, "uv-missing");
+  ASSERT_NE(finding, nullptr);
+  EXPECT_EQ(finding->severity, Severity::kWarning);
+}
+
 struct Fault {
   const char* code;
   Severity severity;

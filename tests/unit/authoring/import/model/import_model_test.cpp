@@ -259,6 +259,22 @@ TEST(ImportModel, OverlappingUvsAreAWarning) {
   EXPECT_THAT(imported->warnings, Contains(HasSubstr("used twice")));
 }
 
+// Optimisers drop UVs that no texture uses, and low-poly models paint parts with one texel.
+TEST(ImportModel, APartWithoutUvsStaysFlat) {
+  character::Character body = ToyBody();
+  body.materials.push_back(body.materials[0]);
+  body.materials[1].name = "soles";
+  body.meshes.push_back(body.meshes[0]);
+  body.meshes[1].name = "soles";
+  body.meshes[1].material = 1;
+  for (character::Vertex& vertex : body.meshes[1].vertices) vertex.uv = {0.5f, 0.5f};
+  const Folder folder;
+  const auto imported = ImportModel(folder.Write("body.glb", GlbOf(body)), Maps());
+  ASSERT_TRUE(imported.ok()) << imported.status().ToString();
+  EXPECT_TRUE(imported->character.materials[0].wrinkles);
+  EXPECT_FALSE(imported->character.materials[1].wrinkles);
+}
+
 TEST(ImportModel, OtherFileTypesGiveOneClearError) {
   const Folder folder;
   const std::string fbx = ConvertByAssimp(GlbOf(ToyBody()), "fbxa");
