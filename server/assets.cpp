@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/assets.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <utility>
 
@@ -8,6 +9,7 @@
 
 #include "base/data_dir.h"
 #include "base/status.h"
+#include "character/mesh/moved_surface.h"
 #include "character/package/package.h"
 #include "motion/pose_source.h"
 #include "render/settings/settings_file.h"
@@ -34,6 +36,18 @@ Status LoadRigAlone(const fs::path& path, const wrinkle::PoseSource& poses, Asse
   auto rig = rig::LoadRig(path, poses);
   if (rig.ok()) assets->rig = std::make_shared<const wrinkle::Rig>(*std::move(rig));
   return rig.status();
+}
+
+bool ReadsBlendShapes(const wrinkle::Rig& rig) {
+  return std::ranges::find(rig.drivers, wrinkle::Driver::Kind::kBlendShape,
+                           &wrinkle::Driver::kind) != rig.drivers.end();
+}
+
+// Null without shapes, and if neither pictures nor the rig show them.
+std::shared_ptr<const CharacterShapes> ShapesOf(const character::Character& character, bool draws) {
+  if (character.shapes.empty() || !(draws || ReadsBlendShapes(character.rig))) return nullptr;
+  return std::make_shared<const CharacterShapes>(character.skeleton, character.shapes,
+                                                 character::FindMovedSurface(character.meshes));
 }
 
 // Shipped maps are optional; only a map that the user asks for must exist.
@@ -84,12 +98,14 @@ Result<Assets> LoadAssets(const Config& config) {
     glb = *std::move(shipped);
   }
   const fs::path rig = RigOf(glb, chosen_rig);
-  if (!config.render && !rig.empty()) {  // weights need no mesh and no pictures, which are large
+  // Weights need no mesh and no pictures, which are large, unless joints may move shapes.
+  if (!config.render && !rig.empty()) {
     FURROW_RETURN_IF_ERROR(LoadRigAlone(rig, poses, &assets));
-    return assets;
+    if (!ReadsBlendShapes(*assets.rig)) return assets;
   }
   auto loaded = character::LoadCharacter(glb, chosen_rig, poses);
   FURROW_RETURN_IF_ERROR(loaded);
+  assets.shapes = ShapesOf(*loaded, config.render);
   if (!config.render) {
     assets.rig = std::make_shared<const wrinkle::Rig>(std::move(loaded->rig));
     return assets;

@@ -20,7 +20,6 @@
 #include <spdlog/spdlog.h>
 
 #include "base/status.h"
-#include "character/mesh/moved_surface.h"
 #include "rig/rig_file.h"
 #include "server/assets.h"
 #include "server/core/status_line.h"
@@ -85,7 +84,6 @@ class Daemon {
   const Config& config_;
   const RunOptions& options_;
   Assets assets_;
-  wrinkle::MovedSurface surface_;  // the character's; empty without shapes
   Metrics own_metrics_;
   Metrics* const metrics_;
   std::uint64_t session_ = 0;
@@ -153,13 +151,15 @@ void Daemon::MakeHub() {
   parts.limits = config_.limits;
   parts.session = session_ = RandomNumber();
   parts.rig = assets_.rig;
-  // Without a renderer no stream is retargeted to the character, which saves work for each
-  // skeleton.
-  parts.character = render_ != nullptr ? &assets_.character->skeleton : nullptr;
-  if (render_ != nullptr && !assets_.character->shapes.empty()) {
+  // Without a renderer, weights need the character only if joints may move its shapes.
+  if (assets_.shapes != nullptr) {
+    parts.character = &assets_.shapes->skeleton;
+    parts.shapes = assets_.shapes->names;
+    parts.surface = &assets_.shapes->surface;
+  }
+  if (render_ != nullptr) {
+    parts.character = &assets_.character->skeleton;
     parts.shapes = assets_.character->shapes;
-    surface_ = character::FindMovedSurface(assets_.character->meshes);
-    parts.surface = &surface_;
   }
   parts.skeletons = assets_.skeletons;
   parts.shape_matcher = assets_.shape_matcher;

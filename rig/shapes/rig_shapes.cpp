@@ -41,18 +41,23 @@ std::vector<std::string> ShapesOfPoses(const wrinkle::Rig& rig,
 }  // namespace
 
 RigShapes::RigShapes(const ShapeMatcher& matcher, std::span<const std::string> stream,
-                     const wrinkle::Rig& rig)
-    : num_of_stream_(stream.size()),
-      driver_names_(stream.begin(), stream.end()),
-      pose_names_(stream.begin(), stream.end()) {
+                     const wrinkle::Rig& rig, const JointMovedShapes& moved)
+    : num_of_stream_(stream.size()), driver_names_(stream.begin(), stream.end()) {
+  if (moved.solver != nullptr && !moved.solver->empty()) {
+    joint_shapes_ = moved.solver;
+    driver_names_.insert(driver_names_.end(), moved.names.begin(), moved.names.end());
+  }
+  num_of_sources_ = driver_names_.size();
+  pose_names_ = driver_names_;
   // A body tracker's stream has nothing to translate.
-  if (stream.empty()) return;
+  if (driver_names_.empty()) return;
+  const std::vector<std::string> sources = driver_names_;
   const std::vector<std::string> drivers = ShapesOfDrivers(rig);
-  drivers_ = matcher.Match(stream, drivers);
+  drivers_ = matcher.Match(sources, drivers);
   Append(drivers_, drivers, &driver_names_, &pose_names_);
-  num_of_drivers_ = size() - num_of_stream_;
-  const std::vector<std::string> poses = ShapesOfPoses(rig, stream);
-  poses_ = matcher.Match(stream, poses);
+  num_of_drivers_ = size() - num_of_sources_;
+  const std::vector<std::string> poses = ShapesOfPoses(rig, sources);
+  poses_ = matcher.Match(sources, poses);
   Append(poses_, poses, &pose_names_, &driver_names_);
 }
 
@@ -68,14 +73,19 @@ void RigShapes::Append(const ShapeMatch& match, std::span<const std::string> tar
   }
 }
 
-void RigShapes::Extend(std::span<float> coefficients) const {
-  if (coefficients.size() < size() || size() == num_of_stream_) return;
-  const auto stream = coefficients.first(num_of_stream_);
-  const auto extension = coefficients.subspan(num_of_stream_);
+void RigShapes::Extend(wrinkle::LocalPose* pose) const {
+  pose->blend_shapes.resize(size(), 0.0f);
+  if (size() == num_of_stream_) return;
+  const std::span<float> coefficients(pose->blend_shapes);
+  const auto sources = coefficients.first(num_of_sources_);
+  const auto extension = coefficients.subspan(num_of_sources_);
   // A status other than Ok means that the solver refuses the pose as well.
-  if (num_of_drivers_ > 0) (void)drivers_.program.Run(stream, extension.first(num_of_drivers_));
+  if (joint_shapes_ != nullptr) {
+    (void)joint_shapes_->Run(pose->joints, sources.subspan(num_of_stream_));
+  }
+  if (num_of_drivers_ > 0) (void)drivers_.program.Run(sources, extension.first(num_of_drivers_));
   const auto poses = extension.subspan(num_of_drivers_);
-  if (!poses.empty()) (void)poses_.program.Run(stream, poses);
+  if (!poses.empty()) (void)poses_.program.Run(sources, poses);
 }
 
 std::string RigShapes::Description() const {

@@ -103,7 +103,7 @@ void RenderThread::Draw(RenderJob job) {
   const Snapshot& snapshot = *job.snapshot;
   // Retargeting runs here, not on the network thread: only poses that are drawn pay for it.
   if (drawn_.Run({*snapshot.retarget, *snapshot.blend_shape_pose, snapshot.shape_program.get(),
-                  snapshot.head_turn.get(), snapshot.joint_shapes.get()},
+                  snapshot.head_turn.get()},
                  snapshot.joints, snapshot.blend_shapes) != wrinkle::JobStatus::kOk) {
     return Fail(std::move(job));
   }

@@ -7,7 +7,6 @@
 
 #include "wrinkle/shapes/blend_shape_pose.h"
 #include "wrinkle/shapes/head_turn.h"
-#include "wrinkle/shapes/joint_shapes.h"
 #include "wrinkle/shapes/shape_program.h"
 #include "wrinkle/skeleton/retarget.h"
 #include "wrinkle/solver/solver.h"
@@ -27,7 +26,6 @@ struct Snapshot {
   std::shared_ptr<const wrinkle::BlendShapePose> blend_shape_pose;
   std::shared_ptr<const wrinkle::ShapeProgram> shape_program;  // null: no shapes
   std::shared_ptr<const wrinkle::HeadTurn> head_turn;          // null: the head is not turned
-  std::shared_ptr<const wrinkle::JointShapes> joint_shapes;    // null: joints move no shapes
   std::vector<wrinkle::Transform> joints;  // local transforms, stream's skeleton
   std::vector<float> blend_shapes;         // in the stream's order
   std::vector<float> wrinkle_weights;      // in the order of the binding

@@ -90,41 +90,36 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Make(
     wrinkle::Skeleton skeleton, std::vector<std::string> blend_shapes) {
   // Finds the skeleton map whose joint names fit, and by it the joints of the rig.
   rig::SkeletonMatch match = matcher_.Match(skeleton, *rig_, character_);
+  auto definition = std::make_shared<StreamDefinition>();
+  // The character has its own skeleton: the pose is carried over joint by joint.
+  if (character_ != nullptr) {
+    definition->retarget =
+        std::make_shared<const wrinkle::Retarget>(rig::MakeRetarget(match, skeleton, *character_));
+    definition->joint_shapes = MatchJointShapes(skeleton, blend_shapes, match, *definition);
+  }
   // The same for the names of blend shapes.
-  rig::RigShapes shapes(shape_matcher_, blend_shapes, *rig_);
+  rig::RigShapes shapes(shape_matcher_, blend_shapes, *rig_, {definition->joint_shapes, shapes_});
   // Live streams may lack joints and blend shapes. Their drivers rest, and Report() names them.
   auto binding = wrinkle::RigBinding::Create(*rig_, skeleton, shapes.driver_names(),
                                              match.Options(/*allow_missing=*/true));
   FURROW_RETURN_IF_ERROR(binding);
-  auto definition = std::make_shared<StreamDefinition>();
   definition->joint_of_wire.resize(static_cast<std::size_t>(skeleton.num_joints()));
   for (int joint = 0; joint < skeleton.num_joints(); ++joint) {
     definition->joint_of_wire[static_cast<std::size_t>(skeleton.source_index()[joint])] =
         static_cast<std::int16_t>(joint);
   }
-  // The character has its own skeleton: the pose is carried over joint by joint, and blend shapes
-  // move it through its own shapes or, where it has none of the name, through the rig's poses.
+  // Blend shapes move the character through its own shapes or, where it has none of the name,
+  // through the rig's poses.
   if (character_ != nullptr) {
-    definition->retarget =
-        std::make_shared<const wrinkle::Retarget>(rig::MakeRetarget(match, skeleton, *character_));
     definition->blend_shape_pose =
         std::make_shared<const wrinkle::BlendShapePose>(wrinkle::BlendShapePose::Create(
             *rig_, *character_, shapes.pose_names(), shape_matcher_.AllNamesOf(shapes_)));
     definition->shape_program = std::make_shared<const wrinkle::ShapeProgram>(
-        rig::MatchShapes(shape_matcher_, blend_shapes, shapes_));
+        rig::MatchShapes(shape_matcher_, shapes.source_names(), shapes_));
     definition->head_turn = std::make_shared<const wrinkle::HeadTurn>(
         skeleton.num_joints() > 0
             ? wrinkle::HeadTurn()
             : wrinkle::HeadTurn::Create(*character_, match.character.roles, blend_shapes));
-    // Only faces without blend shapes of their own: two sources would add up.
-    wrinkle::JointShapes joint_shapes;
-    if (surface_ != nullptr && definition->shape_program->empty()) {
-      joint_shapes = rig::MatchFaceJoints(
-          {skeleton, match.stream.roles, match.turn(), definition->retarget->unmatched_source()},
-          {*character_, match.character.roles, *surface_, shapes_}, shape_matcher_);
-    }
-    definition->joint_shapes =
-        std::make_shared<const wrinkle::JointShapes>(std::move(joint_shapes));
   }
   definition->binding = std::make_shared<const wrinkle::RigBinding>(*std::move(binding));
   definition->skeleton = std::move(skeleton);
@@ -133,6 +128,21 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Make(
   Report(*definition, match);
   definition->match = std::move(match);
   return std::shared_ptr<const StreamDefinition>(std::move(definition));
+}
+
+// Null if the stream's blend shapes move shapes, because two sources would add up, or if no joint
+// does.
+std::shared_ptr<const wrinkle::JointShapes> StreamDefinitions::MatchJointShapes(
+    const wrinkle::Skeleton& skeleton, std::span<const std::string> blend_shapes,
+    const rig::SkeletonMatch& match, const StreamDefinition& stream) const {
+  if (surface_ == nullptr || !rig::MatchShapes(shape_matcher_, blend_shapes, shapes_).empty()) {
+    return nullptr;
+  }
+  auto found = rig::MatchFaceJoints(
+      {skeleton, match.stream.roles, match.turn(), stream.retarget->unmatched_source()},
+      {*character_, match.character.roles, *surface_, shapes_}, shape_matcher_);
+  if (found.empty()) return nullptr;
+  return std::make_shared<const wrinkle::JointShapes>(std::move(found));
 }
 
 // Once per definition, so that repeated offers do not flood the log.
@@ -145,7 +155,7 @@ void StreamDefinitions::Report(const StreamDefinition& stream,
   if (const std::string text = stream.shapes.Description(); !text.empty()) {
     spdlog::info("{}", text);
   }
-  const bool has_face = stream.joint_shapes != nullptr && !stream.joint_shapes->empty();
+  const bool has_face = stream.joint_shapes != nullptr;
   if (has_face) spdlog::info("{}", stream.joint_shapes->Description());
   const auto missing_joints = stream.binding->missing_joints();
   const auto missing_shapes = stream.binding->missing_blend_shapes();
@@ -181,8 +191,9 @@ void StreamDefinitions::Report(const StreamDefinition& stream,
     feeds_any |= read;
   }
   feeds_any |= stream.shapes.drivers().num_mapped() > 0;
-  feeds_any |= std::ranges::any_of(
-      stream.blend_shapes, [this](const std::string& shape) { return Reads(*rig_, shape); });
+  feeds_any |= std::ranges::any_of(stream.shapes.source_names(), [this](const std::string& shape) {
+    return Reads(*rig_, shape);
+  });
   if (!ignored.empty()) {
     spdlog::info("joints that neither the rig nor the character has are ignored: {}",
                  Join(ignored));

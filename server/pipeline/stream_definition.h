@@ -36,26 +36,28 @@ struct StreamOffer {
 struct StreamDefinition {
   wrinkle::Skeleton skeleton;
   std::vector<std::string> blend_shapes;
-  // The blend shapes that the rig reads by other names. They follow the stream's own in every pose.
+  // What the rig reads besides the stream's own blend shapes, which come first in every pose.
   rig::RigShapes shapes;
   std::vector<std::int16_t> joint_of_wire;  // wire index -> index in `skeleton`
   rig::SkeletonMatch match;                 // how a skeleton map has matched the rig's joints
   std::shared_ptr<const wrinkle::RigBinding> binding;
-  // These five move the character by the stream's poses; null if nothing is rendered.
+  // These four move the character by the stream's poses; null without a character.
   std::shared_ptr<const wrinkle::Retarget> retarget;
   std::shared_ptr<const wrinkle::BlendShapePose> blend_shape_pose;
   std::shared_ptr<const wrinkle::ShapeProgram> shape_program;
-  std::shared_ptr<const wrinkle::HeadTurn> head_turn;        // empty if the stream has joints
-  std::shared_ptr<const wrinkle::JointShapes> joint_shapes;  // empty if blend shapes move shapes
+  std::shared_ptr<const wrinkle::HeadTurn> head_turn;  // empty if the stream has joints
+  // Moves the character's shapes by the stream's joints; null if the stream's blend shapes do.
+  std::shared_ptr<const wrinkle::JointShapes> joint_shapes;
 };
 
 // Creates stream definitions and keeps the `capacity` most recently used ones, so that a sender
 // that restarts, or several senders with equal skeletons, share one.
 class StreamDefinitions {
  public:
-  // `character`: outlives this object; null: nothing is rendered. `matcher` finds the joints of
-  // skeletons with other joint names than the rig and the character, `shape_matcher` blend shapes
-  // with other names than theirs. `shapes` and `surface`: the character's; outlive this object.
+  // `character`: outlives this object; null: nothing is rendered, and no shapes move. `matcher`
+  // finds the joints of skeletons with other joint names than the rig and the character,
+  // `shape_matcher` blend shapes with other names than theirs. `shapes` and `surface`: the
+  // character's; outlive this object.
   StreamDefinitions(std::shared_ptr<const wrinkle::Rig> rig, const wrinkle::Skeleton* character,
                     std::size_t capacity, rig::SkeletonMatcher matcher = {},
                     rig::ShapeMatcher shape_matcher = {}, std::span<const std::string> shapes = {},
@@ -93,6 +95,9 @@ class StreamDefinitions {
       const std::function<bool()>& may_make);
   [[nodiscard]] Result<std::shared_ptr<const StreamDefinition>> Make(
       wrinkle::Skeleton skeleton, std::vector<std::string> blend_shapes);
+  [[nodiscard]] std::shared_ptr<const wrinkle::JointShapes> MatchJointShapes(
+      const wrinkle::Skeleton& skeleton, std::span<const std::string> blend_shapes,
+      const rig::SkeletonMatch& match, const StreamDefinition& stream) const;
   void Report(const StreamDefinition& stream, const rig::SkeletonMatch& match) const;
 
   std::shared_ptr<const wrinkle::Rig> rig_;

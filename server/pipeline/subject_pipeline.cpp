@@ -28,8 +28,8 @@ wrinkle::BatchUpdate SubjectPipeline::Prepare(std::uint32_t sequence,
     // of this pose.
     solver_.Reset();
   }
-  // The blend shapes that the rig reads by other names.
-  stream_->shapes.Extend(std::span<float>(pose_.blend_shapes));
+  // What the rig reads besides the stream's own blend shapes.
+  stream_->shapes.Extend(&pose_);
   // Writes corrected_, which solved_pose() then returns.
   if (neutral_pose_) SubtractNeutral();
   next_sequence_ = sequence;
@@ -83,9 +83,9 @@ bool SubjectPipeline::SetNeutral(std::optional<wrinkle::LocalPose> neutral) {
 void SubjectPipeline::SetStream(std::shared_ptr<const StreamDefinition> stream) {
   stream_ = std::move(stream);
   // Another rig may read other blend shapes. The stream's own come first and stay.
-  stream_->shapes.Extend(&pose_.blend_shapes);
+  stream_->shapes.Extend(&pose_);
   if (neutral_pose_) {
-    stream_->shapes.Extend(&neutral_pose_->blend_shapes);
+    stream_->shapes.Extend(&*neutral_pose_);
     corrected_ = pose_;
   }
   // The level starts at all drivers again; Subscribers::OnSubjectReady() lowers it.
@@ -131,7 +131,6 @@ std::shared_ptr<const Snapshot> SubjectPipeline::TakeSnapshot(std::int64_t age_u
   snapshot->blend_shape_pose = stream_->blend_shape_pose;
   snapshot->shape_program = stream_->shape_program;
   snapshot->head_turn = stream_->head_turn;
-  snapshot->joint_shapes = stream_->joint_shapes;
   snapshot->joints = pose_.joints;
   snapshot->blend_shapes = pose_.blend_shapes;
   snapshot->wrinkle_weights.assign(weights.begin(), weights.end());

@@ -48,7 +48,7 @@ class Hub {
     std::shared_ptr<const wrinkle::Rig> rig;
     rig::SkeletonMatcher skeletons;                  // finds the rig's joints in foreign skeletons
     rig::ShapeMatcher shape_matcher;                 // finds the rig's blend shapes by other names
-    const wrinkle::Skeleton* character = nullptr;    // null: render nothing
+    const wrinkle::Skeleton* character = nullptr;    // null: draw nothing, move no shapes
     std::span<const std::string> shapes;             // the character's; outlive the hub
     const wrinkle::MovedSurface* surface = nullptr;  // the character's; outlives the hub
     PictureSource* pictures = nullptr;               // null: render nothing

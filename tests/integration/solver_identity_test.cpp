@@ -39,7 +39,7 @@ std::vector<std::vector<float>> SolveAsTheCommandLine(const motion::Clip& clip,
   wrinkle::LocalPose pose;
   for (int frame = 0; frame < clip.num_frames(); ++frame) {
     clip.GetPose(frame, &pose);
-    shapes.Extend(&pose.blend_shapes);
+    shapes.Extend(&pose);
     EXPECT_EQ(solver.Update(pose, motion::CaptureStep(clip, frame)), wrinkle::JobStatus::kOk);
     weights.emplace_back(solver.wrinkle_weights().begin(), solver.wrinkle_weights().end());
   }

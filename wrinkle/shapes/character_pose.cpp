@@ -15,10 +15,6 @@ JobStatus CharacterPose::Run(const Maps& maps, std::span<const Transform> joints
   if (status == JobStatus::kOk && maps.shape_program != nullptr) {
     status = maps.shape_program->Run(blend_shapes, shapes_);
   }
-  if (status == JobStatus::kOk && !shapes_.empty() && maps.joint_shapes != nullptr &&
-      !maps.joint_shapes->empty()) {
-    status = maps.joint_shapes->Run(joints, shapes_);
-  }
   return status;
 }
 

@@ -9,7 +9,6 @@
 #include "base/status.h"
 #include "wrinkle/shapes/blend_shape_pose.h"
 #include "wrinkle/shapes/head_turn.h"
-#include "wrinkle/shapes/joint_shapes.h"
 #include "wrinkle/shapes/shape_program.h"
 #include "wrinkle/skeleton/pose.h"
 #include "wrinkle/skeleton/retarget.h"
@@ -32,8 +31,6 @@ class CharacterPose {
     const BlendShapePose& joints;                 // the blend shapes' motion of this skeleton
     const ShapeProgram* shape_program = nullptr;  // null: the character has no shapes
     const HeadTurn* head_turn = nullptr;          // null: the stream does not turn the head
-    // Replaces shape_program's weights. Null or empty: joints move no shapes.
-    const JointShapes* joint_shapes = nullptr;
   };
   // `joints` and `blend_shapes` are in the stream's order. Allocates only for more shapes than ever
   // before. After a failure model() and shapes() are undefined.

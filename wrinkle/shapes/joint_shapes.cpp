@@ -15,7 +15,8 @@ namespace {
 // move a landmark from explaining noise.
 constexpr float kOwnRidge = 0.01f;
 constexpr float kMeanRidge = 0.001f;
-constexpr int kMaxSweeps = 200;
+constexpr int kMaxRounds = 12;
+constexpr int kSweepsPerRound = 6;
 constexpr float kSettled = 1e-5f;  // change of a weight in one sweep
 
 const MovedSurface::Point* NearestPoint(const MovedSurface& surface, const glm::vec3& place,
@@ -41,6 +42,7 @@ JointShapes JointShapes::Create(const Skeleton& source, const std::vector<bool>&
   result.num_joints_ = static_cast<std::size_t>(source.num_joints());
   result.num_shapes_ = shapes.size();
   result.scale_ = scaling.scale;
+  if (moved.size() < result.num_joints_) return {};
   result.FindMoved(source, moved);
   std::vector<const MovedSurface::Point*> points;
   for (const FaceLandmark& landmark : landmarks) {
@@ -151,20 +153,80 @@ JobStatus JointShapes::Run(std::span<const Transform> joints, std::span<float> w
   return JobStatus::kOk;
 }
 
-void JointShapes::Solve(std::span<const float> rhs, std::span<float> solution) const {
-  const int n = static_cast<int>(solved_.size());
-  for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
-    float change = 0.0f;
-    for (int i = 0; i < n; ++i) {
-      const float* row = &gram_[static_cast<std::size_t>(i * n)];
-      float rest = rhs[i];
-      for (int j = 0; j < n; ++j) rest -= row[j] * solution[j];
-      const float most = i == mouth_close_ && jaw_open_ >= 0 ? solution[jaw_open_] : 1.0f;
-      const float weight = std::clamp(solution[i] + rest / row[i], 0.0f, most);
-      change = std::max(change, std::abs(weight - solution[i]));
-      solution[i] = weight;
+// `residual` is what the weights do not explain yet: B'd - (B'B + r) w. Sweeps over the weights,
+// one by one, find which of them lie between their limits. Shapes are nearly dependent, so sweeps
+// alone would take hundreds to settle those; they are solved together instead.
+void JointShapes::Solve(std::span<float> residual, std::span<float> solution) const {
+  for (int round = 0; round < kMaxRounds; ++round) {
+    for (int sweep = 0; sweep < kSweepsPerRound; ++sweep) {
+      if (Sweep(residual, solution) < kSettled) return;
     }
-    if (change < kSettled) return;
+    SolveBetweenLimits(residual, solution);
+  }
+}
+
+float JointShapes::Most(std::size_t i, std::span<const float> solution) const {
+  return static_cast<int>(i) == mouth_close_ && jaw_open_ >= 0
+             ? solution[static_cast<std::size_t>(jaw_open_)]
+             : 1.0f;
+}
+
+void JointShapes::SetWeight(std::size_t i, float weight, std::span<float> residual,
+                            std::span<float> solution) const {
+  const float step = weight - solution[i];
+  if (step == 0.0f) return;
+  solution[i] = weight;
+  const std::size_t n = solved_.size();
+  const float* row = &gram_[i * n];
+  for (std::size_t j = 0; j < n; ++j) residual[j] -= step * row[j];
+}
+
+// Returns the largest change of a weight.
+float JointShapes::Sweep(std::span<float> residual, std::span<float> solution) const {
+  float change = 0.0f;
+  for (std::size_t i = 0; i < solved_.size(); ++i) {
+    const float former = solution[i];
+    const float best = former + residual[i] / gram_[i * solved_.size() + i];
+    SetWeight(i, std::clamp(best, 0.0f, Most(i, solution)), residual, solution);
+    change = std::max(change, std::abs(solution[i] - former));
+  }
+  return change;
+}
+
+// By a Cholesky factor of the equations of those weights.
+void JointShapes::SolveBetweenLimits(std::span<float> residual, std::span<float> solution) const {
+  std::array<std::size_t, kMaxSolved> free;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < solved_.size(); ++i) {
+    if (solution[i] > 0.0f && solution[i] < Most(i, solution)) free[count++] = i;
+  }
+  std::array<float, kMaxSolved * kMaxSolved> factor;
+  std::array<float, kMaxSolved> step;
+  for (std::size_t i = 0; i < count; ++i) {
+    float* const row = &factor[i * kMaxSolved];
+    step[i] = residual[free[i]];
+    for (std::size_t j = 0; j <= i; ++j) {
+      const float* const other = &factor[j * kMaxSolved];
+      float sum = gram_[free[i] * solved_.size() + free[j]];
+      for (std::size_t k = 0; k < j; ++k) sum -= row[k] * other[k];
+      if (j < i) {
+        row[j] = sum / other[j];
+        step[i] -= row[j] * step[j];
+      } else if (sum > 0.0f) {
+        row[i] = std::sqrt(sum);
+        step[i] /= row[i];
+      } else {
+        return;  // dependent to the last digit: the sweeps go on alone
+      }
+    }
+  }
+  for (std::size_t i = count; i-- > 0;) {
+    for (std::size_t k = i + 1; k < count; ++k) step[i] -= factor[k * kMaxSolved + i] * step[k];
+    step[i] /= factor[i * kMaxSolved + i];
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const float best = solution[free[i]] + step[i];
+    SetWeight(free[i], std::clamp(best, 0.0f, Most(free[i], solution)), residual, solution);
   }
 }
 

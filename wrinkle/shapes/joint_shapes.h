@@ -43,7 +43,8 @@ struct FaceLandmark {
 // Each landmark takes the deltas B of the nearest point of the surface. With d, the landmarks'
 // departure from rest in the frame of the head, the weights w minimise
 //   |B w - d|^2 + sum of r_i w_i^2, 0 <= w_i <= 1,
-// by coordinate descent on the normal equations. The ridge r is needed, because the shapes of a
+// by coordinate descent on the normal equations, with Newton steps of the weights between their
+// limits. The ridge r is needed, because the shapes of a
 // face are nearly dependent (pucker and funnel). A pose always gives the same weights, whichever
 // pose came before. Source: Lewis and Anjyo, Direct Manipulation Blendshapes (2010).
 class JointShapes {
@@ -64,7 +65,7 @@ class JointShapes {
   // `moved`: one entry per joint of `source`: true if the joint moves the face and the character
   // has no such joint. Motion is measured in the frame of the nearest joint above that is not
   // moved. `shapes`: the character's names; a mouthClose is at most the jawOpen. More moved joints
-  // or landmarks than the limits are ignored.
+  // or landmarks than the limits are ignored. Empty if `moved` is too short.
   [[nodiscard]] static JointShapes Create(const Skeleton& source, const std::vector<bool>& moved,
                                           std::span<const FaceLandmark> landmarks,
                                           const Scaling& scaling, const MovedSurface& surface,
@@ -94,7 +95,12 @@ class JointShapes {
     glm::quat to_target;
   };
 
-  void Solve(std::span<const float> rhs, std::span<float> solution) const;
+  void Solve(std::span<float> residual, std::span<float> solution) const;
+  float Sweep(std::span<float> residual, std::span<float> solution) const;
+  void SolveBetweenLimits(std::span<float> residual, std::span<float> solution) const;
+  void SetWeight(std::size_t i, float weight, std::span<float> residual,
+                 std::span<float> solution) const;
+  [[nodiscard]] float Most(std::size_t i, std::span<const float> solution) const;
   void FindMoved(const Skeleton& source, const std::vector<bool>& moved);
   void ChooseShapes(std::span<const MovedSurface::Point* const> points, float least,
                     std::span<const std::string> shapes);

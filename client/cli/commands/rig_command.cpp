@@ -32,8 +32,9 @@ struct RigOptions {
 };
 
 int Explain(const RigOptions& options) {
-  const auto rig = LoadRigArgument(options.rig, options.read);
-  if (!rig.ok()) return Fail(rig.status());
+  const auto input = LoadRigInput(options.rig, options.read);
+  if (!input.ok()) return Fail(input.status());
+  const wrinkle::Rig& rig = input->rig;
   const auto clip = LoadClipArgument(options.file, options.read);
   if (!clip.ok()) return Fail(clip.status());
   if (options.frame >= clip->num_frames()) {
@@ -44,16 +45,18 @@ int Explain(const RigOptions& options) {
   }
   const auto matcher = LoadSkeletonMatcher(options.skeleton_map);
   if (!matcher.ok()) return Fail(matcher.status());
-  const auto match = MatchJoints(*matcher, *clip, *rig);
+  const auto match = MatchJoints(*matcher, *clip, rig, input->skeleton());
   const auto shape_matcher = LoadShapeMatcher(options.shape_map);
   if (!shape_matcher.ok()) return Fail(shape_matcher.status());
-  const rig::RigShapes shapes = MatchBlendShapes(*shape_matcher, *clip, *rig);
-  const auto binding = wrinkle::RigBinding::Create(*rig, clip->skeleton, shapes.driver_names(),
+  const rig::RigShapes shapes =
+      MatchBlendShapes(*shape_matcher, *clip, rig,
+                       MatchFaceJoints(*shape_matcher, *clip, match, input->character.get()));
+  const auto binding = wrinkle::RigBinding::Create(rig, clip->skeleton, shapes.driver_names(),
                                                    match.Options(/*allow_missing=*/false));
   if (!binding.ok()) return Fail(binding.status().At(options.rig));
   wrinkle::LocalPose pose;
   clip->GetPose(options.frame, &pose);
-  shapes.Extend(&pose.blend_shapes);
+  shapes.Extend(&pose);
   wrinkle::Explanation explanation;
   if (wrinkle::Explain(*binding, pose, &explanation) != wrinkle::JobStatus::kOk) {
     return Fail({StatusCode::kInternal, "the frame could not be explained", options.file});
@@ -153,7 +156,9 @@ void AddExplain(CLI::App& group, Action& action) {
   auto options = std::make_shared<RigOptions>();
   CLI::App* command =
       group.add_subcommand("explain", "Show which driver and pose made each weight of a frame");
-  command->add_option("RIG", options->rig, "Wrinkle rig: a JSON file, or the name of a shipped rig")
+  command
+      ->add_option("RIG", options->rig,
+                   "Wrinkle rig: a JSON file, the name of a shipped rig, or a character (.glb)")
       ->required();
   command
       ->add_option("FILE", options->file,

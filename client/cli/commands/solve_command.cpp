@@ -39,15 +39,18 @@ Status BindingFailed(const Status& status, const SolveOptions& options) {
 int SolveFile(const SolveOptions& options) {
   const auto clip = LoadClipArgument(options.file, options.read);
   if (!clip.ok()) return Fail(clip.status());
-  const auto rig = LoadRigArgument(options.rig, options.read);
-  if (!rig.ok()) return Fail(rig.status());
+  const auto input = LoadRigInput(options.rig, options.read);
+  if (!input.ok()) return Fail(input.status());
+  const wrinkle::Rig& rig = input->rig;
   const auto matcher = LoadSkeletonMatcher(options.skeleton_map);
   if (!matcher.ok()) return Fail(matcher.status());
-  const auto match = MatchJoints(*matcher, *clip, *rig);
+  const auto match = MatchJoints(*matcher, *clip, rig, input->skeleton());
   const auto shape_matcher = LoadShapeMatcher(options.shape_map);
   if (!shape_matcher.ok()) return Fail(shape_matcher.status());
-  const rig::RigShapes shapes = MatchBlendShapes(*shape_matcher, *clip, *rig);
-  auto binding = wrinkle::RigBinding::Create(*rig, clip->skeleton, shapes.driver_names(),
+  const rig::RigShapes shapes =
+      MatchBlendShapes(*shape_matcher, *clip, rig,
+                       MatchFaceJoints(*shape_matcher, *clip, match, input->character.get()));
+  auto binding = wrinkle::RigBinding::Create(rig, clip->skeleton, shapes.driver_names(),
                                              match.Options(options.allow_missing));
   if (!binding.ok()) return Fail(BindingFailed(binding.status(), options));
   WarnAboutMissing(*binding, *clip);
@@ -62,7 +65,7 @@ int SolveFile(const SolveOptions& options) {
   wrinkle::LocalPose pose;
   for (int frame = 0; frame < clip->num_frames(); ++frame) {
     clip->GetPose(frame, &pose);
-    shapes.Extend(&pose.blend_shapes);
+    shapes.Extend(&pose);
     if (solver.Update(pose, motion::CaptureStep(*clip, frame)) != wrinkle::JobStatus::kOk) {
       return Fail({StatusCode::kInternal, "frame " + std::to_string(frame) + " could not be solved",
                    options.file, "please report this file"});
@@ -89,7 +92,8 @@ void AddSolve(CLI::App& app, Action& action) {
       ->required();
   command
       ->add_option("--rig", options->rig,
-                   "Wrinkle rig: a JSON file, or the name of a shipped rig (cmu, arkit, ...)")
+                   "Wrinkle rig: a JSON file, the name of a shipped rig (cmu, arkit, ...), or a "
+                   "character (.glb), whose rig is used")
       ->required();
   AddSkeletonMap(*command, options->skeleton_map);
   AddShapeMap(*command, options->shape_map);

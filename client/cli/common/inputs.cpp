@@ -10,12 +10,14 @@
 #include "base/data_dir.h"
 #include "base/status.h"
 #include "base/text.h"
+#include "character/mesh/moved_surface.h"
 #include "character/package/package.h"
 #include "client/cli/common/progress.h"
 #include "motion/clip_file.h"
 #include "motion/pose_source.h"
 #include "recording/take_clip.h"
 #include "rig/rig_file.h"
+#include "rig/shapes/face_joints.h"
 
 namespace furrow::cli {
 
@@ -105,12 +107,30 @@ rig::SkeletonMatch MatchJoints(const rig::SkeletonMatcher& matcher, const motion
 }
 
 rig::RigShapes MatchBlendShapes(const rig::ShapeMatcher& matcher, const motion::Clip& clip,
-                                const wrinkle::Rig& rig) {
-  rig::RigShapes shapes(matcher, clip.blend_shape_names, rig);
+                                const wrinkle::Rig& rig, const rig::JointMovedShapes& moved) {
+  rig::RigShapes shapes(matcher, clip.blend_shape_names, rig, moved);
   const std::string text = shapes.Description();
   // To standard error, because commands write their results to standard output.
   if (!text.empty()) std::fprintf(stderr, "furrow: %s\n", text.c_str());
   return shapes;
+}
+
+rig::JointMovedShapes MatchFaceJoints(const rig::ShapeMatcher& matcher, const motion::Clip& clip,
+                                      const rig::SkeletonMatch& match,
+                                      const character::Character* character) {
+  if (character == nullptr || character->shapes.empty()) return {};
+  const bool has_own =
+      !rig::MatchShapes(matcher, clip.blend_shape_names, character->shapes).empty();
+  if (has_own) return {};
+  const auto retarget = rig::MakeRetarget(match, clip.skeleton, character->skeleton);
+  auto found = rig::MatchFaceJoints(
+      {clip.skeleton, match.stream.roles, match.turn(), retarget.unmatched_source()},
+      {character->skeleton, match.character.roles, character::FindMovedSurface(character->meshes),
+       character->shapes},
+      matcher);
+  if (found.empty()) return {};
+  std::fprintf(stderr, "furrow: %s\n", found.Description().c_str());
+  return {std::make_shared<const wrinkle::JointShapes>(std::move(found)), character->shapes};
 }
 
 void WarnAboutMissing(const wrinkle::RigBinding& binding, const motion::Clip& clip) {
@@ -125,6 +145,25 @@ void WarnAboutMissing(const wrinkle::RigBinding& binding, const motion::Clip& cl
   // A recording of a face has no joints, and one of a body no blend shapes; nothing is missing.
   if (clip.skeleton.num_joints() > 0) warn(binding.missing_joints(), "joint");
   if (!clip.blend_shape_names.empty()) warn(binding.missing_blend_shapes(), "blend shape");
+}
+
+Result<RigInput> LoadRigInput(const std::string& argument, const motion::LoadOptions& read) {
+  RigInput input;
+  if (fs::path(argument).extension() != ".glb") {
+    auto rig = LoadRigArgument(argument, read);
+    FURROW_RETURN_IF_ERROR(rig);
+    input.rig = *std::move(rig);
+    return input;
+  }
+  auto character = LoadCharacterArgument(argument, {}, read);
+  FURROW_RETURN_IF_ERROR(character);
+  if (character->rig.drivers.empty()) {
+    return Status(StatusCode::kNotFound, "the character has no wrinkle rig", argument,
+                  "write one with 'furrow character propose-rig', or choose a rig file");
+  }
+  input.rig = character->rig;
+  input.character = std::make_unique<const character::Character>(*std::move(character));
+  return input;
 }
 
 Result<character::Character> LoadCharacterArgument(const std::string& glb, const std::string& rig,

@@ -44,6 +44,20 @@ void PrintWarnings(const std::vector<std::string>& warnings);
 [[nodiscard]] Result<wrinkle::Rig> LoadRigArgument(const std::string& argument,
                                                    const motion::LoadOptions& read = {});
 
+// A rig, with the character that it came with.
+struct RigInput {
+  wrinkle::Rig rig;
+  std::unique_ptr<const character::Character> character;  // null: a rig alone
+  [[nodiscard]] const wrinkle::Skeleton* skeleton() const {
+    return character == nullptr ? nullptr : &character->skeleton;
+  }
+};
+
+// As LoadRigArgument(), and accepts a character package (.glb), whose rig is used and whose shapes
+// then follow a recording's joints as in the daemon. Errors: kNotFound (a package without a rig).
+[[nodiscard]] Result<RigInput> LoadRigInput(const std::string& argument,
+                                            const motion::LoadOptions& read = {});
+
 // Loads the skeleton map of --skeleton-map, by name or file. An empty `map` selects the best
 // shipped map per skeleton. Without shipped maps, joints match by equal names and a warning is
 // printed.
@@ -61,8 +75,18 @@ void PrintWarnings(const std::vector<std::string>& warnings);
 [[nodiscard]] Result<rig::ShapeMatcher> LoadShapeMatcher(const std::string& map);
 
 // Finds the blend shapes that `rig` reads in the recording. Prints which map is used, if one is.
+// `moved`: the shapes of a character that the recording's joints move.
 [[nodiscard]] rig::RigShapes MatchBlendShapes(const rig::ShapeMatcher& matcher,
-                                              const motion::Clip& clip, const wrinkle::Rig& rig);
+                                              const motion::Clip& clip, const wrinkle::Rig& rig,
+                                              const rig::JointMovedShapes& moved = {});
+
+// Finds the shapes of `character` that the recording's joints move, unless its blend shapes move
+// any. `match`: MatchJoints() for this character. Prints one line if there are any. The result
+// refers to `character`; null gives nothing.
+[[nodiscard]] rig::JointMovedShapes MatchFaceJoints(const rig::ShapeMatcher& matcher,
+                                                    const motion::Clip& clip,
+                                                    const rig::SkeletonMatch& match,
+                                                    const character::Character* character);
 
 // Prints one warning for the joints and one for the blend shapes that the rig reads and the
 // recording lacks, with their number and the first few names. A recording without any blend shapes

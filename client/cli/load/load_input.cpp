@@ -121,7 +121,7 @@ Result<load::Workload> LoadWorkload(const LoadInput& input) {
   workload.binding = *std::move(binding);
   workload.pose = [clip, shapes](int frame, wrinkle::LocalPose* pose) {
     clip->GetPose(frame, pose);
-    shapes.Extend(&pose->blend_shapes);
+    shapes.Extend(pose);
   };
   const auto encoding = input.quantise ? protocol::PoseEncoding::Small() : protocol::PoseEncoding{};
   protocol::Encoder encoder;

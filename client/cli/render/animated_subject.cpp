@@ -4,10 +4,8 @@
 #include <cstdio>
 
 #include "base/status.h"
-#include "character/mesh/moved_surface.h"
 #include "client/cli/common/inputs.h"
 #include "motion/clip/capture_time.h"
-#include "rig/shapes/face_joints.h"
 
 namespace furrow::cli {
 
@@ -18,7 +16,8 @@ Result<std::unique_ptr<AnimatedSubject>> AnimatedSubject::Create(
   self->clip_ = std::move(clip);
   const motion::Clip& take = *self->clip_;
   const auto match = MatchJoints(matcher, take, character.rig, &character.skeleton);
-  self->shapes_ = MatchBlendShapes(shapes, take, character.rig);
+  self->shapes_ = MatchBlendShapes(shapes, take, character.rig,
+                                   MatchFaceJoints(shapes, take, match, &character));
   auto binding =
       wrinkle::RigBinding::Create(character.rig, take.skeleton, self->shapes_.driver_names(),
                                   match.Options(/*allow_missing=*/true));
@@ -30,24 +29,14 @@ Result<std::unique_ptr<AnimatedSubject>> AnimatedSubject::Create(
   self->blend_shape_pose_ =
       wrinkle::BlendShapePose::Create(character.rig, character.skeleton, self->shapes_.pose_names(),
                                       shapes.AllNamesOf(character.shapes));
-  self->shape_program_ = rig::MatchShapes(shapes, take.blend_shape_names, character.shapes);
+  self->shape_program_ = rig::MatchShapes(shapes, self->shapes_.source_names(), character.shapes);
   // A recording with joints turns the head by them.
   if (take.skeleton.num_joints() == 0) {
     self->head_turn_ = wrinkle::HeadTurn::Create(character.skeleton, match.character.roles,
                                                  take.blend_shape_names);
   }
-  if (self->shape_program_.empty() && !character.shapes.empty()) {
-    self->joint_shapes_ = rig::MatchFaceJoints(
-        {take.skeleton, match.stream.roles, match.turn(), self->retarget_.unmatched_source()},
-        {character.skeleton, match.character.roles, character::FindMovedSurface(character.meshes),
-         character.shapes},
-        shapes);
-  }
-  if (!self->joint_shapes_.empty()) {
-    std::fprintf(stderr, "furrow: %s\n", self->joint_shapes_.Description().c_str());
-  }
   // Pictures would all show the rest pose.
-  if (take.blend_shape_names.empty() &&
+  if (self->shapes_.source_names().empty() &&
       self->retarget_.unmatched_source().size() == take.skeleton.joint_names().size()) {
     return Status(StatusCode::kNotFound, "the recording and the character have no joint in common",
                   file, "map the joints with --skeleton-map, or choose another --character");
@@ -58,11 +47,11 @@ Result<std::unique_ptr<AnimatedSubject>> AnimatedSubject::Create(
 
 Status AnimatedSubject::Advance(int frame) {
   clip_->GetPose(frame, &pose_);
-  shapes_.Extend(&pose_.blend_shapes);
+  shapes_.Extend(&pose_);
   const bool solved =
       solver_->Update(pose_, motion::CaptureStep(*clip_, frame)) == wrinkle::JobStatus::kOk &&
-      drawn_->Run({retarget_, blend_shape_pose_, &shape_program_, &head_turn_, &joint_shapes_},
-                  pose_.joints, pose_.blend_shapes) == wrinkle::JobStatus::kOk;
+      drawn_->Run({retarget_, blend_shape_pose_, &shape_program_, &head_turn_}, pose_.joints,
+                  pose_.blend_shapes) == wrinkle::JobStatus::kOk;
   if (!solved)
     return {StatusCode::kInternal, "frame " + std::to_string(frame) + " could not be solved"};
   return {};

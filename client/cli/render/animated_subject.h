@@ -40,7 +40,6 @@ class AnimatedSubject {
   wrinkle::BlendShapePose blend_shape_pose_;
   wrinkle::ShapeProgram shape_program_;
   wrinkle::HeadTurn head_turn_;
-  wrinkle::JointShapes joint_shapes_;  // empty unless the recording has no blend shapes
   std::unique_ptr<wrinkle::SubjectSolver> solver_;
   wrinkle::LocalPose pose_;
   std::optional<wrinkle::CharacterPose> drawn_;

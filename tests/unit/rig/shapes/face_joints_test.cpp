@@ -13,9 +13,11 @@
 #include "character/mesh/moved_surface.h"
 #include "rig/rig_file.h"
 #include "rig/shapes/arkit_shapes.h"
+#include "rig/shapes/rig_shapes.h"
 #include "tests/unit/rig/shapes/shipped_shape_maps.h"
 #include "tests/unit/rig/shipped_matcher.h"
 #include "wrinkle/skeleton/reference_pose.h"
+#include "wrinkle/solver/solver.h"
 
 namespace furrow::rig {
 namespace {
@@ -54,15 +56,20 @@ class FaceJointsTest : public ::testing::Test {
                            ShippedShapeMatcher());
   }
 
-  // The weights for a reference pose of the rig, by name.
-  static std::map<std::string, float> WeightsFor(const wrinkle::JointShapes& shapes,
-                                                 const std::string& pose, float scale = 1.0f) {
+  static std::vector<wrinkle::Transform> LocalsOf(const std::string& pose) {
     const auto found =
         std::ranges::find(rig_->reference_poses, pose, &wrinkle::ReferencePose::name);
     EXPECT_NE(found, rig_->reference_poses.end()) << pose;
     std::vector<wrinkle::Transform> locals(jointed_->skeleton.rest_pose().begin(),
                                            jointed_->skeleton.rest_pose().end());
     EXPECT_TRUE(wrinkle::ApplyReferencePose(*found, jointed_->skeleton, locals).ok());
+    return locals;
+  }
+
+  // The weights for a reference pose of the rig, by name.
+  static std::map<std::string, float> WeightsFor(const wrinkle::JointShapes& shapes,
+                                                 const std::string& pose, float scale = 1.0f) {
+    std::vector<wrinkle::Transform> locals = LocalsOf(pose);
     for (wrinkle::Transform& local : locals) local.translation *= scale;
     std::vector<float> weights(shaped_->shapes.size());
     EXPECT_EQ(shapes.Run(locals, weights), wrinkle::JobStatus::kOk);
@@ -118,6 +125,28 @@ TEST_F(FaceJointsTest, UnitsAndAxesDoNotMatter) {
   const auto wanted = WeightsFor(Match(own), "mouthSmileLeft");
   const auto found = WeightsFor(Match(*large), "mouthSmileLeft", 100.0f);
   for (const auto& [name, weight] : wanted) EXPECT_NEAR(found.at(name), weight, 0.02f) << name;
+}
+
+// A rig of blend shapes reads the shapes that the joints move, behind the stream's own.
+TEST_F(FaceJointsTest, TheRigReadsTheShapes) {
+  const auto rig = LoadRig(FURROW_SOURCE_DIR "/rig/rigs/arkit.json");
+  ASSERT_TRUE(rig.ok()) << rig.status().ToString();
+  const auto solver = std::make_shared<const wrinkle::JointShapes>(Match(jointed_->skeleton));
+  const std::vector<std::string> stream = {"tracked"};
+  const RigShapes shapes(ShippedShapeMatcher(), stream, *rig, {solver, shaped_->shapes});
+  const auto names = shapes.source_names();
+  ASSERT_EQ(names.size(), 1 + shaped_->shapes.size());
+  EXPECT_EQ(names[0], "tracked");
+  const auto binding =
+      wrinkle::RigBinding::Create(*rig, jointed_->skeleton, shapes.driver_names(), {});
+  ASSERT_TRUE(binding.ok()) << binding.status().ToString();
+  EXPECT_TRUE(binding->missing_blend_shapes().empty());
+  wrinkle::LocalPose pose{.joints = LocalsOf("browDownLeft"), .blend_shapes = {0.25f}};
+  shapes.Extend(&pose);
+  ASSERT_EQ(pose.blend_shapes.size(), shapes.size());
+  EXPECT_EQ(pose.blend_shapes[0], 0.25f);
+  const auto brow = std::ranges::find(names, "browDownLeft") - names.begin();
+  EXPECT_GT(pose.blend_shapes[static_cast<std::size_t>(brow)], 0.5f);
 }
 
 TEST_F(FaceJointsTest, ABodyWithoutAFaceMovesNothing) {

@@ -46,24 +46,23 @@ TEST(RigShapes, PresetsFillDriversAndPosesBehindTheStream) {
               ElementsAre("Joy", "A", "Blink_L", "mouthSmileLeft", "eyeBlinkLeft", "", "", ""));
   // The stream's Blink_L has a pose of its own name, so it moves the lids by that alone.
   EXPECT_THAT(shapes.pose_names(), ElementsAre("Joy", "A", "Blink_L", "", "", "jawOpen", "", ""));
-  std::vector<float> coefficients = {0.5f, 1.0f, 0.25f};
-  shapes.Extend(&coefficients);
-  EXPECT_THAT(coefficients, ElementsAre(0.5f, 1.0f, 0.25f, 0.5f, 0.25f, 0.8f, 0.0f, 0.25f));
+  wrinkle::LocalPose pose{.blend_shapes = {0.5f, 1.0f, 0.25f}};
+  shapes.Extend(&pose);
+  EXPECT_THAT(pose.blend_shapes, ElementsAre(0.5f, 1.0f, 0.25f, 0.5f, 0.25f, 0.8f, 0.0f, 0.25f));
   EXPECT_THAT(shapes.Description(), testing::HasSubstr("'vrm0' to 'arkit'"));
 }
 
 TEST(RigShapes, BadCoefficientsLeaveTheExtension) {
   const std::vector<std::string> stream = {"Joy", "A", "Blink"};
   const RigShapes shapes(ShippedShapeMatcher(), stream, RigThatReads({"jawOpen"}, {}));
-  std::vector<float> coefficients = {0.0f, 1.0f, 0.0f};
-  shapes.Extend(&coefficients);
-  ASSERT_EQ(coefficients.size(), 4u);
-  EXPECT_FLOAT_EQ(coefficients[3], 0.8f);
-  coefficients[0] = std::numeric_limits<float>::quiet_NaN();
-  coefficients[1] = 0.0f;
-  shapes.Extend(&coefficients);
-  EXPECT_FLOAT_EQ(coefficients[3], 0.8f);
-  shapes.Extend(std::span<float>(coefficients).first(2));  // too short: ignored
+  wrinkle::LocalPose pose{.blend_shapes = {0.0f, 1.0f, 0.0f}};
+  shapes.Extend(&pose);
+  ASSERT_EQ(pose.blend_shapes.size(), 4u);
+  EXPECT_FLOAT_EQ(pose.blend_shapes[3], 0.8f);
+  pose.blend_shapes[0] = std::numeric_limits<float>::quiet_NaN();
+  pose.blend_shapes[1] = 0.0f;
+  shapes.Extend(&pose);
+  EXPECT_FLOAT_EQ(pose.blend_shapes[3], 0.8f);
 }
 
 TEST(RigShapes, ABodyHasNothingToTranslate) {

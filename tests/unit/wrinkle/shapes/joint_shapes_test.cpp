@@ -119,6 +119,12 @@ TEST(JointShapes, FailuresChangeNothing) {
   EXPECT_EQ(weights, (std::vector<float>{9.0f, 9.0f}));
 }
 
+TEST(JointShapes, AMarkForEachJointIsNeeded) {
+  Face face({"a", "b"});
+  face.moved.pop_back();
+  EXPECT_TRUE(face.Create().empty());
+}
+
 TEST(JointShapes, LandmarksFarFromTheSurfaceAreIgnored) {
   Face face({"a", "b"});
   for (FaceLandmark& landmark : face.landmarks) landmark.on_target.z += 1.0f;
