@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "gltf/document/draco_mesh.h"
+
 namespace furrow::character {
 
 // What one mesh of a glTF file contained, before the reader computed missing data.
@@ -34,7 +36,8 @@ struct ReadOptions {
   // skin weights of the nearest skinned vertex along the mesh's edges, or the skin's first joint.
   // Materials lose pictures that are missing or cannot be decoded.
   bool lenient = false;
-  SourceNotes* notes = nullptr;  // receives the notes, unless null; the caller owns it
+  SourceNotes* notes = nullptr;               // receives the notes, unless null; the caller owns it
+  const gltf::DracoDecoder* draco = nullptr;  // null: files that require Draco are refused
 };
 
 }  // namespace furrow::character

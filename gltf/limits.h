@@ -13,6 +13,7 @@ inline constexpr std::uint64_t kMaxFileBytes = 1ull << 30;  // a file; also all 
 inline constexpr int kMaxJsonDepth = 64;
 inline constexpr std::size_t kMaxJsonValues = 4'000'000;  // strings count once, whatever their size
 inline constexpr std::size_t kMaxBuffers = 256;
+inline constexpr std::size_t kMaxDracoMeshes = 4096;
 
 // Accessors.
 inline constexpr std::size_t kMaxAccessorNumbers = 128'000'000;  // elements x components

@@ -38,8 +38,8 @@ void DropMissingPictures(Character* character) {
 
 Status ReadGltfCharacter(std::string_view bytes, const std::filesystem::path& folder,
                          const ReadOptions& options, Character* character) {
-  Result<gltf::Document> document =
-      gltf::Document::Open(bytes, {.contents = gltf::Contents::kCharacter, .folder = folder});
+  Result<gltf::Document> document = gltf::Document::Open(
+      bytes, {.contents = gltf::Contents::kCharacter, .folder = folder, .draco = options.draco});
   FURROW_RETURN_IF_ERROR(document);
   const Result<gltf::NodeForest> forest = gltf::ReadNodes(&*document);
   FURROW_RETURN_IF_ERROR(forest);

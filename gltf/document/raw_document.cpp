@@ -11,6 +11,7 @@
 #include "base/text.h"
 #include "gltf/container/json_guard.h"
 #include "gltf/container/uri.h"
+#include "gltf/document/draco_primitives.h"
 #include "gltf/document/meshopt_view.h"
 #include "gltf/limits.h"
 
@@ -20,7 +21,7 @@ namespace {
 using Json = nlohmann::json;
 
 // Required extensions that do not change what this code reads. Any other required extension is a
-// warning, unless it is in kRefused below.
+// warning, except kDracoExtension below.
 constexpr std::string_view kHarmless[] = {"KHR_mesh_quantization",
                                           "EXT_texture_webp",
                                           "EXT_meshopt_compression",
@@ -32,12 +33,8 @@ constexpr std::string_view kHarmless[] = {"KHR_mesh_quantization",
                                           "VRM",
                                           "VRMC_vrm"};
 
-// Extensions that move data to where this code does not look for it.
-struct RefusedExtension {
-  std::string_view name;
-  bool meshes_only;  // harmless for readers of animations
-};
-constexpr RefusedExtension kRefused[] = {{"KHR_draco_mesh_compression", true}};
+// A file that does not require it has uncompressed meshes as well.
+constexpr std::string_view kDracoExtension = "KHR_draco_mesh_compression";
 
 // The member, or null. Also null if `object` is none, because the file decides about types.
 const Json* Find(const Json& object, const char* key) {
@@ -88,6 +85,10 @@ class RawReader {
     FURROW_RETURN_IF_ERROR(CheckRequiredExtensions());
     FURROW_RETURN_IF_ERROR(ReadBuffers());
     FURROW_RETURN_IF_ERROR(ReadBufferViews());
+    // Also of files that do not say that they require it.
+    if (options_.contents == Contents::kCharacter && options_.draco != nullptr) {
+      FURROW_RETURN_IF_ERROR(DecodeDracoPrimitives(*options_.draco, &json_, &result_));
+    }
     result_.num_meshes = Array(json_, "meshes").size();
     FURROW_RETURN_IF_ERROR(ReadMorphTargets());
     if (options_.contents == Contents::kCharacter) {
@@ -123,13 +124,11 @@ class RawReader {
     }
     for (const Json& entry : *required) {
       const std::string name = entry.is_string() ? entry.get<std::string>() : "?";
-      const auto refused = std::find_if(std::begin(kRefused), std::end(kRefused),
-                                        [&](const auto& known) { return known.name == name; });
-      if (refused != std::end(kRefused)) {
-        if (refused->meshes_only && options_.contents == Contents::kAnimation) continue;
-        return {StatusCode::kUnsupported, "the file requires the extension " + name,
-                "extensionsRequired",
-                "export without Draco compression; Blender imports such files and exports others"};
+      if (name == kDracoExtension) {
+        if (options_.contents == Contents::kAnimation) continue;
+        if (options_.draco != nullptr) continue;
+        return {StatusCode::kUnsupported, "the meshes are compressed with Draco",
+                "extensionsRequired", "decompress it with 'furrow character import'"};
       }
       if (std::find(std::begin(kHarmless), std::end(kHarmless), name) == std::end(kHarmless)) {
         result_.warnings.push_back("extensionsRequired: the extension " + Quoted(name) +

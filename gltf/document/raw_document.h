@@ -11,6 +11,8 @@
 
 #include "base/status.h"
 #include "gltf/container/glb.h"
+#include "gltf/document/buffer_view.h"
+#include "gltf/document/draco_mesh.h"
 
 // The checks that come before tinygltf; private to gltf/document/.
 namespace furrow::gltf {
@@ -24,11 +26,7 @@ enum class Contents : std::uint8_t {
 struct OpenOptions {
   Contents contents = Contents::kCharacter;
   std::optional<std::filesystem::path> folder;  // for external files; see FindExternalFile()
-};
-
-struct BufferView {
-  std::span<const std::uint8_t> bytes;
-  std::size_t stride = 0;  // 0: elements are tightly packed
+  const DracoDecoder* draco = nullptr;  // for kCharacter; null: files that require it are refused
 };
 
 // One entry of `images`, still encoded. Either `view` or `uri` says where the bytes are.
@@ -46,12 +44,10 @@ struct MorphTargetSource {
 };
 
 // A glTF file, taken apart.
-struct RawDocument {
+struct RawDocument : BufferViews {
   std::string json;  // for tinygltf: without buffers, buffer views, images and unused parts
-  std::vector<BufferView> views;
-  std::vector<std::vector<std::uint8_t>> owned_buffers;  // of data URIs, files, meshopt
-  std::vector<ImageSource> images;                       // of kCharacter
-  std::vector<MorphTargetSource> morph_targets;          // one per mesh
+  std::vector<ImageSource> images;               // of kCharacter
+  std::vector<MorphTargetSource> morph_targets;  // one per mesh
   std::size_t num_meshes = 0;
   std::vector<std::string> warnings;  // "field: what"
 };
@@ -61,8 +57,8 @@ struct RawDocument {
 //
 // The views refer to `container`'s bytes, which must outlive them.
 //
-// Errors: kParse, kSchema, kLimit, kUnsupported (version; an extension that changes the layout of
-// the data), FindExternalFile()'s and ReadFile()'s. `where` is a field.
+// Errors: kParse, kSchema, kLimit, kUnsupported (version; Draco without a decoder),
+// FindExternalFile()'s, ReadFile()'s and the Draco decoder's. `where` is a field.
 [[nodiscard]] Result<RawDocument> ReadRawDocument(const Container& container,
                                                   const OpenOptions& options);
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "authoring/bake/surface/uv_check.h"
+#include "authoring/import/model/draco_call.h"
 #include "authoring/import/model/foreign_model.h"
 #include "base/ascii.h"
 #include "base/files.h"
@@ -27,7 +28,8 @@ bool IsGltf(std::string_view bytes, const std::string& extension) {
 
 // Reads a model from its bytes. `where` of an error is a field.
 Status Parse(std::string_view bytes, const fs::path& path, OpenedModel* model) {
-  const character::ReadOptions options{.lenient = true, .notes = &model->notes};
+  const gltf::DracoDecoder draco = DracoInHelper();
+  const character::ReadOptions options{.lenient = true, .notes = &model->notes, .draco = &draco};
   const std::string extension = Extension(path);
   std::string converted;
   if (!IsGltf(bytes, extension)) {

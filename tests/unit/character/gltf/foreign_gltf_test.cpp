@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that gltfpack wrote; see fixtures/make_fixtures.py.
+// Files that other programs wrote; see fixtures/make_fixtures.py and make_draco.mjs.
 #include <filesystem>
 #include <limits>
 #include <string>
@@ -8,6 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "authoring/import/model/draco_call.h"
+#include "base/files.h"
 #include "character/package/package.h"
 
 namespace furrow::character {
@@ -20,7 +22,11 @@ constexpr float kNear = 2e-4f;  // metres; gltfpack stores 14 to 16 bits of 0.2 
 
 Character Fixture(const std::string& name) {
   const std::filesystem::path folder = FURROW_SOURCE_DIR "/tests/unit/character/gltf/fixtures";
-  auto character = LoadCharacter(folder / name);
+  const auto bytes = ReadFile(folder / name, 1 << 20);
+  EXPECT_TRUE(bytes.ok()) << bytes.status().ToString();
+  if (!bytes.ok()) return {};
+  const gltf::DracoDecoder draco = authoring::DracoInHelper();
+  auto character = ParseCharacter(*bytes, folder, {.draco = &draco});
   EXPECT_TRUE(character.ok()) << character.status().ToString();
   return character.ok() ? std::move(*character) : Character();
 }
@@ -118,6 +124,18 @@ INSTANTIATE_TEST_SUITE_P(Quantised, ForeignGltf,
                          ::testing::Values("toy_float.glb", "toy_quantised.glb",
                                            "toy_normalised.glb"),
                          TestNameOf);
+
+INSTANTIATE_TEST_SUITE_P(Draco, ForeignGltf,
+                         ::testing::Values("toy_draco.glb", "toy_draco_sequential.glb"),
+                         TestNameOf);
+
+// Packages have no Draco, so the readers of packages have no decoder.
+TEST(ForeignGltf, DracoNeedsAnImport) {
+  const std::filesystem::path folder = FURROW_SOURCE_DIR "/tests/unit/character/gltf/fixtures";
+  const Status status = LoadCharacter(folder / "toy_draco.glb").status();
+  EXPECT_EQ(status.code(), StatusCode::kUnsupported);
+  EXPECT_THAT(status.todo(), ::testing::HasSubstr("furrow character import"));
+}
 
 }  // namespace
 }  // namespace furrow::character
