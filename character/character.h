@@ -12,6 +12,7 @@
 #include "character/mesh/mesh.h"
 #include "character/pictures/picture.h"
 #include "wrinkle/rig/rig.h"
+#include "wrinkle/shapes/shape_rules.h"
 #include "wrinkle/skeleton/skeleton.h"
 
 namespace furrow::character {
@@ -27,6 +28,7 @@ struct Character {
   // Names of the shapes that move the meshes, unique, at most kMaxShapes. Targets of equal names on
   // different meshes (head, teeth, lashes) are one shape.
   std::vector<std::string> shapes;
+  std::vector<wrinkle::ShapeRule> shape_rules;  // at most one per shape
   std::vector<Material> materials;
   std::vector<Picture> pictures;
   wrinkle::Rig rig;

@@ -153,13 +153,14 @@ void Daemon::MakeHub() {
   parts.rig = assets_.rig;
   // Without a renderer, weights need the character only if joints may move its shapes.
   if (assets_.shapes != nullptr) {
-    parts.character = &assets_.shapes->skeleton;
-    parts.shapes = assets_.shapes->names;
-    parts.surface = &assets_.shapes->surface;
+    parts.character = {.skeleton = &assets_.shapes->skeleton,
+                       .shapes = assets_.shapes->names,
+                       .surface = &assets_.shapes->surface};
   }
   if (render_ != nullptr) {
-    parts.character = &assets_.character->skeleton;
-    parts.shapes = assets_.character->shapes;
+    parts.character.skeleton = &assets_.character->skeleton;
+    parts.character.shapes = assets_.character->shapes;
+    parts.character.shape_rules = assets_.character->shape_rules;
   }
   parts.skeletons = assets_.skeletons;
   parts.shape_matcher = assets_.shape_matcher;

@@ -7,6 +7,7 @@
 
 #include "character/gltf/gltf_material.h"
 #include "character/gltf/gltf_mesh.h"
+#include "character/gltf/gltf_shape_rules.h"
 #include "character/gltf/gltf_skeleton.h"
 #include "character/source_notes.h"
 #include "gltf/document/document.h"
@@ -57,6 +58,7 @@ Status ReadGltfCharacter(std::string_view bytes, const std::filesystem::path& fo
   character->inverse_bind_matrices = std::move(skeleton->inverse_bind_matrices);
   character->meshes = std::move(meshes->meshes);
   character->shapes = std::move(meshes->shapes);
+  character->shape_rules = MakeShapeRules(gltf::ReadExpressionRules(&*document), character->shapes);
   character->materials = MakeGltfMaterials(*materials);
   character->pictures = std::move(*pictures);
   character->warnings = document->warnings();

@@ -12,7 +12,9 @@
 
 #include "base/status.h"
 #include "character/gltf/gltf_material.h"
+#include "character/gltf/gltf_shape_rules.h"
 #include "character/pictures/picture_file.h"
+#include "gltf/scene/expression_rules.h"
 #include "gltf/scene/joints.h"
 #include "gltf/scene/materials.h"
 #include "gltf/write/builder.h"
@@ -135,6 +137,9 @@ class CharacterWriter {
       nodes.push_back({{"name", "mesh:" + character_.meshes[m].name}, {"mesh", m}, {"skin", 0}});
     }
     root_["scenes"] = Json::array({{{"name", character_.name}, {"nodes", std::move(roots)}}});
+    if (!character_.shape_rules.empty()) {
+      root_["scenes"][0]["extras"][gltf::kRulesExtra] = ShapeRulesJson(character_);
+    }
     root_["nodes"] = std::move(nodes);
   }
 

@@ -17,8 +17,6 @@ using tinygltf::Value;
 
 std::size_t LengthOf(const Value& value) { return value.IsArray() ? value.ArrayLen() : 0; }
 
-bool IsTrue(const Value& value) { return value.IsBool() && value.Get<bool>(); }
-
 std::string TextOf(const Value& value) {
   return value.IsString() ? value.Get<std::string>() : std::string();
 }
@@ -27,8 +25,6 @@ std::string TextOf(const Value& value) {
 struct Ignored {
   std::size_t missing_targets = 0;
   std::size_t materials = 0;
-  std::size_t switches = 0;
-  std::size_t overrides = 0;
 };
 
 class Reader {
@@ -54,7 +50,6 @@ class Reader {
       const Value& group = groups.Get(static_cast<int>(i));
       const std::string preset = TextOf(Member(group, "presetName"));
       Begin(preset.empty() || preset == "unknown" ? TextOf(Member(group, "name")) : preset);
-      ignored_.switches += IsTrue(Member(group, "isBinary")) ? 1 : 0;
       ignored_.materials += LengthOf(Member(group, "materialValues"));
       const Value& binds = Member(group, "binds");
       for (std::size_t k = 0; k < LengthOf(binds); ++k) {
@@ -82,13 +77,8 @@ class Reader {
 
   Status ReadExpression1(const std::string& name, const Value& from) {
     Begin(name);
-    ignored_.switches += IsTrue(Member(from, "isBinary")) ? 1 : 0;
     ignored_.materials += LengthOf(Member(from, "materialColorBinds")) +
                           LengthOf(Member(from, "textureTransformBinds"));
-    for (const char* rule : {"overrideBlink", "overrideLookAt", "overrideMouth"}) {
-      const std::string how = TextOf(Member(from, rule));
-      ignored_.overrides += how == "block" || how == "blend" ? 1 : 0;
-    }
     const Value& binds = Member(from, "morphTargetBinds");
     const auto& nodes = document_.model().nodes;
     for (std::size_t k = 0; k < LengthOf(binds); ++k) {
@@ -145,10 +135,6 @@ class Reader {
     warn(ignored_.missing_targets, "ignored bind", "ignored binds",
          " of expressions to morph targets that do not exist");
     warn(ignored_.materials, "ignored bind", "ignored binds", " of expressions to materials");
-    warn(ignored_.switches, "expression", "expressions",
-         " of the kind isBinary; here, it moves gradually");
-    warn(ignored_.overrides, "ignored rule", "ignored rules",
-         " by which one expression suppresses others");
   }
 
   Document& document_;

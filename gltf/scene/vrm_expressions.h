@@ -22,11 +22,11 @@ struct VrmExpression {
 
 // Reads the expressions of VRM 0.x (VRM.blendShapeMaster.blendShapeGroups) and 1.0
 // (VRMC_vrm.expressions) of a document with Contents::kCharacter. Expressions without morph targets
-// are left out. Binds add up (VRMC_vrm-1.0, "Expressions").
+// are left out. Binds add up (VRMC_vrm-1.0, "Expressions"). ReadExpressionRules() has what else
+// they do.
 //
 // Deviations from VRM give a warning: binds of meshes or targets that do not exist are ignored, and
-// so are binds of colours and textures, switches between 0 and 1 (isBinary), and the rules by which
-// one expression suppresses others.
+// so are binds of colours and textures.
 // Error: kLimit (gltf/limits.h).
 [[nodiscard]] Result<std::vector<VrmExpression>> ReadVrmExpressions(Document* document);
 

@@ -89,16 +89,17 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::FindOrMake(
 Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Make(
     wrinkle::Skeleton skeleton, std::vector<std::string> blend_shapes) {
   // Finds the skeleton map whose joint names fit, and by it the joints of the rig.
-  rig::SkeletonMatch match = matcher_.Match(skeleton, *rig_, character_);
+  rig::SkeletonMatch match = matcher_.Match(skeleton, *rig_, character_.skeleton);
   auto definition = std::make_shared<StreamDefinition>();
   // The character has its own skeleton: the pose is carried over joint by joint.
-  if (character_ != nullptr) {
-    definition->retarget =
-        std::make_shared<const wrinkle::Retarget>(rig::MakeRetarget(match, skeleton, *character_));
+  if (character_.skeleton != nullptr) {
+    definition->retarget = std::make_shared<const wrinkle::Retarget>(
+        rig::MakeRetarget(match, skeleton, *character_.skeleton));
     definition->joint_shapes = MatchJointShapes(skeleton, blend_shapes, match, *definition);
   }
   // The same for the names of blend shapes.
-  rig::RigShapes shapes(shape_matcher_, blend_shapes, *rig_, {definition->joint_shapes, shapes_});
+  rig::RigShapes shapes(shape_matcher_, blend_shapes, *rig_,
+                        {definition->joint_shapes, character_.shapes});
   // Live streams may lack joints and blend shapes. Their drivers rest, and Report() names them.
   auto binding = wrinkle::RigBinding::Create(*rig_, skeleton, shapes.driver_names(),
                                              match.Options(/*allow_missing=*/true));
@@ -110,16 +111,18 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Make(
   }
   // Blend shapes move the character through its own shapes or, where it has none of the name,
   // through the rig's poses.
-  if (character_ != nullptr) {
-    definition->blend_shape_pose =
-        std::make_shared<const wrinkle::BlendShapePose>(wrinkle::BlendShapePose::Create(
-            *rig_, *character_, shapes.pose_names(), shape_matcher_.AllNamesOf(shapes_)));
-    definition->shape_program = std::make_shared<const wrinkle::ShapeProgram>(
-        rig::MatchShapes(shape_matcher_, shapes.source_names(), shapes_));
+  if (character_.skeleton != nullptr) {
+    definition->blend_shape_pose = std::make_shared<const wrinkle::BlendShapePose>(
+        wrinkle::BlendShapePose::Create(*rig_, *character_.skeleton, shapes.pose_names(),
+                                        shape_matcher_.AllNamesOf(character_.shapes)));
+    wrinkle::ShapeProgram program =
+        rig::MatchShapes(shape_matcher_, shapes.source_names(), character_.shapes);
+    program.SetRules({character_.shape_rules, character_.shapes});
+    definition->shape_program = std::make_shared<const wrinkle::ShapeProgram>(std::move(program));
     definition->head_turn = std::make_shared<const wrinkle::HeadTurn>(
         skeleton.num_joints() > 0
             ? wrinkle::HeadTurn()
-            : wrinkle::HeadTurn::Create(*character_, match.character.roles, blend_shapes));
+            : wrinkle::HeadTurn::Create(*character_.skeleton, match.character.roles, blend_shapes));
   }
   definition->binding = std::make_shared<const wrinkle::RigBinding>(*std::move(binding));
   definition->skeleton = std::move(skeleton);
@@ -135,12 +138,14 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Make(
 std::shared_ptr<const wrinkle::JointShapes> StreamDefinitions::MatchJointShapes(
     const wrinkle::Skeleton& skeleton, std::span<const std::string> blend_shapes,
     const rig::SkeletonMatch& match, const StreamDefinition& stream) const {
-  if (surface_ == nullptr || !rig::MatchShapes(shape_matcher_, blend_shapes, shapes_).empty()) {
+  if (character_.surface == nullptr ||
+      !rig::MatchShapes(shape_matcher_, blend_shapes, character_.shapes).empty()) {
     return nullptr;
   }
   auto found = rig::MatchFaceJoints(
       {skeleton, match.stream.roles, match.turn(), stream.retarget->unmatched_source()},
-      {*character_, match.character.roles, *surface_, shapes_}, shape_matcher_);
+      {*character_.skeleton, match.character.roles, *character_.surface, character_.shapes},
+      shape_matcher_);
   if (found.empty()) return nullptr;
   return std::make_shared<const wrinkle::JointShapes>(std::move(found));
 }
@@ -206,7 +211,7 @@ void StreamDefinitions::Report(const StreamDefinition& stream,
   draws_any |= stream.blend_shape_pose != nullptr && !stream.blend_shape_pose->empty();
   draws_any |= stream.shape_program != nullptr && !stream.shape_program->empty();
   draws_any |= stream.head_turn != nullptr && !stream.head_turn->empty();
-  if (character_ != nullptr && !draws_any) {
+  if (character_.skeleton != nullptr && !draws_any) {
     spdlog::warn(
         "the stream and the character have no joint in common, so pictures show the rest pose; "
         "check --character");

@@ -50,25 +50,28 @@ struct StreamDefinition {
   std::shared_ptr<const wrinkle::JointShapes> joint_shapes;
 };
 
+// The character that streams move; all of it outlives those who use it.
+struct StreamCharacter {
+  const wrinkle::Skeleton* skeleton = nullptr;  // null: nothing is drawn, and no shapes move
+  std::span<const std::string> shapes;          // names
+  std::span<const wrinkle::ShapeRule> shape_rules;
+  const wrinkle::MovedSurface* surface = nullptr;  // null: joints move no shapes
+};
+
 // Creates stream definitions and keeps the `capacity` most recently used ones, so that a sender
 // that restarts, or several senders with equal skeletons, share one.
 class StreamDefinitions {
  public:
-  // `character`: outlives this object; null: nothing is rendered, and no shapes move. `matcher`
-  // finds the joints of skeletons with other joint names than the rig and the character,
-  // `shape_matcher` blend shapes with other names than theirs. `shapes` and `surface`: the
-  // character's; outlive this object.
-  StreamDefinitions(std::shared_ptr<const wrinkle::Rig> rig, const wrinkle::Skeleton* character,
+  // `matcher` finds the joints of skeletons with other joint names than the rig and the character,
+  // `shape_matcher` blend shapes with other names than theirs.
+  StreamDefinitions(std::shared_ptr<const wrinkle::Rig> rig, const StreamCharacter& character,
                     std::size_t capacity, rig::SkeletonMatcher matcher = {},
-                    rig::ShapeMatcher shape_matcher = {}, std::span<const std::string> shapes = {},
-                    const wrinkle::MovedSurface* surface = nullptr)
+                    rig::ShapeMatcher shape_matcher = {})
       : rig_(std::move(rig)),
         character_(character),
         capacity_(capacity),
         matcher_(std::move(matcher)),
         shape_matcher_(std::move(shape_matcher)),
-        shapes_(shapes),
-        surface_(surface),
         rig_joints_(wrinkle::JointsOf(*rig_)) {}
 
   // Returns the definition of a stream, creating it if needed. `may_make` is called before a new
@@ -101,12 +104,10 @@ class StreamDefinitions {
   void Report(const StreamDefinition& stream, const rig::SkeletonMatch& match) const;
 
   std::shared_ptr<const wrinkle::Rig> rig_;
-  const wrinkle::Skeleton* character_;
+  StreamCharacter character_;
   std::size_t capacity_;
   rig::SkeletonMatcher matcher_;
   rig::ShapeMatcher shape_matcher_;
-  std::span<const std::string> shapes_;
-  const wrinkle::MovedSurface* surface_;
   std::set<std::string> rig_joints_;                          // all joints that the rig reads
   std::list<std::shared_ptr<const StreamDefinition>> known_;  // most recently used first
 };

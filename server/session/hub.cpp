@@ -29,7 +29,7 @@ Hub::Hub(Parts parts)
       exclusive_context_(parts.session, metrics_, Link::kExclusive),
       definitions_(std::move(parts.rig), parts.character,
                    static_cast<std::size_t>(parts.limits.max_skeletons), std::move(parts.skeletons),
-                   std::move(parts.shape_matcher), parts.shapes, parts.surface),
+                   std::move(parts.shape_matcher)),
       publishers_(limits_, &definitions_, &subjects_, &exclusive_context_.messages, metrics_),
       subscribers_(limits_, &subjects_, parts.pictures, parts.settings,
                    /*all_drivers=*/recording_ != nullptr || parts.on_weights != nullptr,

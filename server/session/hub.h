@@ -46,13 +46,11 @@ class Hub {
     Limits limits;
     std::uint64_t session = 1;  // random, not 0
     std::shared_ptr<const wrinkle::Rig> rig;
-    rig::SkeletonMatcher skeletons;                  // finds the rig's joints in foreign skeletons
-    rig::ShapeMatcher shape_matcher;                 // finds the rig's blend shapes by other names
-    const wrinkle::Skeleton* character = nullptr;    // null: draw nothing, move no shapes
-    std::span<const std::string> shapes;             // the character's; outlive the hub
-    const wrinkle::MovedSurface* surface = nullptr;  // the character's; outlives the hub
-    PictureSource* pictures = nullptr;               // null: render nothing
-    render::Settings settings;                       // defaults for all pictures
+    rig::SkeletonMatcher skeletons;   // finds the rig's joints in foreign skeletons
+    rig::ShapeMatcher shape_matcher;  // finds the rig's blend shapes by other names
+    StreamCharacter character;
+    PictureSource* pictures = nullptr;  // null: render nothing
+    render::Settings settings;          // defaults for all pictures
     Metrics* metrics = nullptr;
     std::function<std::uint64_t()> make_token;  // returns unpredictable numbers, never 0
     OnWeights on_weights;                       // optional; used for OSC output

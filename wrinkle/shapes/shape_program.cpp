@@ -168,6 +168,7 @@ JobStatus ShapeProgram::Run(std::span<const float> coefficients, std::span<float
   const Values values{coefficients, steps, weights};
   for (std::size_t i = 0; i < steps_.size(); ++i) steps[i] = Evaluate(steps_[i], values);
   for (const Sum& shape : shapes_) weights[shape.shape] = Evaluate(shape, values);
+  if (!rules_.empty()) rules_.Apply(weights.first(num_shapes_));
   return JobStatus::kOk;
 }
 

@@ -10,6 +10,7 @@
 
 #include "base/status.h"
 #include "wrinkle/shapes/shape_formula.h"
+#include "wrinkle/shapes/shape_rules.h"
 #include "wrinkle/skeleton/pose.h"
 
 namespace furrow::wrinkle {
@@ -40,6 +41,9 @@ class ShapeProgram {
   [[nodiscard]] std::size_t num_shapes() const { return num_shapes_; }
   // True if the stream moves none of the shapes.
   [[nodiscard]] bool empty() const { return shapes_.empty(); }
+
+  // Applies to every pose's weights. `rules` is for num_shapes() shapes.
+  void SetRules(ShapeRules rules) { rules_ = std::move(rules); }
 
   // Writes num_shapes() weights. `coefficients` are in the stream's order; missing ones count as 0.
   // Does not allocate, and changes nothing on failure. Errors: kSizeMismatch (`weights` is too
@@ -72,6 +76,7 @@ class ShapeProgram {
   std::vector<Term> terms_;
   std::vector<ShapeInput> inputs_;
   std::size_t num_shapes_ = 0;
+  ShapeRules rules_;
 };
 
 }  // namespace furrow::wrinkle

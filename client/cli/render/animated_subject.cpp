@@ -30,6 +30,7 @@ Result<std::unique_ptr<AnimatedSubject>> AnimatedSubject::Create(
       wrinkle::BlendShapePose::Create(character.rig, character.skeleton, self->shapes_.pose_names(),
                                       shapes.AllNamesOf(character.shapes));
   self->shape_program_ = rig::MatchShapes(shapes, self->shapes_.source_names(), character.shapes);
+  self->shape_program_.SetRules({character.shape_rules, character.shapes});
   // A recording with joints turns the head by them.
   if (take.skeleton.num_joints() == 0) {
     self->head_turn_ = wrinkle::HeadTurn::Create(character.skeleton, match.character.roles,

@@ -70,7 +70,7 @@ protocol::PoseFrame Bend(float radians) {
 }
 
 std::shared_ptr<const StreamDefinition> Define(bool filter = false) {
-  StreamDefinitions definitions(KneeRig(filter), nullptr, 4);
+  StreamDefinitions definitions(KneeRig(filter), {}, 4);
   auto definition = definitions.Get(ToStreamOffer(KneeOffer()));
   EXPECT_TRUE(definition.ok()) << definition.status().ToString();
   return *std::move(definition);
@@ -137,7 +137,7 @@ TEST(WireAdapter, RejectsPosesOfOtherStreams) {
 }
 
 TEST(StreamDefinitions, EqualStreamsShareADefinitionAndTheOldestIsEvicted) {
-  StreamDefinitions definitions(KneeRig(), nullptr, 2);
+  StreamDefinitions definitions(KneeRig(), {}, 2);
   const auto get = [&](const protocol::SkeletonOffer& offer) {
     return definitions.Get(ToStreamOffer(offer)).value();
   };
@@ -154,7 +154,7 @@ TEST(StreamDefinitions, EqualStreamsShareADefinitionAndTheOldestIsEvicted) {
 }
 
 TEST(StreamDefinitions, ASkeletonThatIsNotATreeIsRejected) {
-  StreamDefinitions definitions(KneeRig(), nullptr, 2);
+  StreamDefinitions definitions(KneeRig(), {}, 2);
   StreamOffer offer = ToStreamOffer(KneeOffer());
   offer.joints[1].parent = 2;
   const auto result = definitions.Get(std::move(offer));
@@ -182,7 +182,7 @@ wrinkle::Skeleton Head(const char* joint) {
 
 TEST(StreamDefinitions, AStreamThatMatchesNothingIsLoggedOnce) {
   const wrinkle::Skeleton character = Head("head");
-  StreamDefinitions definitions(KneeRig(), &character, 4);
+  StreamDefinitions definitions(KneeRig(), {.skeleton = &character}, 4);
   StreamOffer offer;
   offer.joints = {{.name = "tail_01", .parent = wrinkle::kNoJoint}};
   LogCapture log;
@@ -201,7 +201,7 @@ TEST(StreamDefinitions, BlendShapesMoveTheCharactersShapes) {
   StreamOffer offer;
   offer.blend_shapes = {"JawOpen", "tongueOut"};
   LogCapture log;
-  StreamDefinitions definitions(KneeRig(), &character, 4, {}, {}, shapes);
+  StreamDefinitions definitions(KneeRig(), {.skeleton = &character, .shapes = shapes}, 4);
   const auto definition = definitions.Get(offer);
   ASSERT_TRUE(definition.ok()) << definition.status().ToString();
   EXPECT_THAT(log.text(), Not(HasSubstr("pictures show the rest pose")));
@@ -214,7 +214,7 @@ TEST(StreamDefinitions, BlendShapesMoveTheCharactersShapes) {
   ASSERT_EQ(snapshot->shape_program->Run(snapshot->blend_shapes, weights), wrinkle::JobStatus::kOk);
   EXPECT_EQ(weights, (std::vector<float>{0.0f, 0.5f}));
   // Without shapes nothing of the character moves, which is said.
-  StreamDefinitions none(KneeRig(), &character, 4);
+  StreamDefinitions none(KneeRig(), {.skeleton = &character}, 4);
   ASSERT_TRUE(none.Get(offer).ok());
   EXPECT_THAT(log.text(), HasSubstr("pictures show the rest pose"));
 }
@@ -229,7 +229,7 @@ TEST(StreamDefinitions, WarningsOfTheBindingAreLogged) {
     elbow.hinge.end = elbow.hinge.parent;  // not below the joint
     rig->drivers.push_back(elbow);
   }
-  StreamDefinitions definitions(rig, nullptr, 4);
+  StreamDefinitions definitions(rig, {}, 4);
   LogCapture log;
   ASSERT_TRUE(definitions.Get(ToStreamOffer(KneeOffer())).ok());
   EXPECT_THAT(log.text(), HasSubstr("driver 'knee_0'")) << log.text();
@@ -244,7 +244,7 @@ TEST(StreamDefinitions, AFaceWithoutJointsLacksNothing) {
   jaw.kind = wrinkle::Driver::Kind::kBlendShape;
   jaw.blend_shape.blend_shape = "jawOpen";
   rig->drivers.push_back(jaw);
-  StreamDefinitions definitions(rig, nullptr, 4);
+  StreamDefinitions definitions(rig, {}, 4);
   LogCapture log;
   ASSERT_TRUE(definitions.Get({.joints = {}, .blend_shapes = {"jawOpen"}}).ok());
   EXPECT_THAT(log.text(), Not(HasSubstr("lacks"))) << log.text();
@@ -254,7 +254,7 @@ TEST(StreamDefinitions, IgnoredJointsAreLogged) {
   const wrinkle::Skeleton character = Head("foot");
   for (const wrinkle::Skeleton* drawn :
        {static_cast<const wrinkle::Skeleton*>(nullptr), &character}) {
-    StreamDefinitions definitions(KneeRig(), drawn, 4);
+    StreamDefinitions definitions(KneeRig(), {.skeleton = drawn}, 4);
     LogCapture log;
     ASSERT_TRUE(definitions.Get(ToStreamOffer(KneeOffer())).ok());
     EXPECT_THAT(log.text(), HasSubstr(drawn == nullptr ? "ignored: hips, foot" : "ignored: hips"));
@@ -298,7 +298,7 @@ TEST(StreamDefinitions, AForeignStreamFeedsTheRigAndMovesTheCharacter) {
     offer.joints.push_back(
         {stream.joint_names()[i], stream.joint_parents()[i], stream.rest_pose()[i], {}});
   }
-  StreamDefinitions definitions(rig, &character, 4, *matcher);
+  StreamDefinitions definitions(rig, {.skeleton = &character}, 4, *matcher);
   LogCapture log;
   const auto definition = definitions.Get(offer);
   ASSERT_TRUE(definition.ok()) << definition.status().ToString();
@@ -336,8 +336,7 @@ std::shared_ptr<const wrinkle::Rig> FaceRig(const char* blend_shape) {
 }
 
 TEST(SubjectPipeline, PresetsMoveARigOfArkit) {
-  StreamDefinitions definitions(FaceRig("mouthSmileLeft"), nullptr, 4, {},
-                                rig::ShippedShapeMatcher());
+  StreamDefinitions definitions(FaceRig("mouthSmileLeft"), {}, 4, {}, rig::ShippedShapeMatcher());
   LogCapture log;
   const auto definition = definitions.Get({.joints = {}, .blend_shapes = {"Joy", "A", "Blink"}});
   ASSERT_TRUE(definition.ok()) << definition.status().ToString();
