@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "gltf/document/draco_mesh.h"
+#include "gltf/scene/vrm_look_at.h"
 
 namespace furrow::character {
 
@@ -27,6 +29,7 @@ struct SourceNotes {
   std::vector<MeshNotes> meshes;              // one per mesh of Character::meshes, in that order
   std::vector<std::string> missing_pictures;  // "name: reason"
   std::vector<std::string> idle_shapes;       // morph targets that move no vertex; left out
+  std::optional<gltf::VrmLookAt> look_at;     // of the eyes' joints
   int nameless_joints = 0;  // joints without a name, which are now called "node_<number>"
 };
 

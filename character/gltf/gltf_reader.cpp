@@ -52,7 +52,10 @@ Status ReadGltfCharacter(std::string_view bytes, const std::filesystem::path& fo
   FURROW_RETURN_IF_ERROR(meshes);
   Result<std::vector<Picture>> pictures = ReadGltfPictures(*document, options);
   FURROW_RETURN_IF_ERROR(pictures);
-  if (options.notes != nullptr) options.notes->nameless_joints = skeleton->num_nameless_joints;
+  if (options.notes != nullptr) {
+    options.notes->nameless_joints = skeleton->num_nameless_joints;
+    options.notes->look_at = gltf::ReadVrmLookAt(*document);
+  }
   character->name = document->SceneName();
   character->skeleton = std::move(skeleton->skeleton);
   character->inverse_bind_matrices = std::move(skeleton->inverse_bind_matrices);

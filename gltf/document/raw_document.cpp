@@ -333,10 +333,12 @@ class RawReader {
     return {};
   }
 
-  // Of VRM's extensions, characters need the expressions.
-  static void KeepExpressions(const Json& extensions, Json* reduced) {
+  // Of VRM's extensions, characters need the expressions and look-at.
+  static void KeepVrm(const Json& extensions, Json* reduced) {
     constexpr std::pair<const char*, const char*> kParts[] = {{"VRM", "blendShapeMaster"},
-                                                              {"VRMC_vrm", "expressions"}};
+                                                              {"VRM", "firstPerson"},
+                                                              {"VRMC_vrm", "expressions"},
+                                                              {"VRMC_vrm", "lookAt"}};
     for (const auto& [name, part] : kParts) {
       const Json* vrm = Find(extensions, name);
       const Json* kept = vrm != nullptr ? Find(*vrm, part) : nullptr;
@@ -367,7 +369,7 @@ class RawReader {
     const Json* vrm =
         extensions != nullptr && animation ? Find(*extensions, "VRMC_vrm_animation") : nullptr;
     if (vrm != nullptr) reduced["extensions"]["VRMC_vrm_animation"] = *vrm;
-    if (extensions != nullptr && !animation) KeepExpressions(*extensions, &reduced);
+    if (extensions != nullptr && !animation) KeepVrm(*extensions, &reduced);
     AddViewStandIns(&reduced);
     // Replaces malformed UTF-8, for which dump() would throw.
     result_.json = reduced.dump(-1, ' ', false, Json::error_handler_t::replace);

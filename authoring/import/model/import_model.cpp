@@ -143,6 +143,7 @@ Result<ImportedModel> ImportModel(const fs::path& path, const rig::SkeletonMaps&
     }
   }
   imported.character = std::move(opened->character);
+  imported.look_at = opened->notes.look_at;
   return imported;
 }
 

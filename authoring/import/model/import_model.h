@@ -42,6 +42,7 @@ struct ImportedModel {
   character::Character character;    // metres, +Y up, facing +Z; without a rig
   std::vector<std::string> remarks;  // what was changed, and what was lost
   std::vector<std::string> warnings;
+  std::optional<gltf::VrmLookAt> look_at;  // of a VRM avatar's eyes, by joints
 };
 
 // Opens a model with OpenModel() and prepares it for drawing: rotates and scales it, removes

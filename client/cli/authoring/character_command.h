@@ -3,6 +3,7 @@
 
 #include "authoring/import/model/rig_proposal.h"
 #include "client/cli/common/command.h"
+#include "gltf/scene/vrm_look_at.h"
 
 namespace furrow::cli {
 
@@ -19,11 +20,13 @@ enum class ProposalPart {
 };
 
 // Proposes a rig for `skeleton` from the default character's rig. `map`: the skeleton map of the
-// joint names, by file or by name of a shipped map; empty: the best match. Errors: those of loading
+// joint names, by file or by name of a shipped map; empty: the best match. `look_at`: how the eyes'
+// joints follow a gaze; see AddEyePoses(). Errors: those of loading
 // the default character and the map, and of ProposeRig().
 [[nodiscard]] Result<authoring::RigProposal> ProposeFromDefault(
     const wrinkle::Skeleton& skeleton, const std::string& map,
-    ProposalPart part = ProposalPart::kBodyAndFace);
+    ProposalPart part = ProposalPart::kBodyAndFace,
+    const std::optional<gltf::VrmLookAt>& look_at = std::nullopt);
 
 // Prints "furrow: note: <text>" to standard error for each note.
 void PrintNotes(const std::vector<std::string>& notes);

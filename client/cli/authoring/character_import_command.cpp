@@ -117,7 +117,8 @@ Status AddFaceOfShapes(const ImportArguments& arguments, const authoring::ArkitF
 }
 
 // Attaches the requested rig, or a proposed one.
-Status AttachRigTo(const ImportArguments& arguments, character::Character* character) {
+Status AttachRigTo(const ImportArguments& arguments, authoring::ImportedModel* imported) {
+  character::Character* character = &imported->character;
   if (!arguments.rig.empty()) {
     auto rig = LoadRigArgument(arguments.rig);
     FURROW_RETURN_IF_ERROR(rig);
@@ -127,7 +128,8 @@ Status AttachRigTo(const ImportArguments& arguments, character::Character* chara
   const authoring::ArkitFace face(*character, arguments.model.shapes);
   const bool shapes = authoring::HasShapeFace(face);
   auto proposal = ProposeFromDefault(character->skeleton, arguments.map,
-                                     shapes ? ProposalPart::kBody : ProposalPart::kBodyAndFace);
+                                     shapes ? ProposalPart::kBody : ProposalPart::kBodyAndFace,
+                                     imported->look_at);
   if (proposal.ok()) {
     PrintNotes(proposal->remarks);
     FURROW_RETURN_IF_ERROR(
@@ -152,7 +154,7 @@ int ImportFile(ImportArguments arguments) {
   character::Character& character = imported->character;
   PrintNotes(imported->remarks);
   PrintWarnings(imported->warnings);
-  if (Status status = AttachRigTo(arguments, &character); !status.ok()) return Fail(status);
+  if (Status status = AttachRigTo(arguments, &*imported); !status.ok()) return Fail(status);
   const Status written = character.rig.drivers.empty()
                              ? character::SaveCharacterGlb(character, arguments.out)
                              : authoring::WriteCharacterPackage(character, arguments.out);

@@ -4,6 +4,7 @@
 #include <memory>
 #include <utility>
 
+#include "authoring/import/model/eye_poses.h"
 #include "authoring/import/model/import_model.h"
 #include "authoring/import/model/shape_face.h"
 #include "authoring/shapes/arkit_face.h"
@@ -29,6 +30,7 @@ struct ProposeArguments {
 struct RigSubject {
   wrinkle::Skeleton skeleton;
   character::Character model;
+  std::optional<gltf::VrmLookAt> look_at;
 };
 
 // Loads the skeleton of a recording, recognised by its extension, or a model.
@@ -38,12 +40,14 @@ Result<RigSubject> LoadRigSubject(const std::string& file) {
       extension == ".mhpose") {
     auto clip = LoadClipArgument(file);
     FURROW_RETURN_IF_ERROR(clip);
-    return RigSubject{.skeleton = std::move(clip->skeleton), .model = {}};
+    return RigSubject{.skeleton = std::move(clip->skeleton), .model = {}, .look_at = {}};
   }
   auto model = authoring::OpenModel(file);
   FURROW_RETURN_IF_ERROR(model);
   wrinkle::Skeleton skeleton = model->character.skeleton;
-  return RigSubject{.skeleton = std::move(skeleton), .model = std::move(model->character)};
+  return RigSubject{.skeleton = std::move(skeleton),
+                    .model = std::move(model->character),
+                    .look_at = model->notes.look_at};
 }
 
 // Adds the face of a model with ARKit's blend shapes to a proposal, and writes its masks beside the
@@ -79,7 +83,8 @@ Result<authoring::RigProposal> ProposeFor(const ProposeArguments& arguments, Rig
   const authoring::ArkitFace face(subject.model, *matcher);
   const bool shapes = authoring::HasShapeFace(face);
   auto proposal = ProposeFromDefault(subject.skeleton, arguments.map,
-                                     shapes ? ProposalPart::kBody : ProposalPart::kBodyAndFace);
+                                     shapes ? ProposalPart::kBody : ProposalPart::kBodyAndFace,
+                                     subject.look_at);
   if (shapes && proposal.status().code() == StatusCode::kNotFound) {
     proposal = authoring::RigProposal();
   }
@@ -108,7 +113,8 @@ int Propose(const ProposeArguments& arguments) {
 }  // namespace
 
 Result<authoring::RigProposal> ProposeFromDefault(const wrinkle::Skeleton& skeleton,
-                                                  const std::string& map, ProposalPart part) {
+                                                  const std::string& map, ProposalPart part,
+                                                  const std::optional<gltf::VrmLookAt>& look_at) {
   const auto maps = rig::SkeletonMaps::Load(map);
   FURROW_RETURN_IF_ERROR(maps);
   const auto shipped = rig::SkeletonMaps::LoadShipped();
@@ -122,7 +128,10 @@ Result<authoring::RigProposal> ProposeFromDefault(const wrinkle::Skeleton& skele
   }
   const authoring::FoundJoints model_joints = authoring::FindJoints(model->skeleton, *shipped);
   const authoring::FoundJoints joints = authoring::FindJoints(skeleton, *maps);
-  return authoring::ProposeRig(model->rig, {&model->skeleton, &model_joints}, {&skeleton, &joints});
+  auto proposal =
+      authoring::ProposeRig(model->rig, {&model->skeleton, &model_joints}, {&skeleton, &joints});
+  if (proposal.ok()) authoring::AddEyePoses(skeleton, joints.roles, look_at, &proposal->rig);
+  return proposal;
 }
 
 void PrintNotes(const std::vector<std::string>& notes) {

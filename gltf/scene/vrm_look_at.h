@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "gltf/document/document.h"
+
+namespace furrow::gltf {
+
+// How the eyes of a VRM avatar follow a gaze by their bones.
+struct VrmLookAt {
+  // A gaze of `input` degrees or more turns an eye by `output` degrees, a smaller one by its share.
+  struct Range {
+    float input = 90.0f;
+    float output = 10.0f;
+  };
+  Range inner, outer;  // towards the nose, away from it
+  Range down, up;
+};
+
+// Reads look-at by bones of VRM 0.x (VRM.firstPerson) and 1.0 (VRMC_vrm.lookAt) of a document with
+// Contents::kCharacter. Nullopt if the file has none or moves the eyes by expressions. Ranges that
+// are missing or that are not numbers from 0 to 180 have VRM's defaults.
+[[nodiscard]] std::optional<VrmLookAt> ReadVrmLookAt(const Document& document);
+
+}  // namespace furrow::gltf
