@@ -2,7 +2,9 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
+#include "character/mesh/mesh.h"
 #include "gltf/scene/vrm_look_at.h"
 #include "wrinkle/rig/rig.h"
 #include "wrinkle/skeleton/joint_role.h"
@@ -10,14 +12,22 @@
 
 namespace furrow::authoring {
 
+// What is known about a model's eyes besides their joints.
+struct EyeSurface {
+  std::span<const character::Mesh> meshes;  // upright (+Y), facing +Z
+  std::optional<gltf::VrmLookAt> look_at;   // the avatar's own ranges
+};
+
 // Adds the eight reference poses eyeLookUpLeft to eyeLookOutRight, by which streams with ARKit's
-// shapes turn the joints of the eyes. Poses that the rig has stay. `look_at`: the avatar's own
-// ranges; without them, 30 degrees to the sides and down and 25 up. A shape at 1 counts as a gaze
-// of 30 degrees.
+// shapes turn the joints of the eyes. Poses that the rig has stay. A shape at 1 counts as a gaze of
+// 30 degrees.
 //
-// `skeleton` is upright (+Y) and faces +Z. Returns false, and adds nothing, if the skeleton lacks
-// the role of an eye.
+// Without ranges, eyeballs turn by 30 degrees to the sides and down and by 25 up. A flat iris, as
+// of drawn characters, moves by a fifth of its width to the sides and by an eighth up and down:
+// farther, it would sink into the eye.
+//
+// Returns false, and adds nothing, if the skeleton lacks the role of an eye.
 bool AddEyePoses(const wrinkle::Skeleton& skeleton, const wrinkle::JointRoles& roles,
-                 const std::optional<gltf::VrmLookAt>& look_at, wrinkle::Rig* rig);
+                 const EyeSurface& eyes, wrinkle::Rig* rig);
 
 }  // namespace furrow::authoring

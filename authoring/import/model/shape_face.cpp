@@ -225,6 +225,7 @@ Result<std::vector<std::string>> ProposeShapeFace(const wrinkle::Rig& arkit, con
         "no material is cloth, so clothes do not fold; put 'cloth' into the names of their "
         "materials");
   }
+  rig.reference_poses = character->rig.reference_poses;  // of the eyes
   BodyPart(std::move(character->rig), has_cloth).AddTo(&rig);
   character->rig = std::move(rig);
   return remarks;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "authoring/import/model/eye_poses.h"
 #include "authoring/import/model/rig_proposal.h"
 #include "client/cli/common/command.h"
 #include "gltf/scene/vrm_look_at.h"
@@ -20,13 +21,12 @@ enum class ProposalPart {
 };
 
 // Proposes a rig for `skeleton` from the default character's rig. `map`: the skeleton map of the
-// joint names, by file or by name of a shipped map; empty: the best match. `look_at`: how the eyes'
-// joints follow a gaze; see AddEyePoses(). Errors: those of loading
+// joint names, by file or by name of a shipped map; empty: the best match. `eyes`: the
+// model's; see AddEyePoses(). Errors: those of loading
 // the default character and the map, and of ProposeRig().
 [[nodiscard]] Result<authoring::RigProposal> ProposeFromDefault(
     const wrinkle::Skeleton& skeleton, const std::string& map,
-    ProposalPart part = ProposalPart::kBodyAndFace,
-    const std::optional<gltf::VrmLookAt>& look_at = std::nullopt);
+    ProposalPart part = ProposalPart::kBodyAndFace, const authoring::EyeSurface& eyes = {});
 
 // Prints "furrow: note: <text>" to standard error for each note.
 void PrintNotes(const std::vector<std::string>& notes);

@@ -129,7 +129,7 @@ Status AttachRigTo(const ImportArguments& arguments, authoring::ImportedModel* i
   const bool shapes = authoring::HasShapeFace(face);
   auto proposal = ProposeFromDefault(character->skeleton, arguments.map,
                                      shapes ? ProposalPart::kBody : ProposalPart::kBodyAndFace,
-                                     imported->look_at);
+                                     {character->meshes, imported->look_at});
   if (proposal.ok()) {
     PrintNotes(proposal->remarks);
     FURROW_RETURN_IF_ERROR(

@@ -84,7 +84,7 @@ Result<authoring::RigProposal> ProposeFor(const ProposeArguments& arguments, Rig
   const bool shapes = authoring::HasShapeFace(face);
   auto proposal = ProposeFromDefault(subject.skeleton, arguments.map,
                                      shapes ? ProposalPart::kBody : ProposalPart::kBodyAndFace,
-                                     subject.look_at);
+                                     {subject.model.meshes, subject.look_at});
   if (shapes && proposal.status().code() == StatusCode::kNotFound) {
     proposal = authoring::RigProposal();
   }
@@ -114,7 +114,7 @@ int Propose(const ProposeArguments& arguments) {
 
 Result<authoring::RigProposal> ProposeFromDefault(const wrinkle::Skeleton& skeleton,
                                                   const std::string& map, ProposalPart part,
-                                                  const std::optional<gltf::VrmLookAt>& look_at) {
+                                                  const authoring::EyeSurface& eyes) {
   const auto maps = rig::SkeletonMaps::Load(map);
   FURROW_RETURN_IF_ERROR(maps);
   const auto shipped = rig::SkeletonMaps::LoadShipped();
@@ -130,7 +130,7 @@ Result<authoring::RigProposal> ProposeFromDefault(const wrinkle::Skeleton& skele
   const authoring::FoundJoints joints = authoring::FindJoints(skeleton, *maps);
   auto proposal =
       authoring::ProposeRig(model->rig, {&model->skeleton, &model_joints}, {&skeleton, &joints});
-  if (proposal.ok()) authoring::AddEyePoses(skeleton, joints.roles, look_at, &proposal->rig);
+  if (proposal.ok()) authoring::AddEyePoses(skeleton, joints.roles, eyes, &proposal->rig);
   return proposal;
 }
 

@@ -56,7 +56,7 @@ float Sine(float degrees) { return std::sin(degrees * 3.14159265f / 180.0f); }
 TEST(EyePoses, LookWhereTheirNamesSay) {
   const wrinkle::Skeleton skeleton = Eyes();
   wrinkle::Rig rig;
-  ASSERT_TRUE(AddEyePoses(skeleton, RolesOf(skeleton), std::nullopt, &rig));
+  ASSERT_TRUE(AddEyePoses(skeleton, RolesOf(skeleton), EyeSurface(), &rig));
   EXPECT_EQ(rig.reference_poses.size(), 8u);
   EXPECT_NEAR(Gaze(rig, skeleton, "eyeLookUpLeft", "L").y, Sine(25), 1e-4f);
   EXPECT_NEAR(Gaze(rig, skeleton, "eyeLookDownRight", "R").y, -Sine(30), 1e-4f);
@@ -74,22 +74,45 @@ TEST(EyePoses, FollowTheRangesOfTheAvatar) {
   wrinkle::Rig rig;
   const gltf::VrmLookAt look_at{
       .inner = {90.0f, 12.0f}, .outer = {10.0f, 20.0f}, .down = {30.0f, 8.0f}, .up = {0.0f, 5.0f}};
-  ASSERT_TRUE(AddEyePoses(skeleton, RolesOf(skeleton), look_at, &rig));
+  ASSERT_TRUE(AddEyePoses(skeleton, RolesOf(skeleton), {.look_at = look_at}, &rig));
   EXPECT_NEAR(Gaze(rig, skeleton, "eyeLookInLeft", "L").x, -Sine(4), 1e-4f);
   EXPECT_NEAR(Gaze(rig, skeleton, "eyeLookOutLeft", "L").x, Sine(20), 1e-4f);
   EXPECT_NEAR(Gaze(rig, skeleton, "eyeLookDownLeft", "L").y, -Sine(8), 1e-4f);
   EXPECT_NEAR(Gaze(rig, skeleton, "eyeLookUpLeft", "L").y, Sine(5), 1e-4f);
 }
 
+// The iris of a drawn face is a plate far before its joint, and sinks into the eye if it turns as
+// far as a ball. Here the joint is at (0.03, 1.7, 0.1), and the width is 0.02.
+TEST(EyePoses, TurnFlatIrisesLess) {
+  const wrinkle::Skeleton skeleton = Eyes();
+  const auto left = static_cast<std::uint16_t>(skeleton.Find("L"));
+  for (const float before : {0.0f, 0.05f}) {
+    character::Mesh mesh;
+    for (const glm::vec3 corner :
+         {glm::vec3(0.02f, 1.69f, 0.09f + before), glm::vec3(0.04f, 1.71f, 0.11f + before)}) {
+      character::Vertex& vertex = mesh.vertices.emplace_back();
+      vertex.position = corner;
+      vertex.joints[0] = left;
+      vertex.skin_weights[0] = 1.0f;
+    }
+    wrinkle::Rig rig;
+    ASSERT_TRUE(AddEyePoses(skeleton, RolesOf(skeleton), {.meshes = {&mesh, 1}}, &rig));
+    const float side = Gaze(rig, skeleton, "eyeLookOutLeft", "L").x;
+    EXPECT_NEAR(side, before > 0.0f ? std::sin(0.2f * 0.02f / 0.05f) : Sine(30), 1e-4f);
+    EXPECT_NEAR(Gaze(rig, skeleton, "eyeLookUpRight", "R").y, Sine(25), 1e-4f)
+        << "nothing follows the right eye";
+  }
+}
+
 TEST(EyePoses, KeepThoseOfTheRigAndNeedBothEyes) {
   const wrinkle::Skeleton skeleton = Eyes();
   wrinkle::Rig rig;
   rig.reference_poses.push_back({.name = "eyeLookUpLeft"});
-  EXPECT_TRUE(AddEyePoses(skeleton, RolesOf(skeleton), std::nullopt, &rig));
+  EXPECT_TRUE(AddEyePoses(skeleton, RolesOf(skeleton), EyeSurface(), &rig));
   EXPECT_EQ(rig.reference_poses.size(), 8u);
   EXPECT_TRUE(rig.reference_poses[0].joints.empty());
   wrinkle::Rig none;
-  EXPECT_FALSE(AddEyePoses(skeleton, wrinkle::JointRoles(3), std::nullopt, &none));
+  EXPECT_FALSE(AddEyePoses(skeleton, wrinkle::JointRoles(3), EyeSurface(), &none));
   EXPECT_TRUE(none.reference_poses.empty());
 }
 
