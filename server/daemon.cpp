@@ -204,7 +204,7 @@ Status Daemon::Listen() {
 
 Status Daemon::LoadPlayer() {
   if (config_.play.empty()) return {};
-  auto player = Player::Load(config_.play, ReadOptions(config_));
+  auto player = Player::Load(config_.play, PlayOptions(config_));
   FURROW_RETURN_IF_ERROR(player);
   player_ = *std::move(player);
   return {};

@@ -60,6 +60,10 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
   app->add_option("--bvh-positions", config->bvh_positions,
                   "Position channels of BVH joints: auto, channels, offsets or add\n"
                   "(default: auto; 'furrow convert --help' explains them)");
+  app->add_option("--rest-frame", config->rest_frame,
+                  "Frame of the --play recording to take as its rest pose, counted from 0;\n"
+                  "the performer stands upright and faces +Z there (default: the file's own)")
+      ->type_name("N");
   app->add_flag("--no-render", flags->no_render, "Send weights only; do not use OpenGL");
   app->add_flag("--require-render", config->require_render, "Exit with 1 if OpenGL is unavailable");
   app->add_option("--render-device", config->render_device,

@@ -80,6 +80,12 @@ motion::LoadOptions ReadOptions(const Config& config) {
   return options;
 }
 
+motion::LoadOptions PlayOptions(const Config& config) {
+  motion::LoadOptions options = ReadOptions(config);
+  options.rest_frame = config.rest_frame;
+  return options;
+}
+
 Status ValidateConfig(const Config& config) {
   if (!IsNumericAddress(config.bind)) {
     return Status(StatusCode::kInvalidArgument,
@@ -96,6 +102,10 @@ Status ValidateConfig(const Config& config) {
   if (config.threads < 1 || config.threads > kMaxThreads) {
     return Invalid("--threads is " + std::to_string(config.threads) + "; it must be 1 to " +
                    std::to_string(kMaxThreads));
+  }
+  if (config.rest_frame < -1) {
+    return Invalid("--rest-frame: " + std::to_string(config.rest_frame) +
+                   " is not a frame; frames count from 0");
   }
   if (!motion::ParseBvhPositions(config.bvh_positions)) {
     return Invalid("--bvh-positions: '" + config.bvh_positions + "' is not one of " +

@@ -56,6 +56,7 @@ struct Config {
   HttpConfig http;
   std::filesystem::path play;          // recording to play inside the daemon; empty: none
   std::string bvh_positions = "auto";  // motion::ParseBvhPositions()
+  int rest_frame = -1;                 // frame of `play` that is its rest pose; -1: the file's own
   bool verbose = false;                // print a status line every second
   bool log_json = false;               // log JSON objects instead of text
   Limits limits;
@@ -64,6 +65,8 @@ struct Config {
 
 // How recordings are read: --play and those of the rig's reference poses.
 [[nodiscard]] motion::LoadOptions ReadOptions(const Config& config);
+// The same for the recording that `play` names.
+[[nodiscard]] motion::LoadOptions PlayOptions(const Config& config);
 
 // Reads a TOML file, or the text of one, into `config`. Keys that it does not set keep their
 // values. `source_name`: the file name in errors. After an error `config` may be partly changed.

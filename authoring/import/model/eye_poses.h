@@ -12,7 +12,7 @@
 
 namespace furrow::authoring {
 
-// What is known about a model's eyes besides their joints.
+// A model's eyes, besides their joints.
 struct EyeSurface {
   std::span<const character::Mesh> meshes;  // upright (+Y), facing +Z
   std::optional<gltf::VrmLookAt> look_at;   // the avatar's own ranges

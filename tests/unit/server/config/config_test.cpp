@@ -59,6 +59,8 @@ TEST(CommandLine, EveryFlagReachesTheConfig) {
                                   "1",
                                   "--udp",
                                   "2",
+                                  "--rest-frame",
+                                  "12",
                                   "--no-render",
                                   "--vmc",
                                   "3",
@@ -91,6 +93,9 @@ TEST(CommandLine, EveryFlagReachesTheConfig) {
   EXPECT_EQ(config.bind, "::1");
   EXPECT_EQ(config.tcp, 1);
   EXPECT_EQ(config.udp, 2);
+  // The rig's reference poses keep the rest poses of their files.
+  EXPECT_EQ(PlayOptions(config).rest_frame, 12);
+  EXPECT_EQ(ReadOptions(config).rest_frame, -1);
   EXPECT_FALSE(config.render);
   EXPECT_EQ(config.vmc, 3);
   EXPECT_EQ(config.livelink_face, 4);
@@ -167,6 +172,7 @@ TEST(ParseConfig, ReadsEveryTable) {
   Config config;
   const Status status = ParseText(
       "character = 'face.glb'\nrig = '/abs/rig.json'\nskeleton_map = 'cmu'\nshape_map = 'cc4'\n"
+      "rest_frame = 7\n"
       "[listen]\nbind = '0.0.0.0'\ntcp = 0\nudp = 1\nthreads = 3\n"
       "[render]\nenabled = true\nrequired = true\ndevice = '1'\n"
       "[mocap]\nvmc = 39539\nlivelink_face = 11111\n"
@@ -181,6 +187,7 @@ TEST(ParseConfig, ReadsEveryTable) {
   EXPECT_EQ(config.rig, "/abs/rig.json");
   EXPECT_EQ(config.skeleton_map, "cmu");
   EXPECT_EQ(config.shape_map, "cc4");
+  EXPECT_EQ(config.rest_frame, 7);
   EXPECT_TRUE(config.require_render);
   EXPECT_EQ(config.osc_out->host, "::1");
   EXPECT_EQ(config.record, (RecordConfig{"takes", 2.0, 60.0, false}));
@@ -255,6 +262,12 @@ TEST(ValidateConfig, NamesTheLimitThatIsOutOfRange) {
   config = {};
   config.osc_prefix = "a b";
   EXPECT_THAT(ValidateConfig(config).what(), HasSubstr("osc.prefix"));
+}
+
+TEST(ValidateConfig, FramesCountFrom0) {
+  Config config;
+  config.rest_frame = -2;
+  EXPECT_THAT(ValidateConfig(config).what(), testing::HasSubstr("--rest-frame"));
 }
 
 TEST(ValidateConfig, SeveralServicesMayUsePortZero) {
