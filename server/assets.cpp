@@ -46,8 +46,8 @@ bool ReadsBlendShapes(const wrinkle::Rig& rig) {
 // Null without shapes, and if neither pictures nor the rig show them.
 std::shared_ptr<const CharacterShapes> ShapesOf(const character::Character& character, bool draws) {
   if (character.shapes.empty() || !(draws || ReadsBlendShapes(character.rig))) return nullptr;
-  return std::make_shared<const CharacterShapes>(character.skeleton, character.shapes,
-                                                 character::FindMovedSurface(character.meshes));
+  return std::make_shared<const CharacterShapes>(CharacterShapes{
+      character.skeleton, character.shapes, character::FindMovedSurface(character.meshes)});
 }
 
 // Shipped maps are optional; only a map that the user asks for must exist.

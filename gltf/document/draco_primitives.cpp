@@ -109,7 +109,9 @@ class Decoding {
     if (ids == nullptr || !ids->is_object() || attributes == nullptr) {
       return {StatusCode::kSchema, "expected an object", found.field + ".attributes"};
     }
-    for (const auto& [name, id] : ids->items()) {
+    for (const auto& entry : ids->items()) {
+      const std::string& name = entry.key();
+      const Json& id = entry.value();
       const std::string field = found.field + ".attributes." + name;
       const auto has_id = [&](const DracoAttribute& attribute) {
         return id.is_number_unsigned() && id.get<std::uint64_t>() == attribute.id;
