@@ -161,6 +161,14 @@ class CharacterTest(unittest.TestCase):
                 furrow("character", "import", self.changed(change), "--repair", "--out",
                        self.root / "repaired.glb", check=0)
 
+    def test_options_that_the_input_would_ignore_are_refused(self):
+        for options, says in ((("--clothes", "shirt"), "MakeHuman's folder only"),
+                              (("--data", self.root), ".mhm files only")):
+            message = furrow("character", "import", self.changed(lambda *_: None), "--out", self.root / "none.glb",
+                             *options, check=3).stderr.decode()
+            self.assertIn(says, message)
+            self.assertFalse((self.root / "none.glb").exists())
+
     def test_huge_pictures_are_rejected_before_decoding(self):
         def huge(root, binary):
             view = root["bufferViews"][root["images"][0]["bufferView"]]

@@ -176,12 +176,15 @@ int ImportFile(ImportArguments arguments) {
 }
 
 // Options that the input would ignore.
-Status CheckOptions(const ImportArguments& arguments, bool is_save) {
+Status CheckOptions(const ImportArguments& arguments, bool is_save, bool is_folder) {
   if (is_save && !arguments.makehuman.clothes.empty())
     return {StatusCode::kInvalidArgument, "--clothes does not apply to a .mhm file", arguments.in,
             "the file names the clothes itself"};
   if (!is_save && !arguments.data_folders.empty())
     return {StatusCode::kInvalidArgument, "--data applies to .mhm files only", arguments.in};
+  if (!is_save && !is_folder && !arguments.makehuman.clothes.empty())
+    return {StatusCode::kInvalidArgument, "--clothes applies to MakeHuman's folder only",
+            arguments.in, "a model has its clothes itself"};
   return {};
 }
 
@@ -189,9 +192,11 @@ int Import(const ImportArguments& arguments) {
   const std::filesystem::path in(arguments.in);
   std::error_code error;
   const bool is_save = EqualsIgnoreCase(in.extension().string(), ".mhm");
-  if (const Status status = CheckOptions(arguments, is_save); !status.ok()) return Fail(status);
-  if (std::filesystem::is_directory(in, error))
-    return ImportFolder(in, arguments, arguments.makehuman);
+  const bool is_folder = std::filesystem::is_directory(in, error);
+  if (const Status status = CheckOptions(arguments, is_save, is_folder); !status.ok()) {
+    return Fail(status);
+  }
+  if (is_folder) return ImportFolder(in, arguments, arguments.makehuman);
   return is_save ? ImportSave(arguments) : ImportFile(arguments);
 }
 
