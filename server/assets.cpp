@@ -14,6 +14,7 @@
 #include "motion/pose_source.h"
 #include "render/settings/settings_file.h"
 #include "rig/rig_file.h"
+#include "wrinkle/rig/rig_blend_shapes.h"
 
 namespace furrow::server {
 
@@ -38,14 +39,10 @@ Status LoadRigAlone(const fs::path& path, const wrinkle::PoseSource& poses, Asse
   return rig.status();
 }
 
-bool ReadsBlendShapes(const wrinkle::Rig& rig) {
-  return std::ranges::find(rig.drivers, wrinkle::Driver::Kind::kBlendShape,
-                           &wrinkle::Driver::kind) != rig.drivers.end();
-}
-
 // Null without shapes, and if neither pictures nor the rig show them.
 std::shared_ptr<const CharacterShapes> ShapesOf(const character::Character& character, bool draws) {
-  if (character.shapes.empty() || !(draws || ReadsBlendShapes(character.rig))) return nullptr;
+  const bool reads = !wrinkle::BlendShapesOf(character.rig).empty();
+  if (character.shapes.empty() || !(draws || reads)) return nullptr;
   return std::make_shared<const CharacterShapes>(CharacterShapes{
       character.skeleton, character.shapes, character::FindMovedSurface(character.meshes)});
 }
@@ -101,7 +98,7 @@ Result<Assets> LoadAssets(const Config& config) {
   // Weights need no mesh and no pictures, which are large, unless joints may move shapes.
   if (!config.render && !rig.empty()) {
     FURROW_RETURN_IF_ERROR(LoadRigAlone(rig, poses, &assets));
-    if (!ReadsBlendShapes(*assets.rig)) return assets;
+    if (wrinkle::BlendShapesOf(*assets.rig).empty()) return assets;
   }
   auto loaded = character::LoadCharacter(glb, chosen_rig, poses);
   FURROW_RETURN_IF_ERROR(loaded);

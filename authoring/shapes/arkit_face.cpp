@@ -6,6 +6,7 @@
 
 #include "base/ascii.h"
 #include "rig/shapes/arkit_shapes.h"
+#include "rig/shapes/rig_shapes.h"
 
 namespace furrow::authoring {
 namespace {
@@ -15,17 +16,6 @@ std::uint8_t PartOf(std::string_view name) {
   if (name.starts_with("brow")) return 1;
   if (name.starts_with("eye") || name.starts_with("cheekSquint")) return 2;
   return 4;
-}
-
-std::vector<std::string> NamesFor(const wrinkle::Rig& rig) {
-  std::vector<std::string> names(rig::ArkitShapes().begin(), rig::ArkitShapes().end());
-  for (const wrinkle::Driver& driver : rig.drivers) {
-    if (driver.kind != wrinkle::Driver::Kind::kBlendShape) continue;
-    const std::string& name = driver.blend_shape.blend_shape;
-    const auto same = [&](const std::string& other) { return EqualsIgnoreCase(name, other); };
-    if (std::none_of(names.begin(), names.end(), same)) names.push_back(name);
-  }
-  return names;
 }
 
 std::vector<bool> ShapesWithTargets(const character::Character& character) {
@@ -41,7 +31,7 @@ std::vector<bool> ShapesWithTargets(const character::Character& character) {
 }  // namespace
 
 ArkitFace::ArkitFace(const character::Character& character, const rig::ShapeMatcher& matcher) {
-  const std::vector<std::string> names = NamesFor(character.rig);
+  const std::vector<std::string> names = rig::ArkitAndRigShapes(character.rig);
   rig::ShapeMatch match = matcher.Match(names, character.shapes);
   description_ = rig::Describe(match);
   program_ = std::move(match.program);

@@ -65,11 +65,12 @@ class PatchCutter {
     strain_->full_compression = options_.full_compression;
     strain_->size = wrinkle::SkeletonSize(character_.skeleton);
     for (const Piece& piece : pieces_) AddPiece(piece);
-    if (strain_->joints.size() < 2) {
+    AddShapes();
+    if (strain_->joints.size() < 2 && strain_->shapes.empty()) {
       return Status(StatusCode::kInvalidArgument,
                     "the surface there follows joint '" + strain_->joints.front() +
                         "' alone: no pose can compress it",
-                    character_.name, "choose a place that several joints move");
+                    character_.name, "choose a place that several joints or a shape move");
     }
     MeasureFromBase();
     wrinkle::Rig rig;
@@ -193,6 +194,33 @@ class PatchCutter {
     }
     // Dropped influences leave a sum below 1.
     for (float& skin_weight : to.skin_weights) skin_weight = Rounded(skin_weight / sum, 1e4f);
+  }
+
+  // The targets of the patch's meshes, where they move its vertices.
+  void AddShapes() {
+    static_assert(wrinkle::kMaxPatchShapes >= kMaxShapes);
+    std::map<int, wrinkle::StrainDriver::Shape> shapes;  // by their index in the character
+    for (const auto& [mesh, welded] : welded_) {
+      for (const MorphTarget& target : mesh->morph_targets) {
+        for (const MorphDelta& delta : target.deltas) {
+          const auto found = index_.find({mesh, delta.vertex});
+          if (found != index_.end()) AddDelta(found->second, delta, &shapes[target.shape]);
+        }
+      }
+    }
+    for (auto& [index, shape] : shapes) {
+      if (shape.vertices.empty()) continue;
+      shape.blend_shape = character_.shapes[static_cast<std::size_t>(index)];
+      strain_->shapes.push_back(std::move(shape));
+    }
+  }
+
+  static void AddDelta(int vertex, const MorphDelta& delta, wrinkle::StrainDriver::Shape* shape) {
+    const glm::vec3 move(Rounded(delta.position.x, 1e5f), Rounded(delta.position.y, 1e5f),
+                         Rounded(delta.position.z, 1e5f));
+    if (move == glm::vec3(0.0f)) return;
+    shape->vertices.push_back(vertex);
+    shape->deltas.insert(shape->deltas.end(), {move.x, move.y, move.z});
   }
 
   int JointIndex(int joint) {

@@ -28,10 +28,11 @@ struct PatchOptions {
 // - Positions are relative to the rig's anchor joint if it is an ancestor of all joints that move
 //   the patch, and otherwise to the joint that moves the patch most. Skin weights below 0.001 are
 //   dropped.
+// - The character's shapes move the patch as they move the surface. Deltas below 5 um are dropped.
 //
 // Errors: kNotFound (no such mesh, or no triangle within the radius; the message names the
 // nearest), kInvalidArgument (a driver that CheckRigFields() rejects, or a patch that a single
-// joint moves and that therefore cannot be compressed).
+// joint and no shape moves and that therefore cannot be compressed).
 [[nodiscard]] Result<wrinkle::Driver> CutPatch(const Character& character,
                                                const PatchOptions& options);
 

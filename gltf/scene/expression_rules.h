@@ -17,7 +17,7 @@ inline constexpr char kRulesExtra[] = "furrow_shape_rules";
 
 // What an expression of VRM does besides moving vertices.
 struct ExpressionRule {
-  enum class Override : std::uint8_t { kNone, kBlock, kBlend };
+  enum class Override : std::uint8_t { kNothing, kBlock, kBlend };
   std::string shape;                    // the name of the expression
   bool is_binary = false;               // it knows only 0 and 1
   std::array<Override, 3> overrides{};  // of blinking, looking and the mouth

@@ -5,24 +5,15 @@
 
 #include "base/ascii.h"
 #include "rig/shapes/arkit_shapes.h"
+#include "wrinkle/rig/rig_blend_shapes.h"
 
 namespace furrow::rig {
 namespace {
 
-// Each blend shape once, although several drivers may read it.
+// Adds a name that the list does not have in any case.
 void AddTarget(const std::string& name, std::vector<std::string>* targets) {
   const auto is_same = [&](const std::string& known) { return EqualsIgnoreCase(known, name); };
   if (std::ranges::none_of(*targets, is_same)) targets->push_back(name);
-}
-
-std::vector<std::string> ShapesOfDrivers(const wrinkle::Rig& rig) {
-  std::vector<std::string> targets;
-  for (const wrinkle::Driver& driver : rig.drivers) {
-    if (driver.kind == wrinkle::Driver::Kind::kBlendShape) {
-      AddTarget(driver.blend_shape.blend_shape, &targets);
-    }
-  }
-  return targets;
 }
 
 // Reference poses are named freely ("jaw_open" is a pose of the default rig), so only ARKit's exact
@@ -40,6 +31,12 @@ std::vector<std::string> ShapesOfPoses(const wrinkle::Rig& rig,
 
 }  // namespace
 
+std::vector<std::string> ArkitAndRigShapes(const wrinkle::Rig& rig) {
+  std::vector<std::string> names(ArkitShapes().begin(), ArkitShapes().end());
+  for (const std::string& name : wrinkle::BlendShapesOf(rig)) AddTarget(name, &names);
+  return names;
+}
+
 RigShapes::RigShapes(const ShapeMatcher& matcher, std::span<const std::string> stream,
                      const wrinkle::Rig& rig, const JointMovedShapes& moved)
     : num_of_stream_(stream.size()), driver_names_(stream.begin(), stream.end()) {
@@ -52,7 +49,7 @@ RigShapes::RigShapes(const ShapeMatcher& matcher, std::span<const std::string> s
   // A body tracker's stream has nothing to translate.
   if (driver_names_.empty()) return;
   const std::vector<std::string> sources = driver_names_;
-  const std::vector<std::string> drivers = ShapesOfDrivers(rig);
+  const std::vector<std::string> drivers = wrinkle::BlendShapesOf(rig);
   drivers_ = matcher.Match(sources, drivers);
   Append(drivers_, drivers, &driver_names_, &pose_names_);
   num_of_drivers_ = size() - num_of_sources_;

@@ -20,6 +20,9 @@ struct JointMovedShapes {
   std::span<const std::string> names;                  // all of the character's shapes
 };
 
+// ARKit's names, then those that the rig's drivers read under other names.
+[[nodiscard]] std::vector<std::string> ArkitAndRigShapes(const wrinkle::Rig& rig);
+
 // The blend shapes of a stream, extended by what else a rig reads: the character's shapes that the
 // stream's joints move, then the blend shapes that the stream sends by other names or not at all.
 // The extension follows the stream's own coefficients, which stay as they are, so a stream that has

@@ -7,9 +7,9 @@
 
 #include <spdlog/spdlog.h>
 
-#include "base/ascii.h"
 #include "base/status.h"
 #include "rig/shapes/face_joints.h"
+#include "wrinkle/rig/rig_blend_shapes.h"
 
 namespace furrow::server {
 namespace {
@@ -29,14 +29,6 @@ std::string Join(std::span<const std::string> names, std::size_t at_most = 12) {
 // The hash covers the sorted skeleton. Streams with other wire orders need their own joint_of_wire.
 bool SameOrder(const wrinkle::Skeleton& a, const wrinkle::Skeleton& b) {
   return std::ranges::equal(a.source_index(), b.source_index());
-}
-
-// True if a driver of the rig reads this blend shape. Trackers disagree about upper and lower case.
-bool Reads(const wrinkle::Rig& rig, const std::string& blend_shape) {
-  return std::ranges::any_of(rig.drivers, [&](const wrinkle::Driver& driver) {
-    return driver.kind == wrinkle::Driver::Kind::kBlendShape &&
-           EqualsIgnoreCase(driver.blend_shape.blend_shape, blend_shape);
-  });
 }
 
 }  // namespace
@@ -196,9 +188,7 @@ void StreamDefinitions::Report(const StreamDefinition& stream,
     feeds_any |= read;
   }
   feeds_any |= stream.shapes.drivers().num_mapped() > 0;
-  feeds_any |= std::ranges::any_of(stream.shapes.source_names(), [this](const std::string& shape) {
-    return Reads(*rig_, shape);
-  });
+  feeds_any |= wrinkle::ReadsAny(*rig_, stream.shapes.source_names());
   if (!ignored.empty()) {
     spdlog::info("joints that neither the rig nor the character has are ignored: {}",
                  Join(ignored));

@@ -11,7 +11,8 @@
 //   where that is empty) and kAddsJoints (true: its values are sums over the joints that it reads,
 //   so a chain of joints can do the part of one), the list of its fields for the reader and the
 //   writer of rig files, ListFields() (wrinkle/fields/field_list.h), and the functions
-//   DriverValueNames(), CheckFields(), JointsRead(), JointsInfluenced() and FullPose().
+//   DriverValueNames(), CheckFields(), JointsRead(), JointsInfluenced() and FullPose(). A kind that
+//   reads blend shapes also has BlendShapesRead().
 // - spread_driver.h: class SpreadDriverSet, all bound drivers of the kind, with Bind(), Plan() and
 //   Explain().
 // - spread_lanes-inl.h: EvaluateDrivers(), compiled once per instruction set.

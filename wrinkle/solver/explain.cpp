@@ -101,6 +101,7 @@ JobStatus Explain(const RigBinding& binding, const LocalPose& pose, Explanation*
     result.weights.push_back(ExplainWeight(data, static_cast<int>(i), steps));
   }
   const SolvedPose solved{.local = pose.joints,
+                          .blend_shapes = pose.blend_shapes,
                           .chains = data.chains,
                           .driver_values = values,
                           .driver_value_names = data.driver_value_names};

@@ -11,7 +11,7 @@
 #include "base/ascii.h"
 #include "base/status.h"
 #include "rig/rig_reference_pose.h"
-#include "rig/shapes/arkit_shapes.h"
+#include "rig/shapes/rig_shapes.h"
 #include "wrinkle/skeleton/reference_pose.h"
 
 namespace furrow::cli {
@@ -80,18 +80,6 @@ struct Mix {
   std::vector<std::pair<std::string, float>> shapes;  // name, coefficient
 };
 
-// ARKit's names, so that shape maps know the vocabulary, and those of the rig's drivers.
-std::vector<std::string> BlendShapesOf(const wrinkle::Rig& rig) {
-  std::vector<std::string> names(rig::ArkitShapes().begin(), rig::ArkitShapes().end());
-  for (const wrinkle::Driver& driver : rig.drivers) {
-    if (driver.kind != wrinkle::Driver::Kind::kBlendShape) continue;
-    const std::string& name = driver.blend_shape.blend_shape;
-    const auto same = [&](const std::string& other) { return EqualsIgnoreCase(name, other); };
-    if (std::none_of(names.begin(), names.end(), same)) names.push_back(name);
-  }
-  return names;
-}
-
 // The blend shape of this name in any case, or else those of both sides.
 std::vector<std::string> ShapesNamed(std::span<const std::string> known, std::string_view name) {
   const std::string left = std::string(name) + "Left", right = std::string(name) + "Right";
@@ -122,7 +110,7 @@ Status Unknown(const wrinkle::Rig& rig, std::string_view name) {
 }
 
 Result<Mix> ParseMix(const wrinkle::Rig& rig, std::string_view text) {
-  const std::vector<std::string> known = BlendShapesOf(rig);
+  const std::vector<std::string> known = rig::ArkitAndRigShapes(rig);
   Mix mix;
   for (std::size_t at = 0; at <= text.size();) {
     const std::size_t comma = std::min(text.find(',', at), text.size());
@@ -153,7 +141,7 @@ Result<motion::Clip> PoseClip(const character::Character& character, const std::
   const wrinkle::ReferencePose pose = rig::MixReferencePoses(text, mix->poses);
   FURROW_RETURN_IF_ERROR(wrinkle::ApplyReferencePose(pose, clip.skeleton, clip.locals));
   if (mix->shapes.empty()) return clip;
-  clip.blend_shape_names = BlendShapesOf(character.rig);
+  clip.blend_shape_names = rig::ArkitAndRigShapes(character.rig);
   for (const std::string& name : clip.blend_shape_names) {
     float& coefficient = clip.blend_shapes.emplace_back(0.0f);
     for (const auto& [shape, weight] : mix->shapes) coefficient += shape == name ? weight : 0.0f;

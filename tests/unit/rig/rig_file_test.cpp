@@ -194,6 +194,7 @@ TEST(RigFile, KeepsEveryFieldOfAStrainDriver) {
                                 {{1, 0, 0}, {0, 1}, {0.25f, 0.75f}},
                                 {{0, 1.0f / 3.0f, 0}, {1}, {1.0f}}},
                    .triangles = {0, 1, 2},
+                   .shapes = {{"puff", {0, 2}, {0.1f, 0, 0, 0, 0.2f, 0}}, {"Suck", {}, {}}},
                    .direction = {0, 1, 0},
                    .full_compression = 0.125f,
                    .size = 1.7f};
@@ -208,6 +209,11 @@ TEST(RigFile, KeepsEveryFieldOfAStrainDriver) {
   EXPECT_EQ(strain.vertices[1].joints, (std::vector<int>{0, 1}));
   EXPECT_EQ(strain.vertices[1].skin_weights, (std::vector<float>{0.25f, 0.75f}));
   EXPECT_EQ(strain.triangles, (std::vector<int>{0, 1, 2}));
+  ASSERT_EQ(strain.shapes.size(), 2u);
+  EXPECT_EQ(strain.shapes[0].blend_shape, "puff");
+  EXPECT_EQ(strain.shapes[0].vertices, (std::vector<int>{0, 2}));
+  EXPECT_EQ(strain.shapes[0].deltas, (std::vector<float>{0.1f, 0, 0, 0, 0.2f, 0}));
+  EXPECT_EQ(strain.shapes[1].blend_shape, "Suck");
   EXPECT_EQ(strain.direction, glm::vec3(0, 1, 0));
   EXPECT_EQ(strain.full_compression, 0.125f);
   EXPECT_EQ(strain.size, 1.7f);

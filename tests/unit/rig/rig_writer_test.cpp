@@ -150,6 +150,7 @@ TEST(RigWriter, WritesAStrainDriver) {
 }
 )");
   driver.strain.vertices.resize(1);
+  driver.strain.shapes = {{"puff", {0}, {0.5f, 0, -1}}};
   driver.strain.full_compression = 0.5f;
   driver.strain.size = 1.7f;
   EXPECT_EQ(DriverToJson(driver), R"({
@@ -161,7 +162,8 @@ TEST(RigWriter, WritesAStrainDriver) {
     "size": 1.7,
     "joints": ["head", "jaw"],
     "vertices": [{"position": [0, 0, 0], "joints": [0], "skin_weights": [1]}],
-    "triangles": [0, 1, 2]
+    "triangles": [0, 1, 2],
+    "shapes": [{"blend_shape": "puff", "vertices": [0], "deltas": [0.5, 0, -1]}]
   }
 }
 )");

@@ -22,6 +22,10 @@ void CheckFields(const BlendShapeDriver& driver, const std::string& at, FieldChe
 
 std::vector<std::string> JointsRead(const BlendShapeDriver&) { return {}; }
 
+std::vector<std::string> BlendShapesRead(const BlendShapeDriver& driver) {
+  return {driver.blend_shape};
+}
+
 std::vector<std::string> JointsInfluenced(const BlendShapeDriver&) { return {}; }
 
 Result<ReferencePose> FullPose(const BlendShapeDriver&, const FullPoseBuilder& builder) {

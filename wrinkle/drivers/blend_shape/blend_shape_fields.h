@@ -33,6 +33,7 @@ struct BlendShapeDriver {
 [[nodiscard]] std::vector<std::string> DriverValueNames(const BlendShapeDriver& driver);
 void CheckFields(const BlendShapeDriver& driver, const std::string& at, FieldCheck* check);
 [[nodiscard]] std::vector<std::string> JointsRead(const BlendShapeDriver& driver);
+[[nodiscard]] std::vector<std::string> BlendShapesRead(const BlendShapeDriver& driver);
 [[nodiscard]] std::vector<std::string> JointsInfluenced(const BlendShapeDriver& driver);
 // Always kUnsupported.
 [[nodiscard]] Result<ReferencePose> FullPose(const BlendShapeDriver& driver,

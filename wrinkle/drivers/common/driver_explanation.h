@@ -48,6 +48,7 @@ struct DriverExplanation {
 // One solved pose of a binding, to be explained.
 struct SolvedPose {
   std::span<const Transform> local;
+  std::span<const float> blend_shapes;  // the stream's coefficients
   const JointChains& chains;
   std::span<const float> driver_values;             // as the solver computed them
   std::span<const std::string> driver_value_names;  // "<driver>.<value>"

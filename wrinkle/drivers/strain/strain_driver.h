@@ -22,10 +22,14 @@ struct StrainFrameBlock : SinglePoints {};
 // All strain drivers of a binding. Private to wrinkle/. The formulas are in strain.h;
 // strain_lanes-inl.h evaluates the drivers.
 //
-// A patch is skinned with the motion of its joints relative to the driver's base joint. Each
-// joint's motion is known from four points: the patch's centre and one point along each axis. A
-// motion of the whole character therefore changes nothing, and the small differences that make up
-// strain are not lost in the distance to the joints.
+// Blend shapes move the vertices of a patch first. Then the patch is skinned with the motion of its
+// joints relative to the driver's base joint. Each joint's motion is known from four points: the
+// patch's centre and one point along each axis. A motion of the whole character therefore changes
+// nothing, and the small differences that make up strain are not lost in the distance to the
+// joints.
+//
+// If a stream moves the patch by blend shapes, joints that it lacks stay where they are relative to
+// the base joint. Otherwise a driver with a missing joint rests at 0.
 class StrainDriverSet {
  public:
   static constexpr int kNumValues = 4;
@@ -47,8 +51,10 @@ class StrainDriverSet {
   void Explain(const SolvedPose& pose, DriverExplanation* explanation) const;
 
   [[nodiscard]] static Frame MakeFrame(std::span<const glm::vec3, kFramePoints> points);
-  // The values of one driver. `frames`: one per joint that moves the patch. `values`: kNumValues.
-  void EvaluateFrames(int entry, std::span<const Frame> frames, std::span<float> values) const;
+  // The values of one driver. `frames`: one per joint that moves the patch. `blend_shapes`: the
+  // stream's coefficients; missing ones count as 0. `values`: kNumValues.
+  void EvaluateFrames(int entry, std::span<const Frame> frames, std::span<const float> blend_shapes,
+                      std::span<float> values) const;
 
   [[nodiscard]] int num_entries() const { return static_cast<int>(entries_.size()); }
   [[nodiscard]] int first_value(int entry) const {
@@ -59,6 +65,7 @@ class StrainDriverSet {
                                           const JointChains& chains) const;
   // The strain in a pose, without lanes.
   [[nodiscard]] Measured Measure(int entry, std::span<const Transform> local,
+                                 std::span<const float> blend_shapes,
                                  const JointChains& chains) const;
   [[nodiscard]] const std::vector<StrainFrameBlock>& frame_blocks() const { return frame_blocks_; }
   [[nodiscard]] const std::vector<SingleDriver>& drivers() const { return drivers_; }
@@ -68,43 +75,60 @@ class StrainDriverSet {
     int first_value = 0;
     float inverse_full = 4.0f;
     std::uint32_t first_point = 0;  // into points_: four per joint
-    std::uint32_t num_joints = 0;
+    std::uint32_t num_joints = 0;   // that the skeleton has
     std::uint32_t first_vertex = 0;
     std::uint32_t num_vertices = 0;
     std::uint32_t first_triangle = 0;
     std::uint32_t num_triangles = 0;
+    std::uint32_t first_shape = 0;
+    std::uint32_t num_shapes = 0;
     float inverse_area = 0.0f;  // of all triangles
+    Frame resting{1.0f};        // of a joint that does not move relative to the base joint
   };
   struct Influence {
-    std::uint8_t joint = 0;  // of the entry's
+    std::uint8_t joint = 0;  // of the entry's; num_joints: it follows the base joint
     float skin_weight = 0.0f;
   };
   struct Vertex {
     glm::vec3 place{0.0f};  // from the patch's centre, in units of its radius
     Influence influences[StrainDriver::kMaxInfluences];  // unused influences weigh 0
   };
+  // A blend shape that moves the entry's vertices.
+  struct Shape {
+    int blend_shape = 0;  // index into the stream's coefficients
+    std::uint32_t first_delta = 0;
+    std::uint32_t num_deltas = 0;
+  };
+  struct Delta {
+    std::uint32_t vertex = 0;  // of the entry's
+    glm::vec3 move{0.0f};      // at coefficient 1, in the unit of Vertex::place
+  };
   struct Triangle {
     std::uint16_t corners[3] = {};  // of the entry's vertices
     RestTriangle rest;
   };
 
-  [[nodiscard]] Status BindJoints(const std::string& owner, const StrainDriver& strain,
-                                  BindContext* context, std::vector<int>* joints, int* base);
-  void BindVertices(const StrainDriver& strain, Entry* entry);
-  void BindTriangles(const StrainDriver& strain, const Skeleton& skeleton, int base,
-                     const JointChains& chains, Entry* entry);
+  void BindVertices(const StrainDriver& strain, std::span<const std::uint8_t> frames, Entry* entry);
+  void BindTriangles(const StrainDriver& strain, const glm::vec3& direction,
+                     std::span<const Transform> rest_pose, const JointChains& chains, Entry* entry);
   // Fills one frame per joint of the entry.
   void EvaluatePoints(const Entry& entry, std::span<const Transform> local,
                       const JointChains& chains, std::span<Frame> frames) const;
+  // The patch's vertices, moved by blend shapes alone.
+  void Morph(const Entry& entry, std::span<const float> blend_shapes,
+             std::span<glm::vec3> places) const;
   // The patch's vertices in the base joint's space.
-  void Skin(const Entry& entry, std::span<const Frame> frames,
+  void Pose(const Entry& entry, std::span<const Frame> frames, std::span<const float> blend_shapes,
             std::span<glm::vec3> positions) const;
-  [[nodiscard]] Measured MeasureFrames(const Entry& entry, std::span<const Frame> frames) const;
+  [[nodiscard]] Measured MeasureFrames(const Entry& entry, std::span<const Frame> frames,
+                                       std::span<const float> blend_shapes) const;
 
   std::vector<Entry> entries_;
   std::vector<int> points_;  // into the binding's JointChains
   std::vector<Vertex> vertices_;
   std::vector<Triangle> triangles_;
+  std::vector<Shape> shapes_;
+  std::vector<Delta> deltas_;
   std::vector<StrainFrameBlock> frame_blocks_;
   std::vector<SingleDriver> drivers_;
 };

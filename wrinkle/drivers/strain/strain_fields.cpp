@@ -2,9 +2,11 @@
 #include "wrinkle/drivers/strain/strain_fields.h"
 
 #include <cmath>
+#include <string>
 #include <string_view>
 #include <unordered_set>
 
+#include "base/ascii.h"
 #include "wrinkle/drivers/common/full_pose_builder.h"
 #include "wrinkle/drivers/strain/strain.h"
 #include "wrinkle/fields/field_check.h"
@@ -34,6 +36,23 @@ void CheckPatchVertex(const StrainDriver::Vertex& vertex, const std::string& at,
   }
 }
 
+void CheckPatchShape(const StrainDriver::Shape& shape, const std::string& at,
+                     std::size_t num_vertices, FieldCheck* check) {
+  check->Label(at, ".blend_shape", shape.blend_shape);
+  check->Require(shape.deltas.size() == 3 * shape.vertices.size(), at, ".deltas",
+                 "the list does not have three numbers per vertex",
+                 "give x, y and z for each entry of `vertices`");
+  std::unordered_set<int> seen;
+  for (const int vertex : shape.vertices) {
+    check->Require(vertex >= 0 && static_cast<std::size_t>(vertex) < num_vertices, at, ".vertices",
+                   "an index is not below the number of vertices");
+    check->Require(seen.insert(vertex).second, at, ".vertices", "a vertex occurs twice");
+  }
+  for (const float delta : shape.deltas) {
+    check->Range(at, ".deltas", delta, -kMaxSkeletonSize, kMaxSkeletonSize);
+  }
+}
+
 // True if some triangle has an area that can be compressed. Precondition: all indices are valid.
 bool HasArea(const StrainDriver& strain) {
   for (std::size_t i = 0; i + 2 < strain.triangles.size(); i += 3) {
@@ -56,6 +75,7 @@ void CheckFields(const StrainDriver& driver, const std::string& at, FieldCheck* 
   check->Count(at, ".joints", driver.joints.size(), kMaxPatchJoints);
   check->Count(at, ".vertices", driver.vertices.size(), kMaxPatchVertices);
   check->Count(at, ".triangles", driver.triangles.size(), 3 * kMaxPatchTriangles);
+  check->Count(at, ".shapes", driver.shapes.size(), kMaxPatchShapes);
   std::unordered_set<std::string_view> joints;
   for (std::size_t i = 0; i < driver.joints.size(); ++i) {
     check->Label(FieldAt(at + ".joints", i), "", driver.joints[i]);
@@ -63,6 +83,13 @@ void CheckFields(const StrainDriver& driver, const std::string& at, FieldCheck* 
   }
   for (std::size_t i = 0; i < driver.vertices.size(); ++i) {
     CheckPatchVertex(driver.vertices[i], FieldAt(at + ".vertices", i), driver.joints.size(), check);
+  }
+  std::unordered_set<std::string> shapes;
+  for (std::size_t i = 0; i < driver.shapes.size(); ++i) {
+    const std::string shape_at = FieldAt(at + ".shapes", i);
+    CheckPatchShape(driver.shapes[i], shape_at, driver.vertices.size(), check);
+    check->Require(shapes.insert(AsciiLower(driver.shapes[i].blend_shape)).second, shape_at,
+                   ".blend_shape", "the blend shape occurs twice");
   }
   check->Require(driver.triangles.size() % 3 == 0, at, ".triangles",
                  "a triangle has three vertices");
@@ -83,6 +110,12 @@ std::vector<std::string> JointsRead(const StrainDriver& driver) {
   std::vector<std::string> joints = {driver.joint};
   joints.insert(joints.end(), driver.joints.begin(), driver.joints.end());
   return joints;
+}
+
+std::vector<std::string> BlendShapesRead(const StrainDriver& driver) {
+  std::vector<std::string> names;
+  for (const StrainDriver::Shape& shape : driver.shapes) names.push_back(shape.blend_shape);
+  return names;
 }
 
 std::vector<std::string> JointsInfluenced(const StrainDriver& driver) { return driver.joints; }

@@ -18,14 +18,15 @@ class FullPoseBuilder;
 inline constexpr std::size_t kMaxPatchVertices = 256;
 inline constexpr std::size_t kMaxPatchTriangles = 512;
 inline constexpr std::size_t kMaxPatchJoints = 32;
+inline constexpr std::size_t kMaxPatchShapes = 512;
 
 // How strongly a patch of the skinned surface is compressed, and in which direction. Values
 // "along", "across", "diagonal_left" and "diagonal_right" refer to a direction in the surface, so
 // that one place can fold along or across. Their sum is the principal compression divided by
 // `full_compression` (strain.h).
 //
-// The rig stores the patch as points and skin weights and therefore needs no mesh. `furrow rig
-// patch` cuts a patch out of a character.
+// The rig stores the patch as points, skin weights and the deltas of blend shapes, and therefore
+// needs no mesh. `furrow rig patch` cuts a patch out of a character.
 struct StrainDriver {
   static constexpr bool kReadsJoints = true;
   static constexpr bool kMeasuresFromAnchor = false;
@@ -44,10 +45,24 @@ struct StrainDriver {
       fields.Required("skin_weights", &Vertex::skin_weights);
     }
   };
+  // How a blend shape moves the vertices, before the joints do.
+  struct Shape {
+    std::string blend_shape;    // matched without case
+    std::vector<int> vertices;  // each at most once
+    std::vector<float> deltas;  // x, y and z per vertex at coefficient 1, in the unit of `position`
+
+    template <class Fields>
+    static void ListFields(Fields& fields) {
+      fields.Required("blend_shape", &Shape::blend_shape);
+      fields.Required("vertices", &Shape::vertices);
+      fields.Required("deltas", &Shape::deltas);
+    }
+  };
   std::string joint;                // positions are measured from its origin
   std::vector<std::string> joints;  // the joints that move the patch
   std::vector<Vertex> vertices;
   std::vector<int> triangles;             // three vertices each, counter-clockwise from outside
+  std::vector<Shape> shapes;              // the blend shapes that move the patch
   glm::vec3 direction{1.0f, 0.0f, 0.0f};  // model axes, rest pose; projected into the surface
   float full_compression = 0.25f;         // the compression that gives 1, [0.01, 1]
   float size = 0.0f;  // SkeletonSize() the positions were measured on; 0: bound skeleton's units
@@ -62,12 +77,14 @@ struct StrainDriver {
     fields.Required("joints", &StrainDriver::joints);
     fields.Required("vertices", &StrainDriver::vertices);
     fields.Required("triangles", &StrainDriver::triangles);
+    fields.Optional("shapes", &StrainDriver::shapes);
   }
 };
 
 [[nodiscard]] std::vector<std::string> DriverValueNames(const StrainDriver& driver);
 void CheckFields(const StrainDriver& driver, const std::string& at, FieldCheck* check);
 [[nodiscard]] std::vector<std::string> JointsRead(const StrainDriver& driver);
+[[nodiscard]] std::vector<std::string> BlendShapesRead(const StrainDriver& driver);
 [[nodiscard]] std::vector<std::string> JointsInfluenced(const StrainDriver& driver);
 // Always kUnsupported: many poses compress a patch fully.
 [[nodiscard]] Result<ReferencePose> FullPose(const StrainDriver& driver,

@@ -19,7 +19,7 @@ namespace furrow::wrinkle::HWY_NAMESPACE {
 // Writes the values of one driver to `rows` from driver.first_number on, one after another. The
 // points of its frames are in `rows` already.
 inline void EvaluateStrain(const StrainDriverSet& drivers, const SingleDriver& driver,
-                           float* rows) {
+                           std::span<const float> blend_shapes, float* rows) {
   std::array<StrainDriverSet::Frame, kMaxPatchJoints> frames;
   for (std::size_t i = 0; i < driver.num_lanes; ++i) {
     const std::size_t lane = driver.first_lane + i;
@@ -30,7 +30,7 @@ inline void EvaluateStrain(const StrainDriverSet& drivers, const SingleDriver& d
     }
     frames[i] = StrainDriverSet::MakeFrame(points);
   }
-  drivers.EvaluateFrames(driver.entry, std::span(frames).first(driver.num_lanes),
+  drivers.EvaluateFrames(driver.entry, std::span(frames).first(driver.num_lanes), blend_shapes,
                          {rows + driver.first_number, driver.num_values});
 }
 
@@ -49,7 +49,8 @@ void EvaluateDrivers(const StrainDriverSet& drivers, const PointPlan& plan, Lane
   };
   ForEachBlock(drivers.frame_blocks(), input.num_values, rows, evaluate);
   for (const SingleDriver& driver : drivers.drivers()) {
-    if (driver.first_value < input.num_values) EvaluateStrain(drivers, driver, rows);
+    if (driver.first_value < input.num_values)
+      EvaluateStrain(drivers, driver, input.blend_shapes, rows);
   }
 }
 

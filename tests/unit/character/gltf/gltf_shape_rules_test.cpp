@@ -21,7 +21,7 @@ TEST(GltfShapeRules, BelongToTheShapesThatExist) {
       {.shape = "Smile", .is_binary = true},
       {.shape = "smile", .overrides = {Override::kBlock}},  // a second rule of the shape
       {.shape = "nobody", .is_binary = true},
-      {.shape = "jawOpen", .overrides = {Override::kNone, Override::kBlock, Override::kBlend}}};
+      {.shape = "jawOpen", .overrides = {Override::kNothing, Override::kBlock, Override::kBlend}}};
   const std::vector<std::string> shapes = {"jawOpen", "smile"};
   const auto rules = MakeShapeRules(from, shapes);
   ASSERT_EQ(rules.size(), 2u);

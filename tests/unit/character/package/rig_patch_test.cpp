@@ -74,6 +74,41 @@ TEST(RigPatch, MeasuresTheStrainOfItsSurface) {
   EXPECT_NEAR(values[1] + values[2] + values[3], 0.0f, 2e-3f);
 }
 
+// The sheet follows one joint; a shape lifts its bottom by a tenth of its height, and another one
+// moves the veil.
+TEST(RigPatch, TakesTheShapesThatMoveItsSurface) {
+  Character sheets = Sheets();
+  sheets.shapes = {"veil", "shrink", "nothing"};
+  for (Mesh& mesh : sheets.meshes) {
+    MorphTarget& target = mesh.morph_targets.emplace_back();
+    target.shape = &mesh == &sheets.meshes[0] ? 1 : 0;
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+      Vertex& vertex = mesh.vertices[i];
+      vertex.joints[0] = 1;
+      vertex.skin_weights[0] = 1.0f;
+      vertex.skin_weights[1] = 0.0f;
+      const float lift = 0.1f * (kSide - vertex.position.y);
+      target.deltas.push_back({.vertex = static_cast<std::uint32_t>(i), .position = {0, lift, 0}});
+    }
+  }
+  const auto driver = CutPatch(sheets, Middle());
+  ASSERT_TRUE(driver.ok()) << driver.status().ToString();
+  ASSERT_EQ(driver->strain.shapes.size(), 1u);
+  EXPECT_EQ(driver->strain.shapes[0].blend_shape, "shrink");
+  EXPECT_EQ(driver->strain.shapes[0].vertices.size(), driver->strain.vertices.size());
+  EXPECT_EQ(driver->strain.joints, std::vector<std::string>{"low"});
+  wrinkle::Rig rig;
+  rig.drivers = {*driver};
+  auto binding = wrinkle::RigBinding::Create(rig, sheets.skeleton, sheets.shapes);
+  ASSERT_TRUE(binding.ok()) << binding.status().ToString();
+  wrinkle::SubjectSolver solver(std::make_shared<const wrinkle::RigBinding>(*std::move(binding)));
+  wrinkle::LocalPose pose;
+  pose.SetRest(sheets.skeleton);
+  pose.blend_shapes = {1.0f, 0.5f, 1.0f};
+  ASSERT_EQ(solver.Update(pose, 0.0), wrinkle::JobStatus::kOk);
+  EXPECT_NEAR(solver.driver_values()[0], 0.2f, 2e-3f);  // 5% of a full 25%
+}
+
 TEST(RigPatch, CutsOnlyTheNearestSurface) {
   const Character sheets = Sheets();
   const auto driver = CutPatch(sheets, Middle());

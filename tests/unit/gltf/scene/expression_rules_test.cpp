@@ -37,7 +37,7 @@ TEST(ExpressionRules, OfVrm1) {
   EXPECT_EQ(rules[0].shape, "happy");
   EXPECT_FALSE(rules[0].is_binary);
   EXPECT_EQ(rules[0].overrides,
-            (std::array<Override, 3>{Override::kBlock, Override::kNone, Override::kBlend}));
+            (std::array<Override, 3>{Override::kBlock, Override::kNothing, Override::kBlend}));
   EXPECT_EQ(rules[1].shape, "heart eyes");
   EXPECT_TRUE(rules[1].is_binary);
 }

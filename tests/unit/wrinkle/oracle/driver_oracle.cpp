@@ -110,7 +110,8 @@ class DriverOracle {
   void Evaluate(const StrainDriverSet& drivers) {
     for (int i = 0; i < drivers.num_entries(); ++i) {
       const auto frames = drivers.Frames(i, pose_.joints, data_.chains);
-      drivers.EvaluateFrames(i, frames, std::span(values_).subspan(drivers.first_value(i), 4));
+      drivers.EvaluateFrames(i, frames, pose_.blend_shapes,
+                             std::span(values_).subspan(drivers.first_value(i), 4));
     }
   }
 

@@ -7,9 +7,11 @@
 #include <cmath>
 #include <cstdio>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/unit/wrinkle/bound_rig.h"
+#include "wrinkle/rig/rig_check.h"
 
 namespace furrow::wrinkle {
 namespace {
@@ -126,6 +128,125 @@ TEST_P(StrainDrivers, SweepIsContinuous) {
   std::printf("strain: at most %.6f per 0.1 degree\n", worst);
   EXPECT_LE(worst, 0.005f);
   EXPECT_GT(worst, 0.0f);
+}
+
+// The patch's lowest row moved by `by`, the middle row by half of it, as the cheek's joint does.
+StrainDriver::Shape LowRowShape(const std::string& name, const glm::vec3& by) {
+  StrainDriver::Shape shape{.blend_shape = name};
+  const Driver patch = CheekPatch();
+  for (std::size_t i = 0; i < patch.strain.vertices.size(); ++i) {
+    const float share = patch.strain.vertices[i].skin_weights[1];
+    if (share == 0.0f) continue;
+    shape.vertices.push_back(static_cast<int>(i));
+    for (int axis = 0; axis < 3; ++axis) shape.deltas.push_back(share * by[axis]);
+  }
+  return shape;
+}
+
+Rig ShapedRig() {
+  Rig rig = PatchRig();
+  rig.drivers[0].strain.shapes = {LowRowShape("Puff", 0.1f * kHeight * kUp),
+                                  LowRowShape("slide", 0.2f * kHeight * kRight)};
+  return rig;
+}
+
+LocalPose WithShapes(const Skeleton& skeleton, const std::vector<float>& coefficients) {
+  LocalPose pose = RestPose(skeleton);
+  pose.blend_shapes = coefficients;
+  return pose;
+}
+
+TEST_P(StrainDrivers, BlendShapesFoldThePatchAsJointsDo) {
+  BoundRig rig(ShapedRig(), MakeBody(GetParam()), {"puff", "slide"});
+  EXPECT_NEAR(rig.ValueAt(WithShapes(rig.skeleton(), {1, 0}), "cheek_patch.along"), 0.4f, 2e-4f);
+  EXPECT_NEAR(rig.ValueAt(WithShapes(rig.skeleton(), {0.5f, 0}), "cheek_patch.along"), 0.2f, 2e-4f);
+  EXPECT_NEAR(rig.ValueAt(WithShapes(rig.skeleton(), {0, 0}), "cheek_patch.along"), 0.0f, 2e-4f);
+  EXPECT_NEAR(rig.ValueAt(WithShapes(rig.skeleton(), {}), "cheek_patch.along"), 0.0f, 2e-4f);
+  // Shapes add up with each other and with joints.
+  LocalPose both = WithShapes(rig.skeleton(), {0.5f, 1.0f});
+  rig.Solve(both);
+  const std::vector<float> with_shapes = rig.values();
+  LocalPose joints = RestPose(rig.skeleton());
+  Move(rig.skeleton(), "cheek_l", kHeight * (0.05f * kUp + 0.2f * kRight), &joints);
+  rig.Solve(joints);
+  for (std::size_t i = 0; i < with_shapes.size(); ++i) {
+    EXPECT_NEAR(with_shapes[i], rig.values()[i], 2e-4f);
+  }
+  EXPECT_GT(rig.Value("cheek_patch.diagonal_right"), 0.2f);
+  both = WithShapes(rig.skeleton(), {0.5f, 0.0f});
+  Move(rig.skeleton(), "cheek_l", 0.05f * kHeight * kUp, &both);
+  EXPECT_NEAR(rig.ValueAt(both, "cheek_patch.along"), 0.4f, 2e-4f);
+}
+
+TEST_P(StrainDrivers, ShapesTurnWithTheHead) {
+  std::mt19937 random(7);
+  BoundRig rig(ShapedRig(), MakeBody(GetParam()), {"puff", "slide"});
+  LocalPose pose = WithShapes(rig.skeleton(), {0.7f, 0.4f});
+  rig.Solve(pose);
+  const std::vector<float> before = rig.values();
+  for (int round = 0; round < 20; ++round) {
+    pose.joints[0].translation = RandomVector(&random, 1000.0f);
+    pose.joints[0].rotation = RandomRotation(&random);
+    Turn(rig.skeleton(), "head", RandomRotation(&random), &pose);
+    rig.Solve(pose);
+    EXPECT_EQ(rig.values(), before);
+  }
+}
+
+TEST_P(StrainDrivers, ShapesScaleWithTheSkeleton) {
+  BoundRig large(ShapedRig(), MakeBody(GetParam(), 100.0f), {"puff", "slide"});
+  EXPECT_NEAR(large.ValueAt(WithShapes(large.skeleton(), {1, 0}), "cheek_patch.along"), 0.4f,
+              2e-4f);
+}
+
+// A phone sends coefficients and no joints, so the patch follows its shapes alone.
+TEST(StrainDriver, ShapesNeedNoJoints) {
+  const Skeleton phone = *Skeleton::Create({{"phone", -1, {}, {}}});
+  auto binding = RigBinding::Create(ShapedRig(), phone, std::vector<std::string>{"slide", "PUFF"},
+                                    {.allow_missing = true});
+  ASSERT_TRUE(binding.ok()) << binding.status().ToString();
+  SubjectSolver solver(std::make_shared<const RigBinding>(*std::move(binding)), false);
+  ASSERT_EQ(solver.Update(WithShapes(phone, {0, 1}), 0.0), JobStatus::kOk);
+  EXPECT_NEAR(solver.driver_values()[0], 0.4f, 2e-4f);
+}
+
+// Only the joint of the lowest row is missing: it stays where it is on the head.
+TEST(StrainDriver, ShapesReplaceAMissingJoint) {
+  Rig rig = ShapedRig();
+  rig.drivers[0].strain.joints[1] = "jowl";
+  const Skeleton body = MakeBody();
+  auto binding =
+      RigBinding::Create(rig, body, std::vector<std::string>{"puff"}, {.allow_missing = true});
+  ASSERT_TRUE(binding.ok()) << binding.status().ToString();
+  EXPECT_THAT(
+      std::vector(binding->missing_blend_shapes().begin(), binding->missing_blend_shapes().end()),
+      testing::ElementsAre("slide"));
+  SubjectSolver solver(std::make_shared<const RigBinding>(*std::move(binding)), false);
+  LocalPose pose = WithShapes(body, {1});
+  Turn(body, "head", {0.8f, 0.0f, 0.6f, 0.0f}, &pose);
+  ASSERT_EQ(solver.Update(pose, 0.0), JobStatus::kOk);
+  EXPECT_NEAR(solver.driver_values()[0], 0.4f, 2e-4f);
+}
+
+TEST(StrainDriver, RefusesFaultyShapes) {
+  const auto status_of = [](auto change) {
+    Rig rig = ShapedRig();
+    change(&rig.drivers[0].strain.shapes[1]);
+    return CheckRigFields(rig).ToString();
+  };
+  using Shape = StrainDriver::Shape;
+  EXPECT_THAT(status_of([](Shape* s) { s->vertices[0] = 9; }),
+              testing::HasSubstr("not below the number of vertices"));
+  EXPECT_THAT(status_of([](Shape* s) { s->vertices[0] = -1; }),
+              testing::HasSubstr("drivers[0].strain.shapes[1].vertices"));
+  EXPECT_THAT(status_of([](Shape* s) { s->vertices[1] = s->vertices[0]; }),
+              testing::HasSubstr("a vertex occurs twice"));
+  EXPECT_THAT(status_of([](Shape* s) { s->deltas.pop_back(); }),
+              testing::HasSubstr("three numbers per vertex"));
+  EXPECT_THAT(status_of([](Shape* s) { s->deltas[0] = std::nanf(""); }),
+              testing::HasSubstr("not finite"));
+  EXPECT_THAT(status_of([](Shape* s) { s->blend_shape = "pufF"; }),
+              testing::HasSubstr("the blend shape occurs twice"));
 }
 
 TEST(StrainDriver, WithoutItsJointsItRests) {
