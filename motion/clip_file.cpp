@@ -118,9 +118,18 @@ std::uint64_t MaxBytes(Format format) {
 }
 
 // Turns a BVH clip to Y up. glTF is Y up by definition.
-Status SetUpright(UpAxis up, Clip* clip) {
-  if (up == UpAxis::kAuto) up = FindUpAxis(clip->skeleton);
-  return up == UpAxis::kZ ? TurnZUpToYUp(clip) : Status();
+Status SetUpright(UpAxis up, const std::string& name, Clip* clip, ClipReport* report) {
+  const UpAxis wanted = up == UpAxis::kAuto ? FindUpAxis(clip->skeleton) : up;
+  if (wanted == UpAxis::kZ) return TurnZUpToYUp(clip);
+  if (up == UpAxis::kAuto && MovesAlongZ(*clip)) {
+    TurnMotionUpright(clip);
+    if (report != nullptr) {
+      report->warnings.push_back(name +
+                                 ": the rest pose stands along Y, but the motion along Z; the "
+                                 "motion was turned upright (--up-axis y keeps it)");
+    }
+  }
+  return {};
 }
 
 // Replaces the rest pose by a frame. Some files state none: all bones of LaFAN1 lie along +X.
@@ -245,7 +254,7 @@ Result<Clip> LoadClip(const std::filesystem::path& path, const LoadOptions& load
   if (!clip.ok()) return clip.status().At(file.string());
   if (format == Format::kBvh) {
     KeepRootsAtOffset(&*clip);
-    if (Status status = SetUpright(options.up_axis, &*clip); !status.ok())
+    if (Status status = SetUpright(options.up_axis, file.string(), &*clip, report); !status.ok())
       return status.At(file.string());
   }
   if (options.rest_frame >= 0) {

@@ -13,6 +13,13 @@ std::optional<BvhPositions> ParseBvhPositions(std::string_view word) {
   return std::nullopt;
 }
 
+std::optional<UpAxis> ParseUpAxis(std::string_view word) {
+  if (word == "auto") return UpAxis::kAuto;
+  if (word == "y") return UpAxis::kY;
+  if (word == "z") return UpAxis::kZ;
+  return std::nullopt;
+}
+
 void Clip::GetPose(int frame, wrinkle::LocalPose* pose) const {
   const auto f = static_cast<std::size_t>(frame);
   const auto joints = static_cast<std::size_t>(skeleton.num_joints());

@@ -44,9 +44,12 @@ enum class BvhPositions { kAuto, kReplace, kAdd, kOffsets };
 [[nodiscard]] std::optional<BvhPositions> ParseBvhPositions(std::string_view word);
 inline constexpr char kBvhPositionsWords[] = "auto, channels, offsets or add";
 
-// The axis that points up in a BVH file, which the format does not define. FindUpAxis() implements
-// kAuto. A loaded clip is always Y up and faces +Z.
+// The axis that points up in a BVH file, which the format does not define. FindUpAxis() and
+// MovesAlongZ() implement kAuto. A loaded clip is always Y up and faces +Z.
 enum class UpAxis { kAuto, kY, kZ };
+
+// The word of --up-axis: auto, y or z. nullopt for others.
+[[nodiscard]] std::optional<UpAxis> ParseUpAxis(std::string_view word);
 
 // How a recording is read. Each reader uses the options of its format.
 struct LoadOptions {
@@ -71,7 +74,7 @@ struct AnimationInfo {
 // entry, with the place: "take.bvh:186: states 100 frames, holds 99".
 struct ClipReport {
   std::vector<std::string> warnings;
-  std::vector<AnimationInfo> animations;  // FBX and Collada: all of the file's
+  std::vector<AnimationInfo> animations;  // glTF, FBX and Collada: all of the file's
 };
 
 }  // namespace furrow::motion

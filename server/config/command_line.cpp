@@ -60,6 +60,8 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
   app->add_option("--bvh-positions", config->bvh_positions,
                   "Position channels of BVH joints: auto, channels, offsets or add\n"
                   "(default: auto; 'furrow convert --help' explains them)");
+  app->add_option("--up-axis", config->up_axis,
+                  "Axis that points up in BVH files: auto, y or z (default: auto)");
   app->add_option("--rest-frame", config->rest_frame,
                   "Frame of the --play recording to take as its rest pose, counted from 0;\n"
                   "the performer stands upright and faces +Z there (default: the file's own)")

@@ -77,6 +77,7 @@ motion::LoadOptions ReadOptions(const Config& config) {
   motion::LoadOptions options;
   options.bvh_positions =
       motion::ParseBvhPositions(config.bvh_positions).value_or(motion::BvhPositions::kAuto);
+  options.up_axis = motion::ParseUpAxis(config.up_axis).value_or(motion::UpAxis::kAuto);
   return options;
 }
 
@@ -110,6 +111,9 @@ Status ValidateConfig(const Config& config) {
   if (!motion::ParseBvhPositions(config.bvh_positions)) {
     return Invalid("--bvh-positions: '" + config.bvh_positions + "' is not one of " +
                    motion::kBvhPositionsWords);
+  }
+  if (!motion::ParseUpAxis(config.up_axis)) {
+    return Invalid("--up-axis: '" + config.up_axis + "' is not one of auto, y or z");
   }
   if (config.require_render && !config.render) {
     return Invalid("--require-render and --no-render cannot be combined");

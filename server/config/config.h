@@ -56,6 +56,7 @@ struct Config {
   HttpConfig http;
   std::filesystem::path play;          // recording to play inside the daemon; empty: none
   std::string bvh_positions = "auto";  // motion::ParseBvhPositions()
+  std::string up_axis = "auto";        // motion::ParseUpAxis()
   int rest_frame = -1;                 // frame of `play` that is its rest pose; -1: the file's own
   bool verbose = false;                // print a status line every second
   bool log_json = false;               // log JSON objects instead of text

@@ -179,7 +179,7 @@ Tables InputTables(Config* config, const std::filesystem::path& folder) {
   return {{"",
            {Path("character", &config->character, folder), NameOrFile("rig", &config->rig, folder),
             Path("play", &config->play, folder), Text("bvh_positions", &config->bvh_positions),
-            Count("rest_frame", &config->rest_frame),
+            Text("up_axis", &config->up_axis), Count("rest_frame", &config->rest_frame),
             NameOrFile("skeleton_map", &config->skeleton_map, folder),
             NameOrFile("shape_map", &config->shape_map, folder)}},
           {"listen",

@@ -3,7 +3,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <initializer_list>
-#include <map>
 #include <memory>
 #include <string_view>
 #include <system_error>
@@ -124,10 +123,6 @@ void AddConvert(CLI::App& app, Action& action) {
       ->check(Within(0.0, 1000.0))
       ->capture_default_str();
   AddReadOptions(*command, options->load);
-  const std::map<std::string, motion::UpAxis> axes{
-      {"auto", motion::UpAxis::kAuto}, {"y", motion::UpAxis::kY}, {"z", motion::UpAxis::kZ}};
-  AddChoice(*command, "--up-axis", options->load.up_axis, axes,
-            "Axis that points up in a BVH file: auto, y or z");
   command->callback([options, &action] { action = [options] { return ConvertFile(*options); }; });
 }
 

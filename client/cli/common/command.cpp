@@ -2,6 +2,7 @@
 #include "client/cli/common/command.h"
 
 #include <charconv>
+#include <map>
 
 namespace furrow::cli {
 
@@ -48,6 +49,10 @@ void AddReadOptions(CLI::App& command, motion::LoadOptions& options) {
           "Frame to take as the rest pose, counted from 0; the performer stands upright and "
           "faces +Z there (default: the rest pose of the file)")
       ->check(CLI::NonNegativeNumber);
+  const std::map<std::string, motion::UpAxis> axes{
+      {"auto", motion::UpAxis::kAuto}, {"y", motion::UpAxis::kY}, {"z", motion::UpAxis::kZ}};
+  AddChoice(command, "--up-axis", options.up_axis, axes,
+            "Axis that points up in a BVH file: auto, y or z");
 }
 
 // The limits are those of the wire (protocol::kMinImageSize, kMaxImageSize).

@@ -48,7 +48,7 @@ void AddSkeletonMap(CLI::App& command, std::string& value);
 void AddShapeMap(CLI::App& command, std::string& value);
 
 // Adds the options that say how the recordings of a command are read: --animation,
-// --bvh-positions, --rest-frame.
+// --bvh-positions, --rest-frame and --up-axis.
 void AddReadOptions(CLI::App& command, motion::LoadOptions& options);
 
 // Parses a picture size such as "640x480", both numbers in [16, 4096] pixels. Returns false and

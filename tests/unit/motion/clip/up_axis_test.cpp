@@ -63,6 +63,49 @@ TEST(UpAxis, TurningAClipTurnsItsPoses) {
   EXPECT_EQ(FindUpAxis(clip.skeleton), UpAxis::kY);
 }
 
+// A body that walks in some direction on a floor of height 0, with a turn of the whole about X.
+Clip Walking(float degrees, const glm::vec3& floor_axis, float height) {
+  Clip clip;
+  clip.skeleton = *wrinkle::Skeleton::Create(
+      {Joint("Hips", -1, {0, 1, 0}), Joint("Head", 0, {0, 0.6f, 0}), Joint("Foot", 0, {0, -1, 0})});
+  const glm::quat turn = glm::angleAxis(glm::radians(degrees), glm::vec3(1, 0, 0));
+  for (int frame = 0; frame < 30; ++frame) {
+    clip.times.push_back(0.1 * frame);
+    const auto rest = clip.skeleton.rest_pose();
+    clip.locals.insert(clip.locals.end(), rest.begin(), rest.end());
+    wrinkle::Transform& root = clip.locals[clip.locals.size() - 3];
+    root.rotation = turn * glm::angleAxis(0.2f * static_cast<float>(frame), glm::vec3(0, 1, 0));
+    root.translation =
+        0.1f * static_cast<float>(frame) * floor_axis + height * (turn * glm::vec3(0, 1, 0));
+  }
+  return clip;
+}
+
+TEST(UpAxis, MotionAlongZIsTold) {
+  EXPECT_TRUE(MovesAlongZ(Walking(90.0f, {0, 1, 0}, 1.0f)));
+  EXPECT_TRUE(MovesAlongZ(Walking(80.0f, {0.1f, 0, 0}, 1.0f)));  // leans
+  EXPECT_FALSE(MovesAlongZ(Walking(0.0f, {0, 0, 1}, 1.0f)));     // upright
+  EXPECT_FALSE(MovesAlongZ(Walking(-90.0f, {0, 1, 0}, 1.0f)));   // the head points to -Z
+  // Somebody who crawls on his back does not keep his feet at z = 0.
+  EXPECT_FALSE(MovesAlongZ(Walking(90.0f, {0, 0, 1}, 0.0f)));
+  EXPECT_FALSE(MovesAlongZ(Clip()));
+  Clip nobody = Walking(90.0f, {0, 1, 0}, 1.0f);
+  nobody.skeleton = *wrinkle::Skeleton::Create(
+      {Joint("a", -1, {0, 1, 0}), Joint("b", 0, {0, 0.6f, 0}), Joint("c", 0, {0, -1, 0})});
+  EXPECT_FALSE(MovesAlongZ(nobody));
+}
+
+TEST(UpAxis, MotionAlongZIsTurnedOverItsRestPose) {
+  Clip clip = Walking(90.0f, {0, -1, 0}, 1.0f);
+  const Clip upright = Walking(0.0f, {0, 0, 1}, 1.0f);
+  TurnMotionUpright(&clip);
+  ASSERT_EQ(clip.locals.size(), upright.locals.size());
+  for (std::size_t i = 0; i < clip.locals.size(); ++i) {
+    EXPECT_LT(glm::length(clip.locals[i].translation - upright.locals[i].translation), 1e-5f);
+    EXPECT_GT(std::abs(glm::dot(clip.locals[i].rotation, upright.locals[i].rotation)), 0.999999f);
+  }
+}
+
 std::string Bvh(const char* offset, const char* positions) {
   return std::string("HIERARCHY\nROOT Hips\n{\nOFFSET ") + offset +
          "\nCHANNELS 6 Xposition Yposition Zposition Zrotation Yrotation Xrotation\n"
@@ -92,6 +135,30 @@ TEST(UpAxis, LoadClipTurnsBvhUprightAndKeepsUnmovedRootsAtRest) {
   const Clip as_it_is = load(Bvh("1 2 3", "0 0 5"), UpAxis::kY);
   ASSERT_EQ(as_it_is.locals.size(), 4u);
   EXPECT_EQ(as_it_is.locals[2].translation, glm::vec3(0, 0, 5));
+}
+
+TEST(UpAxis, LoadClipTurnsMotionAlongZAndSaysSo) {
+  const TemporaryFolder folder;
+  const auto path = folder / "clip.bvh";
+  std::ofstream(path) << "HIERARCHY\nROOT Hips\n{\nOFFSET 0 9 0\n"
+                         "CHANNELS 6 Xposition Yposition Zposition Zrotation Yrotation Xrotation\n"
+                         "JOINT Head\n{\nOFFSET 0 6 0\nCHANNELS 3 Zrotation Yrotation Xrotation\n"
+                         "End Site\n{\nOFFSET 0 1 0\n}\n}\n"
+                         "JOINT Foot\n{\nOFFSET 0 -9 0\nCHANNELS 3 Zrotation Yrotation Xrotation\n"
+                         "End Site\n{\nOFFSET 0 0 1\n}\n}\n}\nMOTION\nFrames: 2\nFrame Time: 0.1\n"
+                         "3 -4 9 0 0 90 0 0 0 0 0 0\n3 -5 9 0 0 90 0 0 0 0 0 0\n";
+  ClipReport report;
+  const auto turned = LoadClip(path, {}, &report);
+  ASSERT_TRUE(turned.ok()) << turned.status().ToString();
+  ASSERT_EQ(report.warnings.size(), 1u);
+  EXPECT_NE(report.warnings[0].find("clip.bvh: the rest pose stands along Y"), std::string::npos);
+  EXPECT_LT(glm::length(turned->locals[3].translation - glm::vec3(3, 9, 5)), 1e-5f);
+  EXPECT_GT(turned->locals[3].rotation.w, 0.9999f);
+  LoadOptions options;
+  options.up_axis = UpAxis::kY;
+  const auto kept = LoadClip(path, options, nullptr);
+  ASSERT_TRUE(kept.ok());
+  EXPECT_EQ(kept->locals[3].translation, glm::vec3(3, -5, 9));
 }
 
 }  // namespace

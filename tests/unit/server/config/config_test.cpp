@@ -61,6 +61,8 @@ TEST(CommandLine, EveryFlagReachesTheConfig) {
                                   "2",
                                   "--rest-frame",
                                   "12",
+                                  "--up-axis",
+                                  "z",
                                   "--no-render",
                                   "--vmc",
                                   "3",
@@ -96,6 +98,7 @@ TEST(CommandLine, EveryFlagReachesTheConfig) {
   // The rig's reference poses keep the rest poses of their files.
   EXPECT_EQ(PlayOptions(config).rest_frame, 12);
   EXPECT_EQ(ReadOptions(config).rest_frame, -1);
+  EXPECT_EQ(PlayOptions(config).up_axis, motion::UpAxis::kZ);
   EXPECT_FALSE(config.render);
   EXPECT_EQ(config.vmc, 3);
   EXPECT_EQ(config.livelink_face, 4);
@@ -172,7 +175,7 @@ TEST(ParseConfig, ReadsEveryTable) {
   Config config;
   const Status status = ParseText(
       "character = 'face.glb'\nrig = '/abs/rig.json'\nskeleton_map = 'cmu'\nshape_map = 'cc4'\n"
-      "rest_frame = 7\n"
+      "rest_frame = 7\nup_axis = 'y'\n"
       "[listen]\nbind = '0.0.0.0'\ntcp = 0\nudp = 1\nthreads = 3\n"
       "[render]\nenabled = true\nrequired = true\ndevice = '1'\n"
       "[mocap]\nvmc = 39539\nlivelink_face = 11111\n"
@@ -188,6 +191,7 @@ TEST(ParseConfig, ReadsEveryTable) {
   EXPECT_EQ(config.skeleton_map, "cmu");
   EXPECT_EQ(config.shape_map, "cc4");
   EXPECT_EQ(config.rest_frame, 7);
+  EXPECT_EQ(config.up_axis, "y");
   EXPECT_TRUE(config.require_render);
   EXPECT_EQ(config.osc_out->host, "::1");
   EXPECT_EQ(config.record, (RecordConfig{"takes", 2.0, 60.0, false}));
@@ -268,6 +272,12 @@ TEST(ValidateConfig, FramesCountFrom0) {
   Config config;
   config.rest_frame = -2;
   EXPECT_THAT(ValidateConfig(config).what(), testing::HasSubstr("--rest-frame"));
+}
+
+TEST(ValidateConfig, NamesTheAxesThatMayPointUp) {
+  Config config;
+  config.up_axis = "x";
+  EXPECT_THAT(ValidateConfig(config).what(), testing::HasSubstr("--up-axis: 'x' is not one of"));
 }
 
 TEST(ValidateConfig, SeveralServicesMayUsePortZero) {
