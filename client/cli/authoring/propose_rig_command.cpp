@@ -13,6 +13,7 @@
 #include "base/text.h"
 #include "character/pictures/picture_file.h"
 #include "client/cli/authoring/character_command.h"
+#include "client/cli/common/command.h"
 #include "client/cli/common/exit_code.h"
 #include "client/cli/common/inputs.h"
 #include "rig/rig_file.h"
@@ -24,6 +25,7 @@ struct ProposeArguments {
   std::string file;
   std::string out;
   std::string map;
+  motion::LoadOptions read;  // of a recording
 };
 
 // What a rig is proposed for. A recording has no model.
@@ -34,11 +36,11 @@ struct RigSubject {
 };
 
 // Loads the skeleton of a recording, recognised by its extension, or a model.
-Result<RigSubject> LoadRigSubject(const std::string& file) {
+Result<RigSubject> LoadRigSubject(const std::string& file, const motion::LoadOptions& read) {
   const std::filesystem::path extension = std::filesystem::path(file).extension();
   if (extension == ".bvh" || extension == ".mcap" || extension == ".vrma" ||
       extension == ".mhpose") {
-    auto clip = LoadClipArgument(file);
+    auto clip = LoadClipArgument(file, read);
     FURROW_RETURN_IF_ERROR(clip);
     return RigSubject{.skeleton = std::move(clip->skeleton), .model = {}, .look_at = {}};
   }
@@ -97,7 +99,7 @@ Result<authoring::RigProposal> ProposeFor(const ProposeArguments& arguments, Rig
 }
 
 int Propose(const ProposeArguments& arguments) {
-  auto subject = LoadRigSubject(arguments.file);
+  auto subject = LoadRigSubject(arguments.file, arguments.read);
   if (!subject.ok()) return Fail(subject.status());
   const auto proposal = ProposeFor(arguments, std::move(*subject));
   if (!proposal.ok()) return Fail(proposal.status().At(arguments.file));
@@ -146,6 +148,7 @@ void AddProposeRig(CLI::App& group, Action& action) {
       ->add_option("FILE", arguments->file, "Model (glTF, FBX, ...) or recording (BVH, MCAP, VRMA)")
       ->required();
   command->add_option("--out", arguments->out, "Rig to write, RIG.json")->required();
+  AddReadOptions(*command, arguments->read);
   command->add_option("--map", arguments->map,
                       "Skeleton map of the joint names, by name or file (default: the best match)");
   command->callback([arguments, &action] { action = [arguments] { return Propose(*arguments); }; });

@@ -63,8 +63,9 @@ void AddSubscriberOptions(CLI::App& command, LoadFlags& options) {
         "Number of extra TCP subscribers that connect and disconnect for half a second each, in "
         "turn");
   command.add_option("--rig", options.input.rig,
-                     "The daemon's wrinkle rig, by file or shipped name, to check the weights "
-                     "(default: the default character's rig)");
+                     "The daemon's wrinkle rig, by file or shipped name, or its character (.glb), "
+                     "to check the weights (default: the default character's rig)");
+  AddReadOptions(command, options.input.read);
   AddSkeletonMap(command, options.input.skeleton_map);
   AddShapeMap(command, options.input.shape_map);
   command

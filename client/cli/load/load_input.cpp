@@ -5,7 +5,6 @@
 #include <memory>
 #include <utility>
 
-#include "base/ascii.h"
 #include "base/data_dir.h"
 #include "base/status.h"
 #include "client/cli/common/inputs.h"
@@ -13,6 +12,7 @@
 #include "protocol/messages/hash.h"
 #include "protocol/messages/quantise.h"
 #include "recording/wire_pose.h"
+#include "wrinkle/rig/rig_blend_shapes.h"
 #include "wrinkle/rig/rig_joints.h"
 
 namespace furrow::cli {
@@ -50,15 +50,9 @@ bool NothingMatches(const wrinkle::Rig& rig, const motion::Clip& clip,
                     const rig::SkeletonMatch& match, const rig::RigShapes& shapes) {
   const auto joints = wrinkle::JointsOf(rig);
   const auto has_joint = [&](const std::string& name) { return joints.contains(name); };
-  const auto has_blend_shape = [&](const wrinkle::Driver& driver) {
-    return driver.kind == wrinkle::Driver::Kind::kBlendShape &&
-           std::ranges::any_of(clip.blend_shape_names, [&](const std::string& name) {
-             return EqualsIgnoreCase(name, driver.blend_shape.blend_shape);
-           });
-  };
   return match.aliases.empty() && shapes.drivers().num_mapped() == 0 &&
          std::ranges::none_of(clip.skeleton.joint_names(), has_joint) &&
-         std::ranges::none_of(rig.drivers, has_blend_shape);
+         !wrinkle::ReadsAny(rig, clip.blend_shape_names);
 }
 
 // `shapes` receives the blend shapes that the rig reads.
@@ -71,18 +65,20 @@ Result<std::shared_ptr<const wrinkle::RigBinding>> BindRig(const LoadInput& inpu
     FURROW_RETURN_IF_ERROR(shipped);
     rig_name = shipped->string();
   }
-  const auto rig = LoadRigArgument(rig_name);
-  FURROW_RETURN_IF_ERROR(rig);
+  const auto loaded = LoadRigInput(rig_name, input.read);
+  FURROW_RETURN_IF_ERROR(loaded);
+  const wrinkle::Rig& rig = loaded->rig;
   const auto matcher = LoadSkeletonMatcher(input.skeleton_map);
   FURROW_RETURN_IF_ERROR(matcher);
-  const auto match = MatchJoints(*matcher, clip, *rig);
+  const auto match = MatchJoints(*matcher, clip, rig, loaded->skeleton());
   const auto shape_matcher = LoadShapeMatcher(input.shape_map);
   FURROW_RETURN_IF_ERROR(shape_matcher);
-  *shapes = MatchBlendShapes(*shape_matcher, clip, *rig);
-  auto binding = wrinkle::RigBinding::Create(*rig, clip.skeleton, shapes->driver_names(),
+  const auto moved = MatchFaceJoints(*shape_matcher, clip, match, loaded->character.get());
+  *shapes = MatchBlendShapes(*shape_matcher, clip, rig, moved);
+  auto binding = wrinkle::RigBinding::Create(rig, clip.skeleton, shapes->driver_names(),
                                              match.Options(/*allow_missing=*/true));
   if (!binding.ok()) return binding.status().At(rig_name);
-  if (NothingMatches(*rig, clip, match, *shapes)) {
+  if (moved.solver == nullptr && NothingMatches(rig, clip, match, *shapes)) {
     return Status(StatusCode::kNotFound, "the recording has no joint and no blend shape of the rig",
                   input.file,
                   "all weights would stay at 0; choose a --rig for this recording, or map its "
@@ -105,7 +101,7 @@ void QuantiseClip(motion::Clip* clip) {
 }
 
 Result<load::Workload> LoadWorkload(const LoadInput& input) {
-  auto loaded = LoadClipArgument(input.file);
+  auto loaded = LoadClipArgument(input.file, input.read);
   FURROW_RETURN_IF_ERROR(loaded);
   if (loaded->num_frames() == 0)
     return Status(StatusCode::kInvalidArgument, "the recording has no frames", input.file);

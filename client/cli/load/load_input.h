@@ -11,12 +11,14 @@ namespace furrow::cli {
 
 // The recording that a load test sends and the rig that checks the weights.
 struct LoadInput {
-  std::string file;          // the recording
-  std::string rig;           // file or name of a shipped rig; empty: the default character's rig
+  std::string file;  // the recording
+  // File or name of a shipped rig, or a character package; empty: the default character's rig.
+  std::string rig;
   std::string skeleton_map;  // file or name of a shipped map; empty: the best match
   std::string shape_map;     // the same for the names of blend shapes
   bool quantise = false;     // send packed poses
   float scale = 1.0f;        // metres per unit of the recording
+  motion::LoadOptions read;  // how the recording, and the recordings of reference poses, are read
 };
 
 // Loads the recording, binds the rig to it and encodes all poses. Prints warnings about joints and

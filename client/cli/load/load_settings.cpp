@@ -54,6 +54,7 @@ nlohmann::json SettingsOf(const LoadFlags& flags) {
       {"rig", TextOrNull(flags.input.rig)},
       {"skeleton_map", TextOrNull(flags.input.skeleton_map)},
       {"shape_map", TextOrNull(flags.input.shape_map)},
+      {"rest_frame", flags.input.read.rest_frame},
       {"quantise", flags.input.quantise},
       {"scale", flags.input.scale},
       {"path", NameOf(run.path)},
