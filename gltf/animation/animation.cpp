@@ -2,6 +2,7 @@
 #include "gltf/animation/animation.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <functional>
 #include <map>
@@ -206,6 +207,22 @@ class AnimationReader {
 };
 
 }  // namespace
+
+std::vector<AnimationSummary> ListAnimations(const Document& document) {
+  const tinygltf::Model& model = document.model();
+  std::vector<AnimationSummary> list;
+  for (const tinygltf::Animation& animation : model.animations) {
+    AnimationSummary& summary = list.emplace_back();
+    summary.name = animation.name;
+    for (const tinygltf::AnimationSampler& sampler : animation.samplers) {
+      if (sampler.input < 0 || sampler.input >= static_cast<int>(model.accessors.size())) continue;
+      const auto& latest = model.accessors[static_cast<std::size_t>(sampler.input)].maxValues;
+      if (latest.empty() || !std::isfinite(latest[0])) continue;
+      summary.seconds = std::max(summary.seconds, latest[0]);
+    }
+  }
+  return list;
+}
 
 Result<Animation> ReadAnimation(Document* document, const NodeForest& forest,
                                 std::string_view choice) {

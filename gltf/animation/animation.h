@@ -27,6 +27,15 @@ struct Animation {
   std::vector<NodeTrack> tracks;  // at most one per node and target
 };
 
+// An animation that a file offers.
+struct AnimationSummary {
+  std::string name;      // may be empty
+  double seconds = 0.0;  // its latest key, as the file states it; 0 if it does not
+};
+
+// All animations of a document, in its order. Does not read any key.
+[[nodiscard]] std::vector<AnimationSummary> ListAnimations(const Document& document);
+
 // Reads one animation of a document with Contents::kAnimation. `choice`: its name, or its index
 // from 0; empty: the first.
 //

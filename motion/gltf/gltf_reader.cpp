@@ -250,6 +250,12 @@ Result<Clip> ParseGltfAnimation(std::string_view bytes, std::string_view source_
   Result<Clip> clip = ClipSampler(&*document, options).Run();
   if (!clip.ok()) return clip.status().Within(source_name);
   if (report != nullptr) {
+    // A converted file holds the chosen animation only; its converter listed all of them.
+    if (report->animations.empty()) {
+      for (gltf::AnimationSummary& animation : gltf::ListAnimations(*document)) {
+        report->animations.push_back({std::move(animation.name), animation.seconds});
+      }
+    }
     for (const std::string& warning : document->warnings()) {
       report->warnings.push_back(std::string(source_name) + ": " + warning);
     }

@@ -112,6 +112,27 @@ TEST(GltfReader, IgnoresRequiredExtensionsOfMeshes) {
   EXPECT_THAT(report.warnings, ElementsAre(HasSubstr("'EXT_something'")));
 }
 
+TEST(GltfReader, ReportsAllAnimations) {
+  HandMadeGltf gltf = TwoJoints();
+  gltf.json["animations"][0]["name"] = "Walk";
+  gltf.json["animations"].push_back(gltf.json["animations"][0]);
+  gltf.json["animations"][1]["name"] = "Jump";
+  const int times = gltf.json["animations"][0]["samplers"][0]["input"];
+  gltf.json["accessors"][static_cast<std::size_t>(times)]["max"] = {2.5};
+  const int unstated = gltf.AddFloats({0.0f, 1.0f}, "SCALAR");
+  for (auto& sampler : gltf.json["animations"][1]["samplers"]) sampler["input"] = unstated;
+  ClipReport report;
+  LoadOptions load;
+  load.animation = "Walk";
+  const auto clip = ParseGltfAnimation(gltf.Glb(), "t.glb", {.load = load}, &report);
+  ASSERT_TRUE(clip.ok()) << clip.status().ToString();
+  ASSERT_EQ(report.animations.size(), 2u);
+  EXPECT_EQ(report.animations[0].name, "Walk");
+  EXPECT_EQ(report.animations[0].seconds, 2.5);
+  EXPECT_EQ(report.animations[1].name, "Jump");
+  EXPECT_EQ(report.animations[1].seconds, 0.0);  // the file does not state it
+}
+
 TEST(GltfReader, DecomposesMatrices) {
   HandMadeGltf gltf = TwoJoints();
   // Scale by 2, a quarter turn about Z, then (5, 6, 7); column-major.
