@@ -120,6 +120,11 @@ std::vector<Material> MakeGltfMaterials(const std::vector<gltf::Material>& from)
     to.roughness_texture = material.roughness_image;
     to.thickness = material.thickness;
     to.thickness_texture = material.thickness_image;
+    // The transform of any other material moves the UVs of its meshes (gltf_mesh.cpp).
+    if (material.is_atlas_tile) {
+      to.texture_scale = material.uv_transform.scale;
+      to.texture_offset = material.uv_transform.offset;
+    }
     to.double_sided = material.double_sided;
     to.alpha_cutoff = material.alpha_cutoff;
   }

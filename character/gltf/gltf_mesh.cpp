@@ -314,9 +314,11 @@ Status ReadNode(const Source& source, const gltf::Mesh& from, const gltf::Node& 
     mesh.material = primitive.material;
     PrimitiveReader reader(source.document, primitive, where, source.lenient, &mesh,
                            &notes->emplace_back());
-    const gltf::UvTransform uv_transform =
-        mesh.material < 0 ? gltf::UvTransform()
-                          : source.materials[static_cast<std::size_t>(mesh.material)].uv_transform;
+    gltf::UvTransform uv_transform;
+    if (mesh.material >= 0) {
+      const gltf::Material& material = source.materials[static_cast<std::size_t>(mesh.material)];
+      if (!material.is_atlas_tile) uv_transform = material.uv_transform;
+    }
     FURROW_RETURN_IF_ERROR(reader.ReadGeometry(uv_transform));
     FURROW_RETURN_IF_ERROR(reader.ReadMorphTargets(from, targets));
     if (node.skin != gltf::kNone) {

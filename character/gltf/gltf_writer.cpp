@@ -259,12 +259,12 @@ class CharacterWriter {
           {"baseColorFactor", {m.base_colour.r, m.base_colour.g, m.base_colour.b, m.base_colour.a}},
           {"metallicFactor", 0},
           {"roughnessFactor", m.roughness}};
-      if (m.base_colour_texture >= 0) pbr["baseColorTexture"] = {{"index", m.base_colour_texture}};
+      if (m.base_colour_texture >= 0) pbr["baseColorTexture"] = TextureOf(m, m.base_colour_texture);
       if (m.roughness_texture >= 0) {
-        pbr["metallicRoughnessTexture"] = {{"index", m.roughness_texture}};
+        pbr["metallicRoughnessTexture"] = TextureOf(m, m.roughness_texture);
       }
       Json material = {{"name", m.name}, {"pbrMetallicRoughness", std::move(pbr)}};
-      if (m.normal_texture >= 0) material["normalTexture"] = {{"index", m.normal_texture}};
+      if (m.normal_texture >= 0) material["normalTexture"] = TextureOf(m, m.normal_texture);
       if (m.alpha_cutoff > 0.0f) {
         material["alphaMode"] = "MASK";
         material["alphaCutoff"] = m.alpha_cutoff;
@@ -273,15 +273,36 @@ class CharacterWriter {
       if (m.thickness > 0.0f) AddThickness(m, &material);
       material["extras"] = {{gltf::kKindExtra, MaterialKindName(m.kind)}};
       if (!m.wrinkles) material["extras"][gltf::kWrinklesExtra] = false;
+      if (IsAtlasTile(m)) material["extras"][gltf::kAtlasTileExtra] = true;
       root_["materials"].push_back(std::move(material));
     }
   }
 
+  static bool IsAtlasTile(const Material& m) {
+    return m.texture_scale != glm::vec2(1.0f) || m.texture_offset != glm::vec2(0.0f);
+  }
+
+  Json TextureOf(const Material& m, int picture) {
+    Json texture = {{"index", picture}};
+    if (IsAtlasTile(m)) {
+      texture["extensions"]["KHR_texture_transform"] = {
+          {"offset", {m.texture_offset.x, m.texture_offset.y}},
+          {"scale", {m.texture_scale.x, m.texture_scale.y}}};
+      UseExtension("KHR_texture_transform");
+    }
+    return texture;
+  }
+
+  void UseExtension(const std::string& name) {
+    Json& used = root_["extensionsUsed"];
+    if (std::find(used.begin(), used.end(), name) == used.end()) used.push_back(name);
+  }
+
   void AddThickness(const Material& m, Json* material) {
     Json volume = {{"thicknessFactor", m.thickness}};
-    if (m.thickness_texture >= 0) volume["thicknessTexture"] = {{"index", m.thickness_texture}};
+    if (m.thickness_texture >= 0) volume["thicknessTexture"] = TextureOf(m, m.thickness_texture);
     (*material)["extensions"]["KHR_materials_volume"] = std::move(volume);
-    root_["extensionsUsed"] = {"KHR_materials_volume"};
+    UseExtension("KHR_materials_volume");
   }
 
   Status AddPicture(const Picture& picture) {

@@ -19,7 +19,7 @@ struct Material {
   std::string name;
   Kind kind = Kind::kOther;
   // False: the rig's wrinkle maps are not drawn on this material, because its UVs overlap those of
-  // the material that they were baked for.
+  // the material that they were baked for, or because it has none.
   bool wrinkles = true;
   glm::vec4 base_colour{1.0f};  // linear RGBA in [0, 1]; multiplies the texture
   // Textures are indices into Character::pictures; -1: none.
@@ -31,6 +31,10 @@ struct Material {
   // it. Multiplies the green channel of thickness_texture, if there is one.
   float thickness = 0.0f;
   int thickness_texture = -1;
+  // UVs of the mesh to UVs of the textures above: uv * scale + offset. Not the identity if
+  // materials with overlapping UVs share one atlas of wrinkle maps, each in its own tile.
+  glm::vec2 texture_scale{1.0f};
+  glm::vec2 texture_offset{0.0f};
   bool double_sided = false;
   float alpha_cutoff = 0.0f;  // texels with less alpha are not drawn; 0 for opaque materials
 };

@@ -333,9 +333,10 @@ class RawReader {
     return {};
   }
 
-  // Of VRM's extensions, characters need the expressions and look-at.
+  // Of VRM's extensions, characters need the expressions, look-at and MToon's textures.
   static void KeepVrm(const Json& extensions, Json* reduced) {
     constexpr std::pair<const char*, const char*> kParts[] = {{"VRM", "blendShapeMaster"},
+                                                              {"VRM", "materialProperties"},
                                                               {"VRM", "firstPerson"},
                                                               {"VRMC_vrm", "expressions"},
                                                               {"VRMC_vrm", "lookAt"}};

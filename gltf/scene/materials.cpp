@@ -17,8 +17,10 @@ namespace {
 // Only what the renderer draws: metalness, emission and occlusion are ignored.
 class MaterialReader {
  public:
-  MaterialReader(Document* document, const tinygltf::Material& from, std::string field)
-      : document_(*document), from_(from), field_(std::move(field)) {}
+  // `vrm`: the material's properties in VRM 0.x; null if the file has none.
+  MaterialReader(Document* document, const tinygltf::Material& from, const tinygltf::Value* vrm,
+                 std::string field)
+      : document_(*document), from_(from), vrm_(vrm), field_(std::move(field)) {}
 
   Result<Material> Run() {
     const tinygltf::PbrMetallicRoughness& pbr = from_.pbrMetallicRoughness;
@@ -29,6 +31,9 @@ class MaterialReader {
     }
     if (from_.extras.IsObject() && from_.extras.Get(kWrinklesExtra).IsBool()) {
       to.wrinkles = from_.extras.Get(kWrinklesExtra).Get<bool>();
+    }
+    if (from_.extras.IsObject() && from_.extras.Get(kAtlasTileExtra).IsBool()) {
+      to.is_atlas_tile = from_.extras.Get(kAtlasTileExtra).Get<bool>();
     }
     for (std::size_t i = 0; i < std::min<std::size_t>(pbr.baseColorFactor.size(), 4); ++i) {
       const auto factor = static_cast<float>(pbr.baseColorFactor[i]);
@@ -48,6 +53,7 @@ class MaterialReader {
     }
     FURROW_RETURN_IF_ERROR(
         ReadTexture(pbr.baseColorTexture, "baseColorTexture", &to.base_colour_image));
+    if (to.base_colour_image == kNone) FURROW_RETURN_IF_ERROR(ReadMToonTexture(&to));
     FURROW_RETURN_IF_ERROR(
         ReadTexture(pbr.metallicRoughnessTexture, "metallicRoughnessTexture", &to.roughness_image));
     FURROW_RETURN_IF_ERROR(ReadTexture(from_.normalTexture, "normalTexture", &to.normal_image));
@@ -62,6 +68,35 @@ class MaterialReader {
   }
 
  private:
+  // The lit texture of MToon, in files whose glTF material states no texture of its own. VRM 1.0
+  // has none of its own: it always uses glTF's.
+  Status ReadMToonTexture(Material* to) {
+    if (vrm_ == nullptr || !vrm_->IsObject()) return {};
+    const tinygltf::Value& textures = vrm_->Get("textureProperties");
+    if (!textures.IsObject() || !textures.Get("_MainTex").IsInt()) return {};
+    UvTransform transform;
+    const tinygltf::Value& vectors = vrm_->Get("vectorProperties");
+    if (vectors.IsObject() && vectors.Get("_MainTex").IsArray()) {
+      const auto number = [&](int i) {
+        const tinygltf::Value& value = vectors.Get("_MainTex").Get(i);
+        return value.IsNumber() ? static_cast<float>(value.GetNumberAsDouble()) : 0.0f;
+      };
+      if (vectors.Get("_MainTex").ArrayLen() == 4) {
+        // Unity's v points up, glTF's down.
+        transform = {.offset = {number(0), 1.0f - number(1) - number(3)},
+                     .scale = {number(2), number(3)}};
+      }
+      for (const float value :
+           {transform.offset.x, transform.offset.y, transform.scale.x, transform.scale.y}) {
+        if (!std::isfinite(value)) {
+          return {StatusCode::kNonFinite, "the texture transform is not finite", VrmField()};
+        }
+      }
+    }
+    UseTransform(transform);
+    return FindImage(textures.Get("_MainTex").Get<int>(), 0, VrmField(), &to->base_colour_image);
+  }
+
   // `info`: tinygltf's type of a texture reference, of which there are two.
   template <class Info>
   Status ReadTexture(const Info& info, const std::string& name, int* image) {
@@ -146,12 +181,23 @@ class MaterialReader {
                      member + ".thicknessTexture", &to->thickness_image);
   }
 
+  static std::string VrmField() { return " (extensions.VRM.materialProperties: _MainTex)"; }
+
   Document& document_;
   const tinygltf::Material& from_;
+  const tinygltf::Value* vrm_;
   const std::string field_;
   std::optional<UvTransform> uv_transform_;  // of the first texture
   bool transforms_differ_ = false;
 };
+
+// The list of VRM 0.x, in the order of the materials; null if the file has none.
+const tinygltf::Value* VrmMaterials(const tinygltf::Model& model) {
+  const auto found = model.extensions.find("VRM");
+  if (found == model.extensions.end() || !found->second.IsObject()) return nullptr;
+  const tinygltf::Value& list = found->second.Get("materialProperties");
+  return list.IsArray() ? &list : nullptr;
+}
 
 }  // namespace
 
@@ -168,10 +214,13 @@ Result<std::vector<Material>> ReadMaterials(Document* document) {
     return Status(StatusCode::kLimit, "more than " + std::to_string(kMaxMaterials) + " materials",
                   "materials");
   }
+  const tinygltf::Value* const vrm = VrmMaterials(document->model());
   std::vector<Material> materials;
   for (std::size_t i = 0; i < from.size(); ++i) {
+    const tinygltf::Value* const of_vrm =
+        vrm != nullptr && i < vrm->ArrayLen() ? &vrm->Get(static_cast<int>(i)) : nullptr;
     Result<Material> material =
-        MaterialReader(document, from[i], "materials[" + std::to_string(i) + "]").Run();
+        MaterialReader(document, from[i], of_vrm, "materials[" + std::to_string(i) + "]").Run();
     FURROW_RETURN_IF_ERROR(material);
     materials.push_back(std::move(*material));
   }

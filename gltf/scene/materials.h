@@ -22,6 +22,11 @@ inline constexpr char kKindExtra[] = "furrow_kind";
 // The extra, false, that keeps wrinkle maps off a material.
 inline constexpr char kWrinklesExtra[] = "furrow_wrinkles";
 
+// The extra, true, of a material whose meshes lie in a tile of a shared atlas. The meshes keep
+// these UVs for wrinkle maps and masks, and KHR_texture_transform leads to the material's own
+// textures.
+inline constexpr char kAtlasTileExtra[] = "furrow_atlas_tile";
+
 // KHR_texture_transform: how UVs of the mesh become UVs of the image.
 struct UvTransform {
   glm::vec2 offset{0.0f};
@@ -47,10 +52,12 @@ struct Material {
   bool double_sided = false;
   // Of all textures. If they differ, that of the base colour and a warning.
   UvTransform uv_transform;
-  float alpha_cutoff = 0.0f;  // 0: opaque. alphaMode BLEND becomes 0.5.
+  bool is_atlas_tile = false;  // kAtlasTileExtra
+  float alpha_cutoff = 0.0f;   // 0: opaque. alphaMode BLEND becomes 0.5.
 };
 
-// All materials of a document with Contents::kCharacter.
+// All materials of a document with Contents::kCharacter. A material of VRM 0.x without a base
+// colour texture takes MToon's lit texture (`_MainTex`).
 //
 // Errors: kLimit (kMaxMaterials), kSchema (a texture or image that does not exist), kNonFinite,
 // kUnsupported (a texture that uses another set than TEXCOORD_0).

@@ -42,6 +42,8 @@ void WrinkleCache::Plan(const Settings& settings, const View& view) {
   for (int index = 0; index < gpu_->num_materials(); ++index) {
     const GpuMaterial& material = gpu_->material(index);
     if (material.group == WrinkleGroup::kNone) continue;
+    // Its texels and those of the wrinkle maps are different places.
+    if (material.own_texture_uvs) continue;
     // Cut-outs need the alpha of the base colour, which leaves no room for the cavity.
     if (material.alpha_test && gpu_->wrinkle_looks() != 0) continue;
     if (tables_->IsDisplaced(material.group, settings)) continue;

@@ -23,8 +23,10 @@ struct MaterialBlock {
   float cavity_albedo;
   float thickness;
   float padding[3];
+  glm::vec2 texture_scale;
+  glm::vec2 texture_offset;
 };
-static_assert(sizeof(MaterialBlock) == 48);
+static_assert(sizeof(MaterialBlock) == 64);
 
 // Scale of the specular lobe. Skin reflects 2.8% at normal incidence, the tear film 2%. The tear
 // film is smooth, so its highlight is a small bright point.
@@ -221,7 +223,9 @@ Status GpuCharacter::AddMaterials(const Character& character) {
                               source.alpha_cutoff,
                               CavityAlbedoOf(source.kind),
                               source.thickness,
-                              {}};
+                              {},
+                              source.texture_scale,
+                              source.texture_offset};
     GpuMaterial material;
     material.block = gl::MakeStaticBuffer(&block, sizeof(block));
     material.base_colour = ColourTexture(character, source.base_colour_texture, true);
@@ -234,6 +238,8 @@ Status GpuCharacter::AddMaterials(const Character& character) {
     material.cavity_albedo = block.cavity_albedo / std::max(source.base_colour.g, 1e-3f);
     material.alpha_test = source.alpha_cutoff > 0.0f;
     material.double_sided = source.double_sided;
+    material.own_texture_uvs =
+        source.texture_scale != glm::vec2(1.0f) || source.texture_offset != glm::vec2(0.0f);
     materials_.push_back(std::move(material));
   }
   return {};

@@ -30,6 +30,7 @@ struct GpuMaterial {
   float cavity_albedo = 0.0f;  // linear; base colours with less green are painted hollows
   bool alpha_test = false;
   bool double_sided = false;
+  bool own_texture_uvs = false;  // Material::texture_scale and texture_offset act
 };
 
 // A character's meshes, materials and textures on the GPU. Normal maps become derivative maps in

@@ -18,7 +18,7 @@ layout(binding = 11) uniform sampler2D u_thickness_map;  // green, as in glTF
 // Smallest thickness of flesh that light passes through from any direction, metres.
 float thickness() {
 #if HAS_THICKNESS
-  return u_thickness * texture(u_thickness_map, v_uv).g;
+  return u_thickness * texture(u_thickness_map, textureUv()).g;
 #else
   return u_thickness;
 #endif

@@ -26,16 +26,20 @@ layout(std140, binding = 1) uniform Material {
   float u_alpha_cutoff;
   float u_cavity_albedo;   // see cavity(); 0: no painted hollows
   float u_thickness;       // metres of flesh that light passes through, at least
+  vec4 u_texture_uv;       // scale and offset from v_uv to the UVs of the material's own textures
 };
 
 layout(binding = 0) uniform sampler2D u_base_colour_map;        // sRGB
 layout(binding = 1) uniform sampler2D u_base_derivatives;       // n.xy / n.z, and their squares
 layout(binding = 4) uniform sampler2D u_roughness_map;          // green, as in glTF
 
+// UVs of the material's own textures. Masks and wrinkle maps use v_uv.
+vec2 textureUv() { return v_uv * u_texture_uv.xy + u_texture_uv.zw; }
+
 // Base colour, linear; a: opacity.
 vec4 baseColour() {
 #if HAS_BASE_COLOUR
-  return u_base_colour * texture(u_base_colour_map, v_uv);
+  return u_base_colour * texture(u_base_colour_map, textureUv());
 #else
   return u_base_colour;
 #endif
@@ -44,7 +48,7 @@ vec4 baseColour() {
 // Roughness, [0, 1].
 float roughness() {
 #if HAS_ROUGHNESS
-  return u_roughness * texture(u_roughness_map, v_uv).g;
+  return u_roughness * texture(u_roughness_map, textureUv()).g;
 #else
   return u_roughness;
 #endif
@@ -70,7 +74,7 @@ int samplesLeft(float alpha) {
   if (gl_NumSamples == 1) return alpha < u_alpha_cutoff ? 0 : 1;
   float line = clamp((alpha - u_alpha_cutoff) / max(fwidth(alpha), 1e-4) + 0.5, 0.0, 1.0);
 #if HAS_BASE_COLOUR
-  float level = textureQueryLod(u_base_colour_map, v_uv).y;
+  float level = textureQueryLod(u_base_colour_map, textureUv()).y;
   line = mix(line, alpha, clamp(level, 0.0, 1.0));
 #endif
   int count = int(line * float(gl_NumSamples) + 0.5);
@@ -107,7 +111,7 @@ bool facesCamera() { return MATERIAL == MATERIAL_HAIR || gl_FrontFacing; }
 // Unit shading normal, model space. `variance`: of the slopes within the pixel.
 vec3 surfaceNormal(vec4 masks[MASK_LAYERS], vec4 dynamicMasks[MAP_SLOTS], out float variance) {
 #if HAS_BASE_NORMAL
-  vec3 base = slopeOf(texture(u_base_derivatives, v_uv));
+  vec3 base = slopeOf(texture(u_base_derivatives, textureUv()));
 #else
   vec3 base = vec3(0.0);
 #endif

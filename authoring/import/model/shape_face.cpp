@@ -14,7 +14,7 @@
 #include "authoring/bake/bake_poses.h"
 #include "authoring/bake/surface/bake_surface.h"
 #include "authoring/bake/surface/surface_check.h"
-#include "authoring/bake/surface/uv_check.h"
+#include "authoring/import/model/atlases.h"
 #include "authoring/shapes/face_skin.h"
 #include "authoring/shapes/region_masks.h"
 #include "authoring/shapes/shape_landmarks.h"
@@ -34,43 +34,6 @@ std::string Listed(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
   return text;
-}
-
-float AreaOf(const Character& character, int material) {
-  float area = 0.0f;
-  for (const character::Mesh& mesh : character.meshes) {
-    if (mesh.material != material) continue;
-    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-      const glm::vec3& a = mesh.vertices[mesh.indices[i]].position;
-      area += glm::length(glm::cross(mesh.vertices[mesh.indices[i + 1]].position - a,
-                                     mesh.vertices[mesh.indices[i + 2]].position - a));
-    }
-  }
-  return area;
-}
-
-std::vector<int> MeshesOf(const Character& character, std::span<const int> materials) {
-  std::vector<int> meshes;
-  for (std::size_t m = 0; m < character.meshes.size(); ++m) {
-    const int material = character.meshes[m].material;
-    if (std::find(materials.begin(), materials.end(), material) != materials.end()) {
-      meshes.push_back(static_cast<int>(m));
-    }
-  }
-  return meshes;
-}
-
-// Samples that both cover are counted once in the union.
-bool Overlap(const Character& character, std::span<const int> chosen, int candidate) {
-  constexpr int kSamples = 256;  // per side
-  std::vector<int> both(chosen.begin(), chosen.end());
-  both.push_back(candidate);
-  const auto covered = [&](std::span<const int> materials) {
-    return CheckUvs(character, MeshesOf(character, materials), kSamples).covered;
-  };
-  const float candidate_alone = covered(std::span(&candidate, 1));
-  const float shared = covered(chosen) + candidate_alone - covered(both);
-  return shared > kTolerableUvOverlap * std::max(candidate_alone, 0.01f);
 }
 
 // Other materials are skin only if none is marked as skin. The face is then marked, so that hair,
@@ -173,33 +136,6 @@ std::vector<std::string> MissingShapes(const FaceSkin& skin, const ArkitFace& fa
 }
 
 }  // namespace
-
-std::vector<std::string> ChooseAtlases(int first, Character* character) {
-  std::vector<std::string> without;
-  for (const bool cloth : {false, true}) {
-    std::set<int> materials;
-    for (const int mesh : MeshesOn(*character, cloth)) {
-      const int material = character->meshes[static_cast<std::size_t>(mesh)].material;
-      if (material >= 0) materials.insert(material);
-    }
-    std::vector<std::pair<float, int>> order;  // the largest first
-    for (const int material : materials) {
-      order.emplace_back(material == first ? -1e30f : -AreaOf(*character, material), material);
-    }
-    std::sort(order.begin(), order.end());
-    std::vector<int> chosen;
-    for (const auto& [area, material] : order) {
-      if (chosen.empty() || !Overlap(*character, chosen, material)) {
-        chosen.push_back(material);
-        continue;
-      }
-      Material& other = character->materials[static_cast<std::size_t>(material)];
-      other.wrinkles = false;
-      without.push_back(other.name);
-    }
-  }
-  return without;
-}
 
 Result<std::vector<std::string>> ProposeShapeFace(const wrinkle::Rig& arkit, const ArkitFace& face,
                                                   int size, Character* character) {

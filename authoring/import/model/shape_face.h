@@ -37,10 +37,4 @@ namespace furrow::authoring {
     const ArkitFace& face, std::span<const BakeStroke> strokes, int size, float depth,
     const std::function<bool(float)>& progress, character::Character* character);
 
-// Selects, for skin and for cloth, the materials that share one wrinkle atlas, and clears
-// Material::wrinkles of the others: materials whose UVs overlap those of a material chosen before.
-// `first`: the material that comes first (-1: none); then the one with the largest surface. Returns
-// the names of the materials that lose their wrinkles.
-std::vector<std::string> ChooseAtlases(int first, character::Character* character);
-
 }  // namespace furrow::authoring

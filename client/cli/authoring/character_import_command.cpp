@@ -11,6 +11,7 @@
 #include "authoring/import/character_package.h"
 #include "authoring/import/makehuman/makehuman.h"
 #include "authoring/import/makehuman/save/data_folders.h"
+#include "authoring/import/model/atlases.h"
 #include "authoring/import/model/import_model.h"
 #include "authoring/import/model/shape_face.h"
 #include "authoring/shapes/arkit_face.h"
@@ -124,6 +125,10 @@ Status AttachRigTo(const ImportArguments& arguments, authoring::ImportedModel* i
     FURROW_RETURN_IF_ERROR(rig);
     return character::AttachRig(std::move(*rig), ResolveRigPath(arguments.rig).parent_path(),
                                 character);
+  }
+  if (const auto tiled = authoring::TileClothAtlas(character); !tiled.empty()) {
+    PrintNotes({"the UVs of " + std::to_string(tiled.size()) +
+                " materials of cloth overlap; each got a tile of the atlas of wrinkle maps"});
   }
   const authoring::ArkitFace face(*character, arguments.model.shapes);
   const bool shapes = authoring::HasShapeFace(face);

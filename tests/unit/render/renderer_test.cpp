@@ -94,6 +94,42 @@ TEST(Renderer, BlackSkinIsDarkAndABlackEyeIsGlossy) {
   }
 }
 
+// A plane whose UVs lie in a quarter of an atlas, and whose texture fills the unit square, looks as
+// one that was never moved.
+TEST(Renderer, TilesOfAnAtlasKeepTheirTextures) {
+  const auto waves = [](float u, float v) { return 0.004f * std::sin(30.0f * u + 17.0f * v); };
+  character::Character plane = test::MakePlane(64, waves, {});
+  plane.materials[0].base_colour_texture = static_cast<int>(plane.pictures.size());
+  plane.pictures.push_back(test::MakePicture("colours", 64, [](float u, float v) {
+    return glm::vec4(u, v, u < 0.5f ? 1.0f : 0.0f, v < 0.25f ? 0.0f : 1.0f);
+  }));
+  plane.materials[0].alpha_cutoff = 0.5f;  // the shadow and the picture have a hole
+  const auto picture = [](const character::Character& character) {
+    const auto renderer = Renderer::Create(character);
+    EXPECT_TRUE(renderer.ok()) << renderer.status().ToString();
+    const test::Subject subject(character);
+    FrameRequest request;
+    request.model = subject.model;
+    request.camera = *(*renderer)->Preset("face");
+    request.width = request.height = kSize;
+    return (*(*renderer)->Render(request)).rgb;
+  };
+  const std::vector<std::uint8_t> expected = picture(plane);
+  for (character::Vertex& vertex : plane.meshes[0].vertices) {
+    vertex.uv = 0.5f * vertex.uv + glm::vec2(0.5f, 0.0f);
+  }
+  EXPECT_NE(picture(plane), expected);
+  plane.materials[0].texture_scale = glm::vec2(2.0f);
+  plane.materials[0].texture_offset = glm::vec2(-1.0f, 0.0f);
+  const std::vector<std::uint8_t> tiled = picture(plane);
+  ASSERT_EQ(tiled.size(), expected.size());
+  int different = 0;
+  for (std::size_t i = 0; i < tiled.size(); ++i) {
+    different += std::abs(int{tiled[i]} - int{expected[i]}) > 2 ? 1 : 0;
+  }
+  EXPECT_LT(different, 20);  // rounded UVs at the edge of the hole
+}
+
 // A composed texel may affect one pixel beyond a mask.
 TEST_F(RendererTest, WrinklesChangeOnlyMaskedPixels) {
   const Image mask = Render(Request(subject_, View::kMaskTexture));

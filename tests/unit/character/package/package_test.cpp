@@ -321,6 +321,35 @@ TEST(Character, ComputesMissingNormalsAndTangents) {
   }
 }
 
+// The meshes keep the UVs of the tile; viewers that know KHR_texture_transform find the texture.
+TEST(Character, TilesOfAnAtlasReadBackEqual) {
+  Character square = Square();
+  Material& material = square.materials[0];
+  material.texture_scale = {2.0f, 4.0f};
+  material.texture_offset = {-1.0f, 0.25f};
+  material.normal_texture = 0;
+  material.thickness = 0.01f;
+  material.thickness_texture = 0;
+  const std::string glb = GlbOf(square);
+  const auto again = ParseCharacter(glb, ".");
+  ASSERT_TRUE(again.ok()) << again.status().ToString();
+  EXPECT_EQ(again->materials[0].texture_scale, material.texture_scale);
+  EXPECT_EQ(again->materials[0].texture_offset, material.texture_offset);
+  EXPECT_EQ(again->meshes[0].vertices[1].uv, square.meshes[0].vertices[1].uv);
+  json root = json::parse(gltf::SplitContainer(glb)->json);
+  EXPECT_THAT(root["extensionsUsed"],
+              ::testing::ElementsAre("KHR_texture_transform", "KHR_materials_volume"));
+  // Without the mark, the transform moves the UVs, as in any other file.
+  const std::string plain = Changed([&](json& changed, std::string&) {
+    changed["materials"] = root["materials"];
+    changed["materials"][0]["extras"].erase("furrow_atlas_tile");
+  });
+  const auto moved = ParseCharacter(plain, ".");
+  ASSERT_TRUE(moved.ok()) << moved.status().ToString();
+  EXPECT_EQ(moved->materials[0].texture_scale, glm::vec2(1.0f));
+  EXPECT_EQ(moved->meshes[0].vertices[1].uv, glm::vec2(1.0f, 4.25f));
+}
+
 TEST(Character, FindsThePicturesOfTheRig) {
   const fs::path folder = fs::temp_directory_path() / "furrow_character_rig";
   fs::create_directories(folder);

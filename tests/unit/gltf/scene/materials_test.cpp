@@ -50,6 +50,49 @@ TEST(Materials, WarnOfTexturesThatNobodyReads) {
   EXPECT_THAT(read.warnings, ElementsAre(HasSubstr("'KHR_texture_basisu' is not supported")));
 }
 
+// The materials of a VRM 0.x file with these MToon properties; only the first has a texture in
+// glTF.
+Read ReadMToon(const json& properties) {
+  HandMadeGltf gltf;
+  gltf.AddFloats({0}, "SCALAR");
+  gltf.json["images"] = {{{"uri", "a.png"}}, {{"uri", "b.png"}}};
+  gltf.json["textures"] = {{{"source", 0}}, {{"source", 1}}};
+  gltf.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}},
+                            {{"name", "face"}}};
+  gltf.json["extensionsUsed"] = {"VRM"};
+  gltf.json["extensions"]["VRM"]["materialProperties"] = json::array({properties, properties});
+  const std::string glb = gltf.Glb();
+  Result<Document> document = Document::Open(glb, {});
+  if (!document.ok()) return {{}, {}, document.status()};
+  Result<std::vector<Material>> materials = ReadMaterials(&*document);
+  if (!materials.ok()) return {{}, {}, materials.status()};
+  return {std::move(*materials), document->warnings(), {}};
+}
+
+TEST(Materials, TakeMToonsTextureWhereGltfStatesNone) {
+  const Read read = ReadMToon(
+      {{"shader", "VRM/MToon"},
+       {"textureProperties", {{"_MainTex", 1}, {"_ShadeTexture", 0}}},
+       {"vectorProperties", {{"_MainTex", {0.5, 0.25, 2, 0.5}}, {"_Color", {1, 1, 1, 1}}}}});
+  ASSERT_TRUE(read.status.ok()) << read.status.ToString();
+  EXPECT_EQ(read.materials[0].base_colour_image, 0);
+  EXPECT_EQ(read.materials[0].uv_transform, UvTransform());
+  EXPECT_EQ(read.materials[1].base_colour_image, 1);
+  EXPECT_EQ(read.materials[1].uv_transform, (UvTransform{{0.5f, 0.25f}, 0.0f, {2, 0.5f}}));
+}
+
+TEST(Materials, SurviveFaultyMToon) {
+  for (const json& faulty : {json(), json(7), json::object(), json{{"textureProperties", 3}},
+                             json{{"textureProperties", {{"_MainTex", "a"}}}},
+                             json{{"textureProperties", {{"_MainTex", -1}}}},
+                             json{{"textureProperties", {{"_MainTex", 1}}},
+                                  {"vectorProperties", {{"_MainTex", {1}}}}}}) {
+    EXPECT_TRUE(ReadMToon(faulty).status.ok()) << faulty;
+  }
+  EXPECT_EQ(ReadMToon({{"textureProperties", {{"_MainTex", 9}}}}).status.code(),
+            StatusCode::kSchema);
+}
+
 // One material whose base colour and normal texture have these transforms.
 Read ReadMaterial(const json& colour, const json& normal) {
   HandMadeGltf gltf;
