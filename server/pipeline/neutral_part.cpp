@@ -14,7 +14,8 @@ using wrinkle::JointRole;
 constexpr std::array<std::pair<NeutralPart, std::string_view>, 3> kNames = {
     {{NeutralPart::kFace, "face"}, {NeutralPart::kBody, "body"}, {NeutralPart::kBoth, "both"}}};
 
-// One entry per joint. Without roles, no joint is known to be of the face.
+}  // namespace
+
 std::vector<bool> FaceJoints(const StreamDefinition& stream) {
   const wrinkle::Skeleton& skeleton = stream.skeleton;
   const wrinkle::JointRoles& roles = stream.match.stream.roles;
@@ -31,8 +32,6 @@ std::vector<bool> FaceJoints(const StreamDefinition& stream) {
   }
   return below;
 }
-
-}  // namespace
 
 std::optional<NeutralPart> ParseNeutralPart(std::string_view text) {
   for (const auto& [part, name] : kNames) {

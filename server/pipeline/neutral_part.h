@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "server/pipeline/stream_definition.h"
 #include "wrinkle/skeleton/pose.h"
@@ -15,6 +16,10 @@ enum class NeutralPart {
   kBody,  // all other joints
   kBoth,
 };
+
+// One entry per joint of the stream: true for joints of kFace. Without roles, no joint is known to
+// be of the face.
+[[nodiscard]] std::vector<bool> FaceJoints(const StreamDefinition& stream);
 
 // "face", "body" or "both"; nullopt for any other text.
 [[nodiscard]] std::optional<NeutralPart> ParseNeutralPart(std::string_view text);

@@ -2,9 +2,24 @@
 #include "server/pipeline/subject_pipeline.h"
 
 #include <algorithm>
+#include <span>
+#include <string>
+#include <string_view>
 #include <utility>
 
+#include "base/ascii.h"
+#include "server/pipeline/neutral_part.h"
+
 namespace furrow::server {
+namespace {
+
+// True for the radians that Live Link Face sends among its blend shapes: "HeadYaw", "LeftEyePitch".
+bool IsAngle(std::string_view name) {
+  const std::string lower = AsciiLower(std::string(name));
+  return lower.ends_with("yaw") || lower.ends_with("pitch") || lower.ends_with("roll");
+}
+
+}  // namespace
 
 SubjectPipeline::SubjectPipeline(std::shared_ptr<const StreamDefinition> stream)
     : stream_(std::move(stream)), solver_(stream_->binding) {
@@ -74,10 +89,22 @@ bool SubjectPipeline::SetNeutral(std::optional<wrinkle::LocalPose> neutral) {
     return false;
   }
   neutral_pose_ = std::move(neutral);
-  // Also sizes it. SubtractNeutral() overwrites the values.
-  corrected_ = pose_;
+  PrepareNeutral();
   SolveAgain();
   return true;
+}
+
+void SubjectPipeline::PrepareNeutral() {
+  if (!neutral_pose_) return;
+  corrected_ = pose_;  // sizes it; SubtractNeutral() overwrites the values
+  face_joints_ = FaceJoints(*stream_);
+  above_neutral_.clear();
+  const std::span<const std::string> names = stream_->shapes.driver_names();
+  for (std::size_t i = 0; i < neutral_pose_->blend_shapes.size(); ++i) {
+    const float most = i < names.size() && IsAngle(names[i]) ? 0.0f : 0.5f;
+    above_neutral_.push_back(1.0f /
+                             (1.0f - std::clamp(neutral_pose_->blend_shapes[i], 0.0f, most)));
+  }
 }
 
 void SubjectPipeline::SetStream(std::shared_ptr<const StreamDefinition> stream) {
@@ -86,8 +113,8 @@ void SubjectPipeline::SetStream(std::shared_ptr<const StreamDefinition> stream) 
   stream_->shapes.Extend(&pose_);
   if (neutral_pose_) {
     stream_->shapes.Extend(&*neutral_pose_);
-    corrected_ = pose_;
   }
+  PrepareNeutral();
   // The level starts at all drivers again; Subscribers::OnSubjectReady() lowers it.
   solver_ = wrinkle::SubjectSolver(stream_->binding);
   SolveAgain();
@@ -115,6 +142,16 @@ bool SubjectPipeline::neutral() const {
          std::ranges::all_of(solver_.wrinkle_weights(), is_nothing);
 }
 
+void SubjectPipeline::ShowFaceFromNeutral(Snapshot* snapshot) const {
+  for (std::size_t j = 0; j < face_joints_.size(); ++j) {
+    if (face_joints_[j]) snapshot->joints[j] = corrected_.joints[j];
+  }
+  for (std::size_t i = 0; i < snapshot->blend_shapes.size(); ++i) {
+    float& shape = snapshot->blend_shapes[i];
+    if (shape > 0.0f) shape *= above_neutral_[i];
+  }
+}
+
 std::shared_ptr<const Snapshot> SubjectPipeline::TakeSnapshot(std::int64_t age_us,
                                                               std::int64_t received_us) const {
   const auto weights = solver_.wrinkle_weights();
@@ -132,7 +169,8 @@ std::shared_ptr<const Snapshot> SubjectPipeline::TakeSnapshot(std::int64_t age_u
   snapshot->shape_program = stream_->shape_program;
   snapshot->head_turn = stream_->head_turn;
   snapshot->joints = pose_.joints;
-  snapshot->blend_shapes = pose_.blend_shapes;
+  snapshot->blend_shapes = solved_pose().blend_shapes;
+  if (neutral_pose_) ShowFaceFromNeutral(snapshot.get());
   snapshot->wrinkle_weights.assign(weights.begin(), weights.end());
   snapshot->filtered_values.assign(filtered.begin(), filtered.end());
   return snapshot;

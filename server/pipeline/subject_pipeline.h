@@ -33,9 +33,17 @@ class SubjectPipeline {
   }
 
   // Measures weights from `neutral` (the performer's relaxed face) instead of the skeleton's rest
-  // pose; nullopt: from the rest pose. Pictures show the pose unchanged. Solves the current pose
-  // again. False: the counts of joints or blend shapes differ from the stream's; nothing has
-  // changed.
+  // pose; nullopt: from the rest pose. Pictures show the face relative to `neutral`, too: its
+  // joints (FaceJoints()), the blend shapes, and with them the gaze and the head that a phone
+  // sends. They show the body unchanged, so a performer who stands with hanging arms does so in the
+  // picture.
+  //
+  // Relative to its neutral n, a coefficient c is c - n. In pictures, coefficients above their
+  // neutral are (c - n) / (1 - n), with n at most 0.5 in the divisor, so that 1 stays 1 and lids
+  // close. Angles (of head and eyes, in radians) are c - n there, too.
+  //
+  // Solves the current pose again. False: the counts of joints or blend shapes differ from the
+  // stream's; nothing has changed.
   bool SetNeutral(std::optional<wrinkle::LocalPose> neutral);
   [[nodiscard]] const std::optional<wrinkle::LocalPose>& neutral_pose() const {
     return neutral_pose_;
@@ -84,12 +92,17 @@ class SubjectPipeline {
  private:
   void SolveAgain();
   void SubtractNeutral();
+  void PrepareNeutral();
+  void ShowFaceFromNeutral(Snapshot* snapshot) const;
 
   std::shared_ptr<const StreamDefinition> stream_;
   wrinkle::SubjectSolver solver_;
   wrinkle::LocalPose pose_;
   std::optional<wrinkle::LocalPose> neutral_pose_;
   wrinkle::LocalPose corrected_;  // pose_ relative to neutral_pose_, if there is one
+  // Per blend shape with a neutral_pose_: factor of values above the neutral one in pictures.
+  std::vector<float> above_neutral_;
+  std::vector<bool> face_joints_;  // those that pictures show relative to neutral_pose_
   std::uint32_t sequence_ = 0;
   std::int64_t capture_time_us_ = 0;
   bool has_pose_ = false;

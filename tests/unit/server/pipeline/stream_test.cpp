@@ -21,8 +21,12 @@
 namespace furrow::server {
 namespace {
 
+using testing::Each;
+using testing::FloatEq;
+using testing::FloatNear;
 using testing::HasSubstr;
 using testing::Not;
+using testing::Pointwise;
 
 // A knee, straight along -Y at rest, with full weight at a bend of 150 degrees.
 std::shared_ptr<const wrinkle::Rig> KneeRig(bool filter = false) {
@@ -366,6 +370,32 @@ TEST(SubjectPipeline, PresetsMoveARigOfArkit) {
   EXPECT_FLOAT_EQ(subject.wrinkle_weights()[0], 0.0f);
   ASSERT_TRUE(subject.SetNeutral(std::nullopt));
   EXPECT_FLOAT_EQ(subject.wrinkle_weights()[0], 0.2f);
+}
+
+// A phone that is held low sees a turned head and lowered eyes. They are the rest of a captured
+// face, in weights and in pictures.
+TEST(SubjectPipeline, PicturesShowTheFaceRelativeToItsNeutral) {
+  StreamDefinitions definitions(FaceRig("browDown"), {}, 4);
+  const auto definition =
+      definitions.Get({.joints = {}, .blend_shapes = {"browDown", "HeadPitch", "eyeLookDownLeft"}});
+  ASSERT_TRUE(definition.ok()) << definition.status().ToString();
+  SubjectPipeline subject(*definition);
+  const auto drawn = [&](const std::vector<float>& coefficients) {
+    std::ranges::copy(coefficients, subject.mutable_pose()->blend_shapes.begin());
+    EXPECT_EQ(subject.Solve(subject.sequence() + 1, 1000), wrinkle::JobStatus::kOk);
+    return subject.TakeSnapshot(0)->blend_shapes;
+  };
+  EXPECT_THAT(drawn({0.25f, -0.3f, 0.2f}), Pointwise(FloatEq(), std::vector{0.25f, -0.3f, 0.2f}));
+  ASSERT_TRUE(subject.SetNeutral(subject.pose()));
+  EXPECT_THAT(drawn({0.25f, -0.3f, 0.2f}), Each(0.0f));
+  // A full lowering stays full, and half of the way is half. Angles only shift.
+  EXPECT_THAT(drawn({1.0f, 0.2f, 0.6f}),
+              Pointwise(FloatNear(1e-6f), std::vector{1.0f, 0.5f, 0.5f}));
+  EXPECT_NEAR(subject.wrinkle_weights()[0], 0.75f, 1e-6f);
+  EXPECT_THAT(drawn({0.15f, -0.4f, 0.0f}),
+              Pointwise(FloatNear(1e-6f), std::vector{-0.1f, -0.1f, -0.2f}));
+  // Subscribers receive the coefficients as they were sent.
+  EXPECT_FLOAT_EQ(subject.pose().blend_shapes[0], 0.15f);
 }
 
 TEST(SubjectPipeline, FollowsTheBend) {
