@@ -19,7 +19,9 @@
 #include "base/text.h"
 #include "gltf/limits.h"
 #include "motion/bvh/bvh.h"
+#include "motion/clip/floor.h"
 #include "motion/clip/limits.h"
+#include "motion/clip/rest_pose.h"
 #include "motion/clip/up_axis.h"
 #include "motion/foreign/foreign_clip.h"
 #include "motion/gltf/gltf_animation.h"
@@ -141,16 +143,7 @@ Status TakeRestFrom(int frame, Clip* clip) {
   }
   wrinkle::LocalPose pose;
   clip->GetPose(frame, &pose);
-  std::vector<wrinkle::JointDesc> joints;
-  for (std::size_t j = 0; j < pose.joints.size(); ++j) {
-    joints.push_back({clip->skeleton.joint_names()[j], clip->skeleton.joint_parents()[j],
-                      pose.joints[j], clip->skeleton.tails()[j]});
-  }
-  if (joints.empty()) return {};
-  Result<wrinkle::Skeleton> skeleton = wrinkle::Skeleton::Create(std::move(joints));
-  FURROW_RETURN_IF_ERROR(skeleton);
-  clip->skeleton = std::move(*skeleton);  // parents come first, so the order stays
-  return {};
+  return SetRestPose(pose.joints, clip);
 }
 
 // Moves roots to their OFFSET if their position is 0 in every frame. MakeHuman writes such files:
@@ -256,6 +249,13 @@ Result<Clip> LoadClip(const std::filesystem::path& path, const LoadOptions& load
     KeepRootsAtOffset(&*clip);
     if (Status status = SetUpright(options.up_axis, file.string(), &*clip, report); !status.ok())
       return status.At(file.string());
+    const Result<bool> raised = RaiseToFloor(&*clip);
+    if (!raised.ok()) return raised.status().At(file.string());
+    if (*raised && report != nullptr) {
+      report->warnings.push_back(file.string() +
+                                 ": the performer is far below the floor, height 0; the recording "
+                                 "was raised onto it");
+    }
   }
   if (options.rest_frame >= 0) {
     if (Status status = TakeRestFrom(options.rest_frame, &*clip); !status.ok())

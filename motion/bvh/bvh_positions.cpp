@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <glm/geometric.hpp>
+
 #include "base/text.h"
 
 namespace furrow::motion {
@@ -20,11 +22,14 @@ glm::vec3 PositionAxes(const BvhJointChannels& channels) {
   return axes;
 }
 
-// True if the joint keeps the position 0 on the axes with channels.
-bool StaysAtZero(const Clip& clip, std::size_t joint, const glm::vec3& axes) {
+// True if the joint stays within a hundredth of its offset of the position 0, on the axes with
+// channels. Exporters that compute positions write small errors instead of zeros.
+bool StaysAtZero(const Clip& clip, std::size_t joint, const glm::vec3& offset,
+                 const glm::vec3& axes) {
+  const float near = 0.01f * glm::length(offset);
   const auto joints = static_cast<std::size_t>(clip.skeleton.num_joints());
   for (std::size_t at = joint; at < clip.locals.size(); at += joints) {
-    if (clip.locals[at].translation * axes != glm::vec3(0.0f)) return false;
+    if (glm::length(clip.locals[at].translation * axes) > near) return false;
   }
   return true;
 }
@@ -43,7 +48,7 @@ void AddPositionsThatCollapse(const BvhHierarchy& hierarchy, float scale,
     offsets[j] = hierarchy.joints[j].rest.translation * scale * axes;
     if (offsets[j] == glm::vec3(0.0f)) continue;
     ++replaced;
-    if (StaysAtZero(*clip, j, axes)) ++at_zero;
+    if (StaysAtZero(*clip, j, offsets[j], axes)) ++at_zero;
   }
   if (2 * at_zero <= replaced) return;
   for (std::size_t at = 0; at < clip->locals.size(); ++at) {

@@ -52,6 +52,16 @@ TEST(BvhPositions, ZerosOnEveryJointKeepTheOffsets) {
   EXPECT_THAT(report.warnings[0], testing::HasSubstr("a.bvh: the position channels of 2 joints"));
 }
 
+// MakeHuman's own poses hold positions such as -0.000124 at an offset of 0.8.
+TEST(BvhPositions, RoundedZerosAreZeros) {
+  ClipReport report;
+  const std::string noise = "7 8 9 0 0 0  1e-6 -4e-4 0 0 0 0  0 0.01 -2e-5 0 0 0\n";
+  const Clip clip = Parse(Chain(noise, 1), BvhPositions::kAuto, &report);
+  EXPECT_NEAR(Places(clip, 0)[1].y, 2.0f, 0.01f);
+  EXPECT_NEAR(Places(clip, 0)[2].y, 4.0f, 0.03f);
+  EXPECT_EQ(report.warnings.size(), 1u);
+}
+
 TEST(BvhPositions, TheUserDecides) {
   const std::string text = Chain(kZeros, 1);
   ClipReport report;

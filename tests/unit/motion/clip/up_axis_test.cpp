@@ -146,19 +146,19 @@ TEST(UpAxis, LoadClipTurnsMotionAlongZAndSaysSo) {
                          "End Site\n{\nOFFSET 0 1 0\n}\n}\n"
                          "JOINT Foot\n{\nOFFSET 0 -9 0\nCHANNELS 3 Zrotation Yrotation Xrotation\n"
                          "End Site\n{\nOFFSET 0 0 1\n}\n}\n}\nMOTION\nFrames: 2\nFrame Time: 0.1\n"
-                         "3 -4 9 0 0 90 0 0 0 0 0 0\n3 -5 9 0 0 90 0 0 0 0 0 0\n";
+                         "3 4 9 0 0 90 0 0 0 0 0 0\n3 5 9 0 0 90 0 0 0 0 0 0\n";
   ClipReport report;
   const auto turned = LoadClip(path, {}, &report);
   ASSERT_TRUE(turned.ok()) << turned.status().ToString();
   ASSERT_EQ(report.warnings.size(), 1u);
   EXPECT_NE(report.warnings[0].find("clip.bvh: the rest pose stands along Y"), std::string::npos);
-  EXPECT_LT(glm::length(turned->locals[3].translation - glm::vec3(3, 9, 5)), 1e-5f);
+  EXPECT_LT(glm::length(turned->locals[3].translation - glm::vec3(3, 9, -5)), 1e-5f);
   EXPECT_GT(turned->locals[3].rotation.w, 0.9999f);
   LoadOptions options;
   options.up_axis = UpAxis::kY;
   const auto kept = LoadClip(path, options, nullptr);
   ASSERT_TRUE(kept.ok());
-  EXPECT_EQ(kept->locals[3].translation, glm::vec3(3, -5, 9));
+  EXPECT_EQ(kept->locals[3].translation, glm::vec3(3, 5, 9));
 }
 
 }  // namespace
