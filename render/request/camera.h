@@ -14,9 +14,10 @@ struct Camera {
   // portrait format shows the whole width of a head. Head presets set this.
   bool fit_shorter_side = false;
   // Index of the joint of the character that camera and lights follow: they move with the joint
-  // from its rest position and turn about +Y with the skeleton's root. -1: the camera stays where
-  // it is.
+  // from its rest position and turn about +Y with turn_joint. -1: the camera stays where it is.
   int follow_joint = -1;
+  // The joint whose turn the camera takes while it follows: the body's first joint. -1: the root.
+  int turn_joint = -1;
 };
 
 }  // namespace furrow::render

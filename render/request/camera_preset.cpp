@@ -54,6 +54,29 @@ int FindHead(const Character& character) {
   return wrinkle::kNoJoint;
 }
 
+// The joint above all joints that move vertices: the hips. Joints above it, such as the node of the
+// whole scene, need not move with the body. Joint 0 if there is no such joint, or if the character
+// is a head alone; kNoJoint without any joint.
+int FindBody(const Character& character, int head) {
+  const wrinkle::Skeleton& skeleton = character.skeleton;
+  if (skeleton.num_joints() == 0) return wrinkle::kNoJoint;
+  int body = wrinkle::kNoJoint;
+  for (const character::Mesh& mesh : character.meshes) {
+    for (const character::Vertex& vertex : mesh.vertices) {
+      for (int i = 0; i < 4; ++i) {
+        if (!(vertex.skin_weights[i] > 0.0f)) continue;
+        if (body == wrinkle::kNoJoint) body = vertex.joints[i];
+        while (!skeleton.IsAncestor(body, vertex.joints[i])) {
+          body = skeleton.joint_parents()[body];
+          if (body == wrinkle::kNoJoint) return 0;
+        }
+      }
+    }
+  }
+  const bool is_in_head = head != wrinkle::kNoJoint && skeleton.IsAncestor(head, body);
+  return body == wrinkle::kNoJoint || is_in_head ? 0 : body;
+}
+
 // Bounds of the vertices with most of their skin weight on joints that `accept_joint` accepts, on
 // materials that `accept_kind` accepts.
 template <class AcceptKind, class AcceptJoint>
@@ -154,14 +177,13 @@ std::optional<glm::vec3> EyePoint(const Character& character) {
 // The whole body from `azimuth` degrees. The height of the body determines the distance: a
 // portrait-format picture shows people who stand or walk, but cuts off the hands of arms stretched
 // sideways.
-Camera BodyPreset(const Character& character, float azimuth) {
+Camera BodyPreset(const Character& character, int body, float azimuth) {
   Bounds all = BoundsOf(
       character, [](auto) { return true; }, [](int) { return true; });
   if (all.empty()) all.Add(glm::vec3(0.0f));
   const glm::vec3 size = all.size();
   const float height = 1.04f * std::max({size.x, size.y, 1e-3f});
-  const int root = character.skeleton.num_joints() > 0 ? 0 : wrinkle::kNoJoint;
-  Camera camera = Frame(all.centre(), height, 0.5f * size.z, azimuth, root);
+  Camera camera = Frame(all.centre(), height, 0.5f * size.z, azimuth, body);
   camera.fit_shorter_side = false;
   return camera;
 }
@@ -172,6 +194,7 @@ std::span<const std::string_view> CameraPresetNames() { return kNames; }
 
 std::vector<std::pair<std::string, Camera>> CameraPresets(const Character& character) {
   const int joint = FindHead(character);
+  const int body = FindBody(character, joint);
   const Bounds head = HeadBounds(character, joint);
   const std::array<std::string_view, 3> mouth{"oris", "mouth", "lip"};
   const std::array<Camera, kNames.size()> cameras = {
@@ -180,12 +203,15 @@ std::vector<std::pair<std::string, Camera>> CameraPresets(const Character& chara
       HeadPreset(head, joint, kFromTheLeft),
       DetailPreset(head, joint, EyePoint(character), 0.55f, 0.42f),
       DetailPreset(head, joint, MeanTail(character, mouth), 0.22f, 0.42f),
-      BodyPreset(character, 0.0f),
-      BodyPreset(character, kThreeQuarter),
-      BodyPreset(character, kFromTheLeft),
-      BodyPreset(character, 180.0f)};
+      BodyPreset(character, body, 0.0f),
+      BodyPreset(character, body, kThreeQuarter),
+      BodyPreset(character, body, kFromTheLeft),
+      BodyPreset(character, body, 180.0f)};
   std::vector<std::pair<std::string, Camera>> presets;
-  for (std::size_t i = 0; i < kNames.size(); ++i) presets.emplace_back(kNames[i], cameras[i]);
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    presets.emplace_back(kNames[i], cameras[i]);
+    presets.back().second.turn_joint = body;
+  }
   return presets;
 }
 

@@ -2,6 +2,7 @@
 #include "render/request/request_check.h"
 
 #include <cmath>
+#include <utility>
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -39,9 +40,12 @@ Status CheckCamera(const Camera& camera, int num_joints) {
     return Invalid("camera.fov_y_degrees",
                    std::to_string(camera.fov_y_degrees) + " is outside [1, 150]");
   }
-  if (camera.follow_joint < -1 || camera.follow_joint >= num_joints) {
-    return Invalid("camera.follow_joint", "no joint " + std::to_string(camera.follow_joint) +
-                                              " of " + std::to_string(num_joints));
+  for (const auto& [field, joint] : {std::pair("camera.follow_joint", camera.follow_joint),
+                                     std::pair("camera.turn_joint", camera.turn_joint)}) {
+    if (joint < -1 || joint >= num_joints) {
+      return Invalid(field,
+                     "no joint " + std::to_string(joint) + " of " + std::to_string(num_joints));
+    }
   }
   return {};
 }

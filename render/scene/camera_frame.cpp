@@ -25,11 +25,15 @@ glm::mat4 FollowTransform(const Camera& camera, const wrinkle::Skeleton& skeleto
                           std::span<const glm::mat4> model) {
   const int joint = camera.follow_joint;
   if (joint < 0 || joint >= skeleton.num_joints()) return glm::mat4(1.0f);
-  // The camera takes the joint's movement but only the root's turn. Following the joint's own
+  // The camera takes the joint's movement but only the body's turn. Following the joint's own
   // rotation would hide nods and shake the picture.
-  int root = joint;
-  while (skeleton.joint_parents()[root] != wrinkle::kNoJoint) root = skeleton.joint_parents()[root];
-  const float turn = Heading(model[root] * glm::inverse(skeleton.rest_model()[root]));
+  int body = camera.turn_joint;
+  if (body < 0 || body >= skeleton.num_joints()) {
+    body = joint;
+    while (skeleton.joint_parents()[body] != wrinkle::kNoJoint)
+      body = skeleton.joint_parents()[body];
+  }
+  const float turn = Heading(model[body] * glm::inverse(skeleton.rest_model()[body]));
   const glm::vec3 from(skeleton.rest_model()[joint][3]);
   const glm::vec3 to(model[joint][3]);
   return glm::translate(glm::mat4(1.0f), to) * glm::rotate(glm::mat4(1.0f), turn, kUp) *

@@ -41,7 +41,7 @@ struct CameraFrame {
 
 // Returns the motion of camera and lights with a subject, in model space: the translation of the
 // followed joint from its rest position to its position in `model`, and the rotation about +Y by
-// the turn of the skeleton's root. The identity if the camera follows no joint. `model`: joint
+// the turn of the camera's turn_joint. The identity if the camera follows no joint. `model`: joint
 // matrices in model space, one per joint of `skeleton`.
 [[nodiscard]] glm::mat4 FollowTransform(const Camera& camera, const wrinkle::Skeleton& skeleton,
                                         std::span<const glm::mat4> model);

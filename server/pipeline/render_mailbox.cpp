@@ -34,7 +34,8 @@ bool PictureSpec::operator==(const PictureSpec& other) const {
          camera.target == other.camera.target &&
          camera.fov_y_degrees == other.camera.fov_y_degrees &&
          camera.fit_shorter_side == other.camera.fit_shorter_side &&
-         camera.follow_joint == other.camera.follow_joint;
+         camera.follow_joint == other.camera.follow_joint &&
+         camera.turn_joint == other.camera.turn_joint;
 }
 
 Encoding EncodingOf(const PictureTicket& ticket) {

@@ -93,6 +93,7 @@ render::Camera FrameGroup(const render::Camera& camera, const std::vector<glm::v
   const glm::vec3 back = Backwards(camera);
   render::Camera all = camera;
   all.follow_joint = -1;
+  all.turn_joint = -1;
   all.fit_shorter_side = false;
   all.target = camera.target + middle.x * RightOf(back) + glm::vec3(0.0f, middle.y, 0.0f);
   all.position = all.target + std::max(distances.x, distances.y) * back;

@@ -43,7 +43,8 @@ Result<render::Camera> CameraOf(const protocol::SubscribePictures& request,
   camera.fov_y_degrees = given.vertical_fov_degrees;
   render::FrameRequest frame;
   frame.camera = camera;
-  frame.camera.follow_joint = -1;  // the joint comes from the preset and needs no check
+  frame.camera.follow_joint = -1;  // the joints come from the preset and need no check
+  frame.camera.turn_joint = -1;
   FURROW_RETURN_IF_ERROR(render::CheckRequest(frame, /*num_joints=*/0));
   return camera;
 }

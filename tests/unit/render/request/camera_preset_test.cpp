@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
+#include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
 #include "render/scene/camera_frame.h"
@@ -103,6 +105,39 @@ TEST(CameraPreset, FramesTheHeadOfACharacterWithABody) {
   const Camera whole = Preset(character, "body");
   EXPECT_LT(std::abs(Project(character, whole, {0.0f, 0.2f, 0.0f}).y), 1.0f);
   EXPECT_LT(std::abs(Project(character, whole, {0.0f, 1.72f, 0.0f}).y), 1.0f);
+}
+
+// Exporters add a node for the whole scene above the hips. It does not move with the body.
+TEST(CameraPreset, FollowsTheBodyAndNotTheScene) {
+  character::Character character = test::MakeHead();
+  EXPECT_EQ(Preset(character, "body").follow_joint, 0) << "a head alone";
+  EXPECT_EQ(Preset(character, "face").turn_joint, 0) << "its turns must be seen";
+  std::vector<wrinkle::JointDesc> joints;
+  for (int j = 0; j < character.skeleton.num_joints(); ++j) {
+    const auto index = static_cast<std::size_t>(j);
+    joints.push_back({character.skeleton.joint_names()[index],
+                      character.skeleton.joint_parents()[index] + 1,
+                      character.skeleton.rest_pose()[index],
+                      {}});
+  }
+  joints.insert(joints.begin(), {.name = "scene", .parent = -1, .rest = {}, .tail = {}});
+  character.skeleton = *wrinkle::Skeleton::Create(joints);
+  for (character::Vertex& vertex : character.meshes[0].vertices) {
+    for (auto& joint : vertex.joints) ++joint;
+  }
+  character.meshes[0].vertices[0].joints[1] = 1;  // the old root moves something
+  character.meshes[0].vertices[0].skin_weights[1] = 0.5f;
+  EXPECT_EQ(Preset(character, "body").follow_joint, 1);
+  const Camera face = Preset(character, "face");
+  EXPECT_EQ(face.follow_joint, character.skeleton.Find(character.rig.anchor));
+  EXPECT_EQ(face.turn_joint, 1);
+  // The camera stays in front of a body that turns.
+  std::vector<glm::mat4> model(character.skeleton.rest_model().begin(),
+                               character.skeleton.rest_model().end());
+  const glm::mat4 turn = glm::rotate(glm::mat4(1.0f), 2.0f, glm::vec3(0, 1, 0));
+  for (std::size_t j = 1; j < model.size(); ++j) model[j] = turn * model[j];
+  const glm::vec3 position = ComputeCamera(face, character.skeleton, model, 1.0f).position;
+  EXPECT_LT(glm::length(position - glm::vec3(turn * glm::vec4(face.position, 1.0f))), 1e-4f);
 }
 
 TEST(CameraPreset, ACharacterWithoutVerticesStillGetsFiniteCameras) {

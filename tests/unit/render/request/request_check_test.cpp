@@ -51,6 +51,7 @@ TEST_F(RequestCheck, NamesTheInvalidField) {
   ExpectRefused("camera.target", [](FrameRequest& r) { r.camera.target = r.camera.position; });
   ExpectRefused("camera.fov_y_degrees", [](FrameRequest& r) { r.camera.fov_y_degrees = 180.0f; });
   ExpectRefused("camera.follow_joint", [](FrameRequest& r) { r.camera.follow_joint = 2; });
+  ExpectRefused("camera.turn_joint", [](FrameRequest& r) { r.camera.turn_joint = -2; });
   ExpectRefused("model", [](FrameRequest& r) { r.model = r.model.first(1); });
   model_[1][3].y = kNan;
   ExpectRefused(
