@@ -135,12 +135,14 @@ export class Viewer {
   private onPicture(side: Side, picture: Picture): void {
     this.stage.show(side, picture);
     if (side === 'left') return;
-    this.stage.element.dataset.still = String(picture.still);
     const wasResting = this.stats.resting;
     this.stats.add(picture, nowUs(), this.connection.clock.offsetUs());
     this.notDrawn.set('');
     if (!this.main!.pending.value) this.accepted = this.state.settings.overrides;
-    if (wasResting !== this.stats.resting && this.scale.scale < 1) this.refresh();
+    // A slow machine draws motion smaller; the first picture at rest may still be small.
+    const resizes = wasResting !== this.stats.resting && this.scale.scale < 1;
+    this.stage.element.dataset.still = String(picture.still && !resizes);
+    if (resizes) this.refresh();
   }
 
   private onRefused(code: number, message: string): void {
