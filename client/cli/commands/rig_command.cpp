@@ -52,8 +52,9 @@ int Explain(const RigOptions& options) {
       MatchBlendShapes(*shape_matcher, *clip, rig,
                        MatchFaceJoints(*shape_matcher, *clip, match, input->character.get()));
   const auto binding = wrinkle::RigBinding::Create(rig, clip->skeleton, shapes.driver_names(),
-                                                   match.Options(/*allow_missing=*/false));
+                                                   match.Options(/*allow_missing=*/true));
   if (!binding.ok()) return Fail(binding.status().At(options.rig));
+  WarnAboutMissing(*binding, *clip);
   wrinkle::LocalPose pose;
   clip->GetPose(options.frame, &pose);
   shapes.Extend(&pose);
