@@ -1,10 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Imports MakeHuman's character and saved people, and plays five expressions to the daemon."""
+import json
 import math
 import pathlib
+import struct
 import tempfile
 import unittest
+import zipfile
 
 from furrow_testing import (SOURCE, Daemon, Table, finish, furrow, jpeg_size, needs_shared, solve, spawn,
                             spawn_watch, worst_difference)
@@ -101,6 +104,25 @@ class MakeHumanTest(unittest.TestCase):
         self.assertIn(strongest, text)
 
 
+def npy(kind, shape, code, values):
+    """The bytes of a .npy file, version 1."""
+    header = f"{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}".encode()
+    header += b" " * (-(len(header) + 11) % 64) + b"\n"
+    return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header + struct.pack(f"<{len(values)}{code}", *values)
+
+
+def positions(package):
+    """All coordinates of a package's first mesh."""
+    data = package.read_bytes()
+    length = struct.unpack_from("<I", data, 12)[0]
+    root = json.loads(data[20:20 + length])
+    accessor = root["accessors"][root["meshes"][0]["primitives"][0]["attributes"]["POSITION"]]
+    view = root["bufferViews"][accessor["bufferView"]]
+    stride = view.get("byteStride", 12)
+    start = 28 + length + view.get("byteOffset", 0) + accessor.get("byteOffset", 0)
+    return [x for i in range(accessor["count"]) for x in struct.unpack_from("<3f", data, start + i * stride)]
+
+
 class SavedPersonTest(unittest.TestCase):
     def setUp(self):
         self.data = needs_shared("makehuman", "targets").parent
@@ -125,6 +147,44 @@ class SavedPersonTest(unittest.TestCase):
     def test_the_data_folder_is_found_beside_the_save(self):
         (self.root / "data").symlink_to(self.data)
         furrow("character", "import", self.save, "--out", self.root / "ada.glb", "--texture-size", 64, check=0)
+
+    # An installed MakeHuman has its targets in one archive of NumPy's.
+    def test_packed_targets_give_the_person_of_the_text_files(self):
+        packed = self.root / "installed"
+        packed.mkdir()
+        for path in self.data.iterdir():
+            if path.name != "targets":
+                (packed / path.name).symlink_to(path)
+        with zipfile.ZipFile(packed / "targets.npz", "w", zipfile.ZIP_DEFLATED) as archive:
+            for path in sorted((self.data / "targets").rglob("*.target")):
+                rows = [line.split() for line in path.read_text().splitlines() if line and line[0] != "#"]
+                name = str(path.relative_to(self.data).with_suffix(""))
+                index = [int(row[0]) for row in rows]
+                vector = [round(1000 * float(x)) for row in rows for x in row[1:]]
+                archive.writestr(name + ".index.npy", npy("<u2", f"({len(rows)},)", "H", index))
+                archive.writestr(name + ".vector.npy", npy("<i2", f"({len(rows)}, 3)", "h", vector))
+        shapes = []
+        for data, name in ((self.data, "text.glb"), (packed, "packed.glb")):
+            result = furrow("character", "import", self.save, "--data", data, "--out", self.root / name,
+                            "--texture-size", 64, check=0)
+            self.assertIn("shape: 2 targets", result.stderr.decode())
+            shapes.append(positions(self.root / name))
+        self.assertEqual(len(shapes[0]), len(shapes[1]))
+        worst = max(abs(a - b) for a, b in zip(*shapes))
+        print(f"largest distance between packed and text targets: {1000 * worst:.3f} mm")
+        self.assertLess(worst, 3e-4)  # two targets, each rounded to 0.1 mm
+        furrow("character", "check", self.root / "packed.glb", check=0)
+        furrow("bake", self.root / "packed.glb", "--out", self.root / "maps", "--size", 128, check=0)
+
+    def test_skeletons_and_topologies_of_a_save_are_named(self):
+        text = self.save.read_text().replace("skeleton default", "skeleton game_engine")
+        self.save.write_text(text + "proxy female_generic 17ec5e2b-33a2-4b3a-9bb6-0ce1e8b0b0fe\n")
+        result = furrow("character", "import", self.save, "--data", self.data, "--out", self.root / "ada.glb",
+                        "--texture-size", 64, check=0)
+        said = result.stderr.decode()
+        self.assertIn("the skeleton 'game_engine.mhskel' is not imported", said)
+        self.assertIn("the topology 'female_generic", said)
+        self.assertEqual(said.count("export the person from MakeHuman as FBX or Collada"), 2)
 
     def test_a_person_without_clothes_has_no_folds_of_cloth(self):
         lines = [line for line in self.save.read_text().splitlines() if not line.startswith("clothes ")]

@@ -28,6 +28,17 @@ struct MhTarget {
 [[nodiscard]] Result<MhTarget> ParseMhTarget(std::string_view text, std::string_view source,
                                              std::size_t num_base_vertices);
 
+// Makes the target from the two arrays that MakeHuman's targets.npz holds for it: "NAME.index.npy"
+// (uint16, one per vertex) and "NAME.vector.npy" (int16, three per vertex, thousandths of a
+// decimetre).
+//
+// Errors name the source: those of ParseNpy(), kSchema (arrays of other types, or whose sizes
+// differ), kInvalidArgument (index out of range), kLimit (more vertices than the base mesh has).
+[[nodiscard]] Result<MhTarget> ParseMhTargetArrays(std::string_view index_npy,
+                                                   std::string_view vector_npy,
+                                                   std::string_view source,
+                                                   std::size_t num_base_vertices);
+
 // Moves `positions` (the base mesh in decimetres) by `weight` times the offsets. Precondition: the
 // target was parsed for a mesh of as many vertices.
 void ApplyMhTarget(const MhTarget& target, float weight, std::span<glm::vec3> positions);

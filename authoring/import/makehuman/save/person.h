@@ -20,12 +20,11 @@ struct PersonShape {
   std::vector<std::string> warnings;
 };
 
-// Gives the base mesh the shape of the person in `save`: adds the targets below
-// <folder>/targets that ChooseTargets() chooses. `positions`: the whole base mesh with its helpers,
-// decimetres. Proxies and joints follow, since both are defined by vertices of the base mesh.
+// Gives the base mesh the shape of the person in `save`: adds the targets of `folder` that
+// ChooseTargets() chooses. `positions`: the whole base mesh with its helpers, decimetres. Proxies and joints follow, since both are defined by vertices of the base mesh.
 //
-// Errors name the file: kNotFound (the folder has no targets), those of TargetLibrary::Scan() and
-// ParseMhTarget(), kLimit (the targets move a vertex further than 100 m).
+// Errors name the file: those of TargetStore::Open() and TargetStore::Read(), kLimit (the targets
+// move a vertex further than 100 m).
 [[nodiscard]] Result<PersonShape> ShapePerson(const std::filesystem::path& folder,
                                               const MhmSave& save, std::span<glm::vec3> positions);
 

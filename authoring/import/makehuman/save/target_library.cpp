@@ -5,10 +5,8 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <system_error>
 #include <utility>
 
-#include "base/ascii.h"
 #include "base/text.h"
 
 namespace furrow::authoring {
@@ -16,8 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMaxFiles = 50'000;
-constexpr int kMaxDepth = 12;
 constexpr std::size_t kListed = 8;  // names in a warning
 constexpr float kTinyWeight = 1e-5f;
 
@@ -176,30 +172,10 @@ std::vector<std::string> MissingMacros(const TargetLibrary& library, const Macro
 
 }  // namespace
 
-Result<TargetLibrary> TargetLibrary::Scan(const fs::path& targets) {
-  TargetLibrary library;
-  std::error_code error;
-  if (!fs::is_directory(targets, error)) return library;
-  std::vector<fs::path> files;
-  fs::recursive_directory_iterator it(targets, error);
-  for (const fs::recursive_directory_iterator end; !error && it != end; it.increment(error)) {
-    if (it.depth() >= kMaxDepth) it.disable_recursion_pending();
-    if (!EqualsIgnoreCase(it->path().extension().string(), ".target")) continue;
-    if (files.size() >= kMaxFiles)
-      return Status(StatusCode::kLimit, "the folder has more than 50000 targets", targets.string());
-    files.push_back(it->path());
-  }
-  if (error)
-    return Status(StatusCode::kIo, "cannot be listed: " + error.message(), targets.string());
-  std::sort(files.begin(), files.end());
-  for (const fs::path& file : files) library.Add(file, file.lexically_relative(targets));
-  return library;
-}
-
-void TargetLibrary::Add(const fs::path& path, const fs::path& relative) {
+void TargetLibrary::Add(const fs::path& path) {
   TargetFile file{path, {}};
   std::string group;
-  for (const std::string& part : PartsOf(relative)) {
+  for (const std::string& part : PartsOf(path)) {
     const int word = FindMacroWord(part);
     if (word < 0) {
       group += (group.empty() ? "" : "-") + part;
@@ -215,7 +191,6 @@ void TargetLibrary::Add(const fs::path& path, const fs::path& relative) {
       file.words.push_back(word);
   }
   groups_[group].push_back(std::move(file));
-  ++num_files_;
 }
 
 const std::vector<TargetFile>& TargetLibrary::InGroup(const std::string& group) const {

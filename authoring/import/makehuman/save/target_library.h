@@ -9,44 +9,37 @@
 
 #include "authoring/import/makehuman/formats/mhm.h"
 #include "authoring/import/makehuman/save/macro_factors.h"
-#include "base/status.h"
 
 namespace furrow::authoring {
 
-// A .target file of the data folder. Its path tells what it is for: the parts of folder and file
+// A target of the data folder. Its path tells what it is for: the parts of folder and file
 // names between hyphens are either macro words, which scale it, or parts of its group.
 // "macrodetails/height/female-old-maxmuscle-maxweight-maxheight.target" is in the group
 // "macrodetails-height".
 struct TargetFile {
-  std::filesystem::path path;
-  std::vector<int> words;  // indices into kMacroWords, at most one per variable
+  std::filesystem::path path;  // below the folder `targets`
+  std::vector<int> words;      // indices into kMacroWords, at most one per variable
 };
 
-// The target files of a data folder by group.
+// The targets of a data folder by group.
 class TargetLibrary {
  public:
-  // Lists the files below `targets` (a folder `targets` of a data folder). Symbolic links to
-  // folders are not followed. A folder that does not exist has no files. Errors: kLimit (more than
-  // 50,000 files), kIo.
-  [[nodiscard]] static Result<TargetLibrary> Scan(const std::filesystem::path& targets);
+  // Adds a target. `path`: below the folder `targets`. The caller adds paths in their order.
+  void Add(const std::filesystem::path& path);
 
-  // The files of a group, sorted by path; empty if there is no such group.
+  // The files of a group, as added; empty if there is no such group.
   [[nodiscard]] const std::vector<TargetFile>& InGroup(const std::string& group) const;
   // True if a file of the group has the macro word.
   [[nodiscard]] bool HasWord(const std::string& group, std::string_view word) const;
-  [[nodiscard]] std::size_t num_files() const { return num_files_; }
 
  private:
-  void Add(const std::filesystem::path& path, const std::filesystem::path& relative);
-
   std::map<std::string, std::vector<TargetFile>> groups_;
-  std::size_t num_files_ = 0;
 };
 
 // A target and how much of it a person has.
 struct ChosenTarget {
-  std::filesystem::path path;
-  float weight = 0.0f;  // in (0, 1]
+  std::filesystem::path path;  // below the folder `targets`
+  float weight = 0.0f;         // in (0, 1]
 };
 
 // What ChooseTargets() found.

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "authoring/import/makehuman/save/person.h"
+#include "authoring/import/makehuman/save/target_store.h"
 #include "tests/temporary_folder.h"
 
 namespace furrow::authoring {
@@ -32,9 +33,9 @@ class Targets {
   // The chosen weights by file name.
   std::map<std::string, float> Choose(const MhmSave& save,
                                       std::vector<std::string>* warnings = nullptr) const {
-    const Result<TargetLibrary> library = TargetLibrary::Scan(folder_ / "targets");
-    EXPECT_TRUE(library.ok()) << library.status().ToString();
-    const TargetChoice choice = ChooseTargets(save, *library);
+    const Result<TargetStore> store = TargetStore::Open(folder_.path());
+    EXPECT_TRUE(store.ok()) << store.status().ToString();
+    const TargetChoice choice = ChooseTargets(save, store->library());
     if (warnings != nullptr) *warnings = choice.warnings;
     std::map<std::string, float> weights;
     for (const ChosenTarget& chosen : choice.targets)
@@ -180,9 +181,6 @@ TEST(ShapePerson, RejectsBadFolders) {
   std::vector<glm::vec3> positions(1, glm::vec3(0.0f));
   MhmSave save;
   EXPECT_EQ(ShapePerson(empty.path(), save, positions).status().code(), StatusCode::kNotFound);
-  std::ofstream(empty.path() / "targets.npz") << "PK";
-  EXPECT_NE(ShapePerson(empty.path(), save, positions).status().what().find("targets.npz"),
-            std::string::npos);
   const Targets damaged({});
   damaged.Write("macrodetails/caucasian-female-young", "0 0 0\n");
   const Status status = ShapePerson(damaged.path(), save, positions).status();
