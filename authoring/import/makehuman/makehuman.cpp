@@ -89,7 +89,8 @@ class MakeHumanImport {
     if (!save_->skeleton.empty() && fs::path(save_->skeleton).stem() != "default")
       report_.warnings.push_back("the skeleton '" + save_->skeleton +
                                  "' is not imported; the default rig, which has the joints of "
-                                 "the face, is used instead");
+                                 "the face, is used instead (" +
+                                 std::string(kToKeepIt) + ")");
     return {};
   }
 

@@ -129,7 +129,8 @@ class MhmParser {
       Warn("the " + std::string(kind) + " " + Quoted(Rest(1)) +
            " is not imported; play its file as a recording instead");
     else if (kind == "proxy")
-      Warn("the topology " + Quoted(Rest(1)) + " is not imported; the base mesh is used instead");
+      Warn("the topology " + Quoted(Rest(1)) + " is not imported; the base mesh is used instead (" +
+           std::string(kToKeepIt) + ")");
     else {
       Warn("unknown line " + Quoted(kind) + "; skipped");
       return false;

@@ -46,6 +46,10 @@ inline constexpr std::size_t kMaxMhmBytes = std::size_t{1} << 20;
 inline constexpr std::size_t kMaxMhmModifiers = 4096;
 inline constexpr std::size_t kMaxMhmParts = 256;
 
+// What to do about a skeleton or a topology that the import does not take.
+inline constexpr std::string_view kToKeepIt =
+    "to keep it, export the person from MakeHuman as FBX or Collada and import that file";
+
 // Parses a .mhm file. `source`: the file name in errors. A repeated modifier replaces the earlier
 // one. Values outside [-1, 1] are clamped, as MakeHuman does. Lines of unknown kinds are skipped
 // with a warning; camera, tags, subdivide and background have no effect and no warning.

@@ -57,6 +57,7 @@ TEST(ParseMhm, SaysWhatHasNoEffect) {
   ASSERT_EQ(save->warnings.size(), 5u);
   EXPECT_EQ(save->warnings[0].rfind("a.mhm:2: the value 2 is outside [-1, 1]", 0), 0u);
   EXPECT_NE(save->warnings[1].find("recording"), std::string::npos);
+  EXPECT_NE(save->warnings[2].find("export the person from MakeHuman as FBX"), std::string::npos);
   EXPECT_NE(save->warnings[3].find("'surprise'"), std::string::npos);
   EXPECT_EQ(save->warnings[4].rfind("a.mhm:6: ", 0), 0u);
 }
