@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "authoring/bake/surface/bake_surface.h"
@@ -72,21 +73,22 @@ std::vector<int> MaterialsOn(const Character& character, bool cloth, int first) 
   return sorted;
 }
 
-// A square of the atlas.
+// A part of the atlas.
 struct Tile {
   glm::vec2 corner{0.0f};
-  float side = 1.0f;
+  glm::vec2 size{1.0f};
 };
 
-// The smallest box around a material's UVs; the unit square if they lie in it, so that islands keep
-// their places.
+// The smallest box around a material's UVs; a square of the grid of whole numbers if they lie in
+// one, so that islands keep their places.
 struct UvBox {
   glm::vec2 low{0.0f};
   glm::vec2 size{1.0f};
 };
 
 UvBox BoxOf(const Character& character, int material) {
-  glm::vec2 low(0.0f), high(1.0f);
+  constexpr float kEdge = 0.01f;  // islands that reach this far over an edge are not beyond it
+  glm::vec2 low(1e30f), high(-1e30f);
   for (const character::Mesh& mesh : character.meshes) {
     if (mesh.material != material) continue;
     for (const character::Vertex& vertex : mesh.vertices) {
@@ -94,12 +96,63 @@ UvBox BoxOf(const Character& character, int material) {
       high = glm::max(high, vertex.uv);
     }
   }
-  return {low, high - low};
+  if (!(low.x <= high.x && low.y <= high.y)) return {};
+  const glm::vec2 square = glm::floor(low + kEdge);
+  low = glm::min(low, square);
+  return {low, glm::max(high, square + 1.0f) - low};
+}
+
+// Materials whose UVs do not overlap share a tile. The material `first` is in the first group.
+std::vector<std::vector<int>> GroupsOf(const Character& character, std::span<const int> materials) {
+  std::vector<std::vector<int>> groups;
+  for (const int material : materials) {
+    // Only boxes of one size are scaled alike.
+    const bool is_square = BoxOf(character, material).size == glm::vec2(1.0f);
+    const auto fits = [&](const std::vector<int>& group) {
+      return is_square && BoxOf(character, group.front()).size == glm::vec2(1.0f) &&
+             !Overlap(character, group, material);
+    };
+    const auto group = std::find_if(groups.begin(), groups.end(), fits);
+    if (group == groups.end()) {
+      groups.push_back({material});
+    } else {
+      group->push_back(material);
+    }
+  }
+  return groups;
+}
+
+// Equal squares.
+std::vector<Tile> EqualTiles(std::size_t count) {
+  const auto columns = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(count))));
+  const float side = 1.0f / static_cast<float>(columns);
+  std::vector<Tile> tiles;
+  for (std::size_t i = 0; i < count; ++i) {
+    tiles.push_back({side * glm::vec2(i % columns, i / columns), glm::vec2(side)});
+  }
+  return tiles;
+}
+
+// The first tile is the left 60% of the atlas, and the others share the rest. Few tiles are stacked
+// in one column, more in several.
+std::vector<Tile> TilesBesideTheFirst(std::size_t count) {
+  constexpr float kFirst = 0.6f;
+  constexpr std::size_t kRows = 4;
+  std::vector<Tile> tiles = {{glm::vec2(0.0f), {kFirst, 1.0f}}};
+  const std::size_t others = count - 1;
+  const std::size_t columns = (others + kRows - 1) / kRows;
+  const std::size_t rows = (others + columns - 1) / columns;
+  const glm::vec2 size((1.0f - kFirst) / static_cast<float>(columns),
+                       1.0f / static_cast<float>(rows));
+  for (std::size_t i = 0; i < others; ++i) {
+    tiles.push_back({glm::vec2(kFirst, 0.0f) + size * glm::vec2(i / rows, i % rows), size});
+  }
+  return tiles;
 }
 
 void MoveToTile(int material, const Tile& tile, Character* character) {
   const UvBox box = BoxOf(*character, material);
-  const glm::vec2 scale = tile.side / box.size;
+  const glm::vec2 scale = tile.size / box.size;
   for (character::Mesh& mesh : character->meshes) {
     if (mesh.material != material) continue;
     for (character::Vertex& vertex : mesh.vertices) {
@@ -131,23 +184,40 @@ std::vector<std::string> ChooseAtlases(int first, Character* character) {
   return without;
 }
 
-std::vector<std::string> TileClothAtlas(Character* character) {
-  const std::vector<int> materials = MaterialsOn(*character, true, -1);
-  bool overlap = false;
-  for (std::size_t i = 1; i < materials.size(); ++i) {
-    overlap = overlap || Overlap(*character, std::span(materials).first(i), materials[i]);
-  }
-  if (!overlap) return {};
+std::vector<AtlasTile> TileAtlas(bool cloth, int first, Character* character) {
+  const std::vector<int> materials = MaterialsOn(*character, cloth, first);
+  const std::vector<std::vector<int>> groups = GroupsOf(*character, materials);
+  if (groups.size() < 2) return {};
   constexpr float kMargin = 0.01f;  // of a tile's side, against filters that reach over the edge
-  const int columns = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(materials.size()))));
-  const float side = 1.0f / static_cast<float>(columns);
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < materials.size(); ++i) {
-    const glm::vec2 place(static_cast<int>(i) % columns, static_cast<int>(i) / columns);
-    MoveToTile(materials[i], {side * (place + kMargin), side * (1.0f - 2.0f * kMargin)}, character);
-    names.push_back(character->materials[static_cast<std::size_t>(materials[i])].name);
+  const bool has_first = first >= 0 && groups.front().front() == first;
+  std::vector<Tile> tiles =
+      has_first ? TilesBesideTheFirst(groups.size()) : EqualTiles(groups.size());
+  std::vector<AtlasTile> named;
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    Tile& tile = tiles[i];
+    const float share = tile.size.x * tile.size.y;
+    tile.corner += kMargin * tile.size;
+    tile.size *= 1.0f - 2.0f * kMargin;
+    AtlasTile& entry = named.emplace_back(AtlasTile{{}, share});
+    for (const int material : groups[i]) {
+      MoveToTile(material, tile, character);
+      entry.materials.push_back(character->materials[static_cast<std::size_t>(material)].name);
+    }
   }
-  return names;
+  return named;
+}
+
+std::string DescribeTiles(const std::vector<AtlasTile>& tiles, bool cloth) {
+  std::string text = std::string("UVs of the ") + (cloth ? "cloth" : "skin") +
+                     " overlap, so its materials share the texels of the wrinkle maps: ";
+  for (const AtlasTile& tile : tiles) {
+    if (&tile != &tiles.front()) text += ", ";
+    for (const std::string& name : tile.materials) {
+      text += (&name == &tile.materials.front() ? "'" : " and '") + name + "'";
+    }
+    text += " " + std::to_string(std::lround(100.0f * tile.share)) + " %";
+  }
+  return text + "; --texture-size, or --size of 'furrow bake', gives them more";
 }
 
 }  // namespace furrow::authoring

@@ -8,6 +8,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "authoring/bake/surface/bake_surface.h"
 #include "base/ascii.h"
 
 namespace furrow::authoring {
@@ -137,6 +138,33 @@ FaceMatch MatchFaces(const Skeleton& model, const FoundJoints& model_joints,
     match.by_tail[from] = nearest->is_tail;
   }
   return match;
+}
+
+int HeadMaterial(const character::Character& character, const FoundJoints& joints) {
+  const int head = joints.First(wrinkle::JointRole::kHead);
+  if (head == wrinkle::kNoJoint) return -1;
+  const auto parents = character.skeleton.joint_parents();
+  std::vector<bool> above_neck(parents.size(), false);  // parents come first
+  for (std::size_t j = static_cast<std::size_t>(head); j < parents.size(); ++j) {
+    above_neck[j] = static_cast<int>(j) == head ||
+                    (parents[j] >= 0 && above_neck[static_cast<std::size_t>(parents[j])]);
+  }
+  std::vector<float> areas(character.materials.size(), 0.0f);
+  for (const int index : MeshesOn(character, false)) {
+    const character::Mesh& mesh = character.meshes[static_cast<std::size_t>(index)];
+    if (mesh.material < 0) continue;
+    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+      const character::Vertex& a = mesh.vertices[mesh.indices[i]];
+      float share = 0.0f;
+      for (int k = 0; k < 4; ++k) share += above_neck[a.joints[k]] ? a.skin_weights[k] : 0.0f;
+      areas[static_cast<std::size_t>(mesh.material)] +=
+          share * glm::length(glm::cross(mesh.vertices[mesh.indices[i + 1]].position - a.position,
+                                         mesh.vertices[mesh.indices[i + 2]].position - a.position));
+    }
+  }
+  const auto largest = std::max_element(areas.begin(), areas.end());
+  if (largest == areas.end() || !(*largest > 0.0f)) return -1;
+  return static_cast<int>(largest - areas.begin());
 }
 
 }  // namespace furrow::authoring

@@ -8,6 +8,7 @@
 #include <glm/vec3.hpp>
 
 #include "authoring/import/model/joint_finder.h"
+#include "character/character.h"
 #include "wrinkle/skeleton/skeleton.h"
 
 namespace furrow::authoring {
@@ -41,5 +42,9 @@ struct FaceMatch {
 [[nodiscard]] bool IsAdornment(std::string_view joint_name);
 [[nodiscard]] std::vector<int> FaceJoints(const wrinkle::Skeleton& skeleton,
                                           const FoundJoints& joints);
+
+// The material of the head's skin: of the materials that may fold as skin, the one with the largest
+// surface on the head and the joints below it. -1 if there is none.
+[[nodiscard]] int HeadMaterial(const character::Character& character, const FoundJoints& joints);
 
 }  // namespace furrow::authoring

@@ -36,30 +36,74 @@ std::string Listed(const std::vector<std::string>& names) {
   return text;
 }
 
-// Other materials are skin only if none is marked as skin. The face is then marked, so that hair,
-// teeth and clothes that nobody marked do not wrinkle.
-void MarkFace(int material, Character* character) {
-  if (material < 0) return;
-  Material& face = character->materials[static_cast<std::size_t>(material)];
-  face.kind = Material::Kind::kSkin;
-  face.wrinkles = true;
+// The joints on both sides of a driver's bend: the skin between them folds. Of skin, only hinges
+// and twists fold: a ball's four directions would fold the same place along and across.
+struct Bend {
+  std::vector<int> above;  // empty: all joints that are not below
+  std::vector<int> below;
+};
+
+Bend BendOf(const wrinkle::Driver& driver, const wrinkle::Skeleton& skeleton) {
+  Bend bend;
+  const auto add = [&](const std::string& joint, std::vector<int>* joints) {
+    if (const int index = skeleton.Find(joint); index >= 0) joints->push_back(index);
+  };
+  if (driver.kind == Kind::kHinge) {
+    add(driver.hinge.parent, &bend.above);
+    add(driver.hinge.joint, &bend.below);
+  } else if (driver.kind == Kind::kTwist) {
+    add(driver.twist.joint, &bend.below);
+    for (const std::string& joint : driver.twist.through) add(joint, &bend.below);
+  }
+  return bend;
 }
 
-// The body's part of a rig: what joints of the body drive on cloth.
+// The names of the drivers that bend skin: some of its vertices follow joints on both sides.
+std::set<std::string> DriversOnSkin(const Character& character, const wrinkle::Rig& rig) {
+  constexpr float kLeastShare = 0.1f;
+  constexpr int kLeastVertices = 12;  // fewer are a rim below clothes
+  std::set<std::string> drivers;
+  for (const wrinkle::Driver& driver : rig.drivers) {
+    const Bend bend = BendOf(driver, character.skeleton);
+    if (bend.below.empty()) continue;
+    const auto share = [](const character::Vertex& vertex, const std::vector<int>& joints) {
+      float sum = 0.0f;
+      for (int i = 0; i < 4; ++i) {
+        if (std::find(joints.begin(), joints.end(), vertex.joints[i]) != joints.end()) {
+          sum += vertex.skin_weights[i];
+        }
+      }
+      return sum;
+    };
+    std::ptrdiff_t bent = 0;
+    for (const int mesh : MeshesOn(character, false)) {
+      const auto& vertices = character.meshes[static_cast<std::size_t>(mesh)].vertices;
+      bent += std::count_if(vertices.begin(), vertices.end(), [&](const auto& vertex) {
+        const float below = share(vertex, bend.below);
+        const float above = bend.above.empty() ? 1.0f - below : share(vertex, bend.above);
+        return below > kLeastShare && above > kLeastShare;
+      });
+    }
+    if (bent >= kLeastVertices) drivers.insert(driver.name);
+  }
+  return drivers;
+}
+
+// The body's part of a rig: what joints of the body drive on cloth, and on skin that is bare.
 class BodyPart {
  public:
-  explicit BodyPart(wrinkle::Rig rig, bool has_cloth) : rig_(std::move(rig)) {
-    std::erase_if(rig_.drivers, [&](const wrinkle::Driver& driver) {
-      return !has_cloth || driver.kind == Kind::kPose || driver.kind == Kind::kStrain ||
+  BodyPart(wrinkle::Rig rig, const Character& character)
+      : rig_(std::move(rig)), has_cloth_(!MeshesOn(character, true).empty()) {
+    std::erase_if(rig_.drivers, [](const wrinkle::Driver& driver) {
+      return driver.kind == Kind::kPose || driver.kind == Kind::kStrain ||
              driver.kind == Kind::kBlendShape;
     });
     for (const wrinkle::Driver& driver : rig_.drivers) drivers_.insert(driver.name);
+    on_skin_ = DriversOnSkin(character, rig_);
     for (wrinkle::Region& region : rig_.regions) Prune(&region);
+    for (wrinkle::Region& region : rig_.regions) DrawOnSkin(&region);
     std::erase_if(rig_.regions, [](const auto& region) { return region.feeds.empty(); });
-    for (const wrinkle::Region& region : rig_.regions) {
-      regions_.insert(region.name);
-      for (const wrinkle::Feed& feed : region.feeds) maps_.insert(feed.map);
-    }
+    KeepFed();
   }
 
   void AddTo(wrinkle::Rig* rig) {
@@ -68,16 +112,16 @@ class BodyPart {
       std::erase_if(region.neighbours, [&](const auto& name) { return !regions_.contains(name); });
       rig->regions.push_back(std::move(region));
     }
-    for (wrinkle::WrinkleMap& map : rig_.wrinkle_maps) {
-      if (!maps_.contains(map.name)) continue;
-      map.surface = wrinkle::WrinkleMap::Surface::kCloth;
-      if (!maps_.contains(map.opposes)) map.opposes.clear();
-      rig->wrinkle_maps.push_back(std::move(map));
+    for (const wrinkle::WrinkleMap& map : rig_.wrinkle_maps) {
+      AddMap(map, map.name, wrinkle::WrinkleMap::Surface::kCloth, rig);
+      AddMap(map, OnSkin(map.name), wrinkle::WrinkleMap::Surface::kSkin, rig);
     }
     rig->filter = rig_.filter;
   }
 
  private:
+  static std::string OnSkin(const std::string& map) { return "skin_" + map; }
+
   // Maps of the face stay with the face.
   void Prune(wrinkle::Region* region) const {
     const bool of_face = std::any_of(kFaceRegions.begin(), kFaceRegions.end(),
@@ -90,8 +134,47 @@ class BodyPart {
     });
   }
 
+  // Skin folds where cloth does, by a map of its own, except that straight limbs are smooth.
+  // Clothes fold early, hence their gains above 1.
+  void DrawOnSkin(wrinkle::Region* region) const {
+    std::vector<wrinkle::Feed> feeds = region->feeds;
+    for (wrinkle::Feed& feed : feeds) {
+      feed.map = OnSkin(feed.map);
+      std::erase_if(feed.sources, [&](const auto& s) {
+        return !on_skin_.contains(s.driver) || s.value == "extended";
+      });
+      for (wrinkle::Feed::Source& source : feed.sources) source.gain = std::min(source.gain, 1.0f);
+    }
+    std::erase_if(feeds, [](const wrinkle::Feed& feed) { return feed.sources.empty(); });
+    if (!has_cloth_) region->feeds.clear();
+    region->feeds.insert(region->feeds.end(), feeds.begin(), feeds.end());
+  }
+
+  void KeepFed() {
+    std::set<std::string> used;
+    for (const wrinkle::Region& region : rig_.regions) {
+      regions_.insert(region.name);
+      for (const wrinkle::Feed& feed : region.feeds) {
+        maps_.insert(feed.map);
+        for (const wrinkle::Feed::Source& source : feed.sources) used.insert(source.driver);
+      }
+    }
+    std::erase_if(rig_.drivers, [&](const auto& d) { return !used.contains(d.name); });
+  }
+
+  void AddMap(wrinkle::WrinkleMap map, const std::string& name,
+              wrinkle::WrinkleMap::Surface surface, wrinkle::Rig* rig) const {
+    if (!maps_.contains(name)) return;
+    if (name != map.name) map.opposes = OnSkin(map.opposes);
+    if (!maps_.contains(map.opposes)) map.opposes.clear();
+    map.name = name;
+    map.surface = surface;
+    rig->wrinkle_maps.push_back(std::move(map));
+  }
+
   wrinkle::Rig rig_;
-  std::set<std::string> drivers_, regions_, maps_;
+  bool has_cloth_;
+  std::set<std::string> drivers_, on_skin_, regions_, maps_;
 };
 
 // Masks of the character itself instead of the default character's pictures.
@@ -135,7 +218,23 @@ std::vector<std::string> MissingShapes(const FaceSkin& skin, const ArkitFace& fa
   return remarks;
 }
 
+// Other materials are skin only if none is marked as skin. The face is then marked, so that hair,
+// teeth and clothes that nobody marked do not wrinkle.
+void MarkSkin(int material, Character* character) {
+  if (material < 0) return;
+  Material& face = character->materials[static_cast<std::size_t>(material)];
+  face.kind = Material::Kind::kSkin;
+  face.wrinkles = true;
+}
+
 }  // namespace
+
+int MarkFace(const ArkitFace& face, Character* character) {
+  const auto skin = FaceSkin::Create(*character, face);
+  if (!skin.ok()) return -1;
+  MarkSkin(skin->material(), character);
+  return skin->material();
+}
 
 Result<std::vector<std::string>> ProposeShapeFace(const wrinkle::Rig& arkit, const ArkitFace& face,
                                                   int size, Character* character) {
@@ -144,10 +243,12 @@ Result<std::vector<std::string>> ProposeShapeFace(const wrinkle::Rig& arkit, con
   std::vector<std::string> remarks = MissingShapes(*skin, face);
   const FaceMasks masks = ProposeFaceMasks(*skin, FindShapeLandmarks(*skin));
   auto pictures = PaintFaceMasks(*character, *skin, masks, size);
-  MarkFace(skin->material(), character);
+  MarkSkin(skin->material(), character);
   if (const auto without = ChooseAtlases(skin->material(), character); !without.empty()) {
-    remarks.push_back("no wrinkles on " + Listed(without) +
-                      ": their UVs overlap those of a material that has wrinkles");
+    remarks.push_back(
+        "no wrinkles on " + Listed(without) +
+        ": their UVs overlap those of a material that has wrinkles ('furrow character import' "
+        "gives each material a tile of the atlas)");
   }
   wrinkle::Rig rig = arkit;
   rig.name = "proposed";
@@ -162,7 +263,7 @@ Result<std::vector<std::string>> ProposeShapeFace(const wrinkle::Rig& arkit, con
         "materials");
   }
   rig.reference_poses = character->rig.reference_poses;  // of the eyes
-  BodyPart(std::move(character->rig), has_cloth).AddTo(&rig);
+  BodyPart(std::move(character->rig), *character).AddTo(&rig);
   character->rig = std::move(rig);
   return remarks;
 }

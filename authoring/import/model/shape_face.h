@@ -13,13 +13,19 @@
 
 namespace furrow::authoring {
 
+// Marks the material of a face of blend shapes as skin that wrinkles, as ProposeShapeFace() does.
+// Returns its index in Character::materials; -1 if there is no such face, or it has no material.
+int MarkFace(const ArkitFace& face, character::Character* character);
+
 // Proposes the wrinkle rig of a character with a face of blend shapes: the drivers, feeds and
 // exports of `arkit` (the shipped rig arkit), with masks painted from what the shapes move, and the
 // drivers, regions and maps of the character's present rig that its body's joints drive.
 //
 // - Masks: two pictures of `size` x `size` texels in the UVs of the face (PaintFaceMasks()).
-// - Atlases (ChooseAtlases()): other materials whose UVs overlap get no wrinkles.
-// - Regions of cloth need a material of cloth; else they are left out.
+// - Atlases (ChooseAtlases()): other materials whose UVs overlap get no wrinkles. TileAtlas()
+//   before prevents this.
+// - Regions of the body fold cloth by the maps of the present rig, if a material is cloth. Bent
+//   hinges and twists also fold bare skin, by maps of their own, named "skin_" and the cloth's map.
 // Returns remarks, one sentence each: shapes that are missing or move nothing, and materials
 // without wrinkles. Wrinkle maps have no pictures afterwards; see BakeShapeFace().
 // `face`: made from the character. Errors: those of FaceSkin::Create(), which leave the character

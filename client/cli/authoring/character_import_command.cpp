@@ -12,6 +12,7 @@
 #include "authoring/import/makehuman/makehuman.h"
 #include "authoring/import/makehuman/save/data_folders.h"
 #include "authoring/import/model/atlases.h"
+#include "authoring/import/model/face_frame.h"
 #include "authoring/import/model/import_model.h"
 #include "authoring/import/model/shape_face.h"
 #include "authoring/shapes/arkit_face.h"
@@ -117,8 +118,22 @@ Status AddFaceOfShapes(const ImportArguments& arguments, const authoring::ArkitF
   return {};
 }
 
+// Lets all skin share an atlas of wrinkle maps, and all cloth another.
+void TileAtlases(const authoring::ArkitFace& face, const rig::SkeletonMaps& maps,
+                 character::Character* character) {
+  int first = authoring::MarkFace(face, character);
+  if (first < 0) {
+    first = authoring::HeadMaterial(*character, authoring::FindJoints(character->skeleton, maps));
+  }
+  for (const bool cloth : {false, true}) {
+    const auto tiles = authoring::TileAtlas(cloth, cloth ? -1 : first, character);
+    if (!tiles.empty()) PrintNotes({authoring::DescribeTiles(tiles, cloth)});
+  }
+}
+
 // Attaches the requested rig, or a proposed one.
-Status AttachRigTo(const ImportArguments& arguments, authoring::ImportedModel* imported) {
+Status AttachRigTo(const ImportArguments& arguments, const rig::SkeletonMaps& maps,
+                   authoring::ImportedModel* imported) {
   character::Character* character = &imported->character;
   if (!arguments.rig.empty()) {
     auto rig = LoadRigArgument(arguments.rig);
@@ -126,11 +141,8 @@ Status AttachRigTo(const ImportArguments& arguments, authoring::ImportedModel* i
     return character::AttachRig(std::move(*rig), ResolveRigPath(arguments.rig).parent_path(),
                                 character);
   }
-  if (const auto tiled = authoring::TileClothAtlas(character); !tiled.empty()) {
-    PrintNotes({"the UVs of " + std::to_string(tiled.size()) +
-                " materials of cloth overlap; each got a tile of the atlas of wrinkle maps"});
-  }
   const authoring::ArkitFace face(*character, arguments.model.shapes);
+  TileAtlases(face, maps, character);
   const bool shapes = authoring::HasShapeFace(face);
   auto proposal = ProposeFromDefault(character->skeleton, arguments.map,
                                      shapes ? ProposalPart::kBody : ProposalPart::kBodyAndFace,
@@ -159,7 +171,7 @@ int ImportFile(ImportArguments arguments) {
   character::Character& character = imported->character;
   PrintNotes(imported->remarks);
   PrintWarnings(imported->warnings);
-  if (Status status = AttachRigTo(arguments, &*imported); !status.ok()) return Fail(status);
+  if (Status status = AttachRigTo(arguments, *maps, &*imported); !status.ok()) return Fail(status);
   const Status written = character.rig.drivers.empty()
                              ? character::SaveCharacterGlb(character, arguments.out)
                              : authoring::WriteCharacterPackage(character, arguments.out);

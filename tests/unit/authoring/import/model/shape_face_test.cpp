@@ -20,6 +20,7 @@
 #include "authoring/generator/blend_shapes/blend_shape_face.h"
 #include "authoring/generator/default_character.h"
 #include "authoring/generator/head/head_shape.h"
+#include "authoring/import/model/atlases.h"
 #include "authoring/paint/surface_texels.h"
 #include "authoring/shapes/region_masks.h"
 #include "rig/rig_check.h"
@@ -92,8 +93,7 @@ Spot SpotOf(const character::Character& c, const wrinkle::Region& region) {
   return spot;
 }
 
-TEST_F(ShapeFaceTest, MasksLieWhereTheirNamesSay) {
-  const character::Character c = Proposed();
+void ExpectMasksInPlace(const character::Character& c) {
   const std::map<std::string, glm::vec3> places = {
       {"brow_l", {3.3f, 2.8f, 8.2f}},   {"brow_r", {-3.3f, 2.8f, 8.2f}},
       {"glabella", {0.0f, 2.0f, 9.3f}}, {"nose", {0.0f, -3.0f, 10.0f}},
@@ -113,6 +113,8 @@ TEST_F(ShapeFaceTest, MasksLieWhereTheirNamesSay) {
   }
   EXPECT_EQ(found, 8);
 }
+
+TEST_F(ShapeFaceTest, MasksLieWhereTheirNamesSay) { ExpectMasksInPlace(Proposed()); }
 
 TEST_F(ShapeFaceTest, MasksAddUpToAtMostOne) {
   const character::Character c = Proposed();
@@ -235,20 +237,20 @@ TEST_F(ShapeFaceTest, SingleShapesAndCombinationsArePosed) {
   EXPECT_EQ(brow, 3);  // browInnerUp, browOuterUpLeft and their combination
 }
 
-// The share of the texels of a region that the folds of a map raise or lower.
-TEST_F(ShapeFaceTest, FoldsLieInTheRegionsOfTheirShapes) {
-  character::Character c = Proposed();
+// Bakes the face. A map raises or lowers a part of the texels of each of its regions.
+void ExpectFolds(character::Character c, int size) {
   const auto strokes =
       LoadStrokes(std::filesystem::path(FURROW_SOURCE_DIR) / "rig/rigs/default.strokes.json",
                   Shipped("default"));
   ASSERT_TRUE(strokes.ok()) << strokes.status().ToString();
-  const auto said = BakeShapeFace(ArkitFaceOf(c), *strokes, 256, 1.0f, {}, &c);
+  const auto said = BakeShapeFace(ArkitFaceOf(c), *strokes, size, 1.0f, {}, &c);
   ASSERT_TRUE(said.ok()) << said.status().ToString();
   EXPECT_TRUE(rig::CheckRig(c.rig).ok());
   const std::map<std::string, std::vector<std::string>> kFolds = {
       {"stretch", {"brow_l", "brow_r", "mouth_l", "mouth_r"}},
       {"squash", {"glabella", "nose", "eye_l", "eye_r", "mouth_l", "mouth_r"}}};
   for (const wrinkle::WrinkleMap& map : c.rig.wrinkle_maps) {
+    if (!kFolds.contains(map.name)) continue;
     ASSERT_GE(c.FindRigPicture(map.height), 0) << map.name;
     EXPECT_GE(c.FindRigPicture(map.normal), 0) << map.name;
     EXPECT_GE(c.FindRigPicture(map.cavity), 0) << map.name;
@@ -259,8 +261,8 @@ TEST_F(ShapeFaceTest, FoldsLieInTheRegionsOfTheirShapes) {
       if (std::find(wanted.begin(), wanted.end(), region.name) == wanted.end()) continue;
       const character::Picture& mask = c.pictures[c.FindRigPicture(region.mask.texture)];
       double folded = 0.0, inside = 0.0;
-      for (const SurfaceTexel& texel : RasterizeSurface(c.meshes[0], 256, 256)) {
-        const std::size_t at = static_cast<std::size_t>(texel.y * 256 + texel.x);
+      for (const SurfaceTexel& texel : RasterizeSurface(c.meshes[0], size, size)) {
+        const std::size_t at = static_cast<std::size_t>(texel.y * size + texel.x);
         const double share = mask.pixels[4 * at + static_cast<std::size_t>(region.mask.channel)];
         const double height = map.height_mm * (2.0 * heights.pixels16[at] / 65535.0 - 1.0);
         inside += share;
@@ -271,18 +273,25 @@ TEST_F(ShapeFaceTest, FoldsLieInTheRegionsOfTheirShapes) {
   }
 }
 
-// A head and a body that use the same square of UVs, as Ready Player Me exports them.
+TEST_F(ShapeFaceTest, FoldsLieInTheRegionsOfTheirShapes) { ExpectFolds(Proposed(), 256); }
+
+// Adds a body that uses the same square of UVs as the head, as Ready Player Me exports them.
+void AddOverlappingBody(character::Character* c) {
+  character::Material body = c->materials[static_cast<std::size_t>(c->meshes[0].material)];
+  body.name = "body";
+  character::Mesh copy = c->meshes[0];
+  copy.name = "body";
+  copy.morph_targets.clear();
+  copy.material = static_cast<int>(c->materials.size());
+  for (character::Vertex& vertex : copy.vertices) vertex.position.z -= 1.0f;
+  c->materials.push_back(body);
+  c->meshes.push_back(copy);
+}
+
 TEST_F(ShapeFaceTest, OverlappingMaterialsLeaveTheFaceItsWrinkles) {
   character::Character c = *avatar_;
   const int face = c.meshes[0].material;
-  character::Material body = c.materials[static_cast<std::size_t>(face)];
-  body.name = "body";
-  character::Mesh copy = c.meshes[0];
-  copy.name = "body";
-  copy.morph_targets.clear();
-  copy.material = static_cast<int>(c.materials.size());
-  c.materials.push_back(body);
-  c.meshes.push_back(copy);
+  AddOverlappingBody(&c);
   const auto remarks = ProposeShapeFace(Shipped("arkit"), ArkitFaceOf(c), 64, &c);
   ASSERT_TRUE(remarks.ok());
   EXPECT_THAT(*remarks, Contains(HasSubstr("no wrinkles on body")));
@@ -293,6 +302,61 @@ TEST_F(ShapeFaceTest, OverlappingMaterialsLeaveTheFaceItsWrinkles) {
   }
   std::vector<std::string> warnings;
   EXPECT_TRUE(CheckSurfaces(c, {}, &warnings).ok());
+}
+
+// The import moves head and body into tiles before it paints: both keep their wrinkles.
+TEST_F(ShapeFaceTest, TiledSkinKeepsMasksAndFoldsInPlace) {
+  constexpr int kSize = 384;  // the face has 60% of the texels
+  character::Character c = *avatar_;
+  AddOverlappingBody(&c);
+  const ArkitFace face = ArkitFaceOf(c);
+  EXPECT_EQ(MarkFace(face, &c), c.meshes[0].material);
+  ASSERT_EQ(TileAtlas(false, c.meshes[0].material, &c).size(), 2u);
+  const auto remarks = ProposeShapeFace(Shipped("arkit"), face, kSize, &c);
+  ASSERT_TRUE(remarks.ok()) << remarks.status().ToString();
+  EXPECT_THAT(*remarks, IsEmpty());
+  EXPECT_TRUE(c.materials.back().wrinkles);
+  std::vector<std::string> warnings;
+  EXPECT_TRUE(CheckSurfaces(c, {}, &warnings).ok());
+  EXPECT_THAT(warnings, ::testing::Not(Contains(HasSubstr("UVs overlap"))));
+  ExpectMasksInPlace(c);
+  // The body's tile has no mask of the face.
+  const character::Picture& mask = c.pictures[c.FindRigPicture("face_masks_a")];
+  for (const SurfaceTexel& texel : RasterizeSurface(c.meshes.back(), mask.width, mask.height)) {
+    for (int k = 0; k < 4; ++k) {
+      ASSERT_EQ(mask.pixels[4 * (texel.y * mask.width + texel.x) + k], 0) << texel.x << texel.y;
+    }
+  }
+  ExpectFolds(std::move(c), kSize);
+}
+
+// Joints fold bare skin, by a map of its own. Skin that is not there, below clothes, does not fold.
+TEST_F(ShapeFaceTest, JointsOfTheBodyFoldBareSkin) {
+  character::Character c = *avatar_;
+  c.rig = BlendShapeRig(Shipped("default"));
+  for (wrinkle::Region& region : c.rig.regions) {
+    region.mask = wrinkle::Mask{.kind = wrinkle::Mask::Kind::kSkinning, .texture = {}};
+  }
+  ASSERT_TRUE(ProposeShapeFace(Shipped("arkit"), ArkitFaceOf(c), 64, &c).ok());
+  const auto feeds = [&](const std::string& name) {
+    std::set<std::string> maps;
+    for (const wrinkle::Region& region : c.rig.regions) {
+      for (const wrinkle::Feed& feed : region.feeds) {
+        if (region.name != name) continue;
+        maps.insert(feed.map);
+        for (const wrinkle::Feed::Source& source : feed.sources) {
+          EXPECT_TRUE(feed.map != "skin_folds" || source.gain <= 1.0f) << name;
+        }
+      }
+    }
+    return maps;
+  };
+  EXPECT_EQ(feeds("neck_left"), (std::set<std::string>{"folds", "skin_folds"}));
+  EXPECT_EQ(feeds("knee_l_inner"), (std::set<std::string>{"folds"}));
+  const auto map = std::find_if(c.rig.wrinkle_maps.begin(), c.rig.wrinkle_maps.end(),
+                                [](const auto& m) { return m.name == "skin_folds"; });
+  ASSERT_NE(map, c.rig.wrinkle_maps.end());
+  EXPECT_EQ(map->surface, wrinkle::WrinkleMap::Surface::kSkin);
 }
 
 // Both halves of the face share texels: they fold alike, but no mask is lost.
