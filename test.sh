@@ -58,6 +58,7 @@ fuzz_all() {
     case "$name" in
       fuzz_datagram) seeds=(protocol/vectors) ;;
       fuzz_rig) seeds=(rig/rigs) ;;
+      fuzz_gltf) seeds=(tests/fuzz/seeds/gltf tests/unit/character/gltf/fixtures) ;;
       *) [[ ! -d tests/fuzz/seeds/${name#fuzz_} ]] || seeds=("tests/fuzz/seeds/${name#fuzz_}") ;;
     esac
     log=build/fuzz/$name.log

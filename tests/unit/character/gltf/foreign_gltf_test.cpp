@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that other programs wrote; see fixtures/make_fixtures.py and make_draco.mjs.
+// Files that other programs wrote; see the scripts of fixtures/ (make_*).
 #include <filesystem>
 #include <limits>
 #include <string>
@@ -128,6 +128,19 @@ INSTANTIATE_TEST_SUITE_P(Quantised, ForeignGltf,
 INSTANTIATE_TEST_SUITE_P(Draco, ForeignGltf,
                          ::testing::Values("toy_draco.glb", "toy_draco_sequential.glb"),
                          TestNameOf);
+
+INSTANTIATE_TEST_SUITE_P(Webp, ForeignGltf, ::testing::Values("toy_webp.glb"), TestNameOf);
+
+// gltf-transform compressed the PNG without loss.
+TEST(ForeignGltf, WebpHasThePixelsOfThePng) {
+  const Character toy = Fixture("toy.glb");
+  const Character webp = Fixture("toy_webp.glb");
+  ASSERT_EQ(webp.pictures.size(), 1u);
+  ASSERT_GE(webp.materials[0].base_colour_texture, 0);
+  EXPECT_EQ(webp.pictures[0].width, 16);
+  EXPECT_EQ(webp.pictures[0].channels, toy.pictures[0].channels);
+  EXPECT_EQ(webp.pictures[0].pixels, toy.pictures[0].pixels);
+}
 
 // Packages have no Draco, so the readers of packages have no decoder.
 TEST(ForeignGltf, DracoNeedsAnImport) {
