@@ -38,10 +38,8 @@ class PrimitiveReader {
         mesh_(mesh),
         notes_(notes) {}
 
-  Status ReadGeometry(const gltf::UvTransform& uv_transform) {
-    if (!primitive_.is_triangles) {
-      return {StatusCode::kUnsupported, "only triangles are supported", at_ + ".mode"};
-    }
+  // `uv_set`: n of TEXCOORD_n.
+  Status ReadGeometry(int uv_set, const gltf::UvTransform& uv_transform) {
     std::optional<Accessor> position, normal, tangent, uv;
     FURROW_RETURN_IF_ERROR(Attribute("POSITION", ElementType::kVec3, true, &position));
     if (position->size() > gltf::kMaxVertices)
@@ -49,7 +47,8 @@ class PrimitiveReader {
     mesh_->vertices.resize(position->size());
     FURROW_RETURN_IF_ERROR(Attribute("NORMAL", ElementType::kVec3, false, &normal));
     FURROW_RETURN_IF_ERROR(Attribute("TANGENT", ElementType::kVec4, false, &tangent));
-    FURROW_RETURN_IF_ERROR(Attribute("TEXCOORD_0", ElementType::kVec2, false, &uv));
+    const std::string uv_name = UvName(uv_set);
+    FURROW_RETURN_IF_ERROR(Attribute(uv_name, ElementType::kVec2, false, &uv));
     notes_->has_uvs = uv.has_value();
     notes_->has_normals = normal.has_value();
     notes_->has_tangents = tangent.has_value();
@@ -63,7 +62,7 @@ class PrimitiveReader {
       Vertex& vertex = mesh_->vertices[v];
       FURROW_RETURN_IF_ERROR(Vector(*position, v, "POSITION", &vertex.position));
       if (uv) {
-        FURROW_RETURN_IF_ERROR(Vector(*uv, v, "TEXCOORD_0", &vertex.uv));
+        FURROW_RETURN_IF_ERROR(Vector(*uv, v, uv_name, &vertex.uv));
         if (transformed) vertex.uv = uv_transform.Apply(vertex.uv);
       }
       if (normal) {
@@ -153,6 +152,12 @@ class PrimitiveReader {
   }
 
  private:
+  // Primitives without the wanted set have their first one at best.
+  [[nodiscard]] std::string UvName(int uv_set) const {
+    const std::string wanted = "TEXCOORD_" + std::to_string(uv_set);
+    return primitive_.attributes.count(wanted) > 0 ? wanted : "TEXCOORD_0";
+  }
+
   [[nodiscard]] std::string Field(const std::string& name) const {
     return at_ + ".attributes." + name;
   }
@@ -190,7 +195,8 @@ class PrimitiveReader {
   }
 
   template <class V>
-  Status Vector(const Accessor& accessor, std::size_t vertex, const char* name, V* to) const {
+  Status Vector(const Accessor& accessor, std::size_t vertex, const std::string& name,
+                V* to) const {
     for (int i = 0; i < V::length(); ++i) {
       (*to)[i] = accessor.Float(vertex, i);
       if (!std::isfinite((*to)[i])) return NotFinite(name, vertex);
@@ -225,8 +231,23 @@ class PrimitiveReader {
         mesh_->indices[i] = index;
       }
     }
+    if (primitive_.kind != gltf::PrimitiveKind::kTriangles) MakeTriangles();
     if (mesh_->indices.size() % 3 == 0) return {};
     return {StatusCode::kSchema, "the number of indices is not a multiple of 3", where};
+  }
+
+  // Writes a strip or a fan as triangles. Every second triangle of a strip turns the other way.
+  void MakeTriangles() {
+    const std::vector<std::uint32_t> from = std::exchange(mesh_->indices, {});
+    for (std::size_t i = 2; i < from.size(); ++i) {
+      const bool fan = primitive_.kind == gltf::PrimitiveKind::kFan;
+      const std::uint32_t first = from[fan ? 0 : i - 2];
+      const bool turned = !fan && i % 2 == 1;
+      for (const std::uint32_t index :
+           {first, from[turned ? i : i - 1], from[turned ? i - 1 : i]}) {
+        mesh_->indices.push_back(index);
+      }
+    }
   }
 
   // Keeps the strongest four influences of a vertex and scales their sum to 1.
@@ -293,7 +314,7 @@ void ApplySkinMoves(const std::vector<int>& joints, const std::vector<glm::mat4>
 
 // What all meshes of a file share.
 struct Source {
-  const gltf::Document& document;
+  gltf::Document& document;
   const GltfSkeleton& skeleton;
   const std::vector<gltf::Material>& materials;
   bool lenient;
@@ -308,6 +329,11 @@ Status ReadNode(const Source& source, const gltf::Mesh& from, const gltf::Node& 
     const gltf::Primitive& primitive = from.primitives[p];
     const std::string where =
         "meshes[" + std::to_string(node.mesh) + "].primitives[" + std::to_string(p) + "]";
+    if (primitive.kind == gltf::PrimitiveKind::kOther) {
+      source.document.Warn(where + ".mode",
+                           "points and lines are left out; only triangles are drawn");
+      continue;
+    }
     Mesh& mesh = meshes->emplace_back();
     mesh.name = from.name;
     if (from.primitives.size() > 1) mesh.name += "_" + std::to_string(p);
@@ -315,11 +341,13 @@ Status ReadNode(const Source& source, const gltf::Mesh& from, const gltf::Node& 
     PrimitiveReader reader(source.document, primitive, where, source.lenient, &mesh,
                            &notes->emplace_back());
     gltf::UvTransform uv_transform;
+    int uv_set = 0;
     if (mesh.material >= 0) {
       const gltf::Material& material = source.materials[static_cast<std::size_t>(mesh.material)];
+      uv_set = material.uv_set;
       if (!material.is_atlas_tile) uv_transform = material.uv_transform;
     }
-    FURROW_RETURN_IF_ERROR(reader.ReadGeometry(uv_transform));
+    FURROW_RETURN_IF_ERROR(reader.ReadGeometry(uv_set, uv_transform));
     FURROW_RETURN_IF_ERROR(reader.ReadMorphTargets(from, targets));
     if (node.skin != gltf::kNone) {
       const auto skin = static_cast<std::size_t>(node.skin);
@@ -366,7 +394,10 @@ Result<GltfMeshes> ReadGltfMeshes(gltf::Document* document, const gltf::NodeFore
                     "meshes", "reduce the meshes, or the number of nodes that use them");
     }
   }
-  if (meshes.empty()) return Status(StatusCode::kSchema, "no node has a mesh", "nodes");
+  if (meshes.empty()) {
+    return Status(StatusCode::kSchema, "no node has a mesh of triangles", "nodes",
+                  "export the character with its meshes as polygons");
+  }
   if (targets.num_surplus() > 0) {
     document->Warn("meshes", "the meshes have more than " + std::to_string(kMaxShapes) +
                                  " shapes; left out: " + std::to_string(targets.num_surplus()));

@@ -74,8 +74,8 @@ class AnimationReader {
     }
     if (choice_.empty() && animations.size() > 1) {
       document_.Warn("animations", "the file has " + std::to_string(animations.size()) +
-                                       " animations; only the first is read (" +
-                                       ListOf(animations) + ")");
+                                       " animations; reading the first of " + ListOf(animations) +
+                                       " (choose another with FILE#NAME or FILE#INDEX)");
     }
     const std::size_t index = choice_.empty() ? 0 : FindAnimation(animations, choice_);
     if (index == animations.size()) {

@@ -29,9 +29,24 @@ constexpr std::string_view kHarmless[] = {"KHR_mesh_quantization",
                                           "KHR_texture_transform",
                                           "KHR_materials_unlit",
                                           "KHR_materials_volume",
+                                          "KHR_materials_pbrSpecularGlossiness",
                                           "VRMC_vrm_animation",
                                           "VRM",
                                           "VRMC_vrm"};
+
+// What to do about a required extension that is ignored.
+std::string RemedyFor(std::string_view extension) {
+  if (extension.ends_with("_texture_basisu") || extension.ends_with("_texture_dds") ||
+      extension.ends_with("_texture_avif")) {
+    return "export PNG, JPEG or WebP textures";
+  }
+  if (extension == "EXT_mesh_gpu_instancing") return "export each instance as a node of its own";
+  if (extension.find("_materials_") != std::string_view::npos) {
+    return "materials look different; export base colour, roughness and normal map";
+  }
+  if (extension.find("_lights_") != std::string_view::npos) return "lights are not imported";
+  return "if something is missing, export the file without the extension";
+}
 
 // A file that does not require it has uncompressed meshes as well.
 constexpr std::string_view kDracoExtension = "KHR_draco_mesh_compression";
@@ -112,8 +127,12 @@ class RawReader {
 
   Status CheckVersion() const {
     const Json* asset = Find(json_, "asset");
-    if (asset != nullptr && Text(*asset, "version").starts_with("2.")) return {};
-    return {StatusCode::kUnsupported, "the file is not glTF 2.x", "asset.version"};
+    const std::string version = asset != nullptr ? Text(*asset, "version") : std::string();
+    if (version.starts_with("2.")) return {};
+    const std::string found =
+        version.empty() ? "it states no version" : "it states " + Quoted(version);
+    return {StatusCode::kUnsupported, "the file is not glTF 2.x: " + found, "asset.version",
+            "export it as glTF 2.0, or convert glTF 1.0 with 'gltf-pipeline -i OLD -o NEW'"};
   }
 
   Status CheckRequiredExtensions() {
@@ -132,7 +151,7 @@ class RawReader {
       }
       if (std::find(std::begin(kHarmless), std::end(kHarmless), name) == std::end(kHarmless)) {
         result_.warnings.push_back("extensionsRequired: the extension " + Quoted(name) +
-                                   " is not supported and is ignored");
+                                   " is not supported and is ignored (" + RemedyFor(name) + ")");
       }
     }
     return {};

@@ -14,6 +14,8 @@
 namespace furrow::gltf {
 namespace {
 
+constexpr int kMaxUvSets = 8;
+
 // Only what the renderer draws: metalness, emission and occlusion are ignored.
 class MaterialReader {
  public:
@@ -23,6 +25,7 @@ class MaterialReader {
       : document_(*document), from_(from), vrm_(vrm), field_(std::move(field)) {}
 
   Result<Material> Run() {
+    const std::string in_pbr = ".pbrMetallicRoughness.";
     const tinygltf::PbrMetallicRoughness& pbr = from_.pbrMetallicRoughness;
     Material to;
     to.name = from_.name;
@@ -52,13 +55,15 @@ class MaterialReader {
       to.alpha_cutoff = std::clamp(static_cast<float>(from_.alphaCutoff), 0.0f, 1.0f);
     }
     FURROW_RETURN_IF_ERROR(
-        ReadTexture(pbr.baseColorTexture, "baseColorTexture", &to.base_colour_image));
+        ReadTexture(pbr.baseColorTexture, in_pbr + "baseColorTexture", &to.base_colour_image));
     if (to.base_colour_image == kNone) FURROW_RETURN_IF_ERROR(ReadMToonTexture(&to));
-    FURROW_RETURN_IF_ERROR(
-        ReadTexture(pbr.metallicRoughnessTexture, "metallicRoughnessTexture", &to.roughness_image));
-    FURROW_RETURN_IF_ERROR(ReadTexture(from_.normalTexture, "normalTexture", &to.normal_image));
+    if (to.base_colour_image == kNone) FURROW_RETURN_IF_ERROR(ReadSpecularGlossiness(&to));
+    FURROW_RETURN_IF_ERROR(ReadTexture(pbr.metallicRoughnessTexture,
+                                       in_pbr + "metallicRoughnessTexture", &to.roughness_image));
+    FURROW_RETURN_IF_ERROR(ReadTexture(from_.normalTexture, ".normalTexture", &to.normal_image));
     FURROW_RETURN_IF_ERROR(ReadThickness(&to));
     to.uv_transform = uv_transform_.value_or(UvTransform());
+    to.uv_set = std::max(uv_set_, 0);
     if (transforms_differ_) {
       document_.Warn(field_,
                      "its textures have different KHR_texture_transform; the first is used "
@@ -93,24 +98,73 @@ class MaterialReader {
         }
       }
     }
-    UseTransform(transform);
-    return FindImage(textures.Get("_MainTex").Get<int>(), 0, VrmField(), &to->base_colour_image);
+    if (UseUvSet(0, "._MainTex")) UseTransform(transform);
+    return FindImage(textures.Get("_MainTex").Get<int>(), VrmField(), &to->base_colour_image);
+  }
+
+  // The older workflow of a shiny, coloured surface. Its diffuse colour is the base colour of
+  // things that are not metal, and files that state it often state nothing else.
+  Status ReadSpecularGlossiness(Material* to) {
+    const auto found = from_.extensions.find("KHR_materials_pbrSpecularGlossiness");
+    if (found == from_.extensions.end() || !found->second.IsObject()) return {};
+    const std::string member = ".extensions.KHR_materials_pbrSpecularGlossiness";
+    const tinygltf::Value& factor = found->second.Get("diffuseFactor");
+    for (int i = 0; factor.IsArray() && i < 4; ++i) {
+      const tinygltf::Value& value = factor.Get(i);
+      const auto number = value.IsNumber() ? static_cast<float>(value.GetNumberAsDouble()) : 1.0f;
+      if (!std::isfinite(number)) {
+        return {StatusCode::kNonFinite, "the colour is not finite",
+                field_ + member + ".diffuseFactor"};
+      }
+      to->base_colour[i] = std::clamp(number, 0.0f, 1.0f);
+    }
+    const tinygltf::Value& glossiness = found->second.Get("glossinessFactor");
+    if (glossiness.IsNumber()) {
+      to->roughness =
+          1.0f - std::clamp(static_cast<float>(glossiness.GetNumberAsDouble()), 0.0f, 1.0f);
+    }
+    const tinygltf::Value& texture = found->second.Get("diffuseTexture");
+    if (!texture.IsObject() || !texture.Get("index").IsInt()) return {};
+    return ReadTexture(ReferenceFrom(texture), member + ".diffuseTexture", &to->base_colour_image);
+  }
+
+  // A texture reference inside of an extension, which tinygltf does not parse.
+  static tinygltf::TextureInfo ReferenceFrom(const tinygltf::Value& from) {
+    tinygltf::TextureInfo info;
+    info.index = from.Get("index").Get<int>();
+    if (from.Get("texCoord").IsInt()) info.texCoord = from.Get("texCoord").Get<int>();
+    const tinygltf::Value& extensions = from.Get("extensions");
+    if (extensions.IsObject() && extensions.Has("KHR_texture_transform")) {
+      info.extensions["KHR_texture_transform"] = extensions.Get("KHR_texture_transform");
+    }
+    return info;
   }
 
   // `info`: tinygltf's type of a texture reference, of which there are two.
   template <class Info>
-  Status ReadTexture(const Info& info, const std::string& name, int* image) {
+  Status ReadTexture(const Info& info, const std::string& member, int* image) {
     if (info.index < 0) return {};
-    const bool pbr = name != "normalTexture";
-    const std::string member = (pbr ? ".pbrMetallicRoughness." : ".") + name;
     int tex_coord = info.texCoord;
     const auto extension = info.extensions.find("KHR_texture_transform");
     UvTransform transform;
     if (extension != info.extensions.end()) {
       FURROW_RETURN_IF_ERROR(ReadUvTransform(extension->second, member, &transform, &tex_coord));
     }
+    if (!UseUvSet(tex_coord, member)) return {};
     UseTransform(transform);
-    return FindImage(info.index, tex_coord, member, image);
+    return FindImage(info.index, member, image);
+  }
+
+  // Meshes are drawn with one set of UVs per material, that of its first texture. False for a
+  // texture with another set.
+  bool UseUvSet(int tex_coord, const std::string& member) {
+    if (uv_set_ < 0) uv_set_ = std::clamp(tex_coord, 0, kMaxUvSets - 1);
+    if (tex_coord == uv_set_) return true;
+    document_.Warn(field_ + member + ".texCoord",
+                   "the texture uses TEXCOORD_" + std::to_string(tex_coord) +
+                       ", the material's first texture TEXCOORD_" + std::to_string(uv_set_) +
+                       "; it is left out (give all textures of a material the same set of UVs)");
+    return false;
   }
 
   // The material is drawn with one set of UVs, and so with one transform.
@@ -139,17 +193,13 @@ class MaterialReader {
     return {};
   }
 
-  Status FindImage(int texture, int tex_coord, const std::string& member, int* image) const {
+  Status FindImage(int texture, const std::string& member, int* image) const {
     const tinygltf::Model& model = document_.model();
     *image = kNone;
     if (texture < 0) return {};
     if (texture >= static_cast<int>(model.textures.size())) {
       return {StatusCode::kSchema, "texture " + std::to_string(texture) + " does not exist",
               field_ + member + ".index"};
-    }
-    if (tex_coord != 0) {
-      return {StatusCode::kUnsupported, "only TEXCOORD_0 is supported",
-              field_ + member + ".texCoord"};
     }
     const int source = model.textures[static_cast<std::size_t>(texture)].source;
     // -1 is a texture whose image only an extension states.
@@ -162,7 +212,7 @@ class MaterialReader {
   }
 
   // The part of KHR_materials_volume that says how thick a thing is.
-  Status ReadThickness(Material* to) const {
+  Status ReadThickness(Material* to) {
     const auto volume = from_.extensions.find("KHR_materials_volume");
     if (volume == from_.extensions.end() || !volume->second.IsObject()) return {};
     const std::string member = ".extensions.KHR_materials_volume";
@@ -177,8 +227,9 @@ class MaterialReader {
     const tinygltf::Value& texture = volume->second.Get("thicknessTexture");
     if (!texture.IsObject() || !texture.Get("index").IsInt()) return {};
     const tinygltf::Value& coord = texture.Get("texCoord");
-    return FindImage(texture.Get("index").Get<int>(), coord.IsInt() ? coord.Get<int>() : 0,
-                     member + ".thicknessTexture", &to->thickness_image);
+    const std::string thickness = member + ".thicknessTexture";
+    if (!UseUvSet(coord.IsInt() ? coord.Get<int>() : 0, thickness)) return {};
+    return FindImage(texture.Get("index").Get<int>(), thickness, &to->thickness_image);
   }
 
   static std::string VrmField() { return " (extensions.VRM.materialProperties: _MainTex)"; }
@@ -188,6 +239,7 @@ class MaterialReader {
   const tinygltf::Value* vrm_;
   const std::string field_;
   std::optional<UvTransform> uv_transform_;  // of the first texture
+  int uv_set_ = -1;                          // of the first texture; -1: none yet
   bool transforms_differ_ = false;
 };
 

@@ -52,15 +52,17 @@ struct Material {
   bool double_sided = false;
   // Of all textures. If they differ, that of the base colour and a warning.
   UvTransform uv_transform;
+  int uv_set = 0;              // of all textures: n of TEXCOORD_n
   bool is_atlas_tile = false;  // kAtlasTileExtra
   float alpha_cutoff = 0.0f;   // 0: opaque. alphaMode BLEND becomes 0.5.
 };
 
-// All materials of a document with Contents::kCharacter. A material of VRM 0.x without a base
-// colour texture takes MToon's lit texture (`_MainTex`).
+// All materials of a document with Contents::kCharacter. A material without a base colour texture
+// takes MToon's lit texture (`_MainTex`, VRM 0.x) or the diffuse texture, colour and glossiness of
+// KHR_materials_pbrSpecularGlossiness. Textures with another set of UVs than the first texture of
+// their material are left out, with a warning.
 //
-// Errors: kLimit (kMaxMaterials), kSchema (a texture or image that does not exist), kNonFinite,
-// kUnsupported (a texture that uses another set than TEXCOORD_0).
+// Errors: kLimit (kMaxMaterials), kSchema (a texture or image that does not exist), kNonFinite.
 [[nodiscard]] Result<std::vector<Material>> ReadMaterials(Document* document);
 
 // An image in its file format (PNG, JPEG, ...).

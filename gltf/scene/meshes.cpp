@@ -43,9 +43,17 @@ int FindAccessor(const std::map<std::string, int>& attributes, const char* name)
   return found == attributes.end() ? kNone : found->second;
 }
 
+PrimitiveKind KindOf(int mode) {
+  switch (mode) {
+    case TINYGLTF_MODE_TRIANGLES: return PrimitiveKind::kTriangles;
+    case TINYGLTF_MODE_TRIANGLE_STRIP: return PrimitiveKind::kStrip;
+    case TINYGLTF_MODE_TRIANGLE_FAN: return PrimitiveKind::kFan;
+    default: return PrimitiveKind::kOther;
+  }
+}
+
 Primitive ReadPrimitive(const tinygltf::Primitive& from, std::size_t num_names) {
-  Primitive to{
-      from.mode == TINYGLTF_MODE_TRIANGLES, from.attributes, from.indices, from.material, {}};
+  Primitive to{KindOf(from.mode), from.attributes, from.indices, from.material, {}};
   for (const std::map<std::string, int>& target : from.targets) {
     if (to.morph_targets.size() == num_names) break;
     to.morph_targets.push_back({FindAccessor(target, "POSITION"), FindAccessor(target, "NORMAL"),

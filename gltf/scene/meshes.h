@@ -20,9 +20,17 @@ struct MorphTarget {
   int tangent = kNone;
 };
 
+// What the indices of a primitive make.
+enum class PrimitiveKind {
+  kTriangles,  // three indices each
+  kStrip,      // each index makes a triangle with the two before
+  kFan,        // each index makes a triangle with the one before and the first
+  kOther,      // points and lines
+};
+
 // A part of a mesh with one material. Accessors are indices; Accessor::Create() checks them.
 struct Primitive {
-  bool is_triangles = true;                // false: points, lines, strips or fans
+  PrimitiveKind kind = PrimitiveKind::kTriangles;
   std::map<std::string, int> attributes;   // "POSITION" -> accessor
   int indices = kNone;                     // accessor; kNone: vertices in order
   int material = kNone;                    // checked: in range

@@ -123,5 +123,28 @@ TEST(Document, SurvivesMembersOfTheWrongType) {
   }
 }
 
+TEST(Document, NamesTheVersionAndWhatToDo) {
+  const Status old = OpenError([](json& j) { j["asset"]["version"] = "1.1"; });
+  EXPECT_EQ(old.code(), StatusCode::kUnsupported);
+  EXPECT_THAT(old.what(), HasSubstr("it states '1.1'"));
+  EXPECT_THAT(old.todo(), HasSubstr("gltf-pipeline"));
+}
+
+TEST(Document, SaysWhatToDoAboutAnExtension) {
+  HandMadeGltf gltf = TwoJoints();
+  gltf.json["extensionsRequired"] = {
+      "EXT_mesh_gpu_instancing", "KHR_texture_basisu", "KHR_materials_clearcoat",
+      "KHR_lights_punctual",     "VENDOR_thing",       "KHR_mesh_quantization"};
+  const std::string glb = gltf.Glb();
+  const Result<Document> document = Document::Open(glb, {});
+  ASSERT_TRUE(document.ok()) << document.status().ToString();
+  EXPECT_THAT(
+      document->warnings(),
+      ElementsAre(HasSubstr("(export each instance as a node of its own)"),
+                  HasSubstr("(export PNG, JPEG or WebP textures)"),
+                  HasSubstr("(materials look different;"), HasSubstr("(lights are not imported)"),
+                  HasSubstr("'VENDOR_thing' is not supported and is ignored (if")));
+}
+
 }  // namespace
 }  // namespace furrow::gltf

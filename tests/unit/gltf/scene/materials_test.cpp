@@ -140,8 +140,69 @@ TEST(Materials, WarnOfTransformsThatDiffer) {
 
 TEST(Materials, RejectInvalidTransforms) {
   EXPECT_EQ(ReadMaterial({{"scale", {1e200, 1}}}, json()).status.code(), StatusCode::kNonFinite);
-  EXPECT_EQ(ReadMaterial({{"texCoord", 1}}, json()).status.code(), StatusCode::kUnsupported);
   EXPECT_TRUE(ReadMaterial({{"scale", 5}, {"offset", {1}}}, {{"offset", {1}}}).status.ok());
+}
+
+TEST(Materials, UseOneSetOfUvs) {
+  const Read both = ReadMaterial({{"texCoord", 1}}, {{"texCoord", 1}});
+  ASSERT_TRUE(both.status.ok()) << both.status.ToString();
+  EXPECT_THAT(both.warnings, IsEmpty());
+  EXPECT_EQ(both.materials[0].uv_set, 1);
+  const Read differ = ReadMaterial({{"texCoord", 1}}, json());
+  ASSERT_TRUE(differ.status.ok()) << differ.status.ToString();
+  EXPECT_EQ(differ.materials[0].uv_set, 1);
+  EXPECT_GE(differ.materials[0].base_colour_image, 0);
+  EXPECT_EQ(differ.materials[0].normal_image, kNone);
+  EXPECT_THAT(differ.warnings,
+              ElementsAre(HasSubstr("materials[0].normalTexture.texCoord: the texture uses "
+                                    "TEXCOORD_0, the material's first texture TEXCOORD_1")));
+}
+
+// A material of the older workflow, and one that has both.
+TEST(Materials, UseTheDiffuseColourOfSpecularGlossiness) {
+  HandMadeGltf gltf;
+  gltf.AddFloats({0}, "SCALAR");
+  gltf.json["images"] = {{{"uri", "a.png"}}, {{"uri", "b.png"}}};
+  gltf.json["textures"] = {{{"source", 0}}, {{"source", 1}}};
+  gltf.json["extensionsRequired"] = {"KHR_materials_pbrSpecularGlossiness"};
+  const json glossy = {{"KHR_materials_pbrSpecularGlossiness",
+                        {{"diffuseFactor", {0.5, 0.25, 2.0, 1.0}},
+                         {"glossinessFactor", 0.25},
+                         {"diffuseTexture",
+                          {{"index", 1},
+                           {"texCoord", 1},
+                           {"extensions", {{"KHR_texture_transform", {{"scale", {2, 3}}}}}}}}}}};
+  gltf.json["materials"] = {
+      {{"extensions", glossy}},
+      {{"extensions", glossy}, {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
+  const std::string glb = gltf.Glb();
+  Result<Document> document = Document::Open(glb, {});
+  ASSERT_TRUE(document.ok()) << document.status().ToString();
+  const Result<std::vector<Material>> materials = ReadMaterials(&*document);
+  ASSERT_TRUE(materials.ok()) << materials.status().ToString();
+  EXPECT_THAT(document->warnings(), IsEmpty());
+  const Material& only = (*materials)[0];
+  EXPECT_EQ(only.base_colour_image, 1);
+  EXPECT_EQ(only.base_colour, glm::vec4(0.5f, 0.25f, 1.0f, 1.0f));
+  EXPECT_EQ(only.roughness, 0.75f);
+  EXPECT_EQ(only.uv_set, 1);
+  EXPECT_EQ(only.uv_transform.scale, glm::vec2(2, 3));
+  EXPECT_EQ((*materials)[1].base_colour_image, 0);
+  EXPECT_EQ((*materials)[1].base_colour, glm::vec4(1.0f));
+}
+
+TEST(Materials, SurviveFaultySpecularGlossiness) {
+  HandMadeGltf gltf;
+  gltf.AddFloats({0}, "SCALAR");
+  for (const json& faulty :
+       {json(5), json{{"diffuseFactor", {"red"}}}, json{{"diffuseTexture", {{"index", "0"}}}},
+        json{{"diffuseTexture", {{"index", 0}, {"extensions", 3}}}},
+        json{{"diffuseTexture", {{"index", 7}}}}, json{{"diffuseFactor", {1e200}}}}) {
+    gltf.json["materials"] = {{{"extensions", {{"KHR_materials_pbrSpecularGlossiness", faulty}}}}};
+    const std::string glb = gltf.Glb();
+    Result<Document> document = Document::Open(glb, {});
+    if (document.ok()) (void)ReadMaterials(&*document);
+  }
 }
 
 }  // namespace
