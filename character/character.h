@@ -13,6 +13,7 @@
 #include "character/pictures/picture.h"
 #include "wrinkle/rig/rig.h"
 #include "wrinkle/shapes/shape_rules.h"
+#include "wrinkle/skeleton/joint_role.h"
 #include "wrinkle/skeleton/skeleton.h"
 
 namespace furrow::character {
@@ -22,6 +23,9 @@ namespace furrow::character {
 struct Character {
   std::string name;
   wrinkle::Skeleton skeleton;
+  // The roles that the package states for its joints, whatever their names: one per joint of the
+  // skeleton. Empty: it states none, and skeleton maps or the hierarchy tell them.
+  wrinkle::JointRoles roles;
   // Model space in the rest pose to joint space; one per joint of the skeleton.
   std::vector<glm::mat4> inverse_bind_matrices;
   std::vector<Mesh> meshes;

@@ -58,6 +58,7 @@ Status ReadGltfCharacter(std::string_view bytes, const std::filesystem::path& fo
   }
   character->name = document->SceneName();
   character->skeleton = std::move(skeleton->skeleton);
+  character->roles = std::move(skeleton->roles);
   character->inverse_bind_matrices = std::move(skeleton->inverse_bind_matrices);
   character->meshes = std::move(meshes->meshes);
   character->shapes = std::move(meshes->shapes);
@@ -67,6 +68,16 @@ Status ReadGltfCharacter(std::string_view bytes, const std::filesystem::path& fo
   character->warnings = document->warnings();
   if (options.lenient) DropMissingPictures(character);
   return {};
+}
+
+Result<NamedRoles> ReadGltfRoles(std::string_view bytes, const std::filesystem::path& folder) {
+  // What animations need of a file: its nodes and the joints of its skins.
+  Result<gltf::Document> document =
+      gltf::Document::Open(bytes, {.contents = gltf::Contents::kAnimation, .folder = folder});
+  FURROW_RETURN_IF_ERROR(document);
+  const Result<gltf::NodeForest> forest = gltf::ReadNodes(&*document);
+  FURROW_RETURN_IF_ERROR(forest);
+  return ReadGltfRoles(&*document, *forest);
 }
 
 }  // namespace furrow::character

@@ -6,6 +6,7 @@
 
 #include "base/status.h"
 #include "character/character.h"
+#include "character/gltf/gltf_skeleton.h"
 #include "character/source_notes.h"
 
 namespace furrow::character {
@@ -15,5 +16,9 @@ namespace furrow::character {
 // names. `where` of errors is a field. After an error, `character` is partly filled; discard it.
 [[nodiscard]] Status ReadGltfCharacter(std::string_view bytes, const std::filesystem::path& folder,
                                        const ReadOptions& options, Character* character);
+
+// Reads only the names and the roles of the joints of a whole file.
+[[nodiscard]] Result<NamedRoles> ReadGltfRoles(std::string_view bytes,
+                                               const std::filesystem::path& folder);
 
 }  // namespace furrow::character

@@ -4,12 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/matrix.hpp>
 
+#include "base/text.h"
 #include "gltf/scene/joints.h"
 #include "gltf/scene/skins.h"
 
@@ -32,36 +35,56 @@ bool AreNear(const glm::mat4& a, const glm::mat4& b) {
   return true;
 }
 
+// The role that a node states.
+Result<wrinkle::JointRole> RoleOf(const gltf::Joint& joint) {
+  if (joint.role.empty()) return wrinkle::JointRole::kNone;
+  const std::optional<wrinkle::JointRole> role = wrinkle::ParseJointRole(joint.role);
+  if (role) return *role;
+  return Status(StatusCode::kSchema, "unknown role " + Quoted(joint.role),
+                "nodes[" + std::to_string(joint.node) + "].extras." + gltf::kRoleExtra,
+                "roles have the names of VRM's bones: hips, leftUpperArm, ...");
+}
+
+// The nodes that become joints.
+struct ChosenJoints {
+  std::vector<std::vector<int>> of_skins;  // nodes
+  gltf::JointList list;
+};
+
+// Without skins, every node is a joint that meshes may follow.
+Result<ChosenJoints> ChooseJoints(gltf::Document* document, const gltf::NodeForest& forest) {
+  if (forest.nodes.empty()) return Status(StatusCode::kSchema, "the file has no nodes", "nodes");
+  ChosenJoints chosen;
+  gltf::NodeSet nodes(forest);
+  const std::size_t num_skins = gltf::NumSkins(*document);
+  if (num_skins == 0) nodes.AddAll();
+  for (std::size_t skin = 0; skin < num_skins; ++skin) {
+    Result<std::vector<int>> joints = gltf::ReadSkinJoints(*document, skin);
+    FURROW_RETURN_IF_ERROR(joints);
+    for (const int node : *joints) nodes.AddWithAncestors(node);
+    chosen.of_skins.push_back(std::move(*joints));
+  }
+  chosen.list = gltf::ListJoints(forest, nodes, {}, document);
+  return chosen;
+}
+
 class SkeletonReader {
  public:
   SkeletonReader(gltf::Document* document, const gltf::NodeForest& forest)
-      : document_(*document), forest_(forest), chosen_(forest) {}
+      : document_(*document), forest_(forest) {}
 
   Result<GltfSkeleton> Run() {
-    if (forest_.nodes.empty()) return Status(StatusCode::kSchema, "the file has no nodes", "nodes");
-    FURROW_RETURN_IF_ERROR(ChooseJoints());
-    FURROW_RETURN_IF_ERROR(BuildSkeleton());
+    Result<ChosenJoints> chosen = ChooseJoints(&document_, forest_);
+    FURROW_RETURN_IF_ERROR(chosen);
+    result_.skin_joints = std::move(chosen->of_skins);  // MapNodes() turns nodes into joints
+    FURROW_RETURN_IF_ERROR(BuildSkeleton(chosen->list));
     MapNodes();
     FURROW_RETURN_IF_ERROR(ReadInverseBindMatrices());
     return std::move(result_);
   }
 
  private:
-  Status ChooseJoints() {
-    const std::size_t num_skins = gltf::NumSkins(document_);
-    // Without skins, every node is a joint that meshes may follow.
-    if (num_skins == 0) chosen_.AddAll();
-    for (std::size_t skin = 0; skin < num_skins; ++skin) {
-      Result<std::vector<int>> nodes = gltf::ReadSkinJoints(document_, skin);
-      FURROW_RETURN_IF_ERROR(nodes);
-      for (const int node : *nodes) chosen_.AddWithAncestors(node);
-      result_.skin_joints.push_back(std::move(*nodes));  // MapNodes() turns nodes into joints
-    }
-    return {};
-  }
-
-  Status BuildSkeleton() {
-    const gltf::JointList list = gltf::ListJoints(forest_, chosen_, {}, &document_);
+  Status BuildSkeleton(const gltf::JointList& list) {
     result_.num_nameless_joints = list.num_nameless;
     std::vector<wrinkle::JointDesc> joints;
     for (const gltf::Joint& joint : list.joints) {
@@ -79,6 +102,20 @@ class SkeletonReader {
           static_cast<std::size_t>(result_.skeleton.source_index()[static_cast<std::size_t>(j)]);
       joint_at_[static_cast<std::size_t>(list.joints[source].node)] = j;
     }
+    return ReadRoles(list);
+  }
+
+  // Leaves the list empty if the file states no role.
+  Status ReadRoles(const gltf::JointList& list) {
+    wrinkle::JointRoles roles;
+    bool has_any = false;
+    for (const std::int16_t source : result_.skeleton.source_index()) {
+      const auto role = RoleOf(list.joints[static_cast<std::size_t>(source)]);
+      FURROW_RETURN_IF_ERROR(role);
+      roles.push_back(*role);
+      has_any = has_any || *role != wrinkle::JointRole::kNone;
+    }
+    if (has_any) result_.roles = std::move(roles);
     return {};
   }
 
@@ -189,7 +226,6 @@ class SkeletonReader {
 
   gltf::Document& document_;
   const gltf::NodeForest& forest_;
-  gltf::NodeSet chosen_;
   std::vector<int> joint_at_;     // per node: its own joint, or kNoJoint
   std::vector<glm::mat4> binds_;  // per joint: the inverse of the matrix made from its rest pose
   std::vector<std::vector<glm::mat4>> stated_;  // per skin and joint: the file's matrices
@@ -200,6 +236,18 @@ class SkeletonReader {
 
 Result<GltfSkeleton> ReadGltfSkeleton(gltf::Document* document, const gltf::NodeForest& forest) {
   return SkeletonReader(document, forest).Run();
+}
+
+Result<NamedRoles> ReadGltfRoles(gltf::Document* document, const gltf::NodeForest& forest) {
+  Result<ChosenJoints> chosen = ChooseJoints(document, forest);
+  FURROW_RETURN_IF_ERROR(chosen);
+  NamedRoles roles;
+  for (gltf::Joint& joint : chosen->list.joints) {
+    const auto role = RoleOf(joint);
+    FURROW_RETURN_IF_ERROR(role);
+    roles.emplace_back(std::move(joint.name), *role);
+  }
+  return roles;
 }
 
 }  // namespace furrow::character

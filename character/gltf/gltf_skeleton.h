@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <glm/mat4x4.hpp>
@@ -8,6 +10,7 @@
 #include "base/status.h"
 #include "gltf/document/document.h"
 #include "gltf/scene/nodes.h"
+#include "wrinkle/skeleton/joint_role.h"
 #include "wrinkle/skeleton/skeleton.h"
 
 namespace furrow::character {
@@ -15,6 +18,7 @@ namespace furrow::character {
 // The nodes of a glTF file that move a character, as a skeleton.
 struct GltfSkeleton {
   wrinkle::Skeleton skeleton;
+  wrinkle::JointRoles roles;  // Character::roles
   // Model space in the rest pose to joint space; one per joint of the skeleton.
   std::vector<glm::mat4> inverse_bind_matrices;
   std::vector<std::vector<int>> skin_joints;  // per skin: indices of its joints in `skeleton`
@@ -37,9 +41,15 @@ struct GltfSkeleton {
 // `skin_moves` tells how the meshes get there. That changes no picture if the matrices of a skin
 // differ from those of the rest pose by one transform. Otherwise the rest pose is exact.
 //
-// Errors: those of gltf::ReadSkinJoints() and gltf::ReadInverseBindMatrices(), kSchema (no nodes),
-// kLimit (more than wrinkle::kMaxJoints joints). `where` is a field.
+// Errors: those of gltf::ReadSkinJoints() and gltf::ReadInverseBindMatrices(), kSchema (no nodes,
+// an unknown role), kLimit (more than wrinkle::kMaxJoints joints). `where` is a field.
 [[nodiscard]] Result<GltfSkeleton> ReadGltfSkeleton(gltf::Document* document,
                                                     const gltf::NodeForest& forest);
+
+// The joints that ReadGltfSkeleton() would find, by name, with the roles that the file states for
+// them; kNone: no role. Reads neither meshes nor buffers. Errors: kSchema (as there).
+using NamedRoles = std::vector<std::pair<std::string, wrinkle::JointRole>>;
+[[nodiscard]] Result<NamedRoles> ReadGltfRoles(gltf::Document* document,
+                                               const gltf::NodeForest& forest);
 
 }  // namespace furrow::character

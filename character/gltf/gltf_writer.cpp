@@ -53,6 +53,9 @@ class CharacterWriter {
       return {StatusCode::kInvalidArgument, "expected one matrix per joint",
               "inverse_bind_matrices"};
     }
+    if (!character_.roles.empty() && static_cast<int>(character_.roles.size()) != joints) {
+      return {StatusCode::kInvalidArgument, "expected one role per joint", "roles"};
+    }
     if (character_.meshes.empty()) {
       return {StatusCode::kInvalidArgument, "the character has no mesh", "meshes"};
     }
@@ -127,7 +130,8 @@ class CharacterWriter {
                         skeleton.joint_parents()[index],
                         {rest.translation, rest.rotation, rest.scale},
                         skeleton.tails()[index],
-                        j});
+                        j,
+                        RoleOf(index)});
     }
     Json nodes = Json::array();
     Json roots = Json::array();
@@ -141,6 +145,13 @@ class CharacterWriter {
       root_["scenes"][0]["extras"][gltf::kRulesExtra] = ShapeRulesJson(character_);
     }
     root_["nodes"] = std::move(nodes);
+  }
+
+  // Empty without a role.
+  [[nodiscard]] std::string RoleOf(std::size_t joint) const {
+    const bool has_role =
+        !character_.roles.empty() && character_.roles[joint] != wrinkle::JointRole::kNone;
+    return has_role ? std::string(wrinkle::ToString(character_.roles[joint])) : std::string();
   }
 
   void AddSkin() {

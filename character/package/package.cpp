@@ -102,6 +102,14 @@ Result<Character> LoadCharacter(const fs::path& glb, const fs::path& rig,
   return character;
 }
 
+Result<NamedRoles> LoadCharacterRoles(const fs::path& glb) {
+  const Result<std::string> bytes = ReadFile(glb, gltf::kMaxFileBytes);
+  FURROW_RETURN_IF_ERROR(bytes);
+  Result<NamedRoles> roles = ReadGltfRoles(*bytes, glb.parent_path());
+  if (!roles.ok()) return roles.status().Within(glb.string());
+  return roles;
+}
+
 Status AttachRig(wrinkle::Rig rig, const fs::path& folder, Character* character) {
   character->rig = std::move(rig);
   character->folder = folder;

@@ -8,6 +8,7 @@
 
 #include "base/status.h"
 #include "character/character.h"
+#include "character/gltf/gltf_skeleton.h"
 #include "character/gltf/gltf_writer.h"
 #include "character/source_notes.h"
 #include "wrinkle/rig/rig.h"
@@ -21,6 +22,7 @@ namespace furrow::character {
 //
 // - `poses` loads the reference poses that the rig takes from a file. If it is empty, a rig with
 //   such poses is kUnsupported.
+// - The package may state the roles of its joints (Character::roles); an unknown role is kSchema.
 // - The file is untrusted: sizes are checked before allocation, then indices, finite numbers, skin
 //   weights (the strongest four, renormalised) and the skeleton's tree. Errors name the file and
 //   the field ("face.glb: meshes[0].primitives[0].attributes.JOINTS_0").
@@ -37,6 +39,10 @@ namespace furrow::character {
 [[nodiscard]] Result<Character> ParseCharacter(std::string_view bytes,
                                                const std::filesystem::path& folder,
                                                const ReadOptions& options = {});
+
+// The names of a package's joints and the roles that it states for them, as in Character::roles.
+// Reads neither meshes nor pictures. Errors: those of LoadCharacter() for nodes and skins.
+[[nodiscard]] Result<NamedRoles> LoadCharacterRoles(const std::filesystem::path& glb);
 
 // Replaces a character's rig and loads the rig's pictures, searching `folder` first. A picture that
 // does not exist is listed in Character::missing_rig_pictures. Errors: those of CheckAssetName()

@@ -88,7 +88,8 @@ JointList ListJoints(const NodeForest& forest, const NodeSet& set,
     const Node& node = forest.nodes[static_cast<std::size_t>(index)];
     list.joint_of_node[static_cast<std::size_t>(index)] = static_cast<int>(list.joints.size());
     list.num_nameless += node.name.empty() ? 1 : 0;
-    list.joints.push_back({namer.NameOf(node, index), kNone, node.local, node.tail, index});
+    list.joints.push_back(
+        {namer.NameOf(node, index), kNone, node.local, node.tail, index, node.role});
   }
   // A second pass, because a parent may have a larger index than its child.
   for (Joint& joint : list.joints) {

@@ -38,6 +38,7 @@ struct Joint {
   Transform rest;      // local
   std::optional<glm::vec3> tail;  // the joint's end in its own space
   int node = kNone;
+  std::string role;  // Node::role
 };
 
 struct JointList {

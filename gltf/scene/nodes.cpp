@@ -9,6 +9,7 @@
 #include <tiny_gltf.h>
 
 #include "base/text.h"
+#include "gltf/document/json_value.h"
 #include "gltf/limits.h"
 
 namespace furrow::gltf {
@@ -67,6 +68,19 @@ std::optional<glm::vec3> ReadTail(const tinygltf::Node& node) {
   return value;
 }
 
+// An invalid role is an error: without its roles, a package would move wrong and say nothing.
+Status ReadRole(const tinygltf::Node& from, std::size_t index, std::string* role) {
+  const tinygltf::Value& value = Member(from.extras, kRoleExtra);
+  if (value.Type() == tinygltf::NULL_TYPE) return {};
+  if (!value.IsString() || value.Get<std::string>().empty() ||
+      value.Get<std::string>().size() > kMaxNameBytes) {
+    return {StatusCode::kSchema, "expected the name of a role",
+            NodeField(index, ".extras.") + kRoleExtra};
+  }
+  *role = value.Get<std::string>();
+  return {};
+}
+
 // Builds a forest with every parent before its children in `order`.
 class NodeReader {
  public:
@@ -95,6 +109,7 @@ class NodeReader {
     node.name = from.name;
     node.children = from.children;
     node.tail = ReadTail(from);
+    FURROW_RETURN_IF_ERROR(ReadRole(from, index, &node.role));
     if (from.mesh < kNone || from.mesh >= static_cast<int>(document_.num_meshes())) {
       return {StatusCode::kSchema, "mesh " + std::to_string(from.mesh) + " does not exist",
               NodeField(index, ".mesh")};

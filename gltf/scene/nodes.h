@@ -17,6 +17,8 @@ inline constexpr int kNone = -1;  // no node, mesh, skin, material or image
 
 // The extra that Furrow writes for the end of a joint: [x, y, z] in the node's space.
 inline constexpr char kTailExtra[] = "furrow_tail";
+// The extra that Furrow writes for the role of a character's joint: a name, such as "leftHand".
+inline constexpr char kRoleExtra[] = "furrow_role";
 
 struct Node {
   std::string name;  // may be empty, and several nodes may share one
@@ -24,6 +26,7 @@ struct Node {
   std::vector<int> children;
   Transform local;
   std::optional<glm::vec3> tail;  // kTailExtra
+  std::string role;               // kRoleExtra, at most kMaxNameBytes; empty: none
   int mesh = kNone;               // below Document::num_meshes()
   int skin = kNone;               // in range
 };
@@ -41,7 +44,8 @@ struct NodeForest {
 //   equal. Other rotations are normalised.
 //
 // Errors: kCyclic (a node below itself or below two nodes), kLimit (kMaxNodes), kSchema (an index
-// out of range, a transform of the wrong size, a rotation of length 0), kNonFinite.
+// out of range, a transform of the wrong size, a rotation of length 0, a role that is not a name),
+// kNonFinite.
 [[nodiscard]] Result<NodeForest> ReadNodes(Document* document);
 
 // Rest-pose matrices from each node's space to model space.

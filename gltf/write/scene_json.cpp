@@ -31,7 +31,8 @@ void AddJointNodes(std::span<const Joint> joints, Json* nodes, Json* roots) {
   for (std::size_t j = 0; j < joints.size(); ++j) {
     Json node = NodeJson(joints[j].name, joints[j].rest);
     if (!children[j].empty()) node["children"] = std::move(children[j]);
-    if (joints[j].tail) node["extras"] = {{kTailExtra, ToJson(*joints[j].tail)}};
+    if (joints[j].tail) node["extras"][kTailExtra] = ToJson(*joints[j].tail);
+    if (!joints[j].role.empty()) node["extras"][kRoleExtra] = joints[j].role;
     nodes->push_back(std::move(node));
   }
 }

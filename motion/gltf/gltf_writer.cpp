@@ -73,7 +73,8 @@ class ClipWriter {
                         clip_.skeleton.joint_parents()[j],
                         {rest.translation, rest.rotation, rest.scale},
                         clip_.skeleton.tails()[j],
-                        static_cast<int>(j)});
+                        static_cast<int>(j),
+                        {}});
       indices.push_back(j);
     }
     gltf::AddJointNodes(joints, &nodes_, &scene_nodes_);

@@ -134,6 +134,48 @@ TEST(Character, WrittenCharactersReadBackEqual) {
       << "texels with alpha 0 keep their colours";
 }
 
+TEST(Character, KeepsTheRolesOfItsJoints) {
+  Character square = Square();
+  square.roles = {wrinkle::JointRole::kNeck, wrinkle::JointRole::kNone};
+  const std::string glb = GlbOf(square);
+  const auto again = ParseCharacter(glb, ".");
+  ASSERT_TRUE(again.ok()) << again.status().ToString();
+  EXPECT_EQ(again->roles, square.roles);
+  EXPECT_EQ(again->skeleton.hash(), square.skeleton.hash()) << "tails are extras, too";
+  EXPECT_TRUE(ParseCharacter(GlbOf(Square()), ".")->roles.empty()) << "as in old packages";
+
+  const TemporaryFolder folder;
+  ASSERT_TRUE(SaveCharacterGlb(square, folder / "square.glb").ok());
+  const auto roles = LoadCharacterRoles(folder / "square.glb");
+  ASSERT_TRUE(roles.ok()) << roles.status().ToString();
+  EXPECT_THAT(*roles, ElementsAre(std::pair("root", wrinkle::JointRole::kNeck),
+                                  std::pair("tip", wrinkle::JointRole::kNone)));
+  square.roles.pop_back();
+  EXPECT_EQ(SaveCharacterGlb(square, folder / "square.glb").code(), StatusCode::kInvalidArgument);
+}
+
+// One error names the field, whoever reads the roles.
+TEST(Character, RejectsRolesThatAreNone) {
+  const TemporaryFolder folder;
+  for (const json& role :
+       {json("elbow"), json("none"), json(""), json(7), json(-1), json(1e300),
+        json::array({"hips"}), json::object({{"hips", 1}}), json(true),
+        json(std::string(100'000, 'x')), json(std::string("hips\0", 5)), json("Hips")}) {
+    const std::string glb =
+        Changed([&](json& r, std::string&) { r["nodes"][1]["extras"]["furrow_role"] = role; });
+    const auto character = ParseCharacter(glb, ".");
+    ASSERT_FALSE(character.ok()) << role;
+    EXPECT_EQ(character.status().code(), StatusCode::kSchema);
+    EXPECT_EQ(character.status().where(), "nodes[1].extras.furrow_role");
+    EXPECT_LT(character.status().ToString().size(), 250u);
+    ASSERT_TRUE(WriteFileAtomically(folder / "odd.glb", glb).ok());
+    const auto roles = LoadCharacterRoles(folder / "odd.glb");
+    ASSERT_FALSE(roles.ok()) << role;
+    EXPECT_EQ(roles.status().code(), StatusCode::kSchema);
+    EXPECT_THAT(roles.status().where(), HasSubstr("odd.glb: nodes[1].extras.furrow_role"));
+  }
+}
+
 TEST(Character, WritesEqualBytesForEqualCharacters) {
   const std::string first = GlbOf(Square());
   EXPECT_EQ(first, GlbOf(Square()));

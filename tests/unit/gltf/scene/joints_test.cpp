@@ -106,5 +106,14 @@ TEST(ListJoints, ReadsTails) {
   for (std::size_t j = 1; j < 4; ++j) EXPECT_FALSE(list.joints[j].tail) << j;
 }
 
+TEST(ListJoints, ReadsRoles) {
+  Scene scene(json::array({{{"extras", {{"furrow_role", "hips"}}}},
+                           {{"extras", {{"furrow_role", nullptr}}}},
+                           {{"extras", 5}}}));
+  const JointList list = scene.List();
+  EXPECT_EQ(list.joints[0].role, "hips");
+  for (std::size_t j = 1; j < 3; ++j) EXPECT_EQ(list.joints[j].role, "") << j;
+}
+
 }  // namespace
 }  // namespace furrow::gltf
