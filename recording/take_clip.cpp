@@ -15,21 +15,6 @@ namespace {
 
 glm::vec3 ToVec(const protocol::Vec3& v) { return {v.x, v.y, v.z}; }
 
-Result<wrinkle::Skeleton> ToSkeleton(const protocol::SkeletonOffer& offer, float scale) {
-  if (offer.joints.empty()) return wrinkle::Skeleton();
-  std::vector<wrinkle::JointDesc> joints;
-  for (const protocol::OfferedJoint& joint : offer.joints) {
-    wrinkle::JointDesc& desc = joints.emplace_back();
-    desc.name = joint.name;
-    desc.parent = joint.parent < 0 ? wrinkle::kNoJoint : joint.parent;
-    desc.rest = {.translation = scale * ToVec(joint.rest_translation),
-                 .rotation = ToUnitQuat(joint.rest_rotation),
-                 .scale = ToVec(joint.rest_scale)};
-    if (joint.has_tail) desc.tail = scale * ToVec(joint.tail);
-  }
-  return wrinkle::Skeleton::Create(std::move(joints));
-}
-
 // Calls `use(index, value)` for each value. An empty list of indices means 0, 1, 2 and so on.
 template <class Value, class Use>
 void ForEachIndexed(std::span<const std::uint16_t> indices, std::span<const Value> values,
@@ -89,6 +74,21 @@ class RunningPose {
 
 }  // namespace
 
+Result<wrinkle::Skeleton> SkeletonOf(const protocol::SkeletonOffer& offer, float scale) {
+  if (offer.joints.empty()) return wrinkle::Skeleton();
+  std::vector<wrinkle::JointDesc> joints;
+  for (const protocol::OfferedJoint& joint : offer.joints) {
+    wrinkle::JointDesc& desc = joints.emplace_back();
+    desc.name = joint.name;
+    desc.parent = joint.parent < 0 ? wrinkle::kNoJoint : joint.parent;
+    desc.rest = {.translation = scale * ToVec(joint.rest_translation),
+                 .rotation = ToUnitQuat(joint.rest_rotation),
+                 .scale = ToVec(joint.rest_scale)};
+    if (joint.has_tail) desc.tail = scale * ToVec(joint.tail);
+  }
+  return wrinkle::Skeleton::Create(std::move(joints));
+}
+
 Result<motion::Clip> ToClip(const TakePoses& poses, float scale) {
   const protocol::SkeletonOffer& offer = poses.offer();
   // Before any allocation: a take of small partial poses expands to whole ones.
@@ -103,7 +103,7 @@ Result<motion::Clip> ToClip(const TakePoses& poses, float scale) {
                       std::to_string(motion::kMaxBlendShapeValues) + " blend-shape values",
                   {}, "record with --rotate-seconds for shorter files");
   }
-  auto skeleton = ToSkeleton(offer, scale);
+  auto skeleton = SkeletonOf(offer, scale);
   FURROW_RETURN_IF_ERROR(skeleton);
   motion::Clip clip;
   clip.name = offer.subject;

@@ -7,8 +7,14 @@
 #include "motion/clip/clip.h"
 #include "protocol/messages/messages.h"
 #include "recording/take_poses.h"
+#include "wrinkle/skeleton/skeleton.h"
 
 namespace furrow::recording {
+
+// The skeleton of an offer, whose lengths `scale` multiplies; empty if it has no joints. Errors:
+// those of Skeleton::Create().
+[[nodiscard]] Result<wrinkle::Skeleton> SkeletonOf(const protocol::SkeletonOffer& offer,
+                                                   float scale);
 
 // Converts poses to a clip. `scale` multiplies every length. Joints and blend shapes that a partial
 // pose leaves out keep their previous values. Errors: those of Skeleton::Create(), and kLimit

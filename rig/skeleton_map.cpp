@@ -159,6 +159,17 @@ bool IsEnough(const SkeletonRoles& found, bool needs_limbs) {
   return 4 * static_cast<std::size_t>(found.num_joints) >= 3 * found.roles.size();
 }
 
+// Sets the two numbers of roles that no map gave.
+void CountRoles(SkeletonRoles* found) {
+  std::set<JointRole> distinct;
+  for (const JointRole role : found->roles) {
+    if (role == JointRole::kNone) continue;
+    distinct.insert(role);
+    ++found->num_joints;
+  }
+  found->num_roles = static_cast<int>(distinct.size());
+}
+
 Result<SkeletonMap> LoadFile(const fs::path& path) {
   const auto text = ReadFile(path, kMaxTextFileBytes);
   FURROW_RETURN_IF_ERROR(text);
@@ -178,6 +189,14 @@ SkeletonRoles ApplySkeletonMap(const SkeletonMap& map, std::span<const std::stri
     if (found.num_joints > best.num_joints) best = std::move(found);
   }
   return best;
+}
+
+SkeletonRoles RolesOfPackage(wrinkle::JointRoles roles) {
+  SkeletonRoles found;
+  found.map = kFromPackage;
+  found.roles = std::move(roles);
+  CountRoles(&found);
+  return found;
 }
 
 SkeletonMaps::SkeletonMaps(std::vector<SkeletonMap> maps, bool chosen)
@@ -244,13 +263,7 @@ SkeletonRoles SkeletonMaps::RolesOrGuess(const wrinkle::Skeleton& skeleton) cons
   found.roles = RolesFromHierarchy(skeleton);
   if (found.roles.empty()) return found;
   found.map = kFromHierarchy;
-  std::set<JointRole> distinct;
-  for (const JointRole role : found.roles) {
-    if (role == JointRole::kNone) continue;
-    distinct.insert(role);
-    ++found.num_joints;
-  }
-  found.num_roles = static_cast<int>(distinct.size());
+  CountRoles(&found);
   return found;
 }
 

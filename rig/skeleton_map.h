@@ -17,7 +17,9 @@ namespace furrow::rig {
 // A map fits a skeleton if it finds this many roles. Fewer matches may be coincidence.
 inline constexpr int kMinRoles = 6;
 
+// SkeletonRoles::map where no map gave the roles.
 inline constexpr char kFromHierarchy[] = "(hierarchy)";
+inline constexpr char kFromPackage[] = "(package)";  // the character's package states them
 
 // The joint names of one family of skeletons. docs/SKELETONS.md describes the file format.
 struct SkeletonMap {
@@ -40,7 +42,8 @@ struct SkeletonMap {
 
 // The roles that a map finds in a skeleton.
 struct SkeletonRoles {
-  // The map's name; kFromHierarchy if no map fits, and the hierarchy tells the roles; else empty.
+  // The map's name; kFromHierarchy if no map fits, and the hierarchy tells the roles;
+  // kFromPackage; else empty.
   std::string map;
   wrinkle::JointRoles roles;                // one per joint; empty if `map` is empty
   int num_roles = 0;                        // distinct roles found
@@ -48,6 +51,9 @@ struct SkeletonRoles {
   std::optional<float> toes_height;         // from the map
   std::vector<wrinkle::JointRole> missing;  // in the map, but not in the skeleton
 };
+
+// The roles that a package states for a character, one per joint. `roles` must not be empty.
+[[nodiscard]] SkeletonRoles RolesOfPackage(wrinkle::JointRoles roles);
 
 // Reads a map. Errors, with "file: field" as `where`: kParse, kSchema (an unknown or missing field,
 // a wrong type, an unknown or duplicate role), kLimit (more than 1 MiB, 64 prefixes, 16 joints per
@@ -88,6 +94,7 @@ class SkeletonMaps {
   [[nodiscard]] SkeletonRoles RolesOfRig(std::span<const std::string> joint_names) const;
 
   [[nodiscard]] std::span<const SkeletonMap> maps() const { return maps_; }
+  [[nodiscard]] bool is_chosen() const { return chosen_; }
 
  private:
   [[nodiscard]] SkeletonRoles Best(std::span<const std::string> joint_names,

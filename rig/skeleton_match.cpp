@@ -116,23 +116,71 @@ Result<SkeletonMatcher> SkeletonMatcher::Create(const std::string& name_or_file)
   return matcher;
 }
 
+void SkeletonMatcher::SetCharacterRoles(std::span<const std::pair<std::string, JointRole>> roles) {
+  const auto has_role = [](const auto& entry) { return entry.second != JointRole::kNone; };
+  stated_.clear();
+  if (std::ranges::any_of(roles, has_role)) stated_.insert(roles.begin(), roles.end());
+}
+
+void SkeletonMatcher::SetCharacterRoles(const wrinkle::Skeleton& character,
+                                        const wrinkle::JointRoles& roles) {
+  std::vector<std::pair<std::string, JointRole>> named;
+  for (std::size_t j = 0; j < roles.size(); ++j) {
+    named.emplace_back(character.joint_names()[j], roles[j]);
+  }
+  SetCharacterRoles(named);
+}
+
+SkeletonRoles SkeletonMatcher::RolesOfStream(const wrinkle::Skeleton& stream) const {
+  SkeletonRoles found = streams_.RolesOrGuess(stream);
+  if (stated_.empty() || streams_.is_chosen()) return found;
+  for (const auto& [name, role] : stated_) {
+    if (role != JointRole::kNone && stream.Find(name) == wrinkle::kNoJoint) return found;
+  }
+  // A map says more than the roles, so it is kept if they are equal.
+  SkeletonRoles own = RolesOfCharacter(stream);
+  return own.roles == found.roles ? found : own;
+}
+
+SkeletonRoles SkeletonMatcher::RolesOfCharacter(const wrinkle::Skeleton& character) const {
+  if (stated_.empty()) return characters_.RolesOrGuess(character);
+  wrinkle::JointRoles roles;
+  for (const std::string& name : character.joint_names()) {
+    const auto stated = stated_.find(name);
+    roles.push_back(stated == stated_.end() ? JointRole::kNone : stated->second);
+  }
+  return RolesOfPackage(std::move(roles));
+}
+
+// Empty or one per name. A rig has no skeleton, so the roles follow from the names alone.
+wrinkle::JointRoles SkeletonMatcher::RolesOfRig(std::span<const std::string> joint_names) const {
+  wrinkle::JointRoles roles = characters_.RolesOfRig(joint_names).roles;
+  if (stated_.empty()) return roles;
+  roles.resize(joint_names.size(), JointRole::kNone);
+  for (std::size_t i = 0; i < joint_names.size(); ++i) {
+    const auto stated = stated_.find(joint_names[i]);
+    if (stated != stated_.end()) roles[i] = stated->second;
+  }
+  return roles;
+}
+
 SkeletonMatch SkeletonMatcher::Match(const wrinkle::Skeleton& stream, const wrinkle::Rig& rig,
                                      const wrinkle::Skeleton* character) const {
   SkeletonMatch match;
-  match.stream = streams_.RolesOrGuess(stream);
-  if (character != nullptr) match.character = characters_.RolesOrGuess(*character);
+  match.stream = RolesOfStream(stream);
+  match.fit = FitOf(match.stream, stream);
+  if (character != nullptr) match.character = RolesOfCharacter(*character);
   if (match.stream.roles.empty()) return match;
   match.stance = wrinkle::FindRestStance(stream, match.stream.roles);
 
-  // The roles of a rig's joints follow from their names alone, since a rig has no skeleton.
   const std::set<std::string> joints = wrinkle::JointsOf(rig);
   const std::vector<std::string> names(joints.begin(), joints.end());
-  const SkeletonRoles own = characters_.RolesOfRig(names);
+  const wrinkle::JointRoles own = RolesOfRig(names);
   const wrinkle::JointRoles& theirs = match.stream.roles;
-  const RoleParts parts(own.roles, theirs);
+  const RoleParts parts(own, theirs);
   const std::set<std::string> added = JointsThatDriversAdd(rig);
-  for (std::size_t i = 0; i < own.roles.size(); ++i) {
-    const JointRole role = own.roles[i];
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    const JointRole role = own[i];
     if (role == JointRole::kNone) continue;
     const int namesake = stream.Find(names[i]);
     if (namesake != wrinkle::kNoJoint) {
@@ -160,26 +208,11 @@ wrinkle::Retarget MakeRetarget(const SkeletonMatch& match, const wrinkle::Skelet
                                    match.stream.toes_height);
 }
 
-std::string Describe(const SkeletonRoles& roles) {
-  if (roles.map.empty()) return {};
-  if (roles.map == kFromHierarchy) {
-    return "no skeleton map fits; " + std::to_string(roles.num_roles) +
-           " roles were guessed from the hierarchy";
-  }
-  std::string text =
-      "skeleton map '" + roles.map + "': " + std::to_string(roles.num_roles) + " roles";
-  // Body captures without fingers or a face are usual; listing all of these roles would bury the
-  // rest.
-  std::vector<JointRole> missing = roles.missing;
-  for (const auto& kind : {wrinkle::IsFinger, wrinkle::IsOfFace}) {
-    if (std::ranges::none_of(roles.roles, kind)) std::erase_if(missing, kind);
-  }
-  if (!missing.empty()) text += "; missing: " + JoinRoles(missing);
-  return text;
-}
-
 std::string Describe(const SkeletonMatch& match) {
   std::string text = Describe(match.stream);
+  if (text.empty() && match.fit.num_joints > 0) {
+    text = "no skeleton map fits; joints are matched by equal names";
+  }
   if (text.empty() || match.turn() == wrinkle::RestStance().turn) return text;
   const glm::quat back = glm::conjugate(match.turn());
   return text + "; the rest pose faces " + AxisName(back * glm::vec3(0.0f, 0.0f, 1.0f)) +
@@ -187,7 +220,7 @@ std::string Describe(const SkeletonMatch& match) {
 }
 
 std::vector<std::string> WarningsOf(const SkeletonMatch& match) {
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings = WarningsOf(match.fit, match.stream);
   // Guesses do not matter to a rig that finds all joints by their names.
   if (match.stream.map == kFromHierarchy && !match.aliases.empty()) {
     warnings.emplace_back(

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
+#include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "rig/skeleton_fit.h"
 #include "rig/skeleton_map.h"
 #include "wrinkle/drivers/common/bind_options.h"
 #include "wrinkle/rig/rig.h"
@@ -17,6 +21,7 @@ namespace furrow::rig {
 // How the joints of a stream or recording correspond to a rig and to a character.
 struct SkeletonMatch {
   SkeletonRoles stream;
+  SkeletonFit fit;          // of the stream's roles
   SkeletonRoles character;  // empty without a character
   // For BindOptions::aliases: (the rig's joint, the stream's joint of the same role).
   std::vector<std::pair<std::string, std::string>> aliases;
@@ -51,6 +56,15 @@ class SkeletonMatcher {
   // shipped map per stream. A character's map is chosen among the shipped maps and that one.
   [[nodiscard]] static Result<SkeletonMatcher> Create(const std::string& name_or_file);
 
+  // The roles that a character's package states for its joints (Character::roles), by name. They
+  // hold, instead of any map, for the character, for the joints of a rig that have these names, and
+  // for streams that have all joints with a role, such as the character's own animations, unless
+  // the user chose a map for streams. So packages need no map when they are played. Joints with
+  // kNone have no role.
+  void SetCharacterRoles(std::span<const std::pair<std::string, wrinkle::JointRole>> roles);
+  // The same for `roles`, one per joint of `character`; empty: the package states none.
+  void SetCharacterRoles(const wrinkle::Skeleton& character, const wrinkle::JointRoles& roles);
+
   // The roles of a recording's joints, as Match() finds them.
   [[nodiscard]] SkeletonRoles RolesOf(const wrinkle::Skeleton& stream) const {
     return streams_.RolesOrGuess(stream);
@@ -64,8 +78,13 @@ class SkeletonMatcher {
                                     const wrinkle::Skeleton* character) const;
 
  private:
+  [[nodiscard]] SkeletonRoles RolesOfStream(const wrinkle::Skeleton& stream) const;
+  [[nodiscard]] SkeletonRoles RolesOfCharacter(const wrinkle::Skeleton& character) const;
+  [[nodiscard]] wrinkle::JointRoles RolesOfRig(std::span<const std::string> joint_names) const;
+
   SkeletonMaps streams_;
   SkeletonMaps characters_;
+  std::map<std::string, wrinkle::JointRole, std::less<>> stated_;  // by the package; may be empty
 };
 
 // Retargets by role where both skeletons have the role, and by equal names otherwise.
@@ -73,14 +92,10 @@ class SkeletonMatcher {
                                              const wrinkle::Skeleton& stream,
                                              const wrinkle::Skeleton& character);
 
-// One line for a log: "skeleton map 'cmu': 22 roles; missing: leftToes, rightToes". Fingers, eyes
-// and jaw are listed as missing only if some of them are present. Empty if no map fits the
-// skeleton.
-[[nodiscard]] std::string Describe(const SkeletonRoles& roles);
-// The same for a match, with the axes of the rest pose if they are not Furrow's: "...; the rest
-// pose faces -X, up is +Z".
+// Describe() of the stream's roles, with the axes of the rest pose if they are not Furrow's: "...;
+// the rest pose faces -X, up is +Z". Empty for a stream without joints.
 [[nodiscard]] std::string Describe(const SkeletonMatch& match);
-// Probable faults of a match, one sentence each, with what to do.
+// Probable faults of a match, those of its fit among them, one sentence each, with what to do.
 [[nodiscard]] std::vector<std::string> WarningsOf(const SkeletonMatch& match);
 
 }  // namespace furrow::rig

@@ -29,9 +29,10 @@ struct Assets {
   std::shared_ptr<const wrinkle::Rig> rig;
   std::shared_ptr<const character::Character> character;  // null: weights only
   std::shared_ptr<const CharacterShapes> shapes;          // null: joints move no shapes
-  rig::SkeletonMatcher skeletons;                         // finds the rig's joints by other names
-  rig::ShapeMatcher shape_matcher;                        // finds its blend shapes by other names
-  render::Settings settings;                              // defaults for all pictures
+  // Finds the rig's joints by other names. It knows the roles that the character's package states.
+  rig::SkeletonMatcher skeletons;
+  rig::ShapeMatcher shape_matcher;  // finds its blend shapes by other names
+  render::Settings settings;        // defaults for all pictures
 };
 
 // Loads the files that `config` names, or the default character. Loads a rig and no character if

@@ -61,11 +61,8 @@ int DescribeClip(const std::string& path, const motion::LoadOptions& read) {
     if (!matcher.ok()) return Fail(matcher.status());
     // Without a rig, the match has the roles and the axes alone.
     const rig::SkeletonMatch match = matcher->Match(clip->skeleton, wrinkle::Rig(), nullptr);
-    const std::string roles = rig::Describe(match);
     PrintWarnings(rig::WarningsOf(match));
-    std::printf("  joints      %s\n",
-                roles.empty() ? "no skeleton map fits; 'furrow rig propose-map' writes a start"
-                              : roles.c_str());
+    std::printf("  joints      %s\n", rig::Describe(match).c_str());
   }
   std::printf("  frames      %d in %.3f s, %.2f Hz, longest gap %.3f s\n", clip->num_frames(),
               clip->duration(), rate, longest);

@@ -8,6 +8,7 @@
 #include "client/cli/commands/commands.h"
 #include "client/cli/common/endpoint.h"
 #include "client/cli/common/exit_code.h"
+#include "client/cli/common/inputs.h"
 #include "client/cli/common/interrupt.h"
 #include "client/cli/play/play_source.h"
 #include "client/cli/play/session_player.h"
@@ -80,6 +81,11 @@ int PlayFile(const PlayOptions& options) {
     std::fprintf(stderr, "furrow: --from %g: %s ends after %.3f s\n", options.from,
                  options.file.c_str(), schedule.duration());
     return kBadInput;
+  }
+  // The daemon finds the same map, unless it was started with another one.
+  for (const PlaySource& source : *sources) {
+    const auto skeleton = source.Skeleton();
+    if (skeleton.ok()) PrintMatchOf(*skeleton);  // the daemon rejects an invalid one, and says why
   }
   int exit_code = kDone;
   auto transport = OpenTransport(

@@ -163,7 +163,7 @@ Result<std::unique_ptr<SubjectGroup>> MakeGroup(const RenderOptions& options,
                                                 const character::Character& character) {
   const auto clips = LoadClips(options, character);
   FURROW_RETURN_IF_ERROR(clips);
-  const auto matcher = LoadSkeletonMatcher(options.skeleton_map);
+  const auto matcher = LoadSkeletonMatcher(options.skeleton_map, &character);
   FURROW_RETURN_IF_ERROR(matcher);
   const auto shapes = LoadShapeMatcher(options.shape_map);
   FURROW_RETURN_IF_ERROR(shapes);

@@ -43,7 +43,7 @@ int Explain(const RigOptions& options) {
                      "; the recording has frames 0 to " + std::to_string(clip->num_frames() - 1),
                  options.file});
   }
-  const auto matcher = LoadSkeletonMatcher(options.skeleton_map);
+  const auto matcher = LoadSkeletonMatcher(options.skeleton_map, input->character.get());
   if (!matcher.ok()) return Fail(matcher.status());
   const auto match = MatchJoints(*matcher, *clip, rig, input->skeleton());
   const auto shape_matcher = LoadShapeMatcher(options.shape_map);
@@ -100,7 +100,7 @@ int Check(const RigOptions& options) {
   if (clip) {
     const auto matcher = LoadSkeletonMatcher(options.skeleton_map);
     if (!matcher.ok()) return Fail(matcher.status());
-    match = matcher->Match(clip->skeleton, *rig, nullptr);
+    match = MatchJoints(*matcher, *clip, *rig);
     report_options.aliases = match.aliases;
     report_options.role_chains = match.role_chains;
   }

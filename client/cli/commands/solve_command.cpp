@@ -42,7 +42,7 @@ int SolveFile(const SolveOptions& options) {
   const auto input = LoadRigInput(options.rig, options.read);
   if (!input.ok()) return Fail(input.status());
   const wrinkle::Rig& rig = input->rig;
-  const auto matcher = LoadSkeletonMatcher(options.skeleton_map);
+  const auto matcher = LoadSkeletonMatcher(options.skeleton_map, input->character.get());
   if (!matcher.ok()) return Fail(matcher.status());
   const auto match = MatchJoints(*matcher, *clip, rig, input->skeleton());
   const auto shape_matcher = LoadShapeMatcher(options.shape_map);

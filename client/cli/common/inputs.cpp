@@ -79,8 +79,12 @@ Result<wrinkle::Rig> LoadRigArgument(const std::string& argument, const motion::
                       motion::CachedPoseSource(ForPoses(read), PrintWarning));
 }
 
-Result<rig::SkeletonMatcher> LoadSkeletonMatcher(const std::string& map) {
+Result<rig::SkeletonMatcher> LoadSkeletonMatcher(const std::string& map,
+                                                 const character::Character* character) {
   auto matcher = rig::SkeletonMatcher::Create(map);
+  if (matcher.ok() && character != nullptr) {
+    matcher->SetCharacterRoles(character->skeleton, character->roles);
+  }
   if (matcher.ok()) return matcher;
   // A map that the user asks for must exist; the shipped ones are optional.
   if (!map.empty()) return matcher.status().At("--skeleton-map");
@@ -96,13 +100,24 @@ Result<rig::ShapeMatcher> LoadShapeMatcher(const std::string& map) {
   return rig::ShapeMatcher();
 }
 
+void PrintMatch(const rig::SkeletonMatch& match) {
+  const std::string text = rig::Describe(match);
+  // To standard error, because commands write their results to standard output.
+  if (!text.empty()) std::fprintf(stderr, "furrow: %s\n", text.c_str());
+  PrintWarnings(rig::WarningsOf(match));
+}
+
+void PrintMatchOf(const wrinkle::Skeleton& skeleton) {
+  if (skeleton.num_joints() == 0) return;
+  const auto matcher = LoadSkeletonMatcher({});
+  // Without a rig, the match has the roles and the axes alone.
+  if (matcher.ok()) PrintMatch(matcher->Match(skeleton, wrinkle::Rig(), nullptr));
+}
+
 rig::SkeletonMatch MatchJoints(const rig::SkeletonMatcher& matcher, const motion::Clip& clip,
                                const wrinkle::Rig& rig, const wrinkle::Skeleton* character) {
   rig::SkeletonMatch match = matcher.Match(clip.skeleton, rig, character);
-  const bool maps = !match.aliases.empty() || match.turn() != wrinkle::RestStance().turn;
-  // To standard error, because commands write their results to standard output.
-  if (maps) std::fprintf(stderr, "furrow: %s\n", rig::Describe(match).c_str());
-  PrintWarnings(rig::WarningsOf(match));
+  PrintMatch(match);
   return match;
 }
 

@@ -59,13 +59,20 @@ struct RigInput {
                                             const motion::LoadOptions& read = {});
 
 // Loads the skeleton map of --skeleton-map, by name or file. An empty `map` selects the best
-// shipped map per skeleton. Without shipped maps, joints match by equal names and a warning is
-// printed.
-[[nodiscard]] Result<rig::SkeletonMatcher> LoadSkeletonMatcher(const std::string& map);
+// shipped map per skeleton. `character` may be null: its package may state the roles of its joints.
+// Without shipped maps, joints match by equal names and a warning is printed.
+[[nodiscard]] Result<rig::SkeletonMatcher> LoadSkeletonMatcher(
+    const std::string& map, const character::Character* character = nullptr);
 
-// Finds the joints that `rig` reads in the recording. Prints which map is used and how well it
-// fits, unless all joints have the rig's names. `character` may be null; see
-// SkeletonMatcher::Match().
+// Prints to standard error which skeleton map the joints of a recording follow and how well it
+// fits, in one line, and the match's warnings. Prints nothing for a recording without joints.
+void PrintMatch(const rig::SkeletonMatch& match);
+
+// The same for a skeleton alone, with the shipped maps: what other commands and the daemon find.
+void PrintMatchOf(const wrinkle::Skeleton& skeleton);
+
+// Finds the joints that `rig` reads in the recording, and calls PrintMatch(). `character` may be
+// null; see SkeletonMatcher::Match().
 [[nodiscard]] rig::SkeletonMatch MatchJoints(const rig::SkeletonMatcher& matcher,
                                              const motion::Clip& clip, const wrinkle::Rig& rig,
                                              const wrinkle::Skeleton* character = nullptr);

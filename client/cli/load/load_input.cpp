@@ -68,7 +68,7 @@ Result<std::shared_ptr<const wrinkle::RigBinding>> BindRig(const LoadInput& inpu
   const auto loaded = LoadRigInput(rig_name, input.read);
   FURROW_RETURN_IF_ERROR(loaded);
   const wrinkle::Rig& rig = loaded->rig;
-  const auto matcher = LoadSkeletonMatcher(input.skeleton_map);
+  const auto matcher = LoadSkeletonMatcher(input.skeleton_map, loaded->character.get());
   FURROW_RETURN_IF_ERROR(matcher);
   const auto match = MatchJoints(*matcher, clip, rig, loaded->skeleton());
   const auto shape_matcher = LoadShapeMatcher(input.shape_map);

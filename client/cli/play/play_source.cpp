@@ -7,6 +7,7 @@
 #include "base/status.h"
 #include "client/cli/common/inputs.h"
 #include "motion/clip_file.h"
+#include "recording/take_clip.h"
 #include "recording/wire_pose.h"
 
 namespace furrow::cli {
@@ -63,6 +64,11 @@ protocol::SkeletonOffer PlaySource::Offer(const std::string& subject, float metr
   // The take has a unit of its own, which --scale multiplies.
   offer.metres_per_unit *= metres_per_unit;
   return offer;
+}
+
+Result<wrinkle::Skeleton> PlaySource::Skeleton() const {
+  if (const auto* clip = std::get_if<motion::Clip>(&poses_)) return clip->skeleton;
+  return recording::SkeletonOf(std::get<TakePoses>(poses_).offer(), 1.0f);
 }
 
 // Poses of a take are sent as recorded; those of a clip are made from its transforms.

@@ -28,6 +28,9 @@ class PlaySource {
   [[nodiscard]] double start() const;
   // The recorded name of the subject, or the name of the file without extension.
   [[nodiscard]] const std::string& subject() const { return subject_; }
+  // The joints of the recording; empty if it has blend shapes only. Errors: those of
+  // wrinkle::Skeleton::Create().
+  [[nodiscard]] Result<wrinkle::Skeleton> Skeleton() const;
   // The skeleton offer under the name `subject`. `metres_per_unit`: metres per unit of the
   // recording; multiplies the unit that a take states.
   [[nodiscard]] protocol::SkeletonOffer Offer(const std::string& subject,

@@ -11,18 +11,20 @@ namespace furrow::cli {
 
 Result<std::unique_ptr<AnimatedSubject>> AnimatedSubject::Create(
     const character::Character& character, std::shared_ptr<const motion::Clip> clip,
-    const rig::SkeletonMatcher& matcher, const rig::ShapeMatcher& shapes, const std::string& file) {
+    const rig::SkeletonMatcher& matcher, const rig::ShapeMatcher& shapes, const std::string& file,
+    bool reports) {
   auto self = std::make_unique<AnimatedSubject>();
   self->clip_ = std::move(clip);
   const motion::Clip& take = *self->clip_;
-  const auto match = MatchJoints(matcher, take, character.rig, &character.skeleton);
+  const auto match = matcher.Match(take.skeleton, character.rig, &character.skeleton);
+  if (reports && !file.empty()) PrintMatch(match);
   self->shapes_ = MatchBlendShapes(shapes, take, character.rig,
                                    MatchFaceJoints(shapes, take, match, &character));
   auto binding =
       wrinkle::RigBinding::Create(character.rig, take.skeleton, self->shapes_.driver_names(),
                                   match.Options(/*allow_missing=*/true));
   FURROW_RETURN_IF_ERROR(binding);
-  WarnAboutMissing(*binding, take);
+  if (reports) WarnAboutMissing(*binding, take);
   self->solver_ = std::make_unique<wrinkle::SubjectSolver>(
       std::make_shared<const wrinkle::RigBinding>(std::move(*binding)));
   self->retarget_ = rig::MakeRetarget(match, take.skeleton, character.skeleton);

@@ -18,13 +18,15 @@ namespace furrow::cli {
 // character for drawing.
 class AnimatedSubject {
  public:
-  // `character` must outlive this object. `file` names the clip in errors. Prints warnings about
-  // joints and blend shapes that the recording lacks. Errors: those of wrinkle::RigBinding;
+  // `character` must outlive this object. `file` names the clip in errors. Prints which skeleton
+  // map the recording follows, unless `file` is empty (a pose of the character), and warnings about
+  // joints and blend shapes that the recording lacks. `reports`: false for a further subject of the
+  // same recording. Errors: those of wrinkle::RigBinding;
   // kNotFound (the recording and the character have no joint in common).
   [[nodiscard]] static Result<std::unique_ptr<AnimatedSubject>> Create(
       const character::Character& character, std::shared_ptr<const motion::Clip> clip,
-      const rig::SkeletonMatcher& matcher, const rig::ShapeMatcher& shapes,
-      const std::string& file);
+      const rig::SkeletonMatcher& matcher, const rig::ShapeMatcher& shapes, const std::string& file,
+      bool reports = true);
 
   [[nodiscard]] int num_frames() const { return clip_->num_frames(); }
   // Solves frame `frame` in [0, num_frames). The filter of the weights depends on earlier frames,

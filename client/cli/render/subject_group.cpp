@@ -112,7 +112,8 @@ Result<std::unique_ptr<SubjectGroup>> SubjectGroup::Create(
   const int subjects = options.subjects > 0 ? options.subjects : num_clips;
   for (int i = 0; i < subjects; ++i) {
     const auto clip = static_cast<std::size_t>(i % num_clips);
-    auto subject = AnimatedSubject::Create(character, clips[clip], matcher, shapes, files[clip]);
+    auto subject = AnimatedSubject::Create(character, clips[clip], matcher, shapes, files[clip],
+                                           /*reports=*/i < num_clips);
     FURROW_RETURN_IF_ERROR(subject);
     const int frames = std::max(1, (*subject)->num_frames());
     const int sharing = (subjects - static_cast<int>(clip) + num_clips - 1) / num_clips;

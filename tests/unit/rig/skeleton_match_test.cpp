@@ -21,6 +21,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
+using enum wrinkle::JointRole;
 
 // A body whose torso, neck and head are `column`, from bottom to top, after the hips.
 class Body {
@@ -230,6 +231,85 @@ TEST_F(SkeletonMatching, DescribesOtherAxesAndExchangedSides) {
   ASSERT_TRUE(exchanged.ok());
   EXPECT_THAT(WarningsOf(matcher_.Match(*exchanged, rig, nullptr)),
               ElementsAre(HasSubstr("the toes point backwards")));
+}
+
+// A package whose joints no map knows, and no hierarchy: one leg has no foot.
+class StatedRoles : public SkeletonMatching {
+ protected:
+  static wrinkle::Skeleton Called(const std::vector<std::string>& names) {
+    const int parents[] = {-1, 0, 1, 2, 2, 4, 5, 2, 7, 8, 0, 10, 11, 0, 13};
+    std::vector<wrinkle::JointDesc> joints;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      joints.push_back({names[i], parents[i], {{0.1f, 0.1f, 0.0f}}, {}});
+    }
+    return *wrinkle::Skeleton::Create(std::move(joints));
+  }
+  static std::vector<std::string> Numbered() {
+    std::vector<std::string> names;
+    for (int i = 0; i < 15; ++i) names.push_back("ctl_" + std::to_string(i));
+    return names;
+  }
+
+  const wrinkle::Skeleton character_ = Called(Numbered());
+  const wrinkle::JointRoles roles_ = {kHips,          kSpine,         kChest,        kHead,
+                                      kLeftUpperArm,  kLeftLowerArm,  kLeftHand,     kRightUpperArm,
+                                      kRightLowerArm, kRightHand,     kLeftUpperLeg, kLeftLowerLeg,
+                                      kLeftFoot,      kRightUpperLeg, kRightLowerLeg};
+  const wrinkle::Skeleton vrm_ =
+      Called({"hips", "spine", "chest", "head", "leftUpperArm", "leftLowerArm", "leftHand",
+              "rightUpperArm", "rightLowerArm", "rightHand", "leftUpperLeg", "leftLowerLeg",
+              "leftFoot", "rightUpperLeg", "rightLowerLeg"});
+};
+
+TEST_F(StatedRoles, AreThoseOfTheCharacterAndOfItsRig) {
+  wrinkle::Rig rig;
+  rig.drivers.resize(1);
+  rig.drivers[0].name = "elbow";
+  rig.drivers[0].kind = wrinkle::Driver::Kind::kHinge;
+  rig.drivers[0].hinge = {.parent = "ctl_4", .joint = "ctl_5", .end = "ctl_6"};
+  SkeletonMatch match = matcher_.Match(vrm_, rig, &character_);
+  EXPECT_THAT(match.aliases, IsEmpty());
+  EXPECT_TRUE(match.character.roles.empty());
+
+  matcher_.SetCharacterRoles(character_, roles_);
+  match = matcher_.Match(vrm_, rig, &character_);
+  EXPECT_EQ(match.stream.num_roles, 15);
+  EXPECT_EQ(match.character.map, kFromPackage);
+  EXPECT_EQ(match.character.roles, roles_);
+  EXPECT_EQ(match.character.num_roles, 15);
+  EXPECT_THAT(match.aliases,
+              ElementsAre(std::pair("ctl_4", "leftUpperArm"), std::pair("ctl_5", "leftLowerArm"),
+                          std::pair("ctl_6", "leftHand")));
+  EXPECT_TRUE(MakeRetarget(match, vrm_, character_).by_role());
+  // Weights are the same without pictures.
+  EXPECT_EQ(matcher_.Match(vrm_, rig, nullptr).aliases, match.aliases);
+}
+
+TEST_F(StatedRoles, AreThoseOfTheCharactersOwnRecordings) {
+  matcher_.SetCharacterRoles(character_, roles_);
+  const SkeletonMatch own = matcher_.Match(character_, wrinkle::Rig(), &character_);
+  EXPECT_EQ(own.stream.roles, roles_);
+  EXPECT_THAT(Describe(own), HasSubstr("joint roles of the character's package: 15 roles"));
+  // A stream without one of the joints is another skeleton.
+  std::vector<std::string> names = Numbered();
+  names[5] = "other";
+  EXPECT_TRUE(matcher_.Match(Called(names), wrinkle::Rig(), nullptr).stream.roles.empty());
+}
+
+TEST_F(StatedRoles, GiveWayToAMapThatTheUserChoseForStreams) {
+  auto chosen = ShippedMatcher("vrm");
+  ASSERT_TRUE(chosen.ok()) << chosen.status().ToString();
+  chosen->SetCharacterRoles(character_, roles_);
+  const SkeletonMatch match = chosen->Match(character_, wrinkle::Rig(), &character_);
+  EXPECT_EQ(match.stream.map, "vrm");
+  EXPECT_EQ(match.character.roles, roles_);
+}
+
+TEST_F(StatedRoles, OfAPackageWithoutAnyChangeNothing) {
+  matcher_.SetCharacterRoles(character_, {});
+  EXPECT_NE(matcher_.Match(vrm_, wrinkle::Rig(), &vrm_).character.map, kFromPackage);
+  matcher_.SetCharacterRoles(character_, wrinkle::JointRoles(15, kNone));
+  EXPECT_NE(matcher_.Match(vrm_, wrinkle::Rig(), &vrm_).character.map, kFromPackage);
 }
 
 }  // namespace

@@ -306,7 +306,7 @@ TEST(StreamDefinitions, AForeignStreamFeedsTheRigAndMovesTheCharacter) {
   LogCapture log;
   const auto definition = definitions.Get(offer);
   ASSERT_TRUE(definition.ok()) << definition.status().ToString();
-  EXPECT_THAT(log.text(), HasSubstr(": 7 roles; missing: spine"));
+  EXPECT_THAT(log.text(), HasSubstr(": 7 roles, 7 of 7 joints; missing: spine"));
   EXPECT_THAT(log.text(), Not(HasSubstr("ignored")));
   EXPECT_TRUE((*definition)->binding->missing_joints().empty());
   EXPECT_TRUE((*definition)->retarget->by_role());
