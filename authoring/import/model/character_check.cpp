@@ -75,7 +75,7 @@ class Checker {
 
   CharacterReport Run(const rig::SkeletonMaps& maps) {
     report_.name = character_.name;
-    report_.joints = FindJoints(character_.skeleton, maps);
+    report_.joints = FindJoints(character_.skeleton, maps, character_.roles);
     report_.space = FindCharacterSpace(character_, report_.joints);
     report_.face_joints = FaceJoints(character_.skeleton, report_.joints).size();
     CountAll();

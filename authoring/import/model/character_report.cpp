@@ -9,11 +9,9 @@ namespace furrow::authoring {
 namespace {
 
 std::string RolesLine(const CharacterReport& report) {
-  if (report.joints.num_roles == 0) return "joints:  no known roles\n";
-  const std::string how =
-      report.joints.map.empty() ? "from the hierarchy" : "by names of '" + report.joints.map + "'";
-  return "joints:  " + std::to_string(report.joints.num_roles) + " roles " + how + ", " +
-         std::to_string(report.face_joints) + " face joints\n";
+  if (report.joints.num_roles == 0) return "joints:  " + Describe(report.joints) + "\n";
+  return "joints:  " + Describe(report.joints) + ", " + std::to_string(report.face_joints) +
+         " face joints\n";
 }
 
 }  // namespace

@@ -17,6 +17,7 @@ namespace furrow::authoring {
 namespace {
 
 namespace fs = std::filesystem;
+using wrinkle::JointRoles;
 
 std::string Extension(const fs::path& path) { return AsciiLower(path.extension().string()); }
 
@@ -134,6 +135,7 @@ Result<ImportedModel> ImportModel(const fs::path& path, const rig::SkeletonMaps&
         settled || finding.severity == Severity::kNote ? imported.remarks : imported.warnings;
     if (finding.code != "no-rig" && finding.code != "shape-face") list.push_back(Sentence(finding));
   }
+  imported.remarks.push_back("the joints have " + Describe(report.joints));
   RestWithoutUvs(&*opened);
   const float scale = options.scale.value_or(report.space.scale);
   // After the check, which reports the space of the file as it is.
@@ -143,6 +145,8 @@ Result<ImportedModel> ImportModel(const fs::path& path, const rig::SkeletonMaps&
     }
   }
   imported.character = std::move(opened->character);
+  // The package keeps them, because those who play it have neither the map nor the guess.
+  imported.character.roles = report.joints.num_roles > 0 ? report.joints.roles : JointRoles();
   imported.look_at = opened->notes.look_at;
   return imported;
 }

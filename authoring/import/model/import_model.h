@@ -47,7 +47,7 @@ struct ImportedModel {
 
 // Opens a model with OpenModel() and prepares it for drawing: rotates and scales it, removes
 // triangles without area, and repairs it if `options` ask for it. `maps`: skeleton maps that give
-// joints their roles by name.
+// joints their roles by name. Character::roles receives the roles of FindJoints().
 //
 // Errors: those of OpenModel(), and kUnsupported for the first error of CheckCharacter() (no skin,
 // no UVs, unskinned vertices).

@@ -23,8 +23,10 @@ int FoundJoints::Last(JointRole role) const {
   return found == roles.rend() ? kNoJoint : static_cast<int>(roles.rend() - found) - 1;
 }
 
-FoundJoints FindJoints(const Skeleton& skeleton, const rig::SkeletonMaps& maps) {
-  rig::SkeletonRoles known = maps.RolesOf(skeleton);
+FoundJoints FindJoints(const Skeleton& skeleton, const rig::SkeletonMaps& maps,
+                       const wrinkle::JointRoles& stated) {
+  const bool holds = !stated.empty() && !maps.is_chosen();
+  rig::SkeletonRoles known = holds ? rig::RolesOfPackage(stated) : maps.RolesOf(skeleton);
   FoundJoints found;
   found.map = std::move(known.map);
   found.roles = found.map.empty() ? rig::RolesFromHierarchy(skeleton) : std::move(known.roles);
@@ -36,6 +38,14 @@ FoundJoints FindJoints(const Skeleton& skeleton, const rig::SkeletonMaps& maps) 
     ++found.num_roles;
   }
   return found;
+}
+
+std::string Describe(const FoundJoints& joints) {
+  if (joints.num_roles == 0) return "no known roles";
+  std::string from = "by names of '" + joints.map + "'";
+  if (joints.map.empty()) from = "guessed from the hierarchy";
+  if (joints.map == rig::kFromPackage) from = "stated by the package";
+  return std::to_string(joints.num_roles) + " roles " + from;
 }
 
 }  // namespace furrow::authoring

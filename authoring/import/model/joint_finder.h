@@ -12,8 +12,9 @@ namespace furrow::authoring {
 // The roles of a skeleton's joints, and how they were determined.
 struct FoundJoints {
   wrinkle::JointRoles roles;  // one per joint
-  std::string map;            // the skeleton map that matched the names; empty: from the hierarchy
-  int num_roles = 0;          // number of different roles
+  // The skeleton map that matched the names; empty: from the hierarchy; rig::kFromPackage.
+  std::string map;
+  int num_roles = 0;  // number of different roles
 
   // The index of the first or the last joint of a role, in the skeleton's order (parents first);
   // kNoJoint if no joint has the role.
@@ -21,10 +22,17 @@ struct FoundJoints {
   [[nodiscard]] int Last(wrinkle::JointRole role) const;
 };
 
-// Determines roles from names that `maps` contain. If no map fits, roles follow from the hierarchy:
-// one fork with two legs and a spine, another with two arms and a neck, and the direction of the
-// toes for the sides. The result from the hierarchy is a guess that a person should check.
+// `stated`: the roles that the model's own package states (Character::roles). They hold unless the
+// user chose a map. Otherwise: determines roles from names that `maps` contain. If no map fits,
+// roles follow from the hierarchy: one fork with two legs and a spine, another with two arms and a
+// neck, and the direction of the toes for the sides. The result from the hierarchy is a guess that
+// a person should check.
 [[nodiscard]] FoundJoints FindJoints(const wrinkle::Skeleton& skeleton,
-                                     const rig::SkeletonMaps& maps);
+                                     const rig::SkeletonMaps& maps,
+                                     const wrinkle::JointRoles& stated = {});
+
+// "22 roles by names of 'mixamo'", "19 roles guessed from the hierarchy", "22 roles stated by the
+// package" or "no known roles".
+[[nodiscard]] std::string Describe(const FoundJoints& joints);
 
 }  // namespace furrow::authoring

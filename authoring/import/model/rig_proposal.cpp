@@ -283,10 +283,13 @@ class Proposer {
 
   void Remark() {
     auto& remarks = proposal_.remarks;
-    remarks.push_back(
-        target_.joints->map.empty()
-            ? "joint roles were guessed from the hierarchy; check the joints of each driver"
-            : "joint names match '" + target_.joints->map + "'");
+    const std::string& map = target_.joints->map;
+    if (map.empty()) {
+      remarks.emplace_back(
+          "joint roles were guessed from the hierarchy; check the joints of each driver");
+    } else if (map != rig::kFromPackage) {
+      remarks.push_back("joint names match '" + map + "'");
+    }
     if (!left_out_.empty()) {
       std::string names;
       for (const std::string& name : left_out_) names += (names.empty() ? "" : ", ") + name;

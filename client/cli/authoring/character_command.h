@@ -22,11 +22,12 @@ enum class ProposalPart {
 
 // Proposes a rig for `skeleton` from the default character's rig. `map`: the skeleton map of the
 // joint names, by file or by name of a shipped map; empty: the best match. `eyes`: the
-// model's; see AddEyePoses(). Errors: those of loading
-// the default character and the map, and of ProposeRig().
+// model's; see AddEyePoses(). `roles`: those that the model states (Character::roles). Errors:
+// those of loading the default character and the map, and of ProposeRig().
 [[nodiscard]] Result<authoring::RigProposal> ProposeFromDefault(
     const wrinkle::Skeleton& skeleton, const std::string& map,
-    ProposalPart part = ProposalPart::kBodyAndFace, const authoring::EyeSurface& eyes = {});
+    ProposalPart part = ProposalPart::kBodyAndFace, const authoring::EyeSurface& eyes = {},
+    const wrinkle::JointRoles& roles = {});
 
 // Prints "furrow: note: <text>" to standard error for each note.
 void PrintNotes(const std::vector<std::string>& notes);

@@ -146,7 +146,7 @@ Status AttachRigTo(const ImportArguments& arguments, const rig::SkeletonMaps& ma
   const bool shapes = authoring::HasShapeFace(face);
   auto proposal = ProposeFromDefault(character->skeleton, arguments.map,
                                      shapes ? ProposalPart::kBody : ProposalPart::kBodyAndFace,
-                                     {character->meshes, imported->look_at});
+                                     {character->meshes, imported->look_at}, character->roles);
   if (proposal.ok()) {
     PrintNotes(proposal->remarks);
     FURROW_RETURN_IF_ERROR(

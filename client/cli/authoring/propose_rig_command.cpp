@@ -86,7 +86,7 @@ Result<authoring::RigProposal> ProposeFor(const ProposeArguments& arguments, Rig
   const bool shapes = authoring::HasShapeFace(face);
   auto proposal = ProposeFromDefault(subject.skeleton, arguments.map,
                                      shapes ? ProposalPart::kBody : ProposalPart::kBodyAndFace,
-                                     {subject.model.meshes, subject.look_at});
+                                     {subject.model.meshes, subject.look_at}, subject.model.roles);
   if (shapes && proposal.status().code() == StatusCode::kNotFound) {
     proposal = authoring::RigProposal();
   }
@@ -116,7 +116,8 @@ int Propose(const ProposeArguments& arguments) {
 
 Result<authoring::RigProposal> ProposeFromDefault(const wrinkle::Skeleton& skeleton,
                                                   const std::string& map, ProposalPart part,
-                                                  const authoring::EyeSurface& eyes) {
+                                                  const authoring::EyeSurface& eyes,
+                                                  const wrinkle::JointRoles& roles) {
   const auto maps = rig::SkeletonMaps::Load(map);
   FURROW_RETURN_IF_ERROR(maps);
   const auto shipped = rig::SkeletonMaps::LoadShipped();
@@ -129,10 +130,11 @@ Result<authoring::RigProposal> ProposeFromDefault(const wrinkle::Skeleton& skele
     });
   }
   const authoring::FoundJoints model_joints = authoring::FindJoints(model->skeleton, *shipped);
-  const authoring::FoundJoints joints = authoring::FindJoints(skeleton, *maps);
+  const authoring::FoundJoints joints = authoring::FindJoints(skeleton, *maps, roles);
   auto proposal =
       authoring::ProposeRig(model->rig, {&model->skeleton, &model_joints}, {&skeleton, &joints});
-  if (proposal.ok()) authoring::AddEyePoses(skeleton, joints.roles, eyes, &proposal->rig);
+  if (!proposal.ok()) return proposal;
+  authoring::AddEyePoses(skeleton, joints.roles, eyes, &proposal->rig);
   return proposal;
 }
 

@@ -305,5 +305,33 @@ TEST(ImportModel, TruncatedFilesReturnAStatus) {
   }
 }
 
+// Those who play the package have neither the map nor the guess.
+TEST(ImportModel, KeepsTheRolesOfTheJoints) {
+  const Folder folder;
+  const fs::path body = folder.Write("body.glb", GlbOf(ToyBody()));
+  const auto imported = ImportModel(body, Maps());
+  ASSERT_TRUE(imported.ok()) << imported.status().ToString();
+  const wrinkle::Skeleton& skeleton = imported->character.skeleton;
+  ASSERT_EQ(imported->character.roles.size(), static_cast<std::size_t>(skeleton.num_joints()));
+  for (std::size_t j = 0; j < imported->character.roles.size(); ++j) {
+    EXPECT_EQ(wrinkle::ToString(imported->character.roles[j]), skeleton.joint_names()[j]);
+  }
+  EXPECT_THAT(imported->remarks, Contains(HasSubstr("roles by names of 'vrm'")));
+
+  // They hold when the package is imported again without the map.
+  character::Character odd = imported->character;
+  std::swap(odd.roles[1], odd.roles[2]);
+  const fs::path again = folder.Write("again.glb", GlbOf(odd));
+  const rig::SkeletonMaps chosen_map = Maps();
+  const auto one = chosen_map.maps();
+  const auto kept = ImportModel(again, rig::SkeletonMaps({one.begin(), one.end()}));
+  ASSERT_TRUE(kept.ok()) << kept.status().ToString();
+  EXPECT_EQ(kept->character.roles, odd.roles);
+  EXPECT_THAT(kept->remarks, Contains(HasSubstr("roles stated by the package")));
+  const auto chosen = ImportModel(again, chosen_map);
+  ASSERT_TRUE(chosen.ok()) << chosen.status().ToString();
+  EXPECT_EQ(chosen->character.roles, imported->character.roles) << "the user's choice wins";
+}
+
 }  // namespace
 }  // namespace furrow::authoring
