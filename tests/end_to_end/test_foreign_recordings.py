@@ -13,6 +13,7 @@ import unittest
 import urllib.request
 import zlib
 
+from body_testing import VRM, Body, kick
 from fbx_testing import Fbx, Glb, worst_difference
 from fbx_writing import List, Long, Scene, node, to_ascii, to_binary
 from furrow_testing import BIN, GUARD, Daemon, furrow, solve, worst_difference as weight_difference
@@ -180,6 +181,13 @@ class ForeignRecordings(unittest.TestCase):
                     self.assertAlmostEqual(matrices[name][axis][3], place[axis], places=5)
         # Z is up in the file: its X axis turns to its Y axis, which is -Z here.
         self.assertAlmostEqual(glb.model_space(1)["hip"][2][0], -1, places=5)
+
+    def test_a_gltf_is_read_in_its_own_folder(self):
+        Body(VRM, moves=kick()).save(self.root / "walking.gltf")  # with its buffer beside it
+        for name in ("walking.gltf", "./walking.gltf", str(self.root / "walking.gltf")):
+            result = subprocess.run([BIN / "furrow", "info", name], cwd=self.root, capture_output=True, timeout=GUARD)
+            self.assertEqual(result.returncode, DONE, result.stderr.decode())
+            self.assertIn("frames      5 in 1.000 s", result.stdout.decode())
 
     def test_the_content_decides_the_format(self):
         expected = furrow("info", self.write("a.fbx", to_binary(pivots().nodes())), check=DONE).stdout.splitlines()[1:]

@@ -70,6 +70,26 @@ class ForeignWireTest(unittest.TestCase):
         self.assertLess(max(row["mouth_r.squash"], row["mouth_r.stretch"]), 0.1)
         self.assertLess(row["glabella.squash"], 0.05)
 
+    def test_a_phone_on_the_default_character_lacks_nothing(self):
+        # Its rig also reads joints, which a phone has none of.
+        with Daemon("--no-render", "--livelink-face", "0") as daemon:
+            out = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+            watcher = spawn("watch", daemon.tcp, "--wait", "--format", "csv")
+            frame = [0]
+
+            def send():
+                frame[0] += 1
+                out.sendto(livelink_face("phone", frame[0], {"JawOpen": 0.5}),
+                           ("127.0.0.1", daemon.ports["livelink_face"]))
+
+            self.keep_sending_until_header(watcher, send)
+            watcher.terminate()
+            finish(watcher)
+            out.close()
+        self.assertIn("phone", daemon.stderr)
+        self.assertNotIn("lacks", daemon.stderr)
+        self.assertNotIn("missing", daemon.stderr)
+
     def keep_sending_until_header(self, watcher, send):
         """Sends first frames until the subject exists, because early datagrams may be lost."""
         for _ in range(2000):

@@ -6,6 +6,7 @@ import pty
 import re
 import resource
 import signal
+import struct
 import subprocess
 import time
 import unittest
@@ -294,7 +295,35 @@ class ConvertTest(FolderTest):
         self.assertEqual([*self.root.glob("new*")], [])
 
 
+def mcap_of_another_program(topics):
+    """An MCAP file without chunks, index and statistics. `topics`: the number of messages by topic."""
+    def text(value):
+        return struct.pack("<I", len(value)) + value.encode()
+
+    def record(opcode, content):
+        return struct.pack("<BQ", opcode, len(content)) + content
+
+    magic = b"\x89MCAP0\r\n"
+    data = magic + record(1, text("ros2") + text("libmcap 1.4"))
+    for channel, (topic, count) in enumerate(topics.items(), 1):
+        data += record(4, struct.pack("<HH", channel, 0) + text(topic) + text("json") + struct.pack("<I", 0))
+        for i in range(count):
+            data += record(5, struct.pack("<HIQQ", channel, i, i * 10**8, i * 10**8) + b"{}")
+    return data + record(15, struct.pack("<I", 0)) + record(2, struct.pack("<QQI", 0, 0, 0)) + magic
+
+
 class ReadingTest(FolderTest):
+    def test_info_counts_the_messages_of_other_programs(self):
+        take = self.root / "robot.mcap"
+        take.write_bytes(mcap_of_another_program({"/imu": 11, "/tf": 3}))
+        result = furrow("info", take, check=0)
+        text = result.stdout.decode()
+        self.assertRegex(text, r"messages +14 in 1\.000 s")
+        self.assertIn("/imu: 11 messages, encoding json", text)
+        self.assertIn("/tf: 3 messages, encoding json", text)
+        self.assertNotIn("damaged", text)
+        self.assertEqual(result.stderr, b"")
+
     def test_progress_is_shown_on_a_terminal_and_not_in_a_pipe(self):
         take = self.root / "made.mcap"
         furrow("convert", PERFORMANCE, take, check=0)
