@@ -123,6 +123,12 @@ std::uint64_t MaxBytes(Format format) {
 Status SetUpright(UpAxis up, const std::string& name, Clip* clip, ClipReport* report) {
   const UpAxis wanted = up == UpAxis::kAuto ? FindUpAxis(clip->skeleton) : up;
   if (wanted == UpAxis::kZ) return TurnZUpToYUp(clip);
+  if (wanted == UpAxis::kAuto && IsLongestAlongZ(clip->skeleton) && report != nullptr) {
+    report->warnings.push_back(name +
+                               ": the axis that points up is unknown, because the rest pose has no "
+                               "legs and no joint named head; +Y is taken as up (--up-axis z turns "
+                               "a Z-up file)");
+  }
   if (up == UpAxis::kAuto && MovesAlongZ(*clip)) {
     TurnMotionUpright(clip);
     if (report != nullptr) {

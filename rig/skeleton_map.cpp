@@ -14,8 +14,8 @@
 #include "base/ascii.h"
 #include "base/files.h"
 #include "base/status.h"
-#include "rig/hierarchy_roles.h"
 #include "rig/shipped_maps.h"
+#include "wrinkle/hierarchy/hierarchy_roles.h"
 
 namespace furrow::rig {
 namespace {
@@ -260,7 +260,7 @@ SkeletonRoles SkeletonMaps::Best(std::span<const std::string> joint_names,
 SkeletonRoles SkeletonMaps::RolesOrGuess(const wrinkle::Skeleton& skeleton) const {
   SkeletonRoles found = RolesOf(skeleton);
   if (!found.map.empty() || chosen_ || maps_.empty()) return found;
-  found.roles = RolesFromHierarchy(skeleton);
+  found.roles = wrinkle::RolesFromHierarchy(skeleton);
   if (found.roles.empty()) return found;
   found.map = kFromHierarchy;
   CountRoles(&found);

@@ -35,11 +35,12 @@ float LowestJoint(const Clip& clip) {
 
 Result<bool> RaiseToFloor(Clip* clip) {
   const Trunk trunk = FindTrunk(clip->skeleton);
-  if (trunk.head == wrinkle::kNoJoint || clip->locals.empty()) return false;
+  if (!trunk.has_head() || clip->locals.empty()) return false;
   const auto rest = clip->skeleton.rest_model();
   const float reach = Reach(clip->skeleton, trunk);
   const float height_of_head = OriginOf(rest, trunk.head).y - OriginOf(rest, trunk.root).y;
-  const bool has_legs = height_of_head > 0.0f && reach > 0.5f * height_of_head;
+  const bool stands = trunk.up && trunk.up->y > 0.7f;
+  const bool has_legs = stands || (height_of_head > 0.0f && reach > 0.5f * height_of_head);
   const float lowest = has_legs ? LowestJoint(*clip) : 0.0f;
   if (!has_legs || lowest > -0.25f * reach) return false;
   const auto parents = clip->skeleton.joint_parents();

@@ -11,7 +11,8 @@ namespace furrow::motion {
 //
 // "Far" is a quarter of the distance from the root down to the feet at rest. The lowest joint of
 // all frames then touches the floor, and so does that of the rest pose. Clips of a skeleton without
-// a head or without legs stay as they are: their root says nothing about a floor.
+// legs stay as they are: their root says nothing about a floor. Legs are those of FindTrunk(), or
+// any joints that far below the root of a head.
 //
 // Errors: those of Skeleton::Create(), which a valid clip never causes.
 [[nodiscard]] Result<bool> RaiseToFloor(Clip* clip);

@@ -4,19 +4,24 @@
 #include <algorithm>
 
 #include "base/ascii.h"
+#include "wrinkle/hierarchy/hierarchy_roles.h"
 
 namespace furrow::motion {
 
 Trunk FindTrunk(const wrinkle::Skeleton& skeleton) {
+  Trunk trunk;
+  if (const auto shape = wrinkle::FindBodyShape(skeleton)) {
+    trunk = {shape->root, shape->head, shape->up, !shape->is_upright};
+  }
   for (int j = 0; j < skeleton.num_joints(); ++j) {
     const std::string name = AsciiLower(skeleton.joint_names()[static_cast<std::size_t>(j)]);
     if (name.find("head") == std::string::npos) continue;
-    int root = j;
-    while (skeleton.joint_parents()[static_cast<std::size_t>(root)] != wrinkle::kNoJoint)
-      root = skeleton.joint_parents()[static_cast<std::size_t>(root)];
-    return {root, j};
+    trunk.root = trunk.head = j;
+    while (skeleton.joint_parents()[static_cast<std::size_t>(trunk.root)] != wrinkle::kNoJoint)
+      trunk.root = skeleton.joint_parents()[static_cast<std::size_t>(trunk.root)];
+    break;
   }
-  return {};
+  return trunk;
 }
 
 float Reach(const wrinkle::Skeleton& skeleton, const Trunk& trunk) {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include <glm/common.hpp>
 #include <glm/gtc/quaternion.hpp>
 
 #include "base/status.h"
@@ -33,17 +34,37 @@ wrinkle::Transform Turn(const wrinkle::Transform& t) {
 
 UpAxis FindUpAxis(const wrinkle::Skeleton& skeleton) {
   const Trunk trunk = FindTrunk(skeleton);
-  if (trunk.head == wrinkle::kNoJoint) return UpAxis::kY;
+  const auto axis = [](const glm::vec3& up) {
+    return up.z > std::abs(up.y) ? UpAxis::kZ : UpAxis::kY;
+  };
+  // Legs along X point neither way, as in LaFAN1, whose bones all rest along X.
+  if (trunk.up && std::abs(trunk.up->x) < 0.7f) return axis(*trunk.up);
+  if (!trunk.has_head()) return UpAxis::kAuto;
   const auto rest = skeleton.rest_model();
-  const glm::vec3 up = OriginOf(rest, trunk.head) - OriginOf(rest, trunk.root);
-  return up.z > std::abs(up.y) ? UpAxis::kZ : UpAxis::kY;
+  return axis(OriginOf(rest, trunk.head) - OriginOf(rest, trunk.root));
+}
+
+bool IsLongestAlongZ(const wrinkle::Skeleton& skeleton) {
+  if (skeleton.num_joints() == 0) return false;
+  const auto rest = skeleton.rest_model();
+  glm::vec3 low = OriginOf(rest, 0);
+  glm::vec3 high = low;
+  for (int j = 0; j < skeleton.num_joints(); ++j) {
+    const auto at = static_cast<std::size_t>(j);
+    const glm::vec3 tail(rest[at] * glm::vec4(skeleton.tails()[at], 1.0f));
+    for (const glm::vec3& point : {OriginOf(rest, j), tail}) {
+      low = glm::min(low, point);
+      high = glm::max(high, point);
+    }
+  }
+  return high.z - low.z > high.y - low.y;
 }
 
 bool MovesAlongZ(const Clip& clip) {
   constexpr int kMaxSamples = 200;
   const Trunk trunk = FindTrunk(clip.skeleton);
   const int num_frames = clip.num_frames();
-  if (trunk.head == wrinkle::kNoJoint || num_frames == 0) return false;
+  if (!trunk.has_head() || trunk.on_four_legs || num_frames == 0) return false;
   const float reach = Reach(clip.skeleton, trunk);
   const int num_samples = std::min(num_frames, kMaxSamples);
   int num_upright = 0;

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "rig/hierarchy_roles.h"
+#include "wrinkle/hierarchy/hierarchy_roles.h"
 
 namespace furrow::authoring {
 
@@ -29,7 +29,7 @@ FoundJoints FindJoints(const Skeleton& skeleton, const rig::SkeletonMaps& maps,
   rig::SkeletonRoles known = holds ? rig::RolesOfPackage(stated) : maps.RolesOf(skeleton);
   FoundJoints found;
   found.map = std::move(known.map);
-  found.roles = found.map.empty() ? rig::RolesFromHierarchy(skeleton) : std::move(known.roles);
+  found.roles = found.map.empty() ? wrinkle::RolesFromHierarchy(skeleton) : std::move(known.roles);
   found.roles.resize(static_cast<std::size_t>(skeleton.num_joints()), JointRole::kNone);
   std::vector<bool> seen(wrinkle::kNumJointRoles, false);
   for (const JointRole role : found.roles) {

@@ -67,6 +67,31 @@ TEST(Floor, ARootThatStaysAtRestStatesNoPosition) {
   ExpectHips(clip, {0.9f, 0.9f, 0.9f});
 }
 
+TEST(Floor, LegsNeedNoNames) {
+  Clip clip;
+  std::vector<wrinkle::JointDesc> joints = {Joint("a", -1, {}), Joint("b", 0, {0, 0.3f, 0}),
+                                            Joint("c", 1, {0, 0.3f, 0}),
+                                            Joint("d", 2, {0, 0.2f, 0})};
+  std::vector<std::string> names;
+  for (int i = 0; i < 12; ++i) names.push_back("limb" + std::to_string(i));
+  const auto limb = [&](int parent, glm::vec3 start, glm::vec3 bone) {
+    for (int i = 0; i < 3; ++i) {
+      joints.push_back(Joint(names[joints.size() - 4].c_str(),
+                             i == 0 ? parent : static_cast<int>(joints.size()) - 1,
+                             i == 0 ? start : bone));
+    }
+  };
+  for (const float side : {0.1f, -0.1f}) {
+    limb(0, {side, 0, 0}, {0, -0.45f, 0});
+    limb(2, {side, 0, 0}, {3.0f * side, 0, 0});
+  }
+  clip.skeleton = *wrinkle::Skeleton::Create(std::move(joints));
+  clip.times = {0.0};
+  clip.locals.assign(clip.skeleton.rest_pose().begin(), clip.skeleton.rest_pose().end());
+  ASSERT_TRUE(RaiseToFloor(&clip).ok());
+  EXPECT_NEAR(clip.locals[0].translation.y, 0.9f, 1e-6f);
+}
+
 TEST(Floor, OthersStayAsTheyAre) {
   const auto stays = [](Clip clip) {
     const std::vector<float> before = HipsOf(clip);

@@ -35,9 +35,63 @@ TEST(UpAxis, IsInferredFromTheHead) {
   EXPECT_EQ(FindUpAxis(Standing("Head", {0, 1, 0}).skeleton), UpAxis::kY);
   EXPECT_EQ(FindUpAxis(Standing("head", {0, 0, 1}).skeleton), UpAxis::kZ);
   EXPECT_EQ(FindUpAxis(Standing("mixamorig:Head", {0, 0.2f, 1}).skeleton), UpAxis::kZ);
-  EXPECT_EQ(FindUpAxis(Standing("Head", {0, 0, -1}).skeleton), UpAxis::kY);  // upside down
-  EXPECT_EQ(FindUpAxis(Standing("Tail", {0, 0, 1}).skeleton), UpAxis::kY);   // no head
-  EXPECT_EQ(FindUpAxis(wrinkle::Skeleton()), UpAxis::kY);
+  EXPECT_EQ(FindUpAxis(Standing("Head", {0, 0, -1}).skeleton), UpAxis::kY);    // upside down
+  EXPECT_EQ(FindUpAxis(Standing("Tail", {0, 0, 1}).skeleton), UpAxis::kAuto);  // no head
+  EXPECT_EQ(FindUpAxis(wrinkle::Skeleton()), UpAxis::kAuto);
+}
+
+// A body on two or four legs, whose joints have numbers instead of names. `turn`: of the whole.
+Clip OnLegs(bool fox, const char* top, const glm::quat& turn) {
+  Clip clip;
+  const glm::vec3 trunk = fox ? glm::vec3(0, 0, 0.3f) : glm::vec3(0, 0.25f, 0);
+  std::vector<wrinkle::JointDesc> joints = {
+      Joint("j0", -1, turn * glm::vec3(0, fox ? 0.5f : 1.0f, 0)), Joint("j1", 0, turn * trunk),
+      Joint("j2", 1, turn * trunk), Joint(top, 2, turn * glm::vec3(0, 0.1f, fox ? 0.2f : 0.0f))};
+  const auto limb = [&](int parent, glm::vec3 start, glm::vec3 bone) {
+    for (int i = 0; i < 3; ++i) {
+      const std::string name = "j" + std::to_string(joints.size());
+      joints.push_back(Joint(name.c_str(), i == 0 ? parent : static_cast<int>(joints.size()) - 1,
+                             turn * (i == 0 ? start : bone)));
+    }
+  };
+  for (const float side : {0.1f, -0.1f}) {
+    limb(0, {side, 0, 0}, {0, fox ? -0.25f : -0.45f, 0});
+    limb(2, {side, 0, 0}, fox ? glm::vec3(0, -0.25f, 0) : glm::vec3(3.0f * side, 0, 0));
+  }
+  clip.skeleton = *wrinkle::Skeleton::Create(std::move(joints));
+  const auto rest = clip.skeleton.rest_pose();
+  for (int frame = 0; frame < 10; ++frame) {
+    clip.times.push_back(0.1 * frame);
+    clip.locals.insert(clip.locals.end(), rest.begin(), rest.end());
+  }
+  return clip;
+}
+
+const glm::quat kNoTurn(1, 0, 0, 0);
+const glm::quat kToZUp = glm::angleAxis(glm::radians(90.0f), glm::vec3(1, 0, 0));
+
+TEST(UpAxis, IsAwayFromTheFeetWhateverTheNames) {
+  EXPECT_EQ(FindUpAxis(OnLegs(false, "j3", kNoTurn).skeleton), UpAxis::kY);
+  EXPECT_EQ(FindUpAxis(OnLegs(false, "j3", kToZUp).skeleton), UpAxis::kZ);
+  EXPECT_EQ(FindUpAxis(OnLegs(false, "Head", kToZUp).skeleton), UpAxis::kZ);
+  EXPECT_EQ(FindUpAxis(OnLegs(true, "j3", kNoTurn).skeleton), UpAxis::kY);
+  EXPECT_EQ(FindUpAxis(OnLegs(true, "j3", kToZUp).skeleton), UpAxis::kZ);
+}
+
+// The head of a fox is ahead of its root, along Z.
+TEST(UpAxis, AFoxIsNotStoodUpright) {
+  const Clip fox = OnLegs(true, "Head", kNoTurn);
+  EXPECT_EQ(FindUpAxis(fox.skeleton), UpAxis::kY);
+  Clip on_the_spot = fox;
+  for (std::size_t i = 0; i < on_the_spot.locals.size(); i += fox.locals.size() / 10)
+    on_the_spot.locals[i].translation = {0, 0.5f, 0};
+  EXPECT_FALSE(MovesAlongZ(on_the_spot));
+}
+
+TEST(UpAxis, LongSkeletonsMayBeZUp) {
+  EXPECT_TRUE(IsLongestAlongZ(Standing("Tail", {0, 0, 1}).skeleton));
+  EXPECT_FALSE(IsLongestAlongZ(Standing("Tail", {0, 1, 0.5f}).skeleton));
+  EXPECT_FALSE(IsLongestAlongZ(wrinkle::Skeleton()));
 }
 
 // In every pose, all model-space positions turn about the same axis.
@@ -104,6 +158,41 @@ TEST(UpAxis, MotionAlongZIsTurnedOverItsRestPose) {
     EXPECT_LT(glm::length(clip.locals[i].translation - upright.locals[i].translation), 1e-5f);
     EXPECT_GT(std::abs(glm::dot(clip.locals[i].rotation, upright.locals[i].rotation)), 0.999999f);
   }
+}
+
+// Without names, the body is still turned upright; without legs, a warning names the way out.
+TEST(UpAxis, LoadClipTurnsBodiesWithoutAHeadOrSaysThatItCannot) {
+  const TemporaryFolder folder;
+  const auto path = (folder / "clip.bvh").string();
+  const Clip lying = OnLegs(false, "j3", kToZUp);
+  ASSERT_TRUE(SaveClip(lying, path).ok());
+  ClipReport report;
+  const auto turned = LoadClip(path, {}, &report);
+  ASSERT_TRUE(turned.ok()) << turned.status().ToString();
+  EXPECT_TRUE(report.warnings.empty());
+  const Clip upright = OnLegs(false, "j3", kNoTurn);
+  ASSERT_EQ(turned->skeleton.num_joints(), upright.skeleton.num_joints());
+  for (int j = 0; j < upright.skeleton.num_joints(); ++j) {
+    const int own =
+        turned->skeleton.Find(upright.skeleton.joint_names()[static_cast<std::size_t>(j)]);
+    EXPECT_LT(glm::distance(wrinkle::RestOrigin(turned->skeleton, own),
+                            wrinkle::RestOrigin(upright.skeleton, j)),
+              1e-4f)
+        << j;
+  }
+
+  Clip tail = Standing("Tail", {0, 0, 1});
+  tail.times = {0.0};
+  tail.locals.assign(tail.skeleton.rest_pose().begin(), tail.skeleton.rest_pose().end());
+  ASSERT_TRUE(SaveClip(tail, path).ok());
+  const auto kept = LoadClip(path, {}, &report);
+  ASSERT_TRUE(kept.ok()) << kept.status().ToString();
+  ASSERT_EQ(report.warnings.size(), 1u);
+  EXPECT_NE(report.warnings[0].find("the axis that points up is unknown"), std::string::npos);
+  EXPECT_NE(report.warnings[0].find("--up-axis z"), std::string::npos);
+  report.warnings.clear();
+  ASSERT_TRUE(LoadClip(path, {.up_axis = UpAxis::kY}, &report).ok());
+  EXPECT_TRUE(report.warnings.empty());
 }
 
 std::string Bvh(const char* offset, const char* positions) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "rig/hierarchy_roles.h"
+#include "wrinkle/hierarchy/hierarchy_roles.h"
 
 #include <algorithm>
 #include <array>
@@ -10,12 +10,16 @@
 
 #include <glm/geometric.hpp>
 
-namespace furrow::rig {
+namespace furrow::wrinkle {
 namespace {
 
-using wrinkle::JointRole;
-using wrinkle::kNoJoint;
-using wrinkle::Skeleton;
+// The least cosine between the directions of limbs that count as parallel, and between those of
+// legs and trunk that count as opposite: 60 degrees.
+constexpr float kLeastAligned = 0.5f;
+
+bool PointAlike(const glm::vec3& a, const glm::vec3& b) {
+  return glm::dot(a, b) > kLeastAligned * glm::length(a) * glm::length(b);
+}
 
 // Determines roles from the shape of the hierarchy.
 class HierarchyReader {
@@ -34,27 +38,47 @@ class HierarchyReader {
   }
 
   // Returns no roles if the hierarchy is not that of a body.
-  wrinkle::JointRoles Run() {
-    const std::optional<Fork> hips = FindFork(0, 3);
-    if (!hips) return {};
-    int spine = kNoJoint;
-    for (const int child : children_[hips->at]) {
-      const bool is_leg = IsLimb(child, *hips);
-      if (!is_leg && (spine < 0 || reach_[child] > reach_[spine])) spine = child;
-    }
-    const std::optional<Fork> chest = spine < 0 ? std::nullopt : FindFork(spine, 3);
-    if (!chest || !StandsUpright(*hips, *chest)) return {};
-    roles_[hips->at] = JointRole::kHips;
-    NameTrunk(hips->at, *chest);
-    const bool first_is_left = FirstIsLeft(*hips, *chest);
-    NameLeg(hips->pair.first, first_is_left);
-    NameLeg(hips->pair.second, !first_is_left);
+  JointRoles Run() {
+    const std::optional<Forks> forks = FindForks();
+    if (!forks || !StandsUpright(forks->hips, forks->chest)) return {};
+    const Fork& hips = forks->hips;
+    const Fork& chest = forks->chest;
+    roles_[hips.at] = JointRole::kHips;
+    NameTrunk(hips.at, chest);
+    const bool first_is_left = FirstIsLeft(hips, chest);
+    NameLeg(hips.pair.first, first_is_left);
+    NameLeg(hips.pair.second, !first_is_left);
     // The arm nearer to a leg is on the same side.
-    const glm::vec3 across = At(hips->pair.first) - At(hips->pair.second);
-    const bool same = glm::dot(At(chest->pair.first) - At(chest->pair.second), across) > 0.0f;
-    NameArm(chest->pair.first, first_is_left == same);
-    NameArm(chest->pair.second, first_is_left != same);
+    const glm::vec3 across = At(hips.pair.first) - At(hips.pair.second);
+    const bool same = glm::dot(At(chest.pair.first) - At(chest.pair.second), across) > 0.0f;
+    NameArm(chest.pair.first, first_is_left == same);
+    NameArm(chest.pair.second, first_is_left != same);
     return std::move(roles_);
+  }
+
+  [[nodiscard]] std::optional<BodyShape> Shape() const {
+    const std::optional<Forks> forks = FindForks();
+    if (!forks) return std::nullopt;
+    const auto [first, second] = forks->hips.pair;
+    const glm::vec3 legs = Reached(first) + Reached(second);
+    if (!PointAlike(Reached(first), Reached(second))) return std::nullopt;
+    BodyShape shape;
+    shape.is_upright = StandsUpright(forks->hips, forks->chest);
+    if (!shape.is_upright) {
+      // Both pairs of legs point down, across the trunk.
+      const auto [left, right] = forks->chest.pair;
+      if (!PointAlike(Reached(left) + Reached(right), legs)) return std::nullopt;
+      const glm::vec3 trunk = At(forks->chest.at) - At(forks->hips.at);
+      if (PointAlike(trunk, legs)) return std::nullopt;  // folded: all bones on one line
+    }
+    shape.up = -glm::normalize(legs);
+    shape.root = forks->hips.at;
+    while (skeleton_.joint_parents()[shape.root] >= 0) {
+      shape.root = skeleton_.joint_parents()[shape.root];
+    }
+    const std::vector<int> neck = Neck(forks->chest);
+    shape.head = neck.empty() ? forks->chest.at : neck.back();
+    return shape;
   }
 
  private:
@@ -63,6 +87,26 @@ class HierarchyReader {
     int at;
     std::pair<int, int> pair;
   };
+  struct Forks {
+    Fork hips;
+    Fork chest;
+  };
+
+  [[nodiscard]] std::optional<Forks> FindForks() const {
+    const std::optional<Fork> hips = FindFork(0, 3);
+    if (!hips) return std::nullopt;
+    int spine = kNoJoint;
+    for (const int child : children_[hips->at]) {
+      const bool is_leg = IsLimb(child, *hips);
+      if (!is_leg && (spine < 0 || reach_[child] > reach_[spine])) spine = child;
+    }
+    const std::optional<Fork> chest = spine < 0 ? std::nullopt : FindFork(spine, 3);
+    if (!chest) return std::nullopt;
+    return Forks{*hips, *chest};
+  }
+
+  // From the start of a limb to its end.
+  [[nodiscard]] glm::vec3 Reached(int limb) const { return At(LongestWay(limb).back()) - At(limb); }
 
   // True if a child of the fork leads to one of its limbs.
   [[nodiscard]] bool IsLimb(int child, const Fork& fork) const {
@@ -134,13 +178,29 @@ class HierarchyReader {
   // The legs of a person point away from the trunk. Those of a fox are across it, and a fox must
   // not be stood upright.
   [[nodiscard]] bool StandsUpright(const Fork& hips, const Fork& chest) const {
-    constexpr float kLeastOpposed = 0.5f;  // 60 degrees
     const glm::vec3 trunk = At(chest.at) - At(hips.at);
     glm::vec3 down(0.0f);
     for (const int leg : {hips.pair.first, hips.pair.second}) {
       down += At(LongestWay(leg)[2]) - At(leg);  // FindFork(): at least three joints
     }
-    return glm::dot(trunk, -down) > kLeastOpposed * glm::length(trunk) * glm::length(down);
+    return PointAlike(trunk, -down);
+  }
+
+  // The joints of the neck from the fork of the arms up to the head. Empty if there are none.
+  [[nodiscard]] std::vector<int> Neck(const Fork& chest) const {
+    int neck = kNoJoint;
+    for (const int child : children_[chest.at]) {
+      const bool is_arm = IsLimb(child, chest);
+      if (!is_arm && (neck < 0 || reach_[child] > reach_[neck])) neck = child;
+    }
+    if (neck < 0) return {};
+    // A neck has a single joint below it. The first joint that branches or ends is the head.
+    std::vector<int> way = {neck};
+    while (children_[way.back()].size() == 1 && way.size() < 4) {
+      way.push_back(children_[way.back()].front());
+    }
+    if (way.size() > 2 && children_[way.back()].empty()) way.pop_back();  // end of the crown
+    return way;
   }
 
   // Spine, chest and upper chest from the hips to the arms; neck and head above them.
@@ -152,18 +212,8 @@ class HierarchyReader {
     for (std::size_t i = 0; i < trunk.size(); ++i) {
       roles_[trunk[i]] = kTrunk[std::min<std::size_t>(i, 2)];
     }
-    int neck = kNoJoint;
-    for (const int child : children_[chest.at]) {
-      const bool is_arm = IsLimb(child, chest);
-      if (!is_arm && (neck < 0 || reach_[child] > reach_[neck])) neck = child;
-    }
-    if (neck < 0) return;
-    // A neck has a single joint below it. The first joint that branches or ends is the head.
-    std::vector<int> way = {neck};
-    while (children_[way.back()].size() == 1 && way.size() < 4) {
-      way.push_back(children_[way.back()].front());
-    }
-    if (way.size() > 2 && children_[way.back()].empty()) way.pop_back();  // end of the crown
+    const std::vector<int> way = Neck(chest);
+    if (way.empty()) return;
     roles_[way.back()] = JointRole::kHead;
     for (std::size_t i = 0; i + 1 < way.size(); ++i) roles_[way[i]] = JointRole::kNeck;
   }
@@ -183,7 +233,7 @@ class HierarchyReader {
   }
 
   void Name(int joint, JointRole left, bool is_left) {
-    roles_[joint] = is_left ? left : wrinkle::MirrorOf(left);
+    roles_[joint] = is_left ? left : MirrorOf(left);
   }
 
   void NameLeg(int leg, bool is_left) {
@@ -213,14 +263,19 @@ class HierarchyReader {
   const Skeleton& skeleton_;
   std::vector<std::vector<int>> children_;
   std::vector<float> reach_;  // distance from a joint down to its farthest leaf
-  wrinkle::JointRoles roles_;
+  JointRoles roles_;
 };
 
 }  // namespace
 
-wrinkle::JointRoles RolesFromHierarchy(const Skeleton& skeleton) {
+JointRoles RolesFromHierarchy(const Skeleton& skeleton) {
   if (skeleton.num_joints() == 0) return {};
   return HierarchyReader(skeleton).Run();
 }
 
-}  // namespace furrow::rig
+std::optional<BodyShape> FindBodyShape(const Skeleton& skeleton) {
+  if (skeleton.num_joints() == 0) return std::nullopt;
+  return HierarchyReader(skeleton).Shape();
+}
+
+}  // namespace furrow::wrinkle
