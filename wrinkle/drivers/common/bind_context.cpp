@@ -20,6 +20,7 @@ BindContext::BindContext(const BindSource& source, const Skeleton& skeleton,
     : source_(source),
       skeleton_(skeleton),
       options_(options),
+      turned_(options.turn != glm::quat(1.0f, 0.0f, 0.0f, 0.0f)),
       chains_(chains),
       size_(SkeletonSizeBy(source.size_reference, skeleton)),
       rest_locals_(skeleton.rest_pose().begin(), skeleton.rest_pose().end()) {}
@@ -39,6 +40,12 @@ Status BindContext::ResolveAnchorAndPoses() {
     reference_locals_.push_back(std::move(locals));
   }
   return {};
+}
+
+glm::quat BindContext::RestRotationInPose(int joint) const {
+  const glm::quat& rest = skeleton_.rest_pose()[joint].rotation;
+  const bool is_root = skeleton_.joint_parents()[joint] == kNoJoint;
+  return glm::normalize(turned_ && is_root ? glm::conjugate(options_.turn) * rest : rest);
 }
 
 Status BindContext::ApplyPose(const ReferencePose& pose, std::vector<PreciseTransform>* locals) {

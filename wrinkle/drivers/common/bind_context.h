@@ -27,7 +27,8 @@ struct BindSource {
 // missing ones (BindOptions::allow_missing). Private to wrinkle/.
 class BindContext {
  public:
-  // The arguments outlive the context. `chains` receives the drivers' points.
+  // The arguments outlive the context. `skeleton` is turned by `options.turn`. `chains` receives
+  // the drivers' points.
   BindContext(const BindSource& source, const Skeleton& skeleton, const BindOptions& options,
               JointChains* chains);
 
@@ -51,7 +52,18 @@ class BindContext {
   [[nodiscard]] Status Unusable(std::string_view owner, std::string_view why);
   void Warn(std::string warning) { warnings_.push_back(std::move(warning)); }
 
+  // Rests in Furrow's model space; see BindOptions::turn.
   [[nodiscard]] const Skeleton& skeleton() const { return skeleton_; }
+  // Converts from Furrow's model space to that of poses, which are not turned. Only measures that
+  // include a root joint need it: whatever is measured between joints is the same in both.
+  [[nodiscard]] glm::vec3 ToPoseSpace(const glm::vec3& v) const {
+    return turned_ ? glm::conjugate(options_.turn) * v : v;
+  }
+  [[nodiscard]] glm::dvec3 ToPoseSpace(const glm::dvec3& v) const {
+    return turned_ ? glm::conjugate(glm::dquat(options_.turn)) * v : v;
+  }
+  // The local rest rotation of `joint` in the skeleton that poses belong to.
+  [[nodiscard]] glm::quat RestRotationInPose(int joint) const;
   [[nodiscard]] JointChains& chains() { return *chains_; }
   [[nodiscard]] float size() const { return size_; }  // SkeletonSizeBy()
   [[nodiscard]] int anchor() const { return anchor_; }
@@ -71,6 +83,7 @@ class BindContext {
   const BindSource& source_;
   const Skeleton& skeleton_;
   BindOptions options_;
+  bool turned_ = false;  // options_.turn is not the identity
   JointChains* chains_;
   float size_ = 0.0f;
   int anchor_ = kNoJoint;

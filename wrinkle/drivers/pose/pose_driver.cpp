@@ -78,7 +78,7 @@ Status PoseDriverSet::Bind(const std::string& name, const PoseDriver& driver, in
   entry.solve = driver.solve;
   entry.falloff = driver.falloff;
   bool usable = false;
-  FURROW_RETURN_IF_ERROR(BindPoints(name, driver, context, &usable));
+  FURROW_RETURN_IF_ERROR(BindPoints(name, driver, context, &entry, &usable));
   if (!usable) return {};
   entry.num_points = static_cast<std::uint32_t>(points_.size()) - entry.first_point;
   PreciseVectors precise;
@@ -91,7 +91,7 @@ Status PoseDriverSet::Bind(const std::string& name, const PoseDriver& driver, in
 }
 
 Status PoseDriverSet::BindPoints(const std::string& name, const PoseDriver& driver,
-                                 BindContext* context, bool* usable) {
+                                 BindContext* context, Entry* entry, bool* usable) {
   const Skeleton& skeleton = context->skeleton();
   std::vector<int> joints;
   int anchor = context->anchor();
@@ -109,6 +109,7 @@ Status PoseDriverSet::BindPoints(const std::string& name, const PoseDriver& driv
     *usable = *usable && *joint != kNoJoint;
   }
   if (!*usable) return {};
+  entry->in_model_space = anchor == kNoJoint;
   // Points are measured in the anchor's space, so that a nod of the head makes no wrinkle (thesis
   // 4.1 leaves the space open).
   for (std::size_t i = 0; i < joints.size(); ++i) {
@@ -118,7 +119,8 @@ Status PoseDriverSet::BindPoints(const std::string& name, const PoseDriver& driv
     }
     const glm::vec3 offset = LocalOffset(driver.points[i], skeleton, joints[i], context->size());
     const int point = context->chains().Add(skeleton, joints[i], offset, anchor);
-    points_.push_back({point, context->chains().Evaluate(skeleton.rest_pose(), point)});
+    const glm::vec3 rest = context->chains().Evaluate(skeleton.rest_pose(), point);
+    points_.push_back({point, entry->in_model_space ? context->ToPoseSpace(rest) : rest});
   }
   return {};
 }
@@ -137,8 +139,9 @@ Status PoseDriverSet::BindValue(const std::string& name, const PoseDriver::Value
   double square = 0.0;
   for (const MeasuredPoint& point : points(entry)) {
     const JointChains& chains = context->chains();
-    precise->push_back(chains.Evaluate(std::span<const PreciseTransform>(*locals), point.point) -
-                       chains.Evaluate(context->rest_locals(), point.point));
+    const glm::dvec3 d = chains.Evaluate(std::span<const PreciseTransform>(*locals), point.point) -
+                         chains.Evaluate(context->rest_locals(), point.point);
+    precise->push_back(entry.in_model_space ? context->ToPoseSpace(d) : d);
     square += glm::dot(precise->back(), precise->back());
   }
   // A displacement with a square of 0 as a float does not move either.

@@ -32,6 +32,7 @@ class PoseDriverSet {
     std::uint32_t first_direction = 0;     // into directions_, for PoseSolve::kNnls
     PoseSolve solve = PoseSolve::kProjection;
     float falloff = 0.0f;
+    bool in_model_space = false;  // no anchor: points are in the model space of poses
   };
 
   // Adds a driver with values that begin at `first_value` of the binding's driver values.
@@ -67,8 +68,9 @@ class PoseDriverSet {
   // Displacements before they are rounded: d = B_k - B_0 of one driver, value by value.
   using PreciseVectors = std::vector<glm::dvec3>;
 
+  // Sets `entry->in_model_space`.
   [[nodiscard]] Status BindPoints(const std::string& name, const PoseDriver& driver,
-                                  BindContext* context, bool* usable);
+                                  BindContext* context, Entry* entry, bool* usable);
   [[nodiscard]] Status BindValue(const std::string& name, const PoseDriver::Value& value,
                                  const Entry& entry, BindContext* context, PreciseVectors* precise);
   void BindGram(const std::string& name, const PoseDriver& driver, const PreciseVectors& precise,

@@ -27,7 +27,7 @@ Status TwistDriverSet::Bind(const std::string& name, const TwistDriver& driver, 
       if (std::ranges::count(joints, index, &TwistJoint::joint) > 0) continue;
       TwistJoint joint;
       joint.joint = index;
-      joint.rest_inverse = glm::conjugate(glm::normalize(skeleton.rest_pose()[index].rotation));
+      joint.rest_inverse = glm::conjugate(context->RestRotationInPose(index));
       joint.axis = Direction(driver.axis ? ToJointAxes(skeleton, index, *driver.axis)
                                          : skeleton.tails()[index]);
       if (joint.axis == glm::vec3(0.0f)) {
