@@ -12,4 +12,8 @@ namespace furrow::wrinkle {
 // drivers.
 [[nodiscard]] std::set<std::string> JointsOf(const Rig& rig);
 
+// A warning about pose drivers that have no anchor, and whose rig has none: they measure in model
+// space, so every move of the body changes their values. Empty if there are none.
+[[nodiscard]] std::string WarningOfModelSpace(const Rig& rig);
+
 }  // namespace furrow::wrinkle

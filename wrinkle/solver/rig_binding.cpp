@@ -7,6 +7,7 @@
 
 #include "wrinkle/rig/driver_values.h"
 #include "wrinkle/rig/rig_check.h"
+#include "wrinkle/rig/rig_joints.h"
 #include "wrinkle/solver/binding_data.h"
 
 namespace furrow::wrinkle {
@@ -79,7 +80,8 @@ Result<RigBinding> RigBinding::Create(const Rig& rig, const Skeleton& skeleton,
   FURROW_RETURN_IF_ERROR(CheckRigFields(rig));
   auto data = std::make_unique<BindingData>();
   data->rig = rig;
-  // Drivers compare joints with joints above them, so only the rest pose needs to turn.
+  // Drivers compare joints with joints above them, so only the rest pose needs to turn. Those that
+  // measure roots convert with BindContext::ToPoseSpace().
   const bool turned = options.turn != glm::quat(1.0f, 0.0f, 0.0f, 0.0f);
   data->skeleton = turned ? TurnRoots(skeleton, options.turn) : skeleton;
   const BindSource source = SourceOf(rig, blend_shape_names);
@@ -87,6 +89,9 @@ Result<RigBinding> RigBinding::Create(const Rig& rig, const Skeleton& skeleton,
   FURROW_RETURN_IF_ERROR(context.ResolveAnchorAndPoses());
   ValueIndex value_index;
   FURROW_RETURN_IF_ERROR(BindDrivers(rig, &context, data.get(), &value_index));
+  if (std::string warning = WarningOfModelSpace(rig); !warning.empty()) {
+    context.Warn(std::move(warning));
+  }
   // WeightTable checks the names in feeds; InfluenceTable relies on them.
   FURROW_RETURN_IF_ERROR(data->weights.Bind(rig, value_index));
   data->influences.Bind(rig, data->skeleton, value_index);

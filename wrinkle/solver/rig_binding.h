@@ -39,8 +39,9 @@ class RigBinding {
   [[nodiscard]] std::span<const std::string> missing_blend_shapes() const;
   // Drivers that bind but cannot do what was probably meant: a reference pose that moves none of
   // its driver's control points (the value is always 0), reference poses of an nnls driver that
-  // almost depend on one another, a control point that does not hang from the anchor and, if
-  // BindOptions allow missing joints, a driver that cannot work on this skeleton.
+  // almost depend on one another, a control point that does not hang from the anchor, drivers
+  // without an anchor and, if BindOptions allow missing joints, a driver that cannot work on this
+  // skeleton.
   [[nodiscard]] std::span<const std::string> warnings() const;
   [[nodiscard]] const Skeleton& skeleton() const;
   [[nodiscard]] const Rig& rig() const;
