@@ -164,17 +164,40 @@ wrinkle::JointRoles SkeletonMatcher::RolesOfRig(std::span<const std::string> joi
   return roles;
 }
 
+std::optional<wrinkle::RestStance> SkeletonMatcher::StanceOf(
+    const wrinkle::Skeleton& skeleton) const {
+  auto stance = wrinkle::FindRestStance(skeleton, RolesOfStream(skeleton).roles);
+  if (stance) return stance;
+  stance = wrinkle::FindRestStance(skeleton, characters_.RolesOrGuess(skeleton).roles);
+  if (stance) return stance;
+  // A few joints, such as those of a head, are enough to tell up and left.
+  int most = 0;
+  for (const SkeletonMap& map : characters_.maps()) {
+    const SkeletonRoles found = ApplySkeletonMap(map, skeleton.joint_names());
+    if (found.num_roles <= most) continue;
+    const auto told = wrinkle::FindRestStance(skeleton, found.roles);
+    if (!told) continue;
+    stance = told;
+    most = found.num_roles;
+  }
+  return stance;
+}
+
 SkeletonMatch SkeletonMatcher::Match(const wrinkle::Skeleton& stream, const wrinkle::Rig& rig,
                                      const wrinkle::Skeleton* character) const {
   SkeletonMatch match;
   match.stream = RolesOfStream(stream);
   match.fit = FitOf(match.stream, stream);
   if (character != nullptr) match.character = RolesOfCharacter(*character);
-  if (match.stream.roles.empty()) return match;
-  match.stance = wrinkle::FindRestStance(stream, match.stream.roles);
-
   const std::set<std::string> joints = wrinkle::JointsOf(rig);
   const std::vector<std::string> names(joints.begin(), joints.end());
+  match.stance = StanceOf(stream);
+  const auto has_joint = [&](const std::string& name) {
+    return stream.Find(name) != wrinkle::kNoJoint;
+  };
+  match.assumes_axes = !match.stance && std::ranges::any_of(names, has_joint);
+  if (match.stream.roles.empty()) return match;
+
   const wrinkle::JointRoles own = RolesOfRig(names);
   const wrinkle::JointRoles& theirs = match.stream.roles;
   const RoleParts parts(own, theirs);
@@ -199,6 +222,7 @@ SkeletonMatch SkeletonMatcher::Match(const wrinkle::Skeleton& stream, const wrin
     }
     if (!chain.skeleton_joints.empty()) match.role_chains.push_back(std::move(chain));
   }
+  match.assumes_axes = match.assumes_axes || (!match.stance && !match.aliases.empty());
   return match;
 }
 
@@ -213,10 +237,11 @@ std::string Describe(const SkeletonMatch& match) {
   if (text.empty() && match.fit.num_joints > 0) {
     text = "no skeleton map fits; joints are matched by equal names";
   }
-  if (text.empty() || match.turn() == wrinkle::RestStance().turn) return text;
+  if (match.turn() == wrinkle::RestStance().turn) return text;
   const glm::quat back = glm::conjugate(match.turn());
-  return text + "; the rest pose faces " + AxisName(back * glm::vec3(0.0f, 0.0f, 1.0f)) +
-         ", up is " + AxisName(back * glm::vec3(0.0f, 1.0f, 0.0f));
+  return text + (text.empty() ? "the rest pose faces " : "; the rest pose faces ") +
+         AxisName(back * glm::vec3(0.0f, 0.0f, 1.0f)) + ", up is " +
+         AxisName(back * glm::vec3(0.0f, 1.0f, 0.0f));
 }
 
 std::vector<std::string> WarningsOf(const SkeletonMatch& match) {
@@ -227,6 +252,12 @@ std::vector<std::string> WarningsOf(const SkeletonMatch& match) {
         "no skeleton map knows the joint names, so their roles are guessed from the hierarchy; if "
         "the body moves wrong, write a map with 'furrow rig propose-map' and choose it with "
         "--skeleton-map");
+  }
+  if (match.assumes_axes) {
+    warnings.emplace_back(
+        "the axes of the rest pose are unknown, because no joints with known roles tell up and "
+        "left; +Y is taken as up and +Z as ahead; if the values are wrong, map the joints with "
+        "--skeleton-map (docs/SKELETONS.md), or turn a BVH file with --up-axis");
   }
   if (match.stance && match.stance->is_folded) {
     warnings.emplace_back(

@@ -31,6 +31,8 @@ struct SkeletonMatch {
 
   // How the stream's skeleton stands at rest; nullopt if its roles do not tell.
   std::optional<wrinkle::RestStance> stance;
+  // There is no stance, but the rig reads joints of the stream: its axes are taken to be Furrow's.
+  bool assumes_axes = false;
 
   // True if a joint of the rig is matched with this joint of the stream by its role.
   [[nodiscard]] bool Reads(std::string_view stream_joint) const;
@@ -69,6 +71,11 @@ class SkeletonMatcher {
   [[nodiscard]] SkeletonRoles RolesOf(const wrinkle::Skeleton& stream) const {
     return streams_.RolesOrGuess(stream);
   }
+
+  // How the skeleton of a stream, or of a recording with poses of a rig, stands at rest. If the map
+  // that Match() takes does not tell, any other may, and then needs neither limbs nor many roles.
+  [[nodiscard]] std::optional<wrinkle::RestStance> StanceOf(
+      const wrinkle::Skeleton& skeleton) const;
 
   // `character` may be null. It does not affect the aliases, so weights are the same with and
   // without pictures. The map that explains the most joint names of the rig gives their roles.

@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "character/package/package.h"
 #include "wrinkle/rig/driver_values.h"
+#include "wrinkle/rig/rig_joints.h"
 #include "wrinkle/skeleton/retarget.h"
 #include "wrinkle/solver/solver.h"
 
@@ -90,6 +91,7 @@ void TryBinding(const Rig& rig, const RigReportOptions& options, RigReport* repo
     how.allow_missing = allow_missing;
     how.aliases = options.aliases;
     how.role_chains = options.role_chains;
+    how.turn = options.turn;
     return wrinkle::RigBinding::Create(rig, *options.skeleton, options.blend_shape_names, how);
   };
   // Strict first, to say whether the rig fits. Lenient second, to list everything that is missing
@@ -116,7 +118,11 @@ RigReport ReportOnRig(const Rig& rig, const RigReportOptions& options) {
   Count(rig, &report);
   WarnOfUnused(rig, &report.warnings);
   WarnOfPictures(rig, options, &report.warnings);
-  if (options.skeleton != nullptr) TryBinding(rig, options, &report);
+  if (options.skeleton != nullptr) {
+    TryBinding(rig, options, &report);
+  } else if (std::string warning = wrinkle::WarningOfModelSpace(rig); !warning.empty()) {
+    report.warnings.push_back(std::move(warning));  // binding would say so
+  }
   return report;
 }
 

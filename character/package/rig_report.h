@@ -36,6 +36,7 @@ struct RigReportOptions {
   // See BindOptions.
   std::span<const std::pair<std::string, std::string>> aliases;
   std::span<const wrinkle::RoleChain> role_chains;
+  glm::quat turn = wrinkle::BindOptions().turn;
   // The folder that is searched for the rig's pictures, before FURROW_ASSET_PATH. Pictures embedded
   // in a character are listed in `embedded_pictures`.
   std::filesystem::path folder;

@@ -2,6 +2,7 @@
 #include "rig/skeleton_match.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <random>
 
@@ -10,8 +11,10 @@
 
 #include "authoring/generator/default_character.h"
 #include "base/scalar.h"
+#include "motion/clip_file.h"
 #include "rig/rig_file.h"
 #include "tests/unit/rig/shipped_matcher.h"
+#include "wrinkle/hierarchy/hierarchy_roles.h"
 #include "wrinkle/solver/subject_solver.h"
 
 namespace furrow::rig {
@@ -70,6 +73,17 @@ class SkeletonMatching : public testing::Test {
     const auto at = std::ranges::find(names, name);
     EXPECT_NE(at, names.end()) << name;
     return solver.driver_values()[static_cast<std::size_t>(at - names.begin())];
+  }
+  // All driver values of a pose, bound by roles.
+  std::vector<float> AllValues(const wrinkle::Rig& rig, const wrinkle::Skeleton& skeleton,
+                               const wrinkle::LocalPose& pose) const {
+    const SkeletonMatch match = matcher_.Match(skeleton, rig, nullptr);
+    auto binding = wrinkle::RigBinding::Create(rig, skeleton, {}, match.Options(true));
+    EXPECT_TRUE(binding.ok()) << binding.status().ToString();
+    wrinkle::SubjectSolver solver(std::make_shared<const wrinkle::RigBinding>(*std::move(binding)),
+                                  false);
+    EXPECT_EQ(solver.Update(pose, 0.0), wrinkle::JobStatus::kOk);
+    return {solver.driver_values().begin(), solver.driver_values().end()};
   }
 
   SkeletonMatcher matcher_;
@@ -175,15 +189,6 @@ TEST_F(SkeletonMatching, ValuesDoNotDependOnTheAxesOfTheFile) {
   const wrinkle::Rig rig = Shipped("default.json");
   const wrinkle::Skeleton upright =
       authoring::MakeDefaultCharacter(rig, {.texture_size = 64}).skeleton;
-  const auto values = [&](const wrinkle::Skeleton& skeleton, const wrinkle::LocalPose& pose) {
-    const SkeletonMatch match = matcher_.Match(skeleton, rig, nullptr);
-    auto binding = wrinkle::RigBinding::Create(rig, skeleton, {}, match.Options(true));
-    EXPECT_TRUE(binding.ok()) << binding.status().ToString();
-    wrinkle::SubjectSolver solver(std::make_shared<const wrinkle::RigBinding>(*std::move(binding)),
-                                  false);
-    EXPECT_EQ(solver.Update(pose, 0.0), wrinkle::JobStatus::kOk);
-    return std::vector<float>(solver.driver_values().begin(), solver.driver_values().end());
-  };
   std::mt19937 random(7);
   std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
   wrinkle::LocalPose pose;
@@ -193,15 +198,131 @@ TEST_F(SkeletonMatching, ValuesDoNotDependOnTheAxesOfTheFile) {
     local.rotation = local.rotation * glm::angleAxis(0.5f * uniform(random), glm::normalize(axis));
     local.translation += 0.004f * glm::vec3(uniform(random), uniform(random), uniform(random));
   }
-  const std::vector<float> wanted = values(upright, pose);
+  const std::vector<float> wanted = AllValues(rig, upright, pose);
   EXPECT_GT(std::ranges::count_if(wanted, [](float v) { return v > 0.1f; }), 10);
   for (const glm::quat& turn : QuarterTurns()) {
     const wrinkle::Skeleton turned = wrinkle::TurnRoots(upright, turn);
     wrinkle::LocalPose other = pose;
     wrinkle::TurnRoots(upright, turn, other.joints);
-    const std::vector<float> found = values(turned, other);
+    const std::vector<float> found = AllValues(rig, turned, other);
     ASSERT_EQ(found.size(), wanted.size());
     for (std::size_t i = 0; i < wanted.size(); ++i) EXPECT_NEAR(found[i], wanted[i], 2e-4f) << i;
+  }
+}
+
+// Drivers that measure roots: poses without an anchor, and the twist of the hips.
+TEST_F(SkeletonMatching, ValuesOfModelSpaceDoNotDependOnTheAxesEither) {
+  const auto parsed = ParseRig(R"({"name": "r", "reference_poses": [
+      {"name": "step", "joints": [
+        {"joint": "hips", "translation": [0.1, 0.02, 0.3], "euler_degrees": [5, 20, 0]}]},
+      {"name": "reach", "joints": [
+        {"joint": "upper_arm_l", "euler_degrees": [0, -60, 25]},
+        {"joint": "hips", "translation": [-0.1, -0.05, 0.1]}]}],
+    "drivers": [
+      {"name": "away", "pose": {"points": [{"joint": "hips", "kind": "origin"}, {"joint": "hand_l"}],
+        "values": [{"name": "step", "reference_pose": "step"},
+                   {"name": "reach", "reference_pose": "reach"}]}},
+      {"name": "falls", "pose": {"points": [{"joint": "hand_l"}], "falloff": 2,
+        "values": [{"name": "reach", "reference_pose": "reach"}]}},
+      {"name": "both", "pose": {"points": [{"joint": "head"}, {"joint": "hand_l"}], "solve": "nnls",
+        "values": [{"name": "step", "reference_pose": "step"},
+                   {"name": "reach", "reference_pose": "reach"}]}},
+      {"name": "heading", "twist": {"joint": "hips", "axis": [0, 1, 0], "full_degrees": 45}},
+      {"name": "along", "twist": {"joint": "hips", "through": ["spine"]}}]})",
+                               "r.json", ".");
+  ASSERT_TRUE(parsed.ok()) << parsed.status().ToString();
+  const wrinkle::Skeleton upright =
+      authoring::MakeDefaultCharacter(Shipped("default.json"), {.texture_size = 64}).skeleton;
+  wrinkle::LocalPose pose;
+  pose.SetRest(upright);
+  wrinkle::Transform& hips = pose.joints[static_cast<std::size_t>(upright.Find("hips"))];
+  hips.translation += glm::vec3(0.03f, 0.0f, 0.17f);
+  hips.rotation = glm::angleAxis(0.3f, glm::normalize(glm::vec3(0.1f, 1, 0))) * hips.rotation;
+  wrinkle::Transform& arm = pose.joints[static_cast<std::size_t>(upright.Find("upper_arm_l"))];
+  arm.rotation = arm.rotation * glm::angleAxis(0.4f, glm::normalize(glm::vec3(0, -0.9f, 0.4f)));
+  const std::vector<float> wanted = AllValues(*parsed, upright, pose);
+  EXPECT_GT(std::ranges::count_if(wanted, [](float v) { return v > 0.1f; }), 5);
+  EXPECT_NEAR(wanted[5], 0.3f / (45.0f * kDegrees), 0.01f);
+  for (const glm::quat& turn : QuarterTurns()) {
+    wrinkle::LocalPose other = pose;
+    wrinkle::TurnRoots(upright, turn, other.joints);
+    const std::vector<float> found = AllValues(*parsed, wrinkle::TurnRoots(upright, turn), other);
+    ASSERT_EQ(found.size(), wanted.size());
+    for (std::size_t i = 0; i < wanted.size(); ++i) EXPECT_NEAR(found[i], wanted[i], 2e-4f) << i;
+  }
+}
+
+// A stream of a head has too few joints for a skeleton map, but enough to tell its axes.
+TEST_F(SkeletonMatching, AHeadTellsItsAxes) {
+  const wrinkle::Rig rig = Shipped("default.json");
+  const wrinkle::Skeleton head =
+      *wrinkle::Skeleton::Create({{"neck", -1, {{0, 1.5f, 0}}, {}},
+                                  {"head", 0, {{0, 0.1f, 0.02f}}, {}},
+                                  {"eye_l", 1, {{0.03f, 0.1f, 0.08f}}, {}},
+                                  {"eye_r", 1, {{-0.03f, 0.1f, 0.08f}}, {}},
+                                  {"jaw", 1, {{0, -0.04f, 0.01f}}, {}}});
+  EXPECT_TRUE(matcher_.Match(head, rig, nullptr).stream.roles.empty());
+  for (const glm::quat& turn : QuarterTurns()) {
+    const SkeletonMatch match = matcher_.Match(wrinkle::TurnRoots(head, turn), rig, nullptr);
+    EXPECT_NEAR(std::abs((match.turn() * turn).w), 1.0f, 1e-5f);
+    EXPECT_THAT(Describe(match), HasSubstr("the rest pose faces"));
+    EXPECT_THAT(WarningsOf(match), IsEmpty());
+  }
+}
+
+TEST_F(SkeletonMatching, WarnsOfAxesThatNobodyTells) {
+  const wrinkle::Rig rig = Shipped("default.json");
+  const auto warnings = [&](const char* joint) {
+    const auto skeleton = wrinkle::Skeleton::Create({{joint, -1, {}, {}}});
+    return WarningsOf(matcher_.Match(*skeleton, rig, nullptr));
+  };
+  EXPECT_THAT(warnings("frontalis_inner_l"), ElementsAre(HasSubstr("+Y is taken as up")));
+  EXPECT_THAT(warnings("camera"), IsEmpty()) << "the rig reads no such joint";
+  EXPECT_THAT(WarningsOf(matcher_.Match(wrinkle::Skeleton(), rig, nullptr)), IsEmpty());
+}
+
+// A person whose joints are numbered.
+TEST_F(SkeletonMatching, AStreamThatNoMapFitsGetsRolesFromItsHierarchy) {
+  std::vector<wrinkle::JointDesc> joints;
+  const auto add = [&](int parent, const glm::vec3& offset) {
+    joints.push_back({"j" + std::to_string(joints.size()), parent, {offset}, {}});
+    return static_cast<int>(joints.size()) - 1;
+  };
+  const int hips = add(-1, {0, 1, 0});
+  const int chest = add(add(hips, {0, 0.2f, 0}), {0, 0.2f, 0});
+  add(add(chest, {0, 0.1f, 0}), {0, 0.1f, 0});
+  int knee = -1;
+  for (const float side : {1.0f, -1.0f}) {
+    add(add(add(chest, {0.2f * side, 0, 0}), {0.3f * side, 0, 0}), {0.3f * side, 0, 0});
+    knee = add(add(hips, {0.1f * side, -0.1f, 0}), {0, -0.4f, 0});
+    add(add(knee, {0, -0.4f, 0}), {0, -0.1f, 0.15f});
+  }
+  const wrinkle::Skeleton person = *wrinkle::Skeleton::Create(joints);
+  const SkeletonRoles found = matcher_.RolesOf(person);
+  ASSERT_EQ(found.map, kFromHierarchy);
+  EXPECT_EQ(found.roles[static_cast<std::size_t>(person.Find("j" + std::to_string(knee)))],
+            wrinkle::JointRole::kRightLowerLeg);
+  EXPECT_THAT(Describe(found), HasSubstr("guessed from the hierarchy"));
+  // The proposed map finds the same roles.
+  const auto map =
+      ParseSkeletonMap(ProposeSkeletonMap("mine", person.joint_names(), found.roles), "mine.json");
+  ASSERT_TRUE(map.ok()) << map.status().ToString();
+  EXPECT_EQ(ApplySkeletonMap(*map, person.joint_names()).roles, found.roles);
+}
+
+// CMU's names say which joint is which.
+TEST_F(SkeletonMatching, TheHierarchyOfCmuAgreesWithItsNames) {
+  const std::filesystem::path take = FURROW_SHARED_DATA "/cmu/01_01.bvh";
+  if (!std::filesystem::exists(take)) GTEST_SKIP() << take << " is missing";
+  const auto clip = motion::LoadClip(take);
+  ASSERT_TRUE(clip.ok()) << clip.status().ToString();
+  const SkeletonRoles named = matcher_.RolesOf(clip->skeleton);
+  ASSERT_EQ(named.map, "cmu");
+  const wrinkle::JointRoles guessed = wrinkle::RolesFromHierarchy(clip->skeleton);
+  ASSERT_EQ(guessed.size(), named.roles.size());
+  for (std::size_t i = 0; i < guessed.size(); ++i) {
+    if (!wrinkle::IsOfLimb(named.roles[i])) continue;
+    EXPECT_EQ(guessed[i], named.roles[i]) << clip->skeleton.joint_names()[i];
   }
 }
 

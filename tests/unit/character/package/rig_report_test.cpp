@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "authoring/generator/body/body_skeleton.h"
 #include "motion/clip/clip.h"
 #include "motion/clip_file.h"
 #include "rig/rig_file.h"
@@ -20,6 +21,7 @@ namespace {
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 wrinkle::Rig Shipped(const char* name) {
   return *rig::LoadRig(std::string(FURROW_SOURCE_DIR "/rig/rigs/") + name);
@@ -78,6 +80,36 @@ TEST(RigReport, WarnsOfUnusedPartsAndMissingReferences) {
   options.blend_shape_names = others;
   EXPECT_FALSE(ReportOnRig(*rig, options).binding.ok())
       << "the rig needs a blend shape that the list lacks";
+}
+
+TEST(RigReport, WarnsOfFacesWithoutAnAnchor) {
+  wrinkle::Rig rig = Shipped("default.json");
+  EXPECT_THAT(ReportOnRig(rig).warnings, Not(Contains(HasSubstr("measured in model space"))));
+  rig.anchor.clear();
+  EXPECT_THAT(ReportOnRig(rig).warnings, Contains(HasSubstr("more are measured in model space")));
+  RigReportOptions options;
+  const wrinkle::Skeleton skeleton = authoring::MakeSkeleton();
+  options.skeleton = &skeleton;
+  EXPECT_THAT(ReportOnRig(rig, options).warnings,
+              Contains(HasSubstr("more are measured in model space")));
+}
+
+// An axis along +Z is across a leg, but not across the leg of a Z-up skeleton.
+TEST(RigReport, BindsToTheTurnedSkeleton) {
+  wrinkle::Rig rig;
+  rig.drivers.resize(1);
+  rig.drivers[0].name = "knee";
+  rig.drivers[0].kind = wrinkle::Driver::Kind::kHinge;
+  rig.drivers[0].hinge = {
+      .parent = "upper_leg_l", .joint = "lower_leg_l", .end = "foot_l", .axis = glm::vec3(0, 0, 1)};
+  const glm::quat turn = glm::angleAxis(glm::radians(90.0f), glm::vec3(1, 0, 0));
+  const wrinkle::Skeleton z_up = wrinkle::TurnRoots(authoring::MakeSkeleton(), turn);
+  RigReportOptions options;
+  options.skeleton = &z_up;
+  EXPECT_FALSE(ReportOnRig(rig, options).binding.ok());
+  options.turn = glm::conjugate(turn);
+  const RigReport report = ReportOnRig(rig, options);
+  EXPECT_TRUE(report.binding.ok()) << report.binding.ToString();
 }
 
 TEST(RigReport, CmuFollowsKneesAndElbowsOfARecording) {
