@@ -10,7 +10,6 @@
 
 #include "base/asset_path.h"
 #include "base/status.h"
-#include "rig/rig_reference_pose.h"
 #include "wrinkle/rig/rig_check.h"
 
 namespace furrow::rig {
@@ -24,8 +23,13 @@ class PoseReader {
  public:
   PoseReader(const TableList<schema::ReferencePose>* list, const std::filesystem::path& folder,
              const wrinkle::PoseSource& source, wrinkle::Skeleton* recorded,
-             std::set<std::string>* missing)
-      : list_(list), folder_(folder), source_(source), recorded_(recorded), missing_(missing) {}
+             std::set<std::string>* missing, const PoseAnchors& anchors)
+      : list_(list),
+        folder_(folder),
+        source_(source),
+        recorded_(recorded),
+        missing_(missing),
+        anchors_(anchors) {}
 
   Status Run(std::vector<wrinkle::ReferencePose>* poses) {
     // The limit comes before any reading, so that a hostile file cannot make this load thousands of
@@ -150,7 +154,7 @@ class PoseReader {
     }
     if (recorded_->num_joints() == 0) *recorded_ = frame->skeleton;
     Result<wrinkle::ReferencePose> pose =
-        ReferencePoseFromFrame(from.name()->str(), *frame, rest.ok() ? &*rest : nullptr);
+        ReferencePoseFromFrame(from.name()->str(), *frame, rest.ok() ? &*rest : nullptr, anchors_);
     if (!pose.ok()) return pose.status().At(at + ".file");
     *to = std::move(*pose);
     return {};
@@ -194,6 +198,7 @@ class PoseReader {
   const wrinkle::PoseSource& source_;
   wrinkle::Skeleton* recorded_;
   std::set<std::string>* missing_;
+  const PoseAnchors& anchors_;
   std::unordered_map<std::string, std::size_t> index_;
   std::vector<wrinkle::ReferencePose> poses_;
   std::vector<State> state_;
@@ -204,8 +209,8 @@ class PoseReader {
 Status ReadReferencePoses(const TableList<schema::ReferencePose>* list,
                           const std::filesystem::path& folder, const wrinkle::PoseSource& source,
                           std::vector<wrinkle::ReferencePose>* poses, wrinkle::Skeleton* recorded,
-                          std::set<std::string>* missing) {
-  return PoseReader(list, folder, source, recorded, missing).Run(poses);
+                          std::set<std::string>* missing, const PoseAnchors& anchors) {
+  return PoseReader(list, folder, source, recorded, missing, anchors).Run(poses);
 }
 
 }  // namespace furrow::rig

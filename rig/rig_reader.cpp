@@ -181,6 +181,22 @@ void MeasureOn(const wrinkle::Skeleton& recorded, wrinkle::Rig* rig) {
   }
 }
 
+// Of the joints that pose drivers measure. The first driver of a joint counts.
+PoseAnchors AnchorsOf(const schema::Rig& tables) {
+  PoseAnchors anchors;
+  if (tables.drivers() == nullptr) return anchors;
+  for (const schema::Driver* driver : *tables.drivers()) {
+    const schema::PoseDriver* const pose = driver->pose();
+    if (pose == nullptr) continue;
+    const std::string anchor = Text(pose->anchor() != nullptr ? pose->anchor() : tables.anchor());
+    if (anchor.empty()) continue;
+    for (const schema::ControlPoint* point : *pose->points()) {
+      anchors.emplace(point->joint()->str(), anchor);
+    }
+  }
+  return anchors;
+}
+
 void ReadFilter(const schema::Filter* from, wrinkle::Filter* to) {
   if (from == nullptr) return;
   to->enabled = from->enabled();
@@ -225,7 +241,7 @@ Result<wrinkle::Rig> ReadRigTables(const schema::Rig& tables, const std::filesys
   if (!status.ok()) return status;
   wrinkle::Skeleton recorded;
   status = ReadReferencePoses(tables.reference_poses(), folder, poses, &rig.reference_poses,
-                              &recorded, missing);
+                              &recorded, missing, AnchorsOf(tables));
   if (!status.ok()) return status;
   status = ForEach(tables.drivers(), "drivers",
                    [&](const schema::Driver& driver, const std::string& where) {

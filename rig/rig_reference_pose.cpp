@@ -61,6 +61,107 @@ Status CheckPose(const PoseFrame& frame, const Skeleton& skeleton) {
   return {};
 }
 
+// `rest` with the departure of `moved` from `still`, in the axes of `still`.
+Transform MovedFrom(const Transform& rest, const Transform& still, const Transform& moved) {
+  Transform result = moved;
+  result.rotation = glm::normalize(rest.rotation * glm::inverse(still.rotation) * moved.rotation);
+  result.translation = rest.translation + (moved.translation - still.translation);
+  return result;
+}
+
+// Joints of a pose that move with an anchor without hanging from it.
+class FlatPose {
+ public:
+  // `still` and `moved`: local poses of `skeleton`.
+  FlatPose(const Skeleton& skeleton, std::span<const Transform> still,
+           std::span<const Transform> moved)
+      : skeleton_(skeleton),
+        rest_(ModelOf(skeleton.rest_pose())),
+        still_(ModelOf(still)),
+        moved_(ModelOf(moved)) {
+    for (std::size_t j = 0; j < moved.size(); ++j) {
+      locals_.push_back(MovedFrom(skeleton.rest_pose()[j], still[j], moved[j]));
+    }
+    reference_ = ModelOf(locals_);
+  }
+
+  // Replaces the transforms of such joints in both poses: they move from the skeleton's rest pose
+  // as they have moved in the anchor's space.
+  void Correct(const PoseAnchors& anchors, std::vector<Transform>* still,
+               std::vector<Transform>* moved) {
+    for (int j = 0; j < skeleton_.num_joints(); ++j) {
+      const auto own = static_cast<std::size_t>(j);
+      const int parent = skeleton_.joint_parents()[own];
+      const auto found = anchors.find(skeleton_.joint_names()[own]);
+      const int anchor = found == anchors.end() ? wrinkle::kNoJoint : skeleton_.Find(found->second);
+      if (anchor == wrinkle::kNoJoint || !GoesWith(anchor, j)) {
+        // The parent may have changed.
+        reference_[own] = In(reference_, parent, locals_[own]);
+        continue;
+      }
+      const Transform in_anchor =
+          MovedFrom(Seen(rest_, anchor, j), Seen(still_, anchor, j), Seen(moved_, anchor, j));
+      reference_[own] = In(reference_, anchor, in_anchor);
+      (*still)[own] = skeleton_.rest_pose()[own];
+      (*moved)[own] = Seen(reference_, parent, j);
+    }
+  }
+
+ private:
+  // Model space. Without scales, which faces do not have.
+  using Model = std::vector<Transform>;
+
+  // `local`, which is in the space of joint `space`, in model space.
+  static Transform In(const Model& model, int space, const Transform& local) {
+    if (space == wrinkle::kNoJoint) return local;
+    const Transform& base = model[static_cast<std::size_t>(space)];
+    Transform result = local;
+    result.rotation = glm::normalize(base.rotation * local.rotation);
+    result.translation = base.translation + base.rotation * local.translation;
+    return result;
+  }
+  // Joint `joint` in the space of joint `space`.
+  static Transform Seen(const Model& model, int space, int joint) {
+    const Transform& own = model[static_cast<std::size_t>(joint)];
+    if (space == wrinkle::kNoJoint) return own;
+    const Transform& base = model[static_cast<std::size_t>(space)];
+    Transform result = own;
+    result.rotation = glm::normalize(glm::inverse(base.rotation) * own.rotation);
+    result.translation = glm::inverse(base.rotation) * (own.translation - base.translation);
+    return result;
+  }
+  [[nodiscard]] Model ModelOf(std::span<const Transform> locals) const {
+    Model model(locals.begin(), locals.end());
+    for (std::size_t j = 0; j < model.size(); ++j) {
+      model[j] = In(model, skeleton_.joint_parents()[j], locals[j]);
+    }
+    return model;
+  }
+
+  // How far the joint's origin and tail are from their places at rest, in the space of `space`.
+  [[nodiscard]] float Departure(int space, int joint) const {
+    const Transform from = Seen(rest_, space, joint);
+    const Transform to = Seen(still_, space, joint);
+    const glm::vec3& tail = skeleton_.tails()[static_cast<std::size_t>(joint)];
+    return glm::distance(from.translation, to.translation) +
+           glm::distance(from.translation + from.rotation * tail,
+                         to.translation + to.rotation * tail);
+  }
+  // True if the joint has gone with the anchor to the rest frame, and not with its own parent.
+  [[nodiscard]] bool GoesWith(int anchor, int joint) const {
+    if (skeleton_.IsAncestor(anchor, joint) || skeleton_.IsAncestor(joint, anchor)) return false;
+    const int parent = skeleton_.joint_parents()[static_cast<std::size_t>(joint)];
+    return Departure(anchor, joint) < Departure(parent, joint);
+  }
+
+  const Skeleton& skeleton_;
+  Model rest_;
+  Model still_;
+  Model moved_;
+  Model locals_;  // the reference pose, local: the skeleton's rest pose with all departures
+  Model reference_;
+};
+
 }  // namespace
 
 glm::quat FromEulerDegrees(const glm::vec3& degrees) {
@@ -71,7 +172,7 @@ glm::quat FromEulerDegrees(const glm::vec3& degrees) {
 }
 
 Result<ReferencePose> ReferencePoseFromFrame(std::string name, const PoseFrame& frame,
-                                             const PoseFrame* rest) {
+                                             const PoseFrame* rest, const PoseAnchors& anchors) {
   const Skeleton& skeleton = frame.skeleton;
   FURROW_RETURN_IF_ERROR(CheckPose(frame, skeleton));
   if (rest != nullptr) {
@@ -81,10 +182,17 @@ Result<ReferencePose> ReferencePoseFromFrame(std::string name, const PoseFrame& 
   pose.name = std::move(name);
   pose.source_size = wrinkle::SkeletonSize(skeleton);
 
+  const std::span<const Transform> at_rest =
+      rest != nullptr ? std::span<const Transform>(rest->pose.joints) : skeleton.rest_pose();
+  std::vector<Transform> stills(at_rest.begin(), at_rest.end());
+  std::vector<Transform> moveds = frame.pose.joints;
+  if (rest != nullptr && !anchors.empty()) {
+    FlatPose(skeleton, stills, moveds).Correct(anchors, &stills, &moveds);
+  }
   const std::span<const glm::quat> axes = skeleton.rest_model_rotations();
   for (int j = 0; j < skeleton.num_joints(); ++j) {
-    const Transform& still = rest != nullptr ? rest->pose.joints[j] : skeleton.rest_pose()[j];
-    const Transform& moved = frame.pose.joints[j];
+    const Transform& still = stills[j];
+    const Transform& moved = moveds[j];
     const int parent = skeleton.joint_parents()[j];
     const glm::quat above = parent < 0 ? glm::quat(1, 0, 0, 0) : axes[parent];
     // The departure in the joint's own axes, expressed in model axes of the skeleton's rest pose,

@@ -380,6 +380,34 @@ TEST(RigFile, ReadsPosesFromFramesAndMixes) {
   EXPECT_EQ(rig->reference_poses[0].size_reference, rig->size_reference);
 }
 
+// Frame 0: the head looks aside. Frame 1: it also raises a brow that does not hang from it.
+Result<wrinkle::PoseFrame> FlatSource(const std::filesystem::path&, int frame) {
+  wrinkle::PoseFrame result;
+  result.skeleton = *wrinkle::Skeleton::Create(
+      {{"head", -1, {{0, 1, 0}}, {}}, {"brow", -1, {{0, 1, 0.2f}}, glm::vec3(0, 0, 0.1f)}});
+  result.pose.SetRest(result.skeleton);
+  const glm::quat aside = glm::angleAxis(glm::radians(90.0f), glm::vec3(0, 1, 0));
+  for (wrinkle::Transform& joint : result.pose.joints) joint.rotation = aside;
+  const glm::vec3 raised(0.01f * static_cast<float>(frame), 0, 0.2f);
+  result.pose.joints[1].translation = glm::vec3(0, 1, 0) + aside * raised;
+  return result;
+}
+
+TEST(RigFile, FramesOfFlatSkeletonsAreMeasuredFromTheAnchor) {
+  const std::string json = Replaced(kSmallRig, R"(     "joints": [{"joint": "brow",
+                 "euler_degrees": [-20, 0, 0]}]})",
+                                    R"("file": "rig_file_test.cpp", "frame": 1, "rest_frame": 0})");
+  const std::string own =
+      Replaced(Replaced(json, R"("anchor": "head",)", ""), R"("points": [{"joint": "brow"}])",
+               R"("anchor": "head", "points": [{"joint": "brow"}])");
+  for (const std::string& text : {json, own}) {
+    const auto rig = ParseRig(text, "a.rig.json", FURROW_SOURCE_DIR "/tests/unit/rig", FlatSource);
+    ASSERT_TRUE(rig.ok()) << rig.status().ToString();
+    ASSERT_EQ(rig->reference_poses[0].joints.size(), 1u);
+    EXPECT_LT(glm::distance(rig->reference_poses[0].joints[0].translation, {0.01f, 0, 0}), 1e-6f);
+  }
+}
+
 // `furrow rig check` goes on without recordings that are not here.
 TEST(RigFile, ListsMissingRecordingsOnRequest) {
   const std::string json = Replaced(kSmallRig, R"(     "joints": [{"joint": "brow",

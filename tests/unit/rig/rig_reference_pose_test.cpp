@@ -144,6 +144,91 @@ TEST_F(Performer, RigidMotionOfReferenceRestOrLivePoseChangesNothing) {
   }
 }
 
+// The same face with a brow that does not hang from the head: from the hips, or from nothing.
+class FlatPerformer : public testing::TestWithParam<int> {
+ protected:
+  static constexpr glm::vec3 kBrow{0.03f, 1.7f, 0.1f};
+
+  PoseFrame Rest() const {
+    PoseFrame frame{skeleton_, {}};
+    frame.pose.SetRest(skeleton_);
+    return frame;
+  }
+  // The brow raised by `strength` on a head that `place` and `turn` put elsewhere.
+  PoseFrame Raised(float strength, const glm::quat& turn, const glm::vec3& place) const {
+    PoseFrame frame = Rest();
+    wrinkle::Transform& neck = frame.pose.joints[1];
+    neck.rotation = turn;
+    neck.translation += place;
+    const glm::vec3 pivot = glm::vec3(0, 1.5f, 0) + place;  // of the neck
+    const glm::vec3 raised = kBrow + strength * glm::vec3(0.001f, 0.004f, -0.002f);
+    wrinkle::Transform& brow = frame.pose.joints[3];
+    brow.translation = pivot + turn * (raised - glm::vec3(0, 1.5f, 0)) - Above();
+    brow.rotation = turn * Turn(-20.0f * strength, {1, 0, 0});
+    return frame;
+  }
+  float Value(const PoseFrame& frame, const PoseFrame* rest, const PoseFrame& live) const {
+    wrinkle::Rig rig;
+    rig.anchor = "head";
+    rig.reference_poses = {*ReferencePoseFromFrame("up", frame, rest, {{"brow", "head"}})};
+    rig.drivers.resize(1);
+    rig.drivers[0].name = "brow";
+    rig.drivers[0].pose.points = {{.joint = "brow"}};
+    rig.drivers[0].pose.values = {{"up", "up"}};
+    auto binding = wrinkle::RigBinding::Create(rig, skeleton_, {});
+    EXPECT_TRUE(binding.ok()) << binding.status().ToString();
+    wrinkle::SubjectSolver solver(std::make_shared<const wrinkle::RigBinding>(*std::move(binding)),
+                                  false);
+    EXPECT_EQ(solver.Update(live.pose, 0.0), wrinkle::JobStatus::kOk);
+    return solver.driver_values()[0];
+  }
+  // The place of the brow's parent.
+  static glm::vec3 Above() {
+    return GetParam() == wrinkle::kNoJoint ? glm::vec3(0) : glm::vec3(0, 1, 0);
+  }
+
+  wrinkle::Skeleton skeleton_ =
+      *wrinkle::Skeleton::Create({{"hips", -1, {{0, 1, 0}}, {}},
+                                  {"neck", 0, {{0, 0.5f, 0}}, {}},
+                                  {"head", 1, {{0, 0.1f, 0}}, {}},
+                                  {"brow", GetParam(), {kBrow - Above()}, glm::vec3(0, 0, 0.05f)},
+                                  {"arm", 0, {{0.2f, 0.4f, 0}}, {}}});
+};
+
+TEST_P(FlatPerformer, HeadsThatTurnDoNotEnterThePose) {
+  const glm::quat straight(1, 0, 0, 0);
+  const PoseFrame half = Raised(0.5f, straight, {});
+  const PoseFrame neutral = Rest();
+  const float expected = Value(Raised(1.0f, straight, {}), &neutral, half);
+  EXPECT_NEAR(expected, 0.5f, 0.05f);
+  const glm::quat turns[] = {straight, Turn(90, {0, 1, 0}), Turn(-170, {0.6f, 0.8f, 0}),
+                             Turn(40, {1, 0, 0})};
+  const glm::vec3 away(2.0f, -0.3f, 7.0f);
+  for (const glm::quat& turn : turns) {
+    const PoseFrame rest = Raised(0.0f, turn, away);
+    EXPECT_NEAR(Value(Raised(1.0f, turn, away), &rest, half), expected, 2e-4f);
+    // The head turns between the rest frame and the pose.
+    EXPECT_NEAR(Value(Raised(1.0f, straight, {}), &rest, half), expected, 2e-4f);
+    EXPECT_NEAR(Value(Raised(1.0f, turn, away), &neutral, half), expected, 2e-4f);
+    EXPECT_NEAR(Value(Raised(1.0f, turn, away), nullptr, half), expected, 2e-4f);
+  }
+}
+
+// An arm does not go with the head, so it is compared with itself.
+TEST_P(FlatPerformer, OtherJointsStayInTheirOwnSpace) {
+  const PoseFrame rest = Raised(0.0f, Turn(60, {0, 1, 0}), {});
+  PoseFrame frame = rest;
+  frame.pose.joints[4].rotation = Turn(30, {1, 0, 0});
+  const auto plain = ReferencePoseFromFrame("p", frame, &rest);
+  const auto anchored = ReferencePoseFromFrame("p", frame, &rest, {{"arm", "head"}});
+  ASSERT_TRUE(plain.ok() && anchored.ok());
+  ASSERT_EQ(anchored->joints.size(), 1u);
+  EXPECT_EQ(anchored->joints[0].joint, "arm");
+  EXPECT_EQ(anchored->joints[0].rotation, plain->joints[0].rotation);
+}
+
+INSTANTIATE_TEST_SUITE_P(Parents, FlatPerformer, testing::Values(wrinkle::kNoJoint, 0));
+
 // A brow that is drawn sideways, on a performer who faces another way.
 TEST_F(Performer, AFaceTurnedAsideReadsOneInItsOwnFrame) {
   const glm::quat head = skeleton_.rest_model_rotations()[2];
