@@ -281,7 +281,7 @@ INSTANTIATE_TEST_SUITE_P(
                       .get<std::size_t>()] = 4;
               }, StatusCode::kSchema, "meshes[0].primitives[0].indices"},
         Wrong{"lines", [](json& r, std::string&) { r["meshes"][0]["primitives"][0]["mode"] = 1; },
-              StatusCode::kUnsupported, "meshes[0].primitives[0].mode"},
+              StatusCode::kSchema, "nodes"},  // lines are left out, and nothing remains
         Wrong{"material", [](json& r, std::string&) {
                 r["meshes"][0]["primitives"][0]["material"] = 3;
               }, StatusCode::kSchema, "meshes[0].primitives[0].material"},
