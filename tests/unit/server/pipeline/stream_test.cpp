@@ -263,7 +263,8 @@ TEST(StreamDefinitions, IgnoredJointsAreLogged) {
     ASSERT_TRUE(definitions.Get(ToStreamOffer(KneeOffer())).ok());
     EXPECT_THAT(log.text(), HasSubstr(drawn == nullptr ? "ignored: hips, foot" : "ignored: hips"));
     EXPECT_THAT(log.text(), Not(HasSubstr("thigh"))) << "the rig reads it";
-    EXPECT_THAT(log.text(), Not(HasSubstr("rest"))) << log.text();
+    const std::string ignored = log.text().substr(log.text().find("ignored"));
+    EXPECT_THAT(ignored, Not(HasSubstr("rest"))) << log.text();
   }
 }
 
