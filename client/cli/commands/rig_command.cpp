@@ -103,6 +103,7 @@ int Check(const RigOptions& options) {
     match = MatchJoints(*matcher, *clip, *rig);
     report_options.aliases = match.aliases;
     report_options.role_chains = match.role_chains;
+    report_options.turn = match.turn();
   }
   const character::RigReport report = character::ReportOnRig(*rig, report_options);
   std::fputs(character::ToText(report).c_str(), stdout);
