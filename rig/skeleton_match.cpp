@@ -131,7 +131,7 @@ void SkeletonMatcher::SetCharacterRoles(const wrinkle::Skeleton& character,
   SetCharacterRoles(named);
 }
 
-SkeletonRoles SkeletonMatcher::RolesOfStream(const wrinkle::Skeleton& stream) const {
+SkeletonRoles SkeletonMatcher::RolesOf(const wrinkle::Skeleton& stream) const {
   SkeletonRoles found = streams_.RolesOrGuess(stream);
   if (stated_.empty() || streams_.is_chosen()) return found;
   for (const auto& [name, role] : stated_) {
@@ -165,8 +165,8 @@ wrinkle::JointRoles SkeletonMatcher::RolesOfRig(std::span<const std::string> joi
 }
 
 std::optional<wrinkle::RestStance> SkeletonMatcher::StanceOf(
-    const wrinkle::Skeleton& skeleton) const {
-  auto stance = wrinkle::FindRestStance(skeleton, RolesOfStream(skeleton).roles);
+    const wrinkle::Skeleton& skeleton, const wrinkle::JointRoles& roles) const {
+  auto stance = wrinkle::FindRestStance(skeleton, roles);
   if (stance) return stance;
   stance = wrinkle::FindRestStance(skeleton, characters_.RolesOrGuess(skeleton).roles);
   if (stance) return stance;
@@ -186,12 +186,12 @@ std::optional<wrinkle::RestStance> SkeletonMatcher::StanceOf(
 SkeletonMatch SkeletonMatcher::Match(const wrinkle::Skeleton& stream, const wrinkle::Rig& rig,
                                      const wrinkle::Skeleton* character) const {
   SkeletonMatch match;
-  match.stream = RolesOfStream(stream);
+  match.stream = RolesOf(stream);
   match.fit = FitOf(match.stream, stream);
   if (character != nullptr) match.character = RolesOfCharacter(*character);
   const std::set<std::string> joints = wrinkle::JointsOf(rig);
   const std::vector<std::string> names(joints.begin(), joints.end());
-  match.stance = StanceOf(stream);
+  match.stance = StanceOf(stream, match.stream.roles);
   const auto has_joint = [&](const std::string& name) {
     return stream.Find(name) != wrinkle::kNoJoint;
   };

@@ -68,14 +68,7 @@ class SkeletonMatcher {
   void SetCharacterRoles(const wrinkle::Skeleton& character, const wrinkle::JointRoles& roles);
 
   // The roles of a recording's joints, as Match() finds them.
-  [[nodiscard]] SkeletonRoles RolesOf(const wrinkle::Skeleton& stream) const {
-    return streams_.RolesOrGuess(stream);
-  }
-
-  // How the skeleton of a stream, or of a recording with poses of a rig, stands at rest. If the map
-  // that Match() takes does not tell, any other may, and then needs neither limbs nor many roles.
-  [[nodiscard]] std::optional<wrinkle::RestStance> StanceOf(
-      const wrinkle::Skeleton& skeleton) const;
+  [[nodiscard]] SkeletonRoles RolesOf(const wrinkle::Skeleton& stream) const;
 
   // `character` may be null. It does not affect the aliases, so weights are the same with and
   // without pictures. The map that explains the most joint names of the rig gives their roles.
@@ -85,7 +78,10 @@ class SkeletonMatcher {
                                     const wrinkle::Skeleton* character) const;
 
  private:
-  [[nodiscard]] SkeletonRoles RolesOfStream(const wrinkle::Skeleton& stream) const;
+  // How a skeleton stands at rest, by its `roles`. If they do not tell, those of any map may, which
+  // then needs neither limbs nor many roles.
+  [[nodiscard]] std::optional<wrinkle::RestStance> StanceOf(const wrinkle::Skeleton& skeleton,
+                                                            const wrinkle::JointRoles& roles) const;
   [[nodiscard]] SkeletonRoles RolesOfCharacter(const wrinkle::Skeleton& character) const;
   [[nodiscard]] wrinkle::JointRoles RolesOfRig(std::span<const std::string> joint_names) const;
 
