@@ -98,12 +98,14 @@ Result<Assets> LoadAssets(const Config& config) {
   // Weights need no mesh and no pictures, which are large, unless joints may move shapes.
   if (!config.render && !rig.empty()) {
     FURROW_RETURN_IF_ERROR(LoadRigAlone(rig, poses, &assets));
-    // Weights are the same with and without pictures, so they need the roles that the package
-    // states for the rig's joints.
-    const auto roles = character::LoadCharacterRoles(glb);
-    FURROW_RETURN_IF_ERROR(roles);
-    assets.skeletons.SetCharacterRoles(*roles);
-    if (wrinkle::BlendShapesOf(*assets.rig).empty()) return assets;
+    if (wrinkle::BlendShapesOf(*assets.rig).empty()) {
+      // Weights are the same with and without pictures, so they need the roles that the package
+      // states for the rig's joints.
+      const auto roles = character::LoadCharacterRoles(glb);
+      FURROW_RETURN_IF_ERROR(roles);
+      assets.skeletons.SetCharacterRoles(*roles);
+      return assets;
+    }
   }
   auto loaded = character::LoadCharacter(glb, chosen_rig, poses);
   FURROW_RETURN_IF_ERROR(loaded);
