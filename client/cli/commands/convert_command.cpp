@@ -78,7 +78,7 @@ int ConvertFile(const ConvertOptions& options) {
   if (options.weights) return ConvertWeights(options);
   const auto clip = LoadClipArgument(options.in, options.load);
   if (!clip.ok()) return Fail(clip.status());
-  PrintMatchOf(clip->skeleton);
+  PrintMatchesOf({&clip->skeleton, 1});
   motion::ClipReport report;
   Status status = recording::IsTakePath(options.out)
                       ? SaveTake(*clip, options.out)

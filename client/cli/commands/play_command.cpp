@@ -83,10 +83,13 @@ int PlayFile(const PlayOptions& options) {
     return kBadInput;
   }
   // The daemon finds the same map, unless it was started with another one.
+  std::vector<wrinkle::Skeleton> skeletons;
   for (const PlaySource& source : *sources) {
-    const auto skeleton = source.Skeleton();
-    if (skeleton.ok()) PrintMatchOf(*skeleton);  // the daemon rejects an invalid one, and says why
+    auto skeleton = source.Skeleton();
+    // The daemon rejects an invalid one, and says why.
+    if (skeleton.ok()) skeletons.push_back(std::move(*skeleton));
   }
+  PrintMatchesOf(skeletons);
   int exit_code = kDone;
   auto transport = OpenTransport(
       options.host, options.tcp ? TransportKind::kTcp : TransportKind::kUdp, &exit_code);

@@ -107,11 +107,15 @@ void PrintMatch(const rig::SkeletonMatch& match) {
   PrintWarnings(rig::WarningsOf(match));
 }
 
-void PrintMatchOf(const wrinkle::Skeleton& skeleton) {
-  if (skeleton.num_joints() == 0) return;
+void PrintMatchesOf(std::span<const wrinkle::Skeleton> skeletons) {
+  const auto has_joints = [](const wrinkle::Skeleton& s) { return s.num_joints() > 0; };
+  if (std::ranges::none_of(skeletons, has_joints)) return;
   const auto matcher = LoadSkeletonMatcher({});
-  // Without a rig, the match has the roles and the axes alone.
-  if (matcher.ok()) PrintMatch(matcher->Match(skeleton, wrinkle::Rig(), nullptr));
+  if (!matcher.ok()) return;
+  for (const wrinkle::Skeleton& skeleton : skeletons) {
+    // Without a rig, the match has the roles and the axes alone.
+    if (has_joints(skeleton)) PrintMatch(matcher->Match(skeleton, wrinkle::Rig(), nullptr));
+  }
 }
 
 rig::SkeletonMatch MatchJoints(const rig::SkeletonMatcher& matcher, const motion::Clip& clip,

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -68,8 +69,8 @@ struct RigInput {
 // fits, in one line, and the match's warnings. Prints nothing for a recording without joints.
 void PrintMatch(const rig::SkeletonMatch& match);
 
-// The same for a skeleton alone, with the shipped maps: what other commands and the daemon find.
-void PrintMatchOf(const wrinkle::Skeleton& skeleton);
+// The same for skeletons alone, with the shipped maps: what other commands and the daemon find.
+void PrintMatchesOf(std::span<const wrinkle::Skeleton> skeletons);
 
 // Finds the joints that `rig` reads in the recording, and calls PrintMatch(). `character` may be
 // null; see SkeletonMatcher::Match().
