@@ -69,6 +69,24 @@ TEST(RigReferencePose, AcceptsAnotherFrameAsRest) {
   EXPECT_NEAR(pose->joints[0].rotation.w, std::cos(7.5f * kPi / 180.0f), 1e-6);
 }
 
+// The value of a pose driver that compares the joint "brow" with `up` in the space of the head.
+float BrowValue(const wrinkle::Skeleton& skeleton, const wrinkle::ReferencePose& up,
+                const PoseFrame& live) {
+  wrinkle::Rig rig;
+  rig.anchor = "head";
+  rig.reference_poses = {up};
+  rig.drivers.resize(1);
+  rig.drivers[0].name = "brow";
+  rig.drivers[0].pose.points = {{.joint = "brow"}};
+  rig.drivers[0].pose.values = {{"up", "up"}};
+  auto binding = wrinkle::RigBinding::Create(rig, skeleton, {});
+  EXPECT_TRUE(binding.ok()) << binding.status().ToString();
+  wrinkle::SubjectSolver solver(std::make_shared<const wrinkle::RigBinding>(*std::move(binding)),
+                                false);
+  EXPECT_EQ(solver.Update(live.pose, 0.0), wrinkle::JobStatus::kOk);
+  return solver.driver_values()[0];
+}
+
 // Hips, neck, head and a brow, all with local frames of their own.
 class Performer : public testing::Test {
  protected:
@@ -100,19 +118,7 @@ class Performer : public testing::Test {
   }
   // The value of `live`, with the reference pose taken from `frame` and `rest`.
   float Value(const PoseFrame& frame, const PoseFrame* rest, const PoseFrame& live) const {
-    wrinkle::Rig rig;
-    rig.anchor = "head";
-    rig.reference_poses = {*ReferencePoseFromFrame("up", frame, rest)};
-    rig.drivers.resize(1);
-    rig.drivers[0].name = "brow";
-    rig.drivers[0].pose.points = {{.joint = "brow"}};
-    rig.drivers[0].pose.values = {{"up", "up"}};
-    auto binding = wrinkle::RigBinding::Create(rig, skeleton_, {});
-    EXPECT_TRUE(binding.ok()) << binding.status().ToString();
-    wrinkle::SubjectSolver solver(std::make_shared<const wrinkle::RigBinding>(*std::move(binding)),
-                                  false);
-    EXPECT_EQ(solver.Update(live.pose, 0.0), wrinkle::JobStatus::kOk);
-    return solver.driver_values()[0];
+    return BrowValue(skeleton_, *ReferencePoseFromFrame("up", frame, rest), live);
   }
 
   std::mt19937 random_{21};
@@ -168,19 +174,8 @@ class FlatPerformer : public testing::TestWithParam<int> {
     return frame;
   }
   float Value(const PoseFrame& frame, const PoseFrame* rest, const PoseFrame& live) const {
-    wrinkle::Rig rig;
-    rig.anchor = "head";
-    rig.reference_poses = {*ReferencePoseFromFrame("up", frame, rest, {{"brow", "head"}})};
-    rig.drivers.resize(1);
-    rig.drivers[0].name = "brow";
-    rig.drivers[0].pose.points = {{.joint = "brow"}};
-    rig.drivers[0].pose.values = {{"up", "up"}};
-    auto binding = wrinkle::RigBinding::Create(rig, skeleton_, {});
-    EXPECT_TRUE(binding.ok()) << binding.status().ToString();
-    wrinkle::SubjectSolver solver(std::make_shared<const wrinkle::RigBinding>(*std::move(binding)),
-                                  false);
-    EXPECT_EQ(solver.Update(live.pose, 0.0), wrinkle::JobStatus::kOk);
-    return solver.driver_values()[0];
+    return BrowValue(skeleton_, *ReferencePoseFromFrame("up", frame, rest, {{"brow", "head"}}),
+                     live);
   }
   // The place of the brow's parent.
   static glm::vec3 Above() {
