@@ -120,7 +120,9 @@ GpuMesh MakeGpuMesh(const character::Mesh& mesh, std::span<const glm::mat4> inve
 
 void AddLevels(GpuMesh* mesh, Borders borders) {
   std::vector<std::uint32_t> indices;
-  for (const MeshLevel& level : MakeMeshLevels(ReadMesh(*mesh), borders)) {
+  character::Mesh source = ReadMesh(*mesh);
+  source.morph_targets = mesh->morphs.Positions();
+  for (const MeshLevel& level : MakeMeshLevels(source, borders)) {
     mesh->levels.push_back({static_cast<GLsizei>(indices.size()),
                             static_cast<GLsizei>(level.indices.size()), level.error});
     indices.insert(indices.end(), level.indices.begin(), level.indices.end());

@@ -10,6 +10,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "render/mesh/morph_error.h"
+
 namespace furrow::render {
 namespace {
 
@@ -73,7 +75,8 @@ class Simplifier {
  private:
   // The collapse of vertex `from` onto its neighbour `to`.
   struct Collapse {
-    double error = 0.0;
+    double error = 0.0;  // with `drift`
+    double drift = 0.0;  // of the morphed surface, metres
     Index from = 0;
     Index to = 0;
     int version = 0;  // of `from`; an older version is outdated
@@ -89,6 +92,8 @@ class Simplifier {
   void HoldBorders();
   [[nodiscard]] std::vector<Index> Neighbours(Index vertex) const;
   [[nodiscard]] bool IsAllowed(Index from, Index to) const;
+  [[nodiscard]] std::vector<Triangle> FanWithout(Index from, Index to) const;
+  void AddDrift(Collapse* collapse);
   void Propose(Index from);
   void Apply(const Collapse& collapse);
 
@@ -102,6 +107,9 @@ class Simplifier {
   std::vector<bool> is_border_;
   std::vector<int> versions_;
   std::vector<Quadric> quadrics_;
+  MorphError morphs_;
+  // Per triangle: how far morph targets may take the original surface there from it, metres.
+  std::vector<double> drifts_;
   std::priority_queue<Collapse, std::vector<Collapse>, std::greater<>> queue_;
   std::size_t num_alive_ = 0;
   double error_ = 0.0;
@@ -113,7 +121,8 @@ Simplifier::Simplifier(const character::Mesh& mesh, Borders borders)
       is_locked_(mesh.vertices.size(), false),
       is_border_(mesh.vertices.size(), false),
       versions_(mesh.vertices.size(), 0),
-      quadrics_(mesh.vertices.size()) {
+      quadrics_(mesh.vertices.size()),
+      morphs_(mesh) {
   for (const character::Vertex& vertex : mesh.vertices) positions_.emplace_back(vertex.position);
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
     const Triangle triangle = {mesh.indices[i], mesh.indices[i + 1], mesh.indices[i + 2]};
@@ -131,6 +140,7 @@ Simplifier::Simplifier(const character::Mesh& mesh, Borders borders)
   }
   num_alive_ = triangles_.size();
   is_alive_.assign(num_alive_, true);
+  drifts_.assign(num_alive_, 0.0);
   LockSeams();
   HoldBorders();
   for (Index vertex = 0; vertex < positions_.size(); ++vertex) Propose(vertex);
@@ -271,22 +281,52 @@ bool Simplifier::IsAllowed(Index from, Index to) const {
   });
 }
 
+// The triangles in place of those of `from` once it is collapsed onto `to`.
+std::vector<Triangle> Simplifier::FanWithout(Index from, Index to) const {
+  std::vector<Triangle> fan;
+  for (const Index index : triangles_of_[from]) {
+    Triangle triangle = triangles_[index];
+    if (std::ranges::find(triangle, to) != triangle.end()) continue;
+    std::ranges::replace(triangle, from, to);
+    fan.push_back(triangle);
+  }
+  return fan;
+}
+
+// The errors of one collapse after the other add up, because each is measured from the last one.
+void Simplifier::AddDrift(Collapse* collapse) {
+  if (morphs_.empty()) return;
+  std::vector<Triangle> before;
+  double drift = 0.0;
+  for (const Index index : triangles_of_[collapse->from]) {
+    before.push_back(triangles_[index]);
+    drift = std::max(drift, drifts_[index]);
+  }
+  const std::vector<Triangle> after = FanWithout(collapse->from, collapse->to);
+  collapse->drift = drift + morphs_.Between(collapse->from, before, after, positions_);
+  collapse->error += collapse->drift;
+}
+
 void Simplifier::Propose(Index from) {
   if (is_locked_[from] || triangles_of_[from].empty() || IsHub(from)) return;
   std::vector<Collapse> ways;
   for (const Index to : Neighbours(from)) {
     Quadric both = quadrics_[from];
     both.Add(quadrics_[to]);
-    ways.push_back({both.ErrorAt(positions_[to]), from, to, versions_[from]});
+    const double moved =
+        morphs_.empty() ? 0.0 : morphs_.AtVertex(from, FanWithout(from, to), positions_);
+    ways.push_back({both.ErrorAt(positions_[to]), moved, from, to, versions_[from]});
   }
-  std::ranges::sort(ways, {}, &Collapse::error);
+  std::ranges::sort(ways, {}, [](const Collapse& way) { return way.error + way.drift; });
   const auto best =
       std::ranges::find_if(ways, [&](const Collapse& way) { return IsAllowed(way.from, way.to); });
-  if (best != ways.end()) queue_.push(*best);
+  if (best == ways.end()) return;
+  AddDrift(&*best);
+  queue_.push(*best);
 }
 
 void Simplifier::Apply(const Collapse& collapse) {
-  const auto [error, from, to, version] = collapse;
+  const auto [error, drift, from, to, version] = collapse;
   error_ = std::max(error_, error);
   quadrics_[to].Add(quadrics_[from]);
   for (const Index index : triangles_of_[from]) {
@@ -300,6 +340,7 @@ void Simplifier::Apply(const Collapse& collapse) {
     } else {
       std::ranges::replace(triangle, from, to);
       triangles_of_[to].push_back(index);
+      drifts_[index] = drift;
     }
   }
   triangles_of_[from].clear();

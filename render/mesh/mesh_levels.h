@@ -11,8 +11,9 @@ namespace furrow::render {
 // A simplified mesh, for subjects that are small in the picture and for shadows.
 struct MeshLevel {
   std::vector<std::uint32_t> indices;  // indices of the original mesh's vertices
-  float error = 0.0f;                  // RMS distance from the original surface in the rest pose,
-                                       // metres
+  // RMS distance from the original surface in the rest pose, and the largest distance that a morph
+  // target at weight 1 adds; metres.
+  float error = 0.0f;
 };
 
 // Treatment of border edges, which belong to one triangle only. Meshes can share a border, for
@@ -25,7 +26,9 @@ enum class Borders { kKeep, kSimplify };
 //
 // The simplifier collapses each edge onto one of its end points, in the order of the quadric error
 // metric (Garland and Heckbert 1997). Remaining vertices therefore keep their UV, normal, skin
-// weights and masks. Vertices on a UV seam or a shading seam do not move. Border vertices only move
+// weights, morph targets and masks. Vertices that a morph target moves otherwise than their
+// neighbours stay until the error admits it, so that a distant face still moves (MorphError).
+// Vertices on a UV seam or a shading seam do not move. Border vertices only move
 // along a straight border, which keeps its corners. No triangle flips.
 [[nodiscard]] std::vector<MeshLevel> MakeMeshLevels(const character::Mesh& mesh, Borders borders);
 

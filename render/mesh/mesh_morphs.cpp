@@ -87,6 +87,26 @@ void MeshMorphs::AddTarget(const character::MorphTarget& source) {
   targets_.push_back(std::move(target));
 }
 
+std::vector<character::MorphTarget> MeshMorphs::Positions() const {
+  std::vector<std::uint32_t> vertex_of(num_rows_, 0);
+  for (std::uint32_t vertex = 0; vertex < rows_.size(); ++vertex) {
+    if (rows_[vertex] != 0) vertex_of[rows_[vertex]] = vertex;
+  }
+  std::vector<character::MorphTarget> targets;
+  for (const Target& from : targets_) {
+    character::MorphTarget& to = targets.emplace_back();
+    to.shape = static_cast<int>(from.shape);
+    const float* next = from.deltas.data();
+    for (const Run& run : from.runs) {
+      for (std::uint32_t row = run.row; row < run.row + run.num_rows; ++row) {
+        to.deltas.push_back({.vertex = vertex_of[row], .position = {next[0], next[1], next[2]}});
+        next += 3 * num_parts_;
+      }
+    }
+  }
+  return targets;
+}
+
 void MeshMorphs::AppendWeights(std::span<const float> shapes, std::vector<float>* weights) const {
   for (const Target& target : targets_) weights->push_back(WeightOf(shapes, target.shape));
 }

@@ -33,6 +33,9 @@ class MeshMorphs {
   [[nodiscard]] std::size_t num_parts() const { return num_parts_; }
   [[nodiscard]] std::size_t num_floats() const { return num_rows_ * 3 * num_parts_; }
 
+  // The targets with their moves of positions, as far as this mesh has them.
+  [[nodiscard]] std::vector<character::MorphTarget> Positions() const;
+
   // `shapes` below: weights of the character's shapes; missing ones count as 0.
 
   // Appends the drawn weights of this mesh's shapes. Equal weights give equal sums.

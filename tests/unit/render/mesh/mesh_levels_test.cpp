@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <set>
 
@@ -140,6 +141,74 @@ TEST(MeshLevels, KeepSharedBorders) {
     const bool is_border = std::min(place.x, place.y) == 0.0f || std::max(place.x, place.y) == 1.0f;
     EXPECT_TRUE(!is_border || left.contains(i)) << i;
   }
+}
+
+// A flat sheet of 0.2 m with a shape that raises a bump of 20 mm.
+character::Mesh SheetWithBump() {
+  character::Mesh sheet;
+  test::AddGrid(
+      32, 32,
+      [](float u, float v) {
+        character::Vertex vertex;
+        vertex.position = {0.2f * u, 0.2f * v, 0.0f};
+        return vertex;
+      },
+      &sheet);
+  character::MorphTarget bump;
+  for (std::uint32_t i = 0; i < sheet.vertices.size(); ++i) {
+    const glm::vec3 apart = sheet.vertices[i].position - glm::vec3(0.1f, 0.1f, 0.0f);
+    const float near = std::max(0.0f, 1.0f - glm::dot(apart, apart) / 0.0009f);  // within 30 mm
+    if (near > 0.0f) bump.deltas.push_back({i, {0.0f, 0.0f, 0.02f * near * near}});
+  }
+  sheet.morph_targets = {bump};
+  return sheet;
+}
+
+// In the rest pose, the sheet is flat and every vertex inside is superfluous.
+TEST(MeshLevels, CountWhatMorphTargetsMove) {
+  const character::Mesh sheet = SheetWithBump();
+  std::vector<float> height(sheet.vertices.size(), 0.0f);
+  for (const auto& delta : sheet.morph_targets[0].deltas) height[delta.vertex] = delta.position.z;
+  const std::vector<MeshLevel> levels = MakeMeshLevels(sheet, Borders::kKeep);
+  ASSERT_GE(levels.size(), 3u);
+  for (const MeshLevel& level : levels) {
+    // The height of the moved level above each vertex of the mesh.
+    float worst = 0.0f;
+    for (std::uint32_t v = 0; v < sheet.vertices.size(); ++v) {
+      const glm::vec2 at(sheet.vertices[v].position);
+      float nearest = std::numeric_limits<float>::max();
+      for (std::size_t i = 0; i < level.indices.size(); i += 3) {
+        const glm::vec2 a(Corner(sheet, level, i));
+        const glm::vec2 b = glm::vec2(Corner(sheet, level, i + 1)) - a;
+        const glm::vec2 c = glm::vec2(Corner(sheet, level, i + 2)) - a;
+        const float area = b.x * c.y - b.y * c.x;
+        const float s = ((at - a).x * c.y - (at - a).y * c.x) / area;
+        const float t = (b.x * (at - a).y - b.y * (at - a).x) / area;
+        if (!(s >= -1e-4f && t >= -1e-4f && s + t <= 1.0001f)) continue;
+        const float drawn = (1.0f - s - t) * height[level.indices[i]] +
+                            s * height[level.indices[i + 1]] + t * height[level.indices[i + 2]];
+        nearest = std::min(nearest, std::abs(drawn - height[v]));
+      }
+      worst = std::max(worst, nearest);
+    }
+    EXPECT_LE(worst, level.error + 1e-6f) << level.indices.size() / 3 << " triangles";
+  }
+  EXPECT_LT(levels[2].error, 0.001f) << "the flat part goes first";
+}
+
+// Without targets, nothing changes; a target that moves all vertices alike costs nothing.
+TEST(MeshLevels, RigidMotionIsFree) {
+  character::Mesh sheet = SheetWithBump();
+  sheet.morph_targets.clear();
+  const std::vector<MeshLevel> still = MakeMeshLevels(sheet, Borders::kKeep);
+  character::MorphTarget shift;
+  for (std::uint32_t i = 0; i < sheet.vertices.size(); ++i) {
+    shift.deltas.push_back({i, {0.03f, 0.0f, 0.01f}});
+  }
+  sheet.morph_targets = {shift};
+  const std::vector<MeshLevel> moved = MakeMeshLevels(sheet, Borders::kKeep);
+  ASSERT_EQ(moved.size(), still.size());
+  EXPECT_LT(moved.back().error, 1e-5f);
 }
 
 // Inputs of 200,000 elements that must not take quadratic time: many vertices at one position, and

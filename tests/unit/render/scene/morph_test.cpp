@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "render/renderer.h"
+#include "tests/unit/render/character_parts.h"
 #include "tests/unit/render/reference/scenes.h"
 #include "tests/unit/render/test_character.h"
 
@@ -322,6 +323,62 @@ TEST(Morph, CrowdsAreMorphedInParts) {
     return test::Expect(head.renderer->Render(request));
   };
   EXPECT_LE(NumDifferent(draw(true), draw(false), 3), 60);
+}
+
+// A plane of 2 m, flat at rest, with a shape that raises a bump in its middle.
+Character BumpedPlane() {
+  Character plane = test::MakePlane(4, [](float, float) { return 0.0f; }, {});
+  character::Mesh& mesh = plane.meshes[0];
+  mesh.vertices.clear();
+  mesh.indices.clear();
+  test::AddGrid(
+      40, 40,
+      [](float u, float v) {
+        Vertex vertex;
+        vertex.position = {2.0f * u - 1.0f, 1.0f - 2.0f * v, 0.0f};
+        vertex.normal = {0.0f, 0.0f, 1.0f};
+        vertex.tangent = {1.0f, 0.0f, 0.0f, 1.0f};
+        vertex.uv = {u, v};
+        vertex.skin_weights[0] = 1.0f;
+        return vertex;
+      },
+      &mesh);
+  plane.shapes = {"bump"};
+  mesh.morph_targets = {TargetOf(mesh, 0, [](const Vertex& vertex) {
+    const float near = std::max(0.0f, 1.0f - glm::dot(vertex.position, vertex.position) / 0.09f);
+    return character::MorphDelta{
+        0, {0.0f, 0.0f, 0.3f * near * near}, 3.0f * near * vertex.position};
+  })};
+  return plane;
+}
+
+// Distant faces are drawn with fewer triangles. They still move by their shapes, without holes.
+TEST(Morph, SimplifiedFacesMoveAsWholeOnesDo) {
+  Drawn plane(BumpedPlane());
+  const auto draw = [&](float bump, float error_pixels) {
+    const std::vector<float> shapes = {bump};
+    std::vector<PosedSubject> crowd;
+    for (const float x : {-1.2f, 1.2f}) {
+      PosedSubject subject = plane.request;
+      subject.shapes = shapes;
+      subject.placement = glm::rotate(glm::translate(glm::mat4(1.0f), {x, 0.0f, 0.0f}), 1.2f,
+                                      glm::vec3(0.0f, 1.0f, 0.0f));
+      crowd.push_back(subject);
+    }
+    FrameRequest request = plane.request;
+    static_cast<PosedSubject&>(request) = crowd[0];
+    request.others = std::span(crowd).subspan(1);
+    request.camera.position = {0.0f, 0.0f, 6.0f};
+    request.camera.target = {0.0f, 0.0f, 0.0f};
+    request.width = request.height = 200;
+    request.settings.detail.error_pixels = error_pixels;
+    return test::Expect(plane.renderer->Render(request));
+  };
+  const Image whole = draw(1.0f, 0.0f);
+  const Image simple = draw(1.0f, 0.5f);
+  EXPECT_GT(NumDifferent(whole, draw(0.0f, 0.0f), 24), 400) << "the bump shows";
+  EXPECT_GT(NumDifferent(whole, simple, 0), 0) << "a simplified level is drawn";
+  EXPECT_LT(NumDifferent(whole, simple, 24), 80);
 }
 
 TEST(Morph, TargetsOutOfRangeAreRejected) {
