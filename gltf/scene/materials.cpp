@@ -16,6 +16,11 @@ namespace {
 
 constexpr int kMaxUvSets = 8;
 
+// The transfer function of IEC 61966-2-1.
+float LinearOfSrgb(float value) {
+  return value <= 0.04045f ? value / 12.92f : std::pow((value + 0.055f) / 1.055f, 2.4f);
+}
+
 // Only what the renderer draws: metalness, emission and occlusion are ignored.
 class MaterialReader {
  public:
@@ -56,7 +61,10 @@ class MaterialReader {
     }
     FURROW_RETURN_IF_ERROR(
         ReadTexture(pbr.baseColorTexture, in_pbr + "baseColorTexture", &to.base_colour_image));
-    if (to.base_colour_image == kNone) FURROW_RETURN_IF_ERROR(ReadMToonTexture(&to));
+    if (to.base_colour_image == kNone) {
+      ReadMToonColour(&to);
+      FURROW_RETURN_IF_ERROR(ReadMToonTexture(&to));
+    }
     if (to.base_colour_image == kNone) FURROW_RETURN_IF_ERROR(ReadSpecularGlossiness(&to));
     FURROW_RETURN_IF_ERROR(ReadTexture(pbr.metallicRoughnessTexture,
                                        in_pbr + "metallicRoughnessTexture", &to.roughness_image));
@@ -73,6 +81,22 @@ class MaterialReader {
   }
 
  private:
+  // The lit colour of MToon, in files whose glTF material states none of its own. VRM 0.x keeps
+  // Unity's value, which is sRGB.
+  void ReadMToonColour(Material* to) const {
+    if (vrm_ == nullptr || !vrm_->IsObject() || to->base_colour != glm::vec4(1.0f)) return;
+    const tinygltf::Value& vectors = vrm_->Get("vectorProperties");
+    if (!vectors.IsObject() || !vectors.Get("_Color").IsArray()) return;
+    const tinygltf::Value& colour = vectors.Get("_Color");
+    for (int i = 0; i < std::min(static_cast<int>(colour.ArrayLen()), 4); ++i) {
+      if (!colour.Get(i).IsNumber()) continue;
+      // std::clamp leaves a NaN as it is; JSON cannot express one.
+      const auto stated = static_cast<float>(colour.Get(i).GetNumberAsDouble());
+      const float limited = std::clamp(stated, 0.0f, 1.0f);
+      to->base_colour[i] = i == 3 ? limited : LinearOfSrgb(limited);
+    }
+  }
+
   // The lit texture of MToon, in files whose glTF material states no texture of its own. VRM 1.0
   // has none of its own: it always uses glTF's.
   Status ReadMToonTexture(Material* to) {

@@ -58,7 +58,8 @@ struct Material {
 };
 
 // All materials of a document with Contents::kCharacter. A material without a base colour texture
-// takes MToon's lit texture (`_MainTex`, VRM 0.x) or the diffuse texture, colour and glossiness of
+// takes MToon's lit texture (`_MainTex`) and, where glTF states no colour, its lit colour
+// (`_Color`, sRGB; both VRM 0.x), or the diffuse texture, colour and glossiness of
 // KHR_materials_pbrSpecularGlossiness. Textures with another set of UVs than the first texture of
 // their material are left out, with a warning.
 //

@@ -81,12 +81,26 @@ TEST(Materials, TakeMToonsTextureWhereGltfStatesNone) {
   EXPECT_EQ(read.materials[1].uv_transform, (UvTransform{{0.5f, 0.25f}, 0.0f, {2, 0.5f}}));
 }
 
+// Material 0 has a texture of glTF's; material 1 states nothing.
+TEST(Materials, TakeMToonsColourWhereGltfStatesNone) {
+  const Read read =
+      ReadMToon({{"shader", "VRM/MToon"}, {"vectorProperties", {{"_Color", {0.5, 0, 7, 0.25}}}}});
+  ASSERT_TRUE(read.status.ok()) << read.status.ToString();
+  EXPECT_EQ(read.materials[0].base_colour, glm::vec4(1.0f));
+  EXPECT_NEAR(read.materials[1].base_colour.r, 0.21404f, 1e-5f) << "sRGB";
+  EXPECT_EQ(read.materials[1].base_colour.g, 0.0f);
+  EXPECT_EQ(read.materials[1].base_colour.b, 1.0f);
+  EXPECT_EQ(read.materials[1].base_colour.a, 0.25f) << "linear";
+}
+
 TEST(Materials, SurviveFaultyMToon) {
-  for (const json& faulty : {json(), json(7), json::object(), json{{"textureProperties", 3}},
-                             json{{"textureProperties", {{"_MainTex", "a"}}}},
-                             json{{"textureProperties", {{"_MainTex", -1}}}},
-                             json{{"textureProperties", {{"_MainTex", 1}}},
-                                  {"vectorProperties", {{"_MainTex", {1}}}}}}) {
+  for (const json& faulty :
+       {json(), json(7), json::object(), json{{"textureProperties", 3}},
+        json{{"textureProperties", {{"_MainTex", "a"}}}},
+        json{{"textureProperties", {{"_MainTex", -1}}}},
+        json{{"textureProperties", {{"_MainTex", 1}}}, {"vectorProperties", {{"_MainTex", {1}}}}},
+        json{{"vectorProperties", {{"_Color", {"a", 0.5}}}}},
+        json{{"vectorProperties", {{"_Color", 3}}}}}) {
     EXPECT_TRUE(ReadMToon(faulty).status.ok()) << faulty;
   }
   EXPECT_EQ(ReadMToon({{"textureProperties", {{"_MainTex", 9}}}}).status.code(),
