@@ -49,8 +49,10 @@ wrinkle::ShapeFormula Built(const MapFormula& formula, const ShapeInputs& inputs
     present += term.gain;
     built.sum.push_back(Built(term, inputs));
   }
-  if (formula.mean && present != all) {
-    for (wrinkle::ShapeTerm& term : built.sum) term.gain *= all / present;
+  // Gains of a mean are shares of 1, so that both eyes together close a face's only lids once.
+  const float whole = std::min(all, 1.0f);
+  if (formula.mean && present != whole) {
+    for (wrinkle::ShapeTerm& term : built.sum) term.gain *= whole / present;
   }
   return built;
 }

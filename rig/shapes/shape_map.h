@@ -28,7 +28,8 @@ struct MapTerm {
 // A sum of terms, clamped to [0, 1]. A single shape with gain 1 is a new name and is not clamped.
 struct MapFormula {
   std::vector<MapTerm> sum;  // not empty
-  // The gains are shares: those of missing shapes are distributed among the others.
+  // The gains are shares: those of missing shapes are distributed among the others, and a sum above
+  // 1 is scaled to 1.
   bool mean = false;
 
   // The shape that the formula renames; -1 if it does more.

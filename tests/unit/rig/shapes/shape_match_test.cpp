@@ -167,6 +167,16 @@ TEST(ShapeMatch, AFaceWithTwoVocabulariesMovesOnce) {
   EXPECT_EQ(match.missing.size(), 5u);
 }
 
+// A shape for both eyes takes their mean, not their sum.
+TEST(ShapeMatch, MeansAreMeans) {
+  const Values half = {{"eyeBlinkLeft", 0.5f}, {"eyeBlinkRight", 0.5f}, {"jawOpen", 0.0f}};
+  EXPECT_FLOAT_EQ(Weights(half, {"blink", "happy", "aa"}).at("blink"), 0.5f);
+  const Values wink = {{"eyeBlinkLeft", 1.0f}, {"eyeBlinkRight", 0.0f}, {"jawOpen", 0.0f}};
+  EXPECT_FLOAT_EQ(Weights(wink, {"eyesClosed", "jawOpen"}).at("eyesClosed"), 0.5f);
+  const Values brow = {{"BrowLowererLeft", 0.4f}, {"BrowPinchLeft", 0.8f}, {"EyeClosedLeft", 0.0f}};
+  EXPECT_FLOAT_EQ(Weights(brow, {"browDownLeft"}).at("browDownLeft"), 0.5f) << "stated shares";
+}
+
 TEST(ShapeMatch, FallbacksFillWhatIsMissingAndAreNamed) {
   // A face without a jaw opens its mouth by a viseme.
   Values stream;
