@@ -39,7 +39,7 @@ struct ShapedHead {
     shapes = rig::MatchFaceJoints(
         {clip.skeleton, match.stream.roles, match.turn(), retarget.unmatched_source()},
         {character.skeleton, match.character.roles, character::FindMovedSurface(character.meshes),
-         character.shapes},
+         character.shapes, character.shape_rules},
         ValueOrExit(rig::ShapeMatcher::Create("")));
     weights.resize(character.shapes.size());
     frames.resize(static_cast<std::size_t>(clip.num_frames()));

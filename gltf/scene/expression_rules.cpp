@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gltf/scene/expression_rules.h"
 
+#include <optional>
+#include <string_view>
 #include <utility>
 
 #include <tiny_gltf.h>
 
+#include "base/ascii.h"
 #include "base/text.h"
 #include "gltf/document/json_value.h"
 #include "gltf/limits.h"
@@ -30,9 +33,26 @@ ExpressionRule RuleOf(const std::string& name, const Value& from) {
   return rule;
 }
 
+// The members that only kRulesExtra has.
+void ReadOwnMembers(const Value& from, ExpressionRule* rule) {
+  rule->contains = CutText(StringOf(Member(from, "contains")), kMaxNameBytes);
+  const Value& gaze = Member(from, "gaze");
+  if (gaze.IsObject()) rule->gaze = ReadGazeRange(gaze);
+}
+
+// The range of a preset for looking; nullopt for other expressions.
+std::optional<VrmLookAt::Range> GazeOf(const VrmLookAt& look_at, const std::string& preset) {
+  if (EqualsIgnoreCase(preset, "lookUp")) return look_at.up;
+  if (EqualsIgnoreCase(preset, "lookDown")) return look_at.down;
+  // Each moves both eyes, one of them towards the nose; VRM uses the outer range.
+  const bool aside = EqualsIgnoreCase(preset, "lookLeft") || EqualsIgnoreCase(preset, "lookRight");
+  return aside ? std::optional(look_at.outer) : std::nullopt;
+}
+
 class RuleReader {
  public:
-  explicit RuleReader(Document* document) : document_(*document) {}
+  explicit RuleReader(Document* document)
+      : document_(*document), look_at_(ReadVrmLookAtExpressions(*document)) {}
 
   std::vector<ExpressionRule> Run() {
     const tinygltf::Model& model = document_.model();
@@ -57,7 +77,9 @@ class RuleReader {
       const Value& group = groups.Get(static_cast<int>(i));
       const std::string preset = StringOf(Member(group, "presetName"));
       const bool is_custom = preset.empty() || preset == "unknown";
-      Add(RuleOf(is_custom ? StringOf(Member(group, "name")) : preset, group));
+      ExpressionRule rule = RuleOf(is_custom ? StringOf(Member(group, "name")) : preset, group);
+      if (look_at_ && !is_custom) rule.gaze = GazeOf(*look_at_, preset);
+      Add(std::move(rule));
     }
   }
 
@@ -65,7 +87,11 @@ class RuleReader {
     for (const char* kind : {"preset", "custom"}) {
       const Value& named = Member(expressions, kind);
       if (!named.IsObject()) continue;
-      for (const std::string& name : named.Keys()) Add(RuleOf(name, named.Get(name)));
+      for (const std::string& name : named.Keys()) {
+        ExpressionRule rule = RuleOf(name, named.Get(name));
+        if (look_at_ && kind == std::string_view("preset")) rule.gaze = GazeOf(*look_at_, name);
+        Add(std::move(rule));
+      }
     }
   }
 
@@ -73,7 +99,9 @@ class RuleReader {
     if (!list.IsArray()) return;
     for (std::size_t i = 0; i < list.ArrayLen(); ++i) {
       const Value& entry = list.Get(static_cast<int>(i));
-      Add(RuleOf(StringOf(Member(entry, "shape")), entry));
+      ExpressionRule rule = RuleOf(StringOf(Member(entry, "shape")), entry);
+      ReadOwnMembers(entry, &rule);
+      Add(std::move(rule));
     }
   }
 
@@ -87,6 +115,7 @@ class RuleReader {
   }
 
   Document& document_;
+  std::optional<VrmLookAt> look_at_;  // by expressions
   std::vector<ExpressionRule> rules_;
   std::size_t surplus_ = 0;
 };

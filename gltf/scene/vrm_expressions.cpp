@@ -134,7 +134,9 @@ class Reader {
     };
     warn(ignored_.missing_targets, "ignored bind", "ignored binds",
          " of expressions to morph targets that do not exist");
-    warn(ignored_.materials, "ignored bind", "ignored binds", " of expressions to materials");
+    warn(ignored_.materials, "ignored bind", "ignored binds",
+         " of expressions to colours or textures of materials; to show such an expression, bind a "
+         "morph target that moves a mesh with the other colour or texture out of the face");
   }
 
   Document& document_;

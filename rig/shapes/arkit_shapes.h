@@ -9,6 +9,10 @@ namespace furrow::rig {
 
 inline constexpr int kNumArkitShapes = 52;
 
+// The gaze, in degrees, that a coefficient of eyeLookUp and its like at 1 stands for. Our
+// judgement, as ARKit states none.
+inline constexpr float kFullGaze = 30.0f;
+
 // The names in ARKit's own spelling, in the order of Live Link Face. Left and right are the
 // performer's own.
 [[nodiscard]] const std::array<std::string_view, kNumArkitShapes>& ArkitShapes();

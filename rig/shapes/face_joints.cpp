@@ -104,6 +104,21 @@ std::vector<glm::vec3> PointsOf(const FaceJoints& joints, const Eyes& eyes, int 
   return {glm::vec3(0.0f)};
 }
 
+// The mouth's shapes by their meaning.
+wrinkle::JointShapes::FaceShapes ShapesOf(const ShapeFace& face, const ShapeMatcher& matcher) {
+  const ShapeMeanings meanings = matcher.MeaningsOf(face.shapes);
+  wrinkle::JointShapes::FaceShapes shapes{.count = face.shapes.size()};
+  const int jaw = meanings.Find("jawOpen");
+  const int close = meanings.Find("mouthClose");
+  if (jaw < 0 || close < 0) return shapes;
+  shapes.jaw_open = static_cast<std::uint32_t>(jaw);
+  shapes.mouth_close = static_cast<std::uint32_t>(close);
+  shapes.close_contains_jaw = std::ranges::any_of(face.rules, [&](const auto& rule) {
+    return rule.shape == shapes.mouth_close && rule.contains == shapes.jaw_open;
+  });
+  return shapes;
+}
+
 }  // namespace
 
 wrinkle::JointShapes MatchFaceJoints(const FaceJoints& joints, const ShapeFace& face,
@@ -129,7 +144,7 @@ wrinkle::JointShapes MatchFaceJoints(const FaceJoints& joints, const ShapeFace& 
     }
   }
   auto result = wrinkle::JointShapes::Create(joints.skeleton, moved, landmarks, scaling,
-                                             face.surface, face.shapes);
+                                             face.surface, ShapesOf(face, matcher));
   return result.num_landmarks() < kMinLandmarks ? wrinkle::JointShapes() : std::move(result);
 }
 

@@ -8,6 +8,7 @@
 
 #include "rig/shapes/shape_match.h"
 #include "wrinkle/shapes/joint_shapes.h"
+#include "wrinkle/shapes/shape_rules.h"
 #include "wrinkle/skeleton/joint_role.h"
 #include "wrinkle/skeleton/skeleton.h"
 
@@ -27,6 +28,7 @@ struct ShapeFace {
   const wrinkle::JointRoles& roles;  // one per joint; empty: unknown
   const wrinkle::MovedSurface& surface;
   std::span<const std::string> shapes;
+  std::span<const wrinkle::ShapeRule> rules;
 };
 
 // Lets the joints of a stream's face that the character lacks move the character's shapes. The

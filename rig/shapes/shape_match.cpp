@@ -42,11 +42,27 @@ bool MeanTheSame(const ShapeVocabulary* from, std::string_view stream_name,
   return from == to || !theirs || !ours || *theirs == *ours;
 }
 
+// "mouthRollLower + mouthRollUpper"
+std::string ShapesOf(const MapFormula& formula) {
+  std::string text;
+  for (const MapTerm& term : formula.sum) {
+    for (const MapTerm::Factor& factor : term.product) {
+      if (factor.rest) continue;
+      text += (text.empty() ? "" : " + ") +
+              std::string(ArkitShapes()[static_cast<std::size_t>(factor.shape)]);
+    }
+  }
+  return text;
+}
+
 // Matches one stream with one set of targets, in the steps that shape_match.h describes.
 class Matching {
  public:
   Matching(std::span<const std::string> stream, std::span<const std::string> targets)
-      : stream_(stream), targets_(targets), taken_(stream.size(), false), built_(targets.size()) {
+      : stream_(stream),
+        targets_(targets),
+        taken_(stream.size(), false),
+        formulas_{.shapes = std::vector<ShapeFormula>(targets.size())} {
     match_.by.assign(targets.size(), By::kNothing);
   }
 
@@ -56,15 +72,17 @@ class Matching {
   void TakeNewNames(const ShapeVocabulary* vocabulary, const ShapeVocabulary* from,
                     const ShapeVocabulary* to);
   void TranslateToArkit(const ShapeVocabulary& stream);
-  void TranslateToTargets(const ShapeVocabulary& targets, bool only_complete);
+  // `stands_in`: the vocabulary is not the targets' own, so it only fills gaps, by whole formulas.
+  void TranslateToTargets(const ShapeVocabulary& targets, bool stands_in);
   [[nodiscard]] bool HasOpenTargets() const {
     for (std::size_t t = 0; t < targets_.size(); ++t) {
       if (IsOpen(t)) return true;
     }
     return false;
   }
-  // `always`: even if the stream has it by its own name.
-  void LimitMouthClose(const ShapeVocabulary& targets, bool always);
+  // For what a rig reads: its mouthClose keeps the stream's own value.
+  void LimitMouthClose(const ShapeVocabulary& targets);
+  void LimitFace(const ShapeMeanings& face, std::span<const wrinkle::ShapeRule> rules);
   void Combine(const ShapeVocabulary* targets);
   [[nodiscard]] ShapeMatch Finish(const ShapeVocabulary* stream, const ShapeVocabulary* targets) &&;
 
@@ -74,7 +92,7 @@ class Matching {
   }
   void Set(std::size_t target, By by, ShapeFormula formula) {
     match_.by[target] = by;
-    built_[target] = std::move(formula);
+    formulas_.shapes[target] = std::move(formula);
   }
   // For each shape of the vocabulary, the blend shape of the stream that means it: the one in the
   // vocabulary's own spelling, or else the first in the alphabet. Leaves out taken ones.
@@ -89,11 +107,11 @@ class Matching {
   std::span<const std::string> stream_;
   std::span<const std::string> targets_;
   std::vector<bool> taken_;  // per blend shape of the stream
-  std::vector<ShapeFormula> steps_;
   ShapeInputs arkit_{kNumArkitShapes};
   std::array<bool, kNumArkitShapes> arkit_by_fallback_{};
-  std::vector<ShapeFormula> built_;  // per target
-  std::vector<std::size_t> late_;    // targets that read other targets, in order
+  ShapeFormulas formulas_;
+  // Targets that stand in for shapes of ARKit that are missing: "jawOpen".
+  std::unordered_map<std::size_t, std::string> stands_in_for_;
   ShapeMatch match_;
 };
 
@@ -165,8 +183,8 @@ void Matching::TranslateToArkit(const ShapeVocabulary& stream) {
       continue;
     }
     arkit_[a] = ShapeInput{.from = ShapeInput::From::kStep,
-                           .index = static_cast<std::uint32_t>(steps_.size())};
-    steps_.push_back(std::move(built->formula));
+                           .index = static_cast<std::uint32_t>(formulas_.steps.size())};
+    formulas_.steps.push_back(std::move(built->formula));
   }
 }
 
@@ -179,7 +197,7 @@ std::vector<bool> Matching::HasTarget(const ShapeVocabulary& vocabulary) const {
   return has;
 }
 
-void Matching::TranslateToTargets(const ShapeVocabulary& targets, bool only_complete) {
+void Matching::TranslateToTargets(const ShapeVocabulary& targets, bool stands_in) {
   const std::vector<bool> has = HasTarget(targets);
   std::array<bool, kNumArkitShapes> used{};
   for (std::size_t t = 0; t < targets_.size(); ++t) {
@@ -188,9 +206,9 @@ void Matching::TranslateToTargets(const ShapeVocabulary& targets, bool only_comp
     const MapShape& shape = targets.map().shapes[static_cast<std::size_t>(found)];
     const auto is_present = [&](int other) { return has[static_cast<std::size_t>(other)]; };
     if (std::ranges::any_of(shape.unless, is_present)) continue;
-    auto built = BuildFormula(shape.from_arkit, arkit_, only_complete);
+    auto built = BuildFormula(shape.from_arkit, arkit_, /*only_complete=*/stands_in);
     if (!built) continue;
-    bool fallback = built->fallback;
+    bool fallback = built->fallback || stands_in;
     for (const MapFormula& formula : shape.from_arkit) {
       for (const MapTerm& term : formula.sum) {
         for (const MapTerm::Factor& factor : term.product) {
@@ -205,6 +223,7 @@ void Matching::TranslateToTargets(const ShapeVocabulary& targets, bool only_comp
         built->renames && built->formula.sum[0].product[0].from == ShapeInput::From::kBlendShape;
     const By by = is_new_name ? By::kNewName : By::kFormula;
     Set(t, fallback ? By::kFallback : by, std::move(built->formula));
+    if (stands_in) stands_in_for_[t] = ShapesOf(shape.from_arkit.front());
   }
   // What has moved a target is not used by the next vocabulary.
   for (std::size_t a = 0; a < used.size(); ++a) {
@@ -222,16 +241,22 @@ std::optional<std::size_t> Matching::TargetOf(const ShapeVocabulary& targets, in
   return std::nullopt;
 }
 
-// ARKit's mouthClose brings the lips together on an open jaw.
-void Matching::LimitMouthClose(const ShapeVocabulary& targets, bool always) {
+void Matching::LimitMouthClose(const ShapeVocabulary& targets) {
   const auto close = TargetOf(targets, FindArkitShape("mouthClose"));
   const auto jaw = TargetOf(targets, FindArkitShape("jawOpen"));
-  if (!close || !jaw) return;
-  if (match_.by[*close] == By::kSameName && !always) return;
-  built_[*close].at_most = ShapeInput{.from = ShapeInput::From::kShape,
-                                      .use = ShapeInput::Use::kClamped,
-                                      .index = static_cast<std::uint32_t>(*jaw)};
-  late_.push_back(*close);
+  if (!close || !jaw || match_.by[*close] == By::kSameName) return;
+  formulas_.LimitTo(*close, *jaw);
+}
+
+void Matching::LimitFace(const ShapeMeanings& face, std::span<const wrinkle::ShapeRule> rules) {
+  std::vector<ShapeFormulas::Source> sources;
+  for (const By by : match_.by) {
+    const bool computed = by == By::kFormula || by == By::kFallback;
+    sources.push_back(by == By::kNothing ? ShapeFormulas::Source::kNothing
+                      : computed         ? ShapeFormulas::Source::kArkit
+                                         : ShapeFormulas::Source::kStream);
+  }
+  formulas_.Limit(face, rules, sources);
 }
 
 void Matching::Combine(const ShapeVocabulary* targets) {
@@ -254,20 +279,25 @@ void Matching::Combine(const ShapeVocabulary* targets) {
   for (auto& [target, product] : found) {
     Set(target, By::kCombination,
         {.sum = {{.gain = 1.0f, .product = std::move(product)}}, .clamped = false, .at_most = {}});
-    late_.push_back(target);
+    formulas_.late.push_back(target);
   }
 }
 
 ShapeMatch Matching::Finish(const ShapeVocabulary* stream, const ShapeVocabulary* targets) && {
   std::vector<std::pair<std::size_t, ShapeFormula>> formulas;
   for (std::size_t t = 0; t < targets_.size(); ++t) {
-    if (match_.by[t] == By::kFallback) match_.fallbacks.push_back(targets_[t]);
+    if (match_.by[t] == By::kFallback) {
+      const auto missing = stands_in_for_.find(t);
+      match_.fallbacks.push_back(
+          missing == stands_in_for_.end() ? targets_[t] : targets_[t] + " for " + missing->second);
+    }
     if (IsOpen(t)) match_.missing.push_back(targets_[t]);
-    if (match_.by[t] == By::kNothing || std::ranges::count(late_, t) > 0) continue;
-    formulas.emplace_back(t, std::move(built_[t]));
+    if (match_.by[t] == By::kNothing || std::ranges::count(formulas_.late, t) > 0) continue;
+    formulas.emplace_back(t, std::move(formulas_.shapes[t]));
   }
-  for (const std::size_t t : late_) formulas.emplace_back(t, std::move(built_[t]));
-  auto program = wrinkle::ShapeProgram::Create(targets_.size(), steps_, formulas);
+  for (const std::size_t t : formulas_.late)
+    formulas.emplace_back(t, std::move(formulas_.shapes[t]));
+  auto program = wrinkle::ShapeProgram::Create(targets_.size(), formulas_.steps, formulas);
   // The formulas are in order by construction; equal names are the safe answer to a fault here.
   match_.program =
       program.ok() ? *std::move(program) : wrinkle::ShapeProgram::ByName(stream_, targets_);
@@ -322,12 +352,17 @@ const ShapeVocabulary* ShapeMatcher::VocabularyOf(std::span<const std::string> s
 
 ShapeMatch ShapeMatcher::Match(std::span<const std::string> stream,
                                std::span<const std::string> targets) const {
-  return MatchTo(stream, targets, /*is_face=*/false);
+  return MatchTo(stream, targets, nullptr);
 }
 
 ShapeMatch ShapeMatcher::MatchFace(std::span<const std::string> stream,
-                                   std::span<const std::string> shapes) const {
-  return MatchTo(stream, shapes, /*is_face=*/true);
+                                   std::span<const std::string> shapes,
+                                   std::span<const wrinkle::ShapeRule> rules) const {
+  return MatchTo(stream, shapes, &rules);
+}
+
+ShapeMeanings ShapeMatcher::MeaningsOf(std::span<const std::string> shapes) const {
+  return {BestVocabulary(vocabularies_, shapes, 1), vocabularies_, shapes};
 }
 
 std::vector<std::string> ShapeMatcher::AllNamesOf(std::span<const std::string> shapes) const {
@@ -341,11 +376,12 @@ std::vector<std::string> ShapeMatcher::AllNamesOf(std::span<const std::string> s
 }
 
 ShapeMatch ShapeMatcher::MatchTo(std::span<const std::string> stream,
-                                 std::span<const std::string> targets, bool is_face) const {
+                                 std::span<const std::string> targets,
+                                 const std::span<const wrinkle::ShapeRule>* face) const {
   Matching matching(stream, targets);
   matching.TakeEqualNames();
   // Most streams have the rig's own names. Translating costs a millisecond or more.
-  if (!matching.HasOpenTargets() && !is_face) {
+  if (!matching.HasOpenTargets() && face == nullptr) {
     return std::move(matching).Finish(nullptr, nullptr);
   }
   const ShapeVocabulary* from = VocabularyOf(stream);
@@ -354,18 +390,27 @@ ShapeMatch ShapeMatcher::MatchTo(std::span<const std::string> stream,
   matching.TakeNewNames(to, from, to);
   matching.TakeNewNames(from, from, to);
   if (from != nullptr) matching.TranslateToArkit(*from);
-  if (to != nullptr) matching.TranslateToTargets(*to, /*only_complete=*/false);
+  if (to != nullptr) matching.TranslateToTargets(*to, /*stands_in=*/false);
   for (const ShapeVocabulary& other : vocabularies_) {
-    if (&other != to) matching.TranslateToTargets(other, /*only_complete=*/true);
+    if (&other != to) matching.TranslateToTargets(other, /*stands_in=*/true);
   }
-  if (to != nullptr) matching.LimitMouthClose(*to, is_face);
+  if (face == nullptr) {
+    if (to != nullptr) matching.LimitMouthClose(*to);
+    matching.Combine(to);
+    return std::move(matching).Finish(from, to);
+  }
+  const ShapeMeanings meanings(to, vocabularies_, targets);
+  matching.LimitFace(meanings, *face);
   matching.Combine(to);
-  return std::move(matching).Finish(from, to);
+  ShapeMatch match = std::move(matching).Finish(from, to);
+  match.program.SetRules({*face, meanings.Groups()});
+  return match;
 }
 
 wrinkle::ShapeProgram MatchShapes(const ShapeMatcher& matcher, std::span<const std::string> stream,
-                                  std::span<const std::string> targets) {
-  return matcher.MatchFace(stream, targets).program;
+                                  std::span<const std::string> targets,
+                                  std::span<const wrinkle::ShapeRule> rules) {
+  return matcher.MatchFace(stream, targets, rules).program;
 }
 
 std::string Describe(const ShapeMatch& match) {

@@ -6,8 +6,10 @@
 #include <vector>
 
 #include "base/status.h"
+#include "rig/shapes/shape_meaning.h"
 #include "rig/shapes/shape_vocabulary.h"
 #include "wrinkle/shapes/shape_program.h"
+#include "wrinkle/shapes/shape_rules.h"
 
 namespace furrow::rig {
 
@@ -22,17 +24,19 @@ struct ShapeMatch {
     kSameName,     // matched without case
     kNewName,      // the same shape in another spelling or vocabulary
     kFormula,      // by a map's first formula
-    kFallback,     // by a later formula, or by a part of one
+    kFallback,     // by a later formula, by a part of one, or by another vocabulary's
     kCombination,  // a corrective: a product of other targets, or a tent of one
   };
 
   std::string stream_map;  // the maps' names; empty: none fits, or none is needed
   std::string target_map;
-  wrinkle::ShapeProgram program;       // one weight per target
-  std::vector<By> by;                  // one per target
-  std::vector<std::string> missing;    // targets that nothing moves
-  std::vector<std::string> fallbacks;  // targets moved by kFallback
-  std::vector<std::string> unknown;    // names of the stream that its map does not know
+  wrinkle::ShapeProgram program;     // one weight per target
+  std::vector<By> by;                // one per target
+  std::vector<std::string> missing;  // targets that nothing moves
+  // Targets moved by kFallback: "browDownLeft", or "viseme_aa for jawOpen" if the target replaces
+  // a shape that is missing.
+  std::vector<std::string> fallbacks;
+  std::vector<std::string> unknown;  // names of the stream that its map does not know
 
   // The number of targets that are moved otherwise than by their own name.
   [[nodiscard]] int num_mapped() const;
@@ -46,7 +50,7 @@ struct ShapeMatch {
 //    taken in step 1 moves nothing else, so that a face that has both ARKit's shapes and visemes
 //    does not open its mouth twice.
 // 3. Targets that are still missing take complete formulas of the other maps: a face without
-//    "jawOpen" opens its mouth by "viseme_aa".
+//    "jawOpen" opens its mouth by "viseme_aa". These count as fallbacks.
 // 4. Correctives ("jawOpen_mouthSmileLeft", "a_x_b", "a__b", "jawOpen50") follow from their
 // targets.
 class ShapeMatcher {
@@ -65,10 +69,21 @@ class ShapeMatcher {
   [[nodiscard]] ShapeMatch Match(std::span<const std::string> stream,
                                  std::span<const std::string> targets) const;
 
-  // The same for the shapes of a face. There, mouthClose is always at most jawOpen: it brings the
-  // lips together on an open jaw, and alone it would push each lip through the other.
+  // The same for the shapes of a face, as they are drawn. Shapes are found by their meaning
+  // (ShapeMeanings).
+  // - mouthClose is always at most jawOpen: it brings the lips together on an open jaw, and alone
+  // it
+  //   would push each lip through the other. If it contains the jaw (ShapeRule::contains), jawOpen
+  //   gives way to it.
+  // - Lids do not go through the eye: ShapeMeanings::LidFades().
+  // - A look of VRM that is computed from ARKit's gaze follows ShapeRule::gaze.
+  // - The program applies the face's `rules` to every pose.
   [[nodiscard]] ShapeMatch MatchFace(std::span<const std::string> stream,
-                                     std::span<const std::string> shapes) const;
+                                     std::span<const std::string> shapes,
+                                     std::span<const wrinkle::ShapeRule> rules = {}) const;
+
+  // What the shapes of a face mean.
+  [[nodiscard]] ShapeMeanings MeaningsOf(std::span<const std::string> shapes) const;
 
   // The names of a face's shapes, followed by ARKit's names of those that mean one of ARKit's.
   [[nodiscard]] std::vector<std::string> AllNamesOf(std::span<const std::string> shapes) const;
@@ -78,8 +93,10 @@ class ShapeMatcher {
   [[nodiscard]] const ShapeVocabulary* VocabularyOf(std::span<const std::string> stream) const;
 
  private:
+  // `face`: the rules of a face; null: the targets are what a rig reads.
   [[nodiscard]] ShapeMatch MatchTo(std::span<const std::string> stream,
-                                   std::span<const std::string> targets, bool is_face) const;
+                                   std::span<const std::string> targets,
+                                   const std::span<const wrinkle::ShapeRule>* face) const;
 
   std::vector<ShapeVocabulary> vocabularies_;  // sorted by name, then the chosen one
   bool chosen_ = false;
@@ -88,7 +105,8 @@ class ShapeMatcher {
 // The program that moves a face's shapes by a stream: ShapeMatcher::MatchFace().program.
 [[nodiscard]] wrinkle::ShapeProgram MatchShapes(const ShapeMatcher& matcher,
                                                 std::span<const std::string> stream,
-                                                std::span<const std::string> targets);
+                                                std::span<const std::string> targets,
+                                                std::span<const wrinkle::ShapeRule> rules = {});
 
 // One line for a log: "shape map 'vrm0' to 'arkit': 23 of 23 blend shapes; by fallback: jawOpen;
 // missing: tongueOut". Empty if no map moves anything.

@@ -107,10 +107,11 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Make(
     definition->blend_shape_pose = std::make_shared<const wrinkle::BlendShapePose>(
         wrinkle::BlendShapePose::Create(*rig_, *character_.skeleton, shapes.pose_names(),
                                         shape_matcher_.AllNamesOf(character_.shapes)));
-    wrinkle::ShapeProgram program =
-        rig::MatchShapes(shape_matcher_, shapes.source_names(), character_.shapes);
-    program.SetRules({character_.shape_rules, character_.shapes});
-    definition->shape_program = std::make_shared<const wrinkle::ShapeProgram>(std::move(program));
+    rig::ShapeMatch face =
+        shape_matcher_.MatchFace(shapes.source_names(), character_.shapes, character_.shape_rules);
+    definition->face_match = rig::Describe(face);
+    definition->shape_program =
+        std::make_shared<const wrinkle::ShapeProgram>(std::move(face.program));
     definition->head_turn = std::make_shared<const wrinkle::HeadTurn>(
         skeleton.num_joints() > 0
             ? wrinkle::HeadTurn()
@@ -136,7 +137,8 @@ std::shared_ptr<const wrinkle::JointShapes> StreamDefinitions::MatchJointShapes(
   }
   auto found = rig::MatchFaceJoints(
       {skeleton, match.stream.roles, match.turn(), stream.retarget->unmatched_source()},
-      {*character_.skeleton, match.character.roles, *character_.surface, character_.shapes},
+      {*character_.skeleton, match.character.roles, *character_.surface, character_.shapes,
+       character_.shape_rules},
       shape_matcher_);
   if (found.empty()) return nullptr;
   return std::make_shared<const wrinkle::JointShapes>(std::move(found));
@@ -152,6 +154,7 @@ void StreamDefinitions::Report(const StreamDefinition& stream,
   if (const std::string text = stream.shapes.Description(); !text.empty()) {
     spdlog::info("{}", text);
   }
+  if (!stream.face_match.empty()) spdlog::info("face: {}", stream.face_match);
   const bool has_face = stream.joint_shapes != nullptr;
   if (has_face) spdlog::info("{}", stream.joint_shapes->Description());
   const auto missing_joints = stream.binding->missing_joints();

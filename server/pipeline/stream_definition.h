@@ -41,10 +41,11 @@ struct StreamDefinition {
   std::vector<std::int16_t> joint_of_wire;  // wire index -> index in `skeleton`
   rig::SkeletonMatch match;                 // how a skeleton map has matched the rig's joints
   std::shared_ptr<const wrinkle::RigBinding> binding;
-  // These four move the character by the stream's poses; null without a character.
+  // These move the character by the stream's poses; null without a character.
   std::shared_ptr<const wrinkle::Retarget> retarget;
   std::shared_ptr<const wrinkle::BlendShapePose> blend_shape_pose;
   std::shared_ptr<const wrinkle::ShapeProgram> shape_program;
+  std::string face_match;  // how shape_program was found (rig::Describe()); empty: by equal names
   std::shared_ptr<const wrinkle::HeadTurn> head_turn;  // empty if the stream has joints
   // Moves the character's shapes by the stream's joints; null if the stream's blend shapes do.
   std::shared_ptr<const wrinkle::JointShapes> joint_shapes;

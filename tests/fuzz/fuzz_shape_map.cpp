@@ -39,6 +39,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const rig::ShapeMatcher matcher({}, &*map);
   RunAll(matcher.Match(names, arkit).program, names.size());
   RunAll(matcher.Match(arkit, names).program, arkit.size());
+  const std::vector<wrinkle::ShapeRule> rules = {
+      {.shape = 0, .gaze = wrinkle::ShapeRule::Gaze{.input = 0.0f, .output = 1.0f}, .contains = 1},
+      {.shape = 1, .limits = {wrinkle::ShapeRule::Limits::kBlend}, .contains = 0}};
+  RunAll(matcher.MatchFace(names, arkit, rules).program, names.size());
+  RunAll(matcher.MatchFace(arkit, names, rules).program, arkit.size());
   (void)rig::CheckShapeMap(*map);
   return 0;
 }

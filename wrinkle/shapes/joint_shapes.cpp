@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 
-#include "base/ascii.h"
 #include "wrinkle/skeleton/finite.h"
 
 namespace furrow::wrinkle {
@@ -37,10 +36,10 @@ const MovedSurface::Point* NearestPoint(const MovedSurface& surface, const glm::
 
 JointShapes JointShapes::Create(const Skeleton& source, const std::vector<bool>& moved,
                                 std::span<const FaceLandmark> landmarks, const Scaling& scaling,
-                                const MovedSurface& surface, std::span<const std::string> shapes) {
+                                const MovedSurface& surface, const FaceShapes& shapes) {
   JointShapes result;
   result.num_joints_ = static_cast<std::size_t>(source.num_joints());
-  result.num_shapes_ = shapes.size();
+  result.num_shapes_ = shapes.count;
   result.scale_ = scaling.scale;
   if (moved.size() < result.num_joints_) return {};
   result.FindMoved(source, moved);
@@ -62,7 +61,8 @@ JointShapes JointShapes::Create(const Skeleton& source, const std::vector<bool>&
     points.push_back(point);
   }
   result.ChooseShapes(points, 0.05f * scaling.reach, shapes);
-  result.BuildEquations(points);
+  result.ReadDeltas(points, shapes.close_contains_jaw);
+  result.BuildEquations();
   return result;
 }
 
@@ -85,26 +85,27 @@ void JointShapes::FindMoved(const Skeleton& source, const std::vector<bool>& mov
 }
 
 void JointShapes::ChooseShapes(std::span<const MovedSurface::Point* const> points, float least,
-                               std::span<const std::string> shapes) {
-  std::vector<float> most(shapes.size(), 0.0f);
+                               const FaceShapes& shapes) {
+  std::vector<float> most(shapes.count, 0.0f);
   for (const MovedSurface::Point* point : points) {
     for (const auto& [shape, delta] : point->deltas) {
-      if (shape < most.size()) most[shape] = std::max(most[shape], glm::length(delta));
+      if (shape < shapes.count) most[shape] = std::max(most[shape], glm::length(delta));
     }
   }
-  for (std::uint32_t shape = 0; shape < shapes.size(); ++shape) {
+  for (std::uint32_t shape = 0; shape < shapes.count; ++shape) {
     if (most[shape] > least) solved_.push_back(shape);
   }
   std::ranges::stable_sort(solved_, std::greater(), [&](std::uint32_t i) { return most[i]; });
   if (solved_.size() > kMaxSolved) solved_.resize(kMaxSolved);
   std::ranges::sort(solved_);
   for (std::size_t i = 0; i < solved_.size(); ++i) {
-    if (EqualsIgnoreCase(shapes[solved_[i]], "jawOpen")) jaw_open_ = static_cast<int>(i);
-    if (EqualsIgnoreCase(shapes[solved_[i]], "mouthClose")) mouth_close_ = static_cast<int>(i);
+    if (solved_[i] == shapes.jaw_open) jaw_open_ = static_cast<int>(i);
+    if (solved_[i] == shapes.mouth_close) mouth_close_ = static_cast<int>(i);
   }
 }
 
-void JointShapes::BuildEquations(std::span<const MovedSurface::Point* const> points) {
+void JointShapes::ReadDeltas(std::span<const MovedSurface::Point* const> points,
+                             bool close_contains_jaw) {
   const std::size_t n = solved_.size();
   deltas_.assign(points.size() * n, glm::vec3(0.0f));
   for (std::size_t row = 0; row < points.size(); ++row) {
@@ -114,11 +115,21 @@ void JointShapes::BuildEquations(std::span<const MovedSurface::Point* const> poi
       deltas_[row * n + static_cast<std::size_t>(place - solved_.begin())] = delta;
     }
   }
+  if (!close_contains_jaw || jaw_open_ < 0 || mouth_close_ < 0) return;
+  for (std::size_t row = 0; row < points.size(); ++row) {
+    deltas_[row * n + static_cast<std::size_t>(mouth_close_)] -=
+        deltas_[row * n + static_cast<std::size_t>(jaw_open_)];
+  }
+}
+
+void JointShapes::BuildEquations() {
+  const std::size_t n = solved_.size();
+  const std::size_t rows = landmarks_.size();
   gram_.assign(n * n, 0.0f);
   float trace = 0.0f;
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = 0; j < n; ++j) {
-      for (std::size_t row = 0; row < points.size(); ++row) {
+      for (std::size_t row = 0; row < rows; ++row) {
         gram_[i * n + j] += glm::dot(deltas_[row * n + i], deltas_[row * n + j]);
       }
     }

@@ -49,6 +49,16 @@ struct FaceLandmark {
 // pose came before. Source: Lewis and Anjyo, Direct Manipulation Blendshapes (2010).
 class JointShapes {
  public:
+  // The shapes of a character. A mouthClose is at most the jawOpen. If it opens the jaw itself, it
+  // is solved without that: its weight means what ARKit's mouthClose means.
+  struct FaceShapes {
+    static constexpr std::uint32_t kNone = 0xffffffffu;
+    std::size_t count = 0;
+    std::uint32_t jaw_open = kNone;     // the shape that means ARKit's jawOpen
+    std::uint32_t mouth_close = kNone;  // likewise
+    bool close_contains_jaw = false;
+  };
+
   static constexpr std::size_t kMaxMovedJoints = 256;
   static constexpr std::size_t kMaxLandmarks = 256;
   static constexpr std::size_t kMaxSolved = 128;  // shapes that move most are solved, others rest
@@ -64,12 +74,12 @@ class JointShapes {
 
   // `moved`: one entry per joint of `source`: true if the joint moves the face and the character
   // has no such joint. Motion is measured in the frame of the nearest joint above that is not
-  // moved. `shapes`: the character's names; a mouthClose is at most the jawOpen. More moved joints
-  // or landmarks than the limits are ignored. Empty if `moved` is too short.
+  // moved. More moved joints or landmarks than the limits are ignored. Empty if `moved` is too
+  // short.
   [[nodiscard]] static JointShapes Create(const Skeleton& source, const std::vector<bool>& moved,
                                           std::span<const FaceLandmark> landmarks,
                                           const Scaling& scaling, const MovedSurface& surface,
-                                          std::span<const std::string> shapes);
+                                          const FaceShapes& shapes);
 
   [[nodiscard]] bool empty() const { return solved_.empty(); }
   [[nodiscard]] std::size_t num_landmarks() const { return landmarks_.size(); }
@@ -103,8 +113,9 @@ class JointShapes {
   [[nodiscard]] float Most(std::size_t i, std::span<const float> solution) const;
   void FindMoved(const Skeleton& source, const std::vector<bool>& moved);
   void ChooseShapes(std::span<const MovedSurface::Point* const> points, float least,
-                    std::span<const std::string> shapes);
-  void BuildEquations(std::span<const MovedSurface::Point* const> points);
+                    const FaceShapes& shapes);
+  void ReadDeltas(std::span<const MovedSurface::Point* const> points, bool close_contains_jaw);
+  void BuildEquations();
 
   std::vector<Moved> moved_;  // parents first
   std::vector<Landmark> landmarks_;

@@ -38,11 +38,19 @@ struct ShapeTerm {
   std::vector<ShapeInput> product;
 };
 
-// The sum of the terms; if `clamped`, in [0, 1]; if `at_most` is set, no more than that input.
+// How other values fade a formula: the factor 1 - share * mean of the inputs.
+struct ShapeFade {
+  float share = 1.0f;          // [0, 1]
+  std::vector<ShapeInput> by;  // not empty; read as ShapeInput::Use says, normally kClamped
+};
+
+// The sum of the terms; if `clamped`, in [0, 1]; if `at_most` is set, no more than that input; if
+// `fade` is set, times its factor.
 struct ShapeFormula {
   std::vector<ShapeTerm> sum;
   bool clamped = false;
   std::optional<ShapeInput> at_most;
+  std::optional<ShapeFade> fade = std::nullopt;
 };
 
 // The formula of a shape that equals `input`.

@@ -43,7 +43,8 @@ class FormulaCheck {
       if (!std::isfinite(term.gain)) return Error("a gain is not finite");
       for (const ShapeInput& input : term.product) FURROW_RETURN_IF_ERROR(Check(input));
     }
-    return formula.at_most ? Check(*formula.at_most) : Status();
+    if (formula.at_most) FURROW_RETURN_IF_ERROR(Check(*formula.at_most));
+    return formula.fade ? Check(*formula.fade) : Status();
   }
   void AddStep() { ++known_steps_; }
   [[nodiscard]] Status AddShape(std::size_t shape) {
@@ -56,6 +57,14 @@ class FormulaCheck {
  private:
   static Status Error(const char* what) {
     return {StatusCode::kInvalidArgument, what, "shape program"};
+  }
+  [[nodiscard]] Status Check(const ShapeFade& fade) const {
+    // The negation also rejects NaN.
+    if (!(fade.share >= 0.0f && fade.share <= 1.0f) || fade.by.empty()) {
+      return Error("a fade has no inputs, or a share that is not between 0 and 1");
+    }
+    for (const ShapeInput& input : fade.by) FURROW_RETURN_IF_ERROR(Check(input));
+    return {};
   }
   [[nodiscard]] Status Check(const ShapeInput& input) const {
     const bool known = input.from == From::kBlendShape ||
@@ -136,13 +145,21 @@ ShapeProgram::Sum ShapeProgram::Append(const ShapeFormula& formula, std::size_t 
           .shape = static_cast<std::uint32_t>(shape),
           .clamped = formula.clamped,
           .limited = formula.at_most.has_value(),
-          .at_most = formula.at_most.value_or(ShapeInput())};
+          .at_most = formula.at_most.value_or(ShapeInput()),
+          .fade = {}};
   for (const ShapeTerm& term : formula.sum) {
     const auto first = static_cast<std::uint32_t>(inputs_.size());
     inputs_.insert(inputs_.end(), term.product.begin(), term.product.end());
     terms_.push_back({term.gain, first, static_cast<std::uint32_t>(inputs_.size())});
   }
   sum.last = static_cast<std::uint32_t>(terms_.size());
+  if (formula.fade) {
+    const std::vector<ShapeInput>& by = formula.fade->by;
+    const auto first = static_cast<std::uint32_t>(inputs_.size());
+    inputs_.insert(inputs_.end(), by.begin(), by.end());
+    sum.fade = {formula.fade->share / static_cast<float>(by.size()), first,
+                static_cast<std::uint32_t>(inputs_.size())};
+  }
   return sum;
 }
 
@@ -157,7 +174,12 @@ float ShapeProgram::Evaluate(const Sum& sum, const Values& values) const {
   }
   if (sum.clamped) total = Clamped(total);
   if (sum.limited) total = std::min(total, Shaped(sum.at_most, values.Of(sum.at_most)));
-  return total;
+  if (sum.fade.first == sum.fade.last) return total;
+  float faded = 0.0f;
+  for (std::uint32_t i = sum.fade.first; i < sum.fade.last; ++i) {
+    faded += Shaped(inputs_[i], values.Of(inputs_[i]));
+  }
+  return total * (1.0f - sum.fade.gain * faded);
 }
 
 JobStatus ShapeProgram::Run(std::span<const float> coefficients, std::span<float> weights) const {

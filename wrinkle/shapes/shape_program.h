@@ -33,7 +33,7 @@ class ShapeProgram {
   // steps. `shapes`: pairs (shape, formula) in the order of evaluation, a shape at most once; they
   // read coefficients, steps and earlier shapes. Other shapes stay at 0. Errors: kLimit (too many
   // steps); kInvalidArgument (a formula reads what comes later or does not exist; a gain or tent
-  // that is not finite or not in order).
+  // that is not finite or not in order; an invalid fade).
   [[nodiscard]] static Result<ShapeProgram> Create(
       std::size_t num_shapes, std::span<const ShapeFormula> steps,
       std::span<const std::pair<std::size_t, ShapeFormula>> shapes);
@@ -51,8 +51,13 @@ class ShapeProgram {
   [[nodiscard]] JobStatus Run(std::span<const float> coefficients, std::span<float> weights) const;
 
  private:
-  // A formula whose terms are terms_[first] to terms_[last - 1]. All lists of a program are flat,
-  // because nested ones would scatter over memory.
+  // All lists of a program are flat, because nested ones would scatter over memory.
+  struct Term {
+    float gain = 0.0f;
+    std::uint32_t first = 0;  // in inputs_
+    std::uint32_t last = 0;
+  };
+  // A formula whose terms are terms_[first] to terms_[last - 1].
   struct Sum {
     std::uint32_t first = 0;
     std::uint32_t last = 0;
@@ -60,11 +65,7 @@ class ShapeProgram {
     bool clamped = false;
     bool limited = false;
     ShapeInput at_most;
-  };
-  struct Term {
-    float gain;
-    std::uint32_t first;  // in inputs_
-    std::uint32_t last;
+    Term fade;  // gain: of each input; without inputs: no fade
   };
   struct Values;
 

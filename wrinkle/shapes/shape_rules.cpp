@@ -2,43 +2,20 @@
 #include "wrinkle/shapes/shape_rules.h"
 
 #include <algorithm>
-#include <string_view>
-
-#include "base/ascii.h"
 
 namespace furrow::wrinkle {
-namespace {
 
-// VRM 1.0's presets and, after the bar, the same of VRM 0.x.
-bool IsIn(ShapeRule::Group group, const std::string& name) {
-  static constexpr std::string_view kBlinks[] = {"blink", "blinkLeft", "blinkRight", "blink_l",
-                                                 "blink_r"};
-  static constexpr std::string_view kLooks[] = {"lookUp", "lookDown", "lookLeft", "lookRight"};
-  static constexpr std::string_view kVisemes[] = {"aa", "ih", "ou", "ee", "oh",
-                                                  "a",  "i",  "u",  "e",  "o"};
-  const auto is_one_of = [&](std::span<const std::string_view> names) {
-    return std::ranges::any_of(names,
-                               [&](std::string_view n) { return EqualsIgnoreCase(n, name); });
-  };
-  switch (group) {
-    case ShapeRule::kBlinks: return is_one_of(kBlinks);
-    case ShapeRule::kLooks: return is_one_of(kLooks);
-    default: return is_one_of(kVisemes);
+ShapeRules::ShapeRules(std::span<const ShapeRule> rules, std::span<const ShapeRule::Group> groups)
+    : is_binary_(groups.size(), false) {
+  constexpr std::array<ShapeRule::Limits, ShapeRule::kNumGroups> kLimitsNothing{};
+  for (const ShapeRule& rule : rules) {
+    if (rule.shape >= groups.size()) continue;
+    if (!rule.is_binary && rule.limits == kLimitsNothing) continue;
+    rules_.push_back(rule);
+    is_binary_[rule.shape] = rule.is_binary;
   }
-}
-
-}  // namespace
-
-ShapeRules::ShapeRules(std::span<const ShapeRule> rules, std::span<const std::string> shapes)
-    : rules_(rules.begin(), rules.end()), is_binary_(shapes.size(), false) {
-  std::erase_if(rules_, [&](const ShapeRule& rule) { return rule.shape >= shapes.size(); });
-  for (const ShapeRule& rule : rules_) is_binary_[rule.shape] = rule.is_binary;
-  for (std::uint32_t shape = 0; shape < shapes.size(); ++shape) {
-    for (std::size_t group = 0; group < members_.size(); ++group) {
-      if (IsIn(static_cast<ShapeRule::Group>(group), shapes[shape])) {
-        members_[group].push_back(shape);
-      }
-    }
+  for (std::uint32_t shape = 0; shape < groups.size(); ++shape) {
+    if (groups[shape] < members_.size()) members_[groups[shape]].push_back(shape);
   }
 }
 

@@ -10,12 +10,13 @@
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
+#include "rig/shapes/arkit_shapes.h"
+
 namespace furrow::authoring {
 namespace {
 
+using rig::kFullGaze;
 using wrinkle::JointRole;
-
-constexpr float kFullGaze = 30.0f;  // degrees; our judgement, as ARKit states none
 
 // The joint of an eyeball is in its middle. A flat iris, as of drawn characters, turns about a
 // joint far behind it.

@@ -145,7 +145,7 @@ rig::JointMovedShapes MatchFaceJoints(const rig::ShapeMatcher& matcher, const mo
   auto found = rig::MatchFaceJoints(
       {clip.skeleton, match.stream.roles, match.turn(), retarget.unmatched_source()},
       {character->skeleton, match.character.roles, character::FindMovedSurface(character->meshes),
-       character->shapes},
+       character->shapes, character->shape_rules},
       matcher);
   if (found.empty()) return {};
   std::fprintf(stderr, "furrow: %s\n", found.Description().c_str());

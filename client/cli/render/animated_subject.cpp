@@ -31,8 +31,11 @@ Result<std::unique_ptr<AnimatedSubject>> AnimatedSubject::Create(
   self->blend_shape_pose_ =
       wrinkle::BlendShapePose::Create(character.rig, character.skeleton, self->shapes_.pose_names(),
                                       shapes.AllNamesOf(character.shapes));
-  self->shape_program_ = rig::MatchShapes(shapes, self->shapes_.source_names(), character.shapes);
-  self->shape_program_.SetRules({character.shape_rules, character.shapes});
+  rig::ShapeMatch face =
+      shapes.MatchFace(self->shapes_.source_names(), character.shapes, character.shape_rules);
+  const std::string text = rig::Describe(face);
+  if (!text.empty()) std::fprintf(stderr, "furrow: face: %s\n", text.c_str());
+  self->shape_program_ = std::move(face.program);
   // A recording with joints turns the head by them.
   if (take.skeleton.num_joints() == 0) {
     self->head_turn_ = wrinkle::HeadTurn::Create(character.skeleton, match.character.roles,

@@ -30,7 +30,21 @@ TEST(GltfShapeRules, BelongToTheShapesThatExist) {
   EXPECT_EQ(rules[1].shape, 0u);
   EXPECT_EQ(rules[1].limits[ShapeRule::kBlinks], ShapeRule::Limits::kNothing);
   EXPECT_EQ(rules[1].limits[ShapeRule::kLooks], ShapeRule::Limits::kBlock);
-  EXPECT_EQ(rules[1].limits[ShapeRule::kVisemes], ShapeRule::Limits::kBlend);
+  EXPECT_EQ(rules[1].limits[ShapeRule::kMouths], ShapeRule::Limits::kBlend);
+}
+
+TEST(GltfShapeRules, NameOtherShapes) {
+  const std::vector<gltf::ExpressionRule> from = {
+      {.shape = "mouthClose", .contains = "JawOpen"},
+      {.shape = "lookUp", .gaze = gltf::VrmLookAt::Range{45.0f, 0.5f}, .contains = "nobody"}};
+  const auto rules =
+      MakeShapeRules(from, std::vector<std::string>{"lookUp", "mouthClose", "jawOpen"});
+  ASSERT_EQ(rules.size(), 2u);
+  EXPECT_EQ(rules[0].contains, 2u);
+  EXPECT_FALSE(rules[0].gaze.has_value());
+  EXPECT_EQ(rules[1].contains, ShapeRule::kNoShape);
+  EXPECT_EQ(rules[1].gaze->input, 45.0f);
+  EXPECT_EQ(rules[1].gaze->output, 0.5f);
 }
 
 TEST(GltfShapeRules, ComeBackFromAPackage) {
@@ -43,7 +57,9 @@ TEST(GltfShapeRules, ComeBackFromAPackage) {
   character->shape_rules = {{.shape = 1,
                              .is_binary = true,
                              .limits = {ShapeRule::Limits::kBlend, ShapeRule::Limits::kNothing,
-                                        ShapeRule::Limits::kBlock}}};
+                                        ShapeRule::Limits::kBlock},
+                             .gaze = ShapeRule::Gaze{.input = 50.0f, .output = 0.25f},
+                             .contains = 0}};
   const auto glb = CharacterGlb(*character);
   ASSERT_TRUE(glb.ok()) << glb.status().ToString();
   const auto back = ParseCharacter(*glb, {});
@@ -52,6 +68,9 @@ TEST(GltfShapeRules, ComeBackFromAPackage) {
   EXPECT_EQ(back->shape_rules[0].shape, 1u);
   EXPECT_TRUE(back->shape_rules[0].is_binary);
   EXPECT_EQ(back->shape_rules[0].limits, character->shape_rules[0].limits);
+  EXPECT_EQ(back->shape_rules[0].gaze->input, 50.0f);
+  EXPECT_EQ(back->shape_rules[0].gaze->output, 0.25f);
+  EXPECT_EQ(back->shape_rules[0].contains, 0u);
 }
 
 }  // namespace

@@ -64,6 +64,49 @@ TEST(ExpressionRules, OfAPackage) {
   EXPECT_EQ(rules[0].overrides[1], Override::kBlend);
 }
 
+// Looks follow the gaze by the ranges, if the avatar looks by expressions.
+TEST(ExpressionRules, OfLooks) {
+  HandMadeGltf gltf = TwoJoints();
+  const Json plain = {{"isBinary", false}};
+  Json& vrm = gltf.json["extensions"]["VRMC_vrm"];
+  vrm["expressions"]["preset"] = {{"lookUp", plain}, {"lookLeft", plain}, {"aa", plain}};
+  vrm["expressions"]["custom"] = {{"lookDown", plain}};
+  vrm["lookAt"] = {{"type", "expression"},
+                   {"rangeMapVerticalUp", {{"inputMaxValue", 45}, {"outputScale", 0.5}}},
+                   {"rangeMapHorizontalOuter", {{"inputMaxValue", 60}, {"outputScale", 4}}},
+                   {"rangeMapHorizontalInner", {{"inputMaxValue", 1}, {"outputScale", 0}}}};
+  const auto rules = RulesOf(gltf);
+  ASSERT_EQ(rules.size(), 2u) << "presets for looking only";
+  EXPECT_EQ(rules[0].shape, "lookLeft");
+  EXPECT_EQ(rules[0].gaze->input, 60.0f);
+  EXPECT_EQ(rules[0].gaze->output, 1.0f) << "a weight";
+  EXPECT_EQ(rules[1].gaze->input, 45.0f);
+  EXPECT_EQ(rules[1].gaze->output, 0.5f);
+  vrm["lookAt"]["type"] = "bone";
+  EXPECT_TRUE(RulesOf(gltf).empty());
+  HandMadeGltf old = TwoJoints();
+  old.json["extensions"]["VRM"] = {
+      {"blendShapeMaster", {{"blendShapeGroups", {{{"name", "Up"}, {"presetName", "lookup"}}}}}},
+      {"firstPerson", {{"lookAtTypeName", "BlendShape"}, {"lookAtVerticalUp", {{"xRange", 80}}}}}};
+  ASSERT_EQ(RulesOf(old).size(), 1u);
+  EXPECT_EQ(RulesOf(old)[0].gaze->input, 80.0f);
+  EXPECT_EQ(RulesOf(old)[0].gaze->output, 1.0f) << "the default";
+}
+
+TEST(ExpressionRules, OfAPackageHaveMembersOfTheirOwn) {
+  HandMadeGltf gltf = TwoJoints();
+  gltf.json["scenes"] = {{{"nodes", {0}}}};
+  gltf.json["scenes"][0]["extras"][kRulesExtra] = {
+      {{"shape", "mouthClose"}, {"contains", "jawOpen"}},
+      {{"shape", "lookUp"}, {"gaze", {{"inputMaxValue", 45}, {"outputScale", 0.5}}}},
+      {{"shape", "odd"}, {"gaze", 7}, {"contains", 7}}};
+  const auto rules = RulesOf(gltf);
+  ASSERT_EQ(rules.size(), 2u);
+  EXPECT_EQ(rules[0].contains, "jawOpen");
+  EXPECT_EQ(rules[1].gaze->input, 45.0f);
+  EXPECT_EQ(rules[1].gaze->output, 0.5f);
+}
+
 TEST(ExpressionRules, UnexpectedTypesCountAsMissing) {
   for (const Json& odd : {Json(5), Json("block"), Json::array({1, "x"}), Json::object()}) {
     HandMadeGltf gltf = TwoJoints();

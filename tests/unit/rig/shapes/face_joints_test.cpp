@@ -43,7 +43,9 @@ class FaceJointsTest : public ::testing::Test {
   }
 
   // `turn`: of the stream's model space.
-  static wrinkle::JointShapes Match(const wrinkle::Skeleton& stream) {
+  // `names`: other names for the face's shapes.
+  static wrinkle::JointShapes Match(const wrinkle::Skeleton& stream,
+                                    const std::vector<std::string>& names = {}) {
     const auto matcher = ShippedMatcher();
     EXPECT_TRUE(matcher.ok());
     const SkeletonMatch match = matcher->Match(stream, *rig_, &shaped_->skeleton);
@@ -52,7 +54,8 @@ class FaceJointsTest : public ::testing::Test {
       if (shaped_->skeleton.Find(name) == wrinkle::kNoJoint) unmatched.push_back(name);
     }
     return MatchFaceJoints({stream, match.stream.roles, match.turn(), unmatched},
-                           {shaped_->skeleton, match.character.roles, *surface_, shaped_->shapes},
+                           {shaped_->skeleton, match.character.roles, *surface_,
+                            names.empty() ? shaped_->shapes : names, shaped_->shape_rules},
                            ShippedShapeMatcher());
   }
 
@@ -125,6 +128,34 @@ TEST_F(FaceJointsTest, UnitsAndAxesDoNotMatter) {
   const auto wanted = WeightsFor(Match(own), "mouthSmileLeft");
   const auto found = WeightsFor(Match(*large), "mouthSmileLeft", 100.0f);
   for (const auto& [name, weight] : wanted) EXPECT_NEAR(found.at(name), weight, 0.02f) << name;
+}
+
+// mouthClose is at most jawOpen by meaning: the same face under other names gives the same weights.
+TEST_F(FaceJointsTest, NamesOfTheMouthDoNotMatter) {
+  std::vector<std::string> names = shaped_->shapes;
+  std::size_t jaw = 0, close = 0;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (names[i] == "jawOpen") jaw = i;
+    if (names[i] == "mouthClose") close = i;
+    names[i] = "head_" + names[i].substr(0, 1) + "x";  // means nothing
+  }
+  names[jaw] = "Jaw_Open";
+  names[close] = "mouth_closed";
+  for (const char* side : {"Left", "Right"}) {
+    const auto blink = std::ranges::find(shaped_->shapes, std::string("eyeBlink") + side);
+    names[static_cast<std::size_t>(blink - shaped_->shapes.begin())] =
+        std::string("eyeBlinking_") + side;
+  }
+  const wrinkle::JointShapes own = Match(jointed_->skeleton);
+  const wrinkle::JointShapes renamed = Match(jointed_->skeleton, names);
+  ASSERT_FALSE(renamed.empty());
+  // Alone, this pose asks for more mouthClose than jawOpen.
+  std::vector<wrinkle::Transform> pose = LocalsOf("mouthClose");
+  std::vector<float> a(names.size()), b(names.size());
+  ASSERT_EQ(own.Run(pose, a), wrinkle::JobStatus::kOk);
+  ASSERT_EQ(renamed.Run(pose, b), wrinkle::JobStatus::kOk);
+  EXPECT_LE(b[close], b[jaw] + 1e-4f);
+  EXPECT_EQ(a, b);
 }
 
 // A rig of blend shapes reads the shapes that the joints move, behind the stream's own.

@@ -184,6 +184,11 @@ TEST(ShapeMatch, FallbacksFillWhatIsMissingAndAreNamed) {
   const Names face = {"mouthSmileLeft", "mouthSmileRight", "browInnerUp", "viseme_aa", "viseme_O"};
   const Values weights = Weights(stream, face);
   EXPECT_EQ(weights.at("viseme_aa"), 0.5f);
+  const ShapeMatch match = Matcher().Match(ArkitNamesForTests(), face);
+  EXPECT_THAT(match.fallbacks,
+              testing::ElementsAre("viseme_aa for jawOpen", "viseme_O for mouthPucker"));
+  EXPECT_EQ(match.by.at(3), ShapeBy::kFallback);
+  EXPECT_THAT(Describe(match), testing::HasSubstr("by fallback: viseme_aa for jawOpen, viseme_O"));
   // Half a brow is named as a fallback: the mean lacks a share.
   const ShapeMatch half = Matcher().Match(
       Names{"BrowLowererLeft", "EyeClosedLeft", "MouthCornerPullLeft"}, Names{"browDownLeft"});
@@ -419,6 +424,112 @@ TEST(ShapeMatch, MouthCloseOfAFaceNeedsAnOpenJaw) {
       EXPECT_EQ(face[i], sent[i]);
     }
   }
+}
+
+Values FaceWeights(const Values& stream, const Names& shapes,
+                   const std::vector<wrinkle::ShapeRule>& rules = {}) {
+  Names names;
+  std::vector<float> values;
+  for (const auto& [name, value] : stream) {
+    names.push_back(name);
+    values.push_back(value);
+  }
+  const ShapeMatch match = Matcher().MatchFace(names, shapes, rules);
+  std::vector<float> weights(shapes.size(), -9.0f);
+  EXPECT_EQ(match.program.Run(values, weights), wrinkle::JobStatus::kOk);
+  Values result;
+  for (std::size_t i = 0; i < shapes.size(); ++i) result[shapes[i]] = weights[i];
+  return result;
+}
+
+// A closing lid must not go through the eye, whatever the shapes are called. Rigs read the stream.
+TEST(ShapeMatch, LidsOfAFaceFadeAsTheEyeCloses) {
+  const Values wink = {{"eyeBlinkLeft", 0.5f},    {"eyeBlinkRight", 0.0f},
+                       {"eyeSquintLeft", 1.0f},   {"eyeSquintRight", 0.7f},
+                       {"eyeLookDownLeft", 0.4f}, {"eyeLookDownRight", 0.4f},
+                       {"eyeWideLeft", 0.3f}};
+  Names arkit;
+  for (const auto& [name, value] : wink) arkit.push_back(name);
+  const Values face = FaceWeights(wink, arkit);
+  EXPECT_FLOAT_EQ(face.at("eyeSquintLeft"), 0.6f);
+  EXPECT_EQ(face.at("eyeSquintRight"), 0.7f) << "the other eye keeps its bits";
+  EXPECT_FLOAT_EQ(face.at("eyeLookDownLeft"), 0.2f);
+  EXPECT_EQ(face.at("eyeLookDownRight"), 0.4f);
+  EXPECT_EQ(face.at("eyeWideLeft"), 0.3f);
+  EXPECT_EQ(Weights(wink, arkit), wink) << "rigs read what the stream sends";
+  const Values cc = FaceWeights(
+      wink, {"Eye_Blink_L", "Eye_Blink_R", "Eye_Squint_L", "Eye_Squint_R", "Eye_L_Look_Down"});
+  EXPECT_FLOAT_EQ(cc.at("Eye_Squint_L"), 0.6f);
+  EXPECT_EQ(cc.at("Eye_Squint_R"), 0.7f);
+  EXPECT_FLOAT_EQ(cc.at("Eye_L_Look_Down"), 0.2f);
+  // A blink by a preset closes the lids of ARKit's squint, too.
+  const Values vrm = FaceWeights({{"blink", 1.0f}, {"eyeSquintLeft", 1.0f}, {"lookDown", 1.0f}},
+                                 {"blink", "eyeSquintLeft", "lookDown"});
+  EXPECT_FLOAT_EQ(vrm.at("eyeSquintLeft"), 0.2f);
+  EXPECT_FLOAT_EQ(vrm.at("lookDown"), 0.0f);
+}
+
+// The face's mouthClose opens the jaw itself, as Audio2Face's does.
+TEST(ShapeMatch, AMouthCloseThatContainsTheJawTakesItBack) {
+  const Names face = {"mouthClose", "jawOpen", "mouthPucker"};
+  const std::vector<wrinkle::ShapeRule> rules = {{.shape = 0, .contains = 1}};
+  const auto weights = [&](float jaw, float close) {
+    return FaceWeights({{"jawOpen", jaw}, {"mouthClose", close}, {"mouthPucker", 0.5f}}, face,
+                       rules);
+  };
+  EXPECT_EQ(weights(1.0f, 1.0f),
+            (Values{{"mouthClose", 1.0f}, {"jawOpen", 0.0f}, {"mouthPucker", 0.5f}}));
+  EXPECT_FLOAT_EQ(weights(0.7f, 0.2f).at("jawOpen"), 0.5f);
+  EXPECT_FLOAT_EQ(weights(0.7f, 0.2f).at("mouthClose"), 0.2f);
+  EXPECT_FLOAT_EQ(weights(0.3f, 0.8f).at("jawOpen"), 0.0f);
+  EXPECT_FLOAT_EQ(weights(0.3f, 0.8f).at("mouthClose"), 0.3f) << "no more than the jaw";
+  // By other names, from a stream whose mouthClose contains the jaw as well.
+  const Values ape =
+      FaceWeights({{"Jaw_Open", 0.2f}, {"Mouth_Ape_Shape", 0.5f}, {"Mouth_Pout", 0.0f}},
+                  {"mouthClosed", "jawOpen", "mouthPucker"}, rules);
+  EXPECT_FLOAT_EQ(ape.at("jawOpen"), 0.2f);
+  EXPECT_FLOAT_EQ(ape.at("mouthClosed"), 0.5f);
+}
+
+// VRM's override rules act on what a shape means.
+TEST(ShapeMatch, RulesOfAFaceLimitShapesByMeaning) {
+  using Limits = wrinkle::ShapeRule::Limits;
+  const Names shapes = {"happy", "eyeBlinkLeft", "eyeLookUpLeft", "jawOpen", "browInnerUp", "fun"};
+  Values stream;
+  for (const std::string& name : shapes) stream[name] = 0.5f;
+  const Values blocked = FaceWeights(
+      stream, shapes, {{.shape = 0, .limits = {Limits::kBlock, Limits::kBlock, Limits::kBlock}}});
+  EXPECT_EQ(blocked, (Values{{"happy", 0.5f},
+                             {"eyeBlinkLeft", 0.0f},
+                             {"eyeLookUpLeft", 0.0f},
+                             {"jawOpen", 0.0f},
+                             {"browInnerUp", 0.5f},
+                             {"fun", 0.5f}}));
+  const Values faded = FaceWeights(
+      stream, shapes, {{.shape = 0, .limits = {Limits::kBlend, Limits::kNothing, Limits::kBlend}}});
+  EXPECT_FLOAT_EQ(faded.at("eyeBlinkLeft"), 0.25f);
+  EXPECT_FLOAT_EQ(faded.at("eyeLookUpLeft"), 0.5f);
+  EXPECT_FLOAT_EQ(faded.at("jawOpen"), 0.25f);
+}
+
+// A coefficient of 1 is a gaze of 30 degrees. A look that the stream sends is a weight already.
+TEST(ShapeMatch, LooksFollowTheRangesOfTheAvatar) {
+  const Names shapes = {"lookUp", "lookLeft", "happy"};
+  const std::vector<wrinkle::ShapeRule> rules = {
+      {.shape = 0, .gaze = wrinkle::ShapeRule::Gaze{.input = 60.0f, .output = 0.8f}},
+      {.shape = 1, .gaze = wrinkle::ShapeRule::Gaze{.input = 10.0f, .output = 1.0f}},
+      {.shape = 2, .gaze = wrinkle::ShapeRule::Gaze{.input = 60.0f, .output = 0.1f}}};
+  const Values gaze = {{"eyeLookUpLeft", 0.5f},   {"eyeLookUpRight", 0.5f},
+                       {"eyeLookOutLeft", 0.2f},  {"eyeLookInRight", 0.2f},
+                       {"mouthSmileLeft", 1.0f},  {"mouthSmileRight", 1.0f},
+                       {"cheekSquintLeft", 1.0f}, {"cheekSquintRight", 1.0f}};
+  const Values face = FaceWeights(gaze, shapes, rules);
+  EXPECT_FLOAT_EQ(face.at("lookUp"), 0.8f * 15.0f / 60.0f);
+  EXPECT_FLOAT_EQ(face.at("lookLeft"), 0.6f);
+  EXPECT_FLOAT_EQ(face.at("happy"), 1.0f) << "not a look";
+  EXPECT_EQ(FaceWeights({{"LookUp", 0.5f}, {"LookLeft", 0.2f}, {"Joy", 0.0f}}, shapes, rules)
+                .at("lookUp"),
+            0.5f);
 }
 
 // An eyeball that a shape turns must not be turned by its joint as well, whatever the shape's name.

@@ -223,6 +223,44 @@ TEST(StreamDefinitions, BlendShapesMoveTheCharactersShapes) {
   EXPECT_THAT(log.text(), HasSubstr("pictures show the rest pose"));
 }
 
+// The character's face has the limits of a drawn face; the rig reads the stream as it is.
+TEST(StreamDefinitions, TheDrawnFaceKeepsItsLimits) {
+  const wrinkle::Skeleton character = Head("neck");
+  const std::vector<std::string> shapes = {"jawOpen", "mouthClose", "eyeSquintLeft",
+                                           "eyeBlinkLeft"};
+  const std::vector<wrinkle::ShapeRule> rules = {{.shape = 1, .contains = 0}};
+  StreamDefinitions definitions(
+      KneeRig(), {.skeleton = &character, .shapes = shapes, .shape_rules = rules}, 4);
+  const auto definition = definitions.Get({.joints = {}, .blend_shapes = shapes});
+  ASSERT_TRUE(definition.ok()) << definition.status().ToString();
+  SubjectPipeline subject(*definition);
+  const std::vector<float> sent = {0.75f, 0.25f, 1.0f, 0.5f};
+  subject.mutable_pose()->blend_shapes = sent;
+  ASSERT_EQ(subject.Solve(1, 1000), wrinkle::JobStatus::kOk);
+  const auto snapshot = subject.TakeSnapshot(0);
+  EXPECT_EQ(snapshot->blend_shapes, sent);
+  std::vector<float> weights(4);
+  ASSERT_EQ(snapshot->shape_program->Run(snapshot->blend_shapes, weights), wrinkle::JobStatus::kOk);
+  EXPECT_EQ(weights, (std::vector<float>{0.5f, 0.25f, 0.6f, 0.5f}));
+}
+
+// A face without jawOpen opens its mouth by a viseme, which the log says.
+TEST(StreamDefinitions, FallbacksOfTheFaceAreLogged) {
+  const wrinkle::Skeleton character = Head("neck");
+  const std::vector<std::string> shapes = {"browInnerUp", "mouthSmileLeft", "mouthSmileRight",
+                                           "viseme_aa"};
+  StreamDefinitions definitions(KneeRig(), {.skeleton = &character, .shapes = shapes}, 4,
+                                rig::SkeletonMatcher(), rig::ShippedShapeMatcher());
+  LogCapture log;
+  ASSERT_TRUE(
+      definitions
+          .Get({.joints = {},
+                .blend_shapes = {"browInnerUp", "mouthSmileLeft", "mouthSmileRight", "jawOpen"}})
+          .ok());
+  EXPECT_THAT(log.text(), HasSubstr("face: shape map 'arkit': 4 of 4 blend shapes; by fallback: "
+                                    "viseme_aa for jawOpen"));
+}
+
 // A phone sends a face without joints. The default character's rig also reads joints of a body.
 TEST(StreamDefinitions, WarningsOfTheBindingAreLogged) {
   auto rig = std::make_shared<wrinkle::Rig>(*KneeRig());

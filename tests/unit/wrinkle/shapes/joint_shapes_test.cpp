@@ -42,8 +42,13 @@ struct Face {
     }
   }
   [[nodiscard]] JointShapes Create() const {
+    JointShapes::FaceShapes face{.count = shapes.size(), .close_contains_jaw = contains_jaw};
+    for (std::uint32_t i = 0; i < shapes.size(); ++i) {
+      if (shapes[i] == "jawOpen") face.jaw_open = i;
+      if (shapes[i] == "mouthClose") face.mouth_close = i;
+    }
     return JointShapes::Create(skeleton, moved, landmarks,
-                               {.turn = turn, .scale = kScale, .reach = 0.02f}, surface, shapes);
+                               {.turn = turn, .scale = kScale, .reach = 0.02f}, surface, face);
   }
   // The pose in which the joints go where the shapes would take the surface.
   [[nodiscard]] LocalPose Pose(std::span<const float> weights) const {
@@ -58,6 +63,7 @@ struct Face {
 
   glm::quat turn = AngleAxis(-90.0f, {1, 0, 0});
   std::vector<std::string> shapes;
+  bool contains_jaw = false;
   Skeleton skeleton;
   MovedSurface surface;
   std::vector<bool> moved;
@@ -104,6 +110,22 @@ TEST(JointShapes, MouthCloseIsAtMostJawOpen) {
   ASSERT_EQ(face.Create().Run(face.Pose(closed).joints, weights), JobStatus::kOk);
   EXPECT_LE(weights[0], weights[1] + 1e-3f);
   EXPECT_GT(weights[0], 0.1f);
+}
+
+// The solution means what ARKit's shapes mean, although the shape itself opens the jaw.
+TEST(JointShapes, AMouthCloseThatContainsTheJawIsSolvedWithoutIt) {
+  Face face({"mouthClose", "jawOpen"});
+  face.contains_jaw = true;
+  for (auto& point : face.surface.points) {
+    auto& deltas = point.deltas;
+    deltas[0].delta += deltas[1].delta;
+  }
+  std::vector<float> weights(2);
+  // The surface at jawOpen 0.7 and mouthClose 0.5 as ARKit means them.
+  const std::vector<float> drawn = {0.5f, 0.2f};
+  ASSERT_EQ(face.Create().Run(face.Pose(drawn).joints, weights), JobStatus::kOk);
+  EXPECT_NEAR(weights[0], 0.5f, 0.03f);
+  EXPECT_NEAR(weights[1], 0.7f, 0.03f);
 }
 
 TEST(JointShapes, FailuresChangeNothing) {

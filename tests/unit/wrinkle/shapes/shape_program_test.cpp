@@ -78,6 +78,35 @@ TEST(ShapeProgram, AddsUpProductsOfShapedInputs) {
   EXPECT_FLOAT_EQ(weights[0], 0.0f);
 }
 
+TEST(ShapeProgram, FadesByTheMeanOfItsInputs) {
+  using From = ShapeInput::From;
+  using Use = ShapeInput::Use;
+  ShapeFormula squint = SameAs(InputFrom(From::kBlendShape, 0));
+  squint.fade = ShapeFade{.share = 0.8f,
+                          .by = {InputFrom(From::kBlendShape, 1, Use::kClamped),
+                                 InputFrom(From::kBlendShape, 2, Use::kClamped)}};
+  const auto program = ShapeProgram::Create(1, {}, Formulas{{0, squint}});
+  ASSERT_TRUE(program.ok()) << program.status().ToString();
+  const auto run = [&](std::vector<float> coefficients) {
+    std::vector<float> weights(1);
+    EXPECT_EQ(program->Run(coefficients, weights), JobStatus::kOk);
+    return weights[0];
+  };
+  EXPECT_EQ(run({0.3f, 0.0f, 0.0f}), 0.3f) << "to the bit";
+  EXPECT_FLOAT_EQ(run({1.0f, 1.0f, 0.0f}), 0.6f);
+  EXPECT_FLOAT_EQ(run({1.0f, 5.0f, 1.0f}), 0.2f);
+  squint.fade->share = 1.5f;
+  EXPECT_EQ(ShapeProgram::Create(1, {}, Formulas{{0, squint}}).status().code(),
+            StatusCode::kInvalidArgument);
+  squint.fade = ShapeFade{.share = 1.0f, .by = {InputFrom(From::kShape, 0)}};
+  EXPECT_EQ(ShapeProgram::Create(1, {}, Formulas{{0, squint}}).status().code(),
+            StatusCode::kInvalidArgument)
+      << "reads itself";
+  squint.fade->by.clear();
+  EXPECT_EQ(ShapeProgram::Create(1, {}, Formulas{{0, squint}}).status().code(),
+            StatusCode::kInvalidArgument);
+}
+
 TEST(ShapeProgram, RejectsFormulasThatReadWhatComesLater) {
   using From = ShapeInput::From;
   const ShapeFormula step = SameAs(InputFrom(From::kStep, 0));

@@ -16,9 +16,12 @@ using ::testing::ElementsAre;
 using Limits = ShapeRule::Limits;
 
 const std::vector<std::string> kShapes = {"happy", "blink", "blinkLeft", "aa", "Oh", "angry"};
+const std::vector<ShapeRule::Group> kGroups = {ShapeRule::kNoGroup, ShapeRule::kBlinks,
+                                               ShapeRule::kBlinks,  ShapeRule::kMouths,
+                                               ShapeRule::kMouths,  ShapeRule::kNoGroup};
 
 std::vector<float> Applied(std::vector<ShapeRule> rules, std::vector<float> weights) {
-  ShapeRules(rules, kShapes).Apply(weights);
+  ShapeRules(rules, kGroups).Apply(weights);
   return weights;
 }
 
@@ -66,15 +69,23 @@ TEST(ShapeRules, BinaryShapesLimitAsOnes) {
 
 TEST(ShapeRules, ShapesThatDoNotExistAreIgnored) {
   EXPECT_TRUE(
-      ShapeRules(std::vector<ShapeRule>{{.shape = 99, .is_binary = true}}, kShapes).empty());
+      ShapeRules(std::vector<ShapeRule>{{.shape = 99, .is_binary = true}}, kGroups).empty());
   std::vector<float> few = {1.0f};
-  ShapeRules(std::vector<ShapeRule>{{.shape = 5, .is_binary = true}}, kShapes).Apply(few);
+  ShapeRules(std::vector<ShapeRule>{{.shape = 5, .is_binary = true}}, kGroups).Apply(few);
   EXPECT_THAT(few, ElementsAre(1.0f));
+}
+
+// Gazes and contained shapes belong to formulas.
+TEST(ShapeRules, OthersDoNothingHere) {
+  EXPECT_TRUE(ShapeRules(std::vector<ShapeRule>{{.shape = 0, .gaze = ShapeRule::Gaze()},
+                                                {.shape = 1, .contains = 2}},
+                         kGroups)
+                  .empty());
 }
 
 TEST(ShapeRules, ApplyToEveryPoseOfAProgram) {
   ShapeProgram program = ShapeProgram::ByName(kShapes, kShapes);
-  program.SetRules({std::vector<ShapeRule>{{.shape = 0, .limits = {Limits::kBlock}}}, kShapes});
+  program.SetRules({std::vector<ShapeRule>{{.shape = 0, .limits = {Limits::kBlock}}}, kGroups});
   std::vector<float> weights(kShapes.size());
   ASSERT_EQ(program.Run(std::vector<float>{1, 1, 0, 1, 0, 0}, weights), JobStatus::kOk);
   EXPECT_THAT(weights, ElementsAre(1, 0, 0, 1, 0, 0));

@@ -55,6 +55,27 @@ TEST(AnimatedSubject, ALiveLinkFaceRecordingGivesTheWeightsOfTheShapes) {
   EXPECT_EQ(subject->subject().model[1], closed) << "the shape jawOpen opens the mouth alone";
 }
 
+// The drawn face has the limits of MatchFace(): here its mouthClose opens the jaw itself, and its
+// lids fade.
+TEST(AnimatedSubject, TheDrawnFaceKeepsItsLimits) {
+  character::Character face = Face();
+  face.shapes = {"jawOpen", "mouthClose", "eyeSquintLeft", "eyeBlinkLeft"};
+  face.shape_rules = {{.shape = 1, .contains = 0}};
+  auto clip = motion::ParseLiveLinkCsv(
+      "Timecode,BlendShapeCount,JawOpen,MouthClose,EyeSquintLeft,EyeBlinkLeft\n"
+      "00:00:00:00.000,4,0.75,0.25,1,0.5\n",
+      "take.csv");
+  ASSERT_TRUE(clip.ok()) << clip.status().ToString();
+  const auto subject =
+      AnimatedSubject::Create(face, std::make_shared<const motion::Clip>(std::move(*clip)),
+                              rig::SkeletonMatcher(), rig::ShapeMatcher(), "take.csv");
+  ASSERT_TRUE(subject.ok()) << subject.status().ToString();
+  ASSERT_TRUE((*subject)->Advance(0).ok());
+  const auto shapes = (*subject)->subject().shapes;
+  EXPECT_EQ(std::vector<float>(shapes.begin(), shapes.end()),
+            (std::vector<float>{0.5f, 0.25f, 0.6f, 0.5f}));
+}
+
 TEST(AnimatedSubject, WithoutShapesTheJointsMove) {
   const character::Character face = Face();
   const auto subject = Animate(face);
