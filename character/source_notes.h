@@ -28,7 +28,7 @@ struct MeshNotes {
 struct SourceNotes {
   std::vector<MeshNotes> meshes;              // one per mesh of Character::meshes, in that order
   std::vector<std::string> missing_pictures;  // "name: reason"
-  std::vector<std::string> idle_shapes;       // morph targets that move no vertex; left out
+  std::vector<std::string> idle_shapes;       // morph targets that move nothing visibly; left out
   std::optional<gltf::VrmLookAt> look_at;     // of the eyes' joints
   int nameless_joints = 0;  // joints without a name, which are now called "node_<number>"
 };

@@ -12,6 +12,7 @@
 
 #include "base/status.h"
 #include "character/gltf/gltf_morph_targets.h"
+#include "character/mesh/faint_shapes.h"
 #include "character/mesh/move_mesh.h"
 #include "character/mesh/spread_influences.h"
 #include "character/mesh/tangents.h"
@@ -402,11 +403,14 @@ Result<GltfMeshes> ReadGltfMeshes(gltf::Document* document, const gltf::NodeFore
     document->Warn("meshes", "the meshes have more than " + std::to_string(kMaxShapes) +
                                  " shapes; left out: " + std::to_string(targets.num_surplus()));
   }
+  std::vector<std::string> shapes = targets.names();
+  std::vector<std::string> idle = targets.idle_names();
+  for (std::string& name : DropFaintShapes(&shapes, &meshes)) idle.push_back(std::move(name));
   if (options.notes != nullptr) {
     options.notes->meshes = std::move(notes);
-    options.notes->idle_shapes = targets.idle_names();
+    options.notes->idle_shapes = std::move(idle);
   }
-  return GltfMeshes{std::move(meshes), targets.names()};
+  return GltfMeshes{std::move(meshes), std::move(shapes)};
 }
 
 }  // namespace furrow::character

@@ -23,7 +23,8 @@ namespace furrow::character {
 //   it turns neither the normal nor the tangent by more than 1e-4.
 // - Vertices without a triangle have no deltas. Exporters that share one vertex list among
 //   primitives write the same targets into each of them.
-// - A shape that moves nothing is left out; see idle_names().
+// - A shape that moves nothing is left out; see idle_names(). DropFaintShapes() removes those that
+//   hardly move anything, once all meshes are in one space.
 // - An expression of a VRM avatar is a shape of its own, the sum of the targets that it binds.
 // - Shapes beyond kMaxShapes are left out; see num_surplus().
 class GltfMorphTargets {

@@ -141,7 +141,7 @@ class Checker {
     }
     if (count > kMaxNamed) names += ", ...";
     Find(Severity::kNote, "idle-shapes", {},
-         Count(count, "shape moves", "shapes move") + " no vertex: " + names,
+         Count(count, "shape moves", "shapes move") + " nothing visibly: " + names,
          "the import leaves them out");
   }
 

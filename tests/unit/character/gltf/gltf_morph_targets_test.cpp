@@ -75,6 +75,30 @@ TEST(GltfMorphTargets, AreReadSparsely) {
   EXPECT_EQ(target.deltas[1].normal, glm::vec3(0.2f, 0, 0));
 }
 
+// An exporter's noise does not open a jaw. Shapes are compared in model space, whatever each node's unit.
+TEST(GltfMorphTargets, FaintShapesAreIdle) {
+  const auto moved = [](float length) {
+    return std::vector<float>{0, 0, 0, 0, 0, length, length, 0, 0, 0, 0, 0, 0, 0, 0};
+  };
+  HandMadeGltf gltf = SquareMesh();
+  AddTarget("noise", {{"POSITION", gltf.AddFloats(moved(0.9e-4f), "VEC3")}}, &gltf);
+  AddTarget("small", {{"POSITION", gltf.AddFloats(moved(1.1e-4f), "VEC3")}}, &gltf);
+  AddTarget("jawOpen", {{"POSITION", gltf.AddFloats(moved(0.2f), "VEC3")}}, &gltf);
+  json teeth = gltf.json["meshes"][0];
+  teeth["extras"]["targetNames"] = {"noise", "bite", "jawOpen"};
+  gltf.json["meshes"].push_back(teeth);
+  gltf.json["nodes"].push_back({{"mesh", 1}, {"scale", {0.1, 0.1, 0.1}}});
+  SourceNotes notes;
+  const auto character = Parse(gltf, &notes);
+  ASSERT_TRUE(character.ok()) << character.status().ToString();
+  EXPECT_THAT(character->shapes, ElementsAre("small", "jawOpen"));
+  EXPECT_THAT(notes.idle_shapes, ElementsAre("noise", "bite"));
+  ASSERT_THAT(character->meshes[0].morph_targets, SizeIs(2));
+  EXPECT_EQ(character->meshes[0].morph_targets[0].shape, 0);
+  ASSERT_THAT(character->meshes[1].morph_targets, SizeIs(1));
+  EXPECT_EQ(character->meshes[1].morph_targets[0].shape, 1);
+}
+
 TEST(GltfMorphTargets, SparseAccessorsAgreeWithDenseOnes) {
   HandMadeGltf gltf = SquareMesh();
   const int dense = gltf.AddFloats({0, 0, 0, 0, 0, 0.5f, 0, 0, 0, 0.25f, 0, 0, 0, 0, 0}, "VEC3");

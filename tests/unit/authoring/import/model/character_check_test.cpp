@@ -149,7 +149,7 @@ INSTANTIATE_TEST_SUITE_P(
               [](character::Character*, character::SourceNotes* n) {
                 n->meshes[0].has_tangents = false;
               }},
-        Fault{"idle-shapes", Severity::kNote, "7 shapes move no vertex: a, b, c, d, e, ...",
+        Fault{"idle-shapes", Severity::kNote, "7 shapes move nothing visibly: a, b, c, d, e, ...",
               [](character::Character*, character::SourceNotes* n) {
                 n->idle_shapes = {"a", "b", "c", "d", "e", "f", "g"};
               }},
