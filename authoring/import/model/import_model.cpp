@@ -7,6 +7,7 @@
 #include "authoring/bake/surface/uv_check.h"
 #include "authoring/import/model/draco_call.h"
 #include "authoring/import/model/foreign_model.h"
+#include "authoring/shapes/contained_jaw.h"
 #include "base/ascii.h"
 #include "base/files.h"
 #include "base/status.h"
@@ -143,6 +144,10 @@ Result<ImportedModel> ImportModel(const fs::path& path, const rig::SkeletonMaps&
     if (Status s = MoveToSpace(report.space.rotation, scale, &opened->character); !s.ok()) {
       return s.Within(path.string());
     }
+  }
+  if (NoteContainedJaw(options.shapes, &opened->character)) {
+    imported.remarks.emplace_back(
+        "mouthClose opens the jaw itself, so a closed mouth takes jawOpen back by as much");
   }
   imported.character = std::move(opened->character);
   // The package keeps them, because those who play it have neither the map nor the guess.

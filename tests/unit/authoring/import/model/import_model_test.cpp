@@ -209,6 +209,25 @@ TEST(ImportModel, ReadsShapesOfFbx) {
   ExpectSameShapes(imported->character, body);
 }
 
+// The package keeps the note, so that the runtime knows.
+TEST(ImportModel, NotesAMouthCloseThatContainsTheJaw) {
+  character::Character body = ToyBody();
+  body.shapes = {"jawOpen", "mouthClose"};
+  const glm::vec3 down(0.0f, -0.03f, 0.0f);
+  body.meshes[0].morph_targets = {
+      {0, {{0, down, {}, {}}, {1, down, {}, {}}, {2, down, {}, {}}, {3, down, {}, {}}}},
+      {1, {{0, down, {}, {}}, {1, down, {}, {}}, {2, down, {}, {}}, {3, down, {}, {}}}}};
+  const Folder folder;
+  const auto imported = ImportModel(folder.Write("body.glb", GlbOf(body)), Maps());
+  ASSERT_TRUE(imported.ok()) << imported.status().ToString();
+  EXPECT_THAT(imported->remarks, Contains(HasSubstr("mouthClose opens the jaw itself")));
+  const auto again = OpenModel(folder.Write("again.glb", GlbOf(imported->character)));
+  ASSERT_TRUE(again.ok()) << again.status().ToString();
+  ASSERT_EQ(again->character.shape_rules.size(), 1u);
+  EXPECT_EQ(again->character.shape_rules[0].shape, 1u);
+  EXPECT_EQ(again->character.shape_rules[0].contains, 0u);
+}
+
 TEST(ImportModel, AcceptsAScale) {
   const Folder folder;
   const auto imported =
