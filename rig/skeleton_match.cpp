@@ -244,6 +244,12 @@ std::string Describe(const SkeletonMatch& match) {
          AxisName(back * glm::vec3(0.0f, 1.0f, 0.0f));
 }
 
+std::string UnknownAxes() {
+  return "the axes of the rest pose are unknown, because no joints with known roles tell up and "
+         "left; +Y is taken as up and +Z as ahead; if the values are wrong, map the joints with "
+         "--skeleton-map (docs/SKELETONS.md), or turn a BVH file with --up-axis";
+}
+
 std::vector<std::string> WarningsOf(const SkeletonMatch& match) {
   std::vector<std::string> warnings = WarningsOf(match.fit, match.stream);
   // Guesses do not matter to a rig that finds all joints by their names.
@@ -253,12 +259,7 @@ std::vector<std::string> WarningsOf(const SkeletonMatch& match) {
         "the body moves wrong, write a map with 'furrow rig propose-map' and choose it with "
         "--skeleton-map");
   }
-  if (match.assumes_axes) {
-    warnings.emplace_back(
-        "the axes of the rest pose are unknown, because no joints with known roles tell up and "
-        "left; +Y is taken as up and +Z as ahead; if the values are wrong, map the joints with "
-        "--skeleton-map (docs/SKELETONS.md), or turn a BVH file with --up-axis");
-  }
+  if (match.assumes_axes) warnings.push_back(UnknownAxes());
   if (match.stance && match.stance->is_folded) {
     warnings.emplace_back(
         "the legs point the same way as the trunk at rest, so the rest pose says nothing about the "

@@ -69,6 +69,10 @@ class SkeletonMatcher {
 
   // The roles of a recording's joints, as Match() finds them.
   [[nodiscard]] SkeletonRoles RolesOf(const wrinkle::Skeleton& stream) const;
+  // How a skeleton stands at rest, by its `roles`, as RolesOf() finds them. If they do not tell,
+  // those of any map may, which then needs neither limbs nor many roles.
+  [[nodiscard]] std::optional<wrinkle::RestStance> StanceOf(const wrinkle::Skeleton& skeleton,
+                                                            const wrinkle::JointRoles& roles) const;
 
   // `character` may be null. It does not affect the aliases, so weights are the same with and
   // without pictures. The map that explains the most joint names of the rig gives their roles.
@@ -78,10 +82,6 @@ class SkeletonMatcher {
                                     const wrinkle::Skeleton* character) const;
 
  private:
-  // How a skeleton stands at rest, by its `roles`. If they do not tell, those of any map may, which
-  // then needs neither limbs nor many roles.
-  [[nodiscard]] std::optional<wrinkle::RestStance> StanceOf(const wrinkle::Skeleton& skeleton,
-                                                            const wrinkle::JointRoles& roles) const;
   [[nodiscard]] SkeletonRoles RolesOfCharacter(const wrinkle::Skeleton& character) const;
   [[nodiscard]] wrinkle::JointRoles RolesOfRig(std::span<const std::string> joint_names) const;
 
@@ -98,6 +98,8 @@ class SkeletonMatcher {
 // Describe() of the stream's roles, with the axes of the rest pose if they are not Furrow's: "...;
 // the rest pose faces -X, up is +Z". Empty for a stream without joints.
 [[nodiscard]] std::string Describe(const SkeletonMatch& match);
+// The warning about a rest pose without a stance: what is assumed, and the way out.
+[[nodiscard]] std::string UnknownAxes();
 // Probable faults of a match, those of its fit among them, one sentence each, with what to do.
 [[nodiscard]] std::vector<std::string> WarningsOf(const SkeletonMatch& match);
 

@@ -13,6 +13,7 @@
 #include "character/package/package.h"
 #include "motion/pose_source.h"
 #include "render/settings/settings_file.h"
+#include "rig/poses_in_axes.h"
 #include "rig/rig_file.h"
 #include "wrinkle/rig/rig_blend_shapes.h"
 
@@ -65,14 +66,15 @@ Result<rig::ShapeMatcher> LoadShapeMaps(const std::string& map) {
 }  // namespace
 
 Result<Assets> LoadAssets(const Config& config) {
-  // Rigs name the files and frames of their reference poses; each file is read once.
-  const wrinkle::PoseSource poses = motion::CachedPoseSource(
-      ReadOptions(config), [](const std::string& warning) { spdlog::warn("{}", warning); });
   const fs::path chosen_rig = config.rig.empty() ? fs::path() : rig::FindRigFile(config.rig);
   Assets assets;
   auto matcher = LoadMatcher(config.skeleton_map);
   if (!matcher.ok()) return matcher.status().At("--skeleton-map");
   assets.skeletons = *std::move(matcher);
+  // Rigs name the files and frames of their reference poses; each file is read once.
+  const auto warn = [](const std::string& warning) { spdlog::warn("{}", warning); };
+  const wrinkle::PoseSource poses = rig::PosesInFurrowAxes(
+      motion::CachedPoseSource(ReadOptions(config), warn), assets.skeletons, warn);
   auto shapes = LoadShapeMaps(config.shape_map);
   if (!shapes.ok()) return shapes.status().At("--shape-map");
   assets.shape_matcher = *std::move(shapes);

@@ -90,6 +90,68 @@ class CharacterTest(unittest.TestCase):
             self.assertGreater(max(b.values()), 0.2)
             self.assertLess(max(abs(a[f] - b[f]) for f in b), 0.01, limb)
 
+    def test_rig_check_turns_the_skeleton_as_solve_does(self):
+        def lie(line):
+            if line.split()[:1] != ["OFFSET"]:
+                return line
+            x, y, z = map(float, line.split()[1:])
+            return f"OFFSET {x} {-z} {y}"
+        text = (SHARE / "recordings" / "walk.bvh").read_text()
+        recording = self.root / "z-up.bvh"
+        recording.write_text("\n".join(map(lie, text.splitlines())) + "\n")
+        # The file keeps its axes, so only the match of the joints can turn it. An axis along +Z is across
+        # a leg, but not across the leg of a Z-up skeleton.
+        rig = self.root / "knee.json"
+        rig.write_text(json.dumps({
+            "version": 1, "name": "knee",
+            "drivers": [{"name": "knee", "hinge": {"parent": "upper_leg_l", "joint": "lower_leg_l",
+                                                   "end": "foot_l", "axis": [0, 0, 1]}}],
+            "regions": [{"name": "knee", "mask": {"kind": "skinning"},
+                         "feeds": [{"map": "folds", "sources": [{"from": "knee.flexed"}]}]}],
+            "wrinkle_maps": [{"name": "folds"}]}))
+        checked = furrow("rig", "check", rig, "--skeleton", recording, "--up-axis", "y", check=0)
+        self.assertIn(b"the rest pose faces -Y, up is +Z", checked.stderr)
+        self.assertIn(b"binds to the skeleton", checked.stdout)
+
+    def rig_with_a_bvh_pose(self):
+        """A rig of a brow, whose pose is a BVH frame with position channels, and nothing but positions."""
+        channels = "CHANNELS 6 Xposition Yposition Zposition Zrotation Yrotation Xrotation"
+        (self.root / "pose.bvh").write_text(
+            f"HIERARCHY\nROOT head\n{{\nOFFSET 0 1 0\n{channels}\n"
+            f"JOINT frontalis_inner_l\n{{\nOFFSET 0.02 0.03 0.1\n{channels}\n"
+            "End Site\n{\nOFFSET 0 0 0.01\n}\n}\n}\nMOTION\nFrames: 1\nFrame Time: 0.1\n"
+            "0 1 0 0 0 0 0.02 0.04 0.1 0 0 0\n")
+        rig = self.root / "brow.json"
+        rig.write_text(json.dumps({
+            "version": 1, "name": "brow", "anchor": "head",
+            "reference_poses": [{"name": "up", "file": "pose.bvh", "frame": 0}],
+            "drivers": [{"name": "brow", "pose": {
+                "points": [{"joint": "frontalis_inner_l", "kind": "origin"}],
+                "values": [{"name": "up", "reference_pose": "up"}]}}],
+            "regions": [{"name": "brow", "mask": {"kind": "skinning"},
+                         "feeds": [{"map": "folds", "sources": [{"from": "brow.up"}]}]}],
+            "wrinkle_maps": [{"name": "folds"}]}))
+        return rig
+
+    def test_bvh_positions_also_concern_the_poses_of_a_rig(self):
+        rig = self.rig_with_a_bvh_pose()
+
+        def moves(*options):
+            out = self.root / "brow.glb"
+            furrow("character", "import", self.default, "--rig", rig, "--out", out, *options, check=0)
+            poses = json.loads(out.with_suffix(".rig.json").read_text())["reference_poses"]
+            return bool(poses[0].get("joints"))
+        self.assertTrue(moves())
+        self.assertFalse(moves("--bvh-positions", "offsets"))
+        still = "does not move its control points"
+        check = lambda *o: furrow("character", "check", self.default, "--rig", rig, *o).stdout.decode()
+        self.assertNotIn(still, check())
+        self.assertIn(still, check("--bvh-positions", "offsets"))
+        patch = ("rig", "patch", self.default, "--rig", rig, "--around", "0,1.566,0.046")
+        furrow(*patch, "--bvh-positions", "channels", check=0)
+        for command in (patch, ("record", "localhost:1", "--out", self.root / "t.mcap", "--rig", rig)):
+            self.assertIn(b"is not one of auto", furrow(*command, "--bvh-positions", "x", check=2).stderr)
+
     def test_files_with_a_wrong_format(self):
         text = self.root / "text.fbx"
         text.write_text("this is not FBX\n" * 100)

@@ -14,6 +14,7 @@
 #include "client/cli/common/exit_code.h"
 #include "client/cli/common/inputs.h"
 #include "client/cli/common/standard_output.h"
+#include "motion/clip/clip.h"
 
 namespace furrow::cli {
 namespace {
@@ -24,6 +25,7 @@ struct CheckArguments {
   std::string file;
   std::string rig;
   std::string map;
+  motion::LoadOptions poses;  // of the rig
   bool json = false;
   bool strict = false;
 };
@@ -36,7 +38,7 @@ Result<bool> AttachOptionalRig(const CheckArguments& arguments, character::Chara
     std::error_code error;
     if (!fs::exists(path, error)) return false;
   }
-  auto rig = LoadRigArgument(path.string());
+  auto rig = LoadRigArgument(path.string(), arguments.poses, arguments.map);
   FURROW_RETURN_IF_ERROR(rig);
   if (Status s = character::AttachRig(std::move(*rig), path.parent_path(), character); !s.ok()) {
     return s.At(path.string());
@@ -84,6 +86,7 @@ void AddCharacterCheck(CLI::App& group, Action& action) {
                       "Skeleton map of the joint names, by name or file (default: the best match)");
   command->add_flag("--json", arguments->json, "Print one JSON object instead of text");
   command->add_flag("--strict", arguments->strict, "Treat warnings as errors");
+  AddBvhOptions(*command, arguments->poses);
   command->callback([arguments, &action] { action = [arguments] { return Check(*arguments); }; });
 }
 

@@ -25,7 +25,7 @@
 #include "client/cli/common/inputs.h"
 #include "client/cli/common/interrupt.h"
 #include "client/cli/common/progress.h"
-#include "motion/pose_source.h"
+#include "motion/clip/clip.h"
 
 namespace furrow::cli {
 namespace {
@@ -38,13 +38,14 @@ struct ImportArguments {
   std::vector<std::string> data_folders;
   authoring::ImportOptions makehuman;
   authoring::ModelOptions model;
-  float depth = 1.0f;  // of the folds of a face of blend shapes
+  motion::LoadOptions poses;  // of the rig
+  float depth = 1.0f;         // of the folds of a face of blend shapes
 };
 
 int ImportFolder(const std::filesystem::path& folder, const ImportArguments& arguments,
                  authoring::ImportOptions options) {
   options.rig = arguments.rig.empty() ? std::filesystem::path() : ResolveRigPath(arguments.rig);
-  options.poses = motion::CachedPoseSource();
+  options.poses = RigPoses(arguments.poses, arguments.map);
   Progress progress("importing", 100);
   options.progress = [&](float done) {
     progress.Set(std::lround(100.0f * done));
@@ -136,7 +137,7 @@ Status AttachRigTo(const ImportArguments& arguments, const rig::SkeletonMaps& ma
                    authoring::ImportedModel* imported) {
   character::Character* character = &imported->character;
   if (!arguments.rig.empty()) {
-    auto rig = LoadRigArgument(arguments.rig);
+    auto rig = LoadRigArgument(arguments.rig, arguments.poses, arguments.map);
     FURROW_RETURN_IF_ERROR(rig);
     return character::AttachRig(std::move(*rig), ResolveRigPath(arguments.rig).parent_path(),
                                 character);
@@ -264,6 +265,7 @@ void AddCharacterImport(CLI::App& group, Action& action) {
           "or a cartoon, above 1 for an old face")
       ->check(CLI::Range(0.0f, 4.0f))
       ->capture_default_str();
+  AddBvhOptions(*command, arguments->poses);
   command->callback([arguments, &action] { action = [arguments] { return Import(*arguments); }; });
 }
 

@@ -13,6 +13,7 @@
 #include "client/cli/common/helper_program.h"
 #include "client/cli/common/inputs.h"
 #include "client/cli/common/standard_output.h"
+#include "motion/clip/clip.h"
 #include "rig/rig_file.h"
 
 namespace furrow::cli {
@@ -26,6 +27,7 @@ struct PatchArguments {
   std::string region;
   std::string direction = "0,1,0";
   std::string out;
+  motion::LoadOptions poses;  // of the rig
   float radius_mm = 15.0f;
   character::PatchOptions patch;
 };
@@ -60,7 +62,7 @@ Result<glm::vec3> Centre(const PatchArguments& arguments, const character::Chara
 }
 
 int Patch(const PatchArguments& arguments) {
-  const auto character = LoadCharacterArgument(arguments.character, arguments.rig);
+  const auto character = LoadCharacterArgument(arguments.character, arguments.rig, arguments.poses);
   if (!character.ok()) return Fail(character.status());
   const auto centre = Centre(arguments, *character);
   if (!centre.ok()) return Fail(centre.status());
@@ -116,6 +118,7 @@ void AddRigPatch(CLI::App& app, Action& action) {
       ->check(Within(0.01, 1.0))
       ->capture_default_str();
   command->add_option("--out", arguments->out, "File to write (default: standard output)");
+  AddBvhOptions(*command, arguments->poses);
   command->callback([arguments, &action] { action = [arguments] { return Patch(*arguments); }; });
 }
 

@@ -19,6 +19,7 @@
 #include "client/cli/common/standard_output.h"
 #include "client/cli/receive/receive_events.h"
 #include "client/cli/receive/take_recorder.h"
+#include "motion/clip/clip.h"
 #include "recording/take_poses.h"
 #include "rig/rig_file.h"
 
@@ -34,6 +35,7 @@ struct RecordOptions {
   double rotate_megabytes = 0.0;
   double rotate_seconds = 0.0;
   std::string rig;
+  motion::LoadOptions poses;  // of the rig
 };
 
 // Progress on a terminal: a bar if the duration is known, otherwise the current counts.
@@ -75,7 +77,7 @@ Result<recording::TakeFolderOptions> FolderOptions(const RecordOptions& options)
       .rig_json = {}};
   if (options.rig.empty()) return folder;
   // The rig travels with the take, so that its weights can be explained later.
-  const auto rig = LoadRigArgument(options.rig);
+  const auto rig = LoadRigArgument(options.rig, options.poses);
   FURROW_RETURN_IF_ERROR(rig);
   folder.rig_json = rig::RigToJson(*rig);
   return folder;
@@ -207,6 +209,7 @@ void AddRecord(CLI::App& app, Action& action) {
       "--rig", options->rig,
       "The daemon's wrinkle rig, by file or shipped name, to attach to the take (default: "
       "none)");
+  AddBvhOptions(*command, options->poses);
   command->callback([options, &action] { action = [options] { return Record(*options); }; });
 }
 

@@ -206,7 +206,8 @@ Status DrawFrames(const RenderOptions& options, const render::Settings& settings
 int RenderFiles(const RenderOptions& options) {
   const auto settings = SettingsOf(options.picture);
   if (!settings.ok()) return Fail(settings.status());
-  const auto character = LoadCharacterArgument(options.character, options.rig, options.read);
+  const auto character =
+      LoadCharacterArgument(options.character, options.rig, options.read, options.skeleton_map);
   if (!character.ok()) return Fail(character.status());
   auto group = MakeGroup(options, *character);
   if (!group.ok()) return Fail(group.status());

@@ -13,7 +13,6 @@
 #include "client/cli/common/inputs.h"
 #include "client/cli/output/explanation_text.h"
 #include "motion/clip/clip.h"
-#include "motion/pose_source.h"
 #include "rig/rig_file.h"
 #include "wrinkle/solver/solver.h"
 
@@ -32,7 +31,7 @@ struct RigOptions {
 };
 
 int Explain(const RigOptions& options) {
-  const auto input = LoadRigInput(options.rig, options.read);
+  const auto input = LoadRigInput(options.rig, options.read, options.skeleton_map);
   if (!input.ok()) return Fail(input.status());
   const wrinkle::Rig& rig = input->rig;
   const auto clip = LoadClipArgument(options.file, options.read);
@@ -71,11 +70,9 @@ int Check(const RigOptions& options) {
   // The rig that ships for MakeHuman names a recording of MakeHuman, which does not ship. Only
   // binding to a skeleton needs the poses.
   std::set<std::string> missing;
-  motion::LoadOptions read = options.read;
-  read.rest_frame = -1;  // is about the recording of --skeleton
-  const auto rig = options.file.empty() ? rig::LoadRig(ResolveRigPath(options.rig),
-                                                       motion::CachedPoseSource(read), &missing)
-                                        : LoadRigArgument(options.rig, options.read);
+  const auto rig =
+      rig::LoadRig(ResolveRigPath(options.rig), RigPoses(options.read, options.skeleton_map),
+                   options.file.empty() ? &missing : nullptr);
   if (!rig.ok()) return Fail(rig.status());
   for (const std::string& file : missing) {
     PrintWarnings({"the recording '" + file +

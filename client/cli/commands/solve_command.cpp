@@ -39,7 +39,7 @@ Status BindingFailed(const Status& status, const SolveOptions& options) {
 int SolveFile(const SolveOptions& options) {
   const auto clip = LoadClipArgument(options.file, options.read);
   if (!clip.ok()) return Fail(clip.status());
-  const auto input = LoadRigInput(options.rig, options.read);
+  const auto input = LoadRigInput(options.rig, options.read, options.skeleton_map);
   if (!input.ok()) return Fail(input.status());
   const wrinkle::Rig& rig = input->rig;
   const auto matcher = LoadSkeletonMatcher(options.skeleton_map, input->character.get());

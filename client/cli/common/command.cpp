@@ -18,13 +18,7 @@ void AddShapeMap(CLI::App& command, std::string& value) {
                      "file (default: the best match of the shipped maps)");
 }
 
-void AddReadOptions(CLI::App& command, motion::LoadOptions& options) {
-  command
-      .add_option(
-          "--animation", options.animation,
-          "Animation of a glTF, FBX or Collada file, by name or number from 0 (default: the "
-          "first)")
-      ->type_name("NAME|INDEX");
+void AddBvhOptions(CLI::App& command, motion::LoadOptions& options) {
   command
       .add_option_function<std::string>(
           "--bvh-positions",
@@ -43,16 +37,26 @@ void AddReadOptions(CLI::App& command, motion::LoadOptions& options) {
           "auto|channels|offsets|add"))
       ->type_name("")
       ->default_str("auto");
+  const std::map<std::string, motion::UpAxis> axes{
+      {"auto", motion::UpAxis::kAuto}, {"y", motion::UpAxis::kY}, {"z", motion::UpAxis::kZ}};
+  AddChoice(command, "--up-axis", options.up_axis, axes,
+            "Axis that points up in a BVH file: auto, y or z");
+}
+
+void AddReadOptions(CLI::App& command, motion::LoadOptions& options) {
+  command
+      .add_option(
+          "--animation", options.animation,
+          "Animation of a glTF, FBX or Collada file, by name or number from 0 (default: the "
+          "first)")
+      ->type_name("NAME|INDEX");
   command
       .add_option(
           "--rest-frame", options.rest_frame,
           "Frame to take as the rest pose, counted from 0; the performer stands upright and "
           "faces +Z there (default: the rest pose of the file)")
       ->check(CLI::NonNegativeNumber);
-  const std::map<std::string, motion::UpAxis> axes{
-      {"auto", motion::UpAxis::kAuto}, {"y", motion::UpAxis::kY}, {"z", motion::UpAxis::kZ}};
-  AddChoice(command, "--up-axis", options.up_axis, axes,
-            "Axis that points up in a BVH file: auto, y or z");
+  AddBvhOptions(command, options);
 }
 
 // The limits are those of the wire (protocol::kMinImageSize, kMaxImageSize).

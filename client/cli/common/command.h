@@ -47,6 +47,10 @@ void AddSkeletonMap(CLI::App& command, std::string& value);
 // Adds --shape-map. `value` receives its argument, a name or a file, for LoadShapeMatcher().
 void AddShapeMap(CLI::App& command, std::string& value);
 
+// Adds the options of BVH files, --bvh-positions and --up-axis, for commands that read the
+// recordings of a rig's reference poses and no others.
+void AddBvhOptions(CLI::App& command, motion::LoadOptions& options);
+
 // Adds the options that say how the recordings of a command are read: --animation,
 // --bvh-positions, --rest-frame and --up-axis.
 void AddReadOptions(CLI::App& command, motion::LoadOptions& options);

@@ -16,6 +16,7 @@
 #include "motion/clip_file.h"
 #include "motion/pose_source.h"
 #include "recording/take_clip.h"
+#include "rig/poses_in_axes.h"
 #include "rig/rig_file.h"
 #include "rig/shapes/face_joints.h"
 
@@ -27,12 +28,6 @@ namespace {
 
 void PrintWarning(const std::string& text) {
   std::fprintf(stderr, "furrow: warning: %s\n", text.c_str());
-}
-
-// The frames of a rig's reference poses have a rest frame of their own.
-motion::LoadOptions ForPoses(motion::LoadOptions read) {
-  read.rest_frame = -1;
-  return read;
 }
 
 }  // namespace
@@ -74,9 +69,19 @@ Result<motion::Clip> LoadClipArgument(const std::string& path, const motion::Loa
 
 fs::path ResolveRigPath(const std::string& argument) { return rig::FindRigFile(argument); }
 
-Result<wrinkle::Rig> LoadRigArgument(const std::string& argument, const motion::LoadOptions& read) {
-  return rig::LoadRig(ResolveRigPath(argument),
-                      motion::CachedPoseSource(ForPoses(read), PrintWarning));
+wrinkle::PoseSource RigPoses(const motion::LoadOptions& read, const std::string& skeleton_map) {
+  motion::LoadOptions options = read;
+  options.rest_frame = -1;  // poses state one of their own
+  auto matcher = rig::SkeletonMatcher::Create(skeleton_map);
+  // Commands that match joints report missing maps: LoadSkeletonMatcher().
+  return rig::PosesInFurrowAxes(motion::CachedPoseSource(options, PrintWarning),
+                                matcher.ok() ? *std::move(matcher) : rig::SkeletonMatcher(),
+                                PrintWarning);
+}
+
+Result<wrinkle::Rig> LoadRigArgument(const std::string& argument, const motion::LoadOptions& read,
+                                     const std::string& skeleton_map) {
+  return rig::LoadRig(ResolveRigPath(argument), RigPoses(read, skeleton_map));
 }
 
 Result<rig::SkeletonMatcher> LoadSkeletonMatcher(const std::string& map,
@@ -166,15 +171,16 @@ void WarnAboutMissing(const wrinkle::RigBinding& binding, const motion::Clip& cl
   if (!clip.blend_shape_names.empty()) warn(binding.missing_blend_shapes(), "blend shape");
 }
 
-Result<RigInput> LoadRigInput(const std::string& argument, const motion::LoadOptions& read) {
+Result<RigInput> LoadRigInput(const std::string& argument, const motion::LoadOptions& read,
+                              const std::string& skeleton_map) {
   RigInput input;
   if (fs::path(argument).extension() != ".glb") {
-    auto rig = LoadRigArgument(argument, read);
+    auto rig = LoadRigArgument(argument, read, skeleton_map);
     FURROW_RETURN_IF_ERROR(rig);
     input.rig = *std::move(rig);
     return input;
   }
-  auto character = LoadCharacterArgument(argument, {}, read);
+  auto character = LoadCharacterArgument(argument, {}, read, skeleton_map);
   FURROW_RETURN_IF_ERROR(character);
   if (character->rig.drivers.empty()) {
     return Status(StatusCode::kNotFound, "the character has no wrinkle rig", argument,
@@ -186,7 +192,8 @@ Result<RigInput> LoadRigInput(const std::string& argument, const motion::LoadOpt
 }
 
 Result<character::Character> LoadCharacterArgument(const std::string& glb, const std::string& rig,
-                                                   const motion::LoadOptions& read) {
+                                                   const motion::LoadOptions& read,
+                                                   const std::string& skeleton_map) {
   fs::path package = glb;
   if (glb.empty()) {
     const auto shipped = furrow::FindDataFile("default.glb");
@@ -194,7 +201,7 @@ Result<character::Character> LoadCharacterArgument(const std::string& glb, const
     package = *shipped;
   }
   auto character = character::LoadCharacter(package, rig.empty() ? fs::path() : ResolveRigPath(rig),
-                                            motion::CachedPoseSource(ForPoses(read), PrintWarning));
+                                            RigPoses(read, skeleton_map));
   if (!character.ok()) return character;
   PrintWarnings(character->warnings);
   for (const std::string& name : character->missing_rig_pictures) {

@@ -14,6 +14,7 @@
 #include "rig/shapes/rig_shapes.h"
 #include "rig/skeleton_match.h"
 #include "wrinkle/rig/rig.h"
+#include "wrinkle/skeleton/pose_frame.h"
 #include "wrinkle/solver/solver.h"
 
 namespace furrow::cli {
@@ -40,10 +41,17 @@ void PrintWarnings(const std::vector<std::string>& warnings);
 // argument that is neither is returned unchanged, so that the loader reports the error.
 [[nodiscard]] std::filesystem::path ResolveRigPath(const std::string& argument);
 
-// Loads a rig by path, or a shipped rig by name ("cmu" or "cmu.json").
-// `read`: how the recordings of its reference poses are read.
+// Reads the recordings of a rig's reference poses, in Furrow's axes. Prints the reader's warnings.
+// `read`: how they are read; a rest frame there is not meant for them. `skeleton_map`: that of
+// --skeleton-map, or empty; it and the shipped maps tell the axes.
+[[nodiscard]] wrinkle::PoseSource RigPoses(const motion::LoadOptions& read,
+                                           const std::string& skeleton_map = {});
+
+// Loads a rig by path, or a shipped rig by name ("cmu" or "cmu.json"). `read` and `skeleton_map`:
+// see RigPoses().
 [[nodiscard]] Result<wrinkle::Rig> LoadRigArgument(const std::string& argument,
-                                                   const motion::LoadOptions& read = {});
+                                                   const motion::LoadOptions& read = {},
+                                                   const std::string& skeleton_map = {});
 
 // A rig, with the character that it came with.
 struct RigInput {
@@ -57,7 +65,8 @@ struct RigInput {
 // As LoadRigArgument(), and accepts a character package (.glb), whose rig is used and whose shapes
 // then follow a recording's joints as in the daemon. Errors: kNotFound (a package without a rig).
 [[nodiscard]] Result<RigInput> LoadRigInput(const std::string& argument,
-                                            const motion::LoadOptions& read = {});
+                                            const motion::LoadOptions& read = {},
+                                            const std::string& skeleton_map = {});
 
 // Loads the skeleton map of --skeleton-map, by name or file. An empty `map` selects the best
 // shipped map per skeleton. `character` may be null: its package may state the roles of its joints.
@@ -103,8 +112,9 @@ void WarnAboutMissing(const wrinkle::RigBinding& binding, const motion::Clip& cl
 
 // Loads a character package. `glb`: its file; empty: the default character. `rig`: a rig that
 // replaces the rig of the package, by path or name of a shipped rig; empty: keep the rig of the
-// package. `read`: how the recordings of its reference poses are read.
+// package. `read` and `skeleton_map`: see RigPoses().
 [[nodiscard]] Result<character::Character> LoadCharacterArgument(
-    const std::string& glb, const std::string& rig, const motion::LoadOptions& read = {});
+    const std::string& glb, const std::string& rig, const motion::LoadOptions& read = {},
+    const std::string& skeleton_map = {});
 
 }  // namespace furrow::cli

@@ -65,7 +65,7 @@ Result<std::shared_ptr<const wrinkle::RigBinding>> BindRig(const LoadInput& inpu
     FURROW_RETURN_IF_ERROR(shipped);
     rig_name = shipped->string();
   }
-  const auto loaded = LoadRigInput(rig_name, input.read);
+  const auto loaded = LoadRigInput(rig_name, input.read, input.skeleton_map);
   FURROW_RETURN_IF_ERROR(loaded);
   const wrinkle::Rig& rig = loaded->rig;
   const auto matcher = LoadSkeletonMatcher(input.skeleton_map, loaded->character.get());

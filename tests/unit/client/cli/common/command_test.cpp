@@ -21,5 +21,16 @@ TEST(Within, AcceptsOnlyNumbersInTheRange) {
   }
 }
 
+TEST(AddBvhOptions, ReadsHowBvhFilesAreMeant) {
+  CLI::App app;
+  motion::LoadOptions options;
+  AddBvhOptions(app, options);
+  app.parse("--bvh-positions offsets --up-axis z");
+  EXPECT_EQ(options.bvh_positions, motion::BvhPositions::kOffsets);
+  EXPECT_EQ(options.up_axis, motion::UpAxis::kZ);
+  EXPECT_THROW(app.parse("--bvh-positions some"), CLI::ParseError);
+  EXPECT_THROW(app.parse("--rest-frame 3"), CLI::ParseError) << "not for poses of a rig";
+}
+
 }  // namespace
 }  // namespace furrow::cli
