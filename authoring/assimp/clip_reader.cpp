@@ -24,6 +24,12 @@ double TicksPerSecond(const aiAnimation& animation) {
   return animation.mTicksPerSecond > 0.0 ? animation.mTicksPerSecond : 1.0;
 }
 
+// assimp does not count the keys of blend shapes.
+double SecondsOf(const aiAnimation& animation) {
+  const double ticks = animation.mDuration > 0.0 ? animation.mDuration : LastShapeKey(animation);
+  return ticks / TicksPerSecond(animation);
+}
+
 std::string NameOf(const aiAnimation& animation) { return OneLine(animation.mName.C_Str()); }
 
 std::string ListOf(const std::vector<motion::AnimationInfo>& animations) {
@@ -81,8 +87,7 @@ class ClipReader {
   Status ChooseParts(const std::string& choice) {
     for (unsigned a = 0; a < scene_.mNumAnimations; ++a) {
       const aiAnimation& animation = *scene_.mAnimations[a];
-      report_.animations.push_back(
-          {NameOf(animation), animation.mDuration / TicksPerSecond(animation)});
+      report_.animations.push_back({NameOf(animation), SecondsOf(animation)});
     }
     if (scene_.mNumAnimations == 0) {
       return {StatusCode::kSchema,
@@ -239,8 +244,7 @@ class ClipReader {
 
   Status ListTimes() {
     double end = 0.0;
-    for (const aiAnimation* part : parts_)
-      end = std::max(end, part->mDuration / TicksPerSecond(*part));
+    for (const aiAnimation* part : parts_) end = std::max(end, SecondsOf(*part));
     FrameTimes all;
     for (const auto& [name, channel] : channel_by_name_) all.Add(KeyTimes(channel));
     for (const ShapeCurve& curve : shapes_) {

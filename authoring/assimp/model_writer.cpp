@@ -12,6 +12,7 @@
 #include "authoring/assimp/assimp_materials.h"
 #include "authoring/assimp/gltf_pieces.h"
 #include "authoring/assimp/scene_file.h"
+#include "authoring/assimp/shape_groups.h"
 #include "base/status.h"
 #include "gltf/limits.h"
 #include "gltf/scene/transform.h"
@@ -269,28 +270,33 @@ class SceneWriter {
   GltfJson AddMorphTargets(const aiMesh& mesh, const std::vector<glm::mat4>& placements,
                            GltfJson* primitive) {
     GltfJson names = GltfJson::array();
-    for (unsigned s = 0; s < mesh.mNumAnimMeshes; ++s) {
-      const aiAnimMesh& shape = *mesh.mAnimMeshes[s];
-      if (shape.mVertices == nullptr || shape.mNumVertices != mesh.mNumVertices) continue;
-      std::vector<std::uint32_t> vertices;
-      std::vector<glm::vec3> deltas;
-      for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
-        const glm::vec3 delta = ToGlm(shape.mVertices[v]) - ToGlm(mesh.mVertices[v]);
-        if (delta == glm::vec3(0.0f)) continue;
-        vertices.push_back(v);
-        deltas.push_back(glm::mat3(placements[v]) * delta);
+    for (const ShapeGroup& group : GroupShapes(mesh)) {
+      for (const NamedDeltas& target : TargetsOf(group, mesh, &remarks_)) {
+        if (AddMorphTarget(target.deltas, placements, primitive)) names.push_back(target.name);
       }
-      if (vertices.empty() || vertices.size() > morph_deltas_) {
-        left_out_ += vertices.empty() ? 0 : 1;
-        continue;
-      }
-      morph_deltas_ -= vertices.size();
-      (*primitive)["targets"].push_back(
-          {{"POSITION", builder_.AddSparseAccessor(builder_.AddSparseIndices(vertices), deltas,
-                                                   "VEC3", mesh.mNumVertices)}});
-      names.push_back(NameFrom(shape.mName));
     }
     return names;
+  }
+
+  // Returns false for a shape that moves nothing or exceeds the limit.
+  bool AddMorphTarget(const std::vector<glm::vec3>& all, const std::vector<glm::mat4>& placements,
+                      GltfJson* primitive) {
+    std::vector<std::uint32_t> vertices;
+    std::vector<glm::vec3> deltas;
+    for (std::uint32_t v = 0; v < all.size(); ++v) {
+      if (all[v] == glm::vec3(0.0f)) continue;
+      vertices.push_back(v);
+      deltas.push_back(glm::mat3(placements[v]) * all[v]);
+    }
+    if (vertices.empty() || vertices.size() > morph_deltas_) {
+      left_out_ += vertices.empty() ? 0 : 1;
+      return false;
+    }
+    morph_deltas_ -= vertices.size();
+    (*primitive)["targets"].push_back(
+        {{"POSITION", builder_.AddSparseAccessor(builder_.AddSparseIndices(vertices), deltas,
+                                                 "VEC3", all.size())}});
+    return true;
   }
 
   // assimp has triangulated. Faces with fewer corners are points and lines.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <new>
 #include <optional>
+#include <unordered_set>
 
 #include <assimp/IOSystem.hpp>
 #include <assimp/config.h>
@@ -45,6 +46,30 @@ unsigned Configure(Purpose purpose, Assimp::Importer* importer) {
   return 0;
 }
 
+// False for two nodes of one name below `node`.
+bool NamesDiffer(const aiNode& node, std::unordered_set<std::string>* names) {
+  if (!names->insert(node.mName.C_Str()).second) return false;
+  for (unsigned c = 0; c < node.mNumChildren; ++c)
+    if (!NamesDiffer(*node.mChildren[c], names)) return false;
+  return true;
+}
+
+// Collada gives nodes an id and a name: "Rig_hips" and "hips". Names are what people see and what
+// skeleton maps know, but only ids are unique for certain, and assimp addresses nodes by one of the
+// two.
+const aiScene* ReadByNames(std::string_view bytes, unsigned steps, const std::string& extension,
+                           Assimp::Importer* importer) {
+  for (const bool names : {true, false}) {
+    importer->SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, names);
+    const aiScene* scene =
+        importer->ReadFileFromMemory(bytes.data(), bytes.size(), steps, extension.c_str() + 1);
+    if (scene == nullptr || scene->mRootNode == nullptr || !names) return scene;
+    std::unordered_set<std::string> taken;
+    if (extension != ".dae" || NamesDiffer(*scene->mRootNode, &taken)) return scene;
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 Result<const aiScene*> ReadScene(std::string_view bytes, const std::string& extension,
@@ -57,8 +82,7 @@ Result<const aiScene*> ReadScene(std::string_view bytes, const std::string& exte
   }
   importer->SetIOHandler(new NoFiles);  // which owns it
   const unsigned steps = Configure(purpose, importer);
-  const aiScene* scene =
-      importer->ReadFileFromMemory(bytes.data(), bytes.size(), steps, extension.c_str() + 1);
+  const aiScene* scene = ReadByNames(bytes, steps, extension, importer);
   if (scene != nullptr && scene->mRootNode != nullptr) return scene;
   const std::string reason = importer->GetErrorString();
   // assimp catches the exception and keeps its text.

@@ -28,7 +28,8 @@ namespace furrow::authoring {
 enum class Purpose { kModel, kAnimation };
 
 // Reads a file with assimp. `extension` selects the format (".fbx"). No other files are read.
-// `importer` owns the scene.
+// `importer` owns the scene. Nodes of Collada have their names, or their ids if two nodes have one
+// name.
 //
 // Errors: kParse, with assimp's reason; kUnsupported (an extension that assimp does not know).
 // Throws std::bad_alloc.

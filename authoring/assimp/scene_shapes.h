@@ -21,6 +21,9 @@ struct ShapeCurve {
   [[nodiscard]] float At(double ticks) const;
 };
 
+// The time of the last key of a blend shape, in ticks; 0 if there is none.
+[[nodiscard]] double LastShapeKey(const aiAnimation& animation);
+
 // The animated blend shapes of an animation, in the order of their meshes. If several meshes have a
 // shape of one name, the first counts. Errors: kLimit (motion::kMaxBlendShapes), kSchema (keys that
 // are not in order), kNonFinite.
