@@ -147,7 +147,22 @@ class BadInputTest(BakeCase):
     def test_map_on_a_missing_surface(self):
         cloth = rig()
         cloth["wrinkle_maps"][0]["surface"] = "cloth"
-        self.refuse(BAD_INPUT, self.package(rig_json=cloth), says=["is drawn on cloth", "no mesh is cloth"])
+        package = self.package(rig_json=cloth)
+        self.refuse(BAD_INPUT, package, says=["is drawn on cloth", "no mesh is cloth"])
+        self.assertIn(b"[rig-surface]", furrow("character", "check", package, check=BAD_INPUT).stdout)
+
+    def test_maps_on_missing_surfaces_are_left_out(self):
+        both = rig()
+        both["wrinkle_maps"].append({"name": "folds", "surface": "cloth"})
+        both["regions"][0]["feeds"].append({"map": "folds", "sources": [{"from": "press.squash"}]})
+        package = self.package(rig_json=both)
+        self.assertIn(b"warning: wrinkle map 'folds' is drawn on cloth",
+                      furrow("character", "check", package, check=DONE).stdout)
+        result = furrow("bake", package, "--out", self.out, "--size", 64, check=DONE)
+        self.assertIn("'folds' is drawn on cloth, but no mesh is cloth; the map is left out", result.stderr.decode())
+        self.assertFalse(list(self.out.glob("folds*")))
+        self.assertTrue((self.out / "squash_height.png").exists())
+        self.refuse(BAD_INPUT, package, "--map", "folds", says=["no mesh is cloth"])
 
     def test_sizes_out_of_range(self):
         package = self.package()

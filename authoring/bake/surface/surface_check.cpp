@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
 #include "authoring/bake/surface/bake_surface.h"
 #include "authoring/bake/surface/uv_check.h"
@@ -91,45 +92,73 @@ void Warn(const character::Character& character, const UvReport& uvs, std::span<
   }
 }
 
+// A kind of surface: the skin or the clothes.
+struct Kind {
+  std::vector<int> meshes;
+  UvReport uvs;
+  [[nodiscard]] bool can_fold() const { return !meshes.empty() && !uvs.no_uvs(); }
+};
+
+Status WhyNot(const character::Character& character, const Kind& kind, const std::string& map,
+              const std::string& name) {
+  if (kind.meshes.empty()) {
+    return Refuse("wrinkle map '" + map + "' is drawn on " + name + ", but no mesh is " + name,
+                  character.name,
+                  "name a material '" + name +
+                      "', change the map's surface in the rig, or "
+                      "exclude the map with --map");
+  }
+  return Refuse("the " + name + " has no UVs for wrinkle map '" + map + "'",
+                MeshName(character, kind.meshes.front()),
+                "unwrap it; wrinkle maps use its UV atlas");
+}
+
+Status CheckInverseBinds(const character::Character& character) {
+  const auto joints = static_cast<std::size_t>(character.skeleton.num_joints());
+  if (character.inverse_bind_matrices.size() == joints) return {};
+  return Refuse(std::to_string(character.inverse_bind_matrices.size()) +
+                    " inverse bind matrices for " + std::to_string(joints) + " joints",
+                character.name, "export the skin with the inverse bind matrices of all joints");
+}
+
 }  // namespace
 
-Status CheckSurfaces(const character::Character& character, std::span<const std::string> maps,
-                     std::vector<std::string>* warnings) {
-  if (character.inverse_bind_matrices.size() !=
-      static_cast<std::size_t>(character.skeleton.num_joints())) {
-    return Refuse(std::to_string(character.inverse_bind_matrices.size()) +
-                      " inverse bind matrices for " +
-                      std::to_string(character.skeleton.num_joints()) + " joints",
-                  character.name, "export the skin with the inverse bind matrices of all joints");
-  }
-  bool done[2] = {false, false};
+Result<BakeableMaps> CheckSurfaces(const character::Character& character,
+                                   std::span<const std::string> maps,
+                                   std::vector<std::string>* warnings) {
+  FURROW_RETURN_IF_ERROR(CheckInverseBinds(character));
+  BakeableMaps bakeable;
+  Status first(StatusCode::kNotFound, "the rig has no wrinkle map to bake", character.name);
+  std::optional<Kind> kinds[2];  // skin, cloth
   for (const wrinkle::WrinkleMap& map : character.rig.wrinkle_maps) {
-    const bool wanted = maps.empty() || std::find(maps.begin(), maps.end(), map.name) != maps.end();
+    const bool named = std::find(maps.begin(), maps.end(), map.name) != maps.end();
+    if (!named && !maps.empty()) continue;
     const bool cloth = GoesOnCloth(character, map);
-    if (!wanted || done[cloth ? 1 : 0]) continue;
-    done[cloth ? 1 : 0] = true;
-    const std::string kind = cloth ? "cloth" : "skin";
-    const std::vector<int> meshes = MeshesOn(character, cloth);
-    if (meshes.empty()) {
-      return Refuse(
-          "wrinkle map '" + map.name + "' is drawn on " + kind + ", but no mesh is " + kind,
-          character.name,
-          "name a material '" + kind +
-              "', change the map's surface in the rig, or "
-              "exclude the map with --map");
+    const std::string name = cloth ? "cloth" : "skin";
+    std::optional<Kind>& kind = kinds[cloth ? 1 : 0];
+    const bool is_new = !kind.has_value();
+    if (is_new) {
+      kind = Kind{MeshesOn(character, cloth), {}};
+      kind->uvs = CheckUvs(character, kind->meshes);
     }
-    for (const int mesh : meshes) {
+    if (!kind->can_fold()) {
+      const Status why = WhyNot(character, *kind, map.name, name);
+      if (named) return why;
+      if (bakeable.left_out.empty()) first = why;
+      bakeable.left_out.push_back(why.what() + "; the map is left out");
+      warnings->push_back(bakeable.left_out.back());
+      continue;
+    }
+    bakeable.names.push_back(map.name);
+    if (!is_new) continue;
+    for (const int mesh : kind->meshes) {
       FURROW_RETURN_IF_ERROR(CheckSkin(character, mesh));
     }
-    const UvReport uvs = CheckUvs(character, meshes);
-    if (uvs.no_uvs()) {
-      return Refuse("the " + kind + " has no UVs", MeshName(character, meshes.front()),
-                    "unwrap it; wrinkle maps use its UV atlas");
-    }
-    WarnOfOverlap(character, uvs, warnings);
-    Warn(character, uvs, meshes, kind, warnings);
+    WarnOfOverlap(character, kind->uvs, warnings);
+    Warn(character, kind->uvs, kind->meshes, name, warnings);
   }
-  return {};
+  if (bakeable.names.empty()) return first;
+  return bakeable;
 }
 
 }  // namespace furrow::authoring

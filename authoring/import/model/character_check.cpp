@@ -11,6 +11,9 @@
 
 #include <glm/geometric.hpp>
 
+#include "authoring/bake/bake_poses.h"
+#include "authoring/bake/surface/bake_surface.h"
+#include "authoring/bake/surface/surface_check.h"
 #include "authoring/bake/surface/uv_check.h"
 #include "authoring/import/model/face_frame.h"
 #include "authoring/shapes/arkit_face.h"
@@ -70,7 +73,8 @@ class Checker {
           const rig::ShapeMatcher& shapes, bool rig_given)
       : character_(character),
         notes_(notes),
-        has_shape_face_(HasShapeFace(ArkitFace(character, shapes))),
+        face_(character, shapes),
+        has_shape_face_(HasShapeFace(face_)),
         rig_given_(rig_given) {}
 
   CharacterReport Run(const rig::SkeletonMaps& maps) {
@@ -183,22 +187,25 @@ class Checker {
     }
   }
 
-  // Meshes with the same material share pictures and therefore UV space.
+  // Meshes with the same material share pictures and therefore UV space. Only those count that maps
+  // can be baked for.
   void CheckAtlases() {
     std::map<int, std::vector<int>> meshes_of;
-    for (std::size_t m = 0; m < character_.meshes.size(); ++m) {
-      // Already reported by CheckMesh().
-      if (m < notes_.meshes.size() && !notes_.meshes[m].has_uvs) continue;
-      meshes_of[character_.meshes[m].material].push_back(static_cast<int>(m));
+    for (const bool cloth : {false, true}) {
+      for (const int m : MeshesOn(character_, cloth)) {
+        const auto mesh = static_cast<std::size_t>(m);
+        // Already reported by CheckMesh().
+        if (mesh < notes_.meshes.size() && !notes_.meshes[mesh].has_uvs) continue;
+        meshes_of[character_.meshes[mesh].material].push_back(m);
+      }
     }
     std::vector<std::pair<std::string, UvReport>> atlases;
     for (const auto& [material, meshes] : meshes_of) {
-      const character::Material* known =
-          material < 0 ? nullptr : &character_.materials[static_cast<std::size_t>(material)];
-      const bool wrinkles = known != nullptr && (known->kind == character::Material::Kind::kSkin ||
-                                                 known->kind == character::Material::Kind::kCloth);
-      if (!wrinkles) continue;
-      atlases.emplace_back("material '" + known->name + "'", CheckUvs(character_, meshes));
+      const std::string where =
+          material < 0
+              ? "mesh '" + character_.meshes[static_cast<std::size_t>(meshes.front())].name + "'"
+              : "material '" + character_.materials[static_cast<std::size_t>(material)].name + "'";
+      atlases.emplace_back(where, CheckUvs(character_, meshes));
     }
     const bool any_folds =
         std::ranges::any_of(atlases, [](const auto& atlas) { return !atlas.second.no_uvs(); });
@@ -208,7 +215,8 @@ class Checker {
   // Parts without UVs stay flat, which only matters if nothing else folds.
   void FindMissingUvs(const std::string& where, const std::string& what, bool others_fold) {
     Find(others_fold ? Severity::kWarning : Severity::kError, "uv-missing", where,
-         what + (others_fold ? "; it gets no wrinkles" : ""), "unwrap it without overlaps");
+         what + (others_fold ? "; it gets no wrinkles" : ""),
+         "unwrap it without overlaps, and keep UVs without a picture (gltfpack -kv)");
   }
 
   void CheckAtlas(const std::string& where, const UvReport& uvs, bool others_fold) {
@@ -266,9 +274,14 @@ class Checker {
     }
     // Without any role, a list of all missing roles would not help.
     if (report_.joints.num_roles == 0) {
-      Find(Severity::kWarning, "no-roles", {},
+      // A face of blend shapes folds and moves without them.
+      Find(has_shape_face_ ? Severity::kNote : Severity::kWarning, "no-roles", {},
            "neither names nor hierarchy identify the arms, the legs and the head",
-           "write a skeleton map (docs/SKELETONS.md), or a rig by hand (docs/RIG.md)");
+           has_shape_face_ ? "streams turn these joints only under their own names; a skeleton map "
+                             "helps (docs/SKELETONS.md)"
+                           : "write a skeleton map (docs/SKELETONS.md), or a rig by hand "
+                             "(docs/RIG.md)");
+      FindShapeFace();
       return;
     }
     std::string missing;
@@ -287,13 +300,17 @@ class Checker {
       Find(Severity::kNote, "roles-missing", {}, "no joint is the " + missing,
            "clothing regions of these joints have no driver");
     }
-    if (has_shape_face_) {
-      Find(Severity::kNote, "shape-face", {}, "the face has ARKit's blend shapes",
-           "the import gives it masks, a rig and wrinkle maps");
-    } else if (report_.face_joints == 0) {
+    FindShapeFace();
+    if (!has_shape_face_ && report_.face_joints == 0) {
       Find(Severity::kNote, "no-face-joints", {}, "there are no face joints",
            "facial wrinkles then require a tracker's blend shapes (rig 'arkit')");
     }
+  }
+
+  void FindShapeFace() {
+    if (!has_shape_face_) return;
+    Find(Severity::kNote, "shape-face", {}, "the face has ARKit's blend shapes",
+         "the import gives it masks, a rig and wrinkle maps");
   }
 
   void CheckRig() {
@@ -319,10 +336,42 @@ class Checker {
       Find(Severity::kWarning, "rig-picture", "wrinkle map '" + map.name + "'", "it has no picture",
            "create it with furrow bake");
     }
+    if (rig.binding.ok()) CheckBake();
+  }
+
+  // The checks of `furrow bake` itself, so that it accepts what has no error here.
+  void CheckBake() {
+    if (character_.rig.regions.empty() || character_.rig.wrinkle_maps.empty()) return;
+    const auto poses = CollectBakePoses(character_, {}, face_);
+    if (!poses.ok()) {
+      const Status& s = poses.status();
+      Find(Severity::kError, "rig-poses", s.where(), s.what(), s.todo());
+      return;
+    }
+    std::vector<std::string> warnings;  // faults of the UVs, which CheckAtlas() reports
+    const auto bakeable = CheckSurfaces(character_, {}, &warnings);
+    if (!bakeable.ok()) {
+      const Status& s = bakeable.status();
+      Find(Severity::kError, "rig-surface", s.where(), s.what(), s.todo());
+      return;
+    }
+    for (const std::string& map : bakeable->left_out) {
+      Find(Severity::kWarning, "rig-surface", {}, map,
+           "mark materials as skin or cloth by their names, and unwrap their meshes");
+    }
+    const bool fed = std::ranges::any_of(poses->poses, [&](const BakePose& pose) {
+      return std::ranges::find(bakeable->names, pose.map) != bakeable->names.end();
+    });
+    if (!fed) {
+      Find(Severity::kWarning, "rig-poses", {}, "no pose of the rig folds a surface",
+           "add drivers of joints or blend shapes to the rig, or draw the folds (furrow bake "
+           "--strokes)");
+    }
   }
 
   const character::Character& character_;
   const character::SourceNotes& notes_;
+  const ArkitFace face_;
   const bool has_shape_face_;
   const bool rig_given_;
   CharacterReport report_;

@@ -48,10 +48,12 @@ struct CharacterReport {
 //
 // Codes
 //   errors    no-skin (a note if blend shapes move the face), uv-missing, unskinned-vertices,
-//             rig-binding
+//             rig-binding, rig-poses and rig-surface (`furrow bake` would refuse the rig's poses or
+//             the surfaces of its maps)
 //   warnings  uv-overlap (parts that share texels fold alike), uv-flat, weights-sum,
-//             normals-missing, picture-missing, units, up-axis, joint-names, no-roles, rig,
-//             rig-picture
+//             normals-missing, picture-missing, units, up-axis, joint-names, no-roles (a note if
+//             blend shapes move the face), rig, rig-picture, rig-poses (no pose folds a surface),
+//             rig-surface (maps that `furrow bake` leaves out)
 //   notes     degenerate-triangles, uv-outside, weights-truncated, tangents-missing, idle-shapes,
 //             roles-missing, shape-face, no-face-joints, no-rig
 [[nodiscard]] CharacterReport CheckCharacter(const character::Character& character,

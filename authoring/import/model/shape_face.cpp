@@ -274,8 +274,9 @@ Result<std::vector<std::string>> BakeShapeFace(const ArkitFace& face,
                                                const std::function<bool(float)>& progress,
                                                Character* character) {
   std::vector<std::string> remarks;
-  FURROW_RETURN_IF_ERROR(CheckSurfaces(*character, {}, &remarks));
-  auto poses = CollectBakePoses(*character, {}, face);
+  const auto bakeable = CheckSurfaces(*character, {}, &remarks);
+  FURROW_RETURN_IF_ERROR(bakeable);
+  auto poses = CollectBakePoses(*character, bakeable->names, face);
   FURROW_RETURN_IF_ERROR(poses);
   remarks.insert(remarks.end(), poses->notes.begin(), poses->notes.end());
   const auto skin = FaceSkin::Create(*character, face);

@@ -71,13 +71,11 @@ Status CheckOutput(const BakeArguments& arguments) {
           NewRig(arguments).string(), "choose another folder for --out"};
 }
 
-// Removes the strokes of maps that were not requested.
-void KeepRequested(const std::vector<std::string>& maps,
-                   std::vector<authoring::BakeStroke>* strokes) {
-  if (maps.empty()) return;
+// Removes the strokes of maps that are not baked.
+void KeepMaps(const std::vector<std::string>& maps, std::vector<authoring::BakeStroke>* strokes) {
   for (authoring::BakeStroke& stroke : *strokes) {
     std::erase_if(stroke.maps, [&](const std::string& map) {
-      return std::find(maps.begin(), maps.end(), map) == maps.end();
+      return std::ranges::find(maps, map) == maps.end();
     });
   }
   std::erase_if(*strokes, [](const authoring::BakeStroke& stroke) { return stroke.maps.empty(); });
@@ -99,14 +97,19 @@ Result<BakeJob> Prepare(const BakeArguments& arguments) {
     return Status(s.code(), s.what(), RigName(arguments) + field, s.todo());
   }
   job.poses = std::move(*poses);
-  if (Status s = authoring::CheckSurfaces(job.character, arguments.maps, &job.warnings); !s.ok()) {
+  const auto bakeable = authoring::CheckSurfaces(job.character, arguments.maps, &job.warnings);
+  if (!bakeable.ok()) {
+    const Status s = bakeable.status();
     return Status(s.code(), s.what(), arguments.character + ": " + s.where(), s.todo());
   }
+  std::erase_if(job.poses.poses, [&](const authoring::BakePose& pose) {
+    return std::ranges::find(bakeable->names, pose.map) == bakeable->names.end();
+  });
   if (!arguments.strokes.empty()) {
     auto strokes = authoring::LoadStrokes(arguments.strokes, job.character.rig);
     FURROW_RETURN_IF_ERROR(strokes);
     job.strokes = std::move(*strokes);
-    KeepRequested(arguments.maps, &job.strokes);
+    KeepMaps(bakeable->names, &job.strokes);
   }
   if (job.poses.poses.empty() && job.strokes.empty()) {
     return Status(StatusCode::kInvalidArgument, "no pose and no stroke feeds a wrinkle map",
