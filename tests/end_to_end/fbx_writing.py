@@ -84,7 +84,10 @@ class Scene:
                 self.connect(curve, group, "d|" + axis)
 
     def face(self, parent, shapes):
-        """A mesh of one triangle with blend shapes. Returns name -> id of the channel."""
+        """A mesh of one triangle with blend shapes. Returns name -> id of the channel.
+
+        `shapes`: names, or name -> {full weight in percent: z of the first vertex}, with a shape per in-between.
+        """
         model = self.model("Face", parent, sub="Mesh")
         mesh = self.add("Geometry", "Geometry::Face", "Mesh", [
             node("Vertices", List("d", (0.0, 0, 0, 1, 0, 0, 0, 1, 0))),
@@ -94,13 +97,16 @@ class Scene:
         self.connect(deformer, mesh)
         channels = {}
         for name in shapes:
+            depths = shapes[name] if isinstance(shapes, dict) else {100: 1}
             channels[name] = self.add("Deformer", "SubDeformer::" + name, "BlendShapeChannel", [
-                node("Version", 100), node("DeformPercent", 0.0), node("FullWeights", List("d", [100.0]))])
-            shape = self.add("Geometry", "Geometry::" + name, "Shape", [
-                node("Indexes", List("i", [0])), node("Vertices", List("d", [0.0, 0.0, 1.0])),
-                node("Normals", List("d", [0.0, 0.0, 0.0]))])
+                node("Version", 100), node("DeformPercent", 0.0),
+                node("FullWeights", List("d", (float(weight) for weight in depths)))])
             self.connect(channels[name], deformer)
-            self.connect(shape, channels[name])
+            for weight, z in depths.items():
+                shape = self.add("Geometry", f"Geometry::{name}_{weight}" if len(depths) > 1 else "Geometry::" + name,
+                                 "Shape", [node("Indexes", List("i", [0])), node("Vertices", List("d", [0.0, 0.0, float(z)])),
+                                           node("Normals", List("d", [0.0, 0.0, 0.0]))])
+                self.connect(shape, channels[name])
         return channels
 
     def nodes(self):

@@ -144,6 +144,19 @@ class ForeignRecordings(unittest.TestCase):
         for frame, value in ((0, 0), (3, 0.4), (6, 0.8), (9, 0.5), (12, 0.2)):
             self.assertAlmostEqual(shapes["jawOpen"][frame], value, places=4)
 
+    def test_in_betweens_do_not_shift_the_curves(self):
+        # A take of a face alone. Each channel has as many shapes as it has in-betweens, and one more.
+        scene = Scene()
+        channels = scene.face(None, {"jawOpen": {40: 2, 70: 5, 100: 6}, "mouthSmile": {100: 1}, "blink": {50: 3, 100: 4}})
+        scene.take("face", [
+            (channels["mouthSmile"], "DeformPercent", {"DeformPercent": [(0, 0), (0.2, 80), (0.4, 20)]}),
+            (channels["blink"], "DeformPercent", {"DeformPercent": [(0, 0), (0.2, 30), (0.4, 100)]})])
+        for data in (to_ascii(scene.nodes()), to_binary(scene.nodes())):
+            glb = self.converted(self.write("face.fbx", data))
+            self.assertEqual([round(t, 4) for t in glb.times], [0, 0.2, 0.4])
+            shapes = {name: [round(v, 4) for v in values] for name, values in glb.blend_shapes().items()}
+            self.assertEqual(shapes, {"mouthSmile": [0, 0.8, 0.2], "blink": [0, 0.3, 1]})
+
     def test_a_take_keeps_its_span(self):
         scene = Scene()
         scene.model("hip", T=(0, 100, 0))
