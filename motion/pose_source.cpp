@@ -16,8 +16,9 @@ namespace {
 
 Result<wrinkle::PoseFrame> GetFrame(const Clip& clip, const std::filesystem::path& path,
                                     int frame) {
-  if (clip.skeleton.num_joints() == 0) {
-    return Status(StatusCode::kUnsupported, "the recording has no joints", path.string());
+  if (clip.skeleton.num_joints() == 0 && clip.blend_shape_names.empty()) {
+    return Status(StatusCode::kUnsupported, "the recording has neither joints nor blend shapes",
+                  path.string());
   }
   if (frame < 0 || frame >= clip.num_frames()) {
     return Status(StatusCode::kInvalidArgument,
@@ -28,6 +29,7 @@ Result<wrinkle::PoseFrame> GetFrame(const Clip& clip, const std::filesystem::pat
   wrinkle::PoseFrame result;
   result.skeleton = clip.skeleton;
   clip.GetPose(frame, &result.pose);
+  result.blend_shape_names = clip.blend_shape_names;
   return result;
 }
 

@@ -17,7 +17,7 @@ namespace furrow::motion {
 //
 // - `frame` counts from 0. Copies share the cache. Not thread-safe.
 // - Errors: those of LoadClip(), kInvalidArgument (no such frame; the message says how many there
-//   are), kUnsupported (a recording without joints).
+//   are), kUnsupported (a recording without joints and blend shapes).
 class CachedPoseSource {
  public:
   // `warn` receives the reader's warnings each time a recording is read. Optional.

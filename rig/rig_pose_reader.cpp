@@ -66,24 +66,30 @@ class PoseReader {
     state_[i] = State::kOpen;
     const schema::ReferencePose& pose = *list_->Get(i);
     const std::string at = FieldAt("reference_poses", i);
-    const int ways =
-        (pose.joints() != nullptr) + (pose.file() != nullptr) + (pose.mix() != nullptr);
+    const bool is_list = pose.joints() != nullptr || pose.shapes() != nullptr;
+    const int ways = is_list + (pose.file() != nullptr) + (pose.mix() != nullptr);
     if (ways != 1) {
       return InvalidField(
-          "a reference pose needs exactly one of joints, file and mix, not " + std::to_string(ways),
+          "a reference pose needs exactly one of joints or shapes, file and mix, not " +
+              std::to_string(ways),
           at);
     }
-    Status status = pose.joints() != nullptr ? ReadJoints(pose, at, &poses_[i])
+    Status status = is_list                  ? ReadLists(pose, at, &poses_[i])
                     : pose.file() != nullptr ? ReadFrame(pose, at, &poses_[i])
                                              : ReadMix(pose, at, &poses_[i]);
     state_[i] = State::kDone;
     return status;
   }
 
-  static Status ReadJoints(const schema::ReferencePose& from, const std::string& at,
-                           wrinkle::ReferencePose* to) {
+  static Status ReadLists(const schema::ReferencePose& from, const std::string& at,
+                          wrinkle::ReferencePose* to) {
     to->name = from.name()->str();
     to->source_size = from.source_size();
+    FURROW_RETURN_IF_ERROR(ForEach(
+        from.shapes(), at + ".shapes", [&](const schema::ShapePose& shape, const std::string&) {
+          to->shapes.push_back({shape.blend_shape()->str(), shape.value()});
+          return Status();
+        }));
     // A rotation is a quaternion or Euler angles, never both. Without either, the joint keeps its
     // rest rotation.
     return ForEach(from.joints(), at + ".joints",

@@ -13,10 +13,10 @@
 
 namespace furrow::rig {
 
-// Reads the reference poses of a rig in the order of the file: lists of joints, frames of
-// recordings (searched in `folder`, then in FURROW_ASSET_PATH) and mixes, which may precede their
-// parts. Errors: kLimit, kCyclic (a mix that contains itself), kInvalidArgument, kUnsupported (a
-// recording with an empty `source`), and those of `source`; `where` is the field.
+// Reads the reference poses of a rig in the order of the file: lists of joints and blend shapes,
+// frames of recordings (searched in `folder`, then in FURROW_ASSET_PATH) and mixes, which may
+// precede their parts. Errors: kLimit, kCyclic (a mix that contains itself), kInvalidArgument,
+// kUnsupported (a recording with an empty `source`), and those of `source`; `where` is the field.
 // `recorded` becomes the skeleton of the first recording, unless it has joints already.
 // `missing` may be null; see LoadRig(). `anchors`: see ReferencePoseFromFrame().
 [[nodiscard]] Status ReadReferencePoses(const TableList<schema::ReferencePose>* list,

@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rig/rig_reference_pose.h"
 
+#include <algorithm>
 #include <cmath>
 #include <span>
+#include <string>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
+#include "base/ascii.h"
 #include "base/status.h"
+#include "wrinkle/shapes/head_turn.h"
 #include "wrinkle/skeleton/retarget.h"
 
 namespace furrow::rig {
@@ -24,6 +29,7 @@ using wrinkle::Transform;
 
 constexpr float kLeastRadians = 1e-5f;
 constexpr float kLeastTranslation = 1e-6f;  // of the skeleton's size
+constexpr float kLeastCoefficient = 1e-3f;
 
 // The angle of the shorter turn, in radians.
 float Angle(const glm::quat& q) {
@@ -46,7 +52,8 @@ glm::quat Scaled(const glm::quat& rotation, float weight) {
 }
 
 // Frames come from recordings. Every number must be finite before it enters a rig.
-Status CheckPose(const PoseFrame& frame, const Skeleton& skeleton) {
+Status CheckPose(const PoseFrame& frame, const PoseFrame& like) {
+  const Skeleton& skeleton = like.skeleton;
   if (static_cast<int>(frame.pose.joints.size()) != skeleton.num_joints()) {
     return {StatusCode::kInvalidArgument,
             "the frame has " + std::to_string(frame.pose.joints.size()) +
@@ -56,6 +63,19 @@ Status CheckPose(const PoseFrame& frame, const Skeleton& skeleton) {
     if (!wrinkle::IsValid(frame.pose.joints[j])) {
       return {StatusCode::kNonFinite,
               "the transform of joint '" + skeleton.joint_names()[j] + "' is invalid"};
+    }
+  }
+  const std::span<const std::string> names = like.blend_shape_names;
+  if (names.empty()) return {};
+  if (frame.pose.blend_shapes.size() != names.size()) {
+    return {StatusCode::kInvalidArgument,
+            "the frame has " + std::to_string(frame.pose.blend_shapes.size()) +
+                " blend shapes, but " + std::to_string(names.size()) + " names"};
+  }
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (!std::isfinite(frame.pose.blend_shapes[i])) {
+      return {StatusCode::kNonFinite,
+              "the coefficient of blend shape '" + names[i] + "' is invalid"};
     }
   }
   return {};
@@ -162,6 +182,34 @@ class FlatPose {
   Model reference_;
 };
 
+// Names that differ only in case are one blend shape, and its first coefficient counts, as in
+// wrinkle::BindContext.
+std::vector<wrinkle::ShapeValue> ShapesOf(const PoseFrame& frame, const PoseFrame* rest) {
+  std::vector<wrinkle::ShapeValue> shapes;
+  std::unordered_set<std::string> seen;
+  for (std::size_t i = 0; i < frame.blend_shape_names.size(); ++i) {
+    const std::string& name = frame.blend_shape_names[i];
+    if (name.empty() || wrinkle::IsTrackerAngle(name)) continue;
+    if (!seen.insert(AsciiLower(name)).second) continue;
+    const float still = rest != nullptr ? rest->pose.blend_shapes[i] : 0.0f;
+    const float value = frame.pose.blend_shapes[i] - still;
+    if (std::abs(value) >= kLeastCoefficient) shapes.push_back({name, value});
+  }
+  return shapes;
+}
+
+// Adds the shapes of a part to those of a mix, in the order of their first appearance.
+void AddShapes(const std::vector<wrinkle::ShapeValue>& part, float weight,
+               std::vector<wrinkle::ShapeValue>* sum) {
+  for (const wrinkle::ShapeValue& shape : part) {
+    auto found = std::ranges::find_if(*sum, [&](const wrinkle::ShapeValue& known) {
+      return EqualsIgnoreCase(known.blend_shape, shape.blend_shape);
+    });
+    if (found == sum->end()) found = sum->insert(found, {shape.blend_shape, 0.0f});
+    found->value += weight * shape.value;
+  }
+}
+
 }  // namespace
 
 glm::quat FromEulerDegrees(const glm::vec3& degrees) {
@@ -174,13 +222,14 @@ glm::quat FromEulerDegrees(const glm::vec3& degrees) {
 Result<ReferencePose> ReferencePoseFromFrame(std::string name, const PoseFrame& frame,
                                              const PoseFrame* rest, const PoseAnchors& anchors) {
   const Skeleton& skeleton = frame.skeleton;
-  FURROW_RETURN_IF_ERROR(CheckPose(frame, skeleton));
+  FURROW_RETURN_IF_ERROR(CheckPose(frame, frame));
   if (rest != nullptr) {
-    FURROW_RETURN_IF_ERROR(CheckPose(*rest, skeleton));
+    FURROW_RETURN_IF_ERROR(CheckPose(*rest, frame));
   }
   ReferencePose pose;
   pose.name = std::move(name);
   pose.source_size = wrinkle::SkeletonSize(skeleton);
+  pose.shapes = ShapesOf(frame, rest);
 
   const std::span<const Transform> at_rest =
       rest != nullptr ? std::span<const Transform>(rest->pose.joints) : skeleton.rest_pose();
@@ -239,6 +288,7 @@ ReferencePose MixReferencePoses(std::string name, std::span<const WeightedPose> 
       translation += delta.translation * (part.weight * scale);
       sum.unscaled_translation += delta.unscaled_translation * part.weight;
     }
+    AddShapes(part.pose->shapes, part.weight, &mix.shapes);
   }
   for (JointDelta& sum : mix.joints) {
     sum.rotation = ShorterWay(sum.rotation);

@@ -28,7 +28,10 @@ using PoseAnchors = std::map<std::string, std::string, std::less<>>;
 //   the anchor's space.
 // - Joints that move by less than 1e-5 radians and by less than 1e-6 of the skeleton's size are
 //   omitted.
-// - Errors: kInvalidArgument (a pose does not fit the skeleton), kNonFinite (names the joint).
+// - Blend shapes: the coefficient, less that of `rest`. Those below 0.001 are omitted, and so are
+//   the angles of head and eyes (wrinkle::IsTrackerAngle()), which belong to no expression.
+// - Errors: kInvalidArgument (a pose does not fit its skeleton or names), kNonFinite (names the
+//   joint or the blend shape).
 [[nodiscard]] Result<wrinkle::ReferencePose> ReferencePoseFromFrame(
     std::string name, const wrinkle::PoseFrame& frame, const wrinkle::PoseFrame* rest = nullptr,
     const PoseAnchors& anchors = {});
@@ -41,7 +44,8 @@ struct WeightedPose {
 // Adds poses in the given order. Rotations are scaled as rotation vectors and applied one after the
 // other. Translations are summed in the units of the first pose that states its size. Those of
 // poses without a size are summed apart (JointDelta::unscaled_translation), because they are in
-// units of the skeleton to which the rig will be bound.
+// units of the skeleton to which the rig will be bound. Coefficients of blend shapes are scaled and
+// summed.
 [[nodiscard]] wrinkle::ReferencePose MixReferencePoses(std::string name,
                                                        std::span<const WeightedPose> parts);
 

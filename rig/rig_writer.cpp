@@ -23,12 +23,17 @@ std::string ToJson(const wrinkle::JointDelta& delta) {
   return object.str();
 }
 
+std::string ToJson(const wrinkle::ShapeValue& shape) {
+  return Object().Text("blend_shape", shape.blend_shape).Float("value", shape.value, 1.0f).str();
+}
+
 std::string ToJson(const wrinkle::ReferencePose& pose) {
-  return Object()
-      .Text("name", pose.name)
-      .Float("source_size", pose.source_size, 0.0f)
-      .Always("joints", pose.joints, [](const auto& delta) { return ToJson(delta); })
-      .str();
+  const auto each = [](const auto& entry) { return ToJson(entry); };
+  Object object;
+  object.Text("name", pose.name).Float("source_size", pose.source_size, 0.0f);
+  // Without any list, the reader would not accept the rest pose.
+  if (pose.shapes.empty() || !pose.joints.empty()) object.Always("joints", pose.joints, each);
+  return object.List("shapes", pose.shapes, each).str();
 }
 
 std::string ToJson(const wrinkle::SizeReference& reference) {

@@ -4,22 +4,12 @@
 #include <algorithm>
 #include <span>
 #include <string>
-#include <string_view>
 #include <utility>
 
-#include "base/ascii.h"
 #include "server/pipeline/neutral_part.h"
+#include "wrinkle/shapes/head_turn.h"
 
 namespace furrow::server {
-namespace {
-
-// True for the radians that Live Link Face sends among its blend shapes: "HeadYaw", "LeftEyePitch".
-bool IsAngle(std::string_view name) {
-  const std::string lower = AsciiLower(std::string(name));
-  return lower.ends_with("yaw") || lower.ends_with("pitch") || lower.ends_with("roll");
-}
-
-}  // namespace
 
 SubjectPipeline::SubjectPipeline(std::shared_ptr<const StreamDefinition> stream)
     : stream_(std::move(stream)), solver_(stream_->binding) {
@@ -101,7 +91,8 @@ void SubjectPipeline::PrepareNeutral() {
   above_neutral_.clear();
   const std::span<const std::string> names = stream_->shapes.driver_names();
   for (std::size_t i = 0; i < neutral_pose_->blend_shapes.size(); ++i) {
-    const float most = i < names.size() && IsAngle(names[i]) ? 0.0f : 0.5f;
+    const bool is_angle = i < names.size() && wrinkle::IsTrackerAngle(names[i]);
+    const float most = is_angle ? 0.0f : 0.5f;
     above_neutral_.push_back(1.0f /
                              (1.0f - std::clamp(neutral_pose_->blend_shapes[i], 0.0f, most)));
   }

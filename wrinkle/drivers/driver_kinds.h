@@ -7,9 +7,9 @@
 //   table SpreadDriver, and the tables and enumerations that SpreadDriver uses. The kinds share
 //   one namespace. The build inserts the file into the rig's schema (rig/rig.fbs).
 // - spread_fields.h: struct SpreadDriver, the kind's fields in a rig, with the constants
-//   kReadsJoints, kMeasuresFromAnchor (true: it has a field `anchor`, and the rig's anchor counts
-//   where that is empty) and kAddsJoints (true: its values are sums over the joints that it reads,
-//   so a chain of joints can do the part of one), the list of its fields for the reader and the
+//   kMeasuresFromAnchor (true: it has a field `anchor`, and the rig's anchor counts where that is
+//   empty) and kAddsJoints (true: its values are sums over the joints that it reads, so a chain of
+//   joints can do the part of one), the list of its fields for the reader and the
 //   writer of rig files, ListFields() (wrinkle/fields/field_list.h), and the functions
 //   DriverValueNames(), CheckFields(), JointsRead(), JointsInfluenced() and FullPose(). A kind that
 //   reads blend shapes also has BlendShapesRead().

@@ -15,6 +15,7 @@
 namespace furrow::wrinkle {
 
 inline constexpr float kMaxSkeletonSize = 1e6f;  // in the skeleton's own units
+inline constexpr float kMaxCoefficient = 1e3f;   // of a blend shape
 
 // Checks that `label` is printable text of 1 to 255 bytes. Errors: kInvalidArgument, kLimit.
 [[nodiscard]] Status CheckLabel(std::string_view label, const std::string& where);

@@ -11,11 +11,13 @@ namespace furrow::wrinkle {
 
 // The pose at which a driver's value is 1. Baking makes the value's folds from it.
 //
-// - A ball that is fully bent beyond 120 degrees may rest on another side than the value's. Then its
+// - A ball that is fully bent beyond 120 degrees may rest on another side than the value's. Then
+// its
 //   value is below 1 in every pose (docs/ALGORITHM.md), and the pose is the full bend all the same.
 // - FullPose() of drivers/<kind>/<kind>_fields.h states the pose of each kind. The rest of the body
 //   rests.
-// - The pose of a pose driver keeps the name of its reference pose; the others are called
+// - The pose of a pose driver keeps the name of its reference pose, and its blend shapes; the
+// others are called
 //   "<driver>.<value>".
 // - The pose may be the rest pose, for example for "extended" of a straight limb.
 //

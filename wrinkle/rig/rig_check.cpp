@@ -10,6 +10,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "base/ascii.h"
 #include "wrinkle/fields/field_check.h"
 #include "wrinkle/fields/rig_field.h"
 
@@ -31,6 +32,15 @@ void CheckReferencePose(const ReferencePose& pose, const std::string& at, FieldC
     check->Require(std::abs(glm::length(delta.rotation) - 1.0f) <= 1e-3f, joint, ".rotation",
                    "the rotation is not a unit quaternion",
                    "write [x, y, z, w] of length 1, or euler_degrees");
+  }
+  check->Count(at, ".shapes", pose.shapes.size(), kMaxPoseShapes);
+  std::unordered_set<std::string> shapes;
+  for (std::size_t i = 0; i < pose.shapes.size(); ++i) {
+    const std::string shape = FieldAt(at + ".shapes", i);
+    check->Label(shape, ".blend_shape", pose.shapes[i].blend_shape);
+    check->Require(shapes.insert(AsciiLower(pose.shapes[i].blend_shape)).second, shape,
+                   ".blend_shape", "the blend shape occurs twice");
+    check->Range(shape, ".value", pose.shapes[i].value, -kMaxCoefficient, kMaxCoefficient);
   }
 }
 

@@ -11,6 +11,7 @@ namespace furrow::wrinkle {
 
 // Limits of a rig, far above any real rig. Each driver kind states its own limits in its fields.
 inline constexpr std::size_t kMaxReferencePoses = 1024;
+inline constexpr std::size_t kMaxPoseShapes = 2048;  // of one reference pose
 inline constexpr std::size_t kMaxRigDrivers = 1024;
 inline constexpr std::size_t kMaxRegions = 256;
 inline constexpr std::size_t kMaxWrinkleMaps = 16;

@@ -28,6 +28,11 @@ std::vector<int> JointsOf(const Skeleton& skeleton, const JointRoles& roles, Joi
 
 }  // namespace
 
+bool IsTrackerAngle(std::string_view name) {
+  const std::string lower = AsciiLower(std::string(name));
+  return lower.ends_with("yaw") || lower.ends_with("pitch") || lower.ends_with("roll");
+}
+
 HeadTurn HeadTurn::Create(const Skeleton& skeleton, const JointRoles& roles,
                           std::span<const std::string> blend_shapes) {
   HeadTurn turn;

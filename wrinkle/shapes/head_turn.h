@@ -4,6 +4,7 @@
 #include <array>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <glm/gtc/quaternion.hpp>
@@ -13,6 +14,10 @@
 #include "wrinkle/skeleton/skeleton.h"
 
 namespace furrow::wrinkle {
+
+// True for the names of angles that Live Link Face sends among its blend shapes, in radians:
+// "HeadYaw", "LeftEyePitch". Case is ignored.
+[[nodiscard]] bool IsTrackerAngle(std::string_view name);
 
 // Turns a character's head by the values HeadYaw, HeadPitch and HeadRoll that Live Link Face sends
 // among its blend shapes, in radians. Created once per stream, then run once per pose.

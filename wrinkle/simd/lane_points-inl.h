@@ -9,6 +9,7 @@
 #endif
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "wrinkle/simd/lanes-inl.h"
@@ -111,6 +112,19 @@ HWY_INLINE Float3 EvaluatePoint(const PointPlan& plan, const PointRow& row, Lane
     position = WhereActive(*step, lane, Down(pose, joints, joint, position), position);
   }
   return position;
+}
+
+// The coefficients at the places of each lane; 0 for places outside the list, such as -1. Scalar
+// loads: the coefficients of a row come from unrelated places, and a stream may send fewer than the
+// rig names.
+HWY_INLINE Float LoadCoefficients(std::span<const float> coefficients, const IntRow& places,
+                                  std::size_t lane) {
+  HWY_ALIGN float loaded[kLanes];
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    const auto place = static_cast<std::size_t>(places.at[lane + i]);
+    loaded[i] = place < coefficients.size() ? coefficients[place] : 0.0f;
+  }
+  return LoadLanes(loaded);
 }
 
 // Four points with the same joints. Each joint is loaded once.

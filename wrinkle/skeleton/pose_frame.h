@@ -3,6 +3,8 @@
 
 #include <filesystem>
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "base/status.h"
 #include "wrinkle/skeleton/pose.h"
@@ -12,8 +14,10 @@ namespace furrow::wrinkle {
 
 // One frame of a recording: the pose and the skeleton it was recorded on.
 struct PoseFrame {
-  Skeleton skeleton;
-  LocalPose pose;  // skeleton.num_joints() joints
+  Skeleton skeleton;  // may be empty: blend shapes alone
+  LocalPose pose;     // skeleton.num_joints() joints
+  // Of pose.blend_shapes, in their order. Those without a name, "", are ignored.
+  std::vector<std::string> blend_shape_names = {};
 };
 
 // Loads a pose that a wrinkle rig references by file and frame, so that the reader of rigs needs no

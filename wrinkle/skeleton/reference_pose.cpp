@@ -3,6 +3,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "base/ascii.h"
+
 namespace furrow::wrinkle {
 namespace {
 
@@ -20,6 +22,13 @@ void Apply(const Quaternion& turn, const Vector& moved, const Quaternion& own,
 }
 
 }  // namespace
+
+float ShapeValueOf(const ReferencePose& pose, std::string_view blend_shape) {
+  for (const ShapeValue& shape : pose.shapes) {
+    if (EqualsIgnoreCase(shape.blend_shape, blend_shape)) return shape.value;
+  }
+  return 0.0f;
+}
 
 bool IsRest(const JointDelta& delta) {
   const float turn = glm::length(glm::vec3(delta.rotation.x, delta.rotation.y, delta.rotation.z));

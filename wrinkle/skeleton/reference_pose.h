@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/status.h"
@@ -29,13 +30,26 @@ struct JointDelta {
   glm::vec3 unscaled_translation{0.0f};
 };
 
+// The coefficient of a tracker's blend shape in a reference pose.
+struct ShapeValue {
+  std::string blend_shape;  // matched without case
+  float value = 1.0f;       // [-1000, 1000]; 0 is the rest
+
+  friend bool operator==(const ShapeValue&, const ShapeValue&) = default;
+};
+
+// A pose of joints, of blend shapes, or of both.
 struct ReferencePose {
   std::string name;
   std::vector<JointDelta> joints;  // all other joints stay at rest
   float source_size = 0.0f;  // SkeletonSize() of the source; 0: same units as the bound skeleton
   // How to measure the bound skeleton, if the rig says so (Rig::size_reference). May be null.
   std::shared_ptr<const SizeReference> size_reference = nullptr;
+  std::vector<ShapeValue> shapes = {};  // all other blend shapes are 0
 };
+
+// The coefficient of a blend shape in a pose; 0 if the pose does not list it.
+[[nodiscard]] float ShapeValueOf(const ReferencePose& pose, std::string_view blend_shape);
 
 // True if the delta leaves its joint at rest. Pose files often list every joint.
 [[nodiscard]] bool IsRest(const JointDelta& delta);
@@ -52,9 +66,9 @@ void ApplyJointDelta(const JointDelta& delta, const Skeleton& skeleton, int join
 // SkeletonSizeBy(pose.size_reference, skeleton) / pose.source_size; 1 if the pose states no size.
 [[nodiscard]] float ReferencePoseScale(const ReferencePose& pose, const Skeleton& skeleton);
 
-// Adds a reference pose to `locals`, which holds num_joints local transforms: the rest pose or any
-// other pose. Error: kNotFound if the skeleton lacks a joint that moves; `locals` is then
-// unchanged.
+// Adds the joints of a reference pose to `locals`, which holds num_joints local transforms: the
+// rest pose or any other pose. Error: kNotFound if the skeleton lacks a joint that moves; `locals`
+// is then unchanged.
 [[nodiscard]] Status ApplyReferencePose(const ReferencePose& pose, const Skeleton& skeleton,
                                         std::span<Transform> locals);
 

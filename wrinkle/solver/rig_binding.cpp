@@ -13,16 +13,17 @@
 namespace furrow::wrinkle {
 namespace {
 
-// What drivers of this rig need: the rig's anchor only if a driver without its own measures from
-// it, joints only if a driver reads them. Streams of blend shapes alone thus bind to rigs without
-// joints.
+// What drivers of this rig need: the rig's anchor only if a driver of joints without its own
+// measures from it, joints only if a driver reads them. Streams of blend shapes alone thus bind to
+// rigs without joints.
 BindSource SourceOf(const Rig& rig, std::span<const std::string> blend_shape_names) {
   BindSource source{.size_reference = rig.size_reference.get(),
                     .reference_poses = rig.reference_poses,
                     .blend_shape_names = blend_shape_names};
   for (const Driver& driver : rig.drivers) {
     VisitFields(driver, [&](const auto& fields) {
-      source.reads_joints = source.reads_joints || fields.kReadsJoints;
+      if (JointsRead(fields).empty()) return;
+      source.reads_joints = true;
       if constexpr (std::decay_t<decltype(fields)>::kMeasuresFromAnchor) {
         if (fields.anchor.empty()) source.anchor = rig.anchor;
       }

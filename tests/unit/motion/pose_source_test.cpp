@@ -49,9 +49,17 @@ TEST_F(PoseSourceTest, ReportsTheNumberOfFrames) {
     EXPECT_THAT(result.status().ToString(), HasSubstr("a.bvh"));
   }
   EXPECT_EQ(CachedPoseSource()(folder_.path() / "b.bvh", 0).status().code(), StatusCode::kNotFound);
-  std::ofstream(folder_.path() / "c.csv") << "Timecode,JawOpen\n00:00:00:00,1\n";
-  EXPECT_EQ(CachedPoseSource()(folder_.path() / "c.csv", 0).status().code(),
-            StatusCode::kUnsupported);
+}
+
+TEST_F(PoseSourceTest, ReturnsBlendShapesWithTheirNames) {
+  const std::filesystem::path path = folder_.path() / "c.csv";
+  std::ofstream(path) << "Timecode,JawOpen,BrowInnerUp\n00:00:00:00,0,0\n00:00:00:01,0.75,0.5\n";
+  const Result<wrinkle::PoseFrame> frame = CachedPoseSource()(path, 1);
+  ASSERT_TRUE(frame.ok()) << frame.status().ToString();
+  EXPECT_EQ(frame->skeleton.num_joints(), 0);
+  ASSERT_EQ(frame->blend_shape_names.size(), frame->pose.blend_shapes.size());
+  ASSERT_GE(frame->blend_shape_names.size(), 2u);
+  EXPECT_NEAR(frame->pose.blend_shapes[0] + frame->pose.blend_shapes[1], 1.25f, 1e-6f);
 }
 
 // The test rewrites the file with the same size and time, which the source cannot detect. The old

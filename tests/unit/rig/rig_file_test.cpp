@@ -315,6 +315,31 @@ INSTANTIATE_TEST_SUITE_P(
               kInvalid, "11: drivers[0].pose.points[1].kind"},
         Wrong{"\"points\": [{", "\"solve\": 2, \"points\": [{", kInvalid,
               "11: drivers[0].pose.solve"},
+        Wrong{"[{\"joint\": \"brow\"}]", "[{\"kind\": \"origin\"}]", kInvalid,
+              "11: drivers[0].pose.points[0].joint"},
+        Wrong{"[{\"joint\": \"brow\"}]", "[{\"joint\": \"brow\", \"kind\": \"blend_shape\"}]",
+              kInvalid, "11: drivers[0].pose.points[0].blend_shape"},
+        Wrong{"[{\"joint\": \"brow\"}]",
+              "[{\"joint\": \"b\", \"kind\": \"blend_shape\", \"blend_shape\": \"a\"}]", kInvalid,
+              "11: drivers[0].pose.points[0].joint"},
+        Wrong{"[{\"joint\": \"brow\"}]", "[{\"joint\": \"brow\", \"blend_shape\": \"a\"}]",
+              kInvalid, "11: drivers[0].pose.points[0].blend_shape"},
+        Wrong{"[{\"joint\": \"brow\"}]",
+              "[{\"kind\": \"blend_shape\", \"blend_shape\": \"a\"}, "
+              "{\"kind\": \"blend_shape\", \"blend_shape\": \"A\"}]",
+              kInvalid, "11: drivers[0].pose.points[1].blend_shape"},
+        Wrong{"{\"name\": \"up\",\n",
+              "{\"name\": \"up\", \"shapes\": [{\"blend_shape\": \"a\", \"value\": 1001}],\n",
+              kInvalid, "5: reference_poses[0].shapes[0].value"},
+        Wrong{"{\"name\": \"up\",\n",
+              "{\"name\": \"up\", \"shapes\": [{\"blend_shape\": \"a\", \"value\": \"nan\"}],\n",
+              StatusCode::kNonFinite, "5: reference_poses[0].shapes[0].value"},
+        Wrong{"{\"name\": \"up\",\n", "{\"name\": \"up\", \"shapes\": [{\"value\": 1}],\n", kSchema,
+              "5: reference_poses[0].shapes[0].blend_shape"},
+        Wrong{"{\"name\": \"up\",\n",
+              "{\"name\": \"up\", \"shapes\": [{\"blend_shape\": \"a\"}, {\"blend_shape\": "
+              "\"A\"}],\n",
+              kInvalid, "5: reference_poses[0].shapes[1].blend_shape"},
         Wrong{"\"kind\": \"skinning\"", "\"kind\": 7", kInvalid, "23: regions[1].mask.kind"}));
 
 TEST(RigFile, RejectsTooManyValuesForNnls) {
@@ -356,6 +381,39 @@ TEST(RigFile, RejectsInvalidText) {
   EXPECT_EQ(Parse("[]").status().where(), "a.rig.json:1");
   // FlatBuffers' parser also reads schemas. A rig must not use that.
   EXPECT_EQ(Parse("include \"/etc/passwd\"; {}").status().code(), StatusCode::kParse);
+}
+
+TEST(RigFile, KeepsTheBlendShapesOfPosesAndPoints) {
+  const std::string json =
+      Replaced(kSmallRig, R"({"name": "up",
+     "joints": [)",
+               R"({"name": "grin", "shapes": [{"blend_shape": "mouthSmileLeft"}]},
+    {"name": "half", "mix": [{"pose": "grin", "weight": 0.5}, {"pose": "rest"}]},
+    {"name": "rest", "joints": []},
+    {"name": "up", "shapes": [{"blend_shape": "browInnerUp", "value": 0.75},
+                              {"blend_shape": "mouthSmileLeft", "value": -0.5}],
+     "joints": [)");
+  const auto rig = Parse(Replaced(json, R"("points": [{"joint": "brow"}])",
+                                  R"("points": [{"joint": "brow"},
+       {"kind": "blend_shape", "blend_shape": "browInnerUp"}])"));
+  ASSERT_TRUE(rig.ok()) << rig.status().ToString();
+  const auto again = Parse(RigToJson(*rig));
+  ASSERT_TRUE(again.ok()) << again.status().ToString() << RigToJson(*rig);
+  for (const wrinkle::Rig& one : {*rig, *again}) {
+    ASSERT_EQ(one.reference_poses.size(), 2u) << "building blocks are omitted";
+    EXPECT_TRUE(one.reference_poses[0].joints.empty());
+    EXPECT_EQ(one.reference_poses[0].shapes,
+              (std::vector<wrinkle::ShapeValue>{{"mouthSmileLeft", 0.5f}}));
+    EXPECT_EQ(one.reference_poses[1].joints.size(), 1u);
+    EXPECT_EQ(
+        one.reference_poses[1].shapes,
+        (std::vector<wrinkle::ShapeValue>{{"browInnerUp", 0.75f}, {"mouthSmileLeft", -0.5f}}));
+    ASSERT_EQ(one.drivers[0].pose.points.size(), 2u);
+    EXPECT_EQ(one.drivers[0].pose.points[1].kind, wrinkle::ControlPoint::Kind::kBlendShape);
+    EXPECT_EQ(one.drivers[0].pose.points[1].blend_shape, "browInnerUp");
+    EXPECT_TRUE(one.drivers[0].pose.points[1].joint.empty());
+  }
+  EXPECT_EQ(RigToJson(*rig).find("\"joints\": []"), std::string::npos);
 }
 
 TEST(RigFile, ReadsPosesFromFramesAndMixes) {
@@ -513,7 +571,7 @@ TEST(RigFile, ReadsTheExampleInTheManual) {
   ASSERT_LT(begin, manual.size());
   const auto rig = ParseRig(manual.substr(begin, manual.find("```", begin) - begin), "RIG.md", ".");
   ASSERT_TRUE(rig.ok()) << rig.status().ToString();
-  EXPECT_EQ(rig->reference_poses.size(), 2u);
+  EXPECT_EQ(rig->reference_poses.size(), 3u);
   EXPECT_EQ(rig->regions.size(), 3u);
 }
 

@@ -5,6 +5,9 @@
 #include <limits>
 #include <memory>
 #include <random>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -246,6 +249,50 @@ TEST(RigReferencePose, RejectsPosesThatDoNotFitTheSkeleton) {
   frame = TurnedRoot();
   frame.pose.joints[1].translation.x = std::numeric_limits<float>::quiet_NaN();
   EXPECT_EQ(ReferencePoseFromFrame("p", frame).status().code(), StatusCode::kNonFinite);
+}
+
+// A frame of a phone: coefficients and no joints.
+PoseFrame Phone(std::vector<float> coefficients) {
+  PoseFrame frame;
+  frame.blend_shape_names = {"browDownLeft", "mouthSmileLeft", "HeadYaw", "", "BROWDOWNLEFT"};
+  frame.pose.blend_shapes = std::move(coefficients);
+  return frame;
+}
+
+TEST(RigReferencePose, TakesTheBlendShapesOfAFrame) {
+  const PoseFrame frame = Phone({0.75f, 0.0005f, 0.3f, 0.9f, 0.1f});
+  auto pose = ReferencePoseFromFrame("p", frame);
+  ASSERT_TRUE(pose.ok()) << pose.status().ToString();
+  EXPECT_TRUE(pose->joints.empty());
+  // Neither noise, nor angles of the head, nor what has no name; the first of equal names.
+  EXPECT_EQ(pose->shapes, (std::vector<wrinkle::ShapeValue>{{"browDownLeft", 0.75f}}));
+  const PoseFrame rest = Phone({0.25f, 0.5f, 0, 0, 0});
+  pose = ReferencePoseFromFrame("p", frame, &rest);
+  ASSERT_TRUE(pose.ok());
+  EXPECT_EQ(pose->shapes, (std::vector<wrinkle::ShapeValue>{{"browDownLeft", 0.5f},
+                                                            {"mouthSmileLeft", -0.4995f}}));
+}
+
+TEST(RigReferencePose, RejectsBlendShapesThatDoNotFitTheirNames) {
+  const PoseFrame frame = Phone({0.75f, 0, 0.3f, 0, 0});
+  EXPECT_EQ(ReferencePoseFromFrame("p", Phone({0.75f})).status().code(),
+            StatusCode::kInvalidArgument);
+  const PoseFrame short_rest = Phone({0.5f, 0});
+  EXPECT_EQ(ReferencePoseFromFrame("p", frame, &short_rest).status().code(),
+            StatusCode::kInvalidArgument);
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const auto bad = ReferencePoseFromFrame("p", Phone({0, nan, 0, 0, 0}));
+  EXPECT_EQ(bad.status().code(), StatusCode::kNonFinite);
+  EXPECT_NE(bad.status().what().find("'mouthSmileLeft'"), std::string::npos);
+}
+
+TEST(RigReferencePose, MixesScaleAndSumBlendShapes) {
+  const wrinkle::ReferencePose a{.name = "a", .shapes = {{"jawOpen", 0.5f}, {"smile", 1.0f}}};
+  const wrinkle::ReferencePose b{.name = "b", .shapes = {{"frown", 0.25f}, {"JAWOPEN", 1.0f}}};
+  const WeightedPose parts[] = {{&a, 0.5f}, {&b, -2.0f}};
+  EXPECT_EQ(MixReferencePoses("m", parts).shapes,
+            (std::vector<wrinkle::ShapeValue>{
+                {"jawOpen", 0.25f - 2.0f}, {"smile", 0.5f}, {"frown", -0.5f}}));
 }
 
 TEST(RigReferencePose, MixesScaleRotationVectors) {

@@ -18,7 +18,10 @@ TEST(RigWriter, WritesAPoseDriver) {
                              .kind = wrinkle::ControlPoint::Kind::kOffset,
                              .offset = {0, 0.5f, 0},
                              .offset_size = 1.5f},
-                            {.joint = "jaw", .kind = wrinkle::ControlPoint::Kind::kOrigin}},
+                            {.joint = "jaw", .kind = wrinkle::ControlPoint::Kind::kOrigin},
+                            {.joint = "",
+                             .kind = wrinkle::ControlPoint::Kind::kBlendShape,
+                             .blend_shape = "browDownLeft"}},
                  .values = {{"stretch", "up"}, {"squash", "down"}}};
   EXPECT_EQ(DriverToJson(driver), R"({
   "name": "brow",
@@ -26,7 +29,8 @@ TEST(RigWriter, WritesAPoseDriver) {
     "points": [
       {"joint": "brow"},
       {"joint": "lid", "kind": "offset", "offset": [0, 0.5, 0], "offset_size": 1.5},
-      {"joint": "jaw", "kind": "origin"}
+      {"joint": "jaw", "kind": "origin"},
+      {"kind": "blend_shape", "blend_shape": "browDownLeft"}
     ],
     "values": [
       {"name": "stretch", "reference_pose": "up"},

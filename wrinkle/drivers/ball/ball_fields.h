@@ -30,7 +30,6 @@ struct BallSide {
 // A hip, a shoulder or a waist: values "front", "back", "left" and "right", the subject's left and
 // right.
 struct BallDriver {
-  static constexpr bool kReadsJoints = true;
   static constexpr bool kMeasuresFromAnchor = false;
   static constexpr bool kAddsJoints = false;
 

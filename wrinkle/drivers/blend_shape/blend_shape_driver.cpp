@@ -12,7 +12,16 @@ Status BlendShapeDriverSet::Bind(const std::string& name, const BlendShapeDriver
                       .blend_shape = *found,
                       .neutral = driver.neutral,
                       .full = driver.full});
+  names_.push_back(driver.blend_shape);
   return {};
+}
+
+void BlendShapeDriverSet::Explain(const SolvedPose& pose, DriverExplanation* explanation) const {
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    explanation->shapes.push_back({.driver = pose.DriverName(entries_[i].first_value),
+                                   .blend_shape = names_[i],
+                                   .coefficient = pose.Coefficient(entries_[i].blend_shape)});
+  }
 }
 
 void BlendShapeDriverSet::Plan(LanePlanner* planner) {

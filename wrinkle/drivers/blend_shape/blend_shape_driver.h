@@ -34,14 +34,15 @@ class BlendShapeDriverSet {
                             int first_value, BindContext* context);
   // Lays the drivers out in blocks. Call it once, after the last Bind().
   void Plan(LanePlanner* planner);
-  // Adds nothing: a coefficient has no geometry.
-  void Explain(const SolvedPose&, DriverExplanation*) const {}
+  // Adds the coefficients.
+  void Explain(const SolvedPose& pose, DriverExplanation* explanation) const;
 
   [[nodiscard]] std::span<const Entry> entries() const { return entries_; }
   [[nodiscard]] const std::vector<BlendShapeBlock>& blocks() const { return blocks_; }
 
  private:
   std::vector<Entry> entries_;
+  std::vector<std::string> names_;  // of the entries' blend shapes, as in the rig
   std::vector<BlendShapeBlock> blocks_;
 };
 

@@ -11,7 +11,6 @@ namespace furrow::wrinkle {
 std::vector<std::string> DriverValueNames(const BlendShapeDriver&) { return {"value"}; }
 
 void CheckFields(const BlendShapeDriver& driver, const std::string& at, FieldCheck* check) {
-  constexpr float kMaxCoefficient = 1e3f;
   check->Label(at, ".blend_shape", driver.blend_shape);
   check->Range(at, ".neutral", driver.neutral, -kMaxCoefficient, kMaxCoefficient);
   check->Range(at, ".full", driver.full, -kMaxCoefficient, kMaxCoefficient);

@@ -13,7 +13,6 @@ class FullPoseBuilder;
 
 // A tracker's coefficient c: value "value", clamp((c - neutral) / (full - neutral), 0, 1).
 struct BlendShapeDriver {
-  static constexpr bool kReadsJoints = false;
   static constexpr bool kMeasuresFromAnchor = false;
   static constexpr bool kAddsJoints = false;
 

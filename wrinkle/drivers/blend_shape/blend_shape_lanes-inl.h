@@ -23,14 +23,8 @@ template <bool kScaled>
 void EvaluateDrivers(const BlendShapeDriverSet& drivers, const PointPlan&, LanePose<kScaled>,
                      const DriverInput& input, float* rows) {
   const auto evaluate = [&](const BlendShapeBlock& block, std::size_t lane, float* to) HWY_ATTR {
-    // Scalar loads: the coefficients of a row come from unrelated places, and a stream may send
-    // fewer than the rig names.
-    HWY_ALIGN float coefficients[kLanes];
-    for (std::size_t i = 0; i < kLanes; ++i) {
-      const auto index = static_cast<std::size_t>(block.blend_shape.at[lane + i]);
-      coefficients[i] = index < input.blend_shapes.size() ? input.blend_shapes[index] : 0.0f;
-    }
-    const Float above = hn::Sub(LoadLanes(coefficients), LoadRow(block.neutral, lane));
+    const Float coefficients = LoadCoefficients(input.blend_shapes, block.blend_shape, lane);
+    const Float above = hn::Sub(coefficients, LoadRow(block.neutral, lane));
     StoreLanes(Saturate(hn::Div(above, LoadRow(block.range, lane))), to);
   };
   ForEachBlock(drivers.blocks(), input.num_values, rows, evaluate);

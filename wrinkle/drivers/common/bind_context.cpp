@@ -124,4 +124,11 @@ const std::vector<PreciseTransform>* BindContext::ReferenceLocals(std::string_vi
   return nullptr;
 }
 
+float BindContext::ReferenceShape(std::string_view name, std::string_view blend_shape) const {
+  for (const ReferencePose& pose : source_.reference_poses) {
+    if (pose.name == name) return ShapeValueOf(pose, blend_shape);
+  }
+  return 0.0f;
+}
+
 }  // namespace furrow::wrinkle

@@ -65,6 +65,7 @@ class BindContext {
   // The local rest rotation of `joint` in the skeleton that poses belong to.
   [[nodiscard]] glm::quat RestRotationInPose(int joint) const;
   [[nodiscard]] JointChains& chains() { return *chains_; }
+  [[nodiscard]] const JointChains& chains() const { return *chains_; }
   [[nodiscard]] float size() const { return size_; }  // SkeletonSizeBy()
   [[nodiscard]] int anchor() const { return anchor_; }
   [[nodiscard]] bool anchor_missing() const { return anchor_missing_; }
@@ -72,6 +73,8 @@ class BindContext {
   [[nodiscard]] std::span<const PreciseTransform> rest_locals() const { return rest_locals_; }
   // The skeleton's local transforms in reference pose `name`; null if the rig has no such pose.
   [[nodiscard]] const std::vector<PreciseTransform>* ReferenceLocals(std::string_view name) const;
+  // The coefficient of a blend shape in reference pose `name`; 0 if the rig has no such pose.
+  [[nodiscard]] float ReferenceShape(std::string_view name, std::string_view blend_shape) const;
 
   [[nodiscard]] std::vector<std::string>& missing_joints() { return missing_joints_; }
   [[nodiscard]] std::vector<std::string>& missing_blend_shapes() { return missing_blend_shapes_; }

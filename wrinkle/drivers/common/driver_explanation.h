@@ -13,7 +13,7 @@ namespace furrow::wrinkle {
 // are left out.
 struct DriverExplanation {
   // A value of a pose driver (4.1). Lengths are in the skeleton's units, measured in the anchor's
-  // space.
+  // space. Those of blend shapes alone are lengths of lists of coefficients.
   struct PoseValue {
     std::string driver_value;
     float displacement = 0.0f;   // |d|: rest to reference pose
@@ -40,9 +40,17 @@ struct DriverExplanation {
     // outside, (-90, 90].
     float degrees = 0.0f;
   };
+  // A blend shape that a driver reads, with the stream's coefficient: all of a blend-shape or pose
+  // driver, and of a strain driver those that move its patch now.
+  struct Shape {
+    std::string driver;
+    std::string blend_shape;  // as the rig spells it
+    float coefficient = 0.0f;
+  };
   std::vector<PoseValue> pose_values;
   std::vector<Angle> angles;
   std::vector<Strain> strains;
+  std::vector<Shape> shapes;
 };
 
 // One solved pose of a binding, to be explained.
@@ -57,6 +65,11 @@ struct SolvedPose {
   [[nodiscard]] std::string DriverName(int first_value) const {
     const std::string& name = driver_value_names[static_cast<std::size_t>(first_value)];
     return name.substr(0, name.rfind('.'));
+  }
+  // The coefficient at this place; 0 past the end.
+  [[nodiscard]] float Coefficient(int place) const {
+    const auto index = static_cast<std::size_t>(place);
+    return index < blend_shapes.size() ? blend_shapes[index] : 0.0f;
   }
 };
 

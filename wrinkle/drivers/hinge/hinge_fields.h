@@ -16,7 +16,6 @@ class FullPoseBuilder;
 
 // A knee or an elbow (4.6): values "flexed" and "extended".
 struct HingeDriver {
-  static constexpr bool kReadsJoints = true;
   static constexpr bool kMeasuresFromAnchor = false;
   static constexpr bool kAddsJoints = false;
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "base/scalar.h"
 #include "wrinkle/drivers/pose/pose_gram.h"
@@ -14,6 +15,11 @@ namespace {
 
 // A displacement below this share of the skeleton's size is rounding, not a pose.
 constexpr float kLeastDisplacement = 1e-6f;
+// The same for the coefficients of a pose, as a length.
+constexpr double kLeastCoefficients = 1e-4;
+// What a coefficient counts as beside joints that no reference pose moves: a share of the
+// skeleton's size.
+constexpr float kUnitBesideRest = 0.01f;
 
 std::string OwnerOf(const std::string& name) { return "driver '" + name + "'"; }
 
@@ -54,13 +60,22 @@ std::string Describe(const PoseDependence& dependence, const PoseDriver& driver)
          "), so noise moves their values; remove one, or add points that distinguish them";
 }
 
+// How far a reference pose moves a point. In double precision, because d is often a thousandth of
+// B.
+glm::dvec3 PointDisplacement(const std::vector<PreciseTransform>& locals, int point,
+                             const BindContext& context) {
+  return context.chains().Evaluate(std::span<const PreciseTransform>(locals), point) -
+         context.chains().Evaluate(context.rest_locals(), point);
+}
+
 // The control point in its joint's space. Offsets that state the size of their skeleton scale with
 // this one, of size `size`.
 glm::vec3 LocalOffset(const ControlPoint& point, const Skeleton& skeleton, int joint, float size) {
   switch (point.kind) {
     case ControlPoint::Kind::kTail: return skeleton.tails()[joint];
     case ControlPoint::Kind::kOrigin: return glm::vec3(0.0f);
-    case ControlPoint::Kind::kOffset: break;
+    case ControlPoint::Kind::kOffset:
+    case ControlPoint::Kind::kBlendShape: break;
   }
   return point.offset_size > 0.0f ? point.offset * (size / point.offset_size) : point.offset;
 }
@@ -78,9 +93,11 @@ Status PoseDriverSet::Bind(const std::string& name, const PoseDriver& driver, in
   entry.solve = driver.solve;
   entry.falloff = driver.falloff;
   bool usable = false;
+  FURROW_RETURN_IF_ERROR(BindShapes(name, driver, context, &entry));
   FURROW_RETURN_IF_ERROR(BindPoints(name, driver, context, &entry, &usable));
   if (!usable) return {};
-  entry.num_points = static_cast<std::uint32_t>(points_.size()) - entry.first_point;
+  const float unit = ShapeUnit(driver, entry, *context);
+  for (std::uint32_t i = 0; i < entry.num_shapes; ++i) shapes_[entry.first_shapes + i].unit = unit;
   PreciseVectors precise;
   for (const PoseDriver::Value& value : driver.values) {
     FURROW_RETURN_IF_ERROR(BindValue(name, value, entry, context, &precise));
@@ -90,39 +107,81 @@ Status PoseDriverSet::Bind(const std::string& name, const PoseDriver& driver, in
   return {};
 }
 
+Status PoseDriverSet::BindShapes(const std::string& name, const PoseDriver& driver,
+                                 BindContext* context, Entry* entry) {
+  entry->first_shapes = static_cast<std::uint32_t>(shapes_.size());
+  std::size_t count = 0;
+  for (const ControlPoint& point : driver.points) {
+    if (point.kind != ControlPoint::Kind::kBlendShape) continue;
+    const Result<int> found = context->BlendShape(OwnerOf(name), point.blend_shape);
+    FURROW_RETURN_IF_ERROR(found);
+    if (*found < 0) continue;
+    const std::size_t place = count++ % 3;
+    if (place == 0) {
+      shapes_.emplace_back();
+      shape_names_.resize(3 * shapes_.size());
+    }
+    shapes_.back().blend_shapes[place] = *found;
+    shape_names_[shape_names_.size() - 3 + place] = point.blend_shape;
+  }
+  entry->num_shapes = static_cast<std::uint32_t>(shapes_.size()) - entry->first_shapes;
+  return {};
+}
+
 Status PoseDriverSet::BindPoints(const std::string& name, const PoseDriver& driver,
                                  BindContext* context, Entry* entry, bool* usable) {
   const Skeleton& skeleton = context->skeleton();
-  std::vector<int> joints;
+  const bool reads_joints = !JointsRead(driver).empty();
   int anchor = context->anchor();
-  *usable = !context->anchor_missing();
-  if (!driver.anchor.empty()) {
+  bool is_anchored = !context->anchor_missing();
+  if (reads_joints && !driver.anchor.empty()) {
     const Result<int> own = context->Joint(OwnerOf(name), "anchor", driver.anchor);
     FURROW_RETURN_IF_ERROR(own);
     anchor = *own;
-    *usable = anchor != kNoJoint;
+    is_anchored = anchor != kNoJoint;
   }
+  std::vector<std::pair<const ControlPoint*, int>> found;
+  bool is_complete = reads_joints && is_anchored;
   for (const ControlPoint& point : driver.points) {
+    if (point.kind == ControlPoint::Kind::kBlendShape) continue;
     const Result<int> joint = context->Joint(OwnerOf(name), "points", point.joint);
     FURROW_RETURN_IF_ERROR(joint);
-    joints.push_back(*joint);
-    *usable = *usable && *joint != kNoJoint;
+    if (*joint != kNoJoint && is_anchored) found.emplace_back(&point, *joint);
+    is_complete = is_complete && *joint != kNoJoint;
   }
+  *usable = is_complete || entry->num_shapes > 0;
   if (!*usable) return {};
   entry->in_model_space = anchor == kNoJoint;
   // Points are measured in the anchor's space, so that a nod of the head makes no wrinkle (thesis
   // 4.1 leaves the space open).
-  for (std::size_t i = 0; i < joints.size(); ++i) {
-    if (anchor != kNoJoint && !skeleton.IsAncestor(anchor, joints[i])) {
-      context->Warn(OwnerOf(name) + ": joint '" + driver.points[i].joint +
+  for (const auto& [control, joint] : found) {
+    if (anchor != kNoJoint && !skeleton.IsAncestor(anchor, joint)) {
+      context->Warn(OwnerOf(name) + ": joint '" + control->joint +
                     "' does not hang from the anchor, so moving the anchor moves its value");
     }
-    const glm::vec3 offset = LocalOffset(driver.points[i], skeleton, joints[i], context->size());
-    const int point = context->chains().Add(skeleton, joints[i], offset, anchor);
+    const glm::vec3 offset = LocalOffset(*control, skeleton, joint, context->size());
+    const int point = context->chains().Add(skeleton, joint, offset, anchor);
     const glm::vec3 rest = context->chains().Evaluate(skeleton.rest_pose(), point);
     points_.push_back({point, entry->in_model_space ? context->ToPoseSpace(rest) : rest});
   }
+  entry->num_points = static_cast<std::uint32_t>(points_.size()) - entry->first_point;
   return {};
+}
+
+float PoseDriverSet::ShapeUnit(const PoseDriver& driver, const Entry& entry,
+                               const BindContext& context) const {
+  if (entry.num_points == 0 || entry.num_shapes == 0) return 1.0f;
+  double largest = 0.0;
+  for (const PoseDriver::Value& value : driver.values) {
+    const auto* const locals = context.ReferenceLocals(value.reference_pose);
+    if (locals == nullptr) continue;  // BindValue() reports it
+    for (const MeasuredPoint& point : points(entry)) {
+      const glm::dvec3 d = PointDisplacement(*locals, point.point, context);
+      largest = std::max(largest, glm::length(d));
+    }
+  }
+  if (largest > double{kLeastDisplacement * context.size()}) return static_cast<float>(largest);
+  return kUnitBesideRest * context.size();
 }
 
 Status PoseDriverSet::BindValue(const std::string& name, const PoseDriver::Value& value,
@@ -133,19 +192,29 @@ Status PoseDriverSet::BindValue(const std::string& name, const PoseDriver::Value
                                        "' names reference pose '" + value.reference_pose +
                                        "', which the rig does not have"};
   }
-  // d of thesis 4.1, stacked over all control points: one vector of 3 P numbers per value. In
-  // double precision, because d is often a thousandth of B.
+  // d of thesis 4.1, stacked over all control points and blend shapes: one vector of 3 (P + S)
+  // numbers per value.
   const std::size_t first = precise->size();
   double square = 0.0;
   for (const MeasuredPoint& point : points(entry)) {
-    const JointChains& chains = context->chains();
-    const glm::dvec3 d = chains.Evaluate(std::span<const PreciseTransform>(*locals), point.point) -
-                         chains.Evaluate(context->rest_locals(), point.point);
+    const glm::dvec3 d = PointDisplacement(*locals, point.point, *context);
     precise->push_back(entry.in_model_space ? context->ToPoseSpace(d) : d);
     square += glm::dot(precise->back(), precise->back());
   }
+  const bool joints_move = std::sqrt(square) > double{kLeastDisplacement * context->size()};
+  double shape_square = 0.0;
+  for (std::size_t i = entry.first_shapes; i < entry.first_shapes + entry.num_shapes; ++i) {
+    glm::dvec3 coefficients(0.0);
+    for (int k = 0; k < 3; ++k) {
+      const std::string& shape = shape_names_[3 * i + static_cast<std::size_t>(k)];
+      if (!shape.empty()) coefficients[k] = context->ReferenceShape(value.reference_pose, shape);
+    }
+    precise->push_back(double{shapes_[i].unit} * coefficients);
+    shape_square += glm::dot(coefficients, coefficients);
+    square += glm::dot(precise->back(), precise->back());
+  }
   // A displacement with a square of 0 as a float does not move either.
-  const bool moves = std::sqrt(square) > double{kLeastDisplacement * context->size()} &&
+  const bool moves = (joints_move || std::sqrt(shape_square) > kLeastCoefficients) &&
                      static_cast<float>(square) > 0.0f;
   squares_.push_back(moves ? static_cast<float>(square) : 0.0f);
   inverse_lengths_.push_back(moves ? 1.0 / std::sqrt(square) : 0.0);
@@ -175,11 +244,12 @@ void PoseDriverSet::BindGram(const std::string& name, const PoseDriver& driver,
 
 BoundPose PoseDriverSet::Bound(const Entry& entry) const {
   const auto num_values = static_cast<std::size_t>(entry.num_values);
-  // Displacements and projections have one vector per value and point; squares have one number per
-  // value.
-  const std::size_t num_vectors = num_values * entry.num_points;
+  // Displacements and projections have one vector per value and vector of the stack; squares have
+  // one number per value.
+  const std::size_t num_vectors = num_values * entry.num_vectors();
   return {.first_value = entry.first_value,
           .points = points(entry),
+          .shapes = shapes(entry),
           .projections = std::span(projections_).subspan(entry.first_displacement, num_vectors),
           .displacements = std::span(displacements_).subspan(entry.first_displacement, num_vectors),
           .squares = std::span(squares_).subspan(entry.first_square, num_values),
@@ -206,8 +276,21 @@ void PoseDriverSet::Plan(LanePlanner* planner) {
 
 StackedPoints PoseDriverSet::Displacement(const Entry& entry, int value) const {
   return StackedPoints(displacements_)
-      .subspan(entry.first_displacement + entry.num_points * static_cast<std::uint32_t>(value),
-               entry.num_points);
+      .subspan(entry.first_displacement + entry.num_vectors() * static_cast<std::uint32_t>(value),
+               entry.num_vectors());
+}
+
+std::size_t PoseDriverSet::MoveShapes(int entry, std::span<const float> coefficients,
+                                      std::span<glm::vec3> moved) const {
+  const std::span<const MeasuredShapes> list = shapes(entries_[static_cast<std::size_t>(entry)]);
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const auto place =
+          static_cast<std::size_t>(list[i].blend_shapes[static_cast<std::size_t>(k)]);
+      moved[i][k] = place < coefficients.size() ? list[i].unit * coefficients[place] : 0.0f;
+    }
+  }
+  return list.size();
 }
 
 void PoseDriverSet::SolveNnls(int entry, StackedPoints moved, std::span<float> along) const {
@@ -219,7 +302,8 @@ void PoseDriverSet::SolveNnls(int entry, StackedPoints moved, std::span<float> a
   std::array<double, kMaxNnlsValues> lengths;  // the unknowns: along unit displacements
   const std::span<const glm::dvec3> directions(directions_);
   for (std::size_t k = 0; k < count; ++k) {
-    rhs[k] = Dot(moved, directions.subspan(e.first_direction + k * e.num_points, e.num_points));
+    rhs[k] =
+        Dot(moved, directions.subspan(e.first_direction + k * e.num_vectors(), e.num_vectors()));
   }
   nnls_[e.nnls].Solve(std::span(rhs).first(count), std::span(lengths).first(count));
   for (std::size_t k = 0; k < count; ++k) {
@@ -240,6 +324,18 @@ float PoseDriverSet::SquaredResidual(int entry, StackedPoints moved,
   return SquaredLength(StackedPoints(left_over).first(moved.size()));
 }
 
+void PoseDriverSet::ExplainShapes(const Entry& entry, const SolvedPose& pose,
+                                  DriverExplanation* explanation) const {
+  for (std::size_t i = 0; i < 3 * std::size_t{entry.num_shapes}; ++i) {
+    const int place = shapes(entry)[i / 3].blend_shapes[i % 3];
+    if (place < 0) continue;
+    explanation->shapes.push_back(
+        {.driver = pose.DriverName(entry.first_value),
+         .blend_shape = shape_names_[3 * std::size_t{entry.first_shapes} + i],
+         .coefficient = pose.Coefficient(place)});
+  }
+}
+
 // The geometry is measured from the pose again; the results are those of the solver. The falloff is
 // the factor that the solver applied.
 void PoseDriverSet::Explain(const SolvedPose& pose, DriverExplanation* explanation) const {
@@ -249,6 +345,9 @@ void PoseDriverSet::Explain(const SolvedPose& pose, DriverExplanation* explanati
     for (const MeasuredPoint& point : points(entry)) {
       moved.push_back(pose.chains.Evaluate(pose.local, point.point) - point.rest);
     }
+    moved.resize(entry.num_vectors());
+    MoveShapes(static_cast<int>(i), pose.blend_shapes, std::span(moved).subspan(entry.num_points));
+    ExplainShapes(entry, pose, explanation);
     std::vector<float> along(static_cast<std::size_t>(entry.num_values), 0.0f);
     const bool is_nnls = entry.solve == PoseSolve::kNnls;
     if (is_nnls) SolveNnls(static_cast<int>(i), moved, along);

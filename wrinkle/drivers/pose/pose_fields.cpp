@@ -4,12 +4,33 @@
 #include <string_view>
 #include <unordered_set>
 
+#include "base/ascii.h"
 #include "wrinkle/drivers/common/full_pose_builder.h"
 #include "wrinkle/drivers/pose/nnls.h"
 #include "wrinkle/fields/field_check.h"
 #include "wrinkle/fields/rig_field.h"
 
 namespace furrow::wrinkle {
+namespace {
+
+// `seen`: lowercase names of the blend shapes before this point.
+void CheckPoint(const ControlPoint& point, const std::string& at,
+                std::unordered_set<std::string>* seen, FieldCheck* check) {
+  if (point.kind == ControlPoint::Kind::kBlendShape) {
+    check->Label(at, ".blend_shape", point.blend_shape);
+    check->Require(point.joint.empty(), at, ".joint", "a blend shape has no joint", "remove it");
+    check->Require(seen->insert(AsciiLower(point.blend_shape)).second, at, ".blend_shape",
+                   "the blend shape occurs twice");
+  } else {
+    check->Label(at, ".joint", point.joint);
+    check->Require(point.blend_shape.empty(), at, ".blend_shape",
+                   "a point on a joint has no blend shape", "set kind to \"blend_shape\"");
+  }
+  check->Finite(at, ".offset", point.offset);
+  check->Range(at, ".offset_size", point.offset_size, 0.0f, kMaxSkeletonSize);
+}
+
+}  // namespace
 
 std::vector<std::string> DriverValueNames(const PoseDriver& driver) {
   std::vector<std::string> names;
@@ -27,11 +48,9 @@ void CheckFields(const PoseDriver& driver, const std::string& at, FieldCheck* ch
   // lower limit.
   check->Count(at, ".values", driver.values.size(), nnls ? kMaxNnlsValues : kMaxPoseValues);
   check->Range(at, ".falloff", driver.falloff, 0.0f, 1000.0f);
+  std::unordered_set<std::string> shapes;
   for (std::size_t i = 0; i < driver.points.size(); ++i) {
-    const std::string point = FieldAt(at + ".points", i);
-    check->Label(point, ".joint", driver.points[i].joint);
-    check->Finite(point, ".offset", driver.points[i].offset);
-    check->Range(point, ".offset_size", driver.points[i].offset_size, 0.0f, kMaxSkeletonSize);
+    CheckPoint(driver.points[i], FieldAt(at + ".points", i), &shapes, check);
   }
   std::unordered_set<std::string_view> names;
   for (std::size_t i = 0; i < driver.values.size(); ++i) {
@@ -43,15 +62,25 @@ void CheckFields(const PoseDriver& driver, const std::string& at, FieldCheck* ch
 
 std::vector<std::string> JointsRead(const PoseDriver& driver) {
   std::vector<std::string> joints = JointsInfluenced(driver);
-  joints.push_back(driver.anchor);
+  if (!joints.empty()) joints.push_back(driver.anchor);
   return joints;
 }
 
 // The anchor is only the space of the measurement.
 std::vector<std::string> JointsInfluenced(const PoseDriver& driver) {
   std::vector<std::string> joints;
-  for (const ControlPoint& point : driver.points) joints.push_back(point.joint);
+  for (const ControlPoint& point : driver.points) {
+    if (point.kind != ControlPoint::Kind::kBlendShape) joints.push_back(point.joint);
+  }
   return joints;
+}
+
+std::vector<std::string> BlendShapesRead(const PoseDriver& driver) {
+  std::vector<std::string> names;
+  for (const ControlPoint& point : driver.points) {
+    if (point.kind == ControlPoint::Kind::kBlendShape) names.push_back(point.blend_shape);
+  }
+  return names;
 }
 
 Result<ReferencePose> FullPose(const PoseDriver& driver, const FullPoseBuilder& builder) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Evaluates pose drivers, one driver per SIMD lane: thesis 4.1 with dot(d, d) in the denominator
-// (docs/ALGORITHM.md). x is the displacement of a driver's control points from rest in this pose, d
-// their displacement in a reference pose. Drivers of PoseSolve::kNnls have their points in lanes
-// and are then solved one by one.
+// (docs/ALGORITHM.md). x is the displacement of a driver's control points from rest in this pose
+// and the coefficients of its blend shapes in their unit, d the same in a reference pose. Drivers
+// of PoseSolve::kNnls have their points in lanes and are then solved one by one.
 #if defined(FURROW_WRINKLE_POSE_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FURROW_WRINKLE_POSE_LANES_INL_H_
 #undef FURROW_WRINKLE_POSE_LANES_INL_H_
@@ -24,6 +24,15 @@ template <bool kScaled>
 HWY_INLINE Float3 MovePoint(const PointPlan& plan, const PointRow& row, LanePose<kScaled> pose,
                             std::size_t lane) {
   return EvaluatePoint(plan, row, pose, lane) - LoadRows(row.rest, lane);
+}
+
+// x of three blend shapes.
+HWY_INLINE Float3 MoveShapes(const ShapeRows& rows, std::span<const float> coefficients,
+                             std::size_t lane) {
+  return LoadRow(rows.unit, lane) *
+         Float3{LoadCoefficients(coefficients, rows.blend_shapes[0], lane),
+                LoadCoefficients(coefficients, rows.blend_shapes[1], lane),
+                LoadCoefficients(coefficients, rows.blend_shapes[2], lane)};
 }
 
 // Writes clamp(dot(x, d) / dot(d, d), 0, 1) of each value to consecutive rows from `values` on, for
@@ -74,7 +83,7 @@ void EvaluateLeaves(const PosePlan& plan, LanePose<kScaled> pose, std::size_t nu
 }
 
 // The falloff exp(-|x - t d|^2 / (2 s^2 |d|^2)) with t = `along` and the driver's `falloff` s.
-// `moved`: x, one vector per point. `rows`: the width 2 s^2 |d|^2, then three rows of d per point.
+// `moved`: x, vector by vector. `rows`: the width 2 s^2 |d|^2, then three rows of d per vector.
 inline Float Falloff(std::span<const Float3> moved, const FloatRow* rows, Float along,
                      std::size_t lane) {
   Float sum = hn::Zero(Floats());
@@ -86,14 +95,20 @@ inline Float Falloff(std::span<const Float3> moved, const FloatRow* rows, Float 
 }
 
 // Writes clamp(t, 0, 1) * falloff of each value to consecutive rows from `values` on, with
-// t = dot(x, d) / dot(d, d) over all points: the general case of several points, or a falloff.
+// t = dot(x, d) / dot(d, d) over all points: the general case of several points, of blend shapes,
+// or of a falloff. `coefficients`: the stream's.
 template <bool kScaled>
 void EvaluatePoints(const PosePlan& plan, const PointPlan& points, const PoseBlock& block,
-                    LanePose<kScaled> pose, std::size_t lane, float* values) {
+                    LanePose<kScaled> pose, std::span<const float> coefficients, std::size_t lane,
+                    float* values) {
   std::array<Float3, kMaxControlPoints> moved_points;
-  const std::span<Float3> moved(moved_points.data(), block.num_points);
-  for (std::size_t i = 0; i < moved.size(); ++i) {
+  const std::span<Float3> moved(moved_points.data(), block.num_points + block.num_shapes);
+  for (std::size_t i = 0; i < block.num_points; ++i) {
     moved[i] = MovePoint(points, points.points[block.first_point + i], pose, lane);
+  }
+  for (std::size_t i = 0; i < block.num_shapes; ++i) {
+    moved[block.num_points + i] =
+        MoveShapes(plan.shapes[block.first_shapes + i], coefficients, lane);
   }
   const FloatRow* projection = plan.projections.data() + block.first_projection;
   const FloatRow* falloff = plan.falloffs.data() + block.first_falloff;
@@ -114,7 +129,8 @@ void EvaluatePoints(const PosePlan& plan, const PointPlan& points, const PoseBlo
 
 // Solves one driver of PoseSolve::kNnls from its points, which are in `rows` already, and writes
 // its values to `rows` from driver.first_number on, one after another.
-inline void EvaluateNnls(const PoseDriverSet& drivers, const NnlsDriver& driver, float* rows) {
+inline void EvaluateNnls(const PoseDriverSet& drivers, const NnlsDriver& driver,
+                         std::span<const float> coefficients, float* rows) {
   const PosePlan& plan = drivers.plan();
   std::array<glm::vec3, kMaxControlPoints> points;
   // Lanes of nnls points are counted over all blocks, because one driver's points may straddle two
@@ -123,7 +139,9 @@ inline void EvaluateNnls(const PoseDriverSet& drivers, const NnlsDriver& driver,
     const std::size_t lane = driver.first_lane + i;
     points[i] = StoredPoint(plan.nnls_points[lane / kRowLanes], lane % kRowLanes, 0, rows);
   }
-  const std::span<const glm::vec3> moved = std::span(points).first(driver.num_lanes);
+  const std::size_t num_shapes =
+      drivers.MoveShapes(driver.entry, coefficients, std::span(points).subspan(driver.num_lanes));
+  const std::span<const glm::vec3> moved = std::span(points).first(driver.num_lanes + num_shapes);
   // The solver writes to the driver's own rows, and the loop below reads whole vectors from there.
   // Lanes past num_values are padding of these rows.
   float* const values = rows + driver.first_number;
@@ -152,10 +170,10 @@ void EvaluateDrivers(const PoseDriverSet& drivers, const PointPlan& points, Lane
   EvaluateLeaves(plan, pose, input.num_values, rows);
   ForEachBlock(plan.blocks, input.num_values, rows,
                [&](const PoseBlock& block, std::size_t lane, float* to) HWY_ATTR {
-                 if (block.num_points == 1 && !block.has_falloff) {
+                 if (block.num_points == 1 && block.num_shapes == 0 && !block.has_falloff) {
                    EvaluateOnePoint(plan, points, block, pose, lane, to);
                  } else {
-                   EvaluatePoints(plan, points, block, pose, lane, to);
+                   EvaluatePoints(plan, points, block, pose, input.blend_shapes, lane, to);
                  }
                });
   ForEachBlock(plan.nnls_points, input.num_values, rows,
@@ -164,7 +182,8 @@ void EvaluateDrivers(const PoseDriverSet& drivers, const PointPlan& points, Lane
                });
   // After all points are stored.
   for (const NnlsDriver& driver : plan.nnls) {
-    if (driver.first_value < input.num_values) EvaluateNnls(drivers, driver, rows);
+    if (driver.first_value < input.num_values)
+      EvaluateNnls(drivers, driver, input.blend_shapes, rows);
   }
 }
 

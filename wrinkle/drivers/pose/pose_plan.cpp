@@ -32,27 +32,48 @@ void AddPoints(BlockDrivers drivers, LanePlanner* planner, PoseBlock* block) {
   }
 }
 
+// Adds the blend shapes of a block, of which all drivers have the same number.
+void AddShapes(BlockDrivers drivers, PosePlan* plan, PoseBlock* block) {
+  block->first_shapes = static_cast<std::uint32_t>(plan->shapes.size());
+  for (std::size_t i = 0; i < block->num_shapes; ++i) {
+    ShapeRows& rows = plan->shapes.emplace_back();
+    for (IntRow& row : rows.blend_shapes) std::ranges::fill(row.at, -1);
+    for (std::size_t lane = 0; lane < drivers.size(); ++lane) {
+      const MeasuredShapes& shapes = drivers[lane]->shapes[i];
+      for (std::size_t k = 0; k < 3; ++k) {
+        rows.blend_shapes[k].at[lane] = shapes.blend_shapes[k];
+      }
+      rows.unit.at[lane] = shapes.unit;
+    }
+  }
+}
+
+// The number of vectors in the stack of a block.
+std::size_t NumVectors(const PoseBlock& block) {
+  return std::size_t{block.num_points} + block.num_shapes;
+}
+
 // Missing points and values keep a projection of 0.
 void AddProjections(BlockDrivers drivers, PosePlan* plan, PoseBlock* block) {
   block->first_projection = static_cast<std::uint32_t>(plan->projections.size());
-  const std::size_t per_value = std::size_t{block->num_points} * 3;
+  const std::size_t per_value = NumVectors(*block) * 3;
   plan->projections.resize(plan->projections.size() + block->num_values * per_value);
   for (std::size_t lane = 0; lane < drivers.size(); ++lane) {
     const BoundPose& driver = *drivers[lane];
-    const std::size_t num_points = driver.points.size();
+    const std::size_t num_vectors = driver.points.size() + driver.shapes.size();
     for (std::size_t i = 0; i < driver.projections.size(); ++i) {
       // A driver's table is dense, the block's table is padded to the block's number of points.
-      const std::size_t row = i / num_points * per_value + i % num_points * 3;
+      const std::size_t row = i / num_vectors * per_value + i % num_vectors * 3;
       SetLane(driver.projections[i], lane, &plan->projections[block->first_projection + row]);
     }
   }
 }
 
-// Per value: a row of widths, then three rows of d per point. Unused lanes get the width 1, because
-// the kernel divides by it.
+// Per value: a row of widths, then three rows of d per vector. Unused lanes get the width 1,
+// because the kernel divides by it.
 void AddFalloffs(BlockDrivers drivers, PosePlan* plan, PoseBlock* block) {
   block->first_falloff = static_cast<std::uint32_t>(plan->falloffs.size());
-  const std::size_t per_value = std::size_t{block->num_points} * 3 + 1;
+  const std::size_t per_value = NumVectors(*block) * 3 + 1;
   plan->falloffs.resize(plan->falloffs.size() + block->num_values * per_value);
   for (std::size_t value = 0; value < block->num_values; ++value) {
     FloatRow* const rows = &plan->falloffs[block->first_falloff + value * per_value];
@@ -61,9 +82,9 @@ void AddFalloffs(BlockDrivers drivers, PosePlan* plan, PoseBlock* block) {
       const BoundPose& driver = *drivers[lane];
       if (value >= driver.squares.size()) continue;
       rows->at[lane] = FalloffWidth(driver, value);
-      const std::size_t num_points = driver.points.size();
-      for (std::size_t i = 0; i < num_points; ++i) {
-        SetLane(driver.displacements[value * num_points + i], lane, rows + 1 + 3 * i);
+      const std::size_t num_vectors = driver.points.size() + driver.shapes.size();
+      for (std::size_t i = 0; i < num_vectors; ++i) {
+        SetLane(driver.displacements[value * num_vectors + i], lane, rows + 1 + 3 * i);
       }
     }
   }
@@ -71,7 +92,7 @@ void AddFalloffs(BlockDrivers drivers, PosePlan* plan, PoseBlock* block) {
 
 // True if all chains are a single joint up, so that a LeafBlock describes the block.
 bool IsLeafBlock(const PoseBlock& block, const PointPlan& points) {
-  if (block.num_points != 1 || block.has_falloff) return false;
+  if (block.num_points != 1 || block.num_shapes > 0 || block.has_falloff) return false;
   const PointRow& row = points.points[block.first_point];
   return row.num_up == 1 && row.num_down == 0 && !row.is_origin &&
          points.steps[row.first_step].all_active;
@@ -92,6 +113,7 @@ LeafBlock MakeLeafBlock(const PoseBlock& block, const PointPlan& points) {
 void AddBlock(BlockDrivers drivers, LanePlanner* planner, PosePlan* plan) {
   PoseBlock block;
   block.has_falloff = drivers.front()->falloff > 0.0f;
+  block.num_shapes = static_cast<std::uint32_t>(drivers.front()->shapes.size());
   for (const BoundPose* driver : drivers) {
     block.num_points =
         std::max(block.num_points, static_cast<std::uint32_t>(driver->points.size()));
@@ -103,6 +125,7 @@ void AddBlock(BlockDrivers drivers, LanePlanner* planner, PosePlan* plan) {
     planner->Place(drivers[lane]->first_value, drivers[lane]->squares.size(), lane, &block);
   }
   AddPoints(drivers, planner, &block);
+  AddShapes(drivers, plan, &block);
   AddProjections(drivers, plan, &block);
   if (block.has_falloff) AddFalloffs(drivers, plan, &block);
   if (IsLeafBlock(block, planner->plan())) {
@@ -119,15 +142,21 @@ void PlanProjections(std::span<const BoundPose> drivers, LanePlanner* planner, P
   // A block does the work of its largest driver in every lane, so drivers of equal size share a
   // block.
   const auto length = [&](int i) {
+    if (at(i).points.empty()) return std::array<std::size_t, 4>{0, at(i).squares.size(), 0, 0};
     const JointChains::Chain chain = planner->chains().chain(at(i).points.front().point);
     return std::array{at(i).points.size(), at(i).squares.size(), chain.down.size(),
                       chain.up.size()};
   };
   // A falloff measures the distance over all points: every lane must have the same number of them.
-  const auto falloff_points = [&](int i) {
-    return at(i).falloff > 0.0f ? at(i).points.size() : std::size_t{0};
+  // Points and blend shapes follow one another: every lane must have them at the same places.
+  const auto kind = [&](int i) {
+    const BoundPose& driver = at(i);
+    const bool has_falloff = driver.falloff > 0.0f;
+    const bool is_padded = !has_falloff && driver.shapes.empty();
+    return std::array<std::size_t, 3>{has_falloff, driver.shapes.size(),
+                                      is_padded ? 0 : driver.points.size()};
   };
-  for (const Lanes& lanes : InBlocks(drivers.size(), falloff_points, length)) {
+  for (const Lanes& lanes : InBlocks(drivers.size(), kind, length)) {
     std::vector<const BoundPose*> block;
     for (std::size_t lane = 0; lane < lanes.count; ++lane) block.push_back(&at(lanes[lane]));
     AddBlock(block, planner, plan);

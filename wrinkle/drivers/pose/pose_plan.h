@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -17,23 +18,36 @@ struct MeasuredPoint {
   glm::vec3 rest{0.0f};  // B_0, anchor space
 };
 
-// What the planner needs of one bound driver. K values, P points; tables are value by value.
+// Three coefficients of a bound driver, which are one vector of its stack: `unit` times the
+// coefficients.
+struct MeasuredShapes {
+  std::array<int, 3> blend_shapes{-1, -1, -1};  // into the stream's coefficients; -1: always 0
+  float unit = 1.0f;
+};
+
+// What the planner needs of one bound driver. K values; a stack of P points and S triples of blend
+// shapes. Tables are value by value.
 struct BoundPose {
   int first_value = 0;
   std::span<const MeasuredPoint> points;     // P
-  std::span<const glm::vec3> projections;    // K x P: d / dot(d, d)
-  std::span<const glm::vec3> displacements;  // K x P: d
+  std::span<const MeasuredShapes> shapes;    // S
+  std::span<const glm::vec3> projections;    // K x (P + S): d / dot(d, d)
+  std::span<const glm::vec3> displacements;  // K x (P + S): d
   std::span<const float> squares;            // K: dot(d, d), or 0 for a pose that moves nothing
   float falloff = 0.0f;
 };
 
-// Projections. A lane with fewer points or values than its block has zeros for the others.
+// Projections. A lane with fewer points or values than its block has zeros for the others. In a
+// block with blend shapes, all drivers have the same numbers of points and triples.
 struct PoseBlock : Block {
   std::uint32_t first_point = 0;  // num_points rows of PointPlan::points
   std::uint32_t num_points = 0;
+  std::uint32_t first_shapes = 0;  // num_shapes entries of PosePlan::shapes
+  std::uint32_t num_shapes = 0;    // triples
   std::uint32_t num_values = 0;
-  std::uint32_t first_projection = 0;  // into PosePlan::projections: three rows per point and value
-  std::uint32_t first_falloff = 0;     // into PosePlan::falloffs
+  // Into PosePlan::projections: three rows per value and vector of the stack.
+  std::uint32_t first_projection = 0;
+  std::uint32_t first_falloff = 0;  // into PosePlan::falloffs
   bool has_falloff = false;
 };
 
@@ -47,6 +61,12 @@ struct LeafBlock : Block {
   std::uint32_t first_projection = 0;
 };
 
+// A triple of blend shapes of each lane: MeasuredShapes.
+struct ShapeRows {
+  IntRow blend_shapes[3];
+  FloatRow unit;
+};
+
 // A driver that solves nnls, with its falloff.
 struct NnlsDriver : SingleDriver {
   std::uint32_t first_width = 0;  // into PosePlan::widths: a row per sixteen values
@@ -56,9 +76,10 @@ struct NnlsDriver : SingleDriver {
 struct PosePlan {
   std::vector<LeafBlock> leaves;
   std::vector<PoseBlock> blocks;
+  std::vector<ShapeRows> shapes;
   std::vector<FloatRow> projections;
   std::vector<FloatRow>
-      falloffs;  // per value: the width 2 s^2 |d|^2, then three rows of d per point
+      falloffs;  // per value: the width 2 s^2 |d|^2, then three rows of d per vector
   // How far the control points of nnls drivers have moved from rest: three rows per block.
   std::vector<SinglePoints> nnls_points;
   std::vector<NnlsDriver> nnls;

@@ -157,6 +157,7 @@ Status StrainDriverSet::Bind(const std::string& name, const StrainDriver& strain
           {static_cast<std::uint32_t>(from.vertices[k]), space.Move(delta) / frame.radius});
     }
     shape.num_deltas = static_cast<std::uint32_t>(from.vertices.size());
+    shape_names_.push_back(from.blend_shape);
   }
   entry.num_shapes = static_cast<std::uint32_t>(shapes_.size()) - entry.first_shape;
   entries_.push_back(entry);
@@ -353,6 +354,18 @@ void StrainDriverSet::Explain(const SolvedPose& pose, DriverExplanation* explana
                                     .smallest = stretches.smallest,
                                     .largest = stretches.largest,
                                     .degrees = std::atan2(direction.y, direction.x) / kDegrees});
+    ExplainShapes(entries_[static_cast<std::size_t>(i)], pose, explanation);
+  }
+}
+
+void StrainDriverSet::ExplainShapes(const Entry& entry, const SolvedPose& pose,
+                                    DriverExplanation* explanation) const {
+  for (std::uint32_t i = entry.first_shape; i < entry.first_shape + entry.num_shapes; ++i) {
+    const float coefficient = pose.Coefficient(shapes_[i].blend_shape);
+    if (coefficient == 0.0f) continue;
+    explanation->shapes.push_back({.driver = pose.DriverName(entry.first_value),
+                                   .blend_shape = shape_names_[i],
+                                   .coefficient = coefficient});
   }
 }
 

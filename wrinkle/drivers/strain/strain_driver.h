@@ -47,7 +47,7 @@ class StrainDriverSet {
                             BindContext* context);
   // Lays the drivers out in blocks. Call it once, after the last Bind().
   void Plan(LanePlanner* planner);
-  // Adds the principal stretches of each patch.
+  // Adds the principal stretches of each patch, and the blend shapes that move it.
   void Explain(const SolvedPose& pose, DriverExplanation* explanation) const;
 
   [[nodiscard]] static Frame MakeFrame(std::span<const glm::vec3, kFramePoints> points);
@@ -120,6 +120,8 @@ class StrainDriverSet {
   // The patch's vertices in the base joint's space.
   void Pose(const Entry& entry, std::span<const Frame> frames, std::span<const float> blend_shapes,
             std::span<glm::vec3> positions) const;
+  void ExplainShapes(const Entry& entry, const SolvedPose& pose,
+                     DriverExplanation* explanation) const;
   [[nodiscard]] Measured MeasureFrames(const Entry& entry, std::span<const Frame> frames,
                                        std::span<const float> blend_shapes) const;
 
@@ -128,6 +130,7 @@ class StrainDriverSet {
   std::vector<Vertex> vertices_;
   std::vector<Triangle> triangles_;
   std::vector<Shape> shapes_;
+  std::vector<std::string> shape_names_;  // of shapes_, as in the rig
   std::vector<Delta> deltas_;
   std::vector<StrainFrameBlock> frame_blocks_;
   std::vector<SingleDriver> drivers_;

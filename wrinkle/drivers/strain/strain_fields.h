@@ -28,7 +28,6 @@ inline constexpr std::size_t kMaxPatchShapes = 512;
 // The rig stores the patch as points, skin weights and the deltas of blend shapes, and therefore
 // needs no mesh. `furrow rig patch` cuts a patch out of a character.
 struct StrainDriver {
-  static constexpr bool kReadsJoints = true;
   static constexpr bool kMeasuresFromAnchor = false;
   static constexpr bool kAddsJoints = false;
   static constexpr int kMaxInfluences = 4;

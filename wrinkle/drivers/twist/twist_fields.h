@@ -17,7 +17,6 @@ class FullPoseBuilder;
 // How far joints twist about the bone (swing-twist): values "twist_left" and "twist_right". A
 // positive angle is a twist to the left.
 struct TwistDriver {
-  static constexpr bool kReadsJoints = true;
   static constexpr bool kMeasuresFromAnchor = false;
   static constexpr bool kAddsJoints = true;
 

@@ -28,6 +28,10 @@ class DriverOracle {
       for (const MeasuredPoint& point : drivers.points(entry)) {
         moved.push_back(data_.chains.Evaluate(pose_.joints, point.point) - point.rest);
       }
+      for (const MeasuredShapes& shapes : drivers.shapes(entry)) {
+        const auto& [a, b, c] = shapes.blend_shapes;
+        moved.push_back(shapes.unit * glm::vec3(Coefficient(a), Coefficient(b), Coefficient(c)));
+      }
       std::vector<float> along(static_cast<std::size_t>(entry.num_values));
       const bool is_nnls = entry.solve == PoseSolve::kNnls;
       if (is_nnls) drivers.SolveNnls(i, moved, along);
@@ -99,10 +103,8 @@ class DriverOracle {
 
   void Evaluate(const BlendShapeDriverSet& drivers) {
     for (const BlendShapeDriverSet::Entry& entry : drivers.entries()) {
-      const auto index = static_cast<std::size_t>(entry.blend_shape);
-      const auto& shapes = pose_.blend_shapes;
-      const float coefficient = index < shapes.size() ? shapes[index] : 0.0f;
-      values_[entry.first_value] = BlendShapeValue(coefficient, entry.neutral, entry.full);
+      values_[entry.first_value] =
+          BlendShapeValue(Coefficient(entry.blend_shape), entry.neutral, entry.full);
     }
   }
 
@@ -125,6 +127,12 @@ class DriverOracle {
     std::vector<glm::vec3> projection;
     for (const glm::vec3& point : d) projection.push_back(Projection(point, square));
     return ProjectionAlong(moved, projection);
+  }
+
+  // 0 for a blend shape that a driver or the pose lacks.
+  float Coefficient(int shape) const {
+    const auto& shapes = pose_.blend_shapes;
+    return shape >= 0 && shape < static_cast<int>(shapes.size()) ? shapes[shape] : 0.0f;
   }
 
   const BindingData& data_;

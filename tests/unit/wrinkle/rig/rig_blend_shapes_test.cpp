@@ -28,6 +28,15 @@ TEST(RigBlendShapes, AreThoseOfAllKindsOnce) {
   EXPECT_THAT(BlendShapesOf(rig), ElementsAre("jawOpen"));
 }
 
+TEST(RigBlendShapes, IncludeThePointsOfPoseDrivers) {
+  Rig rig;
+  rig.drivers.resize(1);
+  rig.drivers[0].pose.points = {
+      {.joint = "brow"},
+      {.joint = "", .kind = ControlPoint::Kind::kBlendShape, .blend_shape = "browInnerUp"}};
+  EXPECT_THAT(BlendShapesOf(rig), ElementsAre("browInnerUp"));
+}
+
 TEST(RigBlendShapes, AreFoundInAnyCase) {
   Rig rig;
   EXPECT_FALSE(ReadsAny(rig, std::vector<std::string>{"jawOpen"}));

@@ -112,6 +112,31 @@ TEST_F(ExplainTest, ShowsTheStrainOfAPatch) {
   EXPECT_NEAR(explanation_.strains[0].degrees, 0.0f, 0.01f);
 }
 
+TEST_F(ExplainTest, NamesTheBlendShapesOfEveryKind) {
+  Rig rig = MakeRig();
+  rig.reference_poses[2].shapes = {{"mouthSmileLeft", 0.8f}};
+  for (Driver& driver : rig.drivers) {
+    if (driver.name == "cheek_l") {
+      driver.pose.points.push_back(
+          {.joint = "", .kind = ControlPoint::Kind::kBlendShape, .blend_shape = "mouthSmileLeft"});
+    }
+    if (driver.name == "cheek_patch") {
+      driver.strain.shapes = {{"cheekPuff", {0}, {0, 0, 0.001f}}, {"jawOpen", {1}, {0, 0.001f, 0}}};
+    }
+  }
+  const BoundRig bound(rig, MakeBody(5), {"jawOpen", "mouthSmileLeft", "cheekPuff"});
+  pose_.blend_shapes = {0.25f, 0.5f};
+  ASSERT_EQ(Explain(*bound.binding(), pose_, &explanation_), JobStatus::kOk);
+  std::string text;
+  for (const Explanation::Shape& shape : explanation_.shapes) {
+    text += shape.driver + " " + shape.blend_shape + " " + std::to_string(shape.coefficient) + "\n";
+  }
+  EXPECT_EQ(text,
+            "cheek_l mouthSmileLeft 0.500000\n"
+            "jaw jawOpen 0.250000\n"
+            "cheek_patch jawOpen 0.250000\n");
+}
+
 TEST_F(ExplainTest, LeavesTheExplanationAloneOnFailure) {
   pose_.joints.pop_back();
   const std::size_t before = explanation_.weights.size();
