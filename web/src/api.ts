@@ -90,6 +90,7 @@ export interface Contribution {
   pose: { along: number; perpendicular: number; falloff: number } | null;
   angles: { what: string; degrees: number }[] | null;
   strain: { smallest: number; largest: number; degrees: number } | null;
+  blend_shapes: { name: string; coefficient: number }[] | null;
 }
 
 export interface Playback {

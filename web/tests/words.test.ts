@@ -43,7 +43,7 @@ test('an API error names field and remedy', () => {
   assert.equal(new ApiError(409, '', 'nothing to undo', 'capture first').words(), 'nothing to undo (capture first)');
 });
 
-const CONTRIBUTION = { value: 'brow_inner_l.squash', kind: 'pose', reference_pose: 'squash', driver_value: 0.44, gain: 1, product: 0.44, pose: null, angles: null, strain: null };
+const CONTRIBUTION = { value: 'brow_inner_l.squash', kind: 'pose', reference_pose: 'squash', driver_value: 0.44, gain: 1, product: 0.44, pose: null, angles: null, strain: null, blend_shapes: null };
 const EXPLANATION: Explanation = { subject: 'demo', sequence: 1, weight: 'brow_l.squash', live: 0.4, result: 0.4, combined: 0.4, modulated: 0.4, contributions: [], conflicts: [] };
 
 test('contributions are described in a sentence', () => {
@@ -52,6 +52,10 @@ test('contributions are described in a sentence', () => {
   assert.equal(contributionWords({ ...CONTRIBUTION, angles: [{ what: 'flexion', degrees: 12.34 }] }), 'flexion 12.3°');
   assert.match(contributionWords({ ...CONTRIBUTION, strain: { smallest: 0.8, largest: 1.05, degrees: 0 } }), /80 % to 105 %/);
   assert.equal(contributionWords(CONTRIBUTION), 'the coefficient of the blend shape');
+  const blend_shapes = ['a', 'b', 'c', 'd', 'e', 'f'].map((name, i) => ({ name, coefficient: 0.9 - 0.1 * i }));
+  assert.equal(contributionWords({ ...CONTRIBUTION, blend_shapes: blend_shapes.slice(0, 2) }), 'a 0.90, b 0.80');
+  assert.match(contributionWords({ ...CONTRIBUTION, blend_shapes }), /d 0.60, 2 more blend shapes$/);
+  assert.equal(contributionWords({ ...CONTRIBUTION, blend_shapes: [{ name: 'a', coefficient: 0 }] }), 'the coefficient of the blend shape');
 });
 
 test('steps without an effect are not described', () => {

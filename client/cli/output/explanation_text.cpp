@@ -2,7 +2,10 @@
 #include "client/cli/output/explanation_text.h"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <string_view>
+#include <vector>
 
 namespace furrow::cli {
 namespace {
@@ -14,7 +17,28 @@ std::string_view DriverOf(std::string_view driver_value) {
   return driver_value.substr(0, driver_value.rfind('.'));
 }
 
-// How the driver came to its value. At most one of the three lists has entries for a driver.
+// "      browDownLeft 0.80, browDownRight 0.70 and 2 more": the blend shapes that a driver reads,
+// strongest first.
+void PrintShapes(const Explanation& explanation, std::string_view driver, std::FILE* out) {
+  constexpr std::size_t kMost = 6;
+  constexpr float kLeast = 0.005f;  // 0.00 when printed
+  std::vector<const Explanation::Shape*> shapes;
+  for (const auto& shape : explanation.shapes) {
+    if (shape.driver == driver && std::abs(shape.coefficient) >= kLeast) shapes.push_back(&shape);
+  }
+  if (shapes.empty()) return;
+  std::ranges::stable_sort(shapes, std::greater(),
+                           [](const auto* shape) { return std::abs(shape->coefficient); });
+  std::fprintf(out, "      ");
+  for (std::size_t i = 0; i < std::min(shapes.size(), kMost); ++i) {
+    std::fprintf(out, "%s%s %.2f", i == 0 ? "" : ", ", shapes[i]->blend_shape.c_str(),
+                 double{shapes[i]->coefficient});
+  }
+  if (shapes.size() > kMost) std::fprintf(out, " and %zu more", shapes.size() - kMost);
+  std::fputc('\n', out);
+}
+
+// How the driver came to its value. At most one of the first three lists has entries for a driver.
 void PrintGeometry(const Explanation& explanation, std::string_view driver_value, std::FILE* out) {
   for (const auto& pose : explanation.pose_values) {
     if (pose.driver_value != driver_value) continue;
@@ -33,6 +57,7 @@ void PrintGeometry(const Explanation& explanation, std::string_view driver_value
     std::fprintf(out, "      compressed to %.3f at %.1f degrees, %.3f across\n",
                  double{strain.smallest}, double{strain.degrees}, double{strain.largest});
   }
+  PrintShapes(explanation, DriverOf(driver_value), out);
 }
 
 void PrintWeight(const Explanation& explanation, const Explanation::Weight& weight,

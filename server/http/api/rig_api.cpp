@@ -2,8 +2,11 @@
 #include "server/http/api/rig_api.h"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -116,7 +119,7 @@ Json ReferencePoseOf(const Driver& driver, std::string_view driver_value) {
   return nullptr;
 }
 
-// These three give the details of one kind of driver, or null for a driver of another kind, so that
+// These four give the details of one kind of driver, or null for a driver of another kind, so that
 // all contributions have the same fields.
 Json PoseJson(const wrinkle::Explanation& explanation, const std::string& driver_value) {
   for (const auto& pose : explanation.pose_values) {
@@ -147,6 +150,22 @@ Json StrainJson(const wrinkle::Explanation& explanation, const std::string& driv
   return nullptr;
 }
 
+// The blend shapes that a driver reads, strongest first.
+Json ShapesJson(const wrinkle::Explanation& explanation, const std::string& driver) {
+  std::vector<const wrinkle::Explanation::Shape*> shapes;
+  for (const auto& shape : explanation.shapes) {
+    if (shape.driver == driver) shapes.push_back(&shape);
+  }
+  if (shapes.empty()) return nullptr;
+  std::ranges::stable_sort(shapes, std::greater(),
+                           [](const auto* shape) { return std::abs(shape->coefficient); });
+  Json list = Json::array();
+  for (const auto* shape : shapes) {
+    list.push_back({{"name", shape->blend_shape}, {"coefficient", shape->coefficient}});
+  }
+  return list;
+}
+
 // One source of a weight: driver value times gain, and how the driver came to its value.
 Json ContributionJson(const wrinkle::Explanation& explanation, const wrinkle::Rig& rig,
                       const wrinkle::Explanation::Contribution& part) {
@@ -156,11 +175,13 @@ Json ContributionJson(const wrinkle::Explanation& explanation, const wrinkle::Ri
       {"reference_pose", nullptr},  {"driver_value", part.value},
       {"gain", part.gain},          {"modulated", part.modulated},
       {"product", part.product},    {"pose", PoseJson(explanation, part.driver_value)},
-      {"angles", nullptr},          {"strain", nullptr}};
+      {"angles", nullptr},          {"strain", nullptr},
+      {"blend_shapes", nullptr}};
   if (driver != nullptr) {
     json["reference_pose"] = ReferencePoseOf(*driver, part.driver_value);
     json["angles"] = AnglesJson(explanation, driver->name);
     json["strain"] = StrainJson(explanation, driver->name);
+    json["blend_shapes"] = ShapesJson(explanation, driver->name);
   }
   return json;
 }

@@ -4,6 +4,8 @@ import { api, type Contribution, type Explanation, wordsOf } from '../api';
 import { button, h, regionWords } from '../ui/dom';
 
 const REFRESH_MS = 400;
+/** Blend shapes of a driver that are named; they come strongest first. */
+const MOST_SHAPES = 4;
 
 const fixed = (x: number): string => x.toFixed(2);
 
@@ -19,6 +21,9 @@ export function contributionWords(item: Contribution): string {
   if (item.strain !== null) {
     parts.push(`skin at ${Math.round(item.strain.smallest * 100)} % to ${Math.round(item.strain.largest * 100)} % of its length`);
   }
+  const moved = (item.blend_shapes ?? []).filter(({ coefficient }) => Math.abs(coefficient) >= 0.005);
+  for (const { name, coefficient } of moved.slice(0, MOST_SHAPES)) parts.push(`${name} ${fixed(coefficient)}`);
+  if (moved.length > MOST_SHAPES) parts.push(`${moved.length - MOST_SHAPES} more blend shapes`);
   return parts.length > 0 ? parts.join(', ') : 'the coefficient of the blend shape';
 }
 
