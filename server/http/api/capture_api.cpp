@@ -9,8 +9,10 @@
 #include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
+#include "base/ascii.h"
 #include "base/status.h"
 #include "rig/rig_reference_pose.h"
+#include "rig/shapes/rig_shapes.h"
 
 namespace furrow::server {
 namespace {
@@ -61,6 +63,33 @@ void UseJointNamesOfRig(const StreamDefinition& stream, wrinkle::ReferencePose* 
   }
 }
 
+// The names under which a pose stores the stream's coefficients; "" for those that it omits. If a
+// map translates the stream's own names, the names of ARKit and of the rig go into the file, so
+// that the pose means the same for every stream.
+std::vector<std::string> ShapeNamesToStore(const StreamDefinition& stream,
+                                           const wrinkle::Rig& rig) {
+  const auto names = stream.shapes.driver_names();
+  std::vector<std::string> stored(names.begin(), names.end());
+  if (stream.shapes.drivers().num_mapped() == 0) return stored;
+  const std::vector<std::string> known = rig::ArkitAndRigShapes(rig);
+  for (std::string& name : stored) {
+    const auto is_same = [&](const std::string& other) { return EqualsIgnoreCase(name, other); };
+    if (std::ranges::none_of(known, is_same)) name.clear();
+  }
+  return stored;
+}
+
+// A stream without joints knows nothing about the joints of a pose, and one without blend shapes
+// nothing about its shapes: what it replaces keeps them.
+void KeepUnseenParts(const StreamDefinition& stream, const wrinkle::ReferencePose& before,
+                     wrinkle::ReferencePose* captured) {
+  if (stream.skeleton.num_joints() == 0) {
+    captured->joints = before.joints;
+    captured->source_size = before.source_size;
+  }
+  if (stream.shapes.source_names().empty()) captured->shapes = before.shapes;
+}
+
 // The rig with the subject's pose as the named reference pose. `added`: the rig had no such pose.
 Result<wrinkle::Rig> WithReferencePose(const wrinkle::Rig& rig, const Subject& subject,
                                        const std::string& pose, bool* added) {
@@ -68,7 +97,7 @@ Result<wrinkle::Rig> WithReferencePose(const wrinkle::Rig& rig, const Subject& s
   // Reference poses are in Furrow's model axes, which may not be those of the stream.
   const glm::quat turn = pipeline.stream().match.turn();
   wrinkle::PoseFrame frame{wrinkle::TurnRoots(pipeline.stream().skeleton, turn),
-                           pipeline.solved_pose()};
+                           pipeline.solved_pose(), ShapeNamesToStore(pipeline.stream(), rig)};
   wrinkle::TurnRoots(frame.skeleton, turn, frame.pose.joints);
   auto captured = rig::ReferencePoseFromFrame(pose, frame);
   FURROW_RETURN_IF_ERROR(captured);
@@ -81,6 +110,7 @@ Result<wrinkle::Rig> WithReferencePose(const wrinkle::Rig& rig, const Subject& s
   if (*added) {
     changed.reference_poses.push_back(*std::move(captured));
   } else {
+    KeepUnseenParts(pipeline.stream(), *known, &*captured);
     *known = *std::move(captured);
   }
   return changed;

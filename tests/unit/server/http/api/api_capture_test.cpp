@@ -4,11 +4,13 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "server/http/api/api.h"
+#include "tests/unit/rig/shapes/shipped_shape_maps.h"
 #include "tests/unit/rig/shipped_matcher.h"
 #include "tests/unit/server/session/hub_fixture.h"
 
@@ -117,6 +119,91 @@ TEST_F(ApiCaptureTest, APreviewChangesNothing) {
   EXPECT_EQ(brow(), live);
   SendPose(1.0f);
   EXPECT_LT(brow(), 0.99f) << "its filter has restarted";
+}
+
+// Drivers that measure blend shapes against the reference pose "frown".
+class ApiShapeCaptureTest : public HubTest {
+ protected:
+  static wrinkle::Rig FrownRig(const std::vector<std::string>& shapes) {
+    wrinkle::Rig rig = MakeRig(/*filter=*/false);
+    rig.reference_poses = {{.name = "frown", .shapes = {{shapes[0], 1.0f}}}};
+    wrinkle::Driver& driver = rig.drivers.emplace_back();
+    driver.name = "face";
+    for (const std::string& shape : shapes) {
+      driver.pose.points.push_back(
+          {.joint = "", .kind = wrinkle::ControlPoint::Kind::kBlendShape, .blend_shape = shape});
+    }
+    driver.pose.values = {{"frown", "frown"}};
+    rig.regions[0].feeds[0].sources = {{"face", "frown", 1.0f}};
+    return rig;
+  }
+  void Play(const wrinkle::Rig& rig, const std::vector<std::string>& names,
+            const std::vector<float>& values) {
+    Hub::Parts parts;
+    parts.rig = std::make_shared<const wrinkle::Rig>(rig);
+    parts.shape_matcher = rig::ShippedShapeMatcher();
+    parts.metrics = &metrics;
+    hub = std::make_unique<Hub>(std::move(parts));
+    Connect(&sender);
+    protocol::SkeletonOffer offer;
+    offer.subject = "ann";
+    offer.blend_shape_names = names;
+    offer.skeleton_hash = protocol::SkeletonHash(offer);
+    Send(sender, offer, 1);
+    protocol::PoseFrame pose;
+    pose.skeleton_hash = offer.skeleton_hash;
+    pose.num_blend_shapes = static_cast<std::uint16_t>(names.size());
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      pose.blend_shape_indices.push_back(static_cast<std::uint16_t>(i));
+    }
+    pose.blend_shapes = values;
+    Send(sender, pose, 1, 1);
+  }
+  Json Capture(const std::string& pose) {
+    const ApiReply reply = api.Answer({.method = "POST",
+                                       .url = {.path = "/api/capture", .values = {}},
+                                       .body = Json({{"pose", pose}}).dump()},
+                                      *hub, now);
+    EXPECT_EQ(reply.status, 200) << reply.body;
+    return Json::parse(reply.body);
+  }
+  const wrinkle::ReferencePose& pose(std::size_t i) { return hub->rig().reference_poses[i]; }
+
+  FakePeer sender;
+  Api api{{}};
+};
+
+TEST_F(ApiShapeCaptureTest, APhoneCapturesAReferencePose) {
+  Play(FrownRig({"browDownLeft", "noseSneerLeft"}),
+       {"BrowDownLeft", "NoseSneerLeft", "JawOpen", "HeadYaw"}, {0.5f, 0.25f, 0.0f, 0.4f});
+  const Json weight = Capture("frown")["weights"][0];
+  // 0.5 of 1; then the pose itself.
+  EXPECT_NEAR(weight["before"].get<float>(), 0.5f, 1e-5f);
+  EXPECT_NEAR(weight["after"].get<float>(), 1.0f, 1e-5f);
+  EXPECT_EQ(pose(0).shapes,
+            (std::vector<wrinkle::ShapeValue>{{"BrowDownLeft", 0.5f}, {"NoseSneerLeft", 0.25f}}));
+  EXPECT_NEAR(hub->RequireAllDrivers("ann")->pipeline->wrinkle_weights()[0], 1.0f, 1e-5f);
+}
+
+TEST_F(ApiShapeCaptureTest, JointsOfAPoseStayIfTheStreamHasNone) {
+  wrinkle::Rig rig = FrownRig({"browDownLeft"});
+  rig.reference_poses[0].joints = {{.joint = "brow_l", .rotation = {1, 0, 0, 0}}};
+  rig.reference_poses[0].source_size = 2.0f;
+  Play(rig, {"browDownLeft"}, {0.5f});
+  Capture("frown");
+  EXPECT_EQ(pose(0).joints.size(), 1u);
+  EXPECT_EQ(pose(0).source_size, 2.0f);
+  EXPECT_EQ(pose(0).shapes, (std::vector<wrinkle::ShapeValue>{{"browDownLeft", 0.5f}}));
+}
+
+// VRM's presets become the names that the drivers read.
+TEST_F(ApiShapeCaptureTest, TranslatedNamesAreThoseOfTheRig) {
+  Play(FrownRig({"mouthSmileLeft", "jawOpen"}), {"Joy", "A", "Blink", "Fun", "Sorrow"},
+       {1.0f, 0.5f, 0, 0, 0});
+  EXPECT_NEAR(Capture("frown")["weights"][0]["after"].get<float>(), 1.0f, 1e-5f);
+  ASSERT_EQ(pose(0).shapes.size(), 2u);
+  EXPECT_EQ(pose(0).shapes[0].blend_shape, "mouthSmileLeft");
+  EXPECT_EQ(pose(0).shapes[1].blend_shape, "jawOpen");
 }
 
 // A hinge with joint names of a game engine, and a stream with those of Mixamo.
