@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -12,6 +13,7 @@
 #include "base/status.h"
 #include "wrinkle/fields/rig_field.h"
 #include "wrinkle/rig/full_pose.h"
+#include "wrinkle/shapes/blend_shape_pose.h"
 #include "wrinkle/skeleton/reference_pose.h"
 #include "wrinkle/skeleton/retarget.h"
 
@@ -78,11 +80,15 @@ class PoseCollector {
     std::vector<Transform> locals(character_.skeleton.rest_pose().begin(),
                                   character_.skeleton.rest_pose().end());
     FURROW_RETURN_IF_ERROR(wrinkle::ApplyReferencePose(*pose, character_.skeleton, locals));
-    if (IsRest(locals, character_.skeleton)) return AtRest(*driver, value, pose->name);
+    std::vector<float> shape_weights = PoseShapes(*pose, locals);
+    const bool has_shapes =
+        std::any_of(shape_weights.begin(), shape_weights.end(), [](float w) { return w != 0.0f; });
+    if (!has_shapes && IsRest(locals, character_.skeleton)) return AtRest(*driver, value, *pose);
+    if (!has_shapes) shape_weights.clear();
     found_.poses.push_back({.map = feed.map,
                             .region = region.name,
                             .skin_matrices = SkinMatrices(locals),
-                            .shape_weights = {},
+                            .shape_weights = std::move(shape_weights),
                             .weight = std::min(source.gain, 1.0f)});
     return {};
   }
@@ -143,6 +149,35 @@ class PoseCollector {
     AddShapes(region, feed, face_.Weights(std::span(&full, 1)), source.gain);
   }
 
+  // Poses the blend shapes of a reference pose, as a stream's are: by shapes of the character,
+  // returned as their weights, or else by its joints.
+  std::vector<float> PoseShapes(const wrinkle::ReferencePose& pose, std::span<Transform> locals) {
+    std::vector<ArkitFace::Coefficient> by_shapes;
+    std::vector<std::string> by_joints;
+    std::vector<float> coefficients;
+    for (const wrinkle::ShapeValue& shape : pose.shapes) {
+      if (face_.Has(shape.blend_shape)) {
+        by_shapes.emplace_back(shape.blend_shape, shape.value);
+      } else {
+        by_joints.push_back(shape.blend_shape);
+        coefficients.push_back(shape.value);
+      }
+    }
+    std::string lacking;
+    for (std::size_t i = 0; i < by_joints.size(); ++i) {
+      const auto one = wrinkle::BlendShapePose::Create(character_.rig, character_.skeleton,
+                                                       std::span(by_joints).subspan(i, 1));
+      // The rig is checked, and `locals` has all joints.
+      (void)one.Run(std::span(coefficients).subspan(i, 1), locals);
+      if (one.empty()) lacking += (lacking.empty() ? "" : ", ") + by_joints[i];
+    }
+    if (!lacking.empty()) {
+      Note("reference pose '" + pose.name + "' names blend shapes that move nothing on this " +
+           "character: " + lacking);
+    }
+    return by_shapes.empty() ? std::vector<float>() : face_.Weights(by_shapes);
+  }
+
   void AddShapes(const wrinkle::Region& region, const wrinkle::Feed& feed,
                  std::vector<float> weights, float gain) {
     const auto rest = character_.skeleton.rest_pose();
@@ -154,12 +189,17 @@ class PoseCollector {
          .weight = std::min(gain, 1.0f)});
   }
 
-  // A pose driver at rest is a mistake of the rig. Other drivers have values without a pose, for
-  // which folds must be drawn.
-  Status AtRest(const Driver& driver, const std::string& value, const std::string& pose) {
+  // A pose driver at rest is a mistake of the rig, unless the character lacks the blend shapes of
+  // the pose. Other drivers have values without a pose, for which folds must be drawn.
+  Status AtRest(const Driver& driver, const std::string& value,
+                const wrinkle::ReferencePose& pose) {
+    if (driver.kind == Driver::Kind::kPose && !pose.shapes.empty()) {
+      Note(value + " has no pose on this character; only strokes can give it folds");
+      return {};
+    }
     if (driver.kind == Driver::Kind::kPose) {
       return {StatusCode::kInvalidArgument,
-              "reference pose '" + pose + "' equals the rest pose, so it cannot fold anything",
+              "reference pose '" + pose.name + "' equals the rest pose, so it cannot fold anything",
               {},
               "define how its joints move, or remove it from the rig"};
     }

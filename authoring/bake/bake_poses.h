@@ -24,6 +24,9 @@ struct CollectedPoses {
 // matrix. The gain of a source in the rig, limited to 1, becomes the weight of the pose. `maps`:
 // names of the maps to collect poses for; empty: all.
 //
+// The blend shapes of a reference pose move what a stream's would: the shapes that `face` names, or
+// joints by the rig's reference poses (wrinkle::BlendShapePose).
+//
 // A driver of a blend shape poses the character's shapes that `face`, made from the character,
 // names for it (default: equal names). Such a feed also gets the combinations (ShapeCombinations())
 // that its shapes lead. Shapes with a gain below 0.7 give no pose: they show the folds of the

@@ -128,6 +128,28 @@ Result<Mix> ParseMix(const wrinkle::Rig& rig, std::string_view text) {
   return mix;
 }
 
+// Gives the clip the blend shapes of a mix, and those of the pose that its poses add up to.
+void AddShapes(const Mix& mix, std::span<const wrinkle::ShapeValue> of_poses,
+               const wrinkle::Rig& rig, motion::Clip* clip) {
+  if (mix.shapes.empty() && of_poses.empty()) return;
+  std::vector<std::string>& names = clip->blend_shape_names;
+  names = rig::ArkitAndRigShapes(rig);
+  clip->blend_shapes.assign(names.size(), 0.0f);
+  const auto add = [&](const std::string& shape, float weight) {
+    const auto found = std::find_if(names.begin(), names.end(), [&](const std::string& name) {
+      return EqualsIgnoreCase(name, shape);
+    });
+    if (found == names.end()) {
+      names.push_back(shape);
+      clip->blend_shapes.push_back(weight);
+    } else {
+      clip->blend_shapes[static_cast<std::size_t>(found - names.begin())] += weight;
+    }
+  };
+  for (const auto& [shape, weight] : mix.shapes) add(shape, weight);
+  for (const wrinkle::ShapeValue& shape : of_poses) add(shape.blend_shape, shape.value);
+}
+
 }  // namespace
 
 Result<motion::Clip> PoseClip(const character::Character& character, const std::string& text) {
@@ -140,12 +162,7 @@ Result<motion::Clip> PoseClip(const character::Character& character, const std::
   clip.locals.assign(clip.skeleton.rest_pose().begin(), clip.skeleton.rest_pose().end());
   const wrinkle::ReferencePose pose = rig::MixReferencePoses(text, mix->poses);
   FURROW_RETURN_IF_ERROR(wrinkle::ApplyReferencePose(pose, clip.skeleton, clip.locals));
-  if (mix->shapes.empty()) return clip;
-  clip.blend_shape_names = rig::ArkitAndRigShapes(character.rig);
-  for (const std::string& name : clip.blend_shape_names) {
-    float& coefficient = clip.blend_shapes.emplace_back(0.0f);
-    for (const auto& [shape, weight] : mix->shapes) coefficient += shape == name ? weight : 0.0f;
-  }
+  AddShapes(*mix, pose.shapes, character.rig, &clip);
   return clip;
 }
 

@@ -10,7 +10,7 @@
 namespace furrow::cli {
 
 // Returns a clip with one frame on the character's skeleton: a weighted sum of the rig's reference
-// poses and of blend shapes.
+// poses, with their blend shapes, and of blend shapes.
 //
 // `text` is "neutral" or "NAME[=WEIGHT],..." with weights in [-4, 4] (default 1). NAME is a
 // reference pose; a pair of poses with the suffixes "_l" and "_r", without the suffix; a wrinkle

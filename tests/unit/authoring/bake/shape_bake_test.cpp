@@ -105,6 +105,55 @@ TEST(ShapeBake, PosesTheShapesThatDriversName) {
   EXPECT_THAT(found->notes[0], HasSubstr("no shape of the character means pressRight;"));
 }
 
+// A reference pose of one joint and of blend shapes, which a pose driver reads.
+character::Character Expressive(std::vector<wrinkle::ShapeValue> shapes) {
+  character::Character character = Squeezable();
+  character.shapes = {"pressLeft"};
+  wrinkle::Rig& rig = character.rig;
+  rig.reference_poses = {{.name = "press", .shapes = std::move(shapes)}};
+  rig.drivers.resize(1);
+  rig.drivers[0].name = "face";
+  for (const wrinkle::ShapeValue& shape : rig.reference_poses[0].shapes) {
+    rig.drivers[0].pose.points.push_back({.joint = "",
+                                          .kind = wrinkle::ControlPoint::Kind::kBlendShape,
+                                          .blend_shape = shape.blend_shape});
+  }
+  rig.drivers[0].pose.values = {{"press", "press"}};
+  rig.regions[0].feeds = {{"folds", {{"face", "press", 1.0f}}}};
+  return character;
+}
+
+TEST(ShapeBake, PosesTheShapesOfReferencePoses) {
+  const auto found = CollectBakePoses(Expressive({{"PRESSLEFT", 0.75f}, {"tongueOut", 1.0f}}));
+  ASSERT_TRUE(found.ok()) << found.status().ToString();
+  ASSERT_EQ(found->poses.size(), 1u);
+  EXPECT_EQ(found->poses[0].shape_weights, std::vector<float>{0.75f});
+  EXPECT_THAT(found->notes,
+              testing::ElementsAre(HasSubstr("move nothing on this character: tongueOut")));
+}
+
+// As in the daemon, a reference pose with the name of a blend shape moves joints.
+TEST(ShapeBake, PosesJointsWhereTheCharacterHasNoSuchShape) {
+  character::Character character = Expressive({{"tongueOut", 0.5f}});
+  const std::string joint = character.skeleton.joint_names()[1];
+  character.rig.reference_poses.push_back(
+      {.name = "tongueOut",
+       .joints = {{.joint = joint, .rotation = {1, 0, 0, 0}, .translation = {0, 0, 0.02f}}}});
+  const auto found = CollectBakePoses(character);
+  ASSERT_TRUE(found.ok()) << found.status().ToString();
+  ASSERT_EQ(found->poses.size(), 1u);
+  EXPECT_TRUE(found->poses[0].shape_weights.empty());
+  EXPECT_NEAR(found->poses[0].skin_matrices[1][3].z, 0.01f, 1e-6f);
+  EXPECT_TRUE(found->notes.empty());
+}
+
+TEST(ShapeBake, NotesAPoseOfShapesThatTheCharacterLacks) {
+  const auto found = CollectBakePoses(Expressive({{"tongueOut", 1.0f}}));
+  ASSERT_TRUE(found.ok()) << found.status().ToString();
+  EXPECT_TRUE(found->poses.empty());
+  EXPECT_THAT(found->notes, Contains(HasSubstr("face.press has no pose on this character")));
+}
+
 // Closed lips share their positions and joints. Only a shape parts them.
 TEST(ShapeBake, LipsThatAShapePartsAreNotWelded) {
   character::Mesh lips = toys::Sheet(0.1f, 0.05f, 2, 2);

@@ -90,6 +90,25 @@ TEST(PoseClip, BlendShapesOfDriversMayBeNamed) {
   EXPECT_FLOAT_EQ(clip->blend_shapes.back(), 0.75f);
 }
 
+TEST(PoseClip, ReferencePosesMoveTheirBlendShapes) {
+  character::Character character = Brows();
+  character.rig.reference_poses[2].shapes = {{"BrowInnerUp", 0.5f}, {"Fcl_ALL_Joy", 1.0f}};
+  const auto clip = PoseClip(character, "nod=0.5,browInnerUp=0.25");
+  ASSERT_TRUE(clip.ok()) << clip.status().ToString();
+  EXPECT_FLOAT_EQ(clip->locals[0].translation.z, 1.5f);
+  float sum = 0.0f;
+  for (std::size_t i = 0; i < clip->blend_shape_names.size(); ++i) {
+    sum += clip->blend_shapes[i];
+    if (clip->blend_shape_names[i] == "browInnerUp") {
+      EXPECT_FLOAT_EQ(clip->blend_shapes[i], 0.5f);
+    }
+    if (clip->blend_shape_names[i] == "Fcl_ALL_Joy") {
+      EXPECT_FLOAT_EQ(clip->blend_shapes[i], 0.5f);
+    }
+  }
+  EXPECT_FLOAT_EQ(sum, 1.0f);
+}
+
 TEST(PoseClip, AnUnknownNameIsAnErrorThatListsTheValidNames) {
   const auto unknown = PoseClip(Brows(), "lower_l,smirk");
   EXPECT_EQ(unknown.status().code(), StatusCode::kNotFound);
