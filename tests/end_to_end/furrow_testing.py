@@ -9,6 +9,7 @@ import shlex
 import signal
 import subprocess
 import unittest
+import zlib
 
 BIN = pathlib.Path(os.environ["FURROW_BIN"])
 SOURCE = pathlib.Path(os.environ["FURROW_SOURCE"])
@@ -131,3 +132,35 @@ def jpeg_size(data):
 def png_size(data):
     assert data[:8] == b"\x89PNG\r\n\x1a\n", "not a PNG"
     return int.from_bytes(data[16:20], "big"), int.from_bytes(data[20:24], "big")
+
+
+def png_rows(data):
+    """Decodes a PNG of 8 bits per channel, as Furrow writes them: rows of pixels, each a tuple of channels."""
+    width, height = png_size(data)
+    assert data[24] == 8 and data[28] == 0, "not 8 bits, or interlaced"
+    channels = {0: 1, 2: 3, 4: 2, 6: 4}[data[25]]
+    packed, at = b"", 8
+    while at < len(data):
+        length = int.from_bytes(data[at:at + 4], "big")
+        if data[at + 4:at + 8] == b"IDAT":
+            packed += data[at + 8:at + 8 + length]
+        at += 12 + length
+    raw, stride, rows = zlib.decompress(packed), width * channels, []
+    above = bytearray(stride)
+    for y in range(height):
+        kind, row = raw[y * (stride + 1)], bytearray(raw[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
+        for i in range(stride):
+            left = row[i - channels] if i >= channels else 0
+            corner = above[i - channels] if i >= channels else 0
+            p = left + above[i] - corner
+            paeth = min((abs(p - left), 0, left), (abs(p - above[i]), 1, above[i]), (abs(p - corner), 2, corner))[2]
+            row[i] = (row[i] + (0, left, above[i], (left + above[i]) // 2, paeth)[kind]) & 255
+        rows.append([tuple(row[i:i + channels]) for i in range(0, stride, channels)])
+        above = row
+    return rows
+
+
+def picture_difference(a, b):
+    """The mean difference of two pictures of png_rows() over all channels, 0 to 255."""
+    pairs = [(x, y) for row_a, row_b in zip(a, b) for p, q in zip(row_a, row_b) for x, y in zip(p, q)]
+    return sum(abs(x - y) for x, y in pairs) / len(pairs)

@@ -4,33 +4,13 @@
 import select
 import shutil
 import socket
-import struct
 import subprocess
 import unittest
 
 from furrow_testing import SOURCE, Daemon, Table, finish, spawn
+from wire_testing import livelink_face
 
 ARKIT = SOURCE / "rig" / "rigs" / "arkit.json"
-# The order of the curves in a Live Link Face datagram.
-CURVES = """EyeBlinkLeft EyeLookDownLeft EyeLookInLeft EyeLookOutLeft EyeLookUpLeft EyeSquintLeft EyeWideLeft
-EyeBlinkRight EyeLookDownRight EyeLookInRight EyeLookOutRight EyeLookUpRight EyeSquintRight EyeWideRight
-JawForward JawLeft JawRight JawOpen MouthClose MouthFunnel MouthPucker MouthLeft MouthRight MouthSmileLeft
-MouthSmileRight MouthFrownLeft MouthFrownRight MouthDimpleLeft MouthDimpleRight MouthStretchLeft MouthStretchRight
-MouthRollLower MouthRollUpper MouthShrugLower MouthShrugUpper MouthPressLeft MouthPressRight MouthLowerDownLeft
-MouthLowerDownRight MouthUpperUpLeft MouthUpperUpRight BrowDownLeft BrowDownRight BrowInnerUp BrowOuterUpLeft
-BrowOuterUpRight CheekPuff CheekSquintLeft CheekSquintRight NoseSneerLeft NoseSneerRight TongueOut HeadYaw HeadPitch
-HeadRoll LeftEyeYaw LeftEyePitch LeftEyeRoll RightEyeYaw RightEyePitch RightEyeRoll""".split()
-
-
-def livelink_face(subject, frame, shapes):
-    """Returns one datagram of version 6."""
-    device = b"12345678-1234-1234-1234-123456789ABC"
-    name = subject.encode()
-    packet = struct.pack(">B", 6)
-    packet += struct.pack(">i", len(device)) + device + struct.pack(">i", len(name)) + name
-    packet += struct.pack(">ifii", frame, 0.0, 60, 1)
-    packet += struct.pack(">B61f", 61, *(shapes.get(curve, 0.0) for curve in CURVES))
-    return packet
 
 
 class ForeignWireTest(unittest.TestCase):
