@@ -116,7 +116,7 @@ TEST_P(ForeignVrm, ExpressionsKeepTheirRules) {
   using Limits = ShapeRule::Limits;
   const bool vrm1 = GetParam().front > 0.0f;  // VRM 0.x has no overrides
   EXPECT_EQ(joy.limits[ShapeRule::kBlinks], vrm1 ? Limits::kBlock : Limits::kNothing);
-  EXPECT_EQ(joy.limits[ShapeRule::kVisemes], vrm1 ? Limits::kBlend : Limits::kNothing);
+  EXPECT_EQ(joy.limits[ShapeRule::kMouths], vrm1 ? Limits::kBlend : Limits::kNothing);
   EXPECT_EQ(joy.limits[ShapeRule::kLooks], Limits::kNothing);
 }
 

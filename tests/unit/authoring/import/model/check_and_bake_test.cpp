@@ -52,8 +52,7 @@ CharacterReport Check(const Character& body) {
       .skinned = true, .has_uvs = true, .has_normals = true, .has_tangents = true};
   character::SourceNotes notes;
   notes.meshes.assign(body.meshes.size(), good);
-  const auto maps =
-      rig::SkeletonMaps::Load(std::string(FURROW_SOURCE_DIR) + "/rig/skeleton_maps/vrm.json");
+  const auto maps = rig::SkeletonMaps::Load(FURROW_SOURCE_DIR "/rig/skeleton_maps/vrm.json");
   return CheckCharacter(body, notes, *maps, true);
 }
 
