@@ -194,7 +194,7 @@ TEST(ForeignWires, VrmPresetsOverVmcRaiseTheRightWeights) {
   auto weights = Named(*reply, *frame);
   EXPECT_GT(weights["brow_l.stretch"], 0.5f);  // browInnerUp
   EXPECT_EQ(weights["brow_l.stretch"], weights["brow_r.stretch"]);
-  EXPECT_GT(weights["mouth_l.squash"], 0.3f);  // mouthFrownLeft
+  EXPECT_GT(weights["mouth_l.stretch"], 0.3f);  // mouthFrownLeft
   EXPECT_GT(weights["nose.stretch"], 0.1f);    // jawOpen
   EXPECT_LT(weights["brow_l.squash"], 0.05f);
 }

@@ -134,7 +134,7 @@ TEST_F(ShapeFaceTest, TheRigHasTheDriversOfArkit) {
   std::vector<std::string> remarks;
   const character::Character c = Proposed(&remarks);
   EXPECT_TRUE(rig::CheckRig(c.rig).ok()) << rig::CheckRig(c.rig).ToString();
-  EXPECT_EQ(c.rig.drivers.size(), 52u);
+  EXPECT_EQ(c.rig.drivers.size(), Shipped("arkit").drivers.size());
   EXPECT_EQ(c.rig.regions.size(), 8u);
   EXPECT_TRUE(wrinkle::RigBinding::Create(c.rig, c.skeleton, c.shapes, {}).ok());
   EXPECT_THAT(remarks, IsEmpty());
@@ -268,7 +268,7 @@ void ExpectFolds(character::Character c, int size) {
         inside += share;
         folded += share * (std::abs(height) > 0.05 ? 1.0 : 0.0);
       }
-      EXPECT_GT(folded, 0.1 * inside) << map.name << " in " << region.name;
+      EXPECT_GT(folded, 0.05 * inside) << map.name << " in " << region.name;
     }
   }
 }
