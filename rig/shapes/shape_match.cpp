@@ -82,7 +82,7 @@ class Matching {
   }
   // For what a rig reads: its mouthClose keeps the stream's own value.
   void LimitMouthClose(const ShapeVocabulary& targets);
-  void LimitFace(const ShapeMeanings& face, std::span<const wrinkle::ShapeRule> rules);
+  void LimitFace(const ShapeMeanings& face, const FaceLimits& limits);
   void Combine(const ShapeVocabulary* targets);
   [[nodiscard]] ShapeMatch Finish(const ShapeVocabulary* stream, const ShapeVocabulary* targets) &&;
 
@@ -248,7 +248,7 @@ void Matching::LimitMouthClose(const ShapeVocabulary& targets) {
   formulas_.LimitTo(*close, *jaw);
 }
 
-void Matching::LimitFace(const ShapeMeanings& face, std::span<const wrinkle::ShapeRule> rules) {
+void Matching::LimitFace(const ShapeMeanings& face, const FaceLimits& limits) {
   std::vector<ShapeFormulas::Source> sources;
   for (const By by : match_.by) {
     const bool computed = by == By::kFormula || by == By::kFallback;
@@ -256,7 +256,7 @@ void Matching::LimitFace(const ShapeMeanings& face, std::span<const wrinkle::Sha
                       : computed         ? ShapeFormulas::Source::kArkit
                                          : ShapeFormulas::Source::kStream);
   }
-  formulas_.Limit(face, rules, sources);
+  formulas_.Limit(face, limits, sources);
 }
 
 void Matching::Combine(const ShapeVocabulary* targets) {
@@ -278,7 +278,10 @@ void Matching::Combine(const ShapeVocabulary* targets) {
   // Set afterwards: a corrective does not depend on correctives.
   for (auto& [target, product] : found) {
     Set(target, By::kCombination,
-        {.sum = {{.gain = 1.0f, .product = std::move(product)}}, .clamped = false, .at_most = {}});
+        {.sum = {{.gain = 1.0f, .product = std::move(product)}},
+         .clamped = false,
+         .at_most = {},
+         .is_corrective = true});
     formulas_.late.push_back(target);
   }
 }
@@ -357,8 +360,10 @@ ShapeMatch ShapeMatcher::Match(std::span<const std::string> stream,
 
 ShapeMatch ShapeMatcher::MatchFace(std::span<const std::string> stream,
                                    std::span<const std::string> shapes,
-                                   std::span<const wrinkle::ShapeRule> rules) const {
-  return MatchTo(stream, shapes, &rules);
+                                   std::span<const wrinkle::ShapeRule> rules,
+                                   bool is_solved) const {
+  const FaceLimits limits{.rules = rules, .fade_lids = !is_solved};
+  return MatchTo(stream, shapes, &limits);
 }
 
 ShapeMeanings ShapeMatcher::MeaningsOf(std::span<const std::string> shapes) const {
@@ -377,7 +382,7 @@ std::vector<std::string> ShapeMatcher::AllNamesOf(std::span<const std::string> s
 
 ShapeMatch ShapeMatcher::MatchTo(std::span<const std::string> stream,
                                  std::span<const std::string> targets,
-                                 const std::span<const wrinkle::ShapeRule>* face) const {
+                                 const FaceLimits* face) const {
   Matching matching(stream, targets);
   matching.TakeEqualNames();
   // Most streams have the rig's own names. Translating costs a millisecond or more.
@@ -403,7 +408,7 @@ ShapeMatch ShapeMatcher::MatchTo(std::span<const std::string> stream,
   matching.LimitFace(meanings, *face);
   matching.Combine(to);
   ShapeMatch match = std::move(matching).Finish(from, to);
-  match.program.SetRules({*face, meanings.Groups()});
+  match.program.SetRules({face->rules, meanings.Groups()});
   return match;
 }
 

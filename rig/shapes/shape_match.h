@@ -71,16 +71,18 @@ class ShapeMatcher {
 
   // The same for the shapes of a face, as they are drawn. Shapes are found by their meaning
   // (ShapeMeanings).
-  // - mouthClose is always at most jawOpen: it brings the lips together on an open jaw, and alone
-  // it
+  // - mouthClose is always at most jawOpen: it brings the lips together on an open jaw. Alone, it
   //   would push each lip through the other. If it contains the jaw (ShapeRule::contains), jawOpen
   //   gives way to it.
   // - Lids do not go through the eye: ShapeMeanings::LidFades().
   // - A look of VRM that is computed from ARKit's gaze follows ShapeRule::gaze.
   // - The program applies the face's `rules` to every pose.
+  // `is_solved`: the stream's weights were solved from the joints of a face (JointShapes), whose
+  // lids they fit together, so lids do not fade.
   [[nodiscard]] ShapeMatch MatchFace(std::span<const std::string> stream,
                                      std::span<const std::string> shapes,
-                                     std::span<const wrinkle::ShapeRule> rules = {}) const;
+                                     std::span<const wrinkle::ShapeRule> rules = {},
+                                     bool is_solved = false) const;
 
   // What the shapes of a face mean.
   [[nodiscard]] ShapeMeanings MeaningsOf(std::span<const std::string> shapes) const;
@@ -93,10 +95,10 @@ class ShapeMatcher {
   [[nodiscard]] const ShapeVocabulary* VocabularyOf(std::span<const std::string> stream) const;
 
  private:
-  // `face`: the rules of a face; null: the targets are what a rig reads.
+  // `face`: how the targets are limited; null: they are what a rig reads.
   [[nodiscard]] ShapeMatch MatchTo(std::span<const std::string> stream,
                                    std::span<const std::string> targets,
-                                   const std::span<const wrinkle::ShapeRule>* face) const;
+                                   const FaceLimits* face) const;
 
   std::vector<ShapeVocabulary> vocabularies_;  // sorted by name, then the chosen one
   bool chosen_ = false;

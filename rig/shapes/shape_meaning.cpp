@@ -218,11 +218,11 @@ void ShapeFormulas::LimitTo(std::size_t mouth_close, std::size_t jaw_open) {
   late.push_back(mouth_close);
 }
 
-void ShapeFormulas::Limit(const ShapeMeanings& face, std::span<const ShapeRule> rules,
+void ShapeFormulas::Limit(const ShapeMeanings& face, const FaceLimits& limits,
                           std::span<const Source> sources) {
-  FollowGaze(face, rules, sources);
-  LimitMouthClose(face, rules, sources);
-  FadeLids(face, sources);
+  FollowGaze(face, limits.rules, sources);
+  LimitMouthClose(face, limits.rules, sources);
+  if (limits.fade_lids) FadeLids(face, sources);
 }
 
 void ShapeFormulas::LimitMouthClose(const ShapeMeanings& face, std::span<const ShapeRule> rules,
@@ -235,7 +235,7 @@ void ShapeFormulas::LimitMouthClose(const ShapeMeanings& face, std::span<const S
   if (sources[close] == Source::kNothing || sources[jaw] == Source::kNothing) return;
   const bool contains_jaw = std::ranges::any_of(
       rules, [&](const ShapeRule& rule) { return rule.shape == close && rule.contains == jaw; });
-  if (!contains_jaw) {
+  if (!contains_jaw || steps.size() >= wrinkle::ShapeProgram::kMaxSteps) {
     LimitTo(close, jaw);
     return;
   }

@@ -29,11 +29,6 @@ class ShapeMeanings {
   ShapeMeanings(const ShapeVocabulary* own, std::span<const ShapeVocabulary> vocabularies,
                 std::span<const std::string> shapes);
 
-  [[nodiscard]] std::size_t num_shapes() const { return meanings_.size(); }
-  // The shape of ARKit that a shape equals, by its own or another name; -1: none.
-  [[nodiscard]] int Renamed(std::size_t shape) const { return meanings_[shape].renamed; }
-  // The shapes of ARKit that raise a shape.
-  [[nodiscard]] const ArkitSet& Reads(std::size_t shape) const { return meanings_[shape].reads; }
   // The first shape that equals ARKit's `name`; -1: none.
   [[nodiscard]] int Find(std::string_view name) const;
 
@@ -58,13 +53,19 @@ class ShapeMeanings {
 
  private:
   struct Meaning {
-    int renamed = -1;
-    ArkitSet reads;
+    int renamed = -1;  // the shape of ARKit that it equals, by its own or another name; -1: none
+    ArkitSet reads;    // those that raise it
     wrinkle::ShapeRule::Group group = wrinkle::ShapeRule::kNoGroup;
   };
   [[nodiscard]] int BlinkOf(int arkit_blink) const;
 
   std::vector<Meaning> meanings_;
+};
+
+// How a face is limited when it is drawn.
+struct FaceLimits {
+  std::span<const wrinkle::ShapeRule> rules;  // of the face's shapes
+  bool fade_lids = true;                      // see ShapeMeanings::LidFades()
 };
 
 // The formulas of the targets of a stream, before they become a ShapeProgram.
@@ -79,8 +80,7 @@ struct ShapeFormulas {
   // mouthClose is at most jawOpen.
   void LimitTo(std::size_t mouth_close, std::size_t jaw_open);
   // Limits the shapes of a face, as ShapeMatcher::MatchFace() describes. `sources`: one per shape.
-  void Limit(const ShapeMeanings& face, std::span<const wrinkle::ShapeRule> rules,
-             std::span<const Source> sources);
+  void Limit(const ShapeMeanings& face, const FaceLimits& limits, std::span<const Source> sources);
 
  private:
   // Turns a formula into an intermediate result, for those that need its value before a limit.

@@ -108,7 +108,8 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Make(
         wrinkle::BlendShapePose::Create(*rig_, *character_.skeleton, shapes.pose_names(),
                                         shape_matcher_.AllNamesOf(character_.shapes)));
     rig::ShapeMatch face =
-        shape_matcher_.MatchFace(shapes.source_names(), character_.shapes, character_.shape_rules);
+        shape_matcher_.MatchFace(shapes.source_names(), character_.shapes, character_.shape_rules,
+                                 /*is_solved=*/definition->joint_shapes != nullptr);
     definition->face_match = rig::Describe(face);
     definition->shape_program =
         std::make_shared<const wrinkle::ShapeProgram>(std::move(face.program));

@@ -29,8 +29,14 @@ std::vector<int> JointsOf(const Skeleton& skeleton, const JointRoles& roles, Joi
 }  // namespace
 
 bool IsTrackerAngle(std::string_view name) {
-  const std::string lower = AsciiLower(std::string(name));
-  return lower.ends_with("yaw") || lower.ends_with("pitch") || lower.ends_with("roll");
+  for (const std::string_view of : {"Head", "LeftEye", "RightEye"}) {
+    if (!EqualsIgnoreCase(name.substr(0, of.size()), of)) continue;
+    const std::string_view angle = name.substr(of.size());
+    for (const std::string_view head_angle : kAngles) {
+      if (EqualsIgnoreCase(angle, head_angle.substr(std::string_view("Head").size()))) return true;
+    }
+  }
+  return false;
 }
 
 HeadTurn HeadTurn::Create(const Skeleton& skeleton, const JointRoles& roles,

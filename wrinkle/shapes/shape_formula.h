@@ -45,12 +45,14 @@ struct ShapeFade {
 };
 
 // The sum of the terms; if `clamped`, in [0, 1]; if `at_most` is set, no more than that input; if
-// `fade` is set, times its factor.
+// `fade` is set, times its factor. Fades read weights after the rules of the face, so a lid does
+// not fade by a blink that a rule has stopped. Correctives read weights after the fades, as drawn.
 struct ShapeFormula {
   std::vector<ShapeTerm> sum;
   bool clamped = false;
   std::optional<ShapeInput> at_most;
   std::optional<ShapeFade> fade = std::nullopt;
+  bool is_corrective = false;
 };
 
 // The formula of a shape that equals `input`.

@@ -134,7 +134,12 @@ Result<ShapeProgram> ShapeProgram::Create(
   for (const auto& [shape, formula] : shapes) {
     FURROW_RETURN_IF_ERROR(check.Check(formula));
     FURROW_RETURN_IF_ERROR(check.AddShape(shape));
-    program.shapes_.push_back(program.Append(formula, shape));
+    if (!formula.is_corrective && !program.correctives_.empty()) {
+      return Status(StatusCode::kInvalidArgument, "a corrective is not last", "shape program");
+    }
+    auto& sums = formula.is_corrective ? program.correctives_ : program.shapes_;
+    sums.push_back(program.Append(formula, shape));
+    if (formula.fade) program.AppendFade(*formula.fade, shape);
   }
   return program;
 }
@@ -145,22 +150,22 @@ ShapeProgram::Sum ShapeProgram::Append(const ShapeFormula& formula, std::size_t 
           .shape = static_cast<std::uint32_t>(shape),
           .clamped = formula.clamped,
           .limited = formula.at_most.has_value(),
-          .at_most = formula.at_most.value_or(ShapeInput()),
-          .fade = {}};
+          .at_most = formula.at_most.value_or(ShapeInput())};
   for (const ShapeTerm& term : formula.sum) {
     const auto first = static_cast<std::uint32_t>(inputs_.size());
     inputs_.insert(inputs_.end(), term.product.begin(), term.product.end());
     terms_.push_back({term.gain, first, static_cast<std::uint32_t>(inputs_.size())});
   }
   sum.last = static_cast<std::uint32_t>(terms_.size());
-  if (formula.fade) {
-    const std::vector<ShapeInput>& by = formula.fade->by;
-    const auto first = static_cast<std::uint32_t>(inputs_.size());
-    inputs_.insert(inputs_.end(), by.begin(), by.end());
-    sum.fade = {formula.fade->share / static_cast<float>(by.size()), first,
-                static_cast<std::uint32_t>(inputs_.size())};
-  }
   return sum;
+}
+
+void ShapeProgram::AppendFade(const ShapeFade& fade, std::size_t shape) {
+  const auto first = static_cast<std::uint32_t>(inputs_.size());
+  inputs_.insert(inputs_.end(), fade.by.begin(), fade.by.end());
+  fades_.push_back({static_cast<std::uint32_t>(shape),
+                    {fade.share / static_cast<float>(fade.by.size()), first,
+                     static_cast<std::uint32_t>(inputs_.size())}});
 }
 
 float ShapeProgram::Evaluate(const Sum& sum, const Values& values) const {
@@ -174,12 +179,15 @@ float ShapeProgram::Evaluate(const Sum& sum, const Values& values) const {
   }
   if (sum.clamped) total = Clamped(total);
   if (sum.limited) total = std::min(total, Shaped(sum.at_most, values.Of(sum.at_most)));
-  if (sum.fade.first == sum.fade.last) return total;
-  float faded = 0.0f;
-  for (std::uint32_t i = sum.fade.first; i < sum.fade.last; ++i) {
-    faded += Shaped(inputs_[i], values.Of(inputs_[i]));
+  return total;
+}
+
+float ShapeProgram::Evaluate(const Fade& fade, const Values& values) const {
+  float sum = 0.0f;
+  for (std::uint32_t i = fade.by.first; i < fade.by.last; ++i) {
+    sum += Shaped(inputs_[i], values.Of(inputs_[i]));
   }
-  return total * (1.0f - sum.fade.gain * faded);
+  return 1.0f - fade.by.gain * sum;
 }
 
 JobStatus ShapeProgram::Run(std::span<const float> coefficients, std::span<float> weights) const {
@@ -191,6 +199,8 @@ JobStatus ShapeProgram::Run(std::span<const float> coefficients, std::span<float
   for (std::size_t i = 0; i < steps_.size(); ++i) steps[i] = Evaluate(steps_[i], values);
   for (const Sum& shape : shapes_) weights[shape.shape] = Evaluate(shape, values);
   if (!rules_.empty()) rules_.Apply(weights.first(num_shapes_));
+  for (const Fade& fade : fades_) weights[fade.shape] *= Evaluate(fade, values);
+  for (const Sum& shape : correctives_) weights[shape.shape] = Evaluate(shape, values);
   return JobStatus::kOk;
 }
 

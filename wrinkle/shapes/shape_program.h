@@ -31,16 +31,16 @@ class ShapeProgram {
 
   // `steps`: intermediate results in the order of evaluation; a step reads coefficients and earlier
   // steps. `shapes`: pairs (shape, formula) in the order of evaluation, a shape at most once; they
-  // read coefficients, steps and earlier shapes. Other shapes stay at 0. Errors: kLimit (too many
-  // steps); kInvalidArgument (a formula reads what comes later or does not exist; a gain or tent
-  // that is not finite or not in order; an invalid fade).
+  // read coefficients, steps and earlier shapes. Correctives come last. Other shapes stay at 0.
+  // Errors: kLimit (too many steps); kInvalidArgument (a formula reads what comes later or does not
+  // exist; a gain or tent that is not finite or not in order; an invalid fade).
   [[nodiscard]] static Result<ShapeProgram> Create(
       std::size_t num_shapes, std::span<const ShapeFormula> steps,
       std::span<const std::pair<std::size_t, ShapeFormula>> shapes);
 
   [[nodiscard]] std::size_t num_shapes() const { return num_shapes_; }
   // True if the stream moves none of the shapes.
-  [[nodiscard]] bool empty() const { return shapes_.empty(); }
+  [[nodiscard]] bool empty() const { return shapes_.empty() && correctives_.empty(); }
 
   // Applies to every pose's weights. `rules` is for num_shapes() shapes.
   void SetRules(ShapeRules rules) { rules_ = std::move(rules); }
@@ -65,15 +65,22 @@ class ShapeProgram {
     bool clamped = false;
     bool limited = false;
     ShapeInput at_most;
-    Term fade;  // gain: of each input; without inputs: no fade
+  };
+  struct Fade {
+    std::uint32_t shape = 0;
+    Term by;  // gain: of each input
   };
   struct Values;
 
   [[nodiscard]] Sum Append(const ShapeFormula& formula, std::size_t shape);
+  void AppendFade(const ShapeFade& fade, std::size_t shape);
   [[nodiscard]] float Evaluate(const Sum& sum, const Values& values) const;
+  [[nodiscard]] float Evaluate(const Fade& fade, const Values& values) const;
 
   std::vector<Sum> steps_;
   std::vector<Sum> shapes_;
+  std::vector<Fade> fades_;
+  std::vector<Sum> correctives_;
   std::vector<Term> terms_;
   std::vector<ShapeInput> inputs_;
   std::size_t num_shapes_ = 0;

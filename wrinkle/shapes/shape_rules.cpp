@@ -10,8 +10,11 @@ ShapeRules::ShapeRules(std::span<const ShapeRule> rules, std::span<const ShapeRu
   constexpr std::array<ShapeRule::Limits, ShapeRule::kNumGroups> kLimitsNothing{};
   for (const ShapeRule& rule : rules) {
     if (rule.shape >= groups.size()) continue;
-    if (!rule.is_binary && rule.limits == kLimitsNothing) continue;
-    rules_.push_back(rule);
+    ShapeRule kept = rule;
+    const ShapeRule::Group own = groups[rule.shape];
+    if (own < kept.limits.size()) kept.limits[own] = ShapeRule::Limits::kNothing;
+    if (!kept.is_binary && kept.limits == kLimitsNothing) continue;
+    rules_.push_back(kept);
     is_binary_[rule.shape] = rule.is_binary;
   }
   for (std::uint32_t shape = 0; shape < groups.size(); ++shape) {

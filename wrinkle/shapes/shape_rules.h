@@ -38,7 +38,7 @@ struct ShapeRule {
 // of each pose. (Formulas have the rest: rig::ShapeMatcher::MatchFace().) Source: VRMC_vrm-1.0,
 // "Expressions": with w, the weights of the shapes that limit a group, its shapes are multiplied by
 // max(0, 1 - sum of w), where kBlock counts as 1. A binary shape of the group that is limited at
-// all is 0.
+// all is 0. A shape does not limit its own group, because it would stop itself.
 class ShapeRules {
  public:
   ShapeRules() = default;  // no rules

@@ -18,8 +18,8 @@ Result<std::unique_ptr<AnimatedSubject>> AnimatedSubject::Create(
   const motion::Clip& take = *self->clip_;
   const auto match = matcher.Match(take.skeleton, character.rig, &character.skeleton);
   if (reports && !file.empty()) PrintMatch(match);
-  self->shapes_ = MatchBlendShapes(shapes, take, character.rig,
-                                   MatchFaceJoints(shapes, take, match, &character));
+  const rig::JointMovedShapes solved = MatchFaceJoints(shapes, take, match, &character);
+  self->shapes_ = MatchBlendShapes(shapes, take, character.rig, solved);
   auto binding =
       wrinkle::RigBinding::Create(character.rig, take.skeleton, self->shapes_.driver_names(),
                                   match.Options(/*allow_missing=*/true));
@@ -32,9 +32,10 @@ Result<std::unique_ptr<AnimatedSubject>> AnimatedSubject::Create(
       wrinkle::BlendShapePose::Create(character.rig, character.skeleton, self->shapes_.pose_names(),
                                       shapes.AllNamesOf(character.shapes));
   rig::ShapeMatch face =
-      shapes.MatchFace(self->shapes_.source_names(), character.shapes, character.shape_rules);
+      shapes.MatchFace(self->shapes_.source_names(), character.shapes, character.shape_rules,
+                       /*is_solved=*/solved.solver != nullptr);
   const std::string text = rig::Describe(face);
-  if (!text.empty()) std::fprintf(stderr, "furrow: face: %s\n", text.c_str());
+  if (reports && !text.empty()) std::fprintf(stderr, "furrow: face: %s\n", text.c_str());
   self->shape_program_ = std::move(face.program);
   // A recording with joints turns the head by them.
   if (take.skeleton.num_joints() == 0) {

@@ -86,5 +86,14 @@ TEST(HeadTurn, AnglesAreLimitedAndBadInputChangesNothing) {
   EXPECT_EQ(local[body.Find("head")].rotation, body.rest_pose()[body.Find("head")].rotation);
 }
 
+TEST(HeadTurn, AnglesOfTrackersHaveExactNames) {
+  for (const char* name : {"HeadYaw", "headpitch", "LeftEyeRoll", "rightEyeYaw"}) {
+    EXPECT_TRUE(IsTrackerAngle(name)) << name;
+  }
+  for (const char* name : {"TongueRoll", "mouthRollLower", "Yaw", "Head", "HeadYawLeft", ""}) {
+    EXPECT_FALSE(IsTrackerAngle(name)) << name;
+  }
+}
+
 }  // namespace
 }  // namespace furrow::wrinkle

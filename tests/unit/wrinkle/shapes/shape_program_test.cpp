@@ -107,6 +107,43 @@ TEST(ShapeProgram, FadesByTheMeanOfItsInputs) {
             StatusCode::kInvalidArgument);
 }
 
+// A rule stops the blink, so the squint stays; the corrective of both sees what is drawn.
+TEST(ShapeProgram, FadesFollowTheRulesAndCorrectivesTheFades) {
+  using From = ShapeInput::From;
+  using Use = ShapeInput::Use;
+  ShapeFormula squint = SameAs(InputFrom(From::kBlendShape, 1));
+  squint.fade = ShapeFade{.share = 0.8f, .by = {InputFrom(From::kShape, 0, Use::kClamped)}};
+  ShapeFormula both;
+  both.sum = {{.gain = 1.0f, .product = {InputFrom(From::kShape, 0), InputFrom(From::kShape, 1)}}};
+  both.is_corrective = true;
+  const Formulas formulas = {{0, SameAs(InputFrom(From::kBlendShape, 0))},
+                             {2, SameAs(InputFrom(From::kBlendShape, 2))},
+                             {1, squint},
+                             {3, both}};
+  auto program = ShapeProgram::Create(4, {}, formulas);
+  ASSERT_TRUE(program.ok()) << program.status().ToString();
+  const std::vector<ShapeRule> rules = {{.shape = 2, .limits = {ShapeRule::Limits::kBlock}}};
+  const std::vector<ShapeRule::Group> groups = {ShapeRule::kBlinks, ShapeRule::kNoGroup,
+                                                ShapeRule::kNoGroup, ShapeRule::kNoGroup};
+  program->SetRules({rules, groups});
+  const auto run = [&](std::vector<float> coefficients) {
+    std::vector<float> weights(4);
+    EXPECT_EQ(program->Run(coefficients, weights), JobStatus::kOk);
+    return weights;
+  };
+  const std::vector<float> free = run({1, 1, 0});
+  EXPECT_FLOAT_EQ(free[1], 0.2f);
+  EXPECT_FLOAT_EQ(free[3], 0.2f);
+  const std::vector<float> stopped = run({1, 1, 1});
+  EXPECT_EQ(stopped[0], 0.0f);
+  EXPECT_EQ(stopped[1], 1.0f);
+  EXPECT_EQ(stopped[3], 0.0f);
+  EXPECT_EQ(ShapeProgram::Create(4, {}, Formulas{{0, both}}).status().code(),
+            StatusCode::kInvalidArgument);
+  both.sum = {};
+  EXPECT_FALSE(ShapeProgram::Create(2, {}, Formulas{{0, both}, {1, {}}}).ok()) << "not last";
+}
+
 TEST(ShapeProgram, RejectsFormulasThatReadWhatComesLater) {
   using From = ShapeInput::From;
   const ShapeFormula step = SameAs(InputFrom(From::kStep, 0));

@@ -75,6 +75,14 @@ TEST(ShapeRules, ShapesThatDoNotExistAreIgnored) {
   EXPECT_THAT(few, ElementsAre(1.0f));
 }
 
+// A jawOpen with "overrideMouth: block" is a shape of the mouth, too, and would never move.
+TEST(ShapeRules, AShapeDoesNotLimitItsOwnGroup) {
+  const std::vector<ShapeRule> rules = {
+      {.shape = 3, .limits = {Limits::kBlend, Limits::kNothing, Limits::kBlock}}};
+  EXPECT_THAT(Applied(rules, {0, 1.0f, 0, 0.25f, 0.6f, 0}),
+              ElementsAre(0, 0.75f, 0, 0.25f, 0.6f, 0));
+}
+
 // Gazes and contained shapes belong to formulas.
 TEST(ShapeRules, OthersDoNothingHere) {
   EXPECT_TRUE(ShapeRules(std::vector<ShapeRule>{{.shape = 0, .gaze = ShapeRule::Gaze()},
