@@ -21,7 +21,7 @@ class TurningSource {
 
   Result<wrinkle::PoseFrame> operator()(const std::filesystem::path& path, int frame) const {
     Result<wrinkle::PoseFrame> read = source_(path, frame);
-    if (!read.ok()) return read;
+    if (!read.ok() || read->skeleton.num_joints() == 0) return read;
     const glm::quat turn = TurnOf(read->skeleton, path);
     if (turn == wrinkle::RestStance().turn) return read;  // the same bits
     // A pose of another length is an error that the reader of rigs reports.

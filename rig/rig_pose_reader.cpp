@@ -85,6 +85,11 @@ class PoseReader {
                           wrinkle::ReferencePose* to) {
     to->name = from.name()->str();
     to->source_size = from.source_size();
+    if (from.shapes() != nullptr && from.shapes()->size() > wrinkle::kMaxPoseShapes) {
+      return {StatusCode::kLimit,
+              "more than " + std::to_string(wrinkle::kMaxPoseShapes) + " blend shapes",
+              at + ".shapes"};
+    }
     FURROW_RETURN_IF_ERROR(ForEach(
         from.shapes(), at + ".shapes", [&](const schema::ShapePose& shape, const std::string&) {
           to->shapes.push_back({shape.blend_shape()->str(), shape.value()});

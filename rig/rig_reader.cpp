@@ -191,7 +191,7 @@ PoseAnchors AnchorsOf(const schema::Rig& tables) {
     const std::string anchor = Text(pose->anchor() != nullptr ? pose->anchor() : tables.anchor());
     if (anchor.empty()) continue;
     for (const schema::ControlPoint* point : *pose->points()) {
-      anchors.emplace(point->joint()->str(), anchor);
+      if (point->joint() != nullptr) anchors.emplace(point->joint()->str(), anchor);
     }
   }
   return anchors;

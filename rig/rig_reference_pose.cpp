@@ -198,17 +198,23 @@ std::vector<wrinkle::ShapeValue> ShapesOf(const PoseFrame& frame, const PoseFram
   return shapes;
 }
 
-// Adds the shapes of a part to those of a mix, in the order of their first appearance.
-void AddShapes(const std::vector<wrinkle::ShapeValue>& part, float weight,
-               std::vector<wrinkle::ShapeValue>* sum) {
-  for (const wrinkle::ShapeValue& shape : part) {
-    auto found = std::ranges::find_if(*sum, [&](const wrinkle::ShapeValue& known) {
-      return EqualsIgnoreCase(known.blend_shape, shape.blend_shape);
-    });
-    if (found == sum->end()) found = sum->insert(found, {shape.blend_shape, 0.0f});
-    found->value += weight * shape.value;
+// The shapes of a mix, in the order of their first appearance.
+class ShapeSum {
+ public:
+  void Add(const std::vector<wrinkle::ShapeValue>& part, float weight) {
+    for (const wrinkle::ShapeValue& shape : part) {
+      const auto [place, is_new] =
+          places_.try_emplace(AsciiLower(shape.blend_shape), shapes_.size());
+      if (is_new) shapes_.push_back({shape.blend_shape, 0.0f});
+      shapes_[place->second].value += weight * shape.value;
+    }
   }
-}
+  [[nodiscard]] std::vector<wrinkle::ShapeValue> Take() { return std::move(shapes_); }
+
+ private:
+  std::vector<wrinkle::ShapeValue> shapes_;
+  std::unordered_map<std::string, std::size_t> places_;  // by lower case
+};
 
 }  // namespace
 
@@ -272,6 +278,7 @@ ReferencePose MixReferencePoses(std::string name, std::span<const WeightedPose> 
     if (mix.source_size == 0.0f) mix.source_size = part.pose->source_size;
   }
   std::unordered_map<std::string, std::size_t> places;
+  ShapeSum shapes;
   for (const WeightedPose& part : parts) {
     // Parts without a size are in units of the bound skeleton, whatever its size. Their
     // translations cannot be converted here, and stay apart if the mix states a size.
@@ -288,8 +295,9 @@ ReferencePose MixReferencePoses(std::string name, std::span<const WeightedPose> 
       translation += delta.translation * (part.weight * scale);
       sum.unscaled_translation += delta.unscaled_translation * part.weight;
     }
-    AddShapes(part.pose->shapes, part.weight, &mix.shapes);
+    shapes.Add(part.pose->shapes, part.weight);
   }
+  mix.shapes = shapes.Take();
   for (JointDelta& sum : mix.joints) {
     sum.rotation = ShorterWay(sum.rotation);
     // A mix of one pose stays the same to the bit, so that files do not change when they are

@@ -247,7 +247,7 @@ std::string Describe(const SkeletonMatch& match) {
 std::string UnknownAxes() {
   return "the axes of the rest pose are unknown, because no joints with known roles tell up and "
          "left; +Y is taken as up and +Z as ahead; if the values are wrong, map the joints with "
-         "--skeleton-map (docs/SKELETONS.md), or turn a BVH file with --up-axis";
+         "a skeleton map (docs/SKELETONS.md), or turn a BVH file with --up-axis";
 }
 
 std::vector<std::string> WarningsOf(const SkeletonMatch& match) {

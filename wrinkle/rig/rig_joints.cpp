@@ -25,6 +25,7 @@ std::string WarningOfModelSpace(const Rig& rig) {
   for (const Driver& driver : rig.drivers) {
     const bool has_anchor = !rig.anchor.empty() || !driver.pose.anchor.empty();
     if (driver.kind != Driver::Kind::kPose || has_anchor) continue;
+    if (JointsRead(driver.pose).empty()) continue;  // it measures blend shapes alone
     if (first == nullptr) first = &driver.name;
     ++more;
   }

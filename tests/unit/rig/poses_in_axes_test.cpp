@@ -72,6 +72,11 @@ TEST(PosesInFurrowAxes, PassesErrorsAndPosesOfUnknownBodiesOn) {
   EXPECT_THAT(warnings, testing::ElementsAre(testing::StartsWith("x: the axes of the rest pose")));
   ASSERT_TRUE(read.ok());
   EXPECT_EQ(read->skeleton.hash(), frame.skeleton.hash());
+  // A recording of a face alone has no axes.
+  frame.skeleton = wrinkle::Skeleton();
+  warnings.clear();
+  EXPECT_TRUE(poses("face.csv", 0).ok());
+  EXPECT_TRUE(warnings.empty());
   // A turned body with a pose of another length is left to the reader of rigs.
   frame.skeleton = RaisedBrow(TurnsOfFiles()[0]).skeleton;
   EXPECT_TRUE(PosesInFurrowAxes(odd, *matcher)("x", 0)->pose.joints.empty());

@@ -372,6 +372,13 @@ TEST(RigFile, RejectsInputOverTheLimits) {
   std::string many = "{\"name\": [";
   for (std::size_t i = 0; i < JsonIndex::kMaxElements; ++i) many += "1,";
   EXPECT_EQ(Parse(many).status().code(), StatusCode::kLimit);
+  std::string shapes = R"({"name": "a", "reference_poses": [{"name": "p", "shapes": [)";
+  for (int i = 0; i <= 2048; ++i) {
+    shapes += (i == 0 ? "" : ",") + (R"({"blend_shape": "s)" + std::to_string(i) + "\"}");
+  }
+  const Status status = Parse(shapes + "]}]}").status();
+  EXPECT_EQ(status.code(), StatusCode::kLimit) << status.ToString();
+  EXPECT_THAT(status.where(), testing::EndsWith("reference_poses[0].shapes"));
 }
 
 TEST(RigFile, RejectsInvalidText) {

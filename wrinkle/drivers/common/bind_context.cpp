@@ -36,7 +36,8 @@ Status BindContext::ResolveAnchorAndPoses() {
   // live pose.
   for (const ReferencePose& pose : source_.reference_poses) {
     std::vector<PreciseTransform> locals = rest_locals_;
-    FURROW_RETURN_IF_ERROR(ApplyPose(pose, &locals));
+    // Drivers of blend shapes alone need no joint, though captured poses have them.
+    if (source_.reads_joints) FURROW_RETURN_IF_ERROR(ApplyPose(pose, &locals));
     reference_locals_.push_back(std::move(locals));
   }
   return {};

@@ -10,6 +10,7 @@
 
 #include "tests/unit/wrinkle/bound_rig.h"
 #include "wrinkle/drivers/pose/pose_driver.h"
+#include "wrinkle/rig/rig_joints.h"
 #include "wrinkle/skeleton/retarget.h"
 
 namespace furrow::wrinkle {
@@ -81,6 +82,17 @@ TEST(ShapePoints, NeedNoSkeleton) {
     EXPECT_NEAR(bound.ValueAt(Coefficients(skeleton, {0.5f, 0, 0, 0, 0}), "d.p"), 0.8f, 1e-6f);
     EXPECT_EQ(bound.ValueAt(Coefficients(skeleton, {0, 0, 0, 0, 0}), "d.p"), 0.0f);
   }
+}
+
+// A captured pose has the joints of its performer. A phone's recording has none of them.
+TEST(ShapePoints, NeedNoneOfTheJointsOfTheirPoses) {
+  Rig rig = ShapeRig({"browDownLeft"}, {{"p", {{"browDownLeft", 0.5f}}}});
+  rig.anchor.clear();
+  rig.reference_poses[0].joints = {{"spine", {0, 0, 1, 0}}};
+  EXPECT_EQ(WarningOfModelSpace(rig), "");
+  BoundRig bound(rig, Skeleton(), kNames);
+  EXPECT_THAT(bound.binding()->warnings(), testing::ElementsAre());
+  EXPECT_NEAR(bound.ValueAt(Coefficients(Skeleton(), {0.5f, 0, 0, 0, 0}), "d.p"), 1.0f, 1e-6f);
 }
 
 // Three coefficients share a vector: every number of them is laid out right.
