@@ -71,10 +71,6 @@ Result<Assets> LoadAssets(const Config& config) {
   auto matcher = LoadMatcher(config.skeleton_map);
   if (!matcher.ok()) return matcher.status().At("--skeleton-map");
   assets.skeletons = *std::move(matcher);
-  // Rigs name the files and frames of their reference poses; each file is read once.
-  const auto warn = [](const std::string& warning) { spdlog::warn("{}", warning); };
-  const wrinkle::PoseSource poses = rig::PosesInFurrowAxes(
-      motion::CachedPoseSource(ReadOptions(config), warn), assets.skeletons, warn);
   auto shapes = LoadShapeMaps(config.shape_map);
   if (!shapes.ok()) return shapes.status().At("--shape-map");
   assets.shape_matcher = *std::move(shapes);
@@ -82,8 +78,14 @@ Result<Assets> LoadAssets(const Config& config) {
     Status loaded = render::LoadSettings(config.render_settings, &assets.settings);
     if (!loaded.ok()) return loaded.At("--render-settings");
   }
+  // Rigs name the files and frames of their reference poses; each file is read once.
+  const auto warn = [](const std::string& warning) { spdlog::warn("{}", warning); };
+  const auto read_poses = [&] {
+    return rig::PosesInFurrowAxes(motion::CachedPoseSource(ReadOptions(config), warn),
+                                  assets.skeletons, warn);
+  };
   if (config.character.empty() && !config.rig.empty()) {
-    FURROW_RETURN_IF_ERROR(LoadRigAlone(chosen_rig, poses, &assets));
+    FURROW_RETURN_IF_ERROR(LoadRigAlone(chosen_rig, read_poses(), &assets));
     return assets;
   }
   fs::path glb = config.character;
@@ -97,17 +99,16 @@ Result<Assets> LoadAssets(const Config& config) {
     glb = *std::move(shipped);
   }
   const fs::path rig = RigOf(glb, chosen_rig);
+  // The roles that the package states count for the rig's joints, in poses and in streams. Loading
+  // the character reports faults.
+  if (const auto roles = character::LoadCharacterRoles(glb); roles.ok()) {
+    assets.skeletons.SetCharacterRoles(*roles);
+  }
+  const wrinkle::PoseSource poses = read_poses();
   // Weights need no mesh and no pictures, which are large, unless joints may move shapes.
   if (!config.render && !rig.empty()) {
     FURROW_RETURN_IF_ERROR(LoadRigAlone(rig, poses, &assets));
-    if (wrinkle::BlendShapesOf(*assets.rig).empty()) {
-      // Weights are the same with and without pictures, so they need the roles that the package
-      // states for the rig's joints.
-      const auto roles = character::LoadCharacterRoles(glb);
-      FURROW_RETURN_IF_ERROR(roles);
-      assets.skeletons.SetCharacterRoles(*roles);
-      return assets;
-    }
+    if (wrinkle::BlendShapesOf(*assets.rig).empty()) return assets;
   }
   auto loaded = character::LoadCharacter(glb, chosen_rig, poses);
   FURROW_RETURN_IF_ERROR(loaded);

@@ -45,7 +45,9 @@ struct ImportArguments {
 int ImportFolder(const std::filesystem::path& folder, const ImportArguments& arguments,
                  authoring::ImportOptions options) {
   options.rig = arguments.rig.empty() ? std::filesystem::path() : ResolveRigPath(arguments.rig);
-  options.poses = RigPoses(arguments.poses, arguments.map);
+  const auto poses = RigPoses(arguments.poses, arguments.map);
+  if (!poses.ok()) return Fail(poses.status());
+  options.poses = *poses;
   Progress progress("importing", 100);
   options.progress = [&](float done) {
     progress.Set(std::lround(100.0f * done));

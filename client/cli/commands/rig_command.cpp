@@ -70,9 +70,10 @@ int Check(const RigOptions& options) {
   // The rig that ships for MakeHuman names a recording of MakeHuman, which does not ship. Only
   // binding to a skeleton needs the poses.
   std::set<std::string> missing;
-  const auto rig =
-      rig::LoadRig(ResolveRigPath(options.rig), RigPoses(options.read, options.skeleton_map),
-                   options.file.empty() ? &missing : nullptr);
+  const auto poses = RigPoses(options.read, options.skeleton_map);
+  if (!poses.ok()) return Fail(poses.status());
+  const auto rig = rig::LoadRig(ResolveRigPath(options.rig), *poses,
+                                options.file.empty() ? &missing : nullptr);
   if (!rig.ok()) return Fail(rig.status());
   for (const std::string& file : missing) {
     PrintWarnings({"the recording '" + file +

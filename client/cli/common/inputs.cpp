@@ -69,19 +69,29 @@ Result<motion::Clip> LoadClipArgument(const std::string& path, const motion::Loa
 
 fs::path ResolveRigPath(const std::string& argument) { return rig::FindRigFile(argument); }
 
-wrinkle::PoseSource RigPoses(const motion::LoadOptions& read, const std::string& skeleton_map) {
+Result<wrinkle::PoseSource> RigPoses(
+    const motion::LoadOptions& read, const std::string& skeleton_map,
+    std::span<const std::pair<std::string, wrinkle::JointRole>> roles) {
   motion::LoadOptions options = read;
   options.rest_frame = -1;  // poses state one of their own
-  auto matcher = rig::SkeletonMatcher::Create(skeleton_map);
-  // Commands that match joints report missing maps: LoadSkeletonMatcher().
-  return rig::PosesInFurrowAxes(motion::CachedPoseSource(options, PrintWarning),
-                                matcher.ok() ? *std::move(matcher) : rig::SkeletonMatcher(),
+  rig::SkeletonMatcher matcher;
+  // A map that the user asks for must exist. LoadSkeletonMatcher() warns if the shipped ones do
+  // not.
+  if (auto found = rig::SkeletonMatcher::Create(skeleton_map); found.ok()) {
+    matcher = *std::move(found);
+  } else if (!skeleton_map.empty()) {
+    return found.status().At("skeleton map");
+  }
+  matcher.SetCharacterRoles(roles);
+  return rig::PosesInFurrowAxes(motion::CachedPoseSource(options, PrintWarning), std::move(matcher),
                                 PrintWarning);
 }
 
 Result<wrinkle::Rig> LoadRigArgument(const std::string& argument, const motion::LoadOptions& read,
                                      const std::string& skeleton_map) {
-  return rig::LoadRig(ResolveRigPath(argument), RigPoses(read, skeleton_map));
+  const auto poses = RigPoses(read, skeleton_map);
+  FURROW_RETURN_IF_ERROR(poses);
+  return rig::LoadRig(ResolveRigPath(argument), *poses);
 }
 
 Result<rig::SkeletonMatcher> LoadSkeletonMatcher(const std::string& map,
@@ -200,8 +210,13 @@ Result<character::Character> LoadCharacterArgument(const std::string& glb, const
     FURROW_RETURN_IF_ERROR(shipped);
     package = *shipped;
   }
-  auto character = character::LoadCharacter(package, rig.empty() ? fs::path() : ResolveRigPath(rig),
-                                            RigPoses(read, skeleton_map));
+  // Without roles, for instance in a damaged package, loading reports the fault.
+  const auto roles = character::LoadCharacterRoles(package);
+  using Roles = std::span<const std::pair<std::string, wrinkle::JointRole>>;
+  const auto poses = RigPoses(read, skeleton_map, roles.ok() ? Roles(*roles) : Roles());
+  FURROW_RETURN_IF_ERROR(poses);
+  auto character =
+      character::LoadCharacter(package, rig.empty() ? fs::path() : ResolveRigPath(rig), *poses);
   if (!character.ok()) return character;
   PrintWarnings(character->warnings);
   for (const std::string& name : character->missing_rig_pictures) {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/status.h"
@@ -42,10 +43,12 @@ void PrintWarnings(const std::vector<std::string>& warnings);
 [[nodiscard]] std::filesystem::path ResolveRigPath(const std::string& argument);
 
 // Reads the recordings of a rig's reference poses, in Furrow's axes. Prints the reader's warnings.
-// `read`: how they are read; a rest frame there is not meant for them. `skeleton_map`: that of
-// --skeleton-map, or empty; it and the shipped maps tell the axes.
-[[nodiscard]] wrinkle::PoseSource RigPoses(const motion::LoadOptions& read,
-                                           const std::string& skeleton_map = {});
+// `read`: how they are read; its rest frame is ignored, because poses state one of their own.
+// `skeleton_map`: the map that the user chose, or empty; it, the shipped maps and `roles`, those of
+// the character's package, tell the axes. Errors: those of rig::SkeletonMatcher::Create().
+[[nodiscard]] Result<wrinkle::PoseSource> RigPoses(
+    const motion::LoadOptions& read, const std::string& skeleton_map = {},
+    std::span<const std::pair<std::string, wrinkle::JointRole>> roles = {});
 
 // Loads a rig by path, or a shipped rig by name ("cmu" or "cmu.json"). `read` and `skeleton_map`:
 // see RigPoses().
