@@ -175,7 +175,7 @@ class PoseCollector {
       Note("reference pose '" + pose.name + "' names blend shapes that move nothing on this " +
            "character: " + lacking);
     }
-    return by_shapes.empty() ? std::vector<float>() : face_.Weights(by_shapes);
+    return by_shapes.empty() ? std::vector<float>() : face_.DrawnWeights(by_shapes);
   }
 
   void AddShapes(const wrinkle::Region& region, const wrinkle::Feed& feed,

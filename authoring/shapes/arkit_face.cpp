@@ -35,6 +35,7 @@ ArkitFace::ArkitFace(const character::Character& character, const rig::ShapeMatc
   rig::ShapeMatch match = matcher.Match(names, character.shapes);
   description_ = rig::Describe(match);
   program_ = std::move(match.program);
+  drawn_ = rig::MatchShapes(matcher, names, character.shapes, character.shape_rules);
   for (std::size_t i = 0; i < names.size(); ++i) names_.emplace(AsciiLower(names[i]), i);
   usable_ = ShapesWithTargets(character);
   std::vector<std::uint8_t> parts(usable_.size(), 0);
@@ -54,15 +55,25 @@ bool ArkitFace::Has(std::string_view name) const {
   return std::any_of(weights.begin(), weights.end(), [](float w) { return w != 0.0f; });
 }
 
-std::vector<float> ArkitFace::Weights(std::span<const Coefficient> coefficients) const {
+std::vector<float> ArkitFace::Run(const wrinkle::ShapeProgram& program,
+                                  std::span<const Coefficient> coefficients) const {
   std::vector<float> values(names_.size(), 0.0f);
   for (const auto& [name, value] : coefficients) {
     const auto found = names_.find(AsciiLower(name));
     if (found != names_.end()) values[found->second] = value;
   }
   std::vector<float> weights(usable_.size(), 0.0f);
-  // Coefficients that are not finite move nothing.
-  if (program_.Run(values, weights) != wrinkle::JobStatus::kOk) return weights;
+  // Coefficients that are not finite move nothing: Run() writes nothing then.
+  (void)program.Run(values, weights);
+  return weights;
+}
+
+std::vector<float> ArkitFace::DrawnWeights(std::span<const Coefficient> coefficients) const {
+  return Run(drawn_, coefficients);
+}
+
+std::vector<float> ArkitFace::Weights(std::span<const Coefficient> coefficients) const {
+  std::vector<float> weights = Run(program_, coefficients);
   for (std::size_t s = 0; s < weights.size(); ++s) {
     if (!usable_[s]) weights[s] = 0.0f;
   }

@@ -34,6 +34,8 @@ class ArkitFace {
   // The weight of each of Character::shapes for the given coefficients; others are 0. Unknown names
   // count as 0.
   [[nodiscard]] std::vector<float> Weights(std::span<const Coefficient> coefficients) const;
+  // The same as the face is drawn, with its limits and rules (rig::ShapeMatcher::MatchFace()).
+  [[nodiscard]] std::vector<float> DrawnWeights(std::span<const Coefficient> coefficients) const;
   // The weights for one blend shape at 1.
   [[nodiscard]] std::vector<float> Weights(std::string_view name) const;
 
@@ -41,8 +43,12 @@ class ArkitFace {
   [[nodiscard]] const std::string& description() const { return description_; }
 
  private:
+  [[nodiscard]] std::vector<float> Run(const wrinkle::ShapeProgram& program,
+                                       std::span<const Coefficient> coefficients) const;
+
   std::unordered_map<std::string, std::size_t> names_;  // lowercase, to coefficient
   wrinkle::ShapeProgram program_;
+  wrinkle::ShapeProgram drawn_;
   std::vector<bool> usable_;  // per shape: moves vertices of one part of the face
   std::string description_;
 };

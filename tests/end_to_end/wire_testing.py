@@ -103,13 +103,17 @@ class Tracker:
         return sum(subject["poses"] for subject in self.api.get("/api/subjects")["subjects"])
 
     def show(self, packets):
-        """Sends `packets(frame)` in rising frames until two more poses are solved, so that the last one is new."""
-        wanted = self.poses() + 2
-        for _ in range(20_000):
+        """Sends `packets(frame)` in rising frames until two are solved, each before the next is sent: none is left waiting."""
+        for _ in range(2):
             self.frame += 1
+            before = self.poses()
             for packet in packets(self.frame):
                 self.socket.sendto(packet, self.target)
-            if self.poses() >= wanted:
+            self.await_pose(before)
+
+    def await_pose(self, before):
+        for _ in range(20_000):
+            if self.poses() > before:
                 return
         raise AssertionError("the daemon solved no pose")
 

@@ -19,6 +19,7 @@
 #include "authoring/shapes/arkit_face.h"
 #include "character/package/rig_report.h"
 #include "character/source_notes.h"
+#include "wrinkle/rig/rig_blend_shapes.h"
 
 namespace furrow::authoring {
 namespace {
@@ -323,6 +324,9 @@ class Checker {
     for (const character::Picture& picture : character_.pictures) embedded.push_back(picture.name);
     character::RigReportOptions options;
     options.skeleton = &character_.skeleton;
+    // Streams bring blend shapes, not the character.
+    const std::vector<std::string> streamed = wrinkle::BlendShapesOf(character_.rig);
+    options.blend_shape_names = streamed;
     options.folder = character_.folder;
     options.embedded_pictures = embedded;
     const character::RigReport rig = character::ReportOnRig(character_.rig, options);
@@ -341,7 +345,11 @@ class Checker {
 
   // The checks of `furrow bake` itself, so that it accepts what has no error here.
   void CheckBake() {
-    if (character_.rig.regions.empty() || character_.rig.wrinkle_maps.empty()) return;
+    if (character_.rig.regions.empty() || character_.rig.wrinkle_maps.empty()) {
+      Find(Severity::kWarning, "rig-poses", {}, "the rig has no regions or no wrinkle maps to bake",
+           "add them (docs/RIG.md), or use furrow character propose-rig");
+      return;
+    }
     const auto poses = CollectBakePoses(character_, {}, face_);
     if (!poses.ok()) {
       const Status& s = poses.status();
