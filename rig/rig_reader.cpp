@@ -86,9 +86,26 @@ Status ReadModulation(const From& from, const std::string& at, To* to) {
   return {};
 }
 
+// `to` has its modulation already.
+Status ReadAngles(const schema::Feed& from, const std::string& at, wrinkle::Feed* to) {
+  if (from.angles() == nullptr) return {};
+  if (to->modulation || !to->curve.empty()) {
+    return InvalidField("angles excludes modulation and curve", at + ".angles",
+                        "remove one of them");
+  }
+  if (from.angles()->size() == 0) {
+    return InvalidField("a curve needs at least two points", at + ".angles");
+  }
+  for (const schema::AnglePoint* point : *from.angles()) {
+    to->angles.push_back({point->degrees(), point->weight()});
+  }
+  return {};
+}
+
 Status ReadFeed(const schema::Feed& from, const std::string& at, wrinkle::Feed* to) {
   to->map = from.map()->str();
   FURROW_RETURN_IF_ERROR(ReadModulation(from, at, to));
+  FURROW_RETURN_IF_ERROR(ReadAngles(from, at, to));
   return ForEach(
       from.sources(), at + ".sources",
       [&](const schema::Source& source, const std::string& where) -> Status {

@@ -118,16 +118,19 @@ std::string ToJson(const wrinkle::Mask& mask) {
       .str();
 }
 
-// A curve replaces the named modulation, so only one of the two is written. The numbers of a curve
-// take one line: [[0, 0], [0.3, 0.4], [1, 1]].
+// The numbers of a curve take one line: [[0, 0], [0.3, 0.4], [1, 1]].
+std::string CurveJson(const std::vector<wrinkle::CurvePoint>& curve) {
+  return OnOneLine(curve, [](const wrinkle::CurvePoint& p) {
+    return "[" + Number(p.x) + ", " + Number(p.y) + "]";
+  });
+}
+
+// A curve replaces the named modulation, so only one of the two is written.
 void AddModulation(std::optional<wrinkle::Modulation> modulation,
                    const std::vector<wrinkle::CurvePoint>& curve, Object* object) {
   constexpr std::array kNames = {"linear", "cosine", "cubic"};  // wrinkle::Modulation
-  const auto point = [](const wrinkle::CurvePoint& p) {
-    return "[" + Number(p.x) + ", " + Number(p.y) + "]";
-  };
   if (!curve.empty()) {
-    object->Raw("curve", OnOneLine(curve, point));
+    object->Raw("curve", CurveJson(curve));
   } else if (modulation) {
     object->Raw("modulation", Quote(kNames.at(static_cast<std::size_t>(*modulation))));
   }
@@ -139,7 +142,11 @@ std::string ToJson(const wrinkle::Feed& feed) {
   };
   Object object;
   object.Text("map", feed.map).Always("sources", feed.sources, source);
-  AddModulation(feed.modulation, feed.curve, &object);
+  if (!feed.angles.empty()) {
+    object.Raw("angles", CurveJson(feed.angles));
+  } else {
+    AddModulation(feed.modulation, feed.curve, &object);
+  }
   return object.str();
 }
 

@@ -11,13 +11,13 @@
 namespace furrow::wrinkle {
 
 Result<ReferencePose> FullPose(const Rig& rig, const Driver& driver, std::string_view value,
-                               const Skeleton& skeleton) {
+                               const Skeleton& skeleton, std::optional<float> degrees) {
   const std::vector<std::string> values = DriverValueNames(driver);
   if (std::find(values.begin(), values.end(), value) == values.end()) {
     return Status(StatusCode::kNotFound,
                   "driver '" + driver.name + "' has no value '" + std::string(value) + "'");
   }
-  const FullPoseBuilder builder(driver.name, value, skeleton, rig.reference_poses);
+  const FullPoseBuilder builder(driver.name, value, skeleton, rig.reference_poses, degrees);
   return VisitFields(driver, [&](const auto& fields) { return FullPose(fields, builder); });
 }
 

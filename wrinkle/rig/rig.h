@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "wrinkle/drivers/driver.h"
@@ -45,6 +46,11 @@ struct Feed {
   // curve counts.
   std::optional<Modulation> modulation = std::nullopt;
   std::vector<CurvePoint> curve = {};
+  // A curve over the angle of a joint, instead of `curve`: points of degrees from straight,
+  // [0, 180], and weights, [0, 1]. The first source's driver states the angle
+  // (DriverValueAtAngle()): a hinge, a ball or a twist. 2 to 16 points that rise by at least 2
+  // degrees. Empty: none.
+  std::vector<CurvePoint> angles = {};
 };
 
 // Where a region's wrinkles are drawn.
@@ -114,6 +120,11 @@ struct Export {
   std::string weight;
   std::string name;
 };
+
+// The name of the reference pose for which the clothes were cut, for example with the arms 30
+// degrees away from the sides. The bake measures the lengths of cloth in it. Without one, clothes
+// fit the rest pose. No driver needs to use it.
+inline constexpr std::string_view kClothesFitPose = "clothes_fit";
 
 struct Rig {
   std::string name;

@@ -13,6 +13,7 @@
 #include "base/ascii.h"
 #include "wrinkle/fields/field_check.h"
 #include "wrinkle/fields/rig_field.h"
+#include "wrinkle/rig/driver_values.h"
 
 namespace furrow::wrinkle {
 namespace {
@@ -79,11 +80,36 @@ void CheckCurve(const std::vector<CurvePoint>& curve, const std::string& at, Fie
   }
 }
 
+// A driver that the rig lacks is reported when the name is resolved.
+bool ReadsAngle(const Rig& rig, const Feed::Source& source) {
+  const auto driver = std::ranges::find(rig.drivers, source.driver, &Driver::name);
+  return driver == rig.drivers.end() || DriverValueAtAngle(*driver, source.value, 0.0f).has_value();
+}
+
+void CheckAngles(const Feed& feed, const std::string& at, const Rig& rig, FieldCheck* check) {
+  if (feed.angles.empty()) return;
+  check->Require(feed.angles.size() > 1, at, ".angles", "a curve needs at least two points");
+  check->Count(at, ".angles", feed.angles.size(), kMaxCurvePoints);
+  for (std::size_t i = 0; i < feed.angles.size(); ++i) {
+    const std::string point = FieldAt(at + ".angles", i);
+    check->Range(point, "[0]", feed.angles[i].x, 0.0f, 180.0f);
+    check->Range(point, "[1]", feed.angles[i].y, 0.0f, 1.0f);
+    check->Require(i == 0 || feed.angles[i].x - feed.angles[i - 1].x >= kLeastAngleStep, point,
+                   "[0]", "the angle must rise by at least 2 degrees from point to point");
+  }
+  check->Require(!feed.sources.empty() && ReadsAngle(rig, feed.sources.front()), at, ".angles",
+                 "the first source has no angle", "name a hinge, a ball or a twist first");
+  check->Require(feed.sources.empty() || feed.sources.front().gain > 0.0f, at, ".angles",
+                 "the first source has a gain of 0, so it states no angle");
+}
+
 // Gains are not negative, so a sum of 0 means that all of them are 0.
-void CheckFeed(const Feed& feed, const std::string& at, Combine combine, FieldCheck* check) {
+void CheckFeed(const Feed& feed, const std::string& at, Combine combine, const Rig& rig,
+               FieldCheck* check) {
   check->Require(!feed.sources.empty(), at, ".sources", "a feed needs a source");
   check->Count(at, ".sources", feed.sources.size(), kMaxSources);
   CheckCurve(feed.curve, at, check);
+  CheckAngles(feed, at, rig, check);
   float gains = 0.0f;
   for (std::size_t i = 0; i < feed.sources.size(); ++i) {
     const float gain = feed.sources[i].gain;
@@ -94,7 +120,7 @@ void CheckFeed(const Feed& feed, const std::string& at, Combine combine, FieldCh
                  "all gains are 0, which leaves no mean");
 }
 
-void CheckRegion(const Region& region, const std::string& at, FieldCheck* check) {
+void CheckRegion(const Region& region, const std::string& at, const Rig& rig, FieldCheck* check) {
   check->Require(region.mask.channel >= 0 && region.mask.channel <= 3, at, ".mask.channel",
                  "a picture has no such channel", "use 0, 1, 2 or 3 (red, green, blue or alpha)");
   check->Range(at, ".mask.smooth_width", region.mask.smooth_width, 1e-4f, 1.0f);
@@ -112,7 +138,7 @@ void CheckRegion(const Region& region, const std::string& at, FieldCheck* check)
     const std::string feed = FieldAt(at + ".feeds", i);
     check->Name(feed, ".map", region.feeds[i].map);
     check->Once(feed, ".map", region.feeds[i].map, &maps);
-    CheckFeed(region.feeds[i], feed, region.combine, check);
+    CheckFeed(region.feeds[i], feed, region.combine, rig, check);
   }
 }
 
@@ -187,7 +213,12 @@ Status CheckRigFields(const Rig& rig) {
             CheckReferencePose, &check);
   CheckList("drivers", rig.drivers, kMaxRigDrivers, &FieldCheck::Name, CheckDriver, &check);
   CheckList("wrinkle_maps", rig.wrinkle_maps, kMaxWrinkleMaps, &FieldCheck::Name, CheckMap, &check);
-  CheckList("regions", rig.regions, kMaxRegions, &FieldCheck::Name, CheckRegion, &check);
+  CheckList(
+      "regions", rig.regions, kMaxRegions, &FieldCheck::Name,
+      [&](const Region& region, const std::string& at, FieldCheck* fields) {
+        CheckRegion(region, at, rig, fields);
+      },
+      &check);
   CheckSlides(rig, &check);
   CheckFilter(rig.filter, &check);
   return check.Take();

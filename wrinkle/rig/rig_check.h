@@ -19,6 +19,7 @@ inline constexpr std::size_t kMaxSources = 256;     // of one feed
 inline constexpr std::size_t kMaxCurvePoints = 16;  // of one modulation curve, which has at least 2
 // The least step in x from point to point of a modulation curve. It limits the slope.
 inline constexpr float kLeastCurveStep = 0.01f;
+inline constexpr float kLeastAngleStep = 2.0f;  // the same for Feed::angles, degrees
 // Regions times maps: a region uses a map at most once.
 inline constexpr std::size_t kMaxWeights = kMaxRegions * kMaxWrinkleMaps;
 

@@ -110,6 +110,9 @@ RigBinding::~RigBinding() = default;
 
 std::span<const std::string> RigBinding::weight_names() const { return data_->weights.names(); }
 std::span<const DynamicMask> RigBinding::dynamic_masks() const { return data_->influences.masks(); }
+std::vector<std::size_t> RigBinding::InfluencedPlaces() const {
+  return data_->influences.Places();
+}
 std::span<const std::string> RigBinding::driver_value_names() const {
   return data_->driver_value_names;
 }

@@ -34,6 +34,9 @@ class RigBinding {
   // The columns of JointInfluenceJob: one per wrinkle map and lambda that skinning masks use, in
   // the order of the rig's regions.
   [[nodiscard]] std::span<const DynamicMask> dynamic_masks() const;
+  // The pairs of joint and column that some driver values raise above 0: joint * columns + column,
+  // sorted.
+  [[nodiscard]] std::vector<std::size_t> InfluencedPlaces() const;
   // Names of the rig that the skeleton or the stream lacks, if BindOptions allow that.
   [[nodiscard]] std::span<const std::string> missing_joints() const;
   [[nodiscard]] std::span<const std::string> missing_blend_shapes() const;

@@ -48,7 +48,7 @@ void InfluenceTable::Bind(const Rig& rig, const Skeleton& skeleton,
                              .mask = mask,
                              .driver_value = value_index.at(source.driver + "." + source.value),
                              .gain = source.gain,
-                             .modulation = ModulationOf(region, feed)});
+                             .modulation = ModulationOf(rig, region, feed)});
         }
       }
     }
@@ -64,6 +64,17 @@ void InfluenceTable::Bind(const Rig& rig, const Skeleton& skeleton,
     block.gains[lane] = entries[i].gain;
     block.modulation.Set(entries[i].modulation, lane);
   }
+}
+
+std::vector<std::size_t> InfluenceTable::Places() const {
+  std::vector<std::size_t> places;
+  for (const Block& block : blocks_) {
+    places.insert(places.end(), block.places.begin(),
+                  block.places.begin() + static_cast<std::ptrdiff_t>(block.num_lanes));
+  }
+  std::sort(places.begin(), places.end());
+  places.erase(std::unique(places.begin(), places.end()), places.end());
+  return places;
 }
 
 void InfluenceTable::Evaluate(std::span<const float> driver_values, ModulateRow* modulate,

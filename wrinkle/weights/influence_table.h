@@ -36,6 +36,10 @@ class InfluenceTable {
 
   [[nodiscard]] std::span<const DynamicMask> masks() const { return masks_; }
 
+  // The influences that some driver values raise above 0, as indices of Evaluate()'s result,
+  // sorted.
+  [[nodiscard]] std::vector<std::size_t> Places() const;
+
   // Writes all influences: num_joints x num masks, joint-major. `modulate` is the kernel's.
   void Evaluate(std::span<const float> driver_values, ModulateRow* modulate,
                 std::span<float> influences) const;

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "wrinkle/weights/modulation_curve.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include "base/scalar.h"
+#include "wrinkle/rig/driver_values.h"
 
 namespace furrow::wrinkle {
 namespace {
@@ -50,9 +54,45 @@ double SlopeAt(std::span<const Chord> chords, std::size_t point) {
   return InnerSlope(chords[point - 1], chords[point]);
 }
 
+// Points closer than this are one point: where a value is clamped, several angles give the same.
+constexpr float kSameValue = 1e-4f;
+
+// The mean of values weighted by gain is the value, if all sources agree, and kSumModulated
+// modulates each value by itself.
+float GainOf(const Region& region, const Feed::Source& source) {
+  return region.combine == Combine::kMax || region.combine == Combine::kSum ? source.gain : 1.0f;
+}
+
+std::vector<CurvePoint> ValuesOfAngles(const Rig& rig, const Region& region, const Feed& feed) {
+  const Feed::Source& source = feed.sources.front();
+  const auto driver = std::ranges::find(rig.drivers, source.driver, &Driver::name);
+  if (driver == rig.drivers.end()) return {};
+  std::vector<CurvePoint> points;
+  for (const CurvePoint& point : feed.angles) {
+    const float value = DriverValueAtAngle(*driver, source.value, point.x).value_or(0.0f);
+    points.push_back({Saturate(GainOf(region, source) * value), point.y});
+  }
+  // "extended" falls with the angle.
+  if (points.front().x > points.back().x) std::ranges::reverse(points);
+  // Of points at one value, which is clamped there, the one nearest to the range that moves counts:
+  // the last at 0, and the first at 1.
+  std::vector<CurvePoint> rising;
+  for (const CurvePoint& point : points) {
+    if (!rising.empty() && point.x - rising.back().x <= kSameValue) {
+      if (point.x <= kSameValue) rising.back().y = point.y;
+      continue;
+    }
+    rising.push_back(point);
+  }
+  // A curve has at least two points.
+  if (rising.size() == 1) rising.push_back({rising[0].x + 1.0f, rising[0].y});
+  return rising;
+}
+
 }  // namespace
 
-FeedModulation ModulationOf(const Region& region, const Feed& feed) {
+FeedModulation ModulationOf(const Rig& rig, const Region& region, const Feed& feed) {
+  if (!feed.angles.empty()) return {.curve = ValuesOfAngles(rig, region, feed)};
   if (!feed.curve.empty()) return {.curve = feed.curve};
   if (feed.modulation) return {.modulation = *feed.modulation, .curve = {}};
   return {.modulation = region.modulation, .curve = region.curve};

@@ -13,11 +13,13 @@ namespace furrow::wrinkle {
 // named modulation.
 struct FeedModulation {
   Modulation modulation = Modulation::kCosine;
-  std::span<const CurvePoint> curve;  // of the rig
+  std::vector<CurvePoint> curve = {};
 };
 
-// The feed's own modulation or curve; if it has neither, the region's.
-[[nodiscard]] FeedModulation ModulationOf(const Region& region, const Feed& feed);
+// The feed's own modulation or curve; if it has neither, the region's. A curve over angles becomes
+// a curve over the combined value: each of its points lies at the first source's value at that
+// angle, times its gain.
+[[nodiscard]] FeedModulation ModulationOf(const Rig& rig, const Region& region, const Feed& feed);
 
 // "linear", "cosine", "cubic", or "curve".
 [[nodiscard]] std::string_view ModulationName(const FeedModulation& modulation);

@@ -65,7 +65,7 @@ Status WeightTable::Bind(const Rig& rig, const std::unordered_map<std::string, i
     for (const Feed& feed : region.feeds) {
       const std::string owner = "region '" + region.name + "': a feed";
       FURROW_RETURN_IF_ERROR(CheckMapName(rig, owner, feed.map));
-      FURROW_RETURN_IF_ERROR(BindFeed(region, feed, value_index));
+      FURROW_RETURN_IF_ERROR(BindFeed(rig, region, feed, value_index));
     }
   }
   BindOpponents(rig);
@@ -77,15 +77,15 @@ Status WeightTable::Bind(const Rig& rig, const std::unordered_map<std::string, i
   return {};
 }
 
-Status WeightTable::BindFeed(const Region& region, const Feed& feed,
+Status WeightTable::BindFeed(const Rig& rig, const Region& region, const Feed& feed,
                              const std::unordered_map<std::string, int>& value_index) {
   Entry entry;
   entry.first_source = static_cast<std::uint32_t>(sources_.size());
   entry.num_sources = static_cast<std::uint32_t>(feed.sources.size());
   entry.combine = region.combine;
-  const FeedModulation modulation = ModulationOf(region, feed);
+  FeedModulation modulation = ModulationOf(rig, region, feed);
   entry.modulation = modulation.modulation;
-  entry.curve.assign(modulation.curve.begin(), modulation.curve.end());
+  entry.curve = std::move(modulation.curve);
   for (const Feed::Source& source : feed.sources) {
     const auto found = value_index.find(source.driver + "." + source.value);
     if (found == value_index.end()) {

@@ -55,7 +55,7 @@ class WeightTable {
     Modulation modulation = Modulation::kCosine;
     std::vector<CurvePoint> curve;
   };
-  [[nodiscard]] Status BindFeed(const Region& region, const Feed& feed,
+  [[nodiscard]] Status BindFeed(const Rig& rig, const Region& region, const Feed& feed,
                                 const std::unordered_map<std::string, int>& value_index);
   void BindOpponents(const Rig& rig);
 

@@ -53,14 +53,14 @@ Json MaskJson(const wrinkle::Mask& mask) {
 }
 
 // A region with its weights and what feeds each of them.
-Json RegionJson(const wrinkle::Region& region) {
+Json RegionJson(const wrinkle::Rig& rig, const wrinkle::Region& region) {
   Json weights = Json::array();
   for (const wrinkle::Feed& feed : region.feeds) {
     Json sources = Json::array();
     for (const auto& source : feed.sources) {
       sources.push_back({{"value", source.driver + "." + source.value}, {"gain", source.gain}});
     }
-    const wrinkle::FeedModulation modulation = ModulationOf(region, feed);
+    const wrinkle::FeedModulation modulation = ModulationOf(rig, region, feed);
     weights.push_back({{"name", region.name + "." + feed.map},
                        {"map", feed.map},
                        {"modulation", wrinkle::ModulationName(modulation)},
@@ -191,7 +191,7 @@ Json ContributionJson(const wrinkle::Explanation& explanation, const wrinkle::Ri
 ApiReply RigApi::ShowRig(const Hub& hub) const {
   const wrinkle::Rig& rig = hub.rig();
   Json regions = Json::array();
-  for (const wrinkle::Region& region : rig.regions) regions.push_back(RegionJson(region));
+  for (const wrinkle::Region& region : rig.regions) regions.push_back(RegionJson(rig, region));
   Json drivers = Json::array();
   for (const Driver& driver : rig.drivers) drivers.push_back(DriverJson(driver, rig));
   Json poses = Json::array();

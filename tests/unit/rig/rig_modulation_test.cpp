@@ -105,5 +105,62 @@ TEST(ModulationInARig, AcceptsTheLeastStepAnywhere) {
   }
 }
 
+// A knee whose map has the field `angles`.
+Result<wrinkle::Rig> ParseAngles(const std::string& angles, const std::string& from = "knee.flexed",
+                                 const std::string& more = "") {
+  const std::string json = R"({"name": "leg",
+    "drivers": [
+      {"name": "knee", "hinge": {"parent": "hip", "joint": "knee", "axis": [1, 0, 0]}},
+      {"name": "jaw", "blend_shape": {"blend_shape": "jawOpen"}}],
+    "wrinkle_maps": [{"name": "folds"}],
+    "regions": [{"name": "knee", "mask": {"kind": "skinning"},
+      "feeds": [{"map": "folds", "sources": [{"from": ")" +
+                           from + R"("}], "angles": )" + angles + more + "}]}]}";
+  return ParseRig(json, "leg.rig.json", ".");
+}
+
+TEST(AnglesInARig, AreReadAndWrittenBack) {
+  const auto rig = ParseAngles("[[12, 0], [45, 0.6], [110, 1]]");
+  ASSERT_TRUE(rig.ok()) << rig.status().ToString();
+  const wrinkle::Feed& feed = rig->regions[0].feeds[0];
+  EXPECT_EQ(feed.angles,
+            (std::vector<wrinkle::CurvePoint>{{12.0f, 0.0f}, {45.0f, 0.6f}, {110.0f, 1.0f}}));
+  const std::string text = RigToJson(*rig);
+  EXPECT_NE(text.find(R"("angles": [[12, 0], [45, 0.6], [110, 1]])"), std::string::npos) << text;
+  const auto again = ParseRig(text, "again.rig.json", ".");
+  ASSERT_TRUE(again.ok()) << again.status().ToString();
+  EXPECT_EQ(again->regions[0].feeds[0].angles, feed.angles);
+}
+
+TEST(AnglesInARig, AreCheckedPointByPoint) {
+  constexpr StatusCode kInvalid = StatusCode::kInvalidArgument;
+  const std::string at = "regions[0].feeds[0].angles";
+  struct WrongAngles {
+    const char* angles;
+    const char* from;
+    StatusCode code;
+    std::string where;
+  };
+  const WrongAngles wrongs[] = {
+      {"[]", "knee.flexed", kInvalid, at},
+      {"[[12, 0]]", "knee.flexed", kInvalid, at},
+      {"[[-1, 0], [45, 1]]", "knee.flexed", kInvalid, at + "[0][0]"},
+      {"[[0, 0], [181, 1]]", "knee.flexed", kInvalid, at + "[1][0]"},
+      {"[[0, 0], [45, 1.1]]", "knee.flexed", kInvalid, at + "[1][1]"},
+      {"[[45, 0], [12, 1]]", "knee.flexed", kInvalid, at + "[1][0]"},
+      {"[[45, 0], [46.9, 1]]", "knee.flexed", kInvalid, at + "[1][0]"},
+      {"[[0, 0], [45, 1]]", "jaw.value", kInvalid, at},
+      {"[[0, 0], [\"nan\", 1]]", "knee.flexed", StatusCode::kNonFinite, at + "[1][0]"}};
+  for (const WrongAngles& wrong : wrongs) {
+    const Status status = ParseAngles(wrong.angles, wrong.from).status();
+    EXPECT_EQ(status.code(), wrong.code) << wrong.angles << ": " << status.ToString();
+    EXPECT_TRUE(status.where().ends_with(wrong.where)) << wrong.angles << ": " << status.ToString();
+  }
+  const Status both =
+      ParseAngles("[[0, 0], [45, 1]]", "knee.flexed", R"(, "modulation": "linear")").status();
+  EXPECT_EQ(both.code(), kInvalid);
+  EXPECT_NE(both.what().find("angles excludes modulation and curve"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace furrow::rig

@@ -25,16 +25,6 @@ glm::vec2 BendSide(const BallDriverSet::Entry& entry, float cosine, const glm::v
   return side + kTurnGain * beyond * beyond * entry.rest_side;
 }
 
-BallDriverSet::Entry::Range RangeOf(const BallDriver& driver, const BallSide& side) {
-  // Without a threshold or a limit, the range is exactly that of thesis 4.6, as for hinges.
-  if (side.threshold_degrees == 0.0f && side.limit_degrees == 0.0f) {
-    return {.start = 1.0f, .scale = BendScale(driver.beta_degrees)};
-  }
-  const float start = std::cos(side.threshold_degrees * kDegrees);
-  const float full = std::cos(LimitDegrees(driver, side) * kDegrees);
-  return {.start = start, .scale = 1.0f / (start - full)};
-}
-
 }  // namespace
 
 Status BallDriverSet::Bind(const std::string& name, const BallDriver& driver, int first_value,

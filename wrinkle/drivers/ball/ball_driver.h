@@ -51,11 +51,7 @@ class BallDriverSet {
     // length there, or by kLeastSide if that is longer.
     glm::vec2 rest_side{0.0f};
     // The bend to front, back, left and right is clamp((start - cosine) * scale, 0, 1).
-    struct Range {
-      float start = 1.0f;  // cosine of the threshold
-      float scale = 0.0f;  // 1 / (start - cosine of the limit)
-    };
-    std::array<Range, 4> ranges;
+    std::array<BallRange, 4> ranges;
     BallMode mode = BallMode::kSmooth;
   };
 

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "base/scalar.h"
 #include "wrinkle/drivers/common/bone_pair.h"
 #include "wrinkle/drivers/common/full_pose_builder.h"
 #include "wrinkle/fields/field_check.h"
@@ -31,6 +32,21 @@ const BallSide& SideOf(const BallDriver& driver, std::string_view value) {
 
 float LimitDegrees(const BallDriver& driver, const BallSide& side) {
   return side.limit_degrees > 0.0f ? side.limit_degrees : 180.0f - driver.beta_degrees;
+}
+
+BallRange RangeOf(const BallDriver& driver, const BallSide& side) {
+  // Without a threshold or a limit, the range is exactly that of thesis 4.6, as for hinges.
+  if (side.threshold_degrees == 0.0f && side.limit_degrees == 0.0f) {
+    return {.start = 1.0f, .scale = BendScale(driver.beta_degrees)};
+  }
+  const float start = std::cos(side.threshold_degrees * kDegrees);
+  const float full = std::cos(LimitDegrees(driver, side) * kDegrees);
+  return {.start = start, .scale = 1.0f / (start - full)};
+}
+
+float ValueAtAngle(const BallDriver& driver, std::string_view value, float degrees) {
+  const BallRange range = RangeOf(driver, SideOf(driver, value));
+  return Saturate((range.start - std::cos(degrees * kDegrees)) * range.scale);
 }
 
 std::vector<std::string> DriverValueNames(const BallDriver&) {
@@ -71,7 +87,7 @@ Result<ReferencePose> FullPose(const BallDriver& driver, const FullPoseBuilder& 
                             : value == "back" ? -front
                             : value == "left" ? -right
                                               : right;
-  const float limit = LimitDegrees(driver, SideOf(driver, value));
+  const float limit = builder.degrees().value_or(LimitDegrees(driver, SideOf(driver, value)));
   return builder.Bent(*limb, straight, towards, 180.0f - limit);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -63,7 +64,17 @@ struct BallDriver {
 // The bend at which the value of `side` is 1, in degrees from straight.
 [[nodiscard]] float LimitDegrees(const BallDriver& driver, const BallSide& side);
 
+// A value as a function of the cosine of the bend: clamp((start - cosine) * scale, 0, 1).
+struct BallRange {
+  float start = 1.0f;
+  float scale = 0.0f;
+};
+[[nodiscard]] BallRange RangeOf(const BallDriver& driver, const BallSide& side);
+
 [[nodiscard]] std::vector<std::string> DriverValueNames(const BallDriver& driver);
+// The value at a bend of `degrees` from straight towards the value's side (4.6), [0, 1]. Beyond 120
+// degrees the real value may be less (docs/ALGORITHM.md).
+[[nodiscard]] float ValueAtAngle(const BallDriver& driver, std::string_view value, float degrees);
 void CheckFields(const BallDriver& driver, const std::string& at, FieldCheck* check);
 [[nodiscard]] std::vector<std::string> JointsRead(const BallDriver& driver);
 [[nodiscard]] std::vector<std::string> JointsInfluenced(const BallDriver& driver);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,11 +22,18 @@ struct Limb {
 // their FullPose(). The arguments outlive the builder.
 class FullPoseBuilder {
  public:
+  // `degrees`: the angle of a hinge, a ball or a twist, [0, 180]; none: the angle that gives 1.
   FullPoseBuilder(std::string_view driver, std::string_view value, const Skeleton& skeleton,
-                  std::span<const ReferencePose> reference_poses)
-      : driver_(driver), value_(value), skeleton_(skeleton), reference_poses_(reference_poses) {}
+                  std::span<const ReferencePose> reference_poses,
+                  std::optional<float> degrees = std::nullopt)
+      : driver_(driver),
+        value_(value),
+        skeleton_(skeleton),
+        reference_poses_(reference_poses),
+        degrees_(degrees) {}
 
   [[nodiscard]] std::string_view value() const { return value_; }
+  [[nodiscard]] std::optional<float> degrees() const { return degrees_; }
   [[nodiscard]] const Skeleton& skeleton() const { return skeleton_; }
 
   // The rig's reference pose of that name. Error: kNotFound.
@@ -54,6 +62,7 @@ class FullPoseBuilder {
   std::string_view value_;
   const Skeleton& skeleton_;
   std::span<const ReferencePose> reference_poses_;
+  std::optional<float> degrees_;
 };
 
 // Two bones with a larger cosine between them are too close to parallel to define a way to bend.

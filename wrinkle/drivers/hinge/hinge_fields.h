@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -43,6 +44,8 @@ struct HingeDriver {
 };
 
 [[nodiscard]] std::vector<std::string> DriverValueNames(const HingeDriver& driver);
+// The value at a bend of `degrees` from straight (4.6), [0, 1].
+[[nodiscard]] float ValueAtAngle(const HingeDriver& driver, std::string_view value, float degrees);
 void CheckFields(const HingeDriver& driver, const std::string& at, FieldCheck* check);
 [[nodiscard]] std::vector<std::string> JointsRead(const HingeDriver& driver);
 [[nodiscard]] std::vector<std::string> JointsInfluenced(const HingeDriver& driver);

@@ -12,6 +12,10 @@ std::vector<std::string> DriverValueNames(const TwistDriver&) {
   return {"twist_left", "twist_right"};
 }
 
+float ValueAtAngle(const TwistDriver& driver, std::string_view, float degrees) {
+  return Saturate(degrees / driver.full_degrees);
+}
+
 void CheckFields(const TwistDriver& driver, const std::string& at, FieldCheck* check) {
   check->Label(at, ".joint", driver.joint);
   check->Count(at, ".through", driver.through.size(), 64);
@@ -35,7 +39,8 @@ Result<ReferencePose> FullPose(const TwistDriver& driver, const FullPoseBuilder&
   const std::vector<std::string> names = JointsRead(driver);
   const float sign = builder.value() == "twist_left" ? 1.0f : -1.0f;
   // Every joint takes an equal part, because the driver reads the sum.
-  const float angle = sign * driver.full_degrees * kDegrees / static_cast<float>(names.size());
+  const float angle = sign * builder.degrees().value_or(driver.full_degrees) * kDegrees /
+                      static_cast<float>(names.size());
   ReferencePose pose = builder.Empty();
   for (const std::string& name : names) {
     const int joint = skeleton.Find(name);

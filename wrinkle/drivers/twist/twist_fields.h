@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -37,6 +38,8 @@ struct TwistDriver {
 };
 
 [[nodiscard]] std::vector<std::string> DriverValueNames(const TwistDriver& driver);
+// The value at a twist of `degrees` towards the value's side, [0, 1].
+[[nodiscard]] float ValueAtAngle(const TwistDriver& driver, std::string_view value, float degrees);
 void CheckFields(const TwistDriver& driver, const std::string& at, FieldCheck* check);
 [[nodiscard]] std::vector<std::string> JointsRead(const TwistDriver& driver);
 [[nodiscard]] std::vector<std::string> JointsInfluenced(const TwistDriver& driver);

@@ -52,7 +52,8 @@ TEST(RigReport, EveryDriverOfArkitFeedsARegion) {
 TEST(RigReport, WarnsOfUnusedPartsAndMissingReferences) {
   const auto rig = rig::ParseRig(R"({"name": "r", "reference_poses": [
       {"name": "used", "joints": [{"joint": "other", "euler_degrees": [9, 0, 0]}]},
-      {"name": "unused", "joints": []}],
+      {"name": "unused", "joints": []},
+      {"name": "clothes_fit", "joints": [{"joint": "other", "euler_degrees": [0, 0, 30]}]}],
     "drivers": [{"name": "d", "pose": {"points": [{"joint": "tip"}],
                                        "values": [{"name": "v", "reference_pose": "used"}]}},
                 {"name": "idle", "blend_shape": {"blend_shape": "jawOpen"}}],
@@ -68,6 +69,7 @@ TEST(RigReport, WarnsOfUnusedPartsAndMissingReferences) {
   options.skeleton = &skeleton;
   const RigReport report = ReportOnRig(*rig, options);
   EXPECT_THAT(report.warnings, Contains("no driver uses reference pose 'unused'"));
+  EXPECT_THAT(report.warnings, Not(Contains(HasSubstr("clothes_fit")))) << "the bake uses it";
   EXPECT_THAT(report.warnings, Contains("driver 'idle' feeds no region"));
   EXPECT_THAT(report.warnings, Contains("no region uses wrinkle map 'spare'"));
   EXPECT_THAT(report.warnings, Contains(HasSubstr("value 'v' stays 0")));

@@ -152,18 +152,96 @@ TEST(CurvePieces, EqualTheOracle) {
 
 TEST(FeedModulation, IsTheFeedsOwnOrElseTheRegions) {
   const Points curve = {{0.0f, 0.0f}, {1.0f, 0.5f}};
+  const Rig rig;
   Region region;
   Feed feed;
-  EXPECT_EQ(ModulationName(ModulationOf(region, feed)), "cosine");
+  EXPECT_EQ(ModulationName(ModulationOf(rig, region, feed)), "cosine");
   region.modulation = Modulation::kCubic;
-  EXPECT_EQ(ModulationName(ModulationOf(region, feed)), "cubic");
+  EXPECT_EQ(ModulationName(ModulationOf(rig, region, feed)), "cubic");
   region.curve = curve;
-  EXPECT_EQ(ModulationName(ModulationOf(region, feed)), "curve");
+  EXPECT_EQ(ModulationName(ModulationOf(rig, region, feed)), "curve");
   feed.modulation = Modulation::kLinear;
-  EXPECT_EQ(ModulationName(ModulationOf(region, feed)), "linear");
+  EXPECT_EQ(ModulationName(ModulationOf(rig, region, feed)), "linear");
   feed.curve = curve;
-  EXPECT_EQ(ModulationName(ModulationOf(region, feed)), "curve");
-  EXPECT_EQ(ModulationOf(region, feed).curve.data(), feed.curve.data());
+  EXPECT_EQ(ModulationName(ModulationOf(rig, region, feed)), "curve");
+  EXPECT_EQ(ModulationOf(rig, region, feed).curve, feed.curve);
+}
+
+// Degrees of a hinge that bends by 150 degrees at most, and its value by thesis 4.6.
+double HingeValue(double degrees) {
+  constexpr double kDegree = 3.14159265358979 / 180.0;
+  return std::min((1.0 - std::cos(degrees * kDegree)) / (1.0 + std::cos(30.0 * kDegree)), 1.0);
+}
+
+Rig KneeByAngles(const std::string& value, const Points& angles) {
+  Rig rig;
+  Driver& knee = rig.drivers.emplace_back();
+  knee.name = "knee";
+  knee.kind = Driver::Kind::kHinge;
+  rig.regions.emplace_back().feeds.push_back(
+      {.map = "folds", .sources = {{"knee", value, 1.0f}}, .angles = angles});
+  return rig;
+}
+
+TEST(FeedModulation, AnglesAreValuesOfTheFirstSource) {
+  const Points angles = {{12.0f, 0.0f}, {30.0f, 0.43f}, {60.0f, 0.69f}, {110.0f, 1.0f}};
+  const Rig rig = KneeByAngles("flexed", angles);
+  const Region& region = rig.regions[0];
+  const FeedModulation modulation = ModulationOf(rig, region, region.feeds[0]);
+  ASSERT_EQ(modulation.curve.size(), 4u);
+  const std::vector<CurvePiece> pieces = CurvePieces(modulation.curve);
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    const double x = HingeValue(double{angles[i].x});
+    EXPECT_NEAR(double{modulation.curve[i].x}, x, 1e-6);
+    EXPECT_NEAR(double{ValueOf(pieces, static_cast<float>(x))}, double{angles[i].y}, 1e-4);
+  }
+  EXPECT_EQ(ValueOf(pieces, static_cast<float>(HingeValue(11.0))), 0.0f);
+  EXPECT_EQ(ValueOf(pieces, static_cast<float>(HingeValue(140.0))), 1.0f);
+}
+
+TEST(FeedModulation, AnglesOfAFallingValueAreReversed) {
+  const Rig rig = KneeByAngles("extended", {{0.0f, 1.0f}, {50.0f, 0.0f}});
+  const Region& region = rig.regions[0];
+  const FeedModulation modulation = ModulationOf(rig, region, region.feeds[0]);
+  ASSERT_EQ(modulation.curve.size(), 2u);
+  EXPECT_NEAR(double{modulation.curve[0].x}, 1.0 - HingeValue(50.0), 1e-6);
+  EXPECT_EQ(modulation.curve[0].y, 0.0f);
+  EXPECT_EQ(modulation.curve[1], (CurvePoint{1.0f, 1.0f}));
+}
+
+// Beyond full flexion the value stays at 1, so those angles are one point.
+TEST(FeedModulation, AnglesBeyondTheRangeOfTheDriverCountOnce) {
+  const Rig rig = KneeByAngles("flexed", {{150.0f, 0.5f}, {160.0f, 0.7f}, {170.0f, 1.0f}});
+  const Region& region = rig.regions[0];
+  const std::vector<CurvePiece> pieces =
+      CurvePieces(ModulationOf(rig, region, region.feeds[0]).curve);
+  EXPECT_NEAR(ValueOf(pieces, 1.0f), 0.5f, 1e-6f);
+  EXPECT_NEAR(ValueOf(pieces, 0.0f), 0.5f, 1e-6f);
+}
+
+// Below a ball's threshold the value is 0; the weight at the threshold counts.
+TEST(FeedModulation, AnglesBelowAThresholdCountOnce) {
+  Rig rig = KneeByAngles("front", {{0.0f, 0.0f}, {10.0f, 0.2f}, {20.0f, 1.0f}, {60.0f, 0.0f}});
+  rig.drivers[0].kind = Driver::Kind::kBall;
+  rig.drivers[0].ball.front.threshold_degrees = 20.0f;
+  const Region& region = rig.regions[0];
+  const FeedModulation modulation = ModulationOf(rig, region, region.feeds[0]);
+  ASSERT_EQ(modulation.curve.size(), 2u);
+  EXPECT_EQ(modulation.curve[0], (CurvePoint{0.0f, 1.0f}));
+}
+
+// The weight at an angle is exact, however values are combined and whatever their gain is.
+TEST(FeedModulation, AnglesHoldForEveryCombination) {
+  for (const Combine combine :
+       {Combine::kMax, Combine::kSum, Combine::kMean, Combine::kSumModulated}) {
+    Rig rig = KneeByAngles("flexed", {{12.0f, 0.0f}, {45.0f, 1.0f}, {90.0f, 0.25f}});
+    rig.regions[0].combine = combine;
+    rig.regions[0].feeds[0].sources[0].gain = 0.5f;
+    const Region& region = rig.regions[0];
+    const FeedModulation modulation = ModulationOf(rig, region, region.feeds[0]);
+    const bool scaled = combine == Combine::kMax || combine == Combine::kSum;
+    EXPECT_NEAR(double{modulation.curve[1].x}, (scaled ? 0.5 : 1.0) * HingeValue(45.0), 1e-6);
+  }
 }
 
 // Two maps of one region, three of another: named modulations and curves side by side in one block.
@@ -220,6 +298,20 @@ TEST(FeedModulation, ShapesTheInfluenceOfJoints) {
   ASSERT_EQ(job.Run(), JobStatus::kOk);
   const std::size_t neck = static_cast<std::size_t>(bound.skeleton().Find("neck")) * masks.size();
   EXPECT_NEAR(influences[neck + 1], 41864.0f / 68943.0f, 1e-5f);
+}
+
+// The renderer prepares masks for these places, also for folds that a full bend removes.
+TEST(FeedModulation, JointsThatACurveEverInfluencesAreListed) {
+  Rig rig = MakeRig();
+  for (Region& region : rig.regions) {
+    if (region.name == "neck_left") region.feeds[0].curve = {{0.0f, 1.0f}, {0.5f, 0.0f}};
+  }
+  BoundRig bound(rig, MakeBody());
+  const auto masks = bound.binding()->dynamic_masks();
+  const std::size_t neck = static_cast<std::size_t>(bound.skeleton().Find("neck")) * masks.size();
+  const std::vector<std::size_t> places = bound.binding()->InfluencedPlaces();
+  EXPECT_TRUE(std::ranges::binary_search(places, neck + 1));
+  EXPECT_TRUE(std::ranges::is_sorted(places));
 }
 
 }  // namespace
