@@ -70,20 +70,14 @@ const wrinkle::RigBinding& DynamicMasks::BindingOf(MaskMode mode) const {
   return mode == MaskMode::kDynamic ? *skinning_ : *painted_;
 }
 
-// Evaluates with all values at 1: every value that can raise an influence then does.
 std::vector<SkinnedShare> DynamicMasks::Shares(MaskMode mode) const {
   const wrinkle::RigBinding& binding = BindingOf(mode);
   const auto masks = binding.dynamic_masks();
-  const std::vector<float> values(binding.driver_value_names().size(), 1.0f);
-  std::vector<float> influences(static_cast<std::size_t>(binding.skeleton().num_joints()) *
-                                masks.size());
-  const wrinkle::JointInfluenceJob job{&binding, values, influences};
   std::vector<SkinnedShare> shares;
-  if (job.Run() != wrinkle::JobStatus::kOk) return shares;  // cannot happen: the values are finite
-  for (std::size_t i = 0; i < influences.size(); ++i) {
-    if (!(influences[i] > 0.0f)) continue;
-    const std::size_t column = i % masks.size();
-    shares.push_back({static_cast<int>(i / masks.size()), static_cast<int>(column), masks[column]});
+  for (const std::size_t place : binding.InfluencedPlaces()) {
+    const std::size_t column = place % masks.size();
+    shares.push_back(
+        {static_cast<int>(place / masks.size()), static_cast<int>(column), masks[column]});
   }
   return shares;
 }

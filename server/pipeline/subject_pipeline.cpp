@@ -126,11 +126,11 @@ void SubjectPipeline::SetLevel(std::size_t num_drivers) {
 wrinkle::JobStatus SubjectPipeline::Decay(double dt) { return solver_.Decay(dt); }
 
 bool SubjectPipeline::neutral() const {
-  // Half a step of an 8-bit weight: smaller values are neither visible nor sent.
+  // Half a step of an 8-bit weight: smaller values are neither visible nor sent. Weights do not
+  // count, because curves and angles may show folds at rest.
   constexpr float kNothing = 0.5f / 255.0f;
-  const auto is_nothing = [](float value) { return value < kNothing; };
-  return std::ranges::all_of(solver_.filtered_values(), is_nothing) &&
-         std::ranges::all_of(solver_.wrinkle_weights(), is_nothing);
+  return std::ranges::all_of(solver_.filtered_values(),
+                             [](float value) { return value < kNothing; });
 }
 
 void SubjectPipeline::ShowFaceFromNeutral(Snapshot* snapshot) const {

@@ -72,7 +72,7 @@ class SubjectPipeline {
   // Advances the weights by `dt` seconds without a new pose: they hold, then decay to neutral. The
   // pose stays.
   [[nodiscard]] wrinkle::JobStatus Decay(double dt);
-  // True if every weight has decayed so far that it is neither visible nor sent.
+  // True if every driver value has decayed so far that it is neither visible nor sent.
   [[nodiscard]] bool neutral() const;
 
   // True after the first solved pose. The next two describe the last solved pose.

@@ -73,11 +73,14 @@ protocol::PoseFrame Bend(float radians) {
   return pose;
 }
 
-std::shared_ptr<const StreamDefinition> Define(bool filter = false) {
-  StreamDefinitions definitions(KneeRig(filter), {}, 4);
+std::shared_ptr<const StreamDefinition> Define(std::shared_ptr<const wrinkle::Rig> rig) {
+  StreamDefinitions definitions(std::move(rig), {}, 4);
   auto definition = definitions.Get(ToStreamOffer(KneeOffer()));
   EXPECT_TRUE(definition.ok()) << definition.status().ToString();
   return *std::move(definition);
+}
+std::shared_ptr<const StreamDefinition> Define(bool filter = false) {
+  return Define(KneeRig(filter));
 }
 
 TEST(WireAdapter, ConvertsNamesParentsRestAndTails) {
@@ -462,6 +465,19 @@ TEST(SubjectPipeline, ACaptureTimeThatGoesBackRestartsTheFilter) {
   const float bent = solve(2.0f, 0, 50'000'000);
   EXPECT_GT(solve(0.0f, 1, 50'001'000), 0.0f) << "a millisecond on, the filter still holds";
   EXPECT_EQ(solve(2.0f, 2, 1'000), bent) << "a first pose passes unchanged";
+}
+
+// Cloth that is slack at rest keeps its weight. The subject counts as neutral all the same.
+TEST(SubjectPipeline, FoldsAtRestDoNotHoldASubject) {
+  auto rig = std::make_shared<wrinkle::Rig>(*KneeRig(/*filter=*/true));
+  rig->regions[0].curve = {{0.0f, 0.5f}, {1.0f, 1.0f}};
+  SubjectPipeline subject(Define(rig));
+  ApplyPose(Bend(2.0f), subject.stream(), subject.mutable_pose());
+  ASSERT_EQ(subject.Solve(7, 0), wrinkle::JobStatus::kOk);
+  EXPECT_FALSE(subject.neutral());
+  for (int i = 0; i < 600; ++i) ASSERT_EQ(subject.Decay(0.02), wrinkle::JobStatus::kOk);
+  EXPECT_NEAR(subject.wrinkle_weights()[0], 0.5f, 1e-3f);
+  EXPECT_TRUE(subject.neutral());
 }
 
 TEST(SubjectPipeline, SnapshotsShowTheDecay) {
