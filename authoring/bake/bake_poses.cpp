@@ -3,15 +3,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <utility>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 
 #include "authoring/shapes/shape_combinations.h"
 #include "base/ascii.h"
+#include "base/scalar.h"
 #include "base/status.h"
 #include "wrinkle/fields/rig_field.h"
+#include "wrinkle/rig/driver_values.h"
 #include "wrinkle/rig/full_pose.h"
 #include "wrinkle/shapes/blend_shape_pose.h"
 #include "wrinkle/skeleton/reference_pose.h"
@@ -32,6 +37,11 @@ constexpr float kLeastMove = 1e-5f;
 
 // Weaker sources take the folds of the stronger ones. Folds of their own would run across those.
 constexpr float kLeastShapeGain = 0.7f;
+constexpr float kLeastAngleGain = 0.6f;  // for feeds by angle
+
+constexpr int kBisections = 20;  // of an angle
+
+constexpr float kStepAngle = 8.0f * kDegrees;  // between the steps on the way to a pose
 
 bool Wants(std::span<const std::string> maps, const std::string& map) {
   return maps.empty() || std::find(maps.begin(), maps.end(), map) != maps.end();
@@ -55,22 +65,42 @@ bool IsRest(std::span<const Transform> locals, const wrinkle::Skeleton& skeleton
   return true;
 }
 
+bool Moves(const wrinkle::ReferencePose& pose, const std::string& joint) {
+  return std::ranges::find(pose.joints, joint, &wrinkle::JointDelta::joint) != pose.joints.end();
+}
+
+// Precondition: the pose moves the joint.
+const wrinkle::JointDelta& DeltaOf(const wrinkle::ReferencePose& pose, const std::string& joint) {
+  return *std::ranges::find(pose.joints, joint, &wrinkle::JointDelta::joint);
+}
+
 // Turns the driver values that feed a map into full poses of the character's own skeleton.
 class PoseCollector {
  public:
   PoseCollector(const character::Character& character, const ArkitFace& face)
-      : character_(character), face_(face) {}
+      : character_(character), face_(face) {
+    for (const wrinkle::ReferencePose& pose : character.rig.reference_poses) {
+      if (pose.name == wrinkle::kClothesFitPose) fit_ = pose;
+    }
+    std::erase_if(fit_.joints, [&](const wrinkle::JointDelta& delta) {
+      return character.skeleton.Find(delta.joint) == wrinkle::kNoJoint;
+    });
+  }
 
   Status Add(const wrinkle::Region& region, const wrinkle::Feed& feed,
              const wrinkle::Feed::Source& source) {
     const std::string value = source.driver + "." + source.value;
     const Driver* driver = FindDriver(character_.rig, source.driver);
     if (driver == nullptr) return {StatusCode::kNotFound, "there is no driver '" + value + "'"};
+    const bool states_angle = &source == &feed.sources.front();
+    if (!feed.angles.empty() && !states_angle && source.gain < kLeastAngleGain) return {};
     if (driver->kind == Driver::Kind::kBlendShape && !character_.shapes.empty()) {
       AddShape(region, feed, source, driver->blend_shape);
       return {};
     }
-    const auto pose = wrinkle::FullPose(character_.rig, *driver, source.value, character_.skeleton);
+    const std::optional<float> degrees = AngleOf(feed, source);
+    const auto pose =
+        wrinkle::FullPose(character_.rig, *driver, source.value, character_.skeleton, degrees);
     if (pose.status().code() == StatusCode::kUnsupported) {
       Note(value + " has no joint pose; only strokes can give " + region.name + "." + feed.map +
            " its folds");
@@ -83,13 +113,17 @@ class PoseCollector {
     std::vector<float> shape_weights = PoseShapes(*pose, locals);
     const bool has_shapes =
         std::any_of(shape_weights.begin(), shape_weights.end(), [](float w) { return w != 0.0f; });
-    if (!has_shapes && IsRest(locals, character_.skeleton)) return AtRest(*driver, value, *pose);
+    // A feed that states an angle may well mean the rest pose: cloth has slack there.
+    if (!degrees && !has_shapes && IsRest(locals, character_.skeleton)) {
+      return AtRest(*driver, value, *pose);
+    }
     if (!has_shapes) shape_weights.clear();
-    found_.poses.push_back({.map = feed.map,
-                            .region = region.name,
-                            .skin_matrices = SkinMatrices(locals),
-                            .shape_weights = std::move(shape_weights),
-                            .weight = std::min(source.gain, 1.0f)});
+    AddPose({.map = feed.map,
+             .region = region.name,
+             .skin_matrices = SkinMatrices(locals),
+             .path = IsCloth(feed.map) ? PathTo(*pose) : std::vector<std::vector<glm::mat4>>(),
+             .shape_weights = std::move(shape_weights),
+             .weight = std::min(source.gain, 1.0f)});
     return {};
   }
 
@@ -207,6 +241,92 @@ class PoseCollector {
     return {};
   }
 
+  // True if the map may be drawn on cloth.
+  [[nodiscard]] bool IsCloth(const std::string& map) const {
+    const auto found =
+        std::ranges::find(character_.rig.wrinkle_maps, map, &wrinkle::WrinkleMap::name);
+    return found != character_.rig.wrinkle_maps.end() &&
+           found->surface != wrinkle::WrinkleMap::Surface::kSkin;
+  }
+
+  // The angle of a source where the feed has its largest weight: for the first source, the first
+  // such angle; for others, the angle of the same value. Nothing if the feed states no angles, or
+  // the source has none.
+  [[nodiscard]] std::optional<float> AngleOf(const wrinkle::Feed& feed,
+                                             const wrinkle::Feed::Source& source) const {
+    if (feed.angles.empty()) return std::nullopt;
+    const float degrees = std::ranges::max_element(feed.angles, {}, &wrinkle::CurvePoint::y)->x;
+    const wrinkle::Feed::Source& first = feed.sources.front();
+    if (&source == &first) return degrees;
+    const Driver* driver = FindDriver(character_.rig, first.driver);
+    const Driver* own = FindDriver(character_.rig, source.driver);
+    if (driver == nullptr || own == nullptr) return std::nullopt;
+    const auto value = wrinkle::DriverValueAtAngle(*driver, first.value, degrees);
+    const auto at = [&](float angle) {
+      return wrinkle::DriverValueAtAngle(*own, source.value, angle);
+    };
+    if (!value || !at(0.0f)) return std::nullopt;
+    const float wanted = std::min(first.gain * *value / source.gain, 1.0f);
+    const bool rises = *at(0.0f) < *at(180.0f);
+    float low = 0.0f, high = 180.0f;
+    for (int k = 0; k < kBisections; ++k) {
+      const float middle = 0.5f * (low + high);
+      ((*at(middle) < wanted) == rises ? low : high) = middle;
+    }
+    return high;
+  }
+
+  // Straight limbs are one pose, whichever side they would bend to.
+  void AddPose(BakePose pose) {
+    const auto found = std::ranges::find_if(found_.poses, [&](const BakePose& other) {
+      return other.map == pose.map && other.region == pose.region &&
+             other.skin_matrices == pose.skin_matrices && other.shape_weights == pose.shape_weights;
+    });
+    if (found == found_.poses.end()) {
+      found_.poses.push_back(std::move(pose));
+    } else {
+      found->weight = std::max(found->weight, pose.weight);
+    }
+  }
+
+  // Equal steps of at most kStepAngle from the pose that the clothes were cut for to `pose`. Joints
+  // that `pose` does not name stay as they were.
+  [[nodiscard]] std::vector<std::vector<glm::mat4>> PathTo(
+      const wrinkle::ReferencePose& pose) const {
+    wrinkle::ReferencePose from = fit_, to = pose;
+    for (const wrinkle::JointDelta& delta : to.joints) {
+      if (!Moves(from, delta.joint)) from.joints.push_back({.joint = delta.joint});
+    }
+    for (const wrinkle::JointDelta& delta : fit_.joints) {
+      if (!Moves(to, delta.joint)) to.joints.push_back(delta);
+    }
+    float largest = 0.0f;
+    for (const wrinkle::JointDelta& delta : to.joints) {
+      const glm::quat turn = glm::conjugate(DeltaOf(from, delta.joint).rotation) * delta.rotation;
+      largest = std::max(largest, 2.0f * std::acos(std::min(std::abs(turn.w), 1.0f)));
+    }
+    const int steps = std::max(static_cast<int>(std::ceil(largest / kStepAngle)), 1);
+    std::vector<std::vector<glm::mat4>> path;
+    for (int k = 0; k <= steps; ++k) {
+      const float t = static_cast<float>(k) / static_cast<float>(steps);
+      wrinkle::ReferencePose part = to;
+      for (wrinkle::JointDelta& delta : part.joints) {
+        const wrinkle::JointDelta& begin = DeltaOf(from, delta.joint);
+        delta.rotation = glm::slerp(begin.rotation, delta.rotation, t);
+        delta.translation = glm::mix(begin.translation, delta.translation, t);
+        delta.unscaled_translation =
+            glm::mix(begin.unscaled_translation, delta.unscaled_translation, t);
+      }
+      std::vector<Transform> locals(character_.skeleton.rest_pose().begin(),
+                                    character_.skeleton.rest_pose().end());
+      // A joint that the skeleton lacks leaves the rest pose, which has no folds. The joints of the
+      // pose itself have been found before.
+      static_cast<void>(wrinkle::ApplyReferencePose(part, character_.skeleton, locals));
+      path.push_back(SkinMatrices(locals));
+    }
+    return path;
+  }
+
   // Parents precede children, so one pass in place turns local into model matrices.
   std::vector<glm::mat4> SkinMatrices(std::span<const Transform> locals) const {
     std::vector<glm::mat4> matrices(locals.size());
@@ -230,6 +350,7 @@ class PoseCollector {
 
   const character::Character& character_;
   const ArkitFace& face_;
+  wrinkle::ReferencePose fit_;  // the rest pose if the rig has none
   CollectedPoses found_;
   std::set<std::string> missing_;  // blend shapes of drivers
 };

@@ -32,6 +32,10 @@ struct CollectedPoses {
 // that its shapes lead. Shapes with a gain below 0.7 give no pose: they show the folds of the
 // others.
 //
+// A feed with `angles` is posed at the first angle of its largest weight, which may be the rest
+// pose. Its sources with a gain below 0.6 give no pose. `path` begins at the reference pose
+// wrinkle::kClothesFitPose, if the rig has one.
+//
 // Errors: kNotFound (no rig; a map that the rig lacks; a joint that the skeleton lacks),
 // kInvalidArgument (a reference pose equal to the rest pose, which cannot fold anything; a driver
 // that does not fit the skeleton). `where` is a field of the rig: "regions[3].feeds[0].sources[1]".

@@ -170,7 +170,7 @@ void AddMapWarnings(const BakedMap& map, const BakeOptions& options,
     say("has no folds: its poses compress nothing and it has no strokes");
     return;
   }
-  if (s.worst_compression > material.max_compression) {
+  if (!map.cloth && s.worst_compression > material.max_compression) {
     say("has a compression of " + Number(s.worst_compression) + ", limited to " +
         Number(material.max_compression) + ": check the skinning there");
   }

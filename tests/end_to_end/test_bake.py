@@ -36,7 +36,7 @@ def sheet(uv=lambda s, t: (s, t), weights=lambda t: (1 - t, t), extra_triangles=
             "indices": ("SCALAR", 5125, "3I", triangles + list(extra_triangles))}
 
 
-def glb(mesh, lie=0):
+def glb(mesh, lie=0, material="skin"):
     """Returns the sheet as a .glb with `tip` at the distance SIDE above `root`."""
     binary, views, accessors, places = b"", [], [], {}
     inverse_bind = [(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -y, 0, 1) for y in (0.0, SIDE)]
@@ -58,7 +58,7 @@ def glb(mesh, lie=0):
         "nodes": [{"name": "root", "children": [1]}, {"name": "tip", "translation": [0, SIDE, 0]},
                   {"name": "sheet", "mesh": 0, "skin": 0}],
         "skins": [{"joints": [0, 1], "inverseBindMatrices": places["matrices"]}],
-        "materials": [{"name": "skin"}],
+        "materials": [{"name": material}],
         "meshes": [{"name": "sheet", "primitives": [
             {"attributes": attributes, "indices": places["indices"], "material": 0}]}],
         "buffers": [{"byteLength": len(binary)}], "bufferViews": views, "accessors": accessors}).encode()
@@ -119,6 +119,26 @@ class BakeCase(unittest.TestCase):
         return message
 
 
+class ClothTest(BakeCase):
+    def test_fabrics_fold_in_their_own_way(self):
+        cloth = rig()
+        cloth["wrinkle_maps"][0]["surface"] = "cloth"
+        heights = {}
+        for fabric in ("denim", "jersey", "all=jersey"):
+            package = self.package(rig_json=cloth)
+            package.write_bytes(glb(sheet(), material="cloth"))
+            self.out = self.root / fabric
+            text = self.bake(package, "--fabric", fabric).stderr.decode()
+            self.assertRegex(text, r"squash on cloth: [1-9]\d*% folded")
+            heights[fabric] = (self.out / "squash_height.png").read_bytes()
+        self.assertNotEqual(heights["denim"], heights["jersey"])
+        self.assertEqual(heights["all=jersey"], heights["jersey"])
+        package.write_bytes(glb(sheet(), material="cloth"))
+        self.out = self.root / "tight"
+        self.bake(package, "--ease", 0)
+        self.assertNotEqual((self.out / "squash_height.png").read_bytes(), heights["jersey"])
+
+
 class BadInputTest(BakeCase):
     def test_no_uvs(self):
         mesh = sheet()
@@ -163,6 +183,14 @@ class BadInputTest(BakeCase):
         self.assertFalse(list(self.out.glob("folds*")))
         self.assertTrue((self.out / "squash_height.png").exists())
         self.refuse(BAD_INPUT, package, "--map", "folds", says=["no mesh is cloth"])
+
+    def test_fabrics_and_regions_that_do_not_exist(self):
+        package = self.package()
+        message = furrow("bake", package, "--out", self.out, "--fabric", "silk", check=USAGE).stderr.decode()
+        self.assertIn("unknown fabric 'silk'", message)
+        self.assertIn("denim", message)
+        self.refuse(BAD_INPUT, package, "--fabric", "neck=denim", says=["no region 'neck'", "--fabric"])
+        self.refuse(BAD_INPUT, package, "--fabric", "all=denim", says=["no region 'all' that folds cloth"])
 
     def test_sizes_out_of_range(self):
         package = self.package()

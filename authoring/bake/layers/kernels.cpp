@@ -106,7 +106,7 @@ Status CheckCount(const std::vector<float>& wanted) {
                 1e-6 * sum / static_cast<double>(kCandidates),
                 1e-6 * kMaxCandidates / static_cast<double>(kCandidates));
   return {StatusCode::kLimit, text, "options",
-          "increase the wavelength (--skin-wavelength, --cloth-wavelength) or reduce --size"};
+          "increase the wavelength (--skin-wavelength) or reduce --size"};
 }
 
 // Dart throwing: candidates in random order, from which PlaceKernels() keeps those that are far

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -11,6 +12,7 @@
 #include "authoring/paint/dilate.h"
 #include "base/scalar.h"
 #include "base/status.h"
+#include "wrinkle/weights/vertex_influence.h"
 
 namespace furrow::authoring {
 namespace {
@@ -18,6 +20,7 @@ namespace {
 constexpr float kFineLines = 1.0f / 3.0f;  // wavelength relative to the main folds
 constexpr int kGutter = 16;                // texels to grow planes beyond UV borders
 constexpr float kFoldedMillimetres = 0.01f;
+constexpr float kEdgesPerFold = 4.0f;  // of the simulation of cloth
 
 const wrinkle::Region* FindRegion(const wrinkle::Rig& rig, const std::string& name) {
   const auto found =
@@ -41,6 +44,25 @@ bool Feeds(const wrinkle::Region& region, const std::string& map) {
                      [&](const wrinkle::Feed& feed) { return feed.map == map; });
 }
 
+// The joints whose skin weights mask a map of a region.
+std::set<int> JointsOf(const character::Character& character, const wrinkle::Region& region,
+                       const std::string& map) {
+  std::set<int> joints;
+  for (const wrinkle::Feed& feed : region.feeds) {
+    if (feed.map != map) continue;
+    for (const wrinkle::Feed::Source& source : feed.sources) {
+      for (const wrinkle::Driver& driver : character.rig.drivers) {
+        if (driver.name != source.driver) continue;
+        for (const std::string& name :
+             VisitFields(driver, [](const auto& fields) { return JointsInfluenced(fields); })) {
+          joints.insert(character.skeleton.Find(name));
+        }
+      }
+    }
+  }
+  return joints;
+}
+
 SurfacePoint PlaceOf(const SurfaceTexel& texel) {
   return {texel.triangle, texel.corners, texel.position};
 }
@@ -57,7 +79,12 @@ MapBaker::MapBaker(const character::Character& character, const BakeSurface& sur
       cloth_(cloth),
       profile_(material_.sharpness),
       sum_(surface.surface().positions().size()),
-      blood_(surface.surface().positions().size()) {}
+      blood_(surface.surface().positions().size()) {
+  if (surface.fine_mesh() != nullptr) {
+    cloth_folds_ =
+        std::make_unique<ClothFolds>(*surface.fine_mesh(), options.ease, Depth(), options.seed);
+  }
+}
 
 // The region's mask per welded vertex; empty if the mask is 1 everywhere.
 std::vector<float> MapBaker::MaskOf(const std::string& region) const {
@@ -75,6 +102,9 @@ void MapBaker::AddPose(const BakePose& pose) {
   // A pose may move the whole body but feeds only its own region.
   std::vector<float> weights = MaskOf(pose.region);
   if (weights.empty()) weights.assign(field.tensors.size(), 1.0f);
+  if (cloth_folds_ != nullptr) {
+    cloth_folds_->Add(pose, ClothMask(pose.region, weights), ClothWavelength(pose.region));
+  }
   for (float& weight : weights) weight *= pose.weight;
   sum_.Add(field.tensors, weights);
   blood_.Add(field.growth, weights);
@@ -93,6 +123,38 @@ void MapBaker::AddPose(const BakePose& pose) {
 }
 
 void MapBaker::AddStroke(const BakeStroke& stroke) { strokes_.push_back(&stroke); }
+
+// Cloth folds where the region is drawn: `painted` is the texture mask, or 1 everywhere. A region
+// masked by skinning is drawn where its drivers' joints move the cloth.
+std::vector<float> MapBaker::ClothMask(const std::string& name, std::vector<float> painted) const {
+  const wrinkle::Region* region = FindRegion(character_.rig, name);
+  if (region == nullptr || region->mask.kind != wrinkle::Mask::Kind::kSkinning) return painted;
+  const std::set<int> joints = JointsOf(character_, *region, map_);
+  for (std::size_t v = 0; v < painted.size(); ++v) {
+    const character::Vertex& vertex = surface_.surface().SourceOf(v);
+    painted[v] = 0.0f;
+    for (int k = 0; k < 4; ++k) {
+      if (!joints.contains(static_cast<int>(vertex.joints[k]))) continue;
+      painted[v] = std::max(painted[v], wrinkle::Lambda(region->mask.lambda, vertex.skin_weights[k],
+                                                        region->mask.smooth_width));
+    }
+  }
+  return painted;
+}
+
+// Metres. Folds that the simulation's edges or the texels cannot hold are wider.
+float MapBaker::ClothWavelength(const std::string& region) const {
+  const auto entry = std::ranges::find_if(
+      options_.fabrics, [&](const RegionFabric& one) { return one.Covers(region); });
+  const Fabric& fabric = entry == options_.fabrics.end() ? options_.fabric : entry->fabric;
+  const std::span<const float> sides = surface_.texel_metres();
+  double sum = 0.0;
+  for (const float side : sides) sum += static_cast<double>(side);
+  const auto texel =
+      static_cast<float>(sum / static_cast<double>(std::max<std::size_t>(sides.size(), 1)));
+  return std::max({FoldWavelength(fabric), kEdgesPerFold * surface_.fine_mesh()->edge(),
+                   kTexelsPerWave * texel});
+}
 
 // Metres per welded vertex. Regions mix by their masks in the logarithm, so 4 mm and 16 mm meet at
 // 8 mm. What the masks leave over counts as the material's own wavelength.
@@ -124,7 +186,9 @@ std::vector<float> MapBaker::Smallest() const {
   return smallest;
 }
 
-Status MapBaker::MakeLayers(const FoldField& field, BakeProgress* progress) {
+Status MapBaker::MakeLayers(const StrokeLayer& strokes, const std::vector<Tensor2>& tensors,
+                            BakeProgress* progress) {
+  const FoldField field(surface_.surface(), strokes, tensors, Wavelengths(), Smallest());
   std::vector<FoldLayer::Options> wanted;
   FoldLayer::Options options;
   options.material = material_;
@@ -158,6 +222,7 @@ Status MapBaker::MakeLayers(const FoldField& field, BakeProgress* progress) {
 FoldSample MapBaker::FoldsAt(const SurfacePoint& point, const glm::vec3& tangent,
                              const glm::vec3& bitangent, const StrokeLayer& strokes) const {
   FoldSample sum;
+  if (cloth_folds_ != nullptr) sum = cloth_folds_->At(point, tangent, bitangent);
   for (const auto& layer : layers_) {
     const FoldSample fold = layer->At(point, tangent, bitangent);
     sum.height += fold.height;
@@ -250,6 +315,12 @@ void MapBaker::Measure(const std::vector<float>& compression, const StrokeLayer&
 // be wider.
 void MapBaker::MeasureWavelengths(BakedMap* map) const {
   BakedMap::Statistics& statistics = map->statistics;
+  if (cloth_folds_ != nullptr) {
+    const auto [least, most] = cloth_folds_->Wavelengths();
+    statistics.finest_mm = least / kMetresPerMillimetre;
+    statistics.coarsest_mm = most / kMetresPerMillimetre;
+    return;
+  }
   const std::vector<float> asked = Wavelengths(), smallest = Smallest();
   const float scale = material_.fine_lines > 0.0f ? kFineLines : 1.0f;
   float widened = 1.0f;
@@ -301,7 +372,8 @@ BakedMask MapBaker::SuggestMask(const RegionFolds& folds) const {
 }
 
 Result<std::unique_ptr<BakedMap>> MapBaker::Bake(float from, float to, BakeProgress* progress) {
-  constexpr float kStrokes = 0.1f, kFolds = 0.35f;  // completed share of the time after each part
+  // Completed share of the time after each part. Cloth is simulated, which takes most of the time.
+  constexpr float kStrokes = 0.1f, kFolds = 0.35f, kClothFolds = 0.85f;
   const auto at = [&](float share) { return from + (to - from) * share; };
   progress->BeginPart(from, at(kStrokes));
   std::vector<std::vector<float>> masks;
@@ -312,15 +384,19 @@ Result<std::unique_ptr<BakedMap>> MapBaker::Bake(float from, float to, BakeProgr
   const std::vector<Tensor2> tensors = sum_.Take();
   std::vector<float> compression;
   for (const Tensor2& tensor : tensors) compression.push_back(PrincipalOf(tensor).large);
-  const FoldField field(surface_.surface(), **strokes, tensors, Wavelengths(), Smallest());
-  progress->BeginPart(at(kStrokes), at(kFolds));
-  FURROW_RETURN_IF_ERROR(MakeLayers(field, progress));
+  const float folds_end = cloth_ ? kClothFolds : kFolds;
+  progress->BeginPart(at(kStrokes), at(folds_end));
+  if (cloth_folds_ == nullptr) {
+    FURROW_RETURN_IF_ERROR(MakeLayers(**strokes, tensors, progress));
+  } else if (!cloth_folds_->Solve(options_.threads, progress)) {
+    return BakeProgress::CancelledStatus();
+  }
 
   auto map = std::make_unique<BakedMap>();
   map->map = map_;
   map->cloth = cloth_;
   map->width = map->height = options_.size;
-  progress->BeginPart(at(kFolds), to);
+  progress->BeginPart(at(folds_end), to);
   if (!FillTexels(**strokes, progress, map.get())) return BakeProgress::CancelledStatus();
   FillBlood(map.get());
   Measure(compression, **strokes, map.get());

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "authoring/bake/layers/blood.h"
+#include "authoring/bake/layers/cloth_folds.h"
 #include "authoring/bake/layers/fold_layer.h"
 #include "authoring/bake/layers/profile.h"
 #include "authoring/bake/layers/stroke_layer.h"
@@ -45,11 +46,16 @@ class MapBaker {
   };
 
   [[nodiscard]] std::vector<float> MaskOf(const std::string& region) const;
+  [[nodiscard]] std::vector<float> ClothMask(const std::string& region,
+                                             std::vector<float> painted) const;
+  [[nodiscard]] float ClothWavelength(const std::string& region) const;
   [[nodiscard]] float Depth() const { return options_.depth * material_.depth; }
   [[nodiscard]] std::vector<float> Wavelengths() const;
   // The shortest wavelength that the map's texels can show, per welded vertex, metres.
   [[nodiscard]] std::vector<float> Smallest() const;
-  Status MakeLayers(const FoldField& field, BakeProgress* progress);
+  // Makes all folds but those of strokes.
+  Status MakeLayers(const StrokeLayer& strokes, const std::vector<Tensor2>& tensors,
+                    BakeProgress* progress);
   [[nodiscard]] FoldSample FoldsAt(const SurfacePoint& point, const glm::vec3& tangent,
                                    const glm::vec3& bitangent, const StrokeLayer& strokes) const;
   bool FillTexels(const StrokeLayer& strokes, BakeProgress* progress, BakedMap* map) const;
@@ -71,7 +77,8 @@ class MapBaker {
   float worst_ = 0.0f;
   std::vector<const BakeStroke*> strokes_;
   std::vector<RegionFolds> regions_;
-  std::vector<std::unique_ptr<FoldLayer>> layers_;
+  std::vector<std::unique_ptr<FoldLayer>> layers_;  // of skin
+  std::unique_ptr<ClothFolds> cloth_folds_;         // of cloth
 };
 
 }  // namespace furrow::authoring

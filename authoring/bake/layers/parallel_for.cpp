@@ -7,22 +7,17 @@
 #include <vector>
 
 namespace furrow::authoring {
-namespace {
-
-constexpr std::size_t kRangeLength = 8192;
-
-}  // namespace
 
 bool ParallelFor(std::size_t count, int threads,
                  const std::function<void(std::size_t, std::size_t)>& work,
-                 const std::function<bool(float)>& progress) {
+                 const std::function<bool(float)>& progress, std::size_t range_length) {
   std::atomic<std::size_t> next{0};
   std::atomic<bool> stopped{false};
   // Threads take ranges from a common counter, so a slow range does not hold up the others.
   const auto run_one_range = [&] {
-    const std::size_t first = next.fetch_add(kRangeLength);
+    const std::size_t first = next.fetch_add(range_length);
     if (first >= count || stopped) return false;
-    work(first, std::min(first + kRangeLength, count));
+    work(first, std::min(first + range_length, count));
     return true;
   };
   std::vector<std::jthread> others;

@@ -8,6 +8,8 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
+#include "authoring/bake/request/fabric.h"
+
 // The input of a bake: poses, strokes and options.
 namespace furrow::authoring {
 
@@ -23,6 +25,10 @@ struct BakePose {
   // One per joint of Character::skeleton: posed position = skin_matrix * rest position (model
   // space).
   std::vector<glm::mat4> skin_matrices;
+  // For cloth: skin matrices from the pose that the clothes were cut for to this pose, both
+  // included, in small steps. Folds depend on the way: they travel, merge and stay. Joints that the
+  // pose does not name stay as the clothes were cut. Empty: from rest.
+  std::vector<std::vector<glm::mat4>> path = {};
   // One per shape of the character, applied before skinning; shapes beyond the end rest.
   std::vector<float> shape_weights = {};
   float weight = 1.0f;  // scales the compression of this pose, (0, 1]
@@ -53,7 +59,9 @@ struct BakeStroke {
   float wavelength_mm = 0.0f;
 };
 
-// How a material folds. Wavelengths are distances from valley to valley on the surface at rest.
+// How a material folds. `max_compression`, `threshold`, `smoothing_mm` and `depth` apply to skin
+// and cloth, the others to skin: cloth folds as its fabric does. Wavelengths are distances from
+// valley to valley on the surface at rest.
 struct BakeMaterial {
   float wavelength_mm = 5.0f;     // [0.2, 200]
   float variation = 0.4f;         // local variation of wavelength and depth, [0, 0.5]
@@ -83,14 +91,10 @@ struct BakeRegionWavelength {
 struct BakeOptions {
   int size = 2048;  // width and height of the maps, texels, [64, 4096]
   BakeMaterial skin;
-  BakeMaterial cloth{.wavelength_mm = 20.0f,
-                     .variation = 0.4f,
-                     .share = 0.4f,
-                     .max_compression = 0.5f,
-                     .threshold = 0.03f,
-                     .smoothing_mm = 40.0f,
-                     .sharpness = 0.35f,
-                     .crossing = 0.3f};
+  BakeMaterial cloth{.max_compression = 0.5f, .threshold = 0.03f, .smoothing_mm = 40.0f};
+  Fabric fabric = kFabrics[0];  // of all cloth but that of these regions
+  std::vector<RegionFabric> fabrics = {{"knee", kFabrics[1]}, {"hip", kFabrics[1]}};
+  float ease = 0.09f;  // how much longer cloth is than the surface that it lies on, [0, 0.2]
   std::vector<BakeRegionWavelength> wavelengths = {
       {"brow", 8.0f}, {"glabella", 6.5f}, {"nose", 3.5f}, {"eye", 3.5f}, {"mouth", 5.5f}};
   float depth = 1.0f;      // multiplier for every height of both materials, [0, 4]

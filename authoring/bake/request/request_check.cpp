@@ -43,15 +43,33 @@ Status CheckNames(const wrinkle::Rig& rig, const std::string& map, const std::st
   return Status();
 }
 
+Status CheckMatrices(const character::Character& character, std::span<const glm::mat4> matrices,
+                     const std::string& where) {
+  const auto joints = static_cast<std::size_t>(character.skeleton.num_joints());
+  if (matrices.size() != joints) {
+    return Refuse(std::to_string(matrices.size()) + " skin matrices for " + std::to_string(joints) +
+                      " joints",
+                  where);
+  }
+  for (std::size_t joint = 0; joint < joints; ++joint) {
+    for (int k = 0; k < 16; ++k) {
+      if (std::isfinite(matrices[joint][k / 4][k % 4])) continue;
+      return Status(StatusCode::kNonFinite,
+                    "the skin matrix of joint '" + character.skeleton.joint_names()[joint] +
+                        "' is not finite",
+                    where);
+    }
+  }
+  return Status();
+}
+
 // Numbers are checked once here, before any solver sees them.
 Status CheckPose(const character::Character& character, const BakePose& pose,
                  const std::string& where) {
   FURROW_RETURN_IF_ERROR(CheckNames(character.rig, pose.map, pose.region, where));
-  const auto joints = static_cast<std::size_t>(character.skeleton.num_joints());
-  if (pose.skin_matrices.size() != joints) {
-    return Refuse(std::to_string(pose.skin_matrices.size()) + " skin matrices for " +
-                      std::to_string(joints) + " joints",
-                  where);
+  FURROW_RETURN_IF_ERROR(CheckMatrices(character, pose.skin_matrices, where));
+  for (const std::vector<glm::mat4>& step : pose.path) {
+    FURROW_RETURN_IF_ERROR(CheckMatrices(character, step, where + ".path"));
   }
   if (!In(pose.weight, 1e-6f, 1.0f)) {
     return Refuse("the weight is " + Text(pose.weight) + "; it must be in (0, 1]", where);
@@ -65,18 +83,14 @@ Status CheckPose(const character::Character& character, const BakePose& pose,
                    [](float weight) { return std::isfinite(weight); })) {
     return Status(StatusCode::kNonFinite, "a shape weight is not finite", where);
   }
-  for (const glm::mat4& matrix : pose.skin_matrices) {
-    for (int k = 0; k < 16; ++k) {
-      if (!std::isfinite(matrix[k / 4][k % 4])) {
-        const auto joint = static_cast<std::size_t>(&matrix - pose.skin_matrices.data());
-        return Status(StatusCode::kNonFinite,
-                      "the skin matrix of joint '" + character.skeleton.joint_names()[joint] +
-                          "' is not finite",
-                      where);
-      }
-    }
-  }
   return Status();
+}
+
+Status CheckFabric(const Fabric& fabric) {
+  if (In(fabric.bending, 0.1f, 1000.0f)) return Status();
+  return Refuse("the bending stiffness of fabric '" + std::string(fabric.name) + "' is " +
+                    Text(fabric.bending) + "; it must be in [0.1, 1000]",
+                "options.fabric");
 }
 
 Status CheckStroke(const wrinkle::Rig& rig, const BakeStroke& stroke, const std::string& where) {
@@ -137,6 +151,13 @@ Status CheckOptions(const BakeOptions& options) {
     }
   }
   FURROW_RETURN_IF_ERROR(CheckMaterial(options.skin, "options.skin"));
+  FURROW_RETURN_IF_ERROR(CheckFabric(options.fabric));
+  for (const RegionFabric& region : options.fabrics) {
+    FURROW_RETURN_IF_ERROR(CheckFabric(region.fabric));
+  }
+  if (!In(options.ease, 0.0f, 0.2f)) {
+    return Refuse("the ease is " + Text(options.ease) + "; it must be in [0, 0.2]", "options.ease");
+  }
   return CheckMaterial(options.cloth, "options.cloth");
 }
 

@@ -124,7 +124,18 @@ Result<std::unique_ptr<BakeSurface>> BakeSurface::Create(const character::Charac
     return Status(StatusCode::kInvalidArgument, "no triangle of the " + kind + " has any area",
                   character.name, "check that the mesh and its UVs are not collapsed to a point");
   }
+  if (cloth) made->fine_mesh_ = std::make_unique<FineMesh>(made->surface_, made->ClothEdge());
   return made;
+}
+
+// Short enough for the narrowest folds of the fabrics. Where that would take too many triangles,
+// because a model is huge or in other units than metres, edges are longer and folds wider.
+float BakeSurface::ClothEdge() const {
+  constexpr float kEdge = 0.007f;  // metres
+  constexpr float kMostTriangles = 4e5f;
+  float area = 0.0f;
+  for (const Surface::Triangle& triangle : surface_.triangles()) area += triangle.area;
+  return std::max(kEdge, std::sqrt(2.0f * area / kMostTriangles));
 }
 
 BakeSurface::BakeSurface(std::span<const character::Mesh* const> meshes, float smoothing, int size,

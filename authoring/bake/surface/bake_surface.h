@@ -9,6 +9,7 @@
 #include "authoring/bake/request/bake_progress.h"
 #include "authoring/bake/request/bake_request.h"
 #include "authoring/bake/surface/compression.h"
+#include "authoring/bake/surface/fine_mesh.h"
 #include "authoring/bake/surface/surface.h"
 #include "authoring/paint/surface_texels.h"
 #include "character/character.h"
@@ -26,6 +27,8 @@ class BakeSurface {
 
   [[nodiscard]] const Surface& surface() const { return surface_; }
   [[nodiscard]] const CompressionSolver& solver() const { return solver_; }
+  // Cloth only, else null: the mesh that folds.
+  [[nodiscard]] const FineMesh* fine_mesh() const { return fine_mesh_.get(); }
   // The texels that the surface covers.
   [[nodiscard]] const std::vector<SurfaceTexel>& texels() const { return texels_; }
   // The number of texels inside several triangles.
@@ -43,9 +46,11 @@ class BakeSurface {
   BakeSurface(std::span<const character::Mesh* const> meshes, float smoothing, int size,
               BakeProgress* progress);
   [[nodiscard]] std::vector<float> TexelSides(int size) const;
+  [[nodiscard]] float ClothEdge() const;
 
   Surface surface_;
   CompressionSolver solver_;
+  std::unique_ptr<FineMesh> fine_mesh_;
   std::int64_t overlaps_ = 0;
   std::vector<SurfaceTexel> texels_;
   std::vector<float> texel_metres_;

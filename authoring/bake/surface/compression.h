@@ -4,11 +4,11 @@
 #include <span>
 #include <vector>
 
-#include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 
 #include "authoring/bake/request/bake_progress.h"
+#include "authoring/bake/surface/posed_surface.h"
 #include "authoring/bake/surface/surface.h"
 
 namespace furrow::authoring {
@@ -24,9 +24,7 @@ struct Principal2 {
 
 // Computes how a pose compresses a surface at each vertex.
 //
-// - The motions of the joints are blended as dual quaternions (Kavan et al. 2007). The renderer
-//   blends linearly, but that flattens a bent limb, which would look like a lengthwise compression.
-//   If a skin matrix is not rigid, the solver also blends linearly.
+// - PoseSurface() moves the surface.
 // - A stretch is negative where the pose turns the surface inside out, as inside a sharply bent
 //   knee. Lengths alone would not show that such a surface is more than fully compressed.
 //
@@ -66,16 +64,9 @@ class CompressionSolver {
     PlaneRotation turn;
   };
 
-  // The position of a vertex under the blended motion, and the rotation of its surroundings.
-  struct Posed {
-    glm::vec3 position{0.0f};
-    glm::mat3 turn{1.0f};
-  };
-  [[nodiscard]] std::vector<Posed> Pose(std::span<const glm::mat4> skin_matrices,
-                                        std::span<const glm::vec3> positions) const;
   [[nodiscard]] bool IsSliver(std::size_t triangle) const;
-  [[nodiscard]] Tensor2 StretchOf(std::size_t triangle, std::span<const Posed> posed, float limit,
-                                  float* worst) const;
+  [[nodiscard]] Tensor2 StretchOf(std::size_t triangle, std::span<const PosedVertex> posed,
+                                  float limit, float* worst) const;
   static void LimitTerms(std::vector<Term>* terms);
   void Gather(std::size_t vertex, float radius, SurfaceSearch* reach, std::vector<Term>* terms);
 

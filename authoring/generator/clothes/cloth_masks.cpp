@@ -29,20 +29,20 @@ vec4 BySide(const vec3& p, float a, float b, float soft) {
 
 // Arms lie along X at rest. They fold in front, toward the forearm.
 vec4 Elbows(const vec3& p) {
-  const float near = Smoothstep(0.130f, 0.035f, std::abs(std::abs(p.x) - 0.455f));
+  const float near = Smoothstep(0.215f, 0.06f, std::abs(std::abs(p.x) - 0.455f));
   const float inner = Side(p.z + 0.018f, 0.038f);
   return BySide(p, near * inner, near * (1.0f - inner), 0.01f);
 }
 
 // Knees fold behind.
 vec4 Knees(const vec3& p) {
-  const float near = Smoothstep(0.150f, 0.040f, std::abs(p.y - 0.495f));
+  const float near = Smoothstep(0.30f, 0.08f, std::abs(p.y - 0.495f));
   const float outer = Side(p.z - 0.002f, 0.045f);
   return BySide(p, near * (1.0f - outer), near * outer, 0.01f);
 }
 
 vec4 Hips(const vec3& p) {
-  const float near = Smoothstep(0.74f, 0.83f, p.y) * Smoothstep(1.005f, 0.965f, p.y) *
+  const float near = Smoothstep(0.56f, 0.72f, p.y) * Smoothstep(1.005f, 0.965f, p.y) *
                      Smoothstep(0.30f, 0.24f, std::abs(p.x));
   const float front = Side(p.z, 0.05f);
   return BySide(p, near * front, near * (1.0f - front), 0.035f);
@@ -51,14 +51,14 @@ vec4 Hips(const vec3& p) {
 vec4 Shoulders(const vec3& p) {
   const float x = std::abs(p.x);
   const float near =
-      Smoothstep(0.085f, 0.15f, x) * Smoothstep(0.345f, 0.27f, x) * Smoothstep(1.21f, 1.29f, p.y);
+      Smoothstep(0.03f, 0.11f, x) * Smoothstep(0.40f, 0.30f, x) * Smoothstep(1.08f, 1.24f, p.y);
   const float front = Side(p.z + 0.015f, 0.04f);
   return BySide(p, near * front, near * (1.0f - front), 0.01f);
 }
 
 // Front, back, left and right with the weights of a ball driver's quarters: squared cosines.
 vec4 Waist(const vec3& p) {
-  const float near = Smoothstep(0.965f, 1.02f, p.y) * Smoothstep(1.235f, 1.14f, p.y) *
+  const float near = Smoothstep(0.965f, 1.02f, p.y) * Smoothstep(1.33f, 1.18f, p.y) *
                      Smoothstep(0.30f, 0.24f, std::abs(p.x));
   const float length = std::max(std::hypot(p.x, p.z), 1e-4f);
   const float across = p.x / length, ahead = p.z / length;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <set>
 #include <thread>
 #include <utility>
@@ -134,12 +135,22 @@ class BodyPart {
     });
   }
 
-  // Skin folds where cloth does, by a map of its own, except that straight limbs are smooth.
-  // Clothes fold early, hence their gains above 1.
+  // True if the map's weight ends at its peak: folds of a full bend, or of a driver without angles.
+  // Cloth alone is slack at straight limbs and has folds that come and go with the angle.
+  static bool IsDeepest(const wrinkle::Feed& feed) {
+    return feed.angles.empty() ||
+           std::ranges::max_element(feed.angles, {}, &wrinkle::CurvePoint::y) ==
+               std::prev(feed.angles.end());
+  }
+
+  // Skin folds where cloth does at a full bend, by a map of its own that follows the driver's
+  // value. A gain above 1 lets cloth fold early; skin does not.
   void DrawOnSkin(wrinkle::Region* region) const {
     std::vector<wrinkle::Feed> feeds = region->feeds;
+    std::erase_if(feeds, [](const wrinkle::Feed& feed) { return !IsDeepest(feed); });
     for (wrinkle::Feed& feed : feeds) {
       feed.map = OnSkin(feed.map);
+      feed.angles.clear();
       std::erase_if(feed.sources, [&](const auto& s) {
         return !on_skin_.contains(s.driver) || s.value == "extended";
       });

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -41,6 +42,7 @@ struct BakeArguments {
   std::vector<std::string> maps;
   MapFormat format = MapFormat::kPng;
   bool masks = false;
+  std::vector<authoring::RegionFabric> fabrics;  // of regions, as given
   motion::LoadOptions read;
   authoring::BakeOptions options;
 };
@@ -71,6 +73,23 @@ Status CheckOutput(const BakeArguments& arguments) {
           NewRig(arguments).string(), "choose another folder for --out"};
 }
 
+// Regions without a namesake in the rig are mistyped, and skin has no fabric.
+Status CheckFabrics(const std::vector<authoring::RegionFabric>& fabrics, const wrinkle::Rig& rig) {
+  const auto is_cloth = [&](const wrinkle::Feed& feed) {
+    const auto map = std::ranges::find(rig.wrinkle_maps, feed.map, &wrinkle::WrinkleMap::name);
+    return map != rig.wrinkle_maps.end() && map->surface != wrinkle::WrinkleMap::Surface::kSkin;
+  };
+  for (const authoring::RegionFabric& fabric : fabrics) {
+    const auto covered = [&](const wrinkle::Region& region) {
+      return fabric.Covers(region.name) && std::ranges::any_of(region.feeds, is_cloth);
+    };
+    if (std::ranges::any_of(rig.regions, covered)) continue;
+    return {StatusCode::kNotFound, "the rig has no region '" + fabric.region + "' that folds cloth",
+            "--fabric", "name a region, or the beginning of several: knee covers knee_l_inner"};
+  }
+  return {};
+}
+
 // Removes the strokes of maps that are not baked.
 void KeepMaps(const std::vector<std::string>& maps, std::vector<authoring::BakeStroke>* strokes) {
   for (authoring::BakeStroke& stroke : *strokes) {
@@ -87,6 +106,7 @@ Result<BakeJob> Prepare(const BakeArguments& arguments) {
   auto character = LoadCharacterArgument(arguments.character, arguments.rig, arguments.read);
   FURROW_RETURN_IF_ERROR(character);
   job.character = std::move(*character);
+  FURROW_RETURN_IF_ERROR(CheckFabrics(arguments.fabrics, job.character.rig));
   const auto shapes = LoadShapeMatcher({});
   FURROW_RETURN_IF_ERROR(shapes);
   auto poses = authoring::CollectBakePoses(job.character, arguments.maps,
@@ -198,31 +218,62 @@ int Bake(const BakeArguments& arguments) {
   return kDone;
 }
 
-void AddMaterialOptions(CLI::App& command, authoring::BakeOptions& options) {
+// Reads "denim", for all cloth, and "knee=denim", for a region. Later ones count. A fabric for all
+// cloth replaces the defaults of regions, too.
+void SetFabrics(const std::vector<std::string>& texts, BakeArguments* arguments) {
+  authoring::BakeOptions& options = arguments->options;
+  for (const std::string& text : texts) {
+    const std::size_t equals = text.find('=');
+    const std::string name = equals == std::string::npos ? text : text.substr(equals + 1);
+    const std::optional<authoring::Fabric> fabric = authoring::FindFabric(name);
+    if (!fabric) {
+      throw CLI::ValidationError(
+          "--fabric", "unknown fabric '" + name + "'; fabrics: " + authoring::FabricNames());
+    }
+    if (equals == std::string::npos) {
+      options.fabric = *fabric;
+      options.fabrics.clear();
+      arguments->fabrics.clear();
+    } else {
+      arguments->fabrics.insert(arguments->fabrics.begin(), {text.substr(0, equals), *fabric});
+    }
+  }
+  options.fabrics.insert(options.fabrics.begin(), arguments->fabrics.begin(),
+                         arguments->fabrics.end());
+}
+
+void AddMaterialOptions(CLI::App& command, BakeArguments& arguments) {
+  authoring::BakeOptions& options = arguments.options;
   command
       .add_option("--depth", options.depth,
                   "Factor for the depth of all folds, for example to age a face")
       ->check(Within(0.0, 4.0))
       ->capture_default_str();
-  const auto share = [&options](float value) {
-    options.skin.share = value;
-    options.cloth.share = value;
-  };
   command
-      .add_option_function<float>(
-          "--share", share,
-          "Share of the compression that goes into folds; the rest shortens the "
-          "material (default: 0.3 on skin, 0.4 on cloth)")
-      ->check(Within(0.0, 1.0));
+      .add_option(
+          "--share", options.skin.share,
+          "Share of the compression that goes into folds of skin; the rest shortens the skin")
+      ->check(Within(0.0, 1.0))
+      ->capture_default_str();
   command
       .add_option("--skin-wavelength", options.skin.wavelength_mm,
                   "Distance between folds on skin, in millimetres, unless a region sets another")
       ->check(Within(0.2, 200.0))
       ->capture_default_str();
   command
-      .add_option("--cloth-wavelength", options.cloth.wavelength_mm,
-                  "Distance between folds on cloth, in millimetres")
-      ->check(Within(0.2, 200.0))
+      .add_option_function<std::vector<std::string>>(
+          "--fabric",
+          [&arguments](const std::vector<std::string>& texts) { SetFabrics(texts, &arguments); },
+          "Fabric of all cloth, or REGION=FABRIC for a region, for example knee=denim "
+          "(repeatable): " +
+              authoring::FabricNames() + " (default: cotton knee=wool hip=wool)")
+      ->type_name("[REGION=]FABRIC")
+      ->allow_extra_args(false);
+  command
+      .add_option(
+          "--ease", options.ease,
+          "How much longer cloth is than the surface it lies on, as a fraction; 0 fits tightly")
+      ->check(Within(0.0, 0.2))
       ->capture_default_str();
   command
       .add_option(
@@ -271,7 +322,7 @@ void AddBake(CLI::App& app, Action& action) {
                        "File format: 16-bit PNG with a scale in the rig, or half-float EXR");
   command->add_flag("--masks", arguments->masks,
                     "Give each region of the rig the mask that its poses suggest");
-  AddMaterialOptions(*command, arguments->options);
+  AddMaterialOptions(*command, *arguments);
   command->callback([arguments, &action] { action = [arguments] { return Bake(*arguments); }; });
 }
 

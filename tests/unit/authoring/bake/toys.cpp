@@ -46,7 +46,7 @@ void Append(const character::Mesh& from, character::Mesh* to) {
   for (const std::uint32_t index : from.indices) to->indices.push_back(base + index);
 }
 
-character::Character Wearing(character::Mesh mesh) {
+character::Character Wearing(character::Mesh mesh, bool cloth) {
   character::Character character;
   character.name = "toy";
   std::vector<wrinkle::JointDesc> joints(2);
@@ -58,13 +58,13 @@ character::Character Wearing(character::Mesh mesh) {
   character.skeleton = std::move(skeleton).value();
   character.inverse_bind_matrices.assign(2, glm::mat4(1.0f));
   character::Material skin;
-  skin.kind = character::Material::Kind::kSkin;
+  skin.kind = cloth ? character::Material::Kind::kCloth : character::Material::Kind::kSkin;
   character.materials.push_back(skin);
   mesh.material = 0;
   character.meshes.push_back(std::move(mesh));
   wrinkle::WrinkleMap map;
   map.name = "folds";
-  map.surface = wrinkle::WrinkleMap::Surface::kSkin;
+  map.surface = cloth ? wrinkle::WrinkleMap::Surface::kCloth : wrinkle::WrinkleMap::Surface::kSkin;
   character.rig.wrinkle_maps.push_back(map);
   wrinkle::Region region;
   region.name = "patch";

@@ -29,9 +29,9 @@ struct Point {
 // Appends a mesh to another mesh.
 void Append(const character::Mesh& from, character::Mesh* to);
 
-// A character with two joints, "a" and "b", one skin mesh, a region "patch" without a mask picture,
-// and one wrinkle map "folds" on skin.
-[[nodiscard]] character::Character Wearing(character::Mesh mesh);
+// A character with two joints, "a" and "b", one mesh of skin or cloth, a region "patch" without a
+// mask picture, and one wrinkle map "folds" on that surface.
+[[nodiscard]] character::Character Wearing(character::Mesh mesh, bool cloth = false);
 
 // A sheet in the plane z = 0, `width` x `height` metres, with its lower left corner at the origin.
 // Its UVs fill the picture.

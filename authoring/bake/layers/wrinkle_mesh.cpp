@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "authoring/bake/layers/wrinkle_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/gtx/quaternion.hpp>
+
+#include "authoring/paint/noise.h"
+#include "base/scalar.h"
+
+namespace furrow::authoring {
+namespace {
+
+using glm::vec3;
+
+constexpr std::uint32_t kInactive = 0xffffffffu;
+// How much of the difference from its neighbours' slides a vertex loses per iteration.
+constexpr float kSlideTogether = 0.5f;
+// The wave that resists least, in wavelengths. The one that grows fastest is shorter.
+constexpr float kSlowest = 1.35f;
+// How far ease and wavelength vary: by a factor of 1 - v to 1 + v, and of 2^-v to 2^v.
+constexpr float kEaseVariation = 0.8f;
+constexpr float kWavelengthVariation = 0.6f;
+// How much more a pull presses cloth to the surface, per strain.
+constexpr float kPress = 20.0f;
+// The strength of bending, at edges of a wavelength / pi.
+constexpr float kBending = 0.05f;
+// A share of the bending that an iteration removes. Larger values make the heights oscillate.
+constexpr float kMostBending = 0.8f;
+// Where skinning compresses the surface to less than this, inside a sharp bend, the cloth shortens
+// with it: no real limb is pressed so far.
+constexpr float kLeastStretch = 0.35f;
+// How much wider than the surface cloth is across a pull, per strain of the pull. The weave shears,
+// so this is more than Poisson's ratio of the threads. Skinning stretches further than cloth, which
+// slips, so the strain has a limit.
+constexpr float kNarrowing = 0.8f;
+constexpr float kLargestTension = 0.2f;
+constexpr float kShortest = 0.3f;  // of the cut length, however far the surface is compressed
+// Slopes approach this. Cloth that hangs over would otherwise be a black line.
+constexpr float kSteepest = 1.0f;
+// Below this cosine between the surface's normal and the skinned one, skinning has turned the
+// surface inside out.
+constexpr float kInsideOut = 0.3f;
+
+// The nearest rotation to a blend of rotations and scales, by Gram and Schmidt; none if it has
+// none.
+glm::mat3 RotationIn(const glm::mat3& m) {
+  const float first = glm::length(m[0]);
+  if (!(first > 1e-6f)) return glm::mat3(1.0f);
+  const vec3 x = m[0] / first;
+  const vec3 y = m[1] - glm::dot(m[1], x) * x;
+  const float second = glm::length(y);
+  if (!(second > 1e-6f)) return glm::mat3(1.0f);
+  return {x, y / second, glm::cross(x, y / second)};
+}
+
+vec3 UnitOr(const vec3& v, const vec3& otherwise) {
+  const float length = glm::length(v);
+  return length > 1e-12f ? v / length : otherwise;
+}
+
+}  // namespace
+
+WrinkleMesh::WrinkleMesh(const FineMesh& mesh, std::span<const float> room, const Options& options)
+    : mesh_(mesh), options_(options) {
+  Activate(room);
+  MakeLinks();
+}
+
+void WrinkleMesh::Activate(std::span<const float> room) {
+  std::vector<char> wanted(room.size(), 0);
+  for (std::uint32_t v = 0; v < room.size(); ++v) {
+    if (!(room[v] > 0.0f)) continue;
+    wanted[v] = 1;
+    for (const std::uint32_t other : mesh_.Around(v)) wanted[other] = 1;
+  }
+  index_.assign(room.size(), kInactive);
+  std::vector<vec3> normals;
+  for (const wrinkle::SurfaceAxes& axes : mesh_.surface().axes()) normals.push_back(axes.normal);
+  for (std::uint32_t v = 0; v < room.size(); ++v) {
+    if (!wanted[v]) continue;
+    index_[v] = static_cast<std::uint32_t>(active_.size());
+    Active& point = active_.emplace_back();
+    point.vertex = v;
+    point.room = room[v];
+    point.rest_normal = UnitOr(mesh_.vertices()[v].Interpolate(std::span<const vec3>(normals)),
+                               vec3(0.0f, 0.0f, 1.0f));
+  }
+  ring_starts_.push_back(0);
+  for (const Active& point : active_) {
+    for (const std::uint32_t other : mesh_.Around(point.vertex)) {
+      if (index_[other] != kInactive) rings_.push_back(index_[other]);
+    }
+    ring_starts_.push_back(rings_.size());
+  }
+}
+
+void WrinkleMesh::MakeLinks() {
+  std::vector<float> lengths(active_.size(), 0.0f), counts(active_.size(), 0.0f);
+  for (const FineMesh::Edge& edge : mesh_.edges()) {
+    const std::uint32_t a = index_[edge[0]], b = index_[edge[1]];
+    if (a == kInactive || b == kInactive) continue;
+    const float length = glm::distance(mesh_.positions()[edge[0]], mesh_.positions()[edge[1]]);
+    for (const std::uint32_t end : {a, b}) {
+      lengths[end] += length;
+      counts[end] += 1.0f;
+    }
+    const float room_a = active_[a].room, room_b = active_[b].room;
+    if (room_a <= 0.0f && room_b <= 0.0f) continue;
+    const float mobile = (room_a > 0.0f ? 1.0f : 0.0f) + (room_b > 0.0f ? 1.0f : 0.0f);
+    const float looser = 1.0f + kEaseVariation * NoiseAt(edge[0], 2);
+    links_.push_back({.a = a,
+                      .b = b,
+                      .ease = 1.0f + options_.ease * looser * 0.5f * (room_a + room_b),
+                      .share_a = room_a > 0.0f ? 1.0f / mobile : 0.0f,
+                      .share_b = room_b > 0.0f ? 1.0f / mobile : 0.0f});
+  }
+  // The mean of a vertex's neighbours, at the distance l, is lower than a crest by x^2 of its
+  // height, with x = pi l / lambda. So a wave loses b x^4 of its height per iteration by bending of
+  // strength b, and with a support of the same size, the wave of lambda resists least. Cloth
+  // buckles where it is compressed by more than a constant times b x^2, so b = kBending / x^2 lets
+  // all fabrics buckle alike, on edges of any length.
+  for (std::size_t i = 0; i < active_.size(); ++i) {
+    const float wider = std::exp2(kWavelengthVariation * NoiseAt(active_[i].vertex, 1));
+    const float x =
+        kPi * lengths[i] / (std::max(counts[i], 1.0f) * kSlowest * wider * options_.wavelength);
+    const float square = std::max(x * x, 1e-6f);
+    active_[i].bending = std::min(kBending / square, kMostBending);
+    active_[i].support = std::min(active_[i].bending * square * square, 0.5f);
+  }
+}
+
+// Smooth noise over the surface at rest, [-variation, variation]. `stream` selects one of several.
+float WrinkleMesh::NoiseAt(std::uint32_t vertex, int stream) const {
+  constexpr float kFeature = 3.0f;  // wavelengths
+  const vec3 place = mesh_.positions()[vertex] / (kFeature * options_.wavelength);
+  const vec3 shift(17.0f * static_cast<float>(stream),
+                   0.37f * static_cast<float>(options_.seed % 997), 5.0f);
+  return options_.variation * SignedNoise(place + shift);
+}
+
+// Moves the surface; the cloth keeps its place relative to the surface.
+void WrinkleMesh::Carry(std::span<const PosedVertex> surface) {
+  for (Active& point : active_) {
+    const FineMesh::Vertex& vertex = mesh_.vertices()[point.vertex];
+    const vec3 offset = glm::transpose(point.turn) * (point.cloth - point.base);
+    point.base = vec3(0.0f);
+    glm::mat3 turn(0.0f);
+    for (int k = 0; k < 3; ++k) {
+      const PosedVertex& corner = surface[vertex.corners[static_cast<std::size_t>(k)]];
+      point.base += vertex.shares[k] * corner.position;
+      turn += vertex.shares[k] * corner.turn;
+    }
+    point.turn = RotationIn(turn);
+    point.normal = point.turn * point.rest_normal;
+    const float dent = options_.dents * point.room *
+                       RandomAt(static_cast<int>(point.vertex), static_cast<int>(options_.seed), 5);
+    point.cloth = point.base + (started_ ? point.turn * offset : dent * point.normal);
+  }
+  if (!started_) {
+    for (Link& link : links_) {
+      link.cut = link.ease * glm::distance(active_[link.a].base, active_[link.b].base);
+    }
+  }
+  MeasureTension();
+  for (Link& link : links_) SetLength(&link);
+  started_ = true;
+}
+
+// How far the surface is stretched beyond the cloth's length, as a tensor: the mean of e d d^T over
+// the edges of a vertex, with the direction d of an edge and its strain e > 0.
+void WrinkleMesh::MeasureTension() {
+  std::vector<float> counts(active_.size(), 0.0f);
+  for (Active& point : active_) point.tension = glm::mat3(0.0f);
+  for (const Link& link : links_) {
+    const vec3 edge = active_[link.b].base - active_[link.a].base;
+    const float now = glm::length(edge);
+    const float strain = std::clamp(now / std::max(link.cut, 1e-9f) - 1.0f, 0.0f, kLargestTension);
+    const vec3 d = UnitOr(edge, vec3(0.0f));
+    for (const std::uint32_t end : {link.a, link.b}) {
+      counts[end] += 1.0f;
+      active_[end].tension += strain * glm::outerProduct(d, d);
+    }
+  }
+  for (std::size_t i = 0; i < active_.size(); ++i) {
+    active_[i].tension *= 1.0f / std::max(counts[i], 1.0f);
+  }
+}
+
+// Cloth that is pulled gives way, because it slips along the body: a taut mesh could not rise. It
+// is then too wide across the pull (Cerda and Mahadevan 2003), and folds along it.
+void WrinkleMesh::SetLength(Link* link) const {
+  const Active& a = active_[link->a];
+  const Active& b = active_[link->b];
+  const vec3 edge = b.base - a.base;
+  const float now = glm::length(edge);
+  const vec3 across = UnitOr(glm::cross(a.normal + b.normal, edge), vec3(0.0f));
+  const vec3 along = UnitOr(edge, vec3(0.0f));
+  const glm::mat3 tension = 0.5f * (a.tension + b.tension);
+  // Over all directions, the mean of cos^4 is 3/8 and that of cos^2 sin^2 1/8; this inverts them.
+  const float pull = 3.0f * glm::dot(across, tension * across) - glm::dot(along, tension * along);
+  const float narrowing = 1.0f + kNarrowing * std::clamp(pull, 0.0f, kLargestTension);
+  const float pressed =
+      link->cut * std::clamp(now / (kLeastStretch * std::max(link->cut, 1e-9f)), kShortest, 1.0f);
+  link->length = narrowing * std::max(pressed, now);
+}
+
+void WrinkleMesh::Step(std::span<const PosedVertex> surface, int iterations) {
+  Carry(surface);
+  for (int i = 0; i < iterations; ++i) {
+    for (Active& point : active_) {
+      if (point.room > 0.0f) point.cloth.y -= options_.weight;
+    }
+    KeepLengths();
+    Bend();
+    StayNear();
+  }
+}
+
+// Gauss-Seidel over the edges. Pressed and pulled edges are corrected alike, so that cloth without
+// room in the surface leaves it.
+void WrinkleMesh::KeepLengths() {
+  for (const Link& link : links_) {
+    vec3& a = active_[link.a].cloth;
+    vec3& b = active_[link.b].cloth;
+    vec3 step = b - a;
+    const float length = glm::length(step);
+    if (length < 1e-9f) continue;
+    step *= (length - link.length) / length;
+    a += link.share_a * step;
+    b -= link.share_b * step;
+  }
+}
+
+// The mean of the values around each vertex, minus its own.
+template <class T>
+void WrinkleMesh::Laplacian(const std::vector<T>& values, std::vector<T>* result) const {
+  result->assign(active_.size(), T(0.0f));
+  for (std::size_t i = 0; i < active_.size(); ++i) {
+    const std::size_t count = ring_starts_[i + 1] - ring_starts_[i];
+    if (count == 0) continue;
+    T sum(0.0f);
+    for (std::size_t k = ring_starts_[i]; k < ring_starts_[i + 1]; ++k) sum += values[rings_[k]];
+    (*result)[i] = sum / static_cast<float>(count) - values[i];
+  }
+}
+
+// Bending resists by the second Laplacian of the height, the support by the height. In the surface,
+// neighbours slide together: otherwise compressed edges would give way by a zigzag in the surface
+// instead of a fold.
+void WrinkleMesh::Bend() {
+  heights_.resize(active_.size());
+  slides_.resize(active_.size());
+  for (std::size_t i = 0; i < active_.size(); ++i) {
+    const vec3 offset = active_[i].cloth - active_[i].base;
+    heights_[i] = glm::dot(offset, active_[i].normal);
+    slides_[i] = offset - heights_[i] * active_[i].normal;
+  }
+  Laplacian(heights_, &bends_);
+  Laplacian(bends_, &changes_);
+  Laplacian(slides_, &slide_changes_);
+  for (std::size_t i = 0; i < active_.size(); ++i) {
+    Active& point = active_[i];
+    if (point.room <= 0.0f) continue;
+    // A taut sheet presses on what it lies on.
+    const float pull = 2.0f * (point.tension[0][0] + point.tension[1][1] + point.tension[2][2]);
+    const float support = std::min(point.support * (1.0f + kPress * pull), 0.5f);
+    point.cloth -= point.normal * (point.bending * changes_[i] + support * heights_[i]);
+    point.cloth += kSlideTogether * slide_changes_[i];
+  }
+}
+
+void WrinkleMesh::StayNear() {
+  for (Active& point : active_) {
+    const vec3 offset = point.cloth - point.base;
+    const float height = glm::dot(offset, point.normal);
+    vec3 slide = offset - height * point.normal;
+    const float length = glm::length(slide),
+                limit = options_.slide * options_.wavelength * point.room;
+    if (length > limit) slide *= limit / length;
+    const float kept = std::clamp(height, -options_.sink * point.room,
+                                  options_.rise * options_.wavelength * point.room);
+    point.cloth = point.base + slide + kept * point.normal;
+  }
+}
+
+// Per active vertex: the sum of the normals of its triangles, weighted by area.
+std::vector<vec3> WrinkleMesh::Normals(const vec3 Active::*position) const {
+  std::vector<vec3> normals(active_.size(), vec3(0.0f));
+  for (const FineMesh::Triangle& triangle : mesh_.triangles()) {
+    const std::uint32_t a = index_[triangle.vertices[0]], b = index_[triangle.vertices[1]],
+                        c = index_[triangle.vertices[2]];
+    if (a == kInactive || b == kInactive || c == kInactive) continue;
+    const vec3 area = glm::cross(active_[b].*position - active_[a].*position,
+                                 active_[c].*position - active_[a].*position);
+    for (const std::uint32_t corner : {a, b, c}) normals[corner] += area;
+  }
+  return normals;
+}
+
+std::vector<WrinkleMesh::Fold> WrinkleMesh::Folds() const {
+  std::vector<Fold> folds(mesh_.vertices().size());
+  if (!started_) return folds;
+  const std::vector<vec3> cloth = Normals(&Active::cloth), base = Normals(&Active::base);
+  for (std::size_t i = 0; i < active_.size(); ++i) {
+    const Active& point = active_[i];
+    if (point.room <= 0.0f) continue;
+    Fold& fold = folds[point.vertex];
+    fold.height = glm::dot(point.cloth - point.base, point.normal);
+    // The bend of the surface itself is no fold, so slopes are measured from its normal.
+    const glm::mat3 back = glm::transpose(point.turn);
+    vec3 from = back * UnitOr(base[i], point.normal);
+    if (glm::dot(from, point.rest_normal) < kInsideOut) from = point.rest_normal;
+    const vec3 seen =
+        glm::rotation(from, point.rest_normal) * (back * UnitOr(cloth[i], point.normal));
+    const float up = std::max(glm::dot(seen, point.rest_normal), 1e-3f);
+    fold.gradient = point.rest_normal - seen / up;
+    fold.gradient -= point.rest_normal * glm::dot(fold.gradient, point.rest_normal);
+    const float steep = glm::length(fold.gradient);
+    if (steep > 1e-6f) fold.gradient *= kSteepest * std::tanh(steep / kSteepest) / steep;
+  }
+  return folds;
+}
+
+}  // namespace furrow::authoring
