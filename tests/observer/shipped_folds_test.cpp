@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+// How visible the folds of the default character are: every map of the face, and every bend of a
+// clothed joint. With FURROW_UPDATE_GOLDEN=1, the tables of docs/VISIBILITY.md become what is
+// measured.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "character/package/package.h"
+#include "motion/pose_source.h"
+#include "tests/observer/fold_cases.h"
+#include "tests/observer/fold_sitter.h"
+#include "tests/observer/fold_visibility.h"
+#include "tests/observer/visibility_page.h"
+
+namespace furrow::observer {
+namespace {
+
+constexpr int kSize = 512;       // pixels: the height of the picture, which a head or a body fills
+constexpr double kPlain = 10.0;  // JND
+constexpr double kPlainHalf = 5.0;  // JND, at half the size
+constexpr double kLeastShare = 0.3;
+// Wavelengths of folds. Skin: from crow's feet to nasolabial folds. Cloth: from the hollow of an
+// elbow to the large forms of trousers.
+constexpr double kSkinMm[] = {2.5, 20.0};
+constexpr double kClothMm[] = {30.0, 100.0};
+constexpr const char* kBodyViews[][2] = {
+    {"front", "body"}, {"side", "body_side"}, {"three-quarter", "body_three_quarter"}};
+
+std::string Text(const char* format, double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+// One bend from one view.
+struct BendView {
+  std::string bend;
+  std::string view;
+  // Less than one square cycle of the finest band is visible, in which no observer finds a fold.
+  bool hidden = false;
+  double visibility[2] = {};  // JND, over the visible area, at full and half size
+  double share[2] = {};       // of the visible area with kPlain, and with kPlainHalf at half size
+};
+
+struct Measurements {
+  std::vector<std::pair<std::string, double>> face;  // the case and its visibility
+  std::vector<BendView> bends;
+  std::vector<std::string> unfolded;  // BendCases()
+  // Visibility with all weights 0; the largest of all cases.
+  double without_weights = 0.0;
+};
+
+class ShippedFolds : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    const std::filesystem::path glb =
+        std::filesystem::path(FURROW_BINARY_DIR) / "share" / "furrow" / "default.glb";
+    if (!std::filesystem::exists(glb)) return;
+    FoldSitter sitter(
+        render::test::Expect(character::LoadCharacter(glb, {}, motion::CachedPoseSource())));
+    measured_ = std::make_unique<Measurements>();
+    for (const FoldCase& face : render::test::Expect(FaceCases(sitter.character()))) {
+      MeasureFace(face, &sitter);
+    }
+    for (const FoldCase& bend :
+         render::test::Expect(BendCases(sitter.character(), &measured_->unfolded))) {
+      MeasureBend(bend, &sitter);
+    }
+  }
+  static void TearDownTestSuite() { measured_.reset(); }
+
+  void SetUp() override {
+    if (!measured_) GTEST_SKIP() << "no default.glb: build furrow_share";
+  }
+
+  inline static std::unique_ptr<Measurements> measured_;
+
+ private:
+  static void MeasureFace(const FoldCase& face, FoldSitter* sitter) {
+    sitter->Hold(face);
+    const FoldSitter::Shot shot{"face", kSize};
+    const Viewing viewing{.millimetres_per_pixel = sitter->MillimetresPerPixel(shot),
+                          .shortest_mm = kSkinMm[0],
+                          .longest_mm = kSkinMm[1]};
+    FoldPictures pictures = sitter->Draw(shot);
+    const auto found = render::test::Expect(MeasureFolds(pictures, viewing));
+    measured_->face.emplace_back(face.name, found.visibility);
+    Print(face.name, "face", found);
+    MeasureWithoutWeights(shot, viewing, std::move(pictures), sitter);
+  }
+
+  static void MeasureBend(const FoldCase& bend, FoldSitter* sitter) {
+    sitter->Hold(bend);
+    for (const auto& [view, camera] : kBodyViews) {
+      BendView seen{.bend = bend.name, .view = view};
+      for (int half = 0; half < 2; ++half) {
+        const FoldSitter::Shot shot{camera, half == 0 ? kSize : kSize / 2};
+        const Viewing viewing{.millimetres_per_pixel = sitter->MillimetresPerPixel(shot),
+                              .shortest_mm = kClothMm[0],
+                              .longest_mm = kClothMm[1]};
+        FoldPictures pictures = sitter->Draw(shot);
+        const auto found = render::test::Expect(MeasureFolds(pictures, viewing));
+        const double cycle = found.bands.front().wavelength_px;
+        seen.hidden = seen.hidden || static_cast<double>(found.pixels.size()) < cycle * cycle;
+        seen.visibility[half] = found.visibility;
+        seen.share[half] = found.ShareAtLeast(half == 0 ? kPlain : kPlainHalf);
+        Print(bend.name, view, found);
+        if (half == 1) MeasureWithoutWeights(shot, viewing, std::move(pictures), sitter);
+      }
+      measured_->bends.push_back(seen);
+    }
+  }
+
+  // The picture with all weights 0 must be the one without wrinkles.
+  static void MeasureWithoutWeights(const FoldSitter::Shot& shot, const Viewing& viewing,
+                                    FoldPictures pictures, FoldSitter* sitter) {
+    pictures.on = std::move(pictures.off);
+    pictures.off = sitter->DrawWithoutWrinkles(shot);
+    const auto found = render::test::Expect(MeasureFolds(pictures, viewing));
+    measured_->without_weights = std::max(measured_->without_weights, found.visibility);
+  }
+
+  // The bands behind each number, for work on the maps.
+  static void Print(const std::string& name, const std::string& view, const FoldVisibility& found) {
+    std::printf("%-26s %-14s V %6.2f, %6zu pixels;", name.c_str(), view.c_str(), found.visibility,
+                found.pixels.size());
+    for (const BandVisibility& band : found.bands) {
+      std::printf("  %4.1f px: V %.1f, base %.1f%%, threshold %.2f%%", band.wavelength_px,
+                  band.visibility, 100.0 * band.base_contrast, 100.0 * band.threshold);
+    }
+    std::printf("\n");
+    std::fflush(stdout);
+  }
+};
+
+TEST_F(ShippedFolds, AreFoundInTheRig) {
+  EXPECT_FALSE(measured_->face.empty());
+  EXPECT_FALSE(measured_->bends.empty());
+}
+
+TEST_F(ShippedFolds, OfClothesAreSeenFromSomewhere) {
+  for (const BendView& seen : measured_->bends) {
+    const bool visible = std::ranges::any_of(measured_->bends, [&](const BendView& other) {
+      return other.bend == seen.bend && !other.hidden;
+    });
+    EXPECT_TRUE(visible) << seen.bend << " is hidden from every view";
+  }
+}
+
+TEST_F(ShippedFolds, AreExactlyZeroWithoutWeights) { EXPECT_EQ(measured_->without_weights, 0.0); }
+
+std::vector<PageTable> TablesOf(const Measurements& measured) {
+  PageTable face{{"Wrinkle weight", "V", "Aim"}, {}};
+  for (const auto& [name, visibility] : measured.face) {
+    face.rows.push_back(
+        {{"`" + name + "`"}, {Text("%.1f", visibility), visibility >= kPlain ? "yes" : "no"}});
+  }
+  PageTable bends{{"Bend", "View", "V", "Share with V >= 10", "V at half size",
+                   "Share with V >= 5 at half size", "Aim"},
+                  {}};
+  for (const BendView& seen : measured.bends) {
+    PageRow row{{"`" + seen.bend + "`", seen.view}, {}};
+    for (int half = 0; half < 2; ++half) {
+      row.cells.push_back(seen.hidden ? "hidden" : Text("%.1f", seen.visibility[half]));
+      row.cells.push_back(seen.hidden ? "hidden" : Text("%.0f%%", 100.0 * seen.share[half]));
+    }
+    const bool reached = seen.share[0] >= kLeastShare && seen.share[1] >= kLeastShare;
+    row.cells.push_back(seen.hidden ? "hidden" : reached ? "yes" : "no");
+    bends.rows.push_back(row);
+  }
+  for (const std::string& bend : measured.unfolded) {
+    bends.rows.push_back({{"`" + bend + "`", "all"}, std::vector<std::string>(5, "no folds")});
+  }
+  return {face, bends};
+}
+
+TEST_F(ShippedFolds, AreAsThePageSays) {
+  const std::filesystem::path path =
+      std::filesystem::path(FURROW_SOURCE_DIR) / "docs" / "VISIBILITY.md";
+  std::ifstream file(path, std::ios::binary);
+  const std::string page((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  ASSERT_FALSE(page.empty()) << path;
+  const std::vector<PageTable> tables = TablesOf(*measured_);
+  if (std::getenv("FURROW_UPDATE_GOLDEN") != nullptr) {
+    std::ofstream out(path, std::ios::binary);
+    out << PageWithTables(page, tables);
+    ASSERT_TRUE(out.good()) << path;
+    GTEST_SKIP() << "wrote " << path;
+  }
+  const std::vector<std::string> differences = DifferencesFromPage(page, tables);
+  std::string list;
+  for (const std::string& difference : differences) list += "  " + difference + "\n";
+  EXPECT_TRUE(differences.empty())
+      << list << "FURROW_UPDATE_GOLDEN=1 test_shipped_folds measures the page again";
+}
+
+}  // namespace
+}  // namespace furrow::observer
