@@ -75,7 +75,9 @@ class MakeHumanExpressions : public testing::Test {
     return found == weights_[expression].end() ? -1.0f : found->second;
   }
 
-  static bool IsFacial(const std::string& name) { return name.find(".folds") == std::string::npos; }
+  static bool IsFacial(const std::string& name) {
+    return name.ends_with(".stretch") || name.ends_with(".squash");
+  }
 
   static inline std::map<std::string, Weights> weights_;
 };
