@@ -310,7 +310,7 @@ std::vector<WrinkleMesh::Fold> WrinkleMesh::Folds() const {
     if (point.room <= 0.0f) continue;
     Fold& fold = folds[point.vertex];
     fold.height = glm::dot(point.cloth - point.base, point.normal);
-    // The bend of the surface itself is no fold, so slopes are measured from its normal.
+    // Slopes are measured from the normal of the surface, whose own bend does not count.
     const glm::mat3 back = glm::transpose(point.turn);
     vec3 from = back * UnitOr(base[i], point.normal);
     if (glm::dot(from, point.rest_normal) < kInsideOut) from = point.rest_normal;

@@ -23,7 +23,7 @@ namespace furrow::authoring {
 // - Bending stiffness B and a weak pull K towards the surface decide how wide folds are: the
 //   buckling sheet on a foundation, lambda = 2 pi (B / K)^(1/4).
 // - Seams, wear and the body below make cloth uneven: over about three wavelengths, its ease varies
-//   by up to 80% and its wavelength by up to half, so that folds are no rings.
+//   by up to 80% and its wavelength by up to half. Otherwise folds would be rings.
 // - Step() moves the surface a little and lets the cloth settle. Folds keep their identity from
 //   step to step: they deepen, travel and merge.
 class WrinkleMesh {
