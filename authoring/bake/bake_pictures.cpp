@@ -13,6 +13,7 @@
 
 #include "authoring/bake/layers/blood.h"
 #include "authoring/paint/canvas.h"
+#include "base/srgb.h"
 #include "base/status.h"
 
 namespace furrow::authoring {
@@ -33,10 +34,6 @@ std::uint16_t Unsigned16(float value) {
 
 // Texel t stands for (2 t - 1) * scale; see wrinkle::WrinkleMap.
 std::uint16_t Signed16(float value, float scale) { return Unsigned16(0.5f + 0.5f * value / scale); }
-
-float ToSrgb(float linear) {
-  return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f;
-}
 
 std::vector<float> HalvedPlane(const std::vector<float>& plane, int width, int height,
                                int channels) {
@@ -121,7 +118,7 @@ character::Picture ColourPicture(const BakedMap& map, float scale, std::string n
   picture.pixels.reserve(3 * map.blood.size());
   for (const float blood : map.blood) {
     const glm::vec3 tint = BloodTint(blood) / scale;
-    for (int c = 0; c < 3; ++c) picture.pixels.push_back(ToByte(ToSrgb(tint[c])));
+    for (int c = 0; c < 3; ++c) picture.pixels.push_back(ToByte(SrgbFromLinear(tint[c])));
   }
   return picture;
 }

@@ -8,6 +8,7 @@
 
 #include <tiny_gltf.h>
 
+#include "base/srgb.h"
 #include "gltf/container/uri.h"
 #include "gltf/limits.h"
 
@@ -15,11 +16,6 @@ namespace furrow::gltf {
 namespace {
 
 constexpr int kMaxUvSets = 8;
-
-// The transfer function of IEC 61966-2-1.
-float LinearOfSrgb(float value) {
-  return value <= 0.04045f ? value / 12.92f : std::pow((value + 0.055f) / 1.055f, 2.4f);
-}
 
 // Only what the renderer draws: metalness, emission and occlusion are ignored.
 class MaterialReader {
@@ -93,7 +89,7 @@ class MaterialReader {
       // std::clamp leaves a NaN as it is; JSON cannot express one.
       const auto stated = static_cast<float>(colour.Get(i).GetNumberAsDouble());
       const float limited = std::clamp(stated, 0.0f, 1.0f);
-      to->base_colour[i] = i == 3 ? limited : LinearOfSrgb(limited);
+      to->base_colour[i] = i == 3 ? limited : LinearFromSrgb(limited);
     }
   }
 

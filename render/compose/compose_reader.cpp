@@ -2,11 +2,12 @@
 #include "render/compose/compose_reader.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <glm/common.hpp>
 #include <glm/gtc/packing.hpp>
 #include <glm/vec4.hpp>
+
+#include "base/srgb.h"
 
 namespace furrow::render {
 namespace {
@@ -25,17 +26,13 @@ std::size_t Count(glm::ivec2 size) {
   return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
 }
 
-float SrgbToLinear(float value) {
-  return value <= 0.04045f ? value / 12.92f : std::pow((value + 0.055f) / 1.055f, 2.4f);
-}
-
 // Decodes sRGB through a table of all 256 byte values.
 // Reading back returns the stored sRGB bytes. They are decoded before any resampling, as a sampler
 // does, because filtering is correct in linear light only.
 void DecodeSrgb(Texels* texels) {
   static const std::vector<float> decoded = [] {
     std::vector<float> table;
-    for (int i = 0; i < 256; ++i) table.push_back(SrgbToLinear(static_cast<float>(i) / 255.0f));
+    for (int i = 0; i < 256; ++i) table.push_back(LinearFromSrgb(static_cast<float>(i) / 255.0f));
     return table;
   }();
   for (glm::vec4& texel : *texels) {

@@ -3,11 +3,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <utility>
 
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
+
+#include "base/srgb.h"
 
 namespace furrow::observer {
 namespace {
@@ -23,8 +24,7 @@ float LinearOf(std::uint8_t value) {
   static const std::array<float, 256> table = [] {
     std::array<float, 256> values{};
     for (std::size_t i = 0; i < values.size(); ++i) {
-      const float x = static_cast<float>(i) / 255.0f;
-      values[i] = x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f);
+      values[i] = LinearFromSrgb(static_cast<float>(i) / 255.0f);
     }
     return values;
   }();

@@ -2,7 +2,6 @@
 #include "authoring/import/makehuman/picture_fit.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "authoring/paint/canvas.h"
 
@@ -73,10 +72,6 @@ Picture FitPicture(const Picture& picture, int size) {
   Picture fitted = ToColourBytes(picture);
   while (std::max(fitted.width, fitted.height) > std::max(size, 1)) fitted = Halve(fitted);
   return fitted;
-}
-
-float LinearFromSrgb(float value) {
-  return value <= 0.04045f ? value / 12.92f : std::pow((value + 0.055f) / 1.055f, 2.4f);
 }
 
 }  // namespace furrow::authoring

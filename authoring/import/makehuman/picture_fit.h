@@ -10,7 +10,4 @@ namespace furrow::authoring {
 // behind transparent texels do not bleed into the edges. Precondition: the picture has pixels.
 [[nodiscard]] character::Picture FitPicture(const character::Picture& picture, int size);
 
-// The linear value of an sRGB value in [0, 1].
-[[nodiscard]] float LinearFromSrgb(float value);
-
 }  // namespace furrow::authoring

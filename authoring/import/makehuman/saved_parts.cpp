@@ -7,6 +7,7 @@
 
 #include "authoring/import/makehuman/picture_fit.h"
 #include "base/ascii.h"
+#include "base/srgb.h"
 #include "base/text.h"
 
 namespace furrow::authoring {
