@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <string_view>
 #include <vector>
 
@@ -22,13 +21,9 @@ std::string_view DriverOf(std::string_view driver_value) {
 void PrintShapes(const Explanation& explanation, std::string_view driver, std::FILE* out) {
   constexpr std::size_t kMost = 6;
   constexpr float kLeast = 0.005f;  // 0.00 when printed
-  std::vector<const Explanation::Shape*> shapes;
-  for (const auto& shape : explanation.shapes) {
-    if (shape.driver == driver && std::abs(shape.coefficient) >= kLeast) shapes.push_back(&shape);
-  }
+  std::vector<const Explanation::Shape*> shapes = explanation.ShapesOf(driver);
+  std::erase_if(shapes, [](const auto* shape) { return std::abs(shape->coefficient) < kLeast; });
   if (shapes.empty()) return;
-  std::ranges::stable_sort(shapes, std::greater(),
-                           [](const auto* shape) { return std::abs(shape->coefficient); });
   std::fprintf(out, "      ");
   for (std::size_t i = 0; i < std::min(shapes.size(), kMost); ++i) {
     std::fprintf(out, "%s%s %.2f", i == 0 ? "" : ", ", shapes[i]->blend_shape.c_str(),

@@ -2,8 +2,6 @@
 #include "server/http/api/rig_api.h"
 
 #include <algorithm>
-#include <cmath>
-#include <functional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -152,13 +150,8 @@ Json StrainJson(const wrinkle::Explanation& explanation, const std::string& driv
 
 // The blend shapes that a driver reads, strongest first.
 Json ShapesJson(const wrinkle::Explanation& explanation, const std::string& driver) {
-  std::vector<const wrinkle::Explanation::Shape*> shapes;
-  for (const auto& shape : explanation.shapes) {
-    if (shape.driver == driver) shapes.push_back(&shape);
-  }
+  const auto shapes = explanation.ShapesOf(driver);
   if (shapes.empty()) return nullptr;
-  std::ranges::stable_sort(shapes, std::greater(),
-                           [](const auto* shape) { return std::abs(shape->coefficient); });
   Json list = Json::array();
   for (const auto* shape : shapes) {
     list.push_back({{"name", shape->blend_shape}, {"coefficient", shape->coefficient}});

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "wrinkle/skeleton/joint_chain.h"
@@ -51,6 +55,17 @@ struct DriverExplanation {
   std::vector<Angle> angles;
   std::vector<Strain> strains;
   std::vector<Shape> shapes;
+
+  // The shapes that a driver reads, strongest first. They point into this object.
+  [[nodiscard]] std::vector<const Shape*> ShapesOf(std::string_view driver) const {
+    std::vector<const Shape*> read;
+    for (const Shape& shape : shapes) {
+      if (shape.driver == driver) read.push_back(&shape);
+    }
+    std::ranges::stable_sort(read, std::greater(),
+                             [](const Shape* shape) { return std::abs(shape->coefficient); });
+    return read;
+  }
 };
 
 // One solved pose of a binding, to be explained.
