@@ -12,11 +12,11 @@ namespace {
 
 class TurningSource {
  public:
-  TurningSource(wrinkle::PoseSource source, SkeletonMatcher matcher,
+  TurningSource(wrinkle::PoseSource source, std::function<SkeletonMatcher()> make_matcher,
                 std::function<void(const std::string&)> warn)
       : source_(std::move(source)),
+        make_matcher_(std::move(make_matcher)),
         warn_(std::move(warn)),
-        matcher_(std::make_shared<const SkeletonMatcher>(std::move(matcher))),
         last_(std::make_shared<Last>()) {}
 
   Result<wrinkle::PoseFrame> operator()(const std::filesystem::path& path, int frame) const {
@@ -35,6 +35,7 @@ class TurningSource {
  private:
   // A rig names many frames of one recording, which have one skeleton.
   struct Last {
+    std::optional<SkeletonMatcher> matcher;
     std::optional<std::uint64_t> skeleton;
     glm::quat turn;
   };
@@ -42,15 +43,18 @@ class TurningSource {
   [[nodiscard]] glm::quat TurnOf(const wrinkle::Skeleton& skeleton,
                                  const std::filesystem::path& path) const {
     if (last_->skeleton == skeleton.hash()) return last_->turn;
-    const auto stance = matcher_->StanceOf(skeleton, matcher_->RolesOf(skeleton).roles);
-    *last_ = {skeleton.hash(), stance ? stance->turn : wrinkle::RestStance().turn};
+    if (!last_->matcher) last_->matcher = make_matcher_();
+    const SkeletonMatcher& matcher = *last_->matcher;
+    const auto stance = matcher.StanceOf(skeleton, matcher.RolesOf(skeleton).roles);
+    last_->skeleton = skeleton.hash();
+    last_->turn = stance ? stance->turn : wrinkle::RestStance().turn;
     if (!stance && warn_) warn_(path.string() + ": " + UnknownAxes());
     return last_->turn;
   }
 
   wrinkle::PoseSource source_;
+  std::function<SkeletonMatcher()> make_matcher_;
   std::function<void(const std::string&)> warn_;
-  std::shared_ptr<const SkeletonMatcher> matcher_;
   std::shared_ptr<Last> last_;
 };
 
@@ -58,7 +62,14 @@ class TurningSource {
 
 wrinkle::PoseSource PosesInFurrowAxes(wrinkle::PoseSource source, SkeletonMatcher matcher,
                                       std::function<void(const std::string&)> warn) {
-  return TurningSource(std::move(source), std::move(matcher), std::move(warn));
+  return PosesInFurrowAxes(
+      std::move(source), [matcher = std::move(matcher)] { return matcher; }, std::move(warn));
+}
+
+wrinkle::PoseSource PosesInFurrowAxes(wrinkle::PoseSource source,
+                                      std::function<SkeletonMatcher()> make_matcher,
+                                      std::function<void(const std::string&)> warn) {
+  return TurningSource(std::move(source), std::move(make_matcher), std::move(warn));
 }
 
 }  // namespace furrow::rig

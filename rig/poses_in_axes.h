@@ -20,5 +20,9 @@ namespace furrow::rig {
 [[nodiscard]] wrinkle::PoseSource PosesInFurrowAxes(
     wrinkle::PoseSource source, SkeletonMatcher matcher,
     std::function<void(const std::string&)> warn = {});
+// The same with a matcher that is made when the first frame is read: most rigs read none.
+[[nodiscard]] wrinkle::PoseSource PosesInFurrowAxes(
+    wrinkle::PoseSource source, std::function<SkeletonMatcher()> make_matcher,
+    std::function<void(const std::string&)> warn = {});
 
 }  // namespace furrow::rig

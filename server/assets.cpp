@@ -80,12 +80,10 @@ Result<Assets> LoadAssets(const Config& config) {
   }
   // Rigs name the files and frames of their reference poses; each file is read once.
   const auto warn = [](const std::string& warning) { spdlog::warn("{}", warning); };
-  const auto read_poses = [&] {
-    return rig::PosesInFurrowAxes(motion::CachedPoseSource(ReadOptions(config), warn),
-                                  assets.skeletons, warn);
-  };
+  const wrinkle::PoseSource files = motion::CachedPoseSource(ReadOptions(config), warn);
   if (config.character.empty() && !config.rig.empty()) {
-    FURROW_RETURN_IF_ERROR(LoadRigAlone(chosen_rig, read_poses(), &assets));
+    const auto poses = rig::PosesInFurrowAxes(files, assets.skeletons, warn);
+    FURROW_RETURN_IF_ERROR(LoadRigAlone(chosen_rig, poses, &assets));
     return assets;
   }
   fs::path glb = config.character;
@@ -99,16 +97,25 @@ Result<Assets> LoadAssets(const Config& config) {
     glb = *std::move(shipped);
   }
   const fs::path rig = RigOf(glb, chosen_rig);
-  // The roles that the package states count for the rig's joints, in poses and in streams. Loading
-  // the character reports faults.
-  if (const auto roles = character::LoadCharacterRoles(glb); roles.ok()) {
-    assets.skeletons.SetCharacterRoles(*roles);
-  }
-  const wrinkle::PoseSource poses = read_poses();
+  const auto make_matcher = [maps = assets.skeletons, glb] {
+    rig::SkeletonMatcher matcher = maps;
+    // Loading the character reports faults.
+    const auto roles = character::LoadCharacterRoles(glb);
+    if (roles.ok()) matcher.SetCharacterRoles(*roles);
+    return matcher;
+  };
+  const auto poses = rig::PosesInFurrowAxes(files, make_matcher, warn);
   // Weights need no mesh and no pictures, which are large, unless joints may move shapes.
   if (!config.render && !rig.empty()) {
     FURROW_RETURN_IF_ERROR(LoadRigAlone(rig, poses, &assets));
-    if (wrinkle::BlendShapesOf(*assets.rig).empty()) return assets;
+    if (wrinkle::BlendShapesOf(*assets.rig).empty()) {
+      // Weights are the same with and without pictures, so they need the roles that the package
+      // states for the rig's joints.
+      const auto roles = character::LoadCharacterRoles(glb);
+      FURROW_RETURN_IF_ERROR(roles);
+      assets.skeletons.SetCharacterRoles(*roles);
+      return assets;
+    }
   }
   auto loaded = character::LoadCharacter(glb, chosen_rig, poses);
   FURROW_RETURN_IF_ERROR(loaded);

@@ -69,21 +69,25 @@ Result<motion::Clip> LoadClipArgument(const std::string& path, const motion::Loa
 
 fs::path ResolveRigPath(const std::string& argument) { return rig::FindRigFile(argument); }
 
-Result<wrinkle::PoseSource> RigPoses(
-    const motion::LoadOptions& read, const std::string& skeleton_map,
-    std::span<const std::pair<std::string, wrinkle::JointRole>> roles) {
+Result<wrinkle::PoseSource> RigPoses(const motion::LoadOptions& read,
+                                     const std::string& skeleton_map, const fs::path& package) {
   motion::LoadOptions options = read;
   options.rest_frame = -1;  // poses state one of their own
-  rig::SkeletonMatcher matcher;
-  // A map that the user asks for must exist. LoadSkeletonMatcher() warns if the shipped ones do
-  // not.
-  if (auto found = rig::SkeletonMatcher::Create(skeleton_map); found.ok()) {
-    matcher = *std::move(found);
-  } else if (!skeleton_map.empty()) {
-    return found.status().At("skeleton map");
+  if (!skeleton_map.empty()) {
+    const auto chosen = rig::SkeletonMatcher::Create(skeleton_map);
+    if (!chosen.ok()) return chosen.status().At("skeleton map");
   }
-  matcher.SetCharacterRoles(roles);
-  return rig::PosesInFurrowAxes(motion::CachedPoseSource(options, PrintWarning), std::move(matcher),
+  const auto make_matcher = [skeleton_map, package] {
+    // LoadSkeletonMatcher() warns if there are no shipped maps, and loading the package reports its
+    // faults.
+    auto found = rig::SkeletonMatcher::Create(skeleton_map);
+    rig::SkeletonMatcher matcher = found.ok() ? *std::move(found) : rig::SkeletonMatcher();
+    if (package.empty()) return matcher;
+    const auto roles = character::LoadCharacterRoles(package);
+    if (roles.ok()) matcher.SetCharacterRoles(*roles);
+    return matcher;
+  };
+  return rig::PosesInFurrowAxes(motion::CachedPoseSource(options, PrintWarning), make_matcher,
                                 PrintWarning);
 }
 
@@ -210,10 +214,7 @@ Result<character::Character> LoadCharacterArgument(const std::string& glb, const
     FURROW_RETURN_IF_ERROR(shipped);
     package = *shipped;
   }
-  // Without roles, for instance in a damaged package, loading reports the fault.
-  const auto roles = character::LoadCharacterRoles(package);
-  using Roles = std::span<const std::pair<std::string, wrinkle::JointRole>>;
-  const auto poses = RigPoses(read, skeleton_map, roles.ok() ? Roles(*roles) : Roles());
+  const auto poses = RigPoses(read, skeleton_map, package);
   FURROW_RETURN_IF_ERROR(poses);
   auto character =
       character::LoadCharacter(package, rig.empty() ? fs::path() : ResolveRigPath(rig), *poses);

@@ -5,7 +5,6 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "base/status.h"
@@ -44,11 +43,13 @@ void PrintWarnings(const std::vector<std::string>& warnings);
 
 // Reads the recordings of a rig's reference poses, in Furrow's axes. Prints the reader's warnings.
 // `read`: how they are read; its rest frame is ignored, because poses state one of their own.
-// `skeleton_map`: the map that the user chose, or empty; it, the shipped maps and `roles`, those of
-// the character's package, tell the axes. Errors: those of rig::SkeletonMatcher::Create().
-[[nodiscard]] Result<wrinkle::PoseSource> RigPoses(
-    const motion::LoadOptions& read, const std::string& skeleton_map = {},
-    std::span<const std::pair<std::string, wrinkle::JointRole>> roles = {});
+// `skeleton_map`: the map that the user chose, or empty; it, the shipped maps and the roles that
+// `package` states (a character's file, or empty) tell the axes. They are read with the first
+// recording, but a map that the user chose must exist. Errors: those of
+// rig::SkeletonMatcher::Create().
+[[nodiscard]] Result<wrinkle::PoseSource> RigPoses(const motion::LoadOptions& read,
+                                                   const std::string& skeleton_map = {},
+                                                   const std::filesystem::path& package = {});
 
 // Loads a rig by path, or a shipped rig by name ("cmu" or "cmu.json"). `read` and `skeleton_map`:
 // see RigPoses().
