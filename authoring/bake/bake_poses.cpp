@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include "authoring/bake/surface/bake_surface.h"
 #include "authoring/shapes/shape_combinations.h"
 #include "base/ascii.h"
 #include "base/scalar.h"
@@ -121,7 +122,8 @@ class PoseCollector {
     AddPose({.map = feed.map,
              .region = region.name,
              .skin_matrices = SkinMatrices(locals),
-             .path = IsCloth(feed.map) ? PathTo(*pose) : std::vector<std::vector<glm::mat4>>(),
+             .path = FoldsCloth(character_, feed) ? PathTo(*pose)
+                                                  : std::vector<std::vector<glm::mat4>>(),
              .shape_weights = std::move(shape_weights),
              .weight = std::min(source.gain, 1.0f)});
     return {};
@@ -239,14 +241,6 @@ class PoseCollector {
     }
     Note(value + " is the rest pose; only strokes can give it folds");
     return {};
-  }
-
-  // True if the map may be drawn on cloth.
-  [[nodiscard]] bool IsCloth(const std::string& map) const {
-    const auto found =
-        std::ranges::find(character_.rig.wrinkle_maps, map, &wrinkle::WrinkleMap::name);
-    return found != character_.rig.wrinkle_maps.end() &&
-           found->surface != wrinkle::WrinkleMap::Surface::kSkin;
   }
 
   // The angle of a source where the feed has its largest weight: for the first source, the first

@@ -30,6 +30,7 @@ constexpr float kPress = 20.0f;
 constexpr float kBending = 0.05f;
 // A share of the bending that an iteration removes. Larger values make the heights oscillate.
 constexpr float kMostBending = 0.8f;
+constexpr float kMostSupport = 0.5f;  // of the height, likewise
 // Where skinning compresses the surface to less than this, inside a sharp bend, the cloth shortens
 // with it: no real limb is pressed so far.
 constexpr float kLeastStretch = 0.35f;
@@ -129,7 +130,7 @@ void WrinkleMesh::MakeLinks() {
         kPi * lengths[i] / (std::max(counts[i], 1.0f) * kSlowest * wider * options_.wavelength);
     const float square = std::max(x * x, 1e-6f);
     active_[i].bending = std::min(kBending / square, kMostBending);
-    active_[i].support = std::min(active_[i].bending * square * square, 0.5f);
+    active_[i].support = std::min(active_[i].bending * square * square, kMostSupport);
   }
 }
 
@@ -186,7 +187,11 @@ void WrinkleMesh::MeasureTension() {
     }
   }
   for (std::size_t i = 0; i < active_.size(); ++i) {
-    active_[i].tension *= 1.0f / std::max(counts[i], 1.0f);
+    Active& point = active_[i];
+    point.tension *= 1.0f / std::max(counts[i], 1.0f);
+    // A taut sheet presses on what it lies on.
+    const float pull = 2.0f * (point.tension[0][0] + point.tension[1][1] + point.tension[2][2]);
+    point.pressed = std::min(point.support * (1.0f + kPress * pull), kMostSupport);
   }
 }
 
@@ -265,10 +270,7 @@ void WrinkleMesh::Bend() {
   for (std::size_t i = 0; i < active_.size(); ++i) {
     Active& point = active_[i];
     if (point.room <= 0.0f) continue;
-    // A taut sheet presses on what it lies on.
-    const float pull = 2.0f * (point.tension[0][0] + point.tension[1][1] + point.tension[2][2]);
-    const float support = std::min(point.support * (1.0f + kPress * pull), 0.5f);
-    point.cloth -= point.normal * (point.bending * changes_[i] + support * heights_[i]);
+    point.cloth -= point.normal * (point.bending * changes_[i] + point.pressed * heights_[i]);
     point.cloth += kSlideTogether * slide_changes_[i];
   }
 }

@@ -72,7 +72,8 @@ class WrinkleMesh {
     std::uint32_t vertex = 0;  // of the mesh
     float room = 0.0f;
     float bending = 0.0f;  // share of the second Laplacian that it loses per iteration
-    float support = 0.0f;  // share of its height that it loses per iteration
+    float support = 0.0f;  // share of its height that it loses per iteration, without a pull
+    float pressed = 0.0f;  // the same with the pull of this pose
     glm::vec3 rest_normal{0.0f};
     glm::vec3 base{0.0f};    // its place on the surface
     glm::mat3 turn{1.0f};    // rotates from the rest pose to the pose

@@ -90,6 +90,12 @@ bool GoesOnCloth(const character::Character& character, const wrinkle::WrinkleMa
          HasKind(character, character::Material::Kind::kCloth);
 }
 
+bool FoldsCloth(const character::Character& character, const wrinkle::Feed& feed) {
+  const auto& maps = character.rig.wrinkle_maps;
+  const auto map = std::ranges::find(maps, feed.map, &wrinkle::WrinkleMap::name);
+  return map != maps.end() && GoesOnCloth(character, *map);
+}
+
 Result<std::unique_ptr<BakeSurface>> BakeSurface::Create(const character::Character& character,
                                                          bool cloth, const BakeOptions& options,
                                                          BakeProgress* progress) {

@@ -63,5 +63,7 @@ class BakeSurface {
 // has cloth but no skin.
 [[nodiscard]] bool GoesOnCloth(const character::Character& character,
                                const wrinkle::WrinkleMap& map);
+// True if the map of a feed is drawn on cloth; false if the rig lacks the map.
+[[nodiscard]] bool FoldsCloth(const character::Character& character, const wrinkle::Feed& feed);
 
 }  // namespace furrow::authoring

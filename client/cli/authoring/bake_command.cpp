@@ -13,6 +13,7 @@
 #include "authoring/bake/bake_poses.h"
 #include "authoring/bake/bake_report.h"
 #include "authoring/bake/strokes_file.h"
+#include "authoring/bake/surface/bake_surface.h"
 #include "authoring/bake/surface/surface_check.h"
 #include "base/status.h"
 #include "base/text.h"
@@ -74,16 +75,16 @@ Status CheckOutput(const BakeArguments& arguments) {
 }
 
 // Regions without a namesake in the rig are mistyped, and skin has no fabric.
-Status CheckFabrics(const std::vector<authoring::RegionFabric>& fabrics, const wrinkle::Rig& rig) {
+Status CheckFabrics(const std::vector<authoring::RegionFabric>& fabrics,
+                    const character::Character& character) {
   const auto is_cloth = [&](const wrinkle::Feed& feed) {
-    const auto map = std::ranges::find(rig.wrinkle_maps, feed.map, &wrinkle::WrinkleMap::name);
-    return map != rig.wrinkle_maps.end() && map->surface != wrinkle::WrinkleMap::Surface::kSkin;
+    return authoring::FoldsCloth(character, feed);
   };
   for (const authoring::RegionFabric& fabric : fabrics) {
     const auto covered = [&](const wrinkle::Region& region) {
       return fabric.Covers(region.name) && std::ranges::any_of(region.feeds, is_cloth);
     };
-    if (std::ranges::any_of(rig.regions, covered)) continue;
+    if (std::ranges::any_of(character.rig.regions, covered)) continue;
     return {StatusCode::kNotFound, "the rig has no region '" + fabric.region + "' that folds cloth",
             "--fabric", "name a region, or the beginning of several: knee covers knee_l_inner"};
   }
@@ -106,7 +107,7 @@ Result<BakeJob> Prepare(const BakeArguments& arguments) {
   auto character = LoadCharacterArgument(arguments.character, arguments.rig, arguments.read);
   FURROW_RETURN_IF_ERROR(character);
   job.character = std::move(*character);
-  FURROW_RETURN_IF_ERROR(CheckFabrics(arguments.fabrics, job.character.rig));
+  FURROW_RETURN_IF_ERROR(CheckFabrics(arguments.fabrics, job.character));
   const auto shapes = LoadShapeMatcher({});
   FURROW_RETURN_IF_ERROR(shapes);
   auto poses = authoring::CollectBakePoses(job.character, arguments.maps,

@@ -37,7 +37,8 @@ character::Character Body() {
   rig.drivers[1].pose.values = {{"stretch", "up"}};
   rig.drivers[2].name = "blink";
   rig.drivers[2].kind = wrinkle::Driver::Kind::kBlendShape;
-  rig.wrinkle_maps = {{.name = "folds"}, {.name = "stretch"}};
+  rig.wrinkle_maps = {{.name = "folds", .surface = wrinkle::WrinkleMap::Surface::kCloth},
+                      {.name = "stretch"}};
   rig.regions.resize(2);
   rig.regions[0].name = "knee";
   rig.regions[0].feeds = {{"folds", {{"knee", "flexed", 2.5f}, {"knee", "extended", 0.3f}}}};
