@@ -110,7 +110,7 @@ class Matching {
   ShapeInputs arkit_{kNumArkitShapes};
   std::array<bool, kNumArkitShapes> arkit_by_fallback_{};
   ShapeFormulas formulas_;
-  // Targets that stand in for shapes of ARKit that are missing: "jawOpen".
+  // What a target replaces: a shape of ARKit that is missing, such as "jawOpen".
   std::unordered_map<std::size_t, std::string> stands_in_for_;
   ShapeMatch match_;
 };

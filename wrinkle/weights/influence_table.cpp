@@ -37,6 +37,7 @@ void InfluenceTable::Bind(const Rig& rig, const Skeleton& skeleton,
       const std::size_t map = IndexByName(rig.wrinkle_maps, feed.map);
       if (map == rig.wrinkle_maps.size()) continue;
       const std::size_t mask = MaskOf(static_cast<int>(map), region.mask);
+      const FeedModulation modulation = ModulationOf(rig, region, feed);
       for (const Feed::Source& source : feed.sources) {
         const Driver& driver = rig.drivers[IndexByName(rig.drivers, source.driver)];
         const std::vector<std::string> joints =
@@ -48,7 +49,7 @@ void InfluenceTable::Bind(const Rig& rig, const Skeleton& skeleton,
                              .mask = mask,
                              .driver_value = value_index.at(source.driver + "." + source.value),
                              .gain = source.gain,
-                             .modulation = ModulationOf(rig, region, feed)});
+                             .modulation = modulation});
         }
       }
     }
