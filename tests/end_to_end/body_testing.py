@@ -3,7 +3,6 @@
 import json
 import math
 import struct
-import zlib
 
 # A body that faces +Z, 1.6 m high: the part, the part above it, its place in metres. Left is +X.
 PERSON = (("hips", None, (0, 0.9, 0)), ("spine", "hips", (0, 1.05, 0)), ("chest", "spine", (0, 1.25, 0)),
@@ -180,34 +179,3 @@ class Body:
                          struct.pack("<I4s", len(text), b"JSON") + text +
                          struct.pack("<I4s", len(self.binary), b"BIN\0") + bytes(self.binary))
         return path
-
-
-def pixels(png):
-    """The rows of an 8-bit PNG without interlace, as bytes."""
-    width, height, depth, colour = struct.unpack(">IIBB", png[16:26])
-    assert depth == 8, depth
-    size = {0: 1, 2: 3, 4: 2, 6: 4}[colour]
-    at, packed = 8, b""
-    while at < len(png):
-        length, kind = struct.unpack(">I4s", png[at:at + 8])
-        packed += png[at + 8:at + 8 + length] if kind == b"IDAT" else b""
-        at += 12 + length
-    raw, rows, above = zlib.decompress(packed), [], bytes(width * size)
-    for y in range(height):
-        start = y * (1 + width * size)
-        row = bytearray(raw[start + 1:start + 1 + width * size])
-        for i in range(len(row)):
-            left, up = (row[i - size] if i >= size else 0), above[i]
-            corner = above[i - size] if i >= size else 0
-            nearest = min((left, up, corner), key=lambda v: abs(left + up - corner - v))
-            row[i] = (row[i] + (0, left, up, (left + up) // 2, nearest)[raw[start]]) & 255
-        rows.append(bytes(row))
-        above = row
-    return rows
-
-
-def picture_difference(a, b):
-    """The share of differing pixels' bytes: more than 8 of 255 apart."""
-    one, two = b"".join(pixels(a)), b"".join(pixels(b))
-    assert len(one) == len(two)
-    return sum(abs(x - y) > 8 for x, y in zip(one, two)) / len(one)

@@ -160,6 +160,18 @@ def png_rows(data):
     return rows
 
 
+def png_channels(data):
+    """The channels of all pixels of png_rows(), one after another."""
+    return [channel for row in png_rows(data) for pixel in row for channel in pixel]
+
+
+def differing_share(a, b):
+    """The share of the channels of two PNGs that are more than 8 of 255 apart."""
+    one, two = png_channels(a), png_channels(b)
+    assert len(one) == len(two)
+    return sum(abs(x - y) > 8 for x, y in zip(one, two)) / len(one)
+
+
 def picture_difference(a, b):
     """The mean difference of two pictures of png_rows() over all channels, 0 to 255."""
     pairs = [(x, y) for row_a, row_b in zip(a, b) for p, q in zip(row_a, row_b) for x, y in zip(p, q)]

@@ -7,8 +7,8 @@ import struct
 import tempfile
 import unittest
 
-from body_testing import CESIUM_MAN, PERSON, TIMES, VRM, Body, kick, picture_difference, rotate, turn
-from furrow_testing import SHARE, Daemon, Table, finish, furrow, solve, spawn_watch, worst_difference
+from body_testing import CESIUM_MAN, PERSON, TIMES, VRM, Body, kick, rotate, turn
+from furrow_testing import Daemon, SHARE, Table, differing_share, finish, furrow, solve, spawn_watch, worst_difference
 from test_foreign_bodies import JOINTS, bvh
 
 DONE, BAD_INPUT = 0, 3
@@ -134,8 +134,8 @@ class CesiumManTest(FolderTest):
         expected = self.pictures(self.root / "known.glb", known, "expected")
         self.assertEqual(len(drawn), len(TIMES))
         for a, b in zip(drawn, expected):
-            self.assertLess(picture_difference(a, b), 1e-3)
-        self.assertGreater(picture_difference(drawn[0], drawn[2]), 0.01)
+            self.assertLess(differing_share(a, b), 1e-3)
+        self.assertGreater(differing_share(drawn[0], drawn[2]), 0.01)
 
     def test_others_move_it(self):
         # Without the names of a map, its rig finds the joints of other recordings by the roles of the package.
@@ -193,7 +193,7 @@ class PackageTest(FolderTest):
         self.assertGreater(max(Table(solve_it("--drivers").decode()).column("knee_l.flexed").values()), 0.2)
         drawn = self.pictures(self.recording, self.package, "without")
         self.assertEqual(drawn, self.pictures(self.recording, self.package, "with", "--skeleton-map", self.mine))
-        self.assertGreater(picture_difference(drawn[0], drawn[2]), 0.01)
+        self.assertGreater(differing_share(drawn[0], drawn[2]), 0.01)
 
     def test_its_own_animation_follows_the_same_roles(self):
         own = self.root / "lame.glb"

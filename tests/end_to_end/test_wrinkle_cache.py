@@ -3,34 +3,8 @@
 import pathlib
 import tempfile
 import unittest
-import zlib
 
-from furrow_testing import SHARE, furrow, png_size
-
-
-def pixels(path):
-    """Returns the pixels of an RGB PNG, row by row."""
-    data = path.read_bytes()
-    width, height = png_size(data)
-    packed, at = b"", 8
-    while at < len(data):
-        length = int.from_bytes(data[at:at + 4], "big")
-        if data[at + 4:at + 8] == b"IDAT":
-            packed += data[at + 8:at + 8 + length]
-        at += 12 + length
-    raw, stride = zlib.decompress(packed), 3 * width
-    assert len(raw) == (stride + 1) * height, "not RGB of 8 bits"
-    above, rows = bytes(stride), bytearray()
-    for y in range(height):
-        kind, row = raw[y * (stride + 1)], bytearray(raw[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
-        for x in range(stride):
-            left, corner = (row[x - 3], above[x - 3]) if x >= 3 else (0, 0)
-            guess = left + above[x] - corner
-            nearest = min((left, above[x], corner), key=lambda value: abs(guess - value))
-            row[x] = (row[x] + (0, left, above[x], (left + above[x]) // 2, nearest)[kind]) & 255
-        rows += row
-        above = row
-    return rows
+from furrow_testing import SHARE, furrow, png_channels
 
 
 def hold(recording, frame, path):
@@ -51,7 +25,7 @@ class WrinkleCacheTest(unittest.TestCase):
             result = furrow("render", folder / "held.bvh", "--out", folder, "--size", "320x320", "--camera", camera,
                             "--view", "normal", "--timings", *sets, check=0)
             composed = b"wrinkles" in result.stdout + result.stderr
-            return pixels(sorted(folder.glob("*.png"))[-1]), composed
+            return png_channels(sorted(folder.glob("*.png"))[-1].read_bytes()), composed
 
     def compare(self, *what):
         cached, composed = self.picture(*what)

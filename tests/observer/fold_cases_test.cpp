@@ -13,15 +13,8 @@
 namespace furrow::observer {
 namespace {
 
+using render::test::Joint;
 using testing::ElementsAre;
-
-wrinkle::JointDesc Joint(const std::string& name, int parent, const glm::vec3& translation) {
-  wrinkle::JointDesc joint;
-  joint.name = name;
-  joint.parent = parent;
-  joint.rest.translation = translation;
-  return joint;
-}
 
 wrinkle::Region RegionOf(const std::string& name, const std::vector<wrinkle::Feed>& feeds) {
   wrinkle::Region region;

@@ -25,6 +25,14 @@ void AddGrid(std::uint32_t columns, std::uint32_t rows,
   }
 }
 
+wrinkle::JointDesc Joint(const std::string& name, int parent, const glm::vec3& translation) {
+  wrinkle::JointDesc joint;
+  joint.name = name;
+  joint.parent = parent;
+  joint.rest.translation = translation;
+  return joint;
+}
+
 void SetSkeleton(std::vector<wrinkle::JointDesc> joints, character::Character* character) {
   auto skeleton = wrinkle::Skeleton::Create(std::move(joints));
   if (!skeleton.ok()) {

@@ -16,6 +16,9 @@ void AddGrid(std::uint32_t columns, std::uint32_t rows,
              const std::function<character::Vertex(float u, float v)>& vertex,
              character::Mesh* mesh);
 
+// A joint at `translation` from its parent (index `parent`; -1: a root), without a rotation.
+[[nodiscard]] wrinkle::JointDesc Joint(const std::string& name, int parent,
+                                       const glm::vec3& translation);
 // Gives the character these joints, bound in their rest pose. Aborts if they do not form a
 // skeleton.
 void SetSkeleton(std::vector<wrinkle::JointDesc> joints, character::Character* character);

@@ -20,14 +20,6 @@ using character::Vertex;
 
 constexpr float kTwoPi = glm::two_pi<float>();
 
-wrinkle::JointDesc Joint(const std::string& name, int parent, const glm::vec3& translation) {
-  wrinkle::JointDesc joint;
-  joint.name = name;
-  joint.parent = parent;
-  joint.rest.translation = translation;
-  return joint;
-}
-
 int AddPicture(Character* character, character::Picture picture) {
   character->pictures.push_back(std::move(picture));
   return static_cast<int>(character->pictures.size()) - 1;

@@ -2,17 +2,14 @@
 #include "authoring/shapes/contained_jaw.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "authoring/generator/blend_shapes/blend_shape_face.h"
-#include "authoring/generator/default_character.h"
 #include "authoring/shapes/morph.h"
-#include "rig/rig_file.h"
+#include "tests/unit/authoring/shapes/shape_head.h"
 #include "tests/unit/rig/shapes/shipped_shape_maps.h"
 
 namespace furrow::authoring {
@@ -21,12 +18,7 @@ namespace {
 // The default head, whose mouthClose is ARKit's.
 class ContainedJawTest : public ::testing::Test {
  protected:
-  static void SetUpTestSuite() {
-    auto rig = rig::LoadRig(std::filesystem::path(FURROW_SOURCE_DIR) / "rig/rigs/default.json");
-    ASSERT_TRUE(rig.ok()) << rig.status().ToString();
-    face_ = new character::Character(MakeDefaultCharacter(*rig, {.texture_size = 64}));
-    ASSERT_TRUE(MakeBlendShapeFace(face_).ok());
-  }
+  static void SetUpTestSuite() { face_ = new character::Character(MakeShapeHead()); }
   static void TearDownTestSuite() { delete face_; }
 
   static int ShapeOf(const character::Character& face, const std::string& name) {

@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "authoring/shapes/shape_landmarks.h"
 
-#include <filesystem>
 #include <string>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "authoring/generator/blend_shapes/blend_shape_face.h"
-#include "authoring/generator/default_character.h"
 #include "authoring/generator/head/head_shape.h"
 #include "authoring/shapes/arkit_face.h"
-#include "rig/rig_file.h"
+#include "tests/unit/authoring/shapes/shape_head.h"
 
 namespace furrow::authoring {
 namespace {
@@ -19,10 +16,7 @@ namespace {
 class ShapeLandmarksTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    auto rig = rig::LoadRig(std::filesystem::path(FURROW_SOURCE_DIR) / "rig/rigs/default.json");
-    ASSERT_TRUE(rig.ok()) << rig.status().ToString();
-    face_ = new character::Character(MakeDefaultCharacter(*rig, {.texture_size = 64}));
-    ASSERT_TRUE(MakeBlendShapeFace(face_).ok());
+    face_ = new character::Character(MakeShapeHead());
     arkit_ = new ArkitFace(*face_, rig::ShapeMatcher());
   }
   static void TearDownTestSuite() {
