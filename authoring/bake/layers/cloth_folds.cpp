@@ -10,7 +10,9 @@
 #include <glm/geometric.hpp>
 
 #include "authoring/bake/layers/parallel_for.h"
+#include "authoring/bake/request/fabric.h"
 #include "authoring/bake/surface/posed_surface.h"
+#include "base/scalar.h"
 
 namespace furrow::authoring {
 namespace {
@@ -26,6 +28,21 @@ constexpr int kShapeSteps = 8;
 constexpr int kCavityPasses = 24;
 // Passes over the result, which remove what is finer than cloth is thick.
 constexpr int kSmoothPasses = 1;
+// Passes that average over about a fold.
+constexpr int kFoldPasses = 48;
+// Mean strain of cloth that just hangs, and of cloth that a joint pulls.
+constexpr float kHangingStrain = 0.02f;
+constexpr float kBentStrain = 0.1f;
+// The square of a slope that nobody sees.
+constexpr float kFlat = 1e-3f;
+
+vec3 PlaceOf(const FineMesh::Vertex& vertex, std::span<const PosedVertex> surface) {
+  vec3 place(0.0f);
+  for (int k = 0; k < 3; ++k) {
+    place += vertex.shares[k] * surface[vertex.corners[static_cast<std::size_t>(k)]].position;
+  }
+  return place;
+}
 
 }  // namespace
 
@@ -47,6 +64,7 @@ void ClothFolds::Add(const BakePose& pose, std::span<const float> mask, float wa
                                   .room = std::vector<float>(mesh_.vertices().size(), 0.0f),
                                   .shares = std::vector<float>(mesh_.vertices().size(), 0.0f),
                                   .wavelength = wavelength,
+                                  .wider = {},
                                   .folds = {}});
   }
   for (std::size_t v = 0; v < mesh_.vertices().size(); ++v) {
@@ -56,10 +74,40 @@ void ClothFolds::Add(const BakePose& pose, std::span<const float> mask, float wa
   }
 }
 
+// Per vertex of the mesh: how much wider than beside a bent joint folds are.
+std::vector<float> ClothFolds::WiderWhereHanging(const Pose& pose) const {
+  const Surface& surface = mesh_.surface();
+  const std::vector<vec3> morphed =
+      pose.shape_weights.empty() ? std::vector<vec3>() : surface.Morphed(pose.shape_weights);
+  const std::vector<PosedVertex> cut = PoseSurface(surface, pose.path.front(), surface.positions());
+  const std::vector<PosedVertex> bent = PoseSurface(
+      surface, pose.path.back(), morphed.empty() ? surface.positions() : std::span(morphed));
+  std::vector<float> strains(mesh_.vertices().size(), 0.0f);
+  const auto length = [&](const FineMesh::Edge& edge, std::span<const PosedVertex> posed) {
+    return glm::distance(PlaceOf(mesh_.vertices()[edge[0]], posed),
+                         PlaceOf(mesh_.vertices()[edge[1]], posed));
+  };
+  for (const FineMesh::Edge& edge : mesh_.edges()) {
+    const float before = std::max(length(edge, cut), 1e-9f);
+    const float strain = std::min(std::abs(length(edge, bent) / before - 1.0f), 1.0f);
+    for (const std::uint32_t end : edge) {
+      strains[end] += strain / static_cast<float>(mesh_.Around(end).size());
+    }
+  }
+  Smooth(&strains, kFoldPasses);
+  const float most = std::pow(kBentPull / kHangingPull, 0.25f);
+  for (float& strain : strains) {
+    strain = std::lerp(most, 1.0f, Smoothstep(kHangingStrain, kBentStrain, strain));
+  }
+  return strains;
+}
+
 template <class Step>
 void ClothFolds::SolvePose(Pose* pose, const Step& step) const {
-  WrinkleMesh cloth(mesh_, pose->room,
-                    {.wavelength = pose->wavelength, .ease = ease_, .seed = seed_});
+  pose->wider = WiderWhereHanging(*pose);
+  WrinkleMesh cloth(
+      mesh_, pose->room,
+      {.wavelength = pose->wavelength, .ease = ease_, .seed = seed_, .wider = pose->wider});
   const Surface& surface = mesh_.surface();
   const std::vector<SkinMatrices>& path = pose->path;
   std::vector<float> weights = pose->shape_weights;
@@ -111,21 +159,37 @@ std::pair<float, float> ClothFolds::Wavelengths() const {
   return {least.wavelength, most.wavelength};
 }
 
+// Per vertex of the mesh: the square of the slopes around it.
+std::vector<float> ClothFolds::Prominence(const Pose& pose) const {
+  std::vector<float> energy;
+  energy.reserve(pose.folds.size());
+  for (const WrinkleMesh::Fold& fold : pose.folds) {
+    energy.push_back(glm::dot(fold.gradient, fold.gradient));
+  }
+  Smooth(&energy, kFoldPasses);
+  return energy;
+}
+
 void ClothFolds::Mix() {
   const std::size_t count = mesh_.vertices().size();
   heights_.assign(count, 0.0f);
   gradients_.assign(count, vec3(0.0f));
   std::vector<float> wavelengths(count, 0.0f);
+  std::vector<std::vector<float>> prominence;
+  for (const Pose& pose : poses_) prominence.push_back(Prominence(pose));
   for (std::size_t v = 0; v < count; ++v) {
     float sum = 0.0f;
-    for (const Pose& pose : poses_) {
-      const float share = pose.shares[v];
+    for (std::size_t p = 0; p < poses_.size(); ++p) {
+      const Pose& pose = poses_[p];
+      const float energy = prominence[p][v] + kFlat;
+      const float share = pose.shares[v] * energy * energy;
       // A weak pose has shallow folds.
-      const float deep = pose.room[v] > 0.0f ? share * share / pose.room[v] * depth_ : 0.0f;
+      const float deep =
+          pose.room[v] > 0.0f ? share * pose.shares[v] / pose.room[v] * depth_ : 0.0f;
       sum += share;
       heights_[v] += deep * pose.folds[v].height;
       gradients_[v] += deep * pose.folds[v].gradient;
-      wavelengths[v] += share * pose.wavelength;
+      wavelengths[v] += share * pose.wider[v] * pose.wavelength;
     }
     if (sum <= 0.0f) continue;
     heights_[v] /= sum;

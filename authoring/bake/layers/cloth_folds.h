@@ -26,12 +26,14 @@ class ClothFolds {
       : mesh_(mesh), ease_(ease), depth_(depth), seed_(seed) {}
 
   // Adds a pose (BakePose::path, shape_weights and weight count). `mask`: where it counts, one per
-  // welded vertex, [0, 1]. `wavelength`: from fold to fold, metres, > 0. Masks of one pose with one
-  // wavelength are joined, so that its folds cross the borders of regions.
+  // welded vertex, [0, 1]. `wavelength`: from fold to fold where the pose deforms cloth, metres, >
+  // 0. Where cloth hangs, it is wider, as kHangingPull says. Masks of one pose with one wavelength
+  // are joined, so that its folds cross the borders of regions.
   void Add(const BakePose& pose, std::span<const float> mask, float wavelength);
 
-  // Simulates all poses. Where several poses meet, their folds mix in proportion to mask times
-  // weight. The result does not depend on `threads`. Returns false if `progress` cancels.
+  // Simulates all poses. Where several poses meet, the deepest folds of them prevail, in
+  // proportion to mask times weight: the mean of folds at different places would be flat. The
+  // result does not depend on `threads`. Returns false if `progress` cancels.
   [[nodiscard]] bool Solve(int threads, BakeProgress* progress);
 
   // The folds at a point, after Solve(). `tangent`, `bitangent`: unit vectors along which the slope
@@ -50,11 +52,14 @@ class ClothFolds {
     std::vector<float> room;    // per vertex of the mesh: the mask
     std::vector<float> shares;  // the same, times the weight
     float wavelength = 0.0f;
+    std::vector<float> wider;  // per vertex of the mesh: multiplier for the wavelength
     std::vector<WrinkleMesh::Fold> folds;
   };
   // Calls `step` after every step of the path; it returns false to stop.
   template <class Step>
   void SolvePose(Pose* pose, const Step& step) const;
+  [[nodiscard]] std::vector<float> WiderWhereHanging(const Pose& pose) const;
+  [[nodiscard]] std::vector<float> Prominence(const Pose& pose) const;
   void Mix();
   template <class T>
   void Smooth(std::vector<T>* values, int passes) const;

@@ -21,11 +21,19 @@ constexpr std::uint32_t kInactive = 0xffffffffu;
 constexpr float kSlideTogether = 0.5f;
 // The wave that resists least, in wavelengths. The one that grows fastest is shorter.
 constexpr float kSlowest = 1.35f;
-// How far ease and wavelength vary: by a factor of 1 - v to 1 + v, and of 2^-v to 2^v.
-constexpr float kEaseVariation = 0.8f;
+// How far the wavelength varies: by a factor of 2^-v to 2^v.
 constexpr float kWavelengthVariation = 0.6f;
+// Noise from which on cloth has ease, and at which it has most, in parts of the variation.
+constexpr float kTightNoise = -0.4f;
+constexpr float kLooseNoise = 0.5f;
+// The curvature at which cloth creases, times the wavelength. A sine that is as high as a fifth of
+// its length has 4 at its crests.
+constexpr float kYield = 10.0f;
+// The height in wavelengths from which on the support hardly grows: nothing but its own weight and
+// a pull along the surface hold a crest down.
+constexpr float kFree = 0.3f;
 // How much more a pull presses cloth to the surface, per strain.
-constexpr float kPress = 20.0f;
+constexpr float kPress = 16.0f;
 // The strength of bending, at edges of a wavelength / pi.
 constexpr float kBending = 0.05f;
 // A share of the bending that an iteration removes. Larger values make the heights oscillate.
@@ -37,11 +45,11 @@ constexpr float kLeastStretch = 0.35f;
 // How much wider than the surface cloth is across a pull, per strain of the pull. The weave shears,
 // so this is more than Poisson's ratio of the threads. Skinning stretches further than cloth, which
 // slips, so the strain has a limit.
-constexpr float kNarrowing = 0.8f;
+constexpr float kNarrowing = 0.9f;
 constexpr float kLargestTension = 0.2f;
 constexpr float kShortest = 0.3f;  // of the cut length, however far the surface is compressed
 // Slopes approach this. Cloth that hangs over would otherwise be a black line.
-constexpr float kSteepest = 1.0f;
+constexpr float kSteepest = 1.3f;
 // Below this cosine between the surface's normal and the skinned one, skinning has turned the
 // surface inside out.
 constexpr float kInsideOut = 0.3f;
@@ -112,10 +120,11 @@ void WrinkleMesh::MakeLinks() {
     const float room_a = active_[a].room, room_b = active_[b].room;
     if (room_a <= 0.0f && room_b <= 0.0f) continue;
     const float mobile = (room_a > 0.0f ? 1.0f : 0.0f) + (room_b > 0.0f ? 1.0f : 0.0f);
-    const float looser = 1.0f + kEaseVariation * NoiseAt(edge[0], 2);
+    const float loose = 2.0f * Smoothstep(kTightNoise, kLooseNoise, NoiseAt(edge[0], 2));
+    const float looser = std::lerp(1.0f, loose, options_.variation);
     links_.push_back({.a = a,
                       .b = b,
-                      .ease = 1.0f + options_.ease * looser * 0.5f * (room_a + room_b),
+                      .ease = options_.ease * looser * 0.5f * (room_a + room_b),
                       .share_a = room_a > 0.0f ? 1.0f / mobile : 0.0f,
                       .share_b = room_b > 0.0f ? 1.0f / mobile : 0.0f});
   }
@@ -125,12 +134,16 @@ void WrinkleMesh::MakeLinks() {
   // buckles where it is compressed by more than a constant times b x^2, so b = kBending / x^2 lets
   // all fabrics buckle alike, on edges of any length.
   for (std::size_t i = 0; i < active_.size(); ++i) {
-    const float wider = std::exp2(kWavelengthVariation * NoiseAt(active_[i].vertex, 1));
-    const float x =
-        kPi * lengths[i] / (std::max(counts[i], 1.0f) * kSlowest * wider * options_.wavelength);
+    const float varied = std::exp2(kWavelengthVariation * NoiseAt(active_[i].vertex, 1));
+    const float wavelength = varied * options_.wavelength *
+                             (options_.wider.empty() ? 1.0f : options_.wider[active_[i].vertex]);
+    const float edge = lengths[i] / std::max(counts[i], 1.0f);
+    const float x = kPi * edge / (kSlowest * wavelength);
     const float square = std::max(x * x, 1e-6f);
     active_[i].bending = std::min(kBending / square, kMostBending);
     active_[i].support = std::min(active_[i].bending * square * square, kMostSupport);
+    // The mean of the neighbours at the distance l is higher by l^2 / 4 times the curvature.
+    active_[i].yield = kYield / wavelength * 0.25f * edge * edge;
   }
 }
 
@@ -161,14 +174,20 @@ void WrinkleMesh::Carry(std::span<const PosedVertex> surface) {
                        RandomAt(static_cast<int>(point.vertex), static_cast<int>(options_.seed), 5);
     point.cloth = point.base + (started_ ? point.turn * offset : dent * point.normal);
   }
-  if (!started_) {
-    for (Link& link : links_) {
-      link.cut = link.ease * glm::distance(active_[link.a].base, active_[link.b].base);
-    }
-  }
+  if (!started_) Cut();
   MeasureTension();
   for (Link& link : links_) SetLength(&link);
   started_ = true;
+}
+
+// Cuts the cloth for this pose.
+void WrinkleMesh::Cut() {
+  for (Link& link : links_) {
+    const vec3 edge = active_[link.b].base - active_[link.a].base;
+    const float length = glm::length(edge);
+    const float down = length > 0.0f ? edge.y / length : 0.0f;
+    link.cut = length * (1.0f + link.ease * std::lerp(1.0f, options_.hang, down * down));
+  }
 }
 
 // How far the surface is stretched beyond the cloth's length, as a tensor: the mean of e d d^T over
@@ -265,12 +284,19 @@ void WrinkleMesh::Bend() {
     slides_[i] = offset - heights_[i] * active_[i].normal;
   }
   Laplacian(heights_, &bends_);
+  for (std::size_t i = 0; i < active_.size(); ++i) {
+    const float yield = std::max(active_[i].yield, 1e-9f);
+    bends_[i] = yield * std::tanh(bends_[i] / yield);
+  }
   Laplacian(bends_, &changes_);
   Laplacian(slides_, &slide_changes_);
+  const float free = kFree * options_.wavelength;
   for (std::size_t i = 0; i < active_.size(); ++i) {
     Active& point = active_[i];
     if (point.room <= 0.0f) continue;
-    point.cloth -= point.normal * (point.bending * changes_[i] + point.pressed * heights_[i]);
+    const float held = point.support * free * std::tanh(heights_[i] / free) +
+                       (point.pressed - point.support) * heights_[i];
+    point.cloth -= point.normal * (point.bending * changes_[i] + held);
     point.cloth += kSlideTogether * slide_changes_[i];
   }
 }

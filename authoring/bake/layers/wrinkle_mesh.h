@@ -22,22 +22,28 @@ namespace furrow::authoring {
 //   The body limits how far it sinks, and friction how far it slides.
 // - Bending stiffness B and a weak pull K towards the surface decide how wide folds are: the
 //   buckling sheet on a foundation, lambda = 2 pi (B / K)^(1/4).
+// - Hanging cloth is pulled straight by its weight, so most of its ease lies across gravity.
+// - Sharply bent cloth creases: beyond a curvature, its resistance stops growing.
 // - Seams, wear and the body below make cloth uneven: over about three wavelengths, its ease varies
-//   by up to 80% and its wavelength by up to half. Otherwise folds would be rings.
+//   between none and twice the mean, and its wavelength by up to half. Otherwise folds would be
+//   rings.
 // - Step() moves the surface a little and lets the cloth settle. Folds keep their identity from
 //   step to step: they deepen, travel and merge.
 class WrinkleMesh {
  public:
   struct Options {
     float wavelength = 0.04f;  // from fold to fold, metres, > 0
-    float ease = 0.09f;        // how much longer the cloth is than the surface it was cut for, >= 0
+    float ease = 0.15f;        // how much wider the cloth is than the surface it was cut for, >= 0
+    float hang = 0.6f;         // share of the ease that is left along gravity, [0, 1]; see below
     float sink = 0.002f;       // metres
-    float rise = 0.37f;        // in wavelengths
+    float rise = 0.45f;        // in wavelengths
     float slide = 0.37f;       // in wavelengths
     float weight = 0.03e-3f;   // how far gravity moves a vertex per iteration, metres
     float dents = 0.6e-3f;     // height of random dents, where the first folds begin, metres
     float variation = 1.0f;    // local differences of ease and wavelength, [0, 1]; see below
     std::uint32_t seed = 1;    // of the dents and the variation
+    // Per vertex of the mesh: a multiplier for the wavelength, > 0. Empty: 1.
+    std::span<const float> wider;
   };
 
   // `room`: per vertex of the mesh, a multiplier for the lengths by which it may leave its place,
@@ -61,7 +67,7 @@ class WrinkleMesh {
   struct Link {
     std::uint32_t a = 0;
     std::uint32_t b = 0;
-    float ease = 1.0f;     // the cloth's length, relative to the surface that it was cut for
+    float ease = 0.0f;     // how much longer the cloth is than the surface, if it lies level
     float cut = 0.0f;      // the cloth's length, metres
     float length = 0.0f;   // length that it keeps in this pose, metres
     float share_a = 0.0f;  // part of a correction that each end takes; 0 for a fixed end
@@ -73,6 +79,7 @@ class WrinkleMesh {
     float room = 0.0f;
     float bending = 0.0f;  // share of the second Laplacian that it loses per iteration
     float support = 0.0f;  // share of its height that it loses per iteration, without a pull
+    float yield = 0.0f;    // the Laplacian of the height where cloth creases, metres
     float pressed = 0.0f;  // the same with the pull of this pose
     glm::vec3 rest_normal{0.0f};
     glm::vec3 base{0.0f};    // its place on the surface
@@ -84,6 +91,7 @@ class WrinkleMesh {
 
   void Activate(std::span<const float> room);
   void MakeLinks();
+  void Cut();
   void Carry(std::span<const PosedVertex> surface);
   [[nodiscard]] float NoiseAt(std::uint32_t vertex, int stream) const;
   void MeasureTension();

@@ -94,7 +94,7 @@ struct BakeOptions {
   BakeMaterial cloth{.max_compression = 0.5f, .threshold = 0.03f, .smoothing_mm = 40.0f};
   Fabric fabric = kFabrics[0];  // of all cloth but that of these regions
   std::vector<RegionFabric> fabrics = {{"knee", kFabrics[1]}, {"hip", kFabrics[1]}};
-  float ease = 0.09f;  // how much longer cloth is than the surface that it lies on, [0, 0.2]
+  float ease = 0.15f;  // how much wider cloth is than the surface that it lies on, [0, 0.3]
   std::vector<BakeRegionWavelength> wavelengths = {
       {"brow", 8.0f}, {"glabella", 6.5f}, {"nose", 3.5f}, {"eye", 3.5f}, {"mouth", 5.5f}};
   float depth = 1.0f;      // multiplier for every height of both materials, [0, 4]

@@ -23,10 +23,9 @@ std::string FabricNames() {
   return names;
 }
 
-float FoldWavelength(const Fabric& fabric) {
-  constexpr float kPull = 10.0f;    // N/m
+float FoldWavelength(const Fabric& fabric, float pull) {
   constexpr float kLength = 0.15f;  // metres
-  return 2.0f * std::sqrt(kPi) * std::pow(1e-6f * fabric.bending / kPull, 0.25f) *
+  return 2.0f * std::sqrt(kPi) * std::pow(1e-6f * fabric.bending / pull, 0.25f) *
          std::sqrt(kLength);
 }
 

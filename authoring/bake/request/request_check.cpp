@@ -155,8 +155,8 @@ Status CheckOptions(const BakeOptions& options) {
   for (const RegionFabric& region : options.fabrics) {
     FURROW_RETURN_IF_ERROR(CheckFabric(region.fabric));
   }
-  if (!In(options.ease, 0.0f, 0.2f)) {
-    return Refuse("the ease is " + Text(options.ease) + "; it must be in [0, 0.2]", "options.ease");
+  if (!In(options.ease, 0.0f, 0.3f)) {
+    return Refuse("the ease is " + Text(options.ease) + "; it must be in [0, 0.3]", "options.ease");
   }
   return CheckMaterial(options.cloth, "options.cloth");
 }

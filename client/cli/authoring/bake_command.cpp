@@ -273,8 +273,8 @@ void AddMaterialOptions(CLI::App& command, BakeArguments& arguments) {
   command
       .add_option(
           "--ease", options.ease,
-          "How much longer cloth is than the surface it lies on, as a fraction; 0 fits tightly")
-      ->check(Within(0.0, 0.2))
+          "How much wider cloth is than the surface it lies on, as a fraction; 0 fits tightly")
+      ->check(Within(0.0, 0.3))
       ->capture_default_str();
   command
       .add_option(

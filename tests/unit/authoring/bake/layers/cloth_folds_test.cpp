@@ -104,6 +104,18 @@ TEST_F(Garment, MasksOfOnePoseAreJoined) {
   EXPECT_NEAR(Depth(parts), Depth(whole), 0.2 * Depth(whole));
 }
 
+// A pose that hardly folds the cloth does not flatten the folds of another.
+TEST_F(Garment, TheDeepestFoldsPrevail) {
+  ClothFolds alone = Folds(), both = Folds();
+  BakePose still = toys::Pose(toys::Squeeze(0.01f, 0.0f));
+  still.path.emplace_back(2, toys::Squeeze(0.01f, 0.0f));
+  alone.Add(Pressed(), Everywhere(), 0.03f);
+  both.Add(Pressed(), Everywhere(), 0.03f);
+  both.Add(still, Everywhere(), 0.03f);
+  ASSERT_TRUE(alone.Solve(1, &progress_) && both.Solve(1, &progress_));
+  EXPECT_GT(Depth(both), 0.8 * Depth(alone));
+}
+
 TEST_F(Garment, DoesNotDependOnTheNumberOfThreads) {
   ClothFolds one = Folds(), four = Folds();
   for (ClothFolds* folds : {&one, &four}) {

@@ -141,6 +141,42 @@ TEST(WrinkleMesh, FoldsDeepenWithTheCompressionAndNeverBeyondTheLength) {
   EXPECT_GT(last - 1.0, 0.25 * (1.0 / 0.7 - 1.0));
 }
 
+// Gravity pulls along -y. Cloth that is too wide, but not too long, hangs in folds along it.
+TEST(WrinkleMesh, HangsInFoldsAlongGravity) {
+  const Sheet sheet;
+  std::vector<float> room = sheet.Room();
+  for (std::size_t v = 0; v < room.size(); ++v) {
+    const float y = sheet.fine().positions()[v].y;
+    if (y < 0.001f || y > kHeight - 0.001f) room[v] = 0.0f;
+  }
+  const auto share_across = [&](float hang) {
+    WrinkleMesh::Options options = Weightless();
+    options.ease = 0.15f;
+    options.hang = hang;
+    WrinkleMesh cloth(sheet.fine(), room, options);
+    cloth.Step(sheet.Posed(glm::mat4(1.0f)), 300);
+    double across = 0.0, along = 0.0;
+    for (const WrinkleMesh::Fold& fold : cloth.Folds()) {
+      across += static_cast<double>(std::abs(fold.gradient.x));
+      along += static_cast<double>(std::abs(fold.gradient.y));
+    }
+    return across / (across + along);
+  };
+  EXPECT_GT(share_across(0.2f), 0.6);
+  EXPECT_GT(share_across(0.2f), share_across(1.0f) + 0.1);
+}
+
+TEST(WrinkleMesh, FoldsWiderWhereAsked) {
+  const Sheet sheet;
+  const std::vector<float> wider(sheet.fine().vertices().size(), 1.5f);
+  WrinkleMesh::Options options = Weightless();
+  options.wavelength = 0.029f;
+  const float narrow = WavelengthOf(sheet.fine(), sheet.Press(0.2f, options));
+  options.wider = wider;
+  const float wide = WavelengthOf(sheet.fine(), sheet.Press(0.2f, options));
+  EXPECT_GT(wide, 1.2f * narrow);
+}
+
 TEST(WrinkleMesh, StaysSmoothWithoutCompression) {
   const Sheet sheet;
   WrinkleMesh::Options options = Weightless();

@@ -14,6 +14,14 @@ TEST(Fabric, FoldsAsWideAsItsStiffnessSays) {
   EXPECT_NEAR(FoldWavelength(*FindFabric("jersey")), 0.0290f, 2e-4f);
 }
 
+// The law's fourth root of the tension: 5^(1/4) = 1.495.
+TEST(Fabric, HangsInWiderFolds) {
+  for (const Fabric& fabric : kFabrics) {
+    EXPECT_NEAR(FoldWavelength(fabric, kHangingPull) / FoldWavelength(fabric), 1.495f, 1e-3f)
+        << fabric.name;
+  }
+}
+
 TEST(Fabric, IsFoundByName) {
   for (const Fabric& fabric : kFabrics) {
     EXPECT_EQ(FindFabric(fabric.name)->bending, fabric.bending);
