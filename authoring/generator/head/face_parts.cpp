@@ -53,6 +53,7 @@ void AddLash(const vec3& root, const vec3& out, const vec3& curl, const vec3& ac
     for (const float s : {-1.0f, 1.0f}) {
       HeadVertex info;
       info.part = kLash;
+      info.root = root;
       info.eye_side = eye_side;
       info.place = middle + across * (s * kHalf);
       AddHeadVertex(lashes, info, vec2(0.5f + 0.49f * s, 0.01f + 0.98f * t));
