@@ -63,8 +63,8 @@ Lighting MakeLighting(const LightSettings& settings, const Stage& stage) {
       // the sky, and a rim from behind. Key and fill come from the sides, where both show folds.
       // The rim is so far behind that it grazes the outline only. Radiance is linear.
       lighting.lights = {place.Spot({-0.78f, 0.72f, 0.76f}, {1.12f, 0.98f, 0.84f}, 24.0f),
-                         place.Point({0.84f, 0.20f, 0.62f}, {0.195f, 0.20f, 0.22f}),
-                         place.Directional({0.58f, 0.56f, -1.05f}, {0.28f, 0.31f, 0.36f})};
+                         place.Point({0.84f, 0.46f, 0.52f}, {0.22f, 0.225f, 0.25f}),
+                         place.Directional({0.58f, 0.25f, -1.05f}, {0.28f, 0.31f, 0.36f})};
       lighting.sky = {{0.150f, 0.155f, 0.165f}, {0.080f, 0.078f, 0.078f}, {0.045f, 0.038f, 0.034f}};
       break;
     case LightPreset::kHard:

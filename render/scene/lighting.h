@@ -45,7 +45,7 @@ struct Stage {
 //
 // - studio: a portrait. A warm key (spot) from the upper left, a cool fill (point) from the right,
 //   and a rim (directional) from behind on the right. Key and fill come from the sides, which shows
-//   folds. The lit cheek has 2.8 times the light of the other, with the sky.
+//   folds. The lit cheek has 2.7 times the light of the other, with the sky.
 // - hard: one strong spot high on the left and almost no fill, for judging shadows.
 // - thesis: three white directional lights, from the left, the right and behind (thesis 5.1).
 [[nodiscard]] Lighting MakeLighting(const LightSettings& settings, const Stage& stage);
