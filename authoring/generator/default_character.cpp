@@ -114,6 +114,10 @@ void AddHeadParts(const CharacterOptions& options, const HeadShape& shape,
   lashes.double_sided = true;
   AddMesh(character, SkinnedPart(character->skeleton, MakeLashes(shape)), std::move(lashes));
 
+  character::Material tears = MakeMaterial("tears", character::Material::Kind::kEye, 0.1f);
+  tears.base_colour = glm::vec4(0.48f, 0.27f, 0.23f, 1.0f);  // of the flesh below
+  AddMesh(character, SkinnedPart(character->skeleton, MakeTears(shape)), std::move(tears));
+
   character::Material teeth = MakeMaterial("teeth", character::Material::Kind::kOther, 0.3f);
   character::Mesh rows = SkinnedPart(character->skeleton, MakeTeeth());
   teeth.base_colour_texture =

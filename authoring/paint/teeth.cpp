@@ -50,10 +50,10 @@ vec3 PlaceOf(const ToothArch& arch, float s, float h) {
   // The arch as an ellipse by its angle. Arc length grows faster than the angle toward the sides.
   const float angle = std::atan2(s / arch.half_width, 1.0f - 0.055f * s * s);
   const auto [tooth, across] = ToothAt(std::abs(s), arch.upper);
-  const float round = 1.0f - std::pow(std::abs(across), 5.0f);
+  const float round = 1.0f - std::pow(std::abs(across), 3.5f);
   const bool canine = tooth == 2;
   const float gum = glm::smoothstep(0.80f, 0.95f, h + 0.12f * (1.0f - round));
-  const float crown = 0.055f * round * (1.0f - gum) - (h < 0.05f ? 0.12f : 0.0f);
+  const float crown = 0.085f * round * (1.0f - gum) - (h < 0.05f ? 0.12f : 0.0f);
   const float out = crown + 0.05f * gum - 0.05f * (1.0f - glm::smoothstep(0.0f, 0.6f, h));
   const float worn = (canine ? -0.05f * (1.0f - std::abs(across)) : 0.05f * (1.0f - round)) +
                      (tooth == 1 ? 0.06f : 0.0f);
@@ -66,15 +66,19 @@ vec3 PlaceOf(const ToothArch& arch, float s, float h) {
 // The colour at a point of the row: enamel, gums, or the gap between two teeth.
 vec3 ToothColour(float s, float h, bool upper, float age) {
   const vec3 enamel =
-      glm::mix(vec3(0.97f, 0.945f, 0.90f), vec3(0.84f, 0.74f, 0.57f), 0.06f + 0.6f * age);
+      glm::mix(vec3(0.95f, 0.91f, 0.83f), vec3(0.82f, 0.72f, 0.55f), 0.06f + 0.6f * age);
   vec3 colour =
-      glm::mix(enamel * 0.97f, enamel * vec3(1.0f, 0.95f, 0.86f), glm::smoothstep(0.3f, 0.9f, h));
-  const float across = std::abs(ToothAt(std::abs(s), upper).across);
-  colour *= 1.0f - 0.35f * glm::smoothstep(0.86f, 1.0f, across);
+      glm::mix(enamel, enamel * vec3(0.96f, 0.89f, 0.78f), glm::smoothstep(0.3f, 0.9f, h));
+  // The edge lets light through and shows the dark mouth.
+  colour = glm::mix(colour, vec3(0.72f, 0.73f, 0.72f), 0.45f * glm::smoothstep(0.14f, 0.0f, h));
+  const auto [tooth, place] = ToothAt(std::abs(s), upper);
+  const float across = std::abs(place);
+  colour *= tooth == 2 ? vec3(0.97f, 0.93f, 0.85f) : vec3(1.0f);  // canines are yellower
+  colour *= 1.0f - 0.5f * glm::smoothstep(0.84f, 1.0f, across);
   const float scallop = 0.10f * across * across - 0.08f * age;  // gums dip between the teeth
   colour = glm::mix(colour, vec3(0.62f, 0.30f, 0.29f), glm::smoothstep(0.86f, 0.96f, h + scallop));
   // Back teeth are darker, since little light passes between the lips.
-  return colour * glm::mix(1.0f, 0.55f, glm::smoothstep(2.2f, 4.2f, std::abs(s)));
+  return colour * glm::mix(1.0f, 0.4f, glm::smoothstep(1.2f, 3.6f, std::abs(s)));
 }
 
 }  // namespace

@@ -62,9 +62,9 @@ std::vector<std::string> Defines(const SceneShader& shader) {
 }
 
 std::vector<std::string> Defines(const PoseShader& shader) {
-  return {Define("NUM_JOINTS", shader.num_joints), Define("WRINKLE_DYNAMIC", shader.dynamic),
-          Define("DISPLACED", shader.displaced), Define("MAP_SLOTS", shader.map_slots),
-          Define("MORPH_PARTS", shader.morph_parts)};
+  return {Define("NUM_JOINTS", shader.num_joints),   Define("WRINKLE_DYNAMIC", shader.dynamic),
+          Define("DISPLACED", shader.displaced),     Define("MAP_SLOTS", shader.map_slots),
+          Define("MORPH_PARTS", shader.morph_parts), Define("GRADIENTS", shader.gradients)};
 }
 
 Result<GLuint> ShaderLibrary::Get(const SceneShader& shader) {

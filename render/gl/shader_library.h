@@ -22,6 +22,7 @@ struct PoseShader {
   bool displaced = false;  // write the share of the heights by which each vertex is moved
   int map_slots = 1;       // MapSlots() of the rig's wrinkle maps
   int morph_parts = 0;     // MeshMorphs::num_parts(); 0: no morph target moves the mesh
+  bool gradients = false;  // normals follow the posed surface (WeightGradients())
 
   friend auto operator<=>(const PoseShader&, const PoseShader&) = default;
 };

@@ -8,6 +8,7 @@
 
 #include "render/mesh/displacement_patches.h"
 #include "render/mesh/uv_density.h"
+#include "render/mesh/weight_gradients.h"
 
 namespace furrow::render {
 namespace {
@@ -54,6 +55,20 @@ void DescribeMorphRows(GLuint array, const gl::Buffer& rows) {
   glVertexArrayAttribBinding(array, kMorphRow, 3);
 }
 
+// The gradients are in a separate buffer at binding 4, because only skin has any.
+void DescribeGradients(GLuint array, const gl::Buffer& gradients) {
+  constexpr GLuint kGradient = 9;  // a_weights_along and a_weights_across of pose.vert.glsl
+  if (!gradients) return;
+  glVertexArrayVertexBuffer(array, 4, gradients.name(), 0, sizeof(WeightGradient));
+  for (GLuint axis = 0; axis < 2; ++axis) {
+    glEnableVertexArrayAttrib(array, kGradient + axis);
+    glVertexArrayAttribFormat(
+        array, kGradient + axis, 4, GL_FLOAT, GL_FALSE,
+        axis == 0 ? offsetof(WeightGradient, along) : offsetof(WeightGradient, across));
+    glVertexArrayAttribBinding(array, kGradient + axis, 4);
+  }
+}
+
 // Counts inner edges twice, which does not change the mean much.
 float MeanEdge(const character::Mesh& mesh) {
   double sum = 0.0;
@@ -75,6 +90,18 @@ float Surface(const character::Mesh& mesh) {
     sum += 0.5 * glm::length(glm::cross(a, b));
   }
   return static_cast<float>(sum);
+}
+
+// A copy of `gradients` with those of one vertex after another.
+gl::Buffer Expanded(const gl::Buffer& gradients, std::span<const std::uint32_t> vertices) {
+  GLint bytes = 0;
+  glGetNamedBufferParameteriv(gradients.name(), GL_BUFFER_SIZE, &bytes);
+  std::vector<WeightGradient> source(static_cast<std::size_t>(bytes) / sizeof(WeightGradient));
+  glGetNamedBufferSubData(gradients.name(), 0, bytes, source.data());
+  std::vector<WeightGradient> expanded;
+  expanded.reserve(vertices.size());
+  for (const std::uint32_t vertex : vertices) expanded.push_back(source[vertex]);
+  return gl::MakeStaticBuffer(expanded.data(), expanded.size() * sizeof(WeightGradient));
 }
 
 }  // namespace
@@ -118,6 +145,14 @@ GpuMesh MakeGpuMesh(const character::Mesh& mesh, std::span<const glm::mat4> inve
   return gpu;
 }
 
+void AddGradients(const character::Mesh& source, GpuMesh* mesh) {
+  const std::vector<WeightGradient> gradients = WeightGradients(source);
+  if (gradients.empty()) return;
+  mesh->gradients =
+      gl::MakeStaticBuffer(gradients.data(), gradients.size() * sizeof(WeightGradient));
+  DescribeGradients(mesh->vertex_array.name(), mesh->gradients);
+}
+
 void AddLevels(GpuMesh* mesh, Borders borders) {
   std::vector<std::uint32_t> indices;
   character::Mesh source = ReadMesh(*mesh);
@@ -142,6 +177,10 @@ GpuMesh MakeUnindexed(const GpuMesh& mesh) {
   gpu.num_vertices = gpu.num_indices = mesh.num_indices;
   gpu.material = mesh.material;
   DescribeVertices(gpu.vertex_array.name(), gpu.vertices);
+  if (mesh.gradients) {
+    gpu.gradients = Expanded(mesh.gradients, source.indices);
+    DescribeGradients(gpu.vertex_array.name(), gpu.gradients);
+  }
   if (mesh.morphs.empty()) return gpu;
   std::vector<std::uint32_t> rows;
   rows.reserve(source.indices.size());
@@ -162,6 +201,7 @@ GpuPatches MakePatches(const GpuMesh& mesh) {
   DescribeVertices(gpu.vertex_array.name(), mesh.vertices);
   DescribeShares(gpu.vertex_array.name(), gpu.shares);
   DescribeMorphRows(gpu.vertex_array.name(), mesh.morph_rows);
+  DescribeGradients(gpu.vertex_array.name(), mesh.gradients);
   glVertexArrayElementBuffer(gpu.vertex_array.name(), gpu.indices.name());
   return gpu;
 }

@@ -21,6 +21,7 @@ struct GpuMesh {
   gl::Buffer indices;
   MeshMorphs morphs;
   gl::Buffer morph_rows;  // MeshMorphs::rows(), per vertex of this object; none without morphs
+  gl::Buffer gradients;   // WeightGradients(), per vertex; none unless AddGradients() found any
   JointBounds bounds;     // bounds of the posed mesh
   GLsizei num_vertices = 0;
   GLsizei num_indices = 0;
@@ -51,6 +52,9 @@ struct GpuPatches {
 // Uploads a mesh whose indices are in range. This and the functions below need a current context.
 [[nodiscard]] GpuMesh MakeGpuMesh(const character::Mesh& mesh,
                                   std::span<const glm::mat4> inverse_bind_matrices);
+// Computes and uploads the gradients of the skin weights (WeightGradients()), so that the normals
+// of the posed mesh follow its surface. `source`: the mesh that `mesh` was made from.
+void AddGradients(const character::Mesh& source, GpuMesh* mesh);
 // Computes the levels of detail (MakeMeshLevels()), uploads them and fills mesh->levels.
 void AddLevels(GpuMesh* mesh, Borders borders);
 // Reads the whole mesh, without morph targets, back from the GPU, where its only copy is.

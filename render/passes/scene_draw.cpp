@@ -225,6 +225,7 @@ Result<PosedMeshes::Vertices> SceneDraw::Pose(std::size_t index, PosedMeshes::Fo
   shader.dynamic = material.group != WrinkleGroup::kNone &&
                    NeedsOf(tables_->table(material.group), part).uses_dynamic;
   shader.map_slots = MapSlots(tables_->num_maps());
+  shader.gradients = static_cast<bool>(gpu_->meshes()[index].gradients);
   if (morphs_.Moves(index, draw_list_.subjects(index))) {
     shader.morph_parts = static_cast<int>(gpu_->meshes()[index].morphs.num_parts());
   }

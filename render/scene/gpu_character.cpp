@@ -257,6 +257,10 @@ Status GpuCharacter::AddMeshes(const Character& character) {
   });
   for (const character::Mesh* source : order) {
     meshes_.push_back(MakeGpuMesh(*source, character.inverse_bind_matrices));
+    // Cloth does not follow its joints' weights as closely: its folds are maps.
+    if (materials_[source->material].kind == Material::Kind::kSkin) {
+      AddGradients(*source, &meshes_.back());
+    }
     if (meshes_.back().morphs.num_floats() * sizeof(float) > kMaxMorphBytes) {
       return {StatusCode::kLimit,
               "its morph targets move " + std::to_string(meshes_.back().morphs.num_rows() - 1) +

@@ -59,12 +59,13 @@ Lighting MakeLighting(const LightSettings& settings, const Stage& stage) {
   Lighting lighting;
   switch (settings.preset) {
     case LightPreset::kStudio:
-      // Soft key from the left, weak cool fill opposite, and a rim light from behind. Radiance is
-      // linear.
-      lighting.lights = {place.Spot({-0.80f, 0.72f, 0.72f}, {1.22f, 1.06f, 0.90f}, 24.0f),
-                         place.Point({0.90f, 0.12f, 0.60f}, {0.13f, 0.16f, 0.21f}),
-                         place.Directional({0.72f, 0.42f, -0.75f}, {0.42f, 0.48f, 0.57f})};
-      lighting.sky = {{0.135f, 0.140f, 0.150f}, {0.060f, 0.058f, 0.058f}, {0.032f, 0.026f, 0.022f}};
+      // A portrait: a warm key from the left, a cool fill from the right, a third as bright with
+      // the sky, and a rim from behind. Key and fill come from the sides, where both show folds.
+      // The rim is so far behind that it grazes the outline only. Radiance is linear.
+      lighting.lights = {place.Spot({-0.78f, 0.72f, 0.76f}, {1.12f, 0.98f, 0.84f}, 24.0f),
+                         place.Point({0.84f, 0.46f, 0.52f}, {0.22f, 0.225f, 0.25f}),
+                         place.Directional({0.58f, 0.25f, -1.05f}, {0.28f, 0.31f, 0.36f})};
+      lighting.sky = {{0.150f, 0.155f, 0.165f}, {0.080f, 0.078f, 0.078f}, {0.045f, 0.038f, 0.034f}};
       break;
     case LightPreset::kHard:
       lighting.lights = {place.Spot({-0.75f, 0.95f, 0.45f}, {2.10f, 1.95f, 1.78f}, 24.0f),

@@ -24,6 +24,11 @@ layout(location = 7) in uint a_subject;
 #if MORPH_PARTS
 layout(location = 8) in uint a_morph_row;
 #endif
+#if GRADIENTS
+// render/mesh/weight_gradients.h: changes of the skin weights per metre along the surface.
+layout(location = 9) in vec4 a_weights_along;
+layout(location = 10) in vec4 a_weights_across;
+#endif
 
 layout(xfb_buffer = 0, xfb_stride = 52 + 4 * DISPLACED + 16 * WRINKLE_DYNAMIC * MAP_SLOTS) out;
 layout(location = 0, xfb_offset = 0) out vec3 p_position;  // model space of the picture
@@ -54,7 +59,17 @@ void main() {
 #endif
   p_position = skinPoint(skin, position);
   p_normal = skinDirection(skin, normal);
+#if GRADIENTS
+  vec3 restAcross = normalizeOrZero(cross(normal, tangent));
+  vec3 across = skinDirection(skin, restAcross);
+  vec3 along = skinDirection(skin, normalizeOrZero(cross(restAcross, normal)));
+  addWeightChanges(a_subject, a_joints, position, p_position, a_weights_along, a_weights_across,
+                   along, across);
+  p_normal = surfaceNormal(p_normal, along, across);
+  p_tangent = vec4(along, a_tangent.w);
+#else
   p_tangent = vec4(skinDirection(skin, tangent), a_tangent.w);
+#endif
   p_uv = a_uv;
   p_subject = a_subject;
 #if DISPLACED

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "common/math.glsl"
 
 // NUM_JOINTS  joints of the character's skeleton
 
@@ -28,6 +29,29 @@ SkinMatrix blendJoints(uint subject, uvec4 joints, vec4 skinWeights) {
 vec3 skinPoint(SkinMatrix m, vec3 p) {
   vec4 point = vec4(p, 1.0);
   return vec3(dot(m.row0, point), dot(m.row1, point), dot(m.row2, point));
+}
+
+// Adds to the tangents of the surface at the rest point `p`, which is posed to `posed`, how far the
+// changes of the skin weights move the points beside it (render/mesh/weight_gradients.h).
+void addWeightChanges(uint subject, uvec4 joints, vec3 p, vec3 posed, vec4 weightsAlong,
+                      vec4 weightsAcross, inout vec3 along, inout vec3 across) {
+  vec4 point = vec4(p, 1.0);
+  for (int i = 0; i < 4; ++i) {
+    uint row = 3u * (subject * uint(NUM_JOINTS) + joints[i]);
+    // Relative to the posed point, so that a motion that all joints share adds nothing.
+    vec3 apart = vec3(dot(u_joint_rows[row], point), dot(u_joint_rows[row + 1u], point),
+                      dot(u_joint_rows[row + 2u], point)) - posed;
+    along += weightsAlong[i] * apart;
+    across += weightsAcross[i] * apart;
+  }
+}
+
+// The unit normal of a surface with these tangents. `turned`: the normal as the joints alone turn
+// it, which counts where skinning folds the surface over, so that no normal flips.
+vec3 surfaceNormal(vec3 turned, vec3 along, vec3 across) {
+  vec3 surface = normalizeOrZero(cross(along, across));
+  vec3 joint = normalizeOrZero(turned);
+  return normalizeOrZero(mix(joint, surface, smoothstep(0.0, 0.3, dot(surface, joint))));
 }
 
 // Transforms a direction with the matrix itself, which is correct for rotation and uniform scale.

@@ -19,6 +19,19 @@ bool HasName(std::span<const std::string> names, const std::string& name) {
                              [&](const std::string& one) { return EqualsIgnoreCase(one, name); });
 }
 
+// The blend shape that limits the coefficient of `name`, or -1.
+int LimitOf(const std::string& name, std::span<const std::string> blend_shapes) {
+  if (!EqualsIgnoreCase(name, "mouthClose")) return -1;
+  const auto jaw = std::ranges::find_if(
+      blend_shapes, [](const std::string& one) { return EqualsIgnoreCase(one, "jawOpen"); });
+  return jaw == blend_shapes.end() ? -1 : static_cast<int>(jaw - blend_shapes.begin());
+}
+
+float CoefficientOf(int blend_shape, std::span<const float> coefficients) {
+  const auto shape = static_cast<std::size_t>(blend_shape);
+  return shape < coefficients.size() ? coefficients[shape] : 0.0f;
+}
+
 }  // namespace
 
 BlendShapePose BlendShapePose::Create(const Rig& rig, const Skeleton& skeleton,
@@ -44,6 +57,7 @@ BlendShapePose BlendShapePose::Create(const Rig& rig, const Skeleton& skeleton,
       const glm::vec3 vector(turn.x, turn.y, turn.z);
       const float sine = glm::length(vector);
       result.moves_.push_back({.blend_shape = static_cast<int>(shape),
+                               .at_most = LimitOf(blend_shapes[shape], blend_shapes),
                                .joint = joint,
                                .translation = moved.translation - rest.translation,
                                // Turns too small for an axis keep any axis and an angle near 0.
@@ -60,8 +74,10 @@ JobStatus BlendShapePose::Run(std::span<const float> coefficients,
   if (local.size() < num_joints_) return JobStatus::kSizeMismatch;
   if (!AllFinite(coefficients)) return JobStatus::kNonFinite;
   for (const Move& move : moves_) {
-    const auto shape = static_cast<std::size_t>(move.blend_shape);
-    const float amount = shape < coefficients.size() ? coefficients[shape] : 0.0f;
+    float amount = CoefficientOf(move.blend_shape, coefficients);
+    if (move.at_most >= 0) {
+      amount = std::min(amount, std::max(CoefficientOf(move.at_most, coefficients), 0.0f));
+    }
     if (amount == 0.0f) continue;
     Transform& joint = local[static_cast<std::size_t>(move.joint)];
     joint.translation += amount * move.translation;

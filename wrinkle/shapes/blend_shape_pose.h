@@ -22,6 +22,8 @@ class BlendShapePose {
   // `blend_shapes`: the stream's names, in its order. Names without a pose, and joints that
   // `skeleton` lacks, are ignored. `shapes`: the shapes of the skeleton's meshes. A blend shape of
   // their name moves them alone: an eyeball that both its joint and a shape turn would turn twice.
+  // mouthClose counts at most as jawOpen, if the stream has both: it brings the lips together on an
+  // open jaw, and alone it would push each lip through the other.
   [[nodiscard]] static BlendShapePose Create(const Rig& rig, const Skeleton& skeleton,
                                              std::span<const std::string> blend_shapes,
                                              std::span<const std::string> shapes = {});
@@ -38,6 +40,7 @@ class BlendShapePose {
  private:
   struct Move {
     int blend_shape;
+    int at_most;  // a blend shape that limits the coefficient, or -1
     int joint;
     glm::vec3 translation;  // in the parent's axes
     glm::vec3 axis;         // unit, in the joint's own axes; arbitrary if `angle` is 0

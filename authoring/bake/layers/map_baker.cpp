@@ -78,6 +78,7 @@ MapBaker::MapBaker(const character::Character& character, const BakeSurface& sur
       map_(std::move(map)),
       cloth_(cloth),
       profile_(material_.sharpness),
+      grain_(cloth ? 0.0f : material_.grain),
       sum_(surface.surface().positions().size()),
       blood_(surface.surface().positions().size()) {
   if (surface.fine_mesh() != nullptr) {
@@ -236,6 +237,13 @@ FoldSample MapBaker::FoldsAt(const SurfacePoint& point, const glm::vec3& tangent
   return sum;
 }
 
+FoldSample MapBaker::TexelFold(const SurfaceTexel& texel, const StrokeLayer& strokes) const {
+  const SurfacePoint place = PlaceOf(texel);
+  const FoldSample fold = FoldsAt(place, texel.tangent, texel.bitangent, strokes);
+  const float side = surface_.surface().Interpolate(surface_.texel_metres(), place);
+  return grain_.Apply(fold, texel.position, texel.tangent, texel.bitangent, kTexelsPerWave * side);
+}
+
 // Every texel belongs to one triangle, so threads write to separate places and need no lock.
 bool MapBaker::FillTexels(const StrokeLayer& strokes, BakeProgress* progress, BakedMap* map) const {
   const std::size_t count =
@@ -248,7 +256,7 @@ bool MapBaker::FillTexels(const StrokeLayer& strokes, BakeProgress* progress, Ba
   const auto work = [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       const SurfaceTexel& texel = texels[i];
-      const FoldSample fold = FoldsAt(PlaceOf(texel), texel.tangent, texel.bitangent, strokes);
+      const FoldSample fold = TexelFold(texel, strokes);
       const std::size_t at =
           static_cast<std::size_t>(texel.y) * static_cast<std::size_t>(map->width) +
           static_cast<std::size_t>(texel.x);

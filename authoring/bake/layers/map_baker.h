@@ -11,6 +11,7 @@
 #include "authoring/bake/layers/cloth_folds.h"
 #include "authoring/bake/layers/fold_layer.h"
 #include "authoring/bake/layers/profile.h"
+#include "authoring/bake/layers/skin_grain.h"
 #include "authoring/bake/layers/stroke_layer.h"
 #include "authoring/bake/request/bake_progress.h"
 #include "authoring/bake/request/bake_request.h"
@@ -58,6 +59,8 @@ class MapBaker {
                     BakeProgress* progress);
   [[nodiscard]] FoldSample FoldsAt(const SurfacePoint& point, const glm::vec3& tangent,
                                    const glm::vec3& bitangent, const StrokeLayer& strokes) const;
+  // The folds at a texel, with the grain of the skin.
+  [[nodiscard]] FoldSample TexelFold(const SurfaceTexel& texel, const StrokeLayer& strokes) const;
   bool FillTexels(const StrokeLayer& strokes, BakeProgress* progress, BakedMap* map) const;
   void FillBlood(BakedMap* map) const;
   void Measure(const std::vector<float>& compression, const StrokeLayer& strokes,
@@ -72,6 +75,7 @@ class MapBaker {
   std::string map_;
   bool cloth_;
   FoldProfile profile_;
+  SkinGrain grain_;
   CompressionSum sum_;
   BloodSum blood_;
   float worst_ = 0.0f;

@@ -76,6 +76,8 @@ struct BakeMaterial {
                            // surface is compressed in both directions; fraction of full height,
                            // [0, 1]
   float depth = 1.0f;  // multiplier for the height of folds and strokes, [0, 4]; older skin: > 1
+  float grain = 0.3f;  // how much the skin's own lines and pores vary the height of folds, as a
+                       // fraction of it, [0, 1]; 0: smooth flanks
   float fine_lines = 0.0f;  // height of lines with a third of the wavelength (dry or old skin);
                             // fraction of full height, [0, 1]
 };

@@ -121,6 +121,7 @@ Status CheckMaterial(const BakeMaterial& m, const std::string& where) {
                  {"sharpness", m.sharpness, 0.0f, 1.0f},
                  {"crossing", m.crossing, 0.0f, 1.0f},
                  {"depth", m.depth, 0.0f, 4.0f},
+                 {"grain", m.grain, 0.0f, 1.0f},
                  {"fine_lines", m.fine_lines, 0.0f, 1.0f}};
   for (const auto& range : kRanges) {
     if (!In(range.value, range.low, range.high)) {

@@ -15,11 +15,11 @@ namespace furrow::authoring {
 // Differences from the jointed face on a stream of ARKit's blend shapes:
 // - Wrinkle weights: none.
 // - Each shape alone at 1 gives the same positions, except tongueOut (the tongue comes out) and
-//   mouthClose (AddFaceShapes()). At other coefficients, jaw, lids and eyes move along straight
-//   lines instead of arcs; a half-closed lid is up to 0.8 mm lower on the eye's curve.
+//   mouthClose, which acts on an open jaw only (AddFaceShapes()). At other coefficients, jaw, lids
+//   and eyes move along straight lines instead of arcs; a half-closed lid is up to 0.8 mm lower on
+//   the eye's curve.
 // - Shapes add up. A joint below another joint adds up only where its parent rests: lips that move
 //   on an open jaw differ by up to the jaw's turn, 20 degrees, of their own motion.
-// - Normals follow the moved surface. The jointed face turns them with its joints only.
 // Errors: those of AddFaceShapes(); kNotFound (no joint "head").
 [[nodiscard]] Status MakeBlendShapeFace(character::Character* character);
 

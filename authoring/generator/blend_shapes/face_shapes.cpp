@@ -76,17 +76,11 @@ vec3 TongueOut(const vec3& place) {
   return vec3(-0.12f * place.x * share, 0.25f * share - 0.9f * down, 3.4f * share) / 100.0f;
 }
 
-// The reference pose leaves the lips of the open jaw 5 mm apart.
-constexpr float kCloseFully = 1.2f;
-
 // The part of a shape that no joint of the face can make.
-void Sculpt(std::string_view shape, const character::Mesh& mesh, const std::vector<vec3>& base,
-            std::vector<vec3>* positions) {
-  const bool close = shape == "mouthClose", tongue = shape == "tongueOut" && mesh.name == "tongue";
-  for (std::size_t v = 0; v < positions->size() && (close || tongue); ++v) {
-    vec3& p = (*positions)[v];
-    p += close ? (kCloseFully - 1.0f) * (p - base[v])
-               : TongueOut(ModelToHead(mesh.vertices[v].position));
+void Sculpt(std::string_view shape, const character::Mesh& mesh, std::vector<vec3>* positions) {
+  if (shape != "tongueOut" || mesh.name != "tongue") return;
+  for (std::size_t v = 0; v < positions->size(); ++v) {
+    (*positions)[v] += TongueOut(ModelToHead(mesh.vertices[v].position));
   }
 }
 
@@ -154,7 +148,7 @@ Status AddFaceShapes(character::Character* character) {
       const ShapePose& pose = (*poses)[i];
       const PosedMesh base = Skin(mesh, pose.base);
       PosedMesh posed = Skin(mesh, pose.posed);
-      Sculpt(pose.name, mesh, base.positions, &posed.positions);
+      Sculpt(pose.name, mesh, &posed.positions);
       auto target = maker.Make(static_cast<int>(i), base, posed);
       if (!target.deltas.empty()) mesh.morph_targets.push_back(std::move(target));
     }

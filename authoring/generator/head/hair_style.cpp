@@ -56,6 +56,12 @@ Style ShortHair(const vec3& root) {
   style.length = glm::mix(2.8f, 5.4f, top) - 1.0f * nape;
   style.body = glm::mix(0.30f, 0.62f, top) + 0.45f * front - 0.15f * nape;
   style.width = glm::mix(0.36f, 0.50f, top);
+  // Sideburns lie flat and point down. Combed back, they would hang over the ear as specks.
+  const float burn = Smoothstep(2.0f, 0.4f, root.y) * Smoothstep(-1.0f, 0.5f, root.z);
+  style.comb = glm::mix(style.comb, vec3(0.0f, -1.0f, -0.1f), burn);
+  style.length = glm::mix(style.length, 1.2f, burn);
+  style.body = glm::mix(style.body, 0.06f, burn);
+  style.width = glm::mix(style.width, 0.24f, burn);
   return style;
 }
 

@@ -21,6 +21,7 @@ struct HeadVertex {
   float mouth_side = 0.0f;  // +1 above the line of the lips, -1 below, 0 elsewhere
   float eye_side = 0.0f;    // +1 above the middle of the eye, -1 below, 0 elsewhere
   int part = 0;             // HeadPart
+  glm::vec3 root{0.0f};     // kLash: where the lash grows, which moves all of it
 };
 
 // A mesh of the head in model space, metres, without skin weights until SkinHead() sets them.

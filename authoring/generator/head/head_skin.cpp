@@ -141,10 +141,10 @@ class SkinBuilder {
       float narrow;
       float radius;
     };
-    constexpr Step kSteps[] = {{0.0f, 0.0f, 1.0f, 1.0f},
-                               {0.35f, 0.06f, 0.98f, 0.8f},
-                               {0.9f, 0.35f, 0.97f, 0.62f},
-                               {2.6f, 1.1f, 0.95f, 0.4f},
+    // Behind their line the lips overlap a little, so that closed lips show no gap.
+    constexpr Step kSteps[] = {{0.0f, 0.0f, 1.0f, 1.0f},      {0.08f, -0.015f, 0.995f, 0.93f},
+                               {0.22f, -0.01f, 0.99f, 0.86f}, {0.42f, 0.06f, 0.98f, 0.78f},
+                               {0.9f, 0.35f, 0.97f, 0.62f},   {2.6f, 1.1f, 0.95f, 0.4f},
                                {4.6f, 0.7f, 0.6f, 0.18f}};
     std::vector<std::uint32_t> ring;
     for (const Step& step : kSteps) {

@@ -50,6 +50,8 @@ const Muscle kMuscles[] = {
     {"frontalis_outer*", {4.5f, 2.7f, 7.2f}, {2.6f, 3.0f, 3.5f}, 0.85f, 0},
     {"corrugator*", {0.95f, 1.6f, 9.2f}, {1.5f, 1.4f, 2.0f}, 0.7f, 0},
     {"orbicularis_oculi_lower*", {3.3f, -1.0f, 8.2f}, {2.3f, 1.15f, 2.2f}, 0.8f, 0},
+    // The root of the nose gives way with the brow, so that the brow makes no shelf above it.
+    {"corrugator*", {0.3f, 0.8f, 9.2f}, {1.0f, 2.8f, 1.7f}, 0.36f, 0},
     {"nasalis*", {1.2f, -3.4f, 9.6f}, {1.35f, 1.9f, 2.0f}, 0.75f, 0},
     {"levator*", {1.7f, -5.4f, 9.2f}, {1.5f, 1.35f, 2.0f}, 0.75f, 1},
     {"zygomaticus*", {4.2f, -3.3f, 7.2f}, {2.4f, 2.3f, 3.0f}, 0.85f, 0},
@@ -97,9 +99,9 @@ float UpperLid(const HeadVertex& v, float side) {
 // How much a vertex belongs to the rims of the mouth, which are weighted along the lips' own curve.
 float LipZone(const HeadVertex& v) {
   if (v.mouth_side == 0.0f && std::abs(v.place.x) < 0.9f * kMouthCornerX) return 0.0f;
-  const float d = std::abs(v.place.y - kMouthY) / (v.mouth_side > 0.0f ? 1.15f : 1.25f);
+  const float d = std::abs(v.place.y - kMouthY) / (v.mouth_side > 0.0f ? 1.55f : 1.5f);
   const float x = std::abs(v.place.x) / kMouthCornerX;
-  return Smoothstep(1.0f, 0.35f, d) * Smoothstep(1.35f, 1.0f, x) *
+  return Smoothstep(1.0f, 0.25f, d) * Smoothstep(1.35f, 1.0f, x) *
          Smoothstep(4.0f, 6.0f, v.place.z);
 }
 
@@ -176,6 +178,12 @@ void SkinHeadVertex(const wrinkle::Skeleton& skeleton, const HeadVertex& v,
     case kHairCap:
     case kEar: weights.Add("head", 1.0f); break;
     case kTeeth: weights.Add(v.mouth_side < 0.0f ? "jaw" : "head", 1.0f); break;
+    case kLash: {
+      HeadVertex lid = v;
+      lid.place = v.root;
+      WeighSkin(lid, &weights);
+      break;
+    }
     default: WeighSkin(v, &weights); break;
   }
   weights.Store(vertex);

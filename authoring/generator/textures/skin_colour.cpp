@@ -93,9 +93,10 @@ vec3 Lips(vec3 colour, const vec3& p, const FaceParameters& face) {
   const float lines = 0.07f * SignedNoise({p.x * 12.0f, p.y * 1.8f, 5.0f});
   const float upper = Smoothstep(-0.1f, 0.25f, p.y - kMouthY);  // thinner light, deeper red
   colour = glm::mix(colour, red * (1.0f + lines - 0.06f * upper), (0.86f - 0.1f * age) * lips);
-  const float line = Bump(p.y - kMouthY + 0.02f * std::abs(p.x), 0.10f) *
+  // Wet skin at the line where the lips meet. Shadows darken it while the mouth is closed.
+  const float line = Bump(p.y - kMouthY + 0.02f * std::abs(p.x), 0.07f) *
                      Smoothstep(2.75f, 2.3f, std::abs(p.x)) * Smoothstep(5, 7, p.z);
-  return glm::mix(colour, vec3(0.26f, 0.08f, 0.08f), 0.8f * line);
+  return glm::mix(colour, vec3(0.42f, 0.17f, 0.16f), 0.55f * line);
 }
 
 // The edges of the lids: wet and pink at the eyeball, dark where the lashes grow.
@@ -105,7 +106,7 @@ vec3 LidRims(vec3 colour, const vec3& p) {
   const float ball = glm::length(eye);
   const float near = Smoothstep(1.80f, 1.6f, std::abs(eye.x)) * Smoothstep(0.0f, 0.4f, eye.z);
   const float wet = Smoothstep(1.36f, 1.27f, ball) * near;
-  colour = glm::mix(colour, vec3(0.66f, 0.38f, 0.34f), 0.6f * wet);
+  colour = glm::mix(colour, vec3(0.70f, 0.45f, 0.41f), 0.55f * wet);
   const float edge = Bump(ball - 1.41f, 0.045f) * near;
   const float upper = Smoothstep(-0.1f, 0.25f, eye.y);
   const float shade = Bump(ball - 1.47f, 0.10f) * near * upper;  // shadow of the lashes on the lid
@@ -166,7 +167,7 @@ character::Picture PaintSkinColour(const character::Mesh& skin, const HeadShape&
         if (OnHand(texel)) return HandColour(texel);
         const float deep = InsideMouth(ModelToHead(texel.position), shape);
         if (deep <= 0.0f) return HeadColour(texel, shape.face());
-        return {glm::mix(vec3(0.58f, 0.28f, 0.26f), vec3(0.44f, 0.17f, 0.15f), deep), 1.0f};
+        return {glm::mix(vec3(0.64f, 0.32f, 0.30f), vec3(0.42f, 0.16f, 0.14f), deep), 1.0f};
       });
 }
 

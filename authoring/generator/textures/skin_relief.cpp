@@ -23,8 +23,6 @@ namespace {
 using glm::vec2;
 using glm::vec3;
 
-constexpr int kSkinNormalBits = 9;
-
 // How coarse the pores are: coarsest on nose and inner cheeks, finest on the lids.
 float PoreShare(const vec3& q) {
   const float coarse = 0.45f + 0.9f * Spot(q, {0, -3.8f, 10.6f}, {1.7f, 1.4f, 2.0f}) +
@@ -73,6 +71,13 @@ float Thickness(const HeadShape& shape, const vec3& p, const vec3& normal) {
   return kLongest;
 }
 
+// The tear film on the edges of the lids: 1 beside the eyeball, 0 from 1.5 mm on.
+float WetLid(const vec3& p) {
+  const vec3 eye = p - EyeCentre(p.x > 0.0f ? 1.0f : -1.0f);
+  return Smoothstep(1.38f, 1.27f, glm::length(eye)) * Smoothstep(1.8f, 1.6f, std::abs(eye.x)) *
+         Smoothstep(0.0f, 0.4f, eye.z);
+}
+
 }  // namespace
 
 character::Picture PaintSkinNormals(const character::Mesh& skin, const HeadShape& shape, int size) {
@@ -105,6 +110,7 @@ character::Picture PaintSkinRoughness(const character::Mesh& skin, int size) {
                          rough += 0.05f * Spot(q, {5.2f, -5.0f, 5.0f}, {1.8f, 2.5f, 3.0f});
                          rough = glm::mix(rough, 0.42f, LipShare(p));
                          rough += 0.16f * Smoothstep(7.4f, 7.9f, q.x);  // ears are dry
+                         rough = glm::mix(rough, 0.2f, WetLid(p));
                          // Hair roots make the skin dull.
                          rough = glm::mix(rough, 1.0f, Smoothstep(-0.5f, 0.4f, InsideHairline(p)));
                          rough = glm::mix(rough, 0.9f, Bump(p.y - kMouthY, 0.10f) * LipShare(p));

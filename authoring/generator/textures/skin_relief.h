@@ -12,6 +12,7 @@ namespace furrow::authoring {
 // of the muscles, creases of the lips.
 [[nodiscard]] character::Picture PaintSkinNormals(const character::Mesh& skin,
                                                   const HeadShape& shape, int size);
+inline constexpr int kSkinNormalBits = 9;  // its precision; see RoundNormals()
 // The roughness in the green channel, 0 smooth to 255 rough. Oily skin (forehead, nose) and moist
 // skin (lips, rims of the lids) is smoother.
 [[nodiscard]] character::Picture PaintSkinRoughness(const character::Mesh& skin, int size);

@@ -97,7 +97,8 @@ HairPictures PaintHair(const character::Mesh& hair, const FaceParameters& face, 
                   [&shade](const SurfaceTexel& texel) -> vec4 {
                     const vec3 p = ModelToHead(texel.position);
                     const float grain = SignedNoise(p * 9.0f) + 0.5f * SignedNoise(p * 19.0f);
-                    const float inside = InsideHairline(p) + 0.7f * grain;
+                    // The edge of the cap is uneven but has no islands, which would be specks.
+                    const float inside = InsideHairline(p) + 0.4f * SignedNoise(p * 3.0f);
                     return {shade * (1.0f + 0.15f * grain), Smoothstep(0.8f, 1.9f, inside)};
                   });
   pictures.normals = BlankPicture("hair_normal", size, size, 3);

@@ -2,13 +2,20 @@
 #include "authoring/generator/textures/wrinkle_maps.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
 #include "authoring/bake/bake.h"
 #include "authoring/bake/bake_pictures.h"
 #include "authoring/bake/bake_poses.h"
+#include "authoring/generator/textures/skin_relief.h"
 #include "authoring/paint/strokes.h"
 #include "base/status.h"
 
@@ -17,6 +24,7 @@ namespace {
 
 constexpr int kWrinkleNormalBits = 10;  // a tenth of a degree is enough, since folds are smooth
 constexpr float kFineLines = 0.8f;      // for skin that folds twice as deep as at 30 years
+constexpr float kResting = 0.4f;        // share of the folds that such skin keeps at rest
 
 Status AddPictures(const BakedMap& baked, character::Character* character) {
   const auto& maps = character->rig.wrinkle_maps;
@@ -37,7 +45,33 @@ Status AddPictures(const BakedMap& baked, character::Character* character) {
   return Status();
 }
 
+// The normal map of the character's skin, or null.
+character::Picture* SkinNormals(character::Character* character) {
+  for (const character::Material& material : character->materials) {
+    if (material.kind != character::Material::Kind::kSkin || material.normal_texture < 0) continue;
+    return &character->pictures[static_cast<std::size_t>(material.normal_texture)];
+  }
+  return nullptr;
+}
+
 }  // namespace
+
+void AddRestingFolds(const BakedMap& map, float share, character::Picture* normals) {
+  if (map.width != normals->width || map.height != normals->height) return;
+  const auto decode = [](std::uint16_t value) {
+    return static_cast<float>(value) / 65535.0f * 2.0f - 1.0f;
+  };
+  for (std::size_t i = 0; 3 * i + 2 < normals->pixels16.size(); ++i) {
+    std::uint16_t* pixel = &normals->pixels16[3 * i];
+    const glm::vec2 slope = share * glm::vec2(map.derivative[2 * i], map.derivative[2 * i + 1]);
+    if (slope == glm::vec2(0.0f)) continue;
+    const glm::vec3 n(decode(pixel[0]), decode(pixel[1]), std::max(decode(pixel[2]), 0.01f));
+    const glm::vec3 folded = glm::normalize(glm::vec3(glm::vec2(n) / n.z + slope, 1.0f));
+    for (int c = 0; c < 3; ++c) {
+      pixel[c] = static_cast<std::uint16_t>(std::lround((folded[c] * 0.5f + 0.5f) * 65535.0f));
+    }
+  }
+}
 
 BakeOptions WrinkleMapOptions(int size, float depth) {
   BakeOptions options;
@@ -54,6 +88,12 @@ Status AddWrinkleMaps(std::span<const BakeStroke> strokes, int size, float depth
   Result<BakedMaps> maps =
       Bake(*character, poses.value().poses, strokes, WrinkleMapOptions(size, depth));
   FURROW_RETURN_IF_ERROR(maps);
+  const float resting = kResting * std::max(depth - 1.0f, 0.0f);
+  character::Picture* normals = SkinNormals(character);
+  for (const BakedMap& map : maps.value().maps) {
+    if (normals != nullptr && !map.cloth && resting > 0.0f) AddRestingFolds(map, resting, normals);
+  }
+  if (normals != nullptr && resting > 0.0f) RoundNormals(kSkinNormalBits, normals);
   for (const BakedMap& map : maps.value().maps) {
     FURROW_RETURN_IF_ERROR(AddPictures(map, character));
   }

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "authoring/bake/request/bake_request.h"
+#include "authoring/bake/request/baked_maps.h"
 #include "base/status.h"
 #include "character/character.h"
 
@@ -17,10 +18,15 @@ namespace furrow::authoring {
 
 // Bakes the wrinkle maps of the character's rig from the rig's reference poses and from `strokes`,
 // and embeds the pictures that the rig names: normals, heights, cavities and colours. `size` and
-// `depth`: see WrinkleMapOptions().
+// `depth`: see WrinkleMapOptions(). Above a depth of 1, the folds of the skin stay in part when the
+// face rests (AddRestingFolds()).
 // Errors: those of CollectBakePoses(), Bake() and WrinkleMapPictures(); kNotFound (a baked map
 // without `normal` in the rig). The character may have some of the pictures after an error.
 [[nodiscard]] Status AddWrinkleMaps(std::span<const BakeStroke> strokes, int size, float depth,
                                     character::Character* character);
+
+// Adds a share of a skin map's slopes to a normal map of the same size (16 bits): lines that old
+// skin keeps at rest. Pictures of another size stay as they are.
+void AddRestingFolds(const BakedMap& map, float share, character::Picture* normals);
 
 }  // namespace furrow::authoring

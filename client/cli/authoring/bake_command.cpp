@@ -284,6 +284,13 @@ void AddMaterialOptions(CLI::App& command, BakeArguments& arguments) {
       ->check(Within(0.0, 1.0))
       ->capture_default_str();
   command
+      .add_option(
+          "--grain", options.skin.grain,
+          "How much the lines and pores of skin vary the height of its folds, as a fraction "
+          "of it; 0 gives smooth folds")
+      ->check(Within(0.0, 1.0))
+      ->capture_default_str();
+  command
       .add_option("--seed", options.seed,
                   "Random seed; a different seed gives different folds of the same kind")
       ->capture_default_str();

@@ -99,6 +99,7 @@ BakeOptions Exact() {
   options.skin.variation = 0.0f;
   options.skin.share = 1.0f;
   options.skin.threshold = 0.0f;
+  options.skin.grain = 0.0f;
   options.skin.max_compression = 0.7f;
   return options;
 }

@@ -156,12 +156,13 @@ TEST_F(ShaderLibraryTest, EveryCrowdConfigurationCompiles) {
 }
 
 TEST_F(ShaderLibraryTest, EveryPoseConfigurationCompiles) {
-  for (int bits = 0; bits < 4; ++bits) {
+  for (int bits = 0; bits < 8; ++bits) {
     for (const int map_slots : {1, 10}) {
       const PoseShader shader{.num_joints = 163,
                               .dynamic = (bits & 1) != 0,
                               .displaced = (bits & 2) != 0,
-                              .map_slots = map_slots};
+                              .map_slots = map_slots,
+                              .gradients = (bits & 4) != 0};
       const Result<GLuint> program = library_.Get(shader);
       ASSERT_TRUE(program.ok()) << bits << "\n" << program.status().ToString();
     }

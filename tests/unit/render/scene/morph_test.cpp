@@ -371,6 +371,7 @@ TEST(Morph, SimplifiedFacesMoveAsWholeOnesDo) {
     request.camera.position = {0.0f, 0.0f, 6.0f};
     request.camera.target = {0.0f, 0.0f, 0.0f};
     request.width = request.height = 200;
+    request.settings.lights.turn_degrees = 40.0f;  // the key grazes the planes and shows the bump
     request.settings.detail.error_pixels = error_pixels;
     return test::Expect(plane.renderer->Render(request));
   };

@@ -81,6 +81,28 @@ TEST(BlendShapePose, HalfACoefficientIsHalfTheWay) {
   EXPECT_NEAR(local[2].translation.y, 1.1f, 1e-6f);
 }
 
+// Lips that close by more than the jaw opens would pass through each other.
+TEST(BlendShapePose, TheMouthClosesNoFartherThanTheJawOpens) {
+  const Skeleton skeleton = Face();
+  Rig rig = Poses();
+  ReferencePose close{.name = "mouthClose", .joints = {}};
+  close.joints.push_back({.joint = "brow_l", .translation = glm::vec3(0.0f, 0.3f, 0.0f)});
+  rig.reference_poses.push_back(close);
+  const auto rise = [&](const std::vector<std::string>& names, const std::vector<float>& values) {
+    std::vector<Transform> local = Rest(skeleton);
+    EXPECT_EQ(BlendShapePose::Create(rig, skeleton, names).Run(values, local), JobStatus::kOk);
+    return local[2].translation.y - 1.0f;
+  };
+  const std::vector<std::string> both = {"MouthClose", "JawOpen"};
+  EXPECT_NEAR(rise(both, {1.0f, 0.0f}), 0.0f, 1e-6f);
+  EXPECT_NEAR(rise(both, {1.0f, 0.4f}), 0.12f, 1e-6f);
+  EXPECT_NEAR(rise(both, {0.3f, 1.0f}), 0.09f, 1e-6f);
+  EXPECT_NEAR(rise(both, {1.0f, -0.5f}), 0.0f, 1e-6f);
+  EXPECT_NEAR(rise(both, {1.0f}), 0.0f, 1e-6f);  // the jaw's coefficient is missing
+  // A stream without the jaw's blend shape moves the jaw by its joint.
+  EXPECT_NEAR(rise({"mouthClose"}, {1.0f}), 0.3f, 1e-6f);
+}
+
 TEST(BlendShapePose, CoefficientsThatAreNotThereCountAsZero) {
   const Skeleton skeleton = Face();
   const BlendShapePose pose =

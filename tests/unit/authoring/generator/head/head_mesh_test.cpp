@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "authoring/generator/body/body_skeleton.h"
+#include "authoring/generator/head/face_parts.h"
 #include "authoring/generator/head/hair_mesh.h"
 #include "authoring/generator/head/head_skin.h"
 #include "authoring/generator/head/skinning.h"
@@ -83,6 +84,18 @@ TEST(HeadMesh, UnwrapsTheFaceWithLittleStretch) {
   EXPECT_LT(ratios[ratios.size() * 9 / 10], 4.0);
 }
 
+// Closed lips show no gap: their inner sides overlap right behind the line.
+TEST(HeadMesh, LipsOverlapBehindTheirLine) {
+  const HeadMesh head = MakeHeadSkin();
+  float upper = 1e9f, lower = -1e9f;
+  for (const HeadVertex& vertex : head.info) {
+    if (vertex.part != kMouthInside || std::abs(vertex.place.x) > 0.2f) continue;
+    if (vertex.mouth_side > 0.0f) upper = std::min(upper, vertex.place.y);
+    if (vertex.mouth_side < 0.0f) lower = std::max(lower, vertex.place.y);
+  }
+  EXPECT_LT(upper, lower - 0.005f);
+}
+
 // Weights change little between neighbouring vertices, except across the mouth and the eyes.
 TEST(HeadMesh, SkinWeightsAreSmooth) {
   const wrinkle::Skeleton skeleton = MakeSkeleton();
@@ -114,6 +127,39 @@ TEST(HeadMesh, SkinWeightsAreSmooth) {
   ASSERT_GT(changes.size(), 5000u);
   EXPECT_LT(changes[changes.size() / 2], 0.5f);  // per centimetre
   EXPECT_LT(changes[changes.size() * 99 / 100], 2.0f);
+}
+
+// The liquid touches the eyeball (12 mm) above the lid's edge, and it faces the viewer.
+TEST(HeadMesh, TearsLieBetweenTheLowerLidsAndTheEyes) {
+  const HeadMesh tears = MakeTears();
+  float highest = -1e9f;
+  for (const HeadVertex& vertex : tears.info) {
+    const glm::vec3 d = vertex.place - EyeCentre(vertex.place.x > 0.0f ? 1.0f : -1.0f);
+    EXPECT_GT(glm::length(d), kEyeRadius + 0.005f);
+    EXPECT_LT(glm::length(d), kEyeRadius + 0.08f);
+    EXPECT_LT(d.y, 0.25f);
+    highest = std::max(highest, d.z);
+  }
+  EXPECT_GT(highest, 1.0f);
+  int facing = 0;
+  for (const character::Vertex& vertex : tears.mesh.vertices) facing += vertex.normal.z > 0.3f;
+  EXPECT_GT(facing, static_cast<int>(tears.mesh.vertices.size()) * 3 / 4);
+}
+
+// A lash follows the edge of its lid from root to tip.
+TEST(HeadMesh, LashesAreStiff) {
+  const wrinkle::Skeleton skeleton = MakeSkeleton();
+  HeadMesh lashes = MakeLashes();
+  SkinHead(skeleton, &lashes);
+  constexpr std::size_t kPerLash = 6;
+  ASSERT_EQ(lashes.mesh.vertices.size() % kPerLash, 0u);
+  for (std::size_t v = 0; v < lashes.mesh.vertices.size(); ++v) {
+    const character::Vertex& root = lashes.mesh.vertices[v / kPerLash * kPerLash];
+    for (int k = 0; k < 4; ++k) {
+      EXPECT_EQ(lashes.mesh.vertices[v].joints[k], root.joints[k]);
+      EXPECT_EQ(lashes.mesh.vertices[v].skin_weights[k], root.skin_weights[k]);
+    }
+  }
 }
 
 TEST(HeadMesh, HairCoversTheScalpButNotTheFace) {

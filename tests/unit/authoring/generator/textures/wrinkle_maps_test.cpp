@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "authoring/generator/textures/wrinkle_maps.h"
+
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <gtest/gtest.h>
+
+#include "authoring/paint/strokes.h"
+
+namespace furrow::authoring {
+namespace {
+
+// A normal map whose slopes are all `slope`, and a map of two texels, one of them folded.
+character::Picture Normals(const glm::vec2& slope) {
+  std::vector<SurfaceTexel> texels(2);
+  texels[1].x = 1;
+  return EncodeNormals(texels, std::vector<glm::vec2>(2, slope), 2, 1, 16);
+}
+
+glm::vec2 SlopeAt(const character::Picture& normals, std::size_t texel) {
+  const auto value = [&](std::size_t channel) {
+    return static_cast<float>(normals.pixels16[3 * texel + channel]) / 65535.0f * 2.0f - 1.0f;
+  };
+  return glm::vec2(value(0), value(1)) / value(2);
+}
+
+TEST(RestingFolds, AddAShareOfTheSlopes) {
+  BakedMap map;
+  map.width = 2;
+  map.height = 1;
+  map.derivative = {0.0f, 0.0f, 0.8f, -0.4f};
+  character::Picture normals = Normals({0.1f, 0.05f});
+  AddRestingFolds(map, 0.25f, &normals);
+  EXPECT_NEAR(SlopeAt(normals, 0).x, 0.1f, 1e-3f);
+  EXPECT_NEAR(SlopeAt(normals, 1).x, 0.1f + 0.2f, 1e-3f);
+  EXPECT_NEAR(SlopeAt(normals, 1).y, 0.05f - 0.1f, 1e-3f);
+}
+
+TEST(RestingFolds, LeaveOtherSizesAlone) {
+  BakedMap map;
+  map.width = map.height = 4;
+  map.derivative.assign(32, 0.5f);
+  character::Picture normals = Normals({0.1f, 0.0f});
+  const std::vector<std::uint16_t> before = normals.pixels16;
+  AddRestingFolds(map, 0.5f, &normals);
+  EXPECT_EQ(normals.pixels16, before);
+}
+
+}  // namespace
+}  // namespace furrow::authoring
