@@ -2,6 +2,7 @@
 #include "client/cli/receive/receive_events.h"
 
 #include <cstdio>
+#include <utility>
 
 #include "client/cli/common/endpoint.h"
 #include "client/cli/common/exit_code.h"
@@ -34,6 +35,25 @@ int OnGoodbye(protocol::GoodbyeReason reason) {
   return reason == protocol::GoodbyeReason::kTimedOut ? kNoConnection : kDone;
 }
 
+// Prints when the connection is lost and when it is back.
+class ConnectionNotes {
+ public:
+  void Lost() {
+    if (!std::exchange(lost_, true)) {
+      std::fprintf(stderr, "furrow: the connection was lost; trying again until Ctrl-C\n");
+    }
+  }
+  // Returns true if the connection had been lost.
+  bool Connected() {
+    if (!std::exchange(lost_, false)) return false;
+    std::fprintf(stderr, "furrow: connected again\n");
+    return true;
+  }
+
+ private:
+  bool lost_ = false;
+};
+
 }  // namespace
 
 int ReceiveEvents(client::Subscriber& subscriber,
@@ -42,7 +62,9 @@ int ReceiveEvents(client::Subscriber& subscriber,
   constexpr std::int64_t kFirstAnswerTimeoutUs = 5'000'000;
   using Kind = client::Event::Kind;
   CatchInterrupts();
+  const bool reconnects = subscriber.reconnects();
   const std::int64_t start = SteadyMicroseconds();
+  ConnectionNotes notes;
   bool heard = false;
   int goodbyes = 0;
   int exit_code = kDone;
@@ -59,8 +81,16 @@ int ReceiveEvents(client::Subscriber& subscriber,
         if (ends_at != 0) return exit_code;
         // Once the daemon has answered, silence is normal. Before that, a daemon that is starting
         // gets some seconds.
-        if (heard ? event.kind == Kind::kTimeout : now - start < kFirstAnswerTimeoutUs) continue;
+        if (heard && event.kind == Kind::kNoConnection && reconnects) notes.Lost();
+        if (heard ? event.kind == Kind::kTimeout || reconnects
+                  : now - start < kFirstAnswerTimeoutUs) {
+          continue;
+        }
         return ReportNoConnection(event.kind);
+      case Kind::kConnected:
+        heard = true;
+        if (notes.Connected() && stop.on_return) stop.on_return();
+        continue;
       case Kind::kClosed:
         std::fprintf(stderr, "furrow: the daemon closed the connection\n");
         return kNoConnection;
@@ -75,6 +105,12 @@ int ReceiveEvents(client::Subscriber& subscriber,
         // Each subscription gets its own goodbye; the last one ends the command.
         if (reason == protocol::GoodbyeReason::kSubjectGone && ++goodbyes != stop.goodbyes)
           continue;
+        // A daemon that shuts down may be restarted, and one that lost this client answers again.
+        if (reconnects && (reason == protocol::GoodbyeReason::kDraining ||
+                           reason == protocol::GoodbyeReason::kTimedOut)) {
+          notes.Lost();
+          continue;
+        }
         return OnGoodbye(reason);
       }
       default:
