@@ -20,6 +20,8 @@ using std::chrono::milliseconds;
 
 // The longest wait of one step. Offers and requests are repeated every 200 ms.
 constexpr std::int64_t kSliceMs = 50;
+// A TCP peer that takes longer to read a message is gone. Short, because an engine's frame waits.
+constexpr milliseconds kSendTimeout(200);
 // A flood of messages must not keep furrow_poll() from returning.
 constexpr int kMostSteps = 4096;
 
@@ -83,7 +85,8 @@ furrow_status Connection::Fail(const Status& status) {
 
 std::unique_ptr<client::Transport> Connection::OpenTransport() const {
   const auto kind = address_.transport.value_or(client::TransportKind::kUdp);
-  return client::ReconnectingTransport::Create(kind, address_.host, address_.PortFor(kind));
+  return client::ReconnectingTransport::Create(kind, address_.host, address_.PortFor(kind),
+                                               kSendTimeout);
 }
 
 furrow_status Connection::SubscribeToAddress() {

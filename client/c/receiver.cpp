@@ -84,7 +84,7 @@ Receiver::Step Receiver::Next(std::int64_t now_us, std::chrono::milliseconds wai
     case Event::Kind::kReply: return OnReply(event, listener);
     case Event::Kind::kWeights: return OnWeights(event, now_us, listener);
     case Event::Kind::kError: return OnError(event, now_us, error);
-    case Event::Kind::kGoodbye: return OnGoodbye(event, listener);
+    case Event::Kind::kGoodbye: return OnGoodbye(event, now_us, listener);
     default: return Step::kOther;
   }
 }
@@ -120,9 +120,18 @@ Receiver::Step Receiver::OnError(const Event& event, std::int64_t now_us, std::s
   return Step::kNews;
 }
 
-Receiver::Step Receiver::OnGoodbye(const Event& event, const Listener& listener) {
+Receiver::Step Receiver::OnGoodbye(const Event& event, std::int64_t now_us,
+                                   const Listener& listener) {
   Feed* const feed = FindSubscription(event.header.stream);
   if (feed == nullptr) return Step::kOther;
+  switch (subscriber_.goodbye().reason) {
+    case protocol::GoodbyeReason::kSubjectGone: break;
+    // The daemon has ended the subscription, which therefore needs another request.
+    case protocol::GoodbyeReason::kDone:
+      feed->OnError(FURROW_REJECTED, now_us + kRetryUs);
+      return Step::kNews;
+    default: return Step::kOther;  // the subscriber asks again by itself
+  }
   feed->OnSubjectGone();
   listener.OnSubjectGone(*feed);
   return Step::kNews;

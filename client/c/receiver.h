@@ -52,7 +52,7 @@ class Receiver {
   Step OnReply(const client::Event& event, const Listener& listener);
   Step OnWeights(const client::Event& event, std::int64_t now_us, const Listener& listener);
   Step OnError(const client::Event& event, std::int64_t now_us, std::string* error);
-  Step OnGoodbye(const client::Event& event, const Listener& listener);
+  Step OnGoodbye(const client::Event& event, std::int64_t now_us, const Listener& listener);
 
   client::Subscriber subscriber_;
   // On the heap, because callbacks hold references while the program changes nothing else.

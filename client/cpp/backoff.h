@@ -31,6 +31,8 @@ class Backoff {
     due_us_ = now_us + half + static_cast<std::int64_t>(random_ % (half + 1));
     pause_us_ = std::min(2 * pause_us_, limits_.most_us);
   }
+  // The next attempt is not due before `time_us`.
+  void NotBefore(std::int64_t time_us) { due_us_ = std::max(due_us_, time_us); }
   // The peer answered: the next pause is short again.
   void Succeeded() { pause_us_ = limits_.first_us; }
 

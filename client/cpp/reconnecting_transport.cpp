@@ -15,9 +15,9 @@ namespace {
 constexpr std::int64_t kConnectTimeoutUs = 3'000'000;
 // A UDP socket that only fails for this time is opened again.
 constexpr std::int64_t kReopenUs = 5'000'000;
-// A TCP peer that takes longer to read a message is gone. Shorter than for commands, because an
-// engine's frame waits for it.
-constexpr std::chrono::milliseconds kSendTimeout(200);
+// The pause after an attempt that fails, as a multiple of the time that the attempt itself took.
+// The system's resolver may block for seconds without a network.
+constexpr std::int64_t kRestPerWork = 4;
 
 }  // namespace
 
@@ -37,12 +37,12 @@ ReconnectingTransport::ReconnectingTransport(TransportKind kind, Opener open, Cl
 
 std::unique_ptr<ReconnectingTransport> ReconnectingTransport::Create(
     TransportKind kind, const std::string& host, std::uint16_t port,
-    std::unique_ptr<Transport> first) {
+    std::chrono::milliseconds send_timeout, std::unique_ptr<Transport> first) {
   const auto now_us = [] {
     const auto now = std::chrono::steady_clock::now().time_since_epoch();
     return std::int64_t{std::chrono::duration_cast<std::chrono::microseconds>(now).count()};
   };
-  const auto open = [=] { return Transport::Begin(kind, host, port, kSendTimeout); };
+  const auto open = [=] { return Transport::Begin(kind, host, port, send_timeout); };
   return std::make_unique<ReconnectingTransport>(
       kind, open, now_us, Backoff(std::random_device()(), {}), std::move(first));
 }
@@ -51,7 +51,9 @@ bool ReconnectingTransport::Open(std::int64_t now_us) {
   auto opened = open_();
   if (!opened.ok()) {
     failure_ = opened.status().what();
-    backoff_.Failed(now_us);
+    const std::int64_t after_us = now_us_();
+    backoff_.Failed(after_us);
+    backoff_.NotBefore(after_us + kRestPerWork * (after_us - now_us));
     return false;
   }
   inner_ = *std::move(opened);

@@ -32,9 +32,10 @@ class ReconnectingTransport : public Transport {
                         std::unique_ptr<Transport> first = nullptr);
 
   // The usual one: the steady clock, and the default limits of Backoff. Does not connect yet.
+  // `send_timeout`: as for Transport::Begin().
   [[nodiscard]] static std::unique_ptr<ReconnectingTransport> Create(
       TransportKind kind, const std::string& host, std::uint16_t port,
-      std::unique_ptr<Transport> first = nullptr);
+      std::chrono::milliseconds send_timeout, std::unique_ptr<Transport> first = nullptr);
 
   [[nodiscard]] IoStatus Send(std::span<const std::uint8_t> message) override;
   [[nodiscard]] IoStatus Receive(std::span<const std::uint8_t>& message,

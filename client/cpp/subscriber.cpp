@@ -157,6 +157,13 @@ void Subscriber::Maintain(std::int64_t now_us) {
     return;
   }
   const bool udp = transport_->kind() == TransportKind::kUdp;
+  // The program did not call for a while, as in a debugger, so the daemon has forgotten it. Its
+  // goodbye may have been lost with everything else that did not fit into the socket's buffer.
+  const bool slept = now_us - last_sent_us_ > protocol::kUdpLeaseMicroseconds;
+  if (udp && slept && transport_->reconnects()) {
+    last_sent_us_ = now_us;
+    return ProveAgain();
+  }
   // TCP does not lose requests, so only UDP repeats them.
   const bool asking = udp && std::ranges::any_of(requests_, &Request::waiting);
   const bool unsettled = !proven_ || asking;

@@ -49,8 +49,8 @@ std::unique_ptr<client::Transport> OpenTransport(const client::Address& address,
                                                  client::TransportKind kind, bool once,
                                                  int* exit_code) {
   const std::uint16_t port = address.PortFor(kind);
-  auto transport =
-      client::Transport::Open(kind, address.host, port, std::chrono::milliseconds(3000));
+  constexpr std::chrono::milliseconds kTimeout(3000);
+  auto transport = client::Transport::Open(kind, address.host, port, kTimeout);
   if (!transport.ok()) {
     std::fprintf(stderr, "furrow: %s (is furrowd running there?)\n",
                  transport.status().ToString().c_str());
@@ -58,7 +58,8 @@ std::unique_ptr<client::Transport> OpenTransport(const client::Address& address,
     return nullptr;
   }
   if (once) return *std::move(transport);
-  return client::ReconnectingTransport::Create(kind, address.host, port, *std::move(transport));
+  return client::ReconnectingTransport::Create(kind, address.host, port, kTimeout,
+                                               *std::move(transport));
 }
 
 std::int64_t SteadyMicroseconds() { return Microseconds<std::chrono::steady_clock>(); }

@@ -25,12 +25,12 @@ TEST(Address, StatesAHostAndPerhapsAPort) {
     const char* host;
     int port;
   };
-  for (const Case& c : {Case{"localhost", "localhost", 0}, Case{"10.0.0.1:80", "10.0.0.1", 80},
-                        Case{"::1", "::1", 0}, Case{"[::1]", "::1", 0}, Case{"[::1]:9", "::1", 9},
-                        Case{"furrow://localhost", "localhost", 0},
-                        Case{"furrow://localhost/", "localhost", 0},
-                        Case{"furrow://localhost?", "localhost", 0},
-                        Case{"furrow://[fe80::1%eth0]:65535", "fe80::1%eth0", 65535}}) {
+  for (const Case& c :
+       {Case{"localhost", "localhost", 0}, Case{"10.0.0.1:80", "10.0.0.1", 80},
+        Case{"::1", "::1", 0}, Case{"[::1]", "::1", 0}, Case{"[::1]:9", "::1", 9},
+        Case{"furrow://localhost", "localhost", 0}, Case{"furrow://localhost/", "localhost", 0},
+        Case{"furrow://localhost?", "localhost", 0},
+        Case{"furrow://[fe80::1%eth0]:65535", "fe80::1%eth0", 65535}}) {
     const Address address = Parsed(c.text);
     EXPECT_EQ(address.host, c.host) << c.text;
     EXPECT_EQ(address.port, c.port) << c.text;
@@ -58,15 +58,44 @@ TEST(Address, ThePortDependsOnTheTransport) {
 }
 
 TEST(Address, InvalidTextIsRejected) {
-  for (const char* text :
-       {"", ":80", "a:", "a:0", "a:65536", "a:80x", "a:-1", "[::1", "[::1]9", "[::1]:", "[]", "a b",
-        "a/b", "a?subject=b", "user@a", "http://a", "furrow://", "furrow://?subject=a",
-        "furrow://a/b", "furrow://a:x", "furrow://a#b", "furrow://a?subject", "furrow://a?subject=",
-        "furrow://a?subject=%", "furrow://a?subject=%4", "furrow://a?subject=%GG",
-        "furrow://a?subject=%0A", "furrow://a?subject=%FF", "furrow://a?nonsense=1",
-        "furrow://a?Subject=b", "furrow://a?rate=0", "furrow://a?rate=-1", "furrow://a?rate=1001",
-        "furrow://a?rate=nan", "furrow://a?rate=1&rate=2", "furrow://a?pattern=a&pattern=b",
-        "furrow://a?transport=quic", "furrow://a?transport=udp&transport=udp"}) {
+  for (const char* text : {"",
+                           ":80",
+                           "a:",
+                           "a:0",
+                           "a:65536",
+                           "a:80x",
+                           "a:-1",
+                           "[::1",
+                           "[::1]9",
+                           "[::1]:",
+                           "[]",
+                           "a b",
+                           "a/b",
+                           "a?subject=b",
+                           "user@a",
+                           "http://a",
+                           "furrow://",
+                           "furrow://?subject=a",
+                           "furrow://a/b",
+                           "furrow://a:x",
+                           "furrow://a#b",
+                           "furrow://a?subject",
+                           "furrow://a?subject=",
+                           "furrow://a?subject=%",
+                           "furrow://a?subject=%4",
+                           "furrow://a?subject=%GG",
+                           "furrow://a?subject=%0A",
+                           "furrow://a?subject=%FF",
+                           "furrow://a?nonsense=1",
+                           "furrow://a?Subject=b",
+                           "furrow://a?rate=0",
+                           "furrow://a?rate=-1",
+                           "furrow://a?rate=1001",
+                           "furrow://a?rate=nan",
+                           "furrow://a?rate=1&rate=2",
+                           "furrow://a?pattern=a&pattern=b",
+                           "furrow://a?transport=quic",
+                           "furrow://a?transport=udp&transport=udp"}) {
     const auto address = ParseAddress(text);
     ASSERT_FALSE(address.ok()) << text;
     EXPECT_EQ(address.status().code(), StatusCode::kInvalidArgument) << text;

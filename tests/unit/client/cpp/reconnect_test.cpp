@@ -117,6 +117,19 @@ TEST_F(ReconnectTest, AClientThatTheDaemonForgotAsksAgain) {
   EXPECT_EQ(far_->TakeKinds(), (std::vector{MessageKind::kHello, MessageKind::kSubscribeWeights}));
 }
 
+TEST_F(ReconnectTest, AProgramThatSleptLongerThanItsLeaseAsksAgain) {
+  Subscriber subscriber(Make(TransportKind::kUdp), "test");
+  const std::uint32_t request = subscriber.Subscribe(protocol::SubscribeWeights{});
+  far_->Answer({.session = 5}, protocol::Welcome{});
+  far_->Answer({.session = 5, .stream = 3, .sequence = request}, protocol::SubscribeReply{});
+  EXPECT_EQ(Drain(subscriber), (std::vector{Kind::kConnected, Kind::kReply}));
+  (void)far_->TakeKinds();
+  now_us_ += protocol::kUdpLeaseMicroseconds + 1;
+  far_->Answer({.session = 5}, protocol::Welcome{});
+  EXPECT_EQ(Drain(subscriber), std::vector{Kind::kConnected});
+  EXPECT_EQ(far_->TakeKinds(), (std::vector{MessageKind::kHello, MessageKind::kSubscribeWeights}));
+}
+
 TEST_F(ReconnectTest, ASilentTcpPeerIsAbandoned) {
   Subscriber subscriber(Make(TransportKind::kTcp), "test");
   std::vector<Kind> kinds;

@@ -47,7 +47,8 @@ class ReconnectingTransportTest : public testing::Test {
       far_ = std::make_shared<FarEnd>();
       return std::unique_ptr<Transport>(std::make_unique<FakeTransport>(kind, far_));
     };
-    return {kind, open, [this] { return now_us_; }, Backoff(3, {.first_us = 1000, .most_us = 4000})};
+    return {kind, open, [this] { return now_us_; },
+            Backoff(3, {.first_us = 1000, .most_us = 4000})};
   }
   IoStatus Receive(Transport& transport) {
     std::span<const std::uint8_t> message;
@@ -84,6 +85,21 @@ TEST_F(ReconnectingTransportTest, AFailedAttemptIsRepeatedAfterItsPause) {
   EXPECT_EQ(Receive(transport), IoStatus::kTimeout);
   EXPECT_EQ(attempts_, 2);
   EXPECT_TRUE(transport.connected());
+}
+
+TEST_F(ReconnectingTransportTest, AnAttemptThatBlockedIsRepeatedMuchLater) {
+  std::int64_t now_us = 0;
+  int attempts = 0;
+  const auto open = [&]() -> Result<std::unique_ptr<Transport>> {
+    ++attempts;
+    now_us += 1'000'000;  // the resolver waits for a network
+    return Status(StatusCode::kUnavailable, "host not found");
+  };
+  ReconnectingTransport transport(
+      TransportKind::kUdp, open, [&] { return now_us; }, Backoff(3, {}));
+  for (int i = 0; i < 100; ++i, now_us += 100'000) (void)Receive(transport);
+  EXPECT_GE(attempts, 2);
+  EXPECT_LE(attempts, 3) << "a fifth of the time at most";
 }
 
 TEST_F(ReconnectingTransportTest, AClosedTcpConnectionIsOpenedAgain) {
