@@ -256,6 +256,37 @@ furrow_status furrow_find_weight(furrow_connection* connection, const char* subj
   });
 }
 
+furrow_status furrow_latest_pose(furrow_connection* connection, const char* subject,
+                                 furrow_pose_buffer* pose) {
+  return Guarded(connection, [&](Connection& inner) { return inner.LatestPose(subject, pose); });
+}
+
+furrow_status furrow_get_skeleton(furrow_connection* connection, const char* subject,
+                                  furrow_skeleton_info* info) {
+  return Guarded(connection, [&](Connection& inner) { return inner.GetSkeleton(subject, info); });
+}
+
+furrow_status furrow_get_joint(furrow_connection* connection, const char* subject,
+                               std::uint32_t index, char* name, std::uint32_t size,
+                               furrow_joint* joint) {
+  return Guarded(connection, [&](Connection& inner) {
+    std::string text;
+    furrow_status status = inner.GetJoint(subject, index, joint, &text);
+    if (status == FURROW_OK) status = CopyName(inner, text, name, size);
+    if (status == FURROW_OK && joint != nullptr) joint->name = name;
+    return status;
+  });
+}
+
+furrow_status furrow_blend_shape_name(furrow_connection* connection, const char* subject,
+                                      std::uint32_t index, char* buffer, std::uint32_t size) {
+  return Guarded(connection, [&](Connection& inner) {
+    std::string name;
+    const furrow_status status = inner.BlendShapeName(subject, index, &name);
+    return status == FURROW_OK ? CopyName(inner, name, buffer, size) : status;
+  });
+}
+
 furrow_status furrow_set_callbacks(furrow_connection* connection,
                                    const furrow_callbacks* callbacks) {
   return Guarded(connection, [&](Connection& inner) { return inner.SetCallbacks(callbacks); });

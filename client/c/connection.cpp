@@ -96,7 +96,7 @@ furrow_status Connection::SubscribeToAddress() {
     protocol::SubscribeWeights request{
         .subject = std::move(subject), .wait = true, .max_rate_hz = address_.max_rate_hz};
     if (!address_.pattern.empty()) request.pattern = address_.pattern;
-    if (const furrow_status status = Subscribe(request); status != FURROW_OK) return status;
+    if (const furrow_status status = Subscribe(request, false); status != FURROW_OK) return status;
   }
   return FURROW_OK;
 }
@@ -106,7 +106,8 @@ furrow_status Connection::Subscribe(const furrow_subscription* subscription) {
   if (const furrow_status status = CopyIn(subscription, &wanted); status != FURROW_OK) {
     return Fail(status, "subscription: struct_size is wrong, or an unknown field is set");
   }
-  constexpr std::uint32_t kFlags = FURROW_SUBSCRIBE_8_BIT | FURROW_SUBSCRIBE_DRIVERS;
+  constexpr std::uint32_t kFlags =
+      FURROW_SUBSCRIBE_8_BIT | FURROW_SUBSCRIBE_DRIVERS | FURROW_SUBSCRIBE_POSES;
   if ((wanted.flags & ~kFlags) != 0 || wanted.reserved != 0) {
     return Fail(FURROW_UNSUPPORTED, "subscription: unknown flags");
   }
@@ -125,10 +126,10 @@ furrow_status Connection::Subscribe(const furrow_subscription* subscription) {
   if ((wanted.flags & FURROW_SUBSCRIBE_DRIVERS) != 0) {
     request.source = protocol::WeightSource::kDriverValues;
   }
-  return Subscribe(request);
+  return Subscribe(request, (wanted.flags & FURROW_SUBSCRIBE_POSES) != 0);
 }
 
-furrow_status Connection::Subscribe(const protocol::SubscribeWeights& request) {
+furrow_status Connection::Subscribe(const protocol::SubscribeWeights& request, bool poses) {
   if (!receiver_) {
     auto transport = OpenTransport();
     receiving_ = transport.get();
@@ -137,7 +138,7 @@ furrow_status Connection::Subscribe(const protocol::SubscribeWeights& request) {
   if (receiver_->feeds().size() == FURROW_MAX_SUBJECTS) {
     return Fail(FURROW_LIMIT, "too many subscriptions (open another connection)");
   }
-  if (receiver_->Subscribe(request)) return FURROW_OK;
+  if (receiver_->Subscribe(request, poses)) return FURROW_OK;
   return Fail(FURROW_INVALID_ARGUMENT, "the subject " + Quoted(request.subject) +
                                            " is subscribed already (unsubscribe it first)");
 }
@@ -173,6 +174,69 @@ furrow_status Connection::Weights(const char* subject, float* values, std::uint3
   }
   if (values == nullptr) return Fail(FURROW_INVALID_ARGUMENT, "values is null");
   std::ranges::copy(feed->values(), values);
+  return FURROW_OK;
+}
+
+const PoseFeed* Connection::FindPoses(const char* subject, furrow_status* status) {
+  const Feed* const feed = Find(subject);
+  *status = FURROW_NOT_FOUND;
+  if (feed == nullptr) return nullptr;
+  if (feed->poses() == nullptr) {
+    *status = Fail(FURROW_NOT_FOUND, "the subscription has no poses (use FURROW_SUBSCRIBE_POSES)");
+    return nullptr;
+  }
+  *status = feed->poses()->skeleton_status();
+  return *status == FURROW_OK ? feed->poses() : nullptr;
+}
+
+furrow_status Connection::LatestPose(const char* subject, furrow_pose_buffer* pose) {
+  furrow_pose_buffer filled;
+  if (const furrow_status status = CopyIn(pose, &filled); status != FURROW_OK) {
+    return Fail(status, "pose: struct_size is wrong, or an unknown field is set");
+  }
+  furrow_status status = FURROW_OK;
+  const PoseFeed* const poses = FindPoses(subject, &status);
+  if (poses != nullptr) status = poses->status();
+  if (status != FURROW_OK) return status;
+  status = poses->Copy(NowUs(), &filled);
+  (void)CopyOut(filled, pose);
+  if (status == FURROW_OK) return status;
+  return Fail(status, "the pose has " + Counted(filled.num_joints, "joint") + " and " +
+                          Counted(filled.num_blend_shapes, "blend shape") +
+                          ", more than the buffers hold");
+}
+
+furrow_status Connection::GetSkeleton(const char* subject, furrow_skeleton_info* info) {
+  furrow_status status = FURROW_OK;
+  const PoseFeed* const poses = FindPoses(subject, &status);
+  if (poses == nullptr) return status;
+  const furrow_skeleton_info now = poses->Info();
+  if (CopyOut(now, info) == FURROW_OK) return FURROW_OK;
+  return Fail(FURROW_INVALID_ARGUMENT, "info: struct_size is wrong");
+}
+
+furrow_status Connection::GetJoint(const char* subject, std::uint32_t index, furrow_joint* joint,
+                                   std::string* name) {
+  furrow_status status = FURROW_OK;
+  const PoseFeed* const poses = FindPoses(subject, &status);
+  if (poses == nullptr) return status;
+  if (index >= poses->skeleton().joints.size()) {
+    return Fail(FURROW_NOT_FOUND, "there is no joint " + std::to_string(index));
+  }
+  *name = poses->skeleton().joints[index].name;
+  if (joint != nullptr) *joint = poses->Joint(index);
+  return FURROW_OK;
+}
+
+furrow_status Connection::BlendShapeName(const char* subject, std::uint32_t index,
+                                         std::string* name) {
+  furrow_status status = FURROW_OK;
+  const PoseFeed* const poses = FindPoses(subject, &status);
+  if (poses == nullptr) return status;
+  if (index >= poses->skeleton().blend_shape_names.size()) {
+    return Fail(FURROW_NOT_FOUND, "there is no blend shape " + std::to_string(index));
+  }
+  *name = poses->skeleton().blend_shape_names[index];
   return FURROW_OK;
 }
 

@@ -28,6 +28,11 @@ class Connection {
   furrow_status Unsubscribe(const char* subject);
   furrow_status Weights(const char* subject, float* values, std::uint32_t capacity,
                         furrow_frame* frame);
+  furrow_status LatestPose(const char* subject, furrow_pose_buffer* pose);
+  furrow_status GetSkeleton(const char* subject, furrow_skeleton_info* info);
+  furrow_status GetJoint(const char* subject, std::uint32_t index, furrow_joint* joint,
+                         std::string* name);
+  furrow_status BlendShapeName(const char* subject, std::uint32_t index, std::string* name);
   furrow_status SetCallbacks(const furrow_callbacks* callbacks);
   furrow_status Offer(const furrow_skeleton* skeleton, std::uint32_t* stream);
   furrow_status SendPose(std::uint32_t stream, const furrow_pose* pose);
@@ -50,8 +55,10 @@ class Connection {
   [[nodiscard]] const std::string& last_error() const { return last_error_; }
 
  private:
-  furrow_status Subscribe(const protocol::SubscribeWeights& request);
+  furrow_status Subscribe(const protocol::SubscribeWeights& request, bool poses);
   furrow_status Fail(const Status& status);
+  // The poses of a subject with their skeleton; null, with a status, if there are none.
+  const PoseFeed* FindPoses(const char* subject, furrow_status* status);
   std::unique_ptr<client::Transport> OpenTransport() const;
   bool Step(std::int64_t now_us, std::chrono::milliseconds wait, bool* done);
   void PollSender(std::int64_t now_us, std::chrono::milliseconds wait, bool* news);

@@ -3,15 +3,12 @@
 
 #include <algorithm>
 
+#include "client/c/reordering.h"
 #include "protocol/messages/hash.h"
 
 namespace furrow::capi {
 namespace {
 
-// Datagrams overtake each other by this much at most. An older frame means that the publisher has
-// restarted and counts from 0 again.
-constexpr std::uint32_t kMostReordered = 64;
-constexpr std::int64_t kMostReorderedUs = 200'000;
 // A larger gap is a restart, not a loss.
 constexpr std::uint32_t kMostMissed = 100'000;
 
@@ -34,10 +31,9 @@ bool Feed::OnReply(const protocol::SubscribeReply& reply, std::uint16_t subscrip
 }
 
 bool Feed::IsLate(const protocol::Header& header, std::int64_t age_us, std::int64_t now_us) const {
-  if (values_.empty() || now_us - received_us_ > kMostReorderedUs) return false;
-  if (header.capture_time_us > header_.capture_time_us) return false;
-  const std::uint32_t behind = header_.sequence - header.sequence;
-  return behind == 0 ? age_us <= frame_age_us_ : behind <= kMostReordered;
+  if (values_.empty() || !capi::IsLate(header, header_, now_us - received_us_)) return false;
+  // While no pose arrives, frames repeat the last one with a growing age.
+  return header.sequence != header_.sequence || age_us <= frame_age_us_;
 }
 
 Feed::Arrival Feed::OnFrame(const protocol::Header& header, const protocol::WeightFrame& frame,

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "client/c/include/furrow/furrow.h"
+#include "client/c/pose_feed.h"
 #include "protocol/messages/messages.h"
 
 namespace furrow::capi {
@@ -29,11 +31,18 @@ class Feed {
                   std::int64_t now_us);
   void OnSubjectGone() { gone_ = true; }
   // The connection is new: the number of the subscription is unknown until the next reply.
-  void Forget() { subscription_ = 0; }
+  void Forget() {
+    subscription_ = 0;
+    if (poses_) poses_->SetSubscription(0);
+  }
   // The daemon rejected the request, which is to be repeated at `retry_us`.
   void OnError(furrow_status status, std::int64_t retry_us);
   // The number of the request that was sent last.
   void SetRequest(std::uint32_t number) { request_number_ = number; }
+
+  // Poses of the same subject; null if they were not requested.
+  void AddPoses() { poses_ = std::make_unique<PoseFeed>(); }
+  [[nodiscard]] PoseFeed* poses() const { return poses_.get(); }
 
   // True if a rejected request is due again; then false until the next rejection.
   bool TakeRetry(std::int64_t now_us);
@@ -57,6 +66,7 @@ class Feed {
                             std::int64_t now_us) const;
 
   protocol::SubscribeWeights request_;
+  std::unique_ptr<PoseFeed> poses_;
   std::uint32_t request_number_ = 0;
   std::uint16_t subscription_ = 0;
   furrow_status error_ = FURROW_OK;

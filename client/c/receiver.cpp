@@ -23,17 +23,37 @@ furrow_status StatusOf(protocol::ErrorCode code) {
 
 }  // namespace
 
-bool Receiver::Subscribe(const protocol::SubscribeWeights& request) {
+bool Receiver::Subscribe(const protocol::SubscribeWeights& request, bool poses) {
   const bool known = std::ranges::any_of(
       feeds_, [&](const auto& feed) { return feed->request().subject == request.subject; });
   if (known) return false;
   Feed& feed = *feeds_.emplace_back(std::make_unique<Feed>(request));
   feed.SetRequest(subscriber_.Subscribe(request));
+  if (poses) feed.AddPoses();
+  AskForPoses(feed);
   return true;
+}
+
+void Receiver::AskForPoses(Feed& feed) {
+  if (feed.poses() == nullptr) return;
+  const protocol::SubscribePoses request{
+      .subject = feed.request().subject, .wait = true, .max_rate_hz = feed.request().max_rate_hz};
+  feed.poses()->SetRequest(subscriber_.Subscribe(request));
+}
+
+PoseFeed* Receiver::FindPoses(std::uint32_t request, std::uint16_t subscription) {
+  for (const auto& feed : feeds_) {
+    PoseFeed* const poses = feed->poses();
+    if (poses == nullptr) continue;
+    if (request != 0 && poses->request_number() == request) return poses;
+    if (subscription != 0 && poses->subscription() == subscription) return poses;
+  }
+  return nullptr;
 }
 
 void Receiver::Unsubscribe(const Feed& feed) {
   subscriber_.Cancel(feed.request_number());
+  if (feed.poses() != nullptr) subscriber_.Cancel(feed.poses()->request_number());
   std::erase_if(feeds_, [&](const auto& each) { return each.get() == &feed; });
 }
 
@@ -83,6 +103,8 @@ Receiver::Step Receiver::Next(std::int64_t now_us, std::chrono::milliseconds wai
       return Step::kConnected;
     case Event::Kind::kReply: return OnReply(event, listener);
     case Event::Kind::kWeights: return OnWeights(event, now_us, listener);
+    case Event::Kind::kSkeleton:
+    case Event::Kind::kPose: return OnPoses(event, now_us);
     case Event::Kind::kError: return OnError(event, now_us, error);
     case Event::Kind::kGoodbye: return OnGoodbye(event, now_us, listener);
     default: return Step::kOther;
@@ -90,6 +112,10 @@ Receiver::Step Receiver::Next(std::int64_t now_us, std::chrono::milliseconds wai
 }
 
 Receiver::Step Receiver::OnReply(const Event& event, const Listener& listener) {
+  if (PoseFeed* const poses = FindPoses(event.header.sequence, 0)) {
+    poses->SetSubscription(event.header.stream);
+    return Step::kOther;
+  }
   Feed* const feed = FindRequest(event.header.sequence);
   if (feed == nullptr) {
     // The subscription was ended before its reply arrived.
@@ -112,8 +138,22 @@ Receiver::Step Receiver::OnWeights(const Event& event, std::int64_t now_us,
   return Step::kNews;
 }
 
+Receiver::Step Receiver::OnPoses(const Event& event, std::int64_t now_us) {
+  PoseFeed* const poses = FindPoses(0, event.header.stream);
+  if (poses == nullptr) return Step::kOther;
+  if (event.kind == Event::Kind::kSkeleton) {
+    poses->OnSkeleton(subscriber_.skeleton());
+    return Step::kNews;
+  }
+  return poses->OnPose(event.header, subscriber_.pose(), now_us) ? Step::kNews : Step::kOther;
+}
+
 Receiver::Step Receiver::OnError(const Event& event, std::int64_t now_us, std::string* error) {
   *error = subscriber_.error().message;
+  if (PoseFeed* const poses = FindPoses(event.header.sequence, 0)) {
+    poses->OnError(StatusOf(subscriber_.error().code));
+    return Step::kNews;
+  }
   Feed* const feed = FindRequest(event.header.sequence);
   if (feed == nullptr) return Step::kOther;
   feed->OnError(StatusOf(subscriber_.error().code), now_us + kRetryUs);

@@ -30,7 +30,8 @@ class Receiver {
       : subscriber_(std::move(transport), std::move(program)) {}
 
   // Adds a subscription. Returns false if there is one for this subject.
-  bool Subscribe(const protocol::SubscribeWeights& request);
+  // `poses`: also of the subject's poses.
+  bool Subscribe(const protocol::SubscribeWeights& request, bool poses);
   // Ends a subscription of this receiver.
   void Unsubscribe(const Feed& feed);
 
@@ -48,9 +49,13 @@ class Receiver {
  private:
   Feed* FindRequest(std::uint32_t number);
   Feed* FindSubscription(std::uint16_t subscription);
+  // The poses of a request or a subscription; null if there are none.
+  PoseFeed* FindPoses(std::uint32_t request, std::uint16_t subscription);
+  void AskForPoses(Feed& feed);
   void AskAgain(std::int64_t now_us);
   Step OnReply(const client::Event& event, const Listener& listener);
   Step OnWeights(const client::Event& event, std::int64_t now_us, const Listener& listener);
+  Step OnPoses(const client::Event& event, std::int64_t now_us);
   Step OnError(const client::Event& event, std::int64_t now_us, std::string* error);
   Step OnGoodbye(const client::Event& event, std::int64_t now_us, const Listener& listener);
 

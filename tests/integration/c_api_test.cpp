@@ -140,6 +140,42 @@ TEST_P(CApi, WeightsOfPublishedPosesEqualTheSolver) {
   EXPECT_EQ(FrameOf(connection.get(), "ada", &values).missed, 0u);
 }
 
+TEST_P(CApi, PosesArriveAsTheyWerePublished) {
+  DaemonThread daemon(WeightsConfig("arkit.json"));
+  ASSERT_TRUE(daemon.serves());
+  const motion::Clip clip = ArkitClip(10);
+  const Handle connection =
+      Open(Address(daemon.ready().udp, daemon.ready().tcp, ""), FURROW_OPEN_WITHOUT_SUBSCRIPTION);
+  furrow_subscription poses{};
+  poses.struct_size = sizeof poses;
+  poses.subject = "ada";
+  poses.flags = FURROW_SUBSCRIBE_POSES;
+  ASSERT_EQ(furrow_subscribe(connection.get(), &poses), FURROW_OK);
+  Face face(connection.get(), "ada", clip);
+  furrow_skeleton_info info{};
+  info.struct_size = sizeof info;
+  ASSERT_TRUE(Until({connection.get()}, [&] {
+    return furrow_get_skeleton(connection.get(), "ada", &info) == FURROW_OK;
+  }));
+  EXPECT_EQ(info.num_joints, 0u);
+  ASSERT_EQ(info.num_blend_shapes, clip.blend_shape_names.size());
+  for (int frame = 0; frame < 10; ++frame) {
+    ASSERT_EQ(face.Send(frame, std::llround(clip.times[frame] * 1e6)), FURROW_OK);
+    std::vector<float> shapes(info.num_blend_shapes);
+    ASSERT_TRUE(Until({connection.get()}, [&] {
+      furrow_pose_buffer pose{};
+      pose.struct_size = sizeof pose;
+      pose.blend_shapes = shapes.data();
+      pose.num_blend_shapes = info.num_blend_shapes;
+      return furrow_latest_pose(connection.get(), "ada", &pose) == FURROW_OK &&
+             pose.sequence == static_cast<std::uint32_t>(frame);
+    })) << frame;
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+      ASSERT_EQ(shapes[i], clip.blend_shapes[frame * shapes.size() + i]) << frame;
+    }
+  }
+}
+
 TEST_P(CApi, AMissingPatternIsReported) {
   DaemonThread daemon(WeightsConfig("arkit.json"));
   ASSERT_TRUE(daemon.serves());

@@ -189,6 +189,7 @@ FURROW_API furrow_status furrow_last_error(furrow_connection* connection, char* 
 /* Flags of furrow_subscription. */
 #define FURROW_SUBSCRIBE_8_BIT 1u   /* a quarter of the bytes; the error is at most 1/510 */
 #define FURROW_SUBSCRIBE_DRIVERS 2u /* driver values, before modulation and filter */
+#define FURROW_SUBSCRIBE_POSES 4u   /* also the subject's poses; see furrow_latest_pose() */
 
 typedef struct furrow_subscription {
   uint32_t struct_size; /* sizeof(furrow_subscription) */
@@ -369,6 +370,61 @@ FURROW_API furrow_status furrow_stream_status(furrow_connection* connection, uin
 
 /* Ends a stream, so that subscribers learn at once that the subject has left. */
 FURROW_API furrow_status furrow_withdraw(furrow_connection* connection, uint32_t stream);
+
+/* --- Poses of others ------------------------------------------------------------------------- */
+
+/* Below, `subject` names a subscription with FURROW_SUBSCRIBE_POSES, as for furrow_weights(). */
+
+typedef struct furrow_skeleton_info {
+  uint32_t struct_size; /* sizeof(furrow_skeleton_info) */
+  uint32_t num_joints;
+  uint32_t num_blend_shapes;
+  float metres_per_unit; /* unit of all lengths */
+  uint64_t layout;       /* changes with the joints, their rest pose, and the blend shapes */
+} furrow_skeleton_info;
+
+/*
+ * Describes the skeleton of a subject; info->struct_size must be set. Returns FURROW_NO_DATA before
+ * it has arrived. Errors: FURROW_NOT_FOUND (no such subscription, or one without poses),
+ * FURROW_LIMIT (the skeleton is too large for UDP), FURROW_REJECTED.
+ */
+FURROW_API furrow_status furrow_get_skeleton(furrow_connection* connection, const char* subject,
+                                             furrow_skeleton_info* info);
+/*
+ * Copies joint `index`: its name into `name`, which has `size` bytes, and the rest into `joint`,
+ * which may be NULL; joint->name then points to `name`. Errors: as furrow_get_skeleton(), and
+ * FURROW_BUFFER_TOO_SMALL.
+ */
+FURROW_API furrow_status furrow_get_joint(furrow_connection* connection, const char* subject,
+                                          uint32_t index, char* name, uint32_t size,
+                                          furrow_joint* joint);
+/* Copies the name of blend shape `index`. Errors: as furrow_get_joint(). */
+FURROW_API furrow_status furrow_blend_shape_name(furrow_connection* connection, const char* subject,
+                                                 uint32_t index, char* buffer, uint32_t size);
+
+/* Buffers for a pose, and what belongs to it. Arrays that are NULL are left out. */
+typedef struct furrow_pose_buffer {
+  uint32_t struct_size;      /* sizeof(furrow_pose_buffer) */
+  uint32_t sequence;         /* out: as furrow_frame, like `number`, `capture_time_us`, `age_us` */
+  uint32_t num_joints;       /* in: joints that the arrays hold; out: joints of the skeleton */
+  uint32_t num_blend_shapes; /* in and out, as num_joints */
+  float* rotations;          /* 4 per joint, local: x, y, z, w, of length 1 */
+  float* translations;       /* 3 per joint: the whole local translation */
+  float* scales;             /* 3 per joint */
+  float* blend_shapes;       /* 1 per blend shape */
+  uint64_t layout;           /* out: that of the skeleton */
+  uint64_t number;           /* out: poses received so far */
+  int64_t capture_time_us;   /* out */
+  int64_t age_us;            /* out: time since the pose arrived, microseconds */
+} furrow_pose_buffer;
+
+/*
+ * Copies the newest pose of a subject. Set struct_size, the arrays, and their sizes; the sizes are
+ * replaced, so set them before each call. Returns FURROW_NO_DATA before the first pose. Errors: as
+ * furrow_get_skeleton(), and FURROW_BUFFER_TOO_SMALL (no array was changed).
+ */
+FURROW_API furrow_status furrow_latest_pose(furrow_connection* connection, const char* subject,
+                                            furrow_pose_buffer* pose);
 
 #ifdef __cplusplus
 } /* extern "C" */

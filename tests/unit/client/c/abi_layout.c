@@ -23,6 +23,9 @@ CHECK(sizeof(furrow_joint) == 56);
 CHECK(sizeof(furrow_skeleton) == 48);
 CHECK(offsetof(furrow_skeleton, metres_per_unit) == 40);
 CHECK(sizeof(furrow_pose) == 48);
+CHECK(sizeof(furrow_skeleton_info) == 24);
+CHECK(sizeof(furrow_pose_buffer) == 80);
+CHECK(offsetof(furrow_pose_buffer, layout) == 48);
 
 /* The ten lines of the manual, compiled as C. */
 int FurrowTenLines(void) {

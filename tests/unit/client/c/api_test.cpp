@@ -83,6 +83,10 @@ TEST(CApi, NullConnectionsAreRejected) {
   EXPECT_EQ(furrow_layout(nullptr, "a", nullptr, nullptr), FURROW_INVALID_ARGUMENT);
   EXPECT_EQ(furrow_weight_name(nullptr, "a", 0, text, sizeof text), FURROW_INVALID_ARGUMENT);
   EXPECT_EQ(furrow_find_weight(nullptr, "a", "b", &number), FURROW_INVALID_ARGUMENT);
+  EXPECT_EQ(furrow_latest_pose(nullptr, "a", nullptr), FURROW_INVALID_ARGUMENT);
+  EXPECT_EQ(furrow_get_skeleton(nullptr, "a", nullptr), FURROW_INVALID_ARGUMENT);
+  EXPECT_EQ(furrow_get_joint(nullptr, "a", 0, text, 8, nullptr), FURROW_INVALID_ARGUMENT);
+  EXPECT_EQ(furrow_blend_shape_name(nullptr, "a", 0, text, 8), FURROW_INVALID_ARGUMENT);
   EXPECT_EQ(furrow_set_callbacks(nullptr, nullptr), FURROW_INVALID_ARGUMENT);
   EXPECT_EQ(furrow_offer(nullptr, nullptr, &number), FURROW_INVALID_ARGUMENT);
   EXPECT_EQ(furrow_send_pose(nullptr, 0, nullptr), FURROW_INVALID_ARGUMENT);
@@ -377,6 +381,69 @@ TEST_F(CApiTest, HostileMessagesChangeNothing) {
     float values[2];
     return furrow_weights(c(), "ada", values, 2, nullptr) == FURROW_OK && values[0] == 0.75f;
   }));
+}
+
+TEST_F(CApiTest, PosesArriveWithTheirSkeleton) {
+  daemon_->skeleton.subject = "bob";
+  daemon_->skeleton.joints = {{.name = "neck", .rest_translation = {0, 1, 0}},
+                              {.name = "head", .parent = 0, .rest_translation = {0, 0.5f, 0}}};
+  daemon_->skeleton.blend_shape_names = {"jawOpen"};
+  daemon_->skeleton.skeleton_hash = protocol::SkeletonHash(daemon_->skeleton);
+  Connect();
+  furrow_skeleton_info info{};
+  info.struct_size = sizeof info;
+  EXPECT_EQ(furrow_get_skeleton(c(), "ada", &info), FURROW_NOT_FOUND) << "without poses";
+  furrow_subscription more{};
+  more.struct_size = sizeof more;
+  more.subject = "bob";
+  more.flags = FURROW_SUBSCRIBE_POSES;
+  ASSERT_EQ(furrow_subscribe(c(), &more), FURROW_OK);
+  EXPECT_EQ(furrow_get_skeleton(c(), "bob", &info), FURROW_NO_DATA);
+  ASSERT_TRUE(Polled([&] { return furrow_get_skeleton(c(), "bob", &info) == FURROW_OK; }));
+  EXPECT_EQ(info.num_joints, 2u);
+  EXPECT_EQ(info.num_blend_shapes, 1u);
+  EXPECT_EQ(info.layout, daemon_->skeleton.skeleton_hash);
+  char name[FURROW_NAME_SIZE];
+  furrow_joint joint;
+  EXPECT_EQ(furrow_get_joint(c(), "bob", 1, name, sizeof name, &joint), FURROW_OK);
+  EXPECT_STREQ(joint.name, "head");
+  EXPECT_EQ(joint.parent, 0);
+  EXPECT_EQ(joint.translation[1], 0.5f);
+  EXPECT_EQ(furrow_get_joint(c(), "bob", 2, name, sizeof name, nullptr), FURROW_NOT_FOUND);
+  EXPECT_EQ(furrow_blend_shape_name(c(), "bob", 0, name, 8), FURROW_OK);
+  EXPECT_STREQ(name, "jawOpen");
+  EXPECT_EQ(furrow_blend_shape_name(c(), "bob", 0, name, 7), FURROW_BUFFER_TOO_SMALL);
+
+  float rotations[8];
+  float translations[6];
+  furrow_pose_buffer buffer{};
+  const auto latest = [&](std::uint32_t num_joints) {
+    buffer = {sizeof buffer};
+    buffer.num_joints = num_joints;
+    buffer.rotations = rotations;
+    buffer.translations = translations;
+    return furrow_latest_pose(c(), "bob", &buffer);
+  };
+  EXPECT_EQ(latest(2), FURROW_NO_DATA);
+  protocol::PoseFrame pose;
+  pose.skeleton_hash = daemon_->skeleton.skeleton_hash;
+  pose.num_joints = 2;
+  pose.num_blend_shapes = 1;
+  pose.rotation_joints = {1};
+  pose.rotations = {{0, 1, 0, 0}};
+  pose.translation_joints = {0};
+  pose.translations = {{0.25f, 0, 0}};
+  const auto stream = static_cast<std::uint16_t>(daemon_->requests.size());
+  daemon_->Send({.stream = stream, .sequence = 7, .capture_time_us = 70}, pose);
+  ASSERT_TRUE(Polled([&] { return latest(2) == FURROW_OK; }));
+  EXPECT_EQ(buffer.sequence, 7u);
+  EXPECT_EQ(buffer.num_blend_shapes, 1u) << "its array was not asked for";
+  EXPECT_THAT(rotations, ElementsAre(0, 0, 0, 1, 0, 1, 0, 0)) << "the neck is at rest";
+  EXPECT_THAT(translations, ElementsAre(0.25f, 1, 0, 0, 0.5f, 0)) << "complete, not offsets";
+  EXPECT_EQ(latest(1), FURROW_BUFFER_TOO_SMALL);
+  EXPECT_EQ(buffer.num_joints, 2u);
+  EXPECT_EQ(furrow_unsubscribe(c(), "bob"), FURROW_OK);
+  ASSERT_TRUE(Polled([&] { return daemon_->unsubscribed == 2; })) << "weights and poses";
 }
 
 struct Calls {

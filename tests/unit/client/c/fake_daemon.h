@@ -47,8 +47,9 @@ class FakeDaemon {
 
   // What the daemon does with the next requests.
   std::vector<std::string> names = {"brow_l.squash", "brow_l.stretch"};
-  protocol::ErrorCode reject{};  // 0: accept subscriptions
-  std::string chosen = "ada";    // for a subscription to the oldest subject
+  protocol::ErrorCode reject{};      // 0: accept subscriptions
+  protocol::SkeletonOffer skeleton;  // for a subscription to poses; none without a subject
+  std::string chosen = "ada";        // for a subscription to the oldest subject
 
   // What has arrived.
   std::vector<protocol::SubscribeWeights> subscriptions;
@@ -109,6 +110,7 @@ class FakeDaemon {
       case MessageKind::kHello: Send({}, protocol::Welcome{.server = "fake"}); break;
       case MessageKind::kPing: Send({}, protocol::Pong{}); break;
       case MessageKind::kSubscribeWeights: OnSubscribe(view); break;
+      case MessageKind::kSubscribePoses: OnSubscribePoses(view); break;
       case MessageKind::kUnsubscribe: ++unsubscribed; break;
       case MessageKind::kGoodbye: ++goodbyes; break;
       case MessageKind::kSkeletonOffer: {
@@ -136,6 +138,20 @@ class FakeDaemon {
     requests.push_back(view.header.sequence);
     SendReply(static_cast<std::uint16_t>(requests.size()), view.header.sequence,
               request.subject.empty() ? chosen : request.subject);
+  }
+
+  void OnSubscribePoses(const protocol::MessageView& view) {
+    protocol::SubscribePoses request;
+    EXPECT_EQ(protocol::Decode(view, request), protocol::DecodeStatus::kOk);
+    requests.push_back(view.header.sequence);
+    const auto stream = static_cast<std::uint16_t>(requests.size());
+    const protocol::Header header{.stream = stream, .sequence = view.header.sequence};
+    protocol::SubscribeReply reply;
+    reply.subject = request.subject;
+    reply.publisher_session = 5;
+    Send(header, reply);
+    if (skeleton.subject.empty()) return;
+    Send(header, skeleton);
   }
 
   std::uint64_t session_;
