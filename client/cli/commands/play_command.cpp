@@ -74,6 +74,25 @@ SessionSchedule MakeSchedule(const std::vector<PlaySource>& sources, const PlayO
   return SessionSchedule(tracks, options.rate, options.from);
 }
 
+// Prints the skeleton maps that match the sources.
+void PrintMatches(const std::vector<PlaySource>& sources) {
+  // The daemon finds the same map, unless it was started with another one.
+  std::vector<wrinkle::Skeleton> skeletons;
+  for (const PlaySource& source : sources) {
+    auto skeleton = source.Skeleton();
+    // The daemon rejects an invalid one, and says why.
+    if (skeleton.ok()) skeletons.push_back(std::move(*skeleton));
+  }
+  PrintMatchesOf(skeletons);
+}
+
+// The transport that the options choose, or else the address.
+TransportKind KindOf(const PlayOptions& options, const client::Address& address) {
+  if (options.tcp) return TransportKind::kTcp;
+  if (options.udp) return TransportKind::kUdp;
+  return address.transport.value_or(TransportKind::kUdp);
+}
+
 int PlayFile(PlayOptions options) {
   const auto address = ParseHost(options.host, {.udp = !options.tcp});
   if (!address) return kUsage;
@@ -88,20 +107,9 @@ int PlayFile(PlayOptions options) {
                  options.file.c_str(), schedule.duration());
     return kBadInput;
   }
-  // The daemon finds the same map, unless it was started with another one.
-  std::vector<wrinkle::Skeleton> skeletons;
-  for (const PlaySource& source : *sources) {
-    auto skeleton = source.Skeleton();
-    // The daemon rejects an invalid one, and says why.
-    if (skeleton.ok()) skeletons.push_back(std::move(*skeleton));
-  }
-  PrintMatchesOf(skeletons);
+  PrintMatches(*sources);
   int exit_code = kDone;
-  const TransportKind stated = address->transport.value_or(TransportKind::kUdp);
-  const TransportKind kind = options.tcp   ? TransportKind::kTcp
-                             : options.udp ? TransportKind::kUdp
-                                           : stated;
-  auto transport = OpenTransport(*address, kind, options.once, &exit_code);
+  auto transport = OpenTransport(*address, KindOf(options, *address), options.once, &exit_code);
   if (!transport) return exit_code;
   // After loading: until here Ctrl-C may end the program at once, from here on it must say goodbye.
   CatchInterrupts();
