@@ -6,6 +6,18 @@
 
 namespace furrow {
 
+std::filesystem::path InstallPrefix(const std::filesystem::path& folder) {
+  const std::filesystem::path above = folder.parent_path();
+  const bool helper = folder.filename() == "furrow" && above.filename() == "libexec";
+  return helper ? above.parent_path() : above;
+}
+
+std::filesystem::path InstallPrefix() {
+  std::error_code error;
+  // Not argv[0], which the caller chooses and which may be a name on the PATH.
+  return InstallPrefix(std::filesystem::read_symlink("/proc/self/exe", error).parent_path());
+}
+
 Result<std::filesystem::path> FindDataFile(std::string_view name) {
   namespace fs = std::filesystem;
   std::error_code error;
@@ -13,9 +25,7 @@ Result<std::filesystem::path> FindDataFile(std::string_view name) {
   if (const char* set = std::getenv("FURROW_DATA_DIR"); set != nullptr && *set != '\0') {
     folder = set;
   } else {
-    // bin/ and share/ are neighbours, in the build folder and after an installation.
-    const fs::path program = fs::read_symlink("/proc/self/exe", error);
-    folder = program.parent_path().parent_path() / "share" / "furrow";
+    folder = InstallPrefix() / "share" / "furrow";
   }
   const fs::path file = folder / name;
   if (fs::exists(file, error)) return file;

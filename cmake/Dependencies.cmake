@@ -1,11 +1,23 @@
 # SPDX-License-Identifier: Apache-2.0
 # Imports Debian's libraries as targets (deploy/install-deps.sh installs them). Downloads nothing.
-find_package(Threads REQUIRED)
-find_package(PkgConfig REQUIRED)
 
+# What the client library needs.
+find_package(Threads REQUIRED)
+find_package(FlatBuffers REQUIRED)
+find_program(FURROW_FLATC flatc REQUIRED)
+add_library(furrow_asio INTERFACE)
+find_path(FURROW_ASIO_INCLUDE asio.hpp REQUIRED)
+target_include_directories(furrow_asio SYSTEM INTERFACE "${FURROW_ASIO_INCLUDE}")
+target_compile_definitions(furrow_asio INTERFACE ASIO_STANDALONE ASIO_NO_DEPRECATED)
+target_link_libraries(furrow_asio INTERFACE Threads::Threads)
+if(NOT FURROW_BUILD_PROGRAMS)
+  return()
+endif()
+
+# What the programs need.
+find_package(PkgConfig REQUIRED)
 find_package(spdlog REQUIRED)
 find_package(nlohmann_json REQUIRED)
-find_package(FlatBuffers REQUIRED)
 find_package(tomlplusplus REQUIRED)
 find_package(meshoptimizer REQUIRED)
 
@@ -23,18 +35,10 @@ pkg_check_modules(MINIZIP REQUIRED IMPORTED_TARGET minizip)
 pkg_check_modules(HWY REQUIRED IMPORTED_TARGET libhwy)
 pkg_check_modules(TURBOJPEG REQUIRED IMPORTED_TARGET libturbojpeg)
 
-find_program(FURROW_FLATC flatc REQUIRED)
-
 # Header-only libraries without a usable CMake package.
 add_library(furrow_glm INTERFACE)
 find_path(FURROW_GLM_INCLUDE glm/glm.hpp REQUIRED)
 target_include_directories(furrow_glm SYSTEM INTERFACE "${FURROW_GLM_INCLUDE}")
-
-add_library(furrow_asio INTERFACE)
-find_path(FURROW_ASIO_INCLUDE asio.hpp REQUIRED)
-target_include_directories(furrow_asio SYSTEM INTERFACE "${FURROW_ASIO_INCLUDE}")
-target_compile_definitions(furrow_asio INTERFACE ASIO_STANDALONE ASIO_NO_DEPRECATED)
-target_link_libraries(furrow_asio INTERFACE Threads::Threads)
 
 # Boost.Beast with Boost.Asio, headers only. Debian's default version, 1.74, is sufficient.
 add_library(furrow_beast INTERFACE)

@@ -16,16 +16,17 @@ set(FURROW_STANDARD_HEADERS
 # standard library and GLM once for all libraries. Sources with the property SKIP_UNITY_BUILD_INCLUSION are
 # compiled separately.
 function(furrow_unity target)
-  if(NOT FURROW_UNITY)
+  # The client library alone is small, and the precompiled header needs GLM.
+  if(NOT FURROW_UNITY OR NOT FURROW_BUILD_PROGRAMS)
     return()
   endif()
   get_target_property(sources ${target} SOURCES)
   foreach(source IN LISTS sources)
     cmake_path(ABSOLUTE_PATH source BASE_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}" NORMALIZE)
-    cmake_path(IS_PREFIX CMAKE_BINARY_DIR "${source}" generated)
+    cmake_path(IS_PREFIX PROJECT_BINARY_DIR "${source}" generated)
     if(NOT generated)
       cmake_path(GET source PARENT_PATH folder)
-      file(RELATIVE_PATH folder "${CMAKE_SOURCE_DIR}" "${folder}")
+      file(RELATIVE_PATH folder "${PROJECT_SOURCE_DIR}" "${folder}")
       foreach(shared IN LISTS FURROW_UNITY_SHARED)
         cmake_path(IS_PREFIX shared "${folder}" is_shared)
         if(is_shared)
@@ -40,8 +41,8 @@ function(furrow_unity target)
   # g++ takes the sources that a unit includes for headers, and warns about their anonymous namespaces.
   target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
   if(NOT TARGET furrow_library_headers)
-    file(WRITE "${CMAKE_BINARY_DIR}/library_headers.cpp" "// Carries the libraries' precompiled header.\n")
-    add_library(furrow_library_headers STATIC "${CMAKE_BINARY_DIR}/library_headers.cpp")
+    file(WRITE "${PROJECT_BINARY_DIR}/library_headers.cpp" "// Carries the libraries' precompiled header.\n")
+    add_library(furrow_library_headers STATIC "${PROJECT_BINARY_DIR}/library_headers.cpp")
     target_precompile_headers(furrow_library_headers PRIVATE
       ${FURROW_STANDARD_HEADERS} <glm/glm.hpp> <glm/gtc/quaternion.hpp>)
   endif()
@@ -78,8 +79,8 @@ function(furrow_precompile_tests target)
   endif()
   if(NOT TARGET furrow_test_headers)
     # An executable, since the header must be compiled with the tests' -fPIE.
-    file(WRITE "${CMAKE_BINARY_DIR}/test_headers.cpp" "// Carries the tests' precompiled header.\nint main() {}\n")
-    add_executable(furrow_test_headers "${CMAKE_BINARY_DIR}/test_headers.cpp")
+    file(WRITE "${PROJECT_BINARY_DIR}/test_headers.cpp" "// Carries the tests' precompiled header.\nint main() {}\n")
+    add_executable(furrow_test_headers "${PROJECT_BINARY_DIR}/test_headers.cpp")
     target_link_libraries(furrow_test_headers PRIVATE GTest::gtest GTest::gmock)
     target_precompile_headers(furrow_test_headers PRIVATE
       <gmock/gmock.h> <gtest/gtest.h> ${FURROW_STANDARD_HEADERS})

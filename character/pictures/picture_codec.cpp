@@ -2,18 +2,16 @@
 #include "character/pictures/picture_codec.h"
 
 #include <filesystem>
-#include <system_error>
 
 #include <dlfcn.h>
+
+#include "base/data_dir.h"
 
 namespace furrow::character {
 namespace {
 
-// lib/furrow beside the program's bin/, in the build folder and after an installation.
 std::filesystem::path ModulePath() {
-  std::error_code error;
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
-  return program.parent_path().parent_path() / "lib" / "furrow" / "furrow-pictures.so";
+  return InstallPrefix() / "lib" / "furrow" / "furrow-pictures.so";
 }
 
 // The module is never unloaded: some of OpenImageIO's libraries do not support that.

@@ -17,7 +17,9 @@ std::uint64_t NewSession() {
 }
 
 Publisher::Publisher(std::unique_ptr<Transport> transport)
-    : transport_(std::move(transport)), session_(NewSession()) {}
+    : transport_(std::move(transport)),
+      session_(NewSession()),
+      generation_(transport_->generation()) {}
 
 std::uint16_t Publisher::AddSubject(const protocol::SkeletonOffer& offer, std::int64_t now_us) {
   const auto number = static_cast<std::uint16_t>(streams_.size());
@@ -60,6 +62,7 @@ IoStatus Publisher::Poll(std::int64_t now_us, std::chrono::milliseconds wait) {
   }
   std::span<const std::uint8_t> message;
   IoStatus status = transport_->Receive(message, wait);
+  if (transport_->generation() != generation_) OfferAgain(now_us);
   while (status == IoStatus::kOk) {
     Handle(message, now_us);
     // Reads all waiting answers. A timeout after the first one is not a timeout of this call.
@@ -97,14 +100,32 @@ void Publisher::Handle(std::span<const std::uint8_t> message, std::int64_t now_u
   }
 }
 
-void Publisher::Close() {
-  for (std::size_t i = 0; i < streams_.size(); ++i) {
-    encoder_.Encode({.session = session_,
-                     .stream = static_cast<std::uint16_t>(i),
-                     .sequence = streams_[i].next_sequence},
-                    protocol::Goodbye{}, bytes_);
-    (void)transport_->Send(bytes_);  // a lost goodbye is harmless: the daemon times out
+// The transport has another connection, and the daemon knows nothing of it.
+void Publisher::OfferAgain(std::int64_t now_us) {
+  generation_ = transport_->generation();
+  for (Stream& stream : streams_) {
+    stream.accepted = false;
+    if (stream.rejection.empty()) SendOffer(stream, now_us);
   }
+}
+
+void Publisher::SendGoodbye(std::size_t stream) {
+  encoder_.Encode({.session = session_,
+                   .stream = static_cast<std::uint16_t>(stream),
+                   .sequence = streams_[stream].next_sequence},
+                  protocol::Goodbye{}, bytes_);
+  (void)transport_->Send(bytes_);  // a lost goodbye is harmless: the daemon times out
+}
+
+void Publisher::Withdraw(std::uint16_t stream, const std::string& why) {
+  Stream& withdrawn = streams_.at(stream);
+  if (withdrawn.rejection.empty()) SendGoodbye(stream);
+  withdrawn.accepted = false;
+  withdrawn.rejection = why;
+}
+
+void Publisher::Close() {
+  for (std::size_t i = 0; i < streams_.size(); ++i) SendGoodbye(i);
   streams_.clear();
 }
 

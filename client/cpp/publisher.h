@@ -18,6 +18,9 @@ namespace furrow::client {
 //   publisher.Poll(now_us, 100ms);                 // until accepted(stream)
 //   publisher.Send(stream, pose, capture_time_us);
 //
+// With a transport that reconnects, the publisher outlives every loss: it offers all subjects again
+// on each connection, and their numbering continues.
+//
 // Time is a parameter: microseconds of any monotonic clock. The class starts no thread and must be
 // used on one thread.
 class Publisher {
@@ -40,6 +43,9 @@ class Publisher {
   // Reads answers for up to `wait` and repeats unanswered offers. Call it between poses. kOk and
   // kTimeout are both normal. kNoConnection over UDP means that the port is closed at present.
   IoStatus Poll(std::int64_t now_us, std::chrono::milliseconds wait);
+
+  // Sends a goodbye for one stream. The stream stays rejected with the reason `why`.
+  void Withdraw(std::uint16_t stream, const std::string& why);
 
   // Sends a goodbye for every stream, so that subscribers learn at once that the subjects left.
   void Close();
@@ -65,11 +71,14 @@ class Publisher {
   };
 
   void SendOffer(Stream& stream, std::int64_t now_us);
+  void OfferAgain(std::int64_t now_us);
+  void SendGoodbye(std::size_t stream);
   void Handle(std::span<const std::uint8_t> message, std::int64_t now_us);
 
   std::unique_ptr<Transport> transport_;
   protocol::Encoder encoder_;
   std::uint64_t session_;
+  std::uint64_t generation_;  // of the transport's connection that the offers went to
   std::vector<Stream> streams_;
   std::vector<std::uint8_t> bytes_;
   protocol::SkeletonReply reply_;

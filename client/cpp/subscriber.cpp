@@ -17,6 +17,8 @@ using protocol::MessageKind;
 // for pinging a TCP connection.
 constexpr std::int64_t kResendMicroseconds = 200'000;
 constexpr std::int64_t kRenewMicroseconds = protocol::kUdpLeaseMicroseconds / 5;
+// The interval for repeating messages to a daemon that has been silent for some seconds.
+constexpr std::int64_t kSlowResendMicroseconds = 800'000;
 // After this time without an answer the network or the daemon is considered gone.
 constexpr std::int64_t kSilenceMicroseconds = 3 * protocol::kUdpLeaseMicroseconds;
 
@@ -26,6 +28,7 @@ Subscriber::Subscriber(std::unique_ptr<Transport> transport, std::string name)
     : transport_(std::move(transport)),
       name_(std::move(name)),
       session_(NewSession()),
+      generation_(transport_->generation()),
       proven_(transport_->kind() == TransportKind::kTcp) {
   SendHello();
 }
@@ -46,6 +49,11 @@ std::uint32_t Subscriber::Ask(const Message& message) {
   request.number = next_request_++;
   request.wait = message.wait;
   encoder_.Encode({.session = session_, .sequence = request.number}, message, request.bytes);
+  if (transport_->reconnects()) {
+    Message resumed = message;
+    resumed.wait = true;
+    encoder_.Encode({.session = session_, .sequence = request.number}, resumed, request.resumed);
+  }
   if (proven_) (void)transport_->Send(request.bytes);  // Next() reports a closed connection
   return request.number;
 }
@@ -69,11 +77,20 @@ void Subscriber::Unsubscribe(std::uint16_t subscription) {
                 [=](const Request& request) { return request.subscription == subscription; });
 }
 
+void Subscriber::Cancel(std::uint32_t request) {
+  const auto found = std::ranges::find(requests_, request, &Request::number);
+  if (found == requests_.end()) return;
+  if (found->subscription != 0) return Unsubscribe(found->subscription);
+  requests_.erase(found);
+}
+
 std::uint32_t Subscriber::ListSubjects(bool follow) {
   const std::uint32_t number = next_request_++;
   encoder_.Encode({.session = session_, .sequence = number}, protocol::ListSubjects{follow},
                   bytes_);
   (void)transport_->Send(bytes_);
+  list_.clear();
+  if (follow) list_ = bytes_;
   return number;
 }
 
@@ -83,12 +100,46 @@ void Subscriber::SendWaiting() {
   }
 }
 
+// Makes every request wait for an answer again.
+void Subscriber::ResumeAll() {
+  for (Request& request : requests_) {
+    request.waiting = true;
+    if (request.resumed.empty()) continue;
+    request.bytes = request.resumed;
+    request.wait = true;
+  }
+}
+
 // The daemon does not know this address, or forgot it: start over and repeat all requests.
 void Subscriber::ProveAgain() {
   proven_ = false;
+  answered_ = false;
   token_ = 0;
-  for (Request& request : requests_) request.waiting = true;
+  ResumeAll();
   SendHello();
+}
+
+// The transport has another connection, and the daemon knows nothing of it.
+void Subscriber::StartOver() {
+  generation_ = transport_->generation();
+  unanswered_since_us_.reset();
+  // Numbers of subscriptions belong to a connection.
+  for (Request& request : requests_) request.subscription = 0;
+  ProveAgain();
+  proven_ = transport_->kind() == TransportKind::kTcp;
+  if (!proven_) return;
+  SendWaiting();
+  if (!list_.empty()) (void)transport_->Send(list_);
+}
+
+// Over UDP a closed port may belong to another daemon when it opens. Maintain() sends the Hello,
+// because each one to a closed port is answered with a failure at once.
+void Subscriber::OnNoConnection() {
+  answered_ = false;
+  if (!transport_->reconnects() || transport_->kind() != TransportKind::kUdp) return;
+  proven_ = false;
+  token_ = 0;
+  ResumeAll();
 }
 
 void Subscriber::NoticeRestart(std::uint64_t server_session) {
@@ -106,10 +157,20 @@ void Subscriber::Maintain(std::int64_t now_us) {
     return;
   }
   const bool udp = transport_->kind() == TransportKind::kUdp;
+  // The program did not call for a while, as in a debugger, so the daemon has forgotten it. Its
+  // goodbye may have been lost with everything else that did not fit into the socket's buffer.
+  const bool slept = now_us - last_sent_us_ > protocol::kUdpLeaseMicroseconds;
+  if (udp && slept && transport_->reconnects()) {
+    last_sent_us_ = now_us;
+    return ProveAgain();
+  }
   // TCP does not lose requests, so only UDP repeats them.
   const bool asking = udp && std::ranges::any_of(requests_, &Request::waiting);
   const bool unsettled = !proven_ || asking;
-  if (now_us - last_sent_us_ < (unsettled ? kResendMicroseconds : kRenewMicroseconds)) return;
+  const bool silent =
+      unanswered_since_us_ && now_us - *unanswered_since_us_ > protocol::kUdpLeaseMicroseconds;
+  const std::int64_t resend = silent ? kSlowResendMicroseconds : kResendMicroseconds;
+  if (now_us - last_sent_us_ < (unsettled ? resend : kRenewMicroseconds)) return;
   last_sent_us_ = now_us;
   // Silence counts from the first unanswered send. A daemon that has nothing to say is not gone.
   if (!unanswered_since_us_) unanswered_since_us_ = now_us;
@@ -129,9 +190,14 @@ Event Subscriber::Next(std::int64_t now_us, std::chrono::milliseconds wait) {
   Event event;
   std::span<const std::uint8_t> message;
   for (;;) {
-    switch (transport_->Receive(message, wait)) {
+    const IoStatus status = transport_->Receive(message, wait);
+    if (transport_->generation() != generation_) StartOver();
+    switch (status) {
       case IoStatus::kOk: unanswered_since_us_.reset(); break;
-      case IoStatus::kNoConnection: event.kind = Event::Kind::kNoConnection; return event;
+      case IoStatus::kNoConnection:
+        OnNoConnection();
+        event.kind = Event::Kind::kNoConnection;
+        return event;
       case IoStatus::kClosed:
       case IoStatus::kMalformed: event.kind = Event::Kind::kClosed; return event;
       default: event.kind = OnTimeout(now_us); return event;
@@ -144,9 +210,16 @@ Event Subscriber::Next(std::int64_t now_us, std::chrono::milliseconds wait) {
 }
 
 // The event of a receive timeout.
-Event::Kind Subscriber::OnTimeout(std::int64_t now_us) const {
+Event::Kind Subscriber::OnTimeout(std::int64_t now_us) {
   const bool lost = unanswered_since_us_ && now_us - *unanswered_since_us_ > kSilenceMicroseconds;
   if (!lost) return Event::Kind::kTimeout;
+  if (transport_->reconnects()) {
+    // The peer may be gone without a word, as after a power failure.
+    unanswered_since_us_.reset();
+    transport_->Abandon();
+    OnNoConnection();
+    return Event::Kind::kNoConnection;
+  }
   return transport_->kind() == TransportKind::kTcp ? Event::Kind::kClosed
                                                    : Event::Kind::kNoConnection;
 }
@@ -205,7 +278,7 @@ bool Subscriber::Handle(std::span<const std::uint8_t> message, Event& event) {
       event.kind = Event::Kind::kGoodbye;
       if (status == DecodeStatus::kOk) OnGoodbye(view.header.stream);
       break;
-    case MessageKind::kWelcome: return HandleWelcome(view);
+    case MessageKind::kWelcome: return HandleWelcome(view, event);
     default: return false;  // pongs, and messages of a newer protocol
   }
   if (status == DecodeStatus::kOk) return true;
@@ -213,11 +286,13 @@ bool Subscriber::Handle(std::span<const std::uint8_t> message, Event& event) {
   return false;
 }
 
-bool Subscriber::HandleWelcome(const protocol::MessageView& view) {
+bool Subscriber::HandleWelcome(const protocol::MessageView& view, Event& event) {
   protocol::Welcome welcome;
   if (protocol::Decode(view, welcome) != DecodeStatus::kOk) {
     ++malformed_;
-  } else if (!proven_) {
+    return false;
+  }
+  if (!proven_) {
     // A token means that the address is not proven yet; no token means that it is, or needs no
     // proof.
     if (welcome.token != 0) {
@@ -228,7 +303,10 @@ bool Subscriber::HandleWelcome(const protocol::MessageView& view) {
       SendWaiting();
     }
   }
-  return false;
+  if (!proven_ || answered_ || !transport_->reconnects()) return false;
+  answered_ = true;
+  event.kind = Event::Kind::kConnected;
+  return true;
 }
 
 void Subscriber::OnReply(const protocol::Header& header) {
@@ -258,6 +336,8 @@ bool Subscriber::OnError(const protocol::Header& header) {
     if (proven_) ProveAgain();
     return false;
   }
+  // The daemon is shutting down. The next one will be asked again.
+  if (error_.code == protocol::ErrorCode::kDraining && transport_->reconnects()) return false;
   std::erase_if(requests_,
                 [&](const Request& request) { return request.number == header.sequence; });
   return true;
@@ -266,6 +346,12 @@ bool Subscriber::OnError(const protocol::Header& header) {
 // A subscription with `wait` outlives its subject. Every other reason ends the subscription.
 void Subscriber::OnGoodbye(std::uint16_t subscription) {
   const bool may_return = goodbye_.reason == protocol::GoodbyeReason::kSubjectGone;
+  if (transport_->reconnects() && !may_return &&
+      goodbye_.reason != protocol::GoodbyeReason::kDone) {
+    // The daemon is shutting down, or it heard nothing from here for too long.
+    if (goodbye_.reason == protocol::GoodbyeReason::kTimedOut) ResumeAll();
+    return;
+  }
   std::erase_if(requests_, [=](const Request& request) {
     return request.subscription == subscription && !(request.wait && may_return);
   });

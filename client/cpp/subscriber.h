@@ -26,8 +26,10 @@ struct Event {
     kSubjects,      // subjects(): the list of subjects
     kError,         // error(): request `header.sequence` or subscription `header.stream` failed
     kGoodbye,       // goodbye()
+    kConnected,     // reconnecting transports: the daemon answered, at first or after a loss
     kClosed,        // TCP: the daemon closed the connection, or sent nothing for 15 s
-    kNoConnection,  // UDP: the port is closed, or the daemon sent nothing for 15 s
+    kNoConnection,  // UDP: the port is closed, or the daemon sent nothing for 15 s; reconnecting
+                    // transports: there is no connection at present
   };
   Kind kind = Kind::kTimeout;
   protocol::Header header;  // `stream`: subscription; `sequence` and capture time: of the pose
@@ -41,6 +43,10 @@ struct Event {
 //
 // Over UDP it first proves its address, then renews its lease and repeats requests whose answers
 // were lost. After a restart of the daemon it repeats all requests.
+//
+// With a transport that reconnects it outlives every loss: Next() then reports kNoConnection, later
+// kConnected, and all subscriptions resume. They wait for their subjects then, even those that were
+// made without `wait`, because the publishers also need a moment to come back.
 //
 // Time is a parameter: microseconds of any monotonic clock. The class starts no thread and must be
 // used on one thread.
@@ -56,6 +62,9 @@ class Subscriber {
   std::uint32_t Subscribe(const protocol::SubscribePoses& request);
   // Ends a subscription, named by header.stream of its events.
   void Unsubscribe(std::uint16_t subscription);
+  // Ends the subscription of a request, even if the daemon has not answered it yet. A reply that is
+  // under way still arrives; pass its header.stream to Unsubscribe().
+  void Cancel(std::uint32_t request);
   // Requests the list of subjects. With `follow` the daemon sends the list again at every change.
   // Needs TCP: over UDP the daemon answers with an error.
   std::uint32_t ListSubjects(bool follow);
@@ -78,6 +87,9 @@ class Subscriber {
   // The FlatBuffers buffer of the message that the last event names; valid until the next call.
   [[nodiscard]] std::span<const std::uint8_t> payload() const { return payload_; }
 
+  // True if a lost connection is made again.
+  [[nodiscard]] bool reconnects() const { return transport_->reconnects(); }
+
   // Number of messages dropped because they could not be decoded.
   [[nodiscard]] std::uint64_t malformed() const { return malformed_; }
 
@@ -90,19 +102,23 @@ class Subscriber {
     std::uint16_t subscription = 0;
     std::uint64_t names_hash = 0;  // hash of the names, or of the skeleton
     std::vector<std::uint8_t> bytes;
+    std::vector<std::uint8_t> resumed;  // as `bytes`, with `wait`; replaces them after a loss
   };
 
   template <class Message>
   std::uint32_t Ask(const Message& message);
   void SendHello();
   void SendWaiting();
+  void ResumeAll();
   void ProveAgain();
+  void StartOver();
+  void OnNoConnection();
   // Sends pings; over UDP also repeats the hello and unanswered requests.
   void Maintain(std::int64_t now_us);
-  [[nodiscard]] Event::Kind OnTimeout(std::int64_t now_us) const;
+  [[nodiscard]] Event::Kind OnTimeout(std::int64_t now_us);
   void NoticeRestart(std::uint64_t server_session);
   bool Handle(std::span<const std::uint8_t> message, Event& event);
-  bool HandleWelcome(const protocol::MessageView& view);
+  bool HandleWelcome(const protocol::MessageView& view, Event& event);
   void OnReply(const protocol::Header& header);
   void OnSkeleton(std::uint16_t subscription);
   void OnFrame(std::uint16_t subscription, std::uint64_t hash);
@@ -115,6 +131,9 @@ class Subscriber {
   std::uint64_t session_;
   std::uint32_t next_request_ = 1;
   std::vector<Request> requests_;
+  std::vector<std::uint8_t> list_;    // the request to follow the list of subjects; empty: none
+  std::uint64_t generation_;          // of the transport's connection that the requests went to
+  bool answered_ = false;             // the daemon has answered since the last loss
   std::uint64_t server_session_ = 0;  // 0: unknown
   bool proven_;
   std::uint64_t token_ = 0;

@@ -79,28 +79,38 @@ class TcpTransport : public Transport {
   explicit TcpTransport(std::chrono::milliseconds send_timeout)
       : Transport(TransportKind::kTcp), send_timeout_(send_timeout) {}
 
-  asio::error_code Connect(const std::string& host, std::uint16_t port,
-                           Clock::time_point deadline) {
+  asio::error_code Begin(const std::string& host, std::uint16_t port) {
     asio::error_code error;
     tcp::resolver resolver(context_);
     const auto endpoints = resolver.resolve(host, std::to_string(port), error);
     if (error) return error;
-    // Stays if the handler does not run before the deadline.
-    error = asio::error::timed_out;
-    asio::async_connect(
-        socket_, endpoints,
-        [&](const asio::error_code& result, const tcp::endpoint&) { error = result; });
-    context_.run_until(deadline);
-    if (error == asio::error::timed_out) {
+    asio::async_connect(socket_, endpoints,
+                        [this](const asio::error_code& result, const tcp::endpoint&) {
+                          connect_result_ = result;
+                          asio::error_code ignored;
+                          if (!result) socket_.set_option(tcp::no_delay(true), ignored);
+                        });
+    return {};
+  }
+
+  asio::error_code Connect(const std::string& host, std::uint16_t port,
+                           Clock::time_point deadline) {
+    if (const asio::error_code error = Begin(host, port)) return error;
+    if (!AwaitConnect(deadline)) {
       Close();
       return asio::error::timed_out;
     }
-    if (!error) socket_.set_option(tcp::no_delay(true), error);
-    return error;
+    return *connect_result_;
+  }
+
+  [[nodiscard]] bool connected() const override { return connect_result_ && !*connect_result_; }
+  [[nodiscard]] std::string failure() const override {
+    return connect_result_ && *connect_result_ ? connect_result_->message() : std::string();
   }
 
   IoStatus Send(std::span<const std::uint8_t> message) override {
     if (message.size() > protocol::kMaxRequestBytes) return IoStatus::kTooLarge;
+    if (!connected()) return IoStatus::kNoConnection;
     const auto prefix = protocol::FramePrefix(message.size());
     const std::array<asio::const_buffer, 2> buffers{asio::buffer(prefix),
                                                     asio::buffer(message.data(), message.size())};
@@ -119,6 +129,10 @@ class TcpTransport : public Transport {
   IoStatus Receive(std::span<const std::uint8_t>& message,
                    std::chrono::milliseconds timeout) override {
     const auto deadline = Clock::now() + timeout;
+    if (!connected()) {
+      const bool done = connect_result_ || AwaitConnect(deadline);
+      return done && *connect_result_ ? IoStatus::kNoConnection : IoStatus::kTimeout;
+    }
     for (;;) {
       if (!unread_.empty()) {
         switch (frames_.Push(unread_, message)) {
@@ -140,6 +154,16 @@ class TcpTransport : public Transport {
   }
 
  private:
+  // Returns false if the connect has neither succeeded nor failed at the deadline.
+  bool AwaitConnect(Clock::time_point deadline) {
+    context_.restart();
+    while (!connect_result_ && context_.run_one_until(deadline) > 0) {
+    }
+    // With a deadline in the past nothing has run yet.
+    if (!connect_result_) context_.poll();
+    return connect_result_.has_value();
+  }
+
   // Runs the pending handlers to their end, because they refer to variables of the caller's frame.
   void Close() {
     asio::error_code ignored;
@@ -151,6 +175,7 @@ class TcpTransport : public Transport {
   std::chrono::milliseconds send_timeout_;
   asio::io_context context_{1};
   tcp::socket socket_{context_};
+  std::optional<asio::error_code> connect_result_;  // nothing: not known yet
   ReadPump pump_;
   std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(64 * 1024);
   std::span<const std::uint8_t> unread_;
@@ -241,11 +266,21 @@ class UdpTransport : public Transport {
 Result<std::unique_ptr<Transport>> Transport::Open(TransportKind kind, const std::string& host,
                                                    std::uint16_t port,
                                                    std::chrono::milliseconds timeout) {
+  if (kind == TransportKind::kUdp) return Begin(kind, host, port, timeout);
+  auto transport = std::make_unique<TcpTransport>(timeout);
+  const asio::error_code code = transport->Connect(host, port, Clock::now() + timeout);
+  if (code) return ConnectionFailed(kind, host, port, code.message());
+  return std::unique_ptr<Transport>(std::move(transport));
+}
+
+Result<std::unique_ptr<Transport>> Transport::Begin(TransportKind kind, const std::string& host,
+                                                    std::uint16_t port,
+                                                    std::chrono::milliseconds send_timeout) {
   asio::error_code code;
   std::unique_ptr<Transport> result;
   if (kind == TransportKind::kTcp) {
-    auto transport = std::make_unique<TcpTransport>(timeout);
-    code = transport->Connect(host, port, Clock::now() + timeout);
+    auto transport = std::make_unique<TcpTransport>(send_timeout);
+    code = transport->Begin(host, port);
     result = std::move(transport);
   } else {
     auto transport = std::make_unique<UdpTransport>();

@@ -42,6 +42,14 @@ class Transport {
                                                                const std::string& host,
                                                                std::uint16_t port,
                                                                std::chrono::milliseconds timeout);
+  // Begins to connect and returns at once, except for the time of the name resolver. Over TCP
+  // the connection is complete once connected() is true; until then Receive() waits for that, and
+  // Send() returns kNoConnection. `send_timeout` limits each Send() to a slow TCP peer.
+  //
+  // Errors: kUnavailable (the name does not resolve, or there is no route).
+  [[nodiscard]] static Result<std::unique_ptr<Transport>> Begin(
+      TransportKind kind, const std::string& host, std::uint16_t port,
+      std::chrono::milliseconds send_timeout);
   virtual ~Transport() = default;
 
   // Sends `message`, as protocol::Encoder writes it. Over TCP kClosed also means that the peer took
@@ -49,12 +57,25 @@ class Transport {
   [[nodiscard]] virtual IoStatus Send(std::span<const std::uint8_t> message) = 0;
 
   // Waits up to `timeout` for one whole message (0: does not wait). On kOk, `message` points into
-  // the transport and is valid until the next call; otherwise it is unspecified.
+  // the transport and is valid until the next call; otherwise it is unspecified. Returns kTimeout
+  // early when a connection is complete, so that the caller can send.
   [[nodiscard]] virtual IoStatus Receive(std::span<const std::uint8_t>& message,
                                          std::chrono::milliseconds timeout) = 0;
 
   // True if Receive() splits bundles (protocol/framing/bundle.h), so the daemon may send them.
   [[nodiscard]] virtual bool takes_bundles() const { return false; }
+
+  // True once messages can be sent.
+  [[nodiscard]] virtual bool connected() const { return true; }
+  // The system's reason of the last failed attempt to connect; empty if none failed.
+  [[nodiscard]] virtual std::string failure() const { return {}; }
+
+  // True for transports that connect again after a loss (client/cpp/reconnecting_transport.h).
+  [[nodiscard]] virtual bool reconnects() const { return false; }
+  // Number of connections so far. A peer knows nothing of an earlier connection.
+  [[nodiscard]] virtual std::uint64_t generation() const { return 1; }
+  // Gives up a connection whose peer has stopped answering, if the transport can make another.
+  virtual void Abandon() {}
 
   [[nodiscard]] TransportKind kind() const { return kind_; }
 

@@ -87,8 +87,10 @@ def worst_difference(a, b):
 class Daemon:
     """Runs furrowd on free ports in a with-block. SIGTERM ends it, and it must exit with 0."""
 
-    def __init__(self, *args, env=None):
-        self.args = [BIN / "furrowd", "--tcp", "0", "--udp", "0", *map(str, args)]
+    def __init__(self, *args, env=None, ports=None):
+        """`ports`: those of an earlier daemon, to take its place."""
+        tcp, udp = (ports["tcp"], ports["udp"]) if ports else (0, 0)
+        self.args = [BIN / "furrowd", "--tcp", str(tcp), "--udp", str(udp), *map(str, args)]
         self.env = {**os.environ, **(env or {})}
         self.expect = 0
 

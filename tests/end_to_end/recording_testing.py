@@ -108,7 +108,7 @@ class FolderTest(unittest.TestCase):
         """Returns the take of a daemon that was killed while recording."""
         daemon = Recording(self.root / "killed")
         daemon.__enter__()
-        player = spawn("play", PERFORMANCE, "--to", daemon.tcp, "--tcp", "--subject", "ada", "--loop")
+        player = spawn("play", PERFORMANCE, "--to", daemon.tcp, "--tcp", "--subject", "ada", "--loop", "--once")
         take = daemon.takes()[0]
         self.kill_in_the_middle(daemon.process, take)
         player.communicate(timeout=GUARD)

@@ -64,6 +64,8 @@ class PictureFiles {
 };
 
 int Frames(const FramesOptions& options) {
+  const auto address = ParseHost(options.listen.host, {.rate = true});
+  if (!address) return kUsage;
   if (options.out != "-") {
     std::error_code error;
     std::filesystem::create_directories(options.out, error);
@@ -71,10 +73,12 @@ int Frames(const FramesOptions& options) {
   }
   int exit_code = kDone;
   // Pictures need TCP.
-  auto transport = OpenTransport(options.listen.host, client::TransportKind::kTcp, &exit_code);
+  auto transport =
+      OpenTransport(*address, client::TransportKind::kTcp, options.listen.once, &exit_code);
   if (!transport) return exit_code;
   client::Subscriber subscriber(std::move(transport), "furrow frames " FURROW_VERSION);
   protocol::SubscribePictures request = options.request;
+  ApplyAddress(*address, request);
   int width = 0;
   int height = 0;
   (void)ParseSize(options.size, &width, &height);  // checked while parsing

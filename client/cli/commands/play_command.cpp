@@ -26,8 +26,9 @@ struct PlayOptions {
   std::string host;
   std::string subject;
   motion::LoadOptions read;
-  bool udp = false;  // the default, so the value is not read
+  bool udp = false;  // the default
   bool tcp = false;
+  bool once = false;  // do not connect again after a loss
   bool loop = false;
   bool quantise = false;
   double rate = 0.0;
@@ -73,7 +74,31 @@ SessionSchedule MakeSchedule(const std::vector<PlaySource>& sources, const PlayO
   return SessionSchedule(tracks, options.rate, options.from);
 }
 
-int PlayFile(const PlayOptions& options) {
+// Prints the skeleton maps that match the sources.
+void PrintMatches(const std::vector<PlaySource>& sources) {
+  // The daemon finds the same map, unless it was started with another one.
+  std::vector<wrinkle::Skeleton> skeletons;
+  for (const PlaySource& source : sources) {
+    auto skeleton = source.Skeleton();
+    // The daemon rejects an invalid one, and says why.
+    if (skeleton.ok()) skeletons.push_back(std::move(*skeleton));
+  }
+  PrintMatchesOf(skeletons);
+}
+
+// The transport that the options choose, or else the address.
+TransportKind KindOf(const PlayOptions& options, const client::Address& address) {
+  if (options.tcp) return TransportKind::kTcp;
+  if (options.udp) return TransportKind::kUdp;
+  return address.transport.value_or(TransportKind::kUdp);
+}
+
+int PlayFile(PlayOptions options) {
+  const auto address = ParseHost(options.host, {.udp = !options.tcp});
+  if (!address) return kUsage;
+  if (options.subject.empty() && !address->subjects.empty()) {
+    options.subject = address->subjects.front();
+  }
   const auto sources = LoadSources(options);
   if (!sources.ok()) return Fail(sources.status());
   SessionSchedule schedule = MakeSchedule(*sources, options);
@@ -82,17 +107,9 @@ int PlayFile(const PlayOptions& options) {
                  options.file.c_str(), schedule.duration());
     return kBadInput;
   }
-  // The daemon finds the same map, unless it was started with another one.
-  std::vector<wrinkle::Skeleton> skeletons;
-  for (const PlaySource& source : *sources) {
-    auto skeleton = source.Skeleton();
-    // The daemon rejects an invalid one, and says why.
-    if (skeleton.ok()) skeletons.push_back(std::move(*skeleton));
-  }
-  PrintMatchesOf(skeletons);
+  PrintMatches(*sources);
   int exit_code = kDone;
-  auto transport = OpenTransport(
-      options.host, options.tcp ? TransportKind::kTcp : TransportKind::kUdp, &exit_code);
+  auto transport = OpenTransport(*address, KindOf(options, *address), options.once, &exit_code);
   if (!transport) return exit_code;
   // After loading: until here Ctrl-C may end the program at once, from here on it must say goodbye.
   CatchInterrupts();
@@ -112,6 +129,7 @@ int PlayFile(const PlayOptions& options) {
       publisher, std::move(tracks), std::move(schedule),
       {.speed = options.speed,
        .loop = options.loop,
+       .once = options.once,
        .encoding = options.quantise ? protocol::PoseEncoding::Small() : protocol::PoseEncoding{}});
   exit_code = player.Run();
   // Without the goodbye, subscribers would see the subjects hold and decay first.
@@ -133,6 +151,7 @@ void AddPlay(CLI::App& app, Action& action) {
   command->add_option("--to", options->host, kHostHelp)->required();
   auto* udp = command->add_flag("--udp", options->udp, "Send over UDP, port 7401 (default)");
   command->add_flag("--tcp", options->tcp, "Send over TCP, port 7400")->excludes(udp);
+  command->add_flag("--once", options->once, kOnceHelp);
   command->add_option("--subject", options->subject,
                       "Name of the subject (default: the name in a take, or the file name)");
   command

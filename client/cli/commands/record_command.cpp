@@ -31,6 +31,7 @@ struct RecordOptions {
   std::filesystem::path out;
   std::vector<std::string> subjects;
   bool wait = false;
+  bool once = false;      // do not connect again after a loss
   double duration = 0.0;  // seconds; 0: until an interrupt
   double rotate_megabytes = 0.0;
   double rotate_seconds = 0.0;
@@ -122,6 +123,7 @@ int RecordInto(TakeRecorder& take, client::Subscriber& subscriber, const RecordO
   stop.goodbyes = options.wait || all_subjects ? 0 : 2 * static_cast<int>(options.subjects.size());
   // A subject that is unavailable does not end the recording of the others.
   stop.survives_errors = [&] { return all_subjects && take.num_present(); };
+  stop.on_return = [&] { take.OnReturn(); };
   stop.drain_us = 1'000'000;  // wait for the weights of the last recorded pose
   stop.keep_going = [&] {
     const std::int64_t now = SteadyMicroseconds();
@@ -143,7 +145,10 @@ int RecordInto(TakeRecorder& take, client::Subscriber& subscriber, const RecordO
   return closed.ok() ? exit_code : Fail(closed);
 }
 
-int Record(const RecordOptions& options) {
+int Record(RecordOptions options) {
+  const auto address = ParseHost(options.host, {.several_subjects = true});
+  if (!address) return kUsage;
+  if (options.subjects.empty()) options.subjects = address->subjects;
   if (!recording::IsTakePath(options.out.string())) {
     std::fprintf(stderr, "furrow: --out %s: the name of a take must be FILE.mcap\n",
                  options.out.c_str());
@@ -158,7 +163,7 @@ int Record(const RecordOptions& options) {
   auto folder = FolderOptions(options);
   if (!folder.ok()) return Fail(folder.status());
   int exit_code = kDone;
-  auto transport = OpenTransport(options.host, client::TransportKind::kTcp, &exit_code);
+  auto transport = OpenTransport(*address, client::TransportKind::kTcp, options.once, &exit_code);
   if (!transport) return exit_code;
   client::Subscriber subscriber(std::move(transport), "furrow record " FURROW_VERSION);
   // The offset is read once: the time of the take does not jump if the system clock is set.
@@ -193,6 +198,7 @@ void AddRecord(CLI::App& app, Action& action) {
   command->add_flag(
       "--wait", options->wait,
       "Wait for subjects that are not connected yet, and continue when all have left");
+  command->add_flag("--once", options->once, kOnceHelp);
   command
       ->add_option("--duration", options->duration,
                    "Length of the recording, in seconds (default: until Ctrl-C)")

@@ -19,7 +19,7 @@ using client::TransportKind;
 struct WatchOptions {
   SubscriptionOptions listen;
   TableFormat format = TableFormat::kTable;
-  bool tcp = false;  // the default, so the value is not read
+  bool tcp = false;  // the default
   bool udp = false;
   bool u8 = false;
   bool drivers = false;
@@ -74,12 +74,18 @@ class WeightRows {
 };
 
 int Watch(const WatchOptions& options) {
+  const auto address =
+      ParseHost(options.listen.host, {.pattern = true, .rate = true, .udp = !options.tcp});
+  if (!address) return kUsage;
   int exit_code = kDone;
-  auto transport = OpenTransport(
-      options.listen.host, options.udp ? TransportKind::kUdp : TransportKind::kTcp, &exit_code);
+  const TransportKind stated = address->transport.value_or(TransportKind::kTcp);
+  auto transport = OpenTransport(*address, options.udp ? TransportKind::kUdp : stated,
+                                 options.listen.once, &exit_code);
   if (!transport) return exit_code;
   client::Subscriber subscriber(std::move(transport), "furrow watch " FURROW_VERSION);
   protocol::SubscribeWeights request = options.request;
+  ApplyAddress(*address, request);
+  if (request.pattern == "*" && !address->pattern.empty()) request.pattern = address->pattern;
   if (options.u8) request.format = protocol::WeightFormat::kU8;
   if (options.drivers) request.source = protocol::WeightSource::kDriverValues;
   subscriber.Subscribe(request);

@@ -61,7 +61,12 @@ void AddReadOptions(CLI::App& command, motion::LoadOptions& options);
 // The validator of ParseSize().
 [[nodiscard]] CLI::Validator SizeValidator();
 
-// The help text of an argument that ParseEndpoint() reads.
-inline constexpr char kHostHelp[] = "Address of furrowd: HOST, HOST:PORT or [IPV6]:PORT";
+// The help text of an argument that ParseHost() reads.
+inline constexpr char kHostHelp[] =
+    "Address of furrowd: HOST, HOST:PORT, [IPV6]:PORT or furrow://HOST:PORT?subject=NAME";
+
+// The help text of --once.
+inline constexpr char kOnceHelp[] =
+    "End with exit code 4 if the connection is lost (default: connect again)";
 
 }  // namespace furrow::cli

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/cli/common/endpoint.h"
 
-#include <charconv>
 #include <cstdio>
+#include <utility>
 
 #include "client/cli/common/exit_code.h"
-#include "protocol/messages/limits.h"
+#include "client/cpp/reconnecting_transport.h"
 
 namespace furrow::cli {
 namespace {
@@ -20,52 +20,46 @@ std::int64_t Microseconds() {
 }  // namespace
 
 bool ParseEndpoint(const std::string& text, client::TransportKind kind, Endpoint* endpoint) {
-  const bool tcp = kind == client::TransportKind::kTcp;
-  endpoint->port = tcp ? protocol::kDefaultTcpPort : protocol::kDefaultUdpPort;
-  std::string port;
-  // Brackets separate the colons of an IPv6 address from that of the port (RFC 3986 section 3.2.2).
-  if (text.starts_with('[')) {
-    const std::size_t close = text.find(']');
-    if (close == std::string::npos) return false;
-    endpoint->host = text.substr(1, close - 1);
-    if (close + 1 < text.size()) {
-      if (text[close + 1] != ':') return false;
-      port = text.substr(close + 2);
-      if (port.empty()) return false;
-    }
-  } else {
-    const std::size_t colon = text.find(':');
-    // Several colons without brackets are an IPv6 address without a port.
-    const bool has_port =
-        colon != std::string::npos && text.find(':', colon + 1) == std::string::npos;
-    endpoint->host = has_port ? text.substr(0, colon) : text;
-    if (has_port) {
-      port = text.substr(colon + 1);
-      if (port.empty()) return false;
-    }
-  }
-  if (endpoint->host.empty()) return false;
-  if (port.empty()) return true;
-  const char* const end = port.data() + port.size();
-  const auto [rest, error] = std::from_chars(port.data(), end, endpoint->port);
-  return error == std::errc() && rest == end && endpoint->port != 0;
+  const auto address = client::ParseAddress(text);
+  if (!address.ok()) return false;
+  const bool more = !address->subjects.empty() || !address->pattern.empty() ||
+                    address->max_rate_hz != 0.0f || address->transport.value_or(kind) != kind;
+  if (more) return false;
+  *endpoint = {address->host, address->PortFor(kind)};
+  return true;
 }
 
-std::unique_ptr<client::Transport> OpenTransport(const std::string& host,
-                                                 client::TransportKind kind, int* exit_code) {
-  Endpoint endpoint;
-  if (!ParseEndpoint(host, kind, &endpoint)) {
-    std::fprintf(stderr, "furrow: '%s' is not HOST, HOST:PORT or [IPV6]:PORT\n", host.c_str());
-    *exit_code = kUsage;
+std::optional<client::Address> ParseHost(const std::string& text, const HostKeys& keys) {
+  auto address = client::ParseAddress(text);
+  if (!address.ok()) {
+    std::fprintf(stderr, "furrow: %s\n", address.status().ToString().c_str());
+    return std::nullopt;
+  }
+  const char* unused = nullptr;
+  if (!address->pattern.empty() && !keys.pattern) unused = "pattern";
+  if (address->max_rate_hz != 0.0f && !keys.rate) unused = "rate";
+  if (address->subjects.size() > 1 && !keys.several_subjects) unused = "a second subject";
+  if (address->transport == client::TransportKind::kUdp && !keys.udp) unused = "transport=udp";
+  if (unused == nullptr) return *std::move(address);
+  std::fprintf(stderr, "furrow: address: this command has no use for %s (leave it out)\n", unused);
+  return std::nullopt;
+}
+
+std::unique_ptr<client::Transport> OpenTransport(const client::Address& address,
+                                                 client::TransportKind kind, bool once,
+                                                 int* exit_code) {
+  const std::uint16_t port = address.PortFor(kind);
+  constexpr std::chrono::milliseconds kTimeout(3000);
+  auto transport = client::Transport::Open(kind, address.host, port, kTimeout);
+  if (!transport.ok()) {
+    std::fprintf(stderr, "furrow: %s (is furrowd running there?)\n",
+                 transport.status().ToString().c_str());
+    *exit_code = kNoConnection;
     return nullptr;
   }
-  auto transport =
-      client::Transport::Open(kind, endpoint.host, endpoint.port, std::chrono::milliseconds(3000));
-  if (transport.ok()) return *std::move(transport);
-  std::fprintf(stderr, "furrow: %s (is furrowd running there?)\n",
-               transport.status().ToString().c_str());
-  *exit_code = kNoConnection;
-  return nullptr;
+  if (once) return *std::move(transport);
+  return client::ReconnectingTransport::Create(kind, address.host, port, kTimeout,
+                                               *std::move(transport));
 }
 
 std::int64_t SteadyMicroseconds() { return Microseconds<std::chrono::steady_clock>(); }

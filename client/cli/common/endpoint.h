@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "client/cpp/address.h"
 #include "client/cpp/transport.h"
 
 namespace furrow::cli {
@@ -15,16 +17,30 @@ struct Endpoint {
   std::uint16_t port = 0;
 };
 
-// Parses "HOST", "HOST:PORT" or "[IPV6]:PORT". Without a port, uses the protocol's port for `kind`.
-// Returns false if `text` is none of these.
+// Parses an address (client/cpp/address.h) that states a host, a port and perhaps the transport
+// `kind`. Without a port, uses the protocol's port for `kind`. Returns false for every other text.
 [[nodiscard]] bool ParseEndpoint(const std::string& text, client::TransportKind kind,
                                  Endpoint* endpoint);
 
-// Connects to the daemon at `host` (as for ParseEndpoint()) within 3 seconds. On failure prints the
-// error, sets `exit_code` and returns null; on success leaves `exit_code` unchanged.
-[[nodiscard]] std::unique_ptr<client::Transport> OpenTransport(const std::string& host,
+// The keys of an address that a command can use, besides one subject and transport=tcp.
+struct HostKeys {
+  bool several_subjects = false;
+  bool pattern = false;
+  bool rate = false;
+  bool udp = false;
+};
+
+// Parses a HOST argument. Prints the error and returns nothing if the text is invalid, or if it
+// states something that the command cannot use.
+[[nodiscard]] std::optional<client::Address> ParseHost(const std::string& text,
+                                                       const HostKeys& keys);
+
+// Connects to a daemon within 3 seconds. Later losses are repaired by the transport, unless `once`.
+// On failure prints the error, sets `exit_code` and returns null; on success leaves `exit_code`
+// unchanged.
+[[nodiscard]] std::unique_ptr<client::Transport> OpenTransport(const client::Address& address,
                                                                client::TransportKind kind,
-                                                               int* exit_code);
+                                                               bool once, int* exit_code);
 
 // The time of a monotonic clock, microseconds.
 [[nodiscard]] std::int64_t SteadyMicroseconds();

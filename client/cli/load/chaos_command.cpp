@@ -26,7 +26,8 @@ int RunChaos(const ChaosCommand& command) {
   ReadChaosFlags(command.flags, &options.up, &options.down);
   Endpoint endpoint;
   if (!ParseEndpoint(command.to, client::TransportKind::kUdp, &endpoint)) {
-    std::fprintf(stderr, "furrow: --to: '%s' is not HOST, HOST:PORT or [IPV6]:PORT\n",
+    std::fprintf(stderr,
+                 "furrow: --to: '%s' is not HOST, HOST:PORT, [IPV6]:PORT or furrow://HOST:PORT\n",
                  command.to.c_str());
     return kUsage;
   }

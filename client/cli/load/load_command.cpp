@@ -204,7 +204,7 @@ int RunLoad(LoadFlags flags) {
   flags.run.plan.phases = 16;
   Target target;
   if (!MakeTarget(flags, &target)) {
-    std::fprintf(stderr, "furrow: '%s' is not HOST, HOST:PORT or [IPV6]:PORT\n",
+    std::fprintf(stderr, "furrow: '%s' is not HOST, HOST:PORT, [IPV6]:PORT or furrow://HOST:PORT\n",
                  flags.host.c_str());
     return kUsage;
   }

@@ -57,8 +57,10 @@ void SessionPlayer::Play() {
     track.source->Fill(next->frame, &pose);
     // The pacing error is measured before Send(), which may block over TCP.
     pacing_[next->track].Sent(due, SteadyMicroseconds());
-    Note(publisher_.Send(track.stream, pose, capture_start + std::llround(next->seconds * 1e6),
-                         options_.encoding));
+    const IoStatus sent_as = publisher_.Send(
+        track.stream, pose, capture_start + std::llround(next->seconds * 1e6), options_.encoding);
+    // A datagram that was sent proves no connection; an answer that Poll() reads does.
+    if (sent_as != IoStatus::kOk) Note(sent_as);
     progress.Set(sent++ % schedule_.count() + 1);
   }
 }
@@ -83,8 +85,13 @@ bool SessionPlayer::WaitUntil(std::int64_t due_us) {
 
 void SessionPlayer::Note(IoStatus status) {
   closed_ = closed_ || status == IoStatus::kClosed || status == IoStatus::kMalformed;
-  // Over UDP the daemon may come back, so a closed port does not end the playback.
-  if (status == IoStatus::kNoConnection) ++refused_;
+  // The daemon may come back, so a closed port does not end the playback.
+  if (status == IoStatus::kNoConnection) {
+    ++refused_;
+    reachable_ = false;
+  } else if (status == IoStatus::kOk) {
+    reachable_ = true;
+  }
 }
 
 int SessionPlayer::Report() const {
@@ -103,9 +110,9 @@ int SessionPlayer::Report() const {
     exit_code = kFailed;
   }
   if (refused_ > 0) {
-    std::fprintf(stderr, "furrow: the daemon's port was closed for %" PRId64 " of %s\n",
+    std::fprintf(stderr, "furrow: there was no connection for %" PRId64 " of %s\n",
                  std::min(refused_, pacing.count()), Counted(pacing.count(), "pose").c_str());
-    return kNoConnection;
+    if (options_.once || !reachable_) return kNoConnection;
   }
   std::string poses = Counted(pacing.count(), "pose");
   if (tracks_.size() > 1) poses += " of " + std::to_string(tracks_.size()) + " subjects";

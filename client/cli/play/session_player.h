@@ -21,6 +21,7 @@ class SessionPlayer {
   struct Options {
     double speed = 1.0;  // factor of the recorded speed, > 0
     bool loop = false;   // repeat until an interrupt
+    bool once = false;   // a lost connection makes the playback fail, even if it comes back
     protocol::PoseEncoding encoding;
   };
   // `publisher` and the sources of `tracks` must outlive the player. `tracks`: one per track of
@@ -43,7 +44,8 @@ class SessionPlayer {
   SessionSchedule schedule_;
   Options options_;
   std::vector<PacingError> pacing_;  // per track
-  std::int64_t refused_ = 0;         // UDP: number of reports that the port is closed
+  std::int64_t refused_ = 0;         // number of reports that there is no connection
+  bool reachable_ = true;            // the last report said that there is one
   bool closed_ = false;
 };
 

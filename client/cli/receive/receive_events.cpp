@@ -2,6 +2,8 @@
 #include "client/cli/receive/receive_events.h"
 
 #include <cstdio>
+#include <optional>
+#include <utility>
 
 #include "client/cli/common/endpoint.h"
 #include "client/cli/common/exit_code.h"
@@ -29,60 +31,127 @@ int ReportNoConnection(client::Event::Kind kind) {
   return kNoConnection;
 }
 
-int OnGoodbye(protocol::GoodbyeReason reason) {
+int ReportGoodbye(protocol::GoodbyeReason reason) {
   std::fprintf(stderr, "furrow: %s\n", GoodbyeText(reason));
   return reason == protocol::GoodbyeReason::kTimedOut ? kNoConnection : kDone;
 }
+
+// Prints when the connection is lost and when it is back.
+class ConnectionNotes {
+ public:
+  void Lost() {
+    if (!std::exchange(lost_, true)) {
+      std::fprintf(stderr, "furrow: the connection was lost; trying again until Ctrl-C\n");
+    }
+  }
+  // Returns true if the connection had been lost.
+  bool Connected() {
+    if (!std::exchange(lost_, false)) return false;
+    std::fprintf(stderr, "furrow: connected again\n");
+    return true;
+  }
+
+ private:
+  bool lost_ = false;
+};
+
+// The loop of ReceiveEvents(), with what it remembers between events.
+class Reception {
+ public:
+  Reception(client::Subscriber& subscriber, const StopConditions& stop)
+      : subscriber_(subscriber), stop_(stop), reconnects_(subscriber.reconnects()) {}
+
+  int Run(const std::function<bool(const client::Event&)>& on_event) {
+    while (!stop_.keep_going || stop_.keep_going()) {
+      const std::int64_t now = SteadyMicroseconds();
+      // Goes on for a moment, so that what is under way still arrives.
+      if (Interrupted() && ends_at_us_ == 0) ends_at_us_ = now + stop_.drain_us;
+      if (ends_at_us_ != 0 && now >= ends_at_us_) break;
+      const client::Event event = subscriber_.Next(now, std::chrono::milliseconds(100));
+      if (const std::optional<int> ended = Handle(event, now, on_event)) return *ended;
+    }
+    return exit_code_;
+  }
+
+ private:
+  using Kind = client::Event::Kind;
+
+  // These return the exit code if the reception has ended.
+  std::optional<int> Handle(const client::Event& event, std::int64_t now_us,
+                            const std::function<bool(const client::Event&)>& on_event) {
+    switch (event.kind) {
+      case Kind::kTimeout:
+      case Kind::kNoConnection: return OnSilence(event.kind, now_us);
+      case Kind::kError: return OnError();
+      case Kind::kGoodbye: return OnGoodbye(subscriber_.goodbye().reason);
+      case Kind::kClosed:
+        std::fprintf(stderr, "furrow: the daemon closed the connection\n");
+        return kNoConnection;
+      case Kind::kConnected:
+        heard_ = true;
+        if (notes_.Connected() && stop_.on_return) stop_.on_return();
+        return std::nullopt;
+      default:
+        heard_ = true;
+        if (on_event(event)) return std::nullopt;
+        return exit_code_;
+    }
+  }
+
+  std::optional<int> OnSilence(Kind kind, std::int64_t now_us) {
+    constexpr std::int64_t kFirstAnswerTimeoutUs = 5'000'000;
+    if (ends_at_us_ != 0) return exit_code_;
+    if (!heard_) {
+      // A daemon that is starting gets some seconds.
+      if (now_us - start_us_ < kFirstAnswerTimeoutUs) return std::nullopt;
+      return ReportNoConnection(kind);
+    }
+    // Once the daemon has answered, silence is normal.
+    if (kind == Kind::kTimeout) return std::nullopt;
+    if (!reconnects_) return ReportNoConnection(kind);
+    notes_.Lost();
+    return std::nullopt;
+  }
+
+  std::optional<int> OnError() {
+    std::fprintf(stderr, "furrow: the daemon reports an error: %s\n",
+                 subscriber_.error().message.c_str());
+    exit_code_ = kFailed;
+    if (stop_.survives_errors && stop_.survives_errors()) return std::nullopt;
+    return exit_code_;
+  }
+
+  std::optional<int> OnGoodbye(protocol::GoodbyeReason reason) {
+    using protocol::GoodbyeReason;
+    // Each subscription gets its own goodbye; the last one ends the command.
+    if (reason == GoodbyeReason::kSubjectGone && ++goodbyes_ != stop_.goodbyes) return std::nullopt;
+    // A daemon that shuts down may be restarted, and one that lost this client answers again.
+    const bool lost = reason == GoodbyeReason::kDraining || reason == GoodbyeReason::kTimedOut;
+    if (lost && reconnects_) {
+      notes_.Lost();
+      return std::nullopt;
+    }
+    return ReportGoodbye(reason);
+  }
+
+  client::Subscriber& subscriber_;
+  const StopConditions& stop_;
+  const bool reconnects_;
+  const std::int64_t start_us_ = SteadyMicroseconds();
+  ConnectionNotes notes_;
+  bool heard_ = false;
+  int goodbyes_ = 0;
+  int exit_code_ = kDone;
+  std::int64_t ends_at_us_ = 0;  // 0: not interrupted
+};
 
 }  // namespace
 
 int ReceiveEvents(client::Subscriber& subscriber,
                   const std::function<bool(const client::Event&)>& on_event,
                   const StopConditions& stop) {
-  constexpr std::int64_t kFirstAnswerTimeoutUs = 5'000'000;
-  using Kind = client::Event::Kind;
   CatchInterrupts();
-  const std::int64_t start = SteadyMicroseconds();
-  bool heard = false;
-  int goodbyes = 0;
-  int exit_code = kDone;
-  std::int64_t ends_at = 0;  // 0: not interrupted
-  while (!stop.keep_going || stop.keep_going()) {
-    const std::int64_t now = SteadyMicroseconds();
-    // Goes on for a moment, so that what is under way still arrives.
-    if (Interrupted() && ends_at == 0) ends_at = now + stop.drain_us;
-    if (ends_at != 0 && now >= ends_at) break;
-    const client::Event event = subscriber.Next(now, std::chrono::milliseconds(100));
-    switch (event.kind) {
-      case Kind::kTimeout:
-      case Kind::kNoConnection:
-        if (ends_at != 0) return exit_code;
-        // Once the daemon has answered, silence is normal. Before that, a daemon that is starting
-        // gets some seconds.
-        if (heard ? event.kind == Kind::kTimeout : now - start < kFirstAnswerTimeoutUs) continue;
-        return ReportNoConnection(event.kind);
-      case Kind::kClosed:
-        std::fprintf(stderr, "furrow: the daemon closed the connection\n");
-        return kNoConnection;
-      case Kind::kError:
-        std::fprintf(stderr, "furrow: the daemon reports an error: %s\n",
-                     subscriber.error().message.c_str());
-        exit_code = kFailed;
-        if (stop.survives_errors && stop.survives_errors()) continue;
-        return exit_code;
-      case Kind::kGoodbye: {
-        const protocol::GoodbyeReason reason = subscriber.goodbye().reason;
-        // Each subscription gets its own goodbye; the last one ends the command.
-        if (reason == protocol::GoodbyeReason::kSubjectGone && ++goodbyes != stop.goodbyes)
-          continue;
-        return OnGoodbye(reason);
-      }
-      default:
-        heard = true;
-        if (!on_event(event)) return exit_code;
-    }
-  }
-  return exit_code;
+  return Reception(subscriber, stop).Run(on_event);
 }
 
 }  // namespace furrow::cli

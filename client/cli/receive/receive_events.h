@@ -6,6 +6,7 @@
 #include <string>
 
 #include "client/cli/common/command.h"
+#include "client/cpp/address.h"
 #include "client/cpp/subscriber.h"
 #include "protocol/messages/limits.h"
 
@@ -13,13 +14,14 @@ namespace furrow::cli {
 
 // The options of all commands that subscribe.
 struct SubscriptionOptions {
-  std::string host;         // argument of ParseEndpoint()
+  std::string host;         // argument of ParseHost()
+  bool once = false;        // do not connect again after a loss
   std::int64_t frames = 0;  // stop after this number of frames; 0: when the subject leaves
 };
 
-// Adds HOST, --subject, --wait, --rate and --frames to `command`. `Request` is SubscribeWeights or
-// SubscribePictures. `unit` is what is counted, in the plural; `default_rate` describes the rate
-// without --rate.
+// Adds HOST, --subject, --wait, --rate, --frames and --once to `command`. `Request` is
+// SubscribeWeights or SubscribePictures. `unit` is what is counted, in the plural; `default_rate`
+// describes the rate without --rate.
 template <class Request>
 void AddSubscriptionOptions(CLI::App& command, SubscriptionOptions& options, Request& request,
                             const std::string& unit, const std::string& default_rate) {
@@ -35,6 +37,16 @@ void AddSubscriptionOptions(CLI::App& command, SubscriptionOptions& options, Req
       .add_option("--frames", options.frames,
                   "Number of " + unit + " to receive (default: until the subject leaves)")
       ->check(CLI::PositiveNumber);
+  command.add_flag("--once", options.once, kOnceHelp);
+}
+
+// Takes over what the address states and the options do not. `Request`: as above.
+template <class Request>
+void ApplyAddress(const client::Address& address, Request& request) {
+  if (request.subject.empty() && !address.subjects.empty()) {
+    request.subject = address.subjects.front();
+  }
+  if (request.max_rate_hz == 0.0f) request.max_rate_hz = address.max_rate_hz;
 }
 
 // When ReceiveEvents() stops successfully.
@@ -47,6 +59,8 @@ struct StopConditions {
   std::function<bool()> survives_errors;
   // Called between events, at least ten times per second; returning false stops. Optional.
   std::function<bool()> keep_going;
+  // Called when the daemon answers again after a loss. Optional.
+  std::function<void()> on_return;
   // After an interrupt, events that are still in flight are received until none arrives for 100 ms,
   // for this time at most.
   std::int64_t drain_us = 0;
@@ -58,6 +72,9 @@ struct StopConditions {
 // returns its exit code: a goodbye (kDone, or kNoConnection if the daemon timed out), an error
 // of the daemon (kFailed), a closed connection or no message within 5 seconds of the start
 // (kNoConnection).
+//
+// If the subscriber's transport reconnects, a loss after the first message does not end the
+// reception: it prints that the connection was lost, and later that it is back.
 int ReceiveEvents(client::Subscriber& subscriber,
                   const std::function<bool(const client::Event&)>& on_event,
                   const StopConditions& stop = {});

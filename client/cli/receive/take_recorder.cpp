@@ -46,7 +46,9 @@ Status TakeRecorder::Begin(std::int64_t now_us) {
 Status TakeRecorder::OnEvent(const Event& event, client::Subscriber& subscriber,
                              std::int64_t now_us) {
   if (event.kind == Event::Kind::kSubjects) {
-    num_present_ = subscriber.subjects().total;
+    const std::uint32_t total = subscriber.subjects().total;
+    returning_ = returning_ && total == 0;
+    if (!returning_) num_present_ = total;
     // With `wait`, because a subject may leave before the daemon reads the request, and may return.
     for (const std::string& name : subscriber.subjects().names) Subscribe(subscriber, name, true);
     return {};
@@ -105,6 +107,14 @@ Status TakeRecorder::Write(TakeKind kind, const Source& source, const protocol::
       payload);
 }
 
+void TakeRecorder::OnReturn() {
+  dropped_before_ = num_dropped();
+  dropped_.clear();
+  source_of_.clear();  // numbers of subscriptions belong to a connection
+  num_present_.reset();
+  returning_ = true;
+}
+
 Status TakeRecorder::Flush(std::int64_t now_us) {
   if (folder_ == nullptr || now_us - flushed_us_ < kFlushMicroseconds) return {};
   flushed_us_ = now_us;
@@ -122,7 +132,7 @@ std::string TakeRecorder::SubjectNames() const {
 }
 
 std::uint64_t TakeRecorder::num_dropped() const {
-  std::uint64_t sum = 0;
+  std::uint64_t sum = dropped_before_;
   for (const auto& [subscription, frames] : dropped_) sum += frames;
   return sum;
 }

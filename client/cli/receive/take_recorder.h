@@ -36,6 +36,8 @@ class TakeRecorder {
   // those of TakeFolder.
   [[nodiscard]] Status OnEvent(const client::Event& event, client::Subscriber& subscriber,
                                std::int64_t now_us);
+  // Call this when the daemon answers again after a loss: its subjects need a moment to return.
+  void OnReturn();
   // Flushes buffered data if the flush interval has passed. Call it several times per second.
   [[nodiscard]] Status Flush(std::int64_t now_us);
   // Completes the file, if there is one. Errors: those of TakeFolder.
@@ -45,7 +47,8 @@ class TakeRecorder {
   [[nodiscard]] std::uint64_t num_weights() const { return num_weights_; }
   // Number of frames that the daemon dropped because this program or the network was too slow.
   [[nodiscard]] std::uint64_t num_dropped() const;
-  // After SubscribeToAll(): the daemon's number of subjects; nothing before its first answer.
+  // After SubscribeToAll(): the daemon's number of subjects; nothing before its first answer, and
+  // after a loss until a subject has returned.
   [[nodiscard]] std::optional<std::uint32_t> num_present() const { return num_present_; }
   // Names of the recorded subjects: "ada, bob".
   [[nodiscard]] std::string SubjectNames() const;
@@ -73,7 +76,9 @@ class TakeRecorder {
   std::set<std::string> subscribed_;
   std::optional<std::uint32_t> num_present_;
   std::map<std::uint16_t, std::size_t> source_of_;  // by subscription
-  std::map<std::uint16_t, std::uint64_t> dropped_;  // by subscription
+  std::map<std::uint16_t, std::uint64_t> dropped_;  // by subscription of this connection
+  std::uint64_t dropped_before_ = 0;                // on earlier connections
+  bool returning_ = false;                          // no subject has returned after a loss
   std::int64_t flushed_us_ = 0;
   std::uint64_t num_poses_ = 0;
   std::uint64_t num_weights_ = 0;

@@ -17,6 +17,9 @@ struct FarEnd {
   IoStatus when_empty = IoStatus::kTimeout;
   IoStatus when_sent = IoStatus::kOk;
   bool takes_bundles = false;  // this end
+  bool reconnects = false;     // this end
+  std::uint64_t generation = 1;
+  bool abandoned = false;  // this end gave up the connection
 
   template <class Message>
   void Answer(const protocol::Header& header, const Message& message) {
@@ -56,6 +59,9 @@ class FakeTransport : public Transport {
   }
 
   [[nodiscard]] bool takes_bundles() const override { return far_->takes_bundles; }
+  [[nodiscard]] bool reconnects() const override { return far_->reconnects; }
+  [[nodiscard]] std::uint64_t generation() const override { return far_->generation; }
+  void Abandon() override { far_->abandoned = true; }
 
  private:
   std::shared_ptr<FarEnd> far_;

@@ -37,6 +37,32 @@ TEST(ParseEndpointTest, RejectsInvalidText) {
   }
 }
 
+TEST(ParseEndpointTest, AcceptsAnAddressThatStatesNoMore) {
+  Endpoint endpoint;
+  ASSERT_TRUE(ParseEndpoint("furrow://a", TransportKind::kUdp, &endpoint));
+  EXPECT_EQ(endpoint.port, 7401);
+  ASSERT_TRUE(ParseEndpoint("furrow://a:9?transport=tcp", TransportKind::kTcp, &endpoint));
+  EXPECT_EQ(endpoint.port, 9);
+  for (const char* text : {"furrow://a?subject=b", "furrow://a?pattern=*", "furrow://a?rate=5",
+                           "furrow://a?transport=udp"}) {
+    EXPECT_FALSE(ParseEndpoint(text, TransportKind::kTcp, &endpoint)) << text;
+  }
+}
+
+TEST(ParseHostTest, RejectsWhatACommandCannotUse) {
+  const HostKeys all{.several_subjects = true, .pattern = true, .rate = true, .udp = true};
+  const char* const several = "furrow://a?subject=b&subject=c";
+  for (const char* text :
+       {several, "furrow://a?pattern=*", "furrow://a?rate=5", "furrow://a?transport=udp"}) {
+    EXPECT_TRUE(ParseHost(text, all).has_value()) << text;
+    EXPECT_FALSE(ParseHost(text, {}).has_value()) << text;
+  }
+  for (const char* text : {"a", "furrow://a?subject=b", "furrow://a?transport=tcp"}) {
+    EXPECT_TRUE(ParseHost(text, {}).has_value()) << text;
+  }
+  EXPECT_FALSE(ParseHost("http://a", all).has_value());
+}
+
 TEST(ParseSizeTest, AcceptsOnlySizesInTheRange) {
   int width = 0;
   int height = 0;

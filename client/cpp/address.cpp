@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cpp/address.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+
+#include "base/numbers.h"
+#include "base/text.h"
+#include "protocol/messages/limits.h"
+#include "protocol/messages/text.h"
+
+namespace furrow::client {
+namespace {
+
+constexpr std::string_view kScheme = "furrow://";
+constexpr std::size_t kMaxAddressBytes = 64 * 1024;
+constexpr std::size_t kMaxHostBytes = 255;
+constexpr std::size_t kMaxSubjects = 256;
+constexpr std::array<std::string_view, 4> kKeys = {"subject", "pattern", "rate", "transport"};
+// Access control and encryption will use these keys. Ignoring them would pretend to protect.
+constexpr std::array<std::string_view, 3> kReservedKeys = {"token", "key", "tls"};
+
+Status Invalid(std::string what, std::string todo = {}) {
+  return {StatusCode::kInvalidArgument, std::move(what), "address", std::move(todo)};
+}
+
+// Splits "HOST", "HOST:PORT" or "[IPV6]:PORT". `port` is empty if there is none, and `has_port`
+// tells that from "HOST:".
+bool SplitHost(std::string_view text, std::string_view* host, std::string_view* port,
+               bool* has_port) {
+  *port = {};
+  *has_port = false;
+  // Brackets separate the colons of an IPv6 address from that of the port (RFC 3986 section 3.2.2).
+  if (text.starts_with('[')) {
+    const std::size_t close = text.find(']');
+    if (close == std::string_view::npos) return false;
+    *host = text.substr(1, close - 1);
+    text.remove_prefix(close + 1);
+    if (text.empty()) return true;
+    if (text.front() != ':') return false;
+  } else {
+    const std::size_t colon = text.find(':');
+    // Several colons without brackets are an IPv6 address without a port.
+    const bool single =
+        colon != std::string_view::npos && text.find(':', colon + 1) == std::string_view::npos;
+    *host = single ? text.substr(0, colon) : text;
+    if (!single) return true;
+    text.remove_prefix(colon);
+  }
+  *has_port = true;
+  *port = text.substr(1);
+  return true;
+}
+
+Status ParseHost(std::string_view text, Address* address) {
+  std::string_view host;
+  std::string_view port;
+  bool has_port = false;
+  const char* const forms = "use HOST, HOST:PORT or [IPV6]:PORT, alone or after furrow://";
+  if (!SplitHost(text, &host, &port, &has_port) || host.empty() || host.size() > kMaxHostBytes) {
+    return Invalid(Quoted(text) + " names no host", forms);
+  }
+  const bool plain = std::ranges::all_of(host, [](unsigned char c) {
+    return c > ' ' && c < 0x7f && std::string_view("/?#@[]\\\"'").find(c) == std::string_view::npos;
+  });
+  if (!plain) return Invalid(Quoted(host) + " is not a host name", forms);
+  address->host = host;
+  if (!has_port) return {};
+  const auto [rest, error] = std::from_chars(port.data(), port.data() + port.size(), address->port);
+  if (error != std::errc() || rest != port.data() + port.size() || address->port == 0) {
+    return Invalid(Quoted(port) + " is not a port", "use a number from 1 to 65535");
+  }
+  return {};
+}
+
+int HexDigit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+// Replaces %XX. Returns false if two hexadecimal digits do not follow a '%'.
+bool Unescape(std::string_view text, std::string* out) {
+  out->clear();
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '%') {
+      out->push_back(text[i]);
+      continue;
+    }
+    if (i + 2 >= text.size()) return false;
+    const int high = HexDigit(text[i + 1]);
+    const int low = HexDigit(text[i + 2]);
+    if (high < 0 || low < 0) return false;
+    out->push_back(static_cast<char>(high * 16 + low));
+    i += 2;
+  }
+  return true;
+}
+
+Status SetTransport(const std::string& value, Address* address) {
+  if (value == "shm") {
+    return {StatusCode::kUnsupported, "transport=shm is reserved for a later version", "address",
+            "use transport=udp or transport=tcp"};
+  }
+  if (value != "udp" && value != "tcp") {
+    return Invalid("transport=" + value + " is unknown", "use transport=udp or transport=tcp");
+  }
+  if (address->transport) return Invalid("transport is stated twice");
+  address->transport = value == "udp" ? TransportKind::kUdp : TransportKind::kTcp;
+  return {};
+}
+
+Status SetRate(const std::string& value, Address* address) {
+  double rate = 0.0;
+  if (!TryParseNumber(value, &rate) || !(rate > 0.0) || rate > protocol::kMaxRateHz) {
+    return Invalid("rate=" + Quoted(value) + " is not a rate",
+                   "use a number of frames per second above 0, at most 1000");
+  }
+  if (address->max_rate_hz != 0.0f) return Invalid("rate is stated twice");
+  address->max_rate_hz = static_cast<float>(rate);
+  return {};
+}
+
+Status SetText(std::string_view key, const std::string& value, Address* address) {
+  const bool subject = key == "subject";
+  const auto most =
+      static_cast<std::size_t>(subject ? protocol::kMaxNameBytes : protocol::kMaxPatternBytes);
+  if (value.empty() || value.size() > most || !protocol::IsPlainText(value)) {
+    return Invalid(
+        std::string(key) + "=" + Quoted(value) + " is invalid",
+        "use 1 to " + std::to_string(most) + " bytes of UTF-8 without control characters");
+  }
+  if (subject) {
+    if (address->subjects.size() == kMaxSubjects) {
+      return Invalid("too many subjects", "name at most " + std::to_string(kMaxSubjects));
+    }
+    address->subjects.push_back(value);
+    return {};
+  }
+  if (!address->pattern.empty()) {
+    return Invalid("pattern is stated twice", "separate several globs by commas");
+  }
+  address->pattern = value;
+  return {};
+}
+
+Status SetValue(std::string_view item, Address* address) {
+  const std::size_t equals = item.find('=');
+  const std::string_view key = item.substr(0, equals);
+  if (std::ranges::find(kReservedKeys, key) != kReservedKeys.end()) {
+    return {StatusCode::kUnsupported, std::string(key) + " is reserved for a later version",
+            "address", "leave it out: this version has no access control and no encryption"};
+  }
+  if (std::ranges::find(kKeys, key) == kKeys.end()) {
+    return Invalid("unknown key " + Quoted(key), "use subject, pattern, rate or transport");
+  }
+  std::string value;
+  if (equals == std::string_view::npos || !Unescape(item.substr(equals + 1), &value)) {
+    return Invalid(Quoted(item) + " is not a value",
+                   "write " + std::string(key) + "=VALUE, and a percent sign as %25");
+  }
+  if (key == "transport") return SetTransport(value, address);
+  if (key == "rate") return SetRate(value, address);
+  return SetText(key, value, address);
+}
+
+Status ParseQuery(std::string_view query, Address* address) {
+  while (!query.empty()) {
+    const std::size_t end = std::min(query.find('&'), query.size());
+    FURROW_RETURN_IF_ERROR(SetValue(query.substr(0, end), address));
+    query.remove_prefix(std::min(end + 1, query.size()));
+  }
+  return {};
+}
+
+}  // namespace
+
+std::uint16_t Address::PortFor(TransportKind kind) const {
+  if (port != 0) return port;
+  return kind == TransportKind::kTcp ? protocol::kDefaultTcpPort : protocol::kDefaultUdpPort;
+}
+
+Result<Address> ParseAddress(std::string_view text) {
+  if (text.size() > kMaxAddressBytes) return Invalid("longer than 65536 bytes");
+  Address address;
+  if (!text.starts_with(kScheme)) {
+    const std::size_t colon = text.find("://");
+    if (colon != std::string_view::npos) {
+      return Invalid("unknown scheme " + Quoted(text.substr(0, colon)), "use furrow://HOST");
+    }
+    FURROW_RETURN_IF_ERROR(ParseHost(text, &address));
+    return address;
+  }
+  text.remove_prefix(kScheme.size());
+  const std::size_t question = std::min(text.find('?'), text.size());
+  std::string_view authority = text.substr(0, question);
+  if (authority.ends_with('/')) authority.remove_suffix(1);
+  FURROW_RETURN_IF_ERROR(ParseHost(authority, &address));
+  if (question < text.size()) {
+    FURROW_RETURN_IF_ERROR(ParseQuery(text.substr(question + 1), &address));
+  }
+  return address;
+}
+
+}  // namespace furrow::client

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/status.h"
+#include "client/cpp/transport.h"
+
+namespace furrow::client {
+
+// The address of a daemon, and what to ask of it:
+//
+//   furrow://host[:port][?subject=ada&rate=60&pattern=brow_*&transport=udp]
+//   HOST, HOST:PORT or [IPV6]:PORT, which state no more than the daemon
+//
+// Keys of the query, each at most once unless stated otherwise:
+//   subject    who to follow (repeatable); without it, the oldest live subject
+//   pattern    names of values, as comma-separated globs
+//   rate       most frames per second, in (0, 1000]
+//   transport  udp or tcp
+// `%2A` stands for the byte with this hexadecimal number, in values.
+struct Address {
+  std::string host;                        // a name or a numeric address, without brackets
+  std::uint16_t port = 0;                  // 0: not stated
+  std::optional<TransportKind> transport;  // nothing: not stated
+  std::vector<std::string> subjects;
+  std::string pattern;       // empty: not stated
+  float max_rate_hz = 0.0f;  // 0: not stated
+
+  // The stated port, or the protocol's port for `kind`.
+  [[nodiscard]] std::uint16_t PortFor(TransportKind kind) const;
+};
+
+// Parses an address. The result is checked as the daemon would check it.
+//
+// Errors: kInvalidArgument (not an address, an unknown key, or a value outside its range);
+// kUnsupported (the keys token, key and tls, and transport=shm: reserved for later versions).
+[[nodiscard]] Result<Address> ParseAddress(std::string_view text);
+
+}  // namespace furrow::client

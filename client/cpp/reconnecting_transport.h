@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "client/cpp/backoff.h"
+#include "client/cpp/transport.h"
+
+namespace furrow::client {
+
+// A transport that opens its connection by itself, and again after every loss.
+//
+// While there is no connection, Send() and Receive() return kNoConnection; they never return
+// kClosed or kMalformed. Attempts happen inside Receive(), with growing pauses between them.
+// generation() counts the connections: Subscriber and Publisher start over when it changes.
+//
+// Over TCP each loss leads to a new connection. Over UDP the socket is kept while the port is
+// closed, and opened again after 5 seconds without a message, because the network may have changed.
+class ReconnectingTransport : public Transport {
+ public:
+  // Starts one attempt, without waiting for its end (Transport::Begin()).
+  using Opener = std::function<Result<std::unique_ptr<Transport>>()>;
+  // The time of a monotonic clock, microseconds.
+  using Clock = std::function<std::int64_t()>;
+
+  // `first`: an open connection to begin with, or null.
+  ReconnectingTransport(TransportKind kind, Opener open, Clock now_us, const Backoff& backoff,
+                        std::unique_ptr<Transport> first = nullptr);
+
+  // The usual one: the steady clock, and the default limits of Backoff. Does not connect yet.
+  // `send_timeout`: as for Transport::Begin().
+  [[nodiscard]] static std::unique_ptr<ReconnectingTransport> Create(
+      TransportKind kind, const std::string& host, std::uint16_t port,
+      std::chrono::milliseconds send_timeout, std::unique_ptr<Transport> first = nullptr);
+
+  [[nodiscard]] IoStatus Send(std::span<const std::uint8_t> message) override;
+  [[nodiscard]] IoStatus Receive(std::span<const std::uint8_t>& message,
+                                 std::chrono::milliseconds timeout) override;
+  [[nodiscard]] bool takes_bundles() const override { return kind() == TransportKind::kUdp; }
+  [[nodiscard]] bool connected() const override { return up_; }
+  [[nodiscard]] bool reconnects() const override { return true; }
+  [[nodiscard]] std::uint64_t generation() const override { return generation_; }
+  void Abandon() override { abandoned_ = true; }
+  [[nodiscard]] std::string failure() const override { return failure_; }
+
+ private:
+  bool Open(std::int64_t now_us);
+  void Lose(std::int64_t now_us);
+  IoStatus Rest(std::int64_t now_us, std::chrono::milliseconds timeout) const;
+  IoStatus OnFailure(std::int64_t now_us);
+
+  Opener open_;
+  Clock now_us_;
+  Backoff backoff_;
+  std::unique_ptr<Transport> inner_;  // null between a loss and the next attempt
+  bool up_ = false;                   // inner_ is connected
+  bool abandoned_ = false;            // close inner_ at the next Receive()
+  std::uint64_t generation_ = 0;
+  std::int64_t opened_us_ = 0;                    // when inner_ was opened
+  std::optional<std::int64_t> failing_since_us_;  // UDP: first failure without a message since
+  std::string failure_;
+};
+
+}  // namespace furrow::client

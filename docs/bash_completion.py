@@ -1,0 +1,82 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Writes bash completions from what the programs print for --help.
+
+bash_completion.py BIN OUT: BIN holds furrow and furrowd; OUT receives the files furrow and furrowd. They complete
+commands, options, and the values of options that take one of a set of words. Everything else completes to files.
+"""
+import pathlib
+import re
+import sys
+
+import cli_reference
+
+HEAD = """\
+# bash completion for {program}, generated from --help
+_{program}() {{
+  local current=${{COMP_WORDS[COMP_CWORD]}} previous=${{COMP_WORDS[COMP_CWORD-1]}}
+  local command={program} word words=
+  for word in "${{COMP_WORDS[@]:1:COMP_CWORD-1}}"; do
+    case "$command $word" in
+      {commands}) command="$command $word" ;;
+    esac
+  done
+  COMPREPLY=()
+  case "$command $previous" in
+"""
+
+
+def choices(entry):
+    """The words that an option takes, or none."""
+    found = re.search(r" (\w[\w-]*(?:\|\w[\w-]*)+)", entry.name)
+    return found[1].split("|") if found else []
+
+
+def options(one):
+    """All names of options of a command."""
+    return sorted(name for name in one.flags if name.startswith("-"))
+
+
+def value_cases(helps):
+    """After an option that takes a value: its words, or nothing, so that files complete."""
+    lines = []
+    for one in helps:
+        command = " ".join(one.words)
+        for section, entries in one.sections.items():
+            for entry in entries if section not in ("Positionals", "Subcommands") else []:
+                names = [name for name in entry.name.split(" ")[0].split(",") if one.flags.get(name)]
+                pattern = "|".join(f'"{command} {name}"' for name in names)
+                if pattern and (words := choices(entry)):
+                    lines.append(f'    {pattern}) COMPREPLY=($(compgen -W "{" ".join(words)}" -- "$current")); return ;;')
+                elif pattern:
+                    lines.append(f"    {pattern}) return ;;")
+    return lines
+
+
+def script(helps):
+    program = helps[0].words[0]
+    commands = "|".join(f'"{" ".join(one.words)}"' for one in helps[1:]) or '""'
+    lines = [HEAD.format(program=program, commands=commands).rstrip(), *value_cases(helps), "  esac",
+             '  case "$command" in']
+    for one in helps:
+        lines.append(f'    "{" ".join(one.words)}")')
+        lines.append(f'      words="{" ".join(options(one))}"')
+        if one.subcommands:
+            lines.append(f'      [[ $current == -* ]] || words="{" ".join(one.subcommands)}" ;;')
+        else:
+            lines.append('      [[ $current == -* ]] || words= ;;')
+    lines += ["  esac", '  COMPREPLY=($(compgen -W "$words" -- "$current"))', "}",
+              f"complete -o default -F _{program} {program}"]
+    return "\n".join(lines) + "\n"
+
+
+def write(bin_folder, out):
+    out.mkdir(parents=True, exist_ok=True)
+    for program in ("furrow", "furrowd"):
+        (out / program).write_text(script(cli_reference.collect(bin_folder, [program])))
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 3:
+        sys.exit("usage: bash_completion.py BIN OUT")
+    write(pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]))

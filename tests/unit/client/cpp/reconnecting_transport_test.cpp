@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cpp/reconnecting_transport.h"
+
+#include <deque>
+#include <optional>
+
+#include <gtest/gtest.h>
+
+#include "fake_transport.h"
+
+namespace furrow::client {
+namespace {
+
+using std::chrono::milliseconds;
+
+TEST(Backoff, PausesGrowToTheLimitAndStayBetweenHalfAndWhole) {
+  Backoff backoff(7, {.first_us = 1000, .most_us = 8000});
+  EXPECT_LE(backoff.Wait(-5), 0) << "the first attempt is due at once";
+  std::int64_t now = 0;
+  for (const std::int64_t pause : {1000, 2000, 4000, 8000, 8000}) {
+    backoff.Failed(now);
+    EXPECT_GE(backoff.Wait(now), pause / 2);
+    EXPECT_LE(backoff.Wait(now), pause);
+    now += backoff.Wait(now);
+    EXPECT_EQ(backoff.Wait(now), 0);
+  }
+  backoff.Succeeded();
+  backoff.Failed(now);
+  EXPECT_LE(backoff.Wait(now), 1000);
+}
+
+TEST(Backoff, ClientsDoNotComeBackTogether) {
+  Backoff one(1, {});
+  Backoff other(2, {});
+  one.Failed(0);
+  other.Failed(0);
+  EXPECT_NE(one.Wait(0), other.Wait(0));
+}
+
+// Attempts of a transport, planned by the test.
+class ReconnectingTransportTest : public testing::Test {
+ protected:
+  ReconnectingTransport Make(TransportKind kind) {
+    const auto open = [this, kind]() -> Result<std::unique_ptr<Transport>> {
+      ++attempts_;
+      if (!reachable_) return Status(StatusCode::kUnavailable, "connection refused");
+      far_ = std::make_shared<FarEnd>();
+      return std::unique_ptr<Transport>(std::make_unique<FakeTransport>(kind, far_));
+    };
+    return {kind, open, [this] { return now_us_; },
+            Backoff(3, {.first_us = 1000, .most_us = 4000})};
+  }
+  IoStatus Receive(Transport& transport) {
+    std::span<const std::uint8_t> message;
+    return transport.Receive(message, milliseconds(0));
+  }
+
+  bool reachable_ = true;
+  int attempts_ = 0;
+  std::int64_t now_us_ = 0;
+  std::shared_ptr<FarEnd> far_;
+  const std::vector<std::uint8_t> bytes_ = {1, 2, 3};
+};
+
+TEST_F(ReconnectingTransportTest, OpensOnTheFirstReceive) {
+  ReconnectingTransport transport = Make(TransportKind::kTcp);
+  EXPECT_FALSE(transport.connected());
+  EXPECT_EQ(transport.generation(), 0u);
+  EXPECT_EQ(transport.Send(bytes_), IoStatus::kNoConnection);
+  EXPECT_EQ(Receive(transport), IoStatus::kTimeout);
+  EXPECT_TRUE(transport.connected());
+  EXPECT_EQ(transport.generation(), 1u);
+  EXPECT_EQ(transport.Send(bytes_), IoStatus::kOk);
+}
+
+TEST_F(ReconnectingTransportTest, AFailedAttemptIsRepeatedAfterItsPause) {
+  reachable_ = false;
+  ReconnectingTransport transport = Make(TransportKind::kTcp);
+  EXPECT_EQ(Receive(transport), IoStatus::kNoConnection);
+  EXPECT_EQ(transport.failure(), "connection refused");
+  EXPECT_EQ(Receive(transport), IoStatus::kNoConnection);
+  EXPECT_EQ(attempts_, 1) << "the pause has not passed";
+  reachable_ = true;
+  now_us_ += 1000;
+  EXPECT_EQ(Receive(transport), IoStatus::kTimeout);
+  EXPECT_EQ(attempts_, 2);
+  EXPECT_TRUE(transport.connected());
+}
+
+TEST_F(ReconnectingTransportTest, AnAttemptThatBlockedIsRepeatedMuchLater) {
+  std::int64_t now_us = 0;
+  int attempts = 0;
+  const auto open = [&]() -> Result<std::unique_ptr<Transport>> {
+    ++attempts;
+    now_us += 1'000'000;  // the resolver waits for a network
+    return Status(StatusCode::kUnavailable, "host not found");
+  };
+  ReconnectingTransport transport(
+      TransportKind::kUdp, open, [&] { return now_us; }, Backoff(3, {}));
+  for (int i = 0; i < 100; ++i, now_us += 100'000) (void)Receive(transport);
+  EXPECT_GE(attempts, 2);
+  EXPECT_LE(attempts, 3) << "a fifth of the time at most";
+}
+
+TEST_F(ReconnectingTransportTest, AClosedTcpConnectionIsOpenedAgain) {
+  ReconnectingTransport transport = Make(TransportKind::kTcp);
+  EXPECT_EQ(Receive(transport), IoStatus::kTimeout);
+  far_->when_empty = IoStatus::kClosed;
+  EXPECT_EQ(Receive(transport), IoStatus::kNoConnection);
+  EXPECT_FALSE(transport.connected());
+  now_us_ += 4000;
+  EXPECT_EQ(Receive(transport), IoStatus::kTimeout);
+  EXPECT_EQ(transport.generation(), 2u);
+}
+
+TEST_F(ReconnectingTransportTest, AFailedSendOpensAgainToo) {
+  ReconnectingTransport transport = Make(TransportKind::kTcp);
+  EXPECT_EQ(Receive(transport), IoStatus::kTimeout);
+  far_->when_sent = IoStatus::kClosed;
+  EXPECT_EQ(transport.Send(bytes_), IoStatus::kNoConnection);
+  EXPECT_EQ(Receive(transport), IoStatus::kNoConnection);
+  now_us_ += 4000;
+  EXPECT_EQ(Receive(transport), IoStatus::kTimeout);
+  EXPECT_EQ(transport.generation(), 2u);
+}
+
+TEST_F(ReconnectingTransportTest, APortThatClosesEveryConnectionIsTriedLessOften) {
+  ReconnectingTransport transport = Make(TransportKind::kTcp);
+  for (std::int64_t end = now_us_ + 100'000; now_us_ < end; now_us_ += 100) {
+    (void)Receive(transport);
+    if (far_ != nullptr) far_->when_empty = IoStatus::kClosed;
+  }
+  // The longest pause is 4 ms, and the shortest of those 2 ms.
+  EXPECT_LE(attempts_, 54);
+  EXPECT_GE(attempts_, 20);
+}
+
+TEST_F(ReconnectingTransportTest, AUdpSocketIsKeptForSomeSeconds) {
+  ReconnectingTransport transport = Make(TransportKind::kUdp);
+  EXPECT_EQ(Receive(transport), IoStatus::kTimeout);
+  far_->when_empty = IoStatus::kNoConnection;
+  EXPECT_EQ(Receive(transport), IoStatus::kNoConnection);
+  now_us_ += 4'900'000;
+  EXPECT_EQ(Receive(transport), IoStatus::kNoConnection);
+  EXPECT_EQ(transport.generation(), 1u);
+  now_us_ += 200'000;
+  EXPECT_EQ(Receive(transport), IoStatus::kNoConnection);
+  now_us_ += 10'000;
+  EXPECT_EQ(Receive(transport), IoStatus::kTimeout);
+  EXPECT_EQ(transport.generation(), 2u) << "the network may have changed";
+}
+
+TEST_F(ReconnectingTransportTest, AnAbandonedConnectionIsOpenedAgain) {
+  ReconnectingTransport transport = Make(TransportKind::kTcp);
+  EXPECT_EQ(Receive(transport), IoStatus::kTimeout);
+  transport.Abandon();
+  EXPECT_EQ(transport.Send(bytes_), IoStatus::kNoConnection);
+  EXPECT_EQ(Receive(transport), IoStatus::kNoConnection);
+  now_us_ += 4000;
+  EXPECT_EQ(Receive(transport), IoStatus::kTimeout);
+  EXPECT_EQ(transport.generation(), 2u);
+}
+
+TEST_F(ReconnectingTransportTest, MessagesThatNeverFitAreRefusedWithoutAConnection) {
+  ReconnectingTransport transport = Make(TransportKind::kUdp);
+  EXPECT_EQ(transport.Send(std::vector<std::uint8_t>(200'000)), IoStatus::kTooLarge);
+}
+
+}  // namespace
+}  // namespace furrow::client
