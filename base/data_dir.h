@@ -8,8 +8,8 @@
 
 namespace furrow {
 
-// The folder above bin/, lib/ and share/: build/<preset>, or where Furrow is installed. It follows the
-// running program, in bin/ or libexec/furrow/, so an installation may be moved.
+// The folder above bin/, lib/ and share/: build/<preset>, or where Furrow is installed. It follows
+// the running program, in bin/ or libexec/furrow/, so an installation may be moved.
 [[nodiscard]] std::filesystem::path InstallPrefix();
 // The same for a program in `folder`.
 [[nodiscard]] std::filesystem::path InstallPrefix(const std::filesystem::path& folder);

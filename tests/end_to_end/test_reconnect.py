@@ -137,6 +137,31 @@ class ReconnectTest(unittest.TestCase):
             gaps = [b - a for a, b in zip(recorded, recorded[1:])]
             self.assertGreater(max(gaps), 1, "the daemon was away for some poses")
 
+    def test_pictures_go_on_after_a_restart(self):
+        with tempfile.TemporaryDirectory() as folder:
+            pictures = pathlib.Path(folder)
+
+            def names():
+                return {path.name for path in pictures.glob("*.jpg")}
+
+            def wait_for_more(than):
+                deadline = time.monotonic() + GUARD
+                while len(names() - than) < 2:
+                    self.assertLess(time.monotonic(), deadline, "no more pictures came")
+                    time.sleep(0.05)
+
+            with Killed() as daemon:
+                player = self.start("play", PERFORMANCE, "--to", daemon.udp, "--subject", "ada", "--loop")
+                watcher = self.start("frames", daemon.tcp, "--subject", "ada", "--wait", "--out", pictures, "--size",
+                                     "64x64", "--rate", 5)
+                wait_for_more(set())
+            Output(watcher.stderr).wait_for(lambda text: LOST in text)
+            before = names()
+            with Daemon(ports=daemon.ports):
+                wait_for_more(before)
+                self.assertEqual(self.end(watcher)[0], 0)
+                self.assertEqual(self.end(player)[0], 0)
+
     def test_once_ends_with_the_connection(self):
         for path in ("--udp", "--tcp"):
             with self.subTest(path):

@@ -203,9 +203,10 @@ typedef struct furrow_subscription {
 /*
  * Follows one more subject; furrow_open() already does so for the address. The subject need not be
  * connected yet. The functions below find the subscription by `subject`: the name that was asked
- * for, or the name that the daemon chose for "". NULL means the first subscription. A daemon permits
- * 64 subscriptions per connection unless it is configured otherwise; poses count as one more.
- * furrow_weights() returns FURROW_LIMIT for the rest.
+ * for, or the name that the daemon chose for "". NULL means the first subscription.
+ *
+ * A daemon permits 64 subscriptions per connection unless it is configured otherwise; poses count
+ * as one more. furrow_weights() returns FURROW_LIMIT for the rest.
  *
  * Errors: FURROW_INVALID_ARGUMENT, also for a subject that is subscribed already; FURROW_LIMIT
  * (more than FURROW_MAX_SUBJECTS); FURROW_UNSUPPORTED (an unknown flag).

@@ -10,7 +10,8 @@
 //   }
 //
 // furrow.h is the manual: units, ranges, threads and limits are the same. This header is inline and
-// needs no library besides libfurrow.
+// needs no library besides libfurrow. For the poses of others, pass Connection::get() to the
+// functions of furrow.h.
 //
 // Errors: functions throw furrow::Error, with the message of furrow_last_error(). Callbacks may
 // throw, too: Poll() passes their exceptions on.
