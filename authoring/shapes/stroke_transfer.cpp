@@ -113,7 +113,7 @@ const FaceMeasures& DefaultFaceMeasures() {
                                   .eye_depth = 0.0979f,
                                   .brow = 1.6620f,
                                   .lid = 1.6410f,
-                                  .wing = 1.5896f,
+                                  .wing = 1.5906f,
                                   .corner = 1.5654f,
                                   .chin = 1.5278f,
                                   .wing_x = 0.0188f,

@@ -22,7 +22,7 @@ struct Octave {
 constexpr Octave kOctaves[] = {{0.0006f, 0.6f, {3.0f, 0.0f, 7.0f}},
                                {0.0015f, 0.8f, {0.0f, 11.0f, 0.0f}},
                                {0.0040f, 0.6f, {5.0f, 0.0f, 0.0f}}};
-constexpr float kStep = 0.1f;    // of an octave's size, for derivatives
+constexpr float kStep = 0.05f;   // of an octave's size, for derivatives
 constexpr float kSteep = 0.25f;  // height of the grain's own structure, as a share of its size
 
 }  // namespace

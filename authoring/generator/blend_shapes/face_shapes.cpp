@@ -104,10 +104,13 @@ class TargetMaker {
       const vec3 turned = rest + posed.tangents[v] - base.tangents[v];
       const vec3 across = turned - normal * glm::dot(normal, turned);
       const float length = glm::length(across);
+      // Where the surface turns its tangent away, the bitangent stays.
+      const vec3 aside = glm::normalize(
+          glm::cross(glm::cross(mesh_.vertices[v].normal, rest), normal) + 1e-6f * rest);
       target.deltas.push_back({.vertex = v,
                                .position = moves ? move : vec3(0.0f),
                                .normal = turn,
-                               .tangent = length > 0.1f ? across / length - rest : vec3(0.0f)});
+                               .tangent = (length > 0.1f ? across / length : aside) - rest});
     }
     return target;
   }

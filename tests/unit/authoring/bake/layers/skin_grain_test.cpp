@@ -52,14 +52,14 @@ TEST(SkinGrain, DoesNotTearDeepFolds) {
 }
 
 TEST(SkinGrain, SlopeIsTheDerivative) {
-  constexpr float kStep = 2e-5f;
+  constexpr float kStep = 3e-5f;
   for (const float height : {-0.001f, 0.0003f}) {
     for (float x = 0.001f; x < 0.01f; x += 7e-4f) {
       const FoldSample here = At(height, x, 0.5f * x);
       EXPECT_NEAR(here.slope.x, (At(height, x + kStep, 0.5f * x).height - here.height) / kStep,
-                  0.01f);
+                  0.015f);
       EXPECT_NEAR(here.slope.y, (At(height, x, 0.5f * x + kStep).height - here.height) / kStep,
-                  0.01f);
+                  0.015f);
     }
   }
 }

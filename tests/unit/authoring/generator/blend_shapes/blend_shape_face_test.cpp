@@ -173,7 +173,7 @@ TEST_F(BlendShapeFaceTest, EachShapeMovesWhatItsNameSays) {
       {"mouthRollLower", "head", {0, -7.5f, 9.5f}, 1.0f, {0, 0, -1}},
       {"mouthRollUpper", "head", {0, -6.4f, 9.5f}, 1.0f, {0, 0, -1}},
       {"mouthShrugLower", "head", {0, -8.6f, 9.2f}, 1.6f, {0, 1, 0}},
-      {"mouthShrugUpper", "head", {0, -6.2f, 9.5f}, 1.2f, {0, 1, 0}},
+      {"mouthShrugUpper", "head", {0, -6.2f, 9.5f}, 1.2f, {0, 0, 1}},  // outward (Apple)
       {"browInnerUp", "head", {0, 2.4f, 9.0f}, 1.2f, {0, 1, 0}},
       {"cheekPuff", "head", {0, -5.9f, 8.4f}, 1.8f, {0, 0, 1}},
       {"tongueOut", "tongue", {0, -7.9f, 6.5f}, 1.5f, {0, 0, 1}},
