@@ -59,7 +59,7 @@ test('each group of settings changes the picture', async () => {
   assert(groups.delete('detail'));
   // A view in which every group has a visible effect: strong light from behind on pronounced folds.
   const page = await openPage(browser, `${daemon.address}#shading=skin&wrinkle_strength=2&translucency.strength=4` +
-    '&lights.turn_degrees=180&bloom.strength=0.5&bloom.threshold=0.3&displacement.enabled=on&displacement.strength=3');
+    '&lights.turn_degrees=180&bloom.strength=0.8&bloom.threshold=0.1&displacement.enabled=on&displacement.strength=3');
   await page.selectOption('select[aria-label=Sharpness]', 'fast');
   await page.keyboard.press('Escape');
   await still(page);
