@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -16,6 +17,10 @@ namespace furrow {
 
 // A UTF-8 text, cut to at most `most` bytes between two characters.
 [[nodiscard]] std::string CutText(const std::string& text, std::size_t most);
+
+// Replaces percent escapes: %2A stands for the byte with this hexadecimal number (RFC 3986 section
+// 2.1). Returns nothing if two hexadecimal digits do not follow a '%'.
+[[nodiscard]] std::optional<std::string> DecodePercent(std::string_view text);
 
 // "1 pose", "2 poses", "0 poses". `many` is the plural if it is not `one` with an s.
 [[nodiscard]] std::string Counted(std::uint64_t count, const std::string& one,

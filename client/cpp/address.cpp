@@ -74,31 +74,6 @@ Status ParseHost(std::string_view text, Address* address) {
   return {};
 }
 
-int HexDigit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-  return -1;
-}
-
-// Replaces %XX. Returns false if two hexadecimal digits do not follow a '%'.
-bool Unescape(std::string_view text, std::string* out) {
-  out->clear();
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] != '%') {
-      out->push_back(text[i]);
-      continue;
-    }
-    if (i + 2 >= text.size()) return false;
-    const int high = HexDigit(text[i + 1]);
-    const int low = HexDigit(text[i + 2]);
-    if (high < 0 || low < 0) return false;
-    out->push_back(static_cast<char>(high * 16 + low));
-    i += 2;
-  }
-  return true;
-}
-
 Status SetTransport(const std::string& value, Address* address) {
   if (value == "shm") {
     return {StatusCode::kUnsupported, "transport=shm is reserved for a later version", "address",
@@ -156,14 +131,15 @@ Status SetValue(std::string_view item, Address* address) {
   if (std::ranges::find(kKeys, key) == kKeys.end()) {
     return Invalid("unknown key " + Quoted(key), "use subject, pattern, rate or transport");
   }
-  std::string value;
-  if (equals == std::string_view::npos || !Unescape(item.substr(equals + 1), &value)) {
+  std::optional<std::string> value;
+  if (equals != std::string_view::npos) value = DecodePercent(item.substr(equals + 1));
+  if (!value) {
     return Invalid(Quoted(item) + " is not a value",
                    "write " + std::string(key) + "=VALUE, and a percent sign as %25");
   }
-  if (key == "transport") return SetTransport(value, address);
-  if (key == "rate") return SetRate(value, address);
-  return SetText(key, value, address);
+  if (key == "transport") return SetTransport(*value, address);
+  if (key == "rate") return SetRate(*value, address);
+  return SetText(key, *value, address);
 }
 
 Status ParseQuery(std::string_view query, Address* address) {

@@ -1,34 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/http/request/url.h"
 
+#include <algorithm>
+
+#include "base/text.h"
+
 namespace furrow::server {
 namespace {
 
-// The value of a hexadecimal digit; -1 for other characters.
-int HexDigit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-  return -1;
-}
-
-// Decodes percent escapes; nullopt if one is cut or invalid. A plus is a space in queries only.
-std::optional<std::string> Decode(std::string_view text, bool plus_is_space) {
-  std::string out;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] == '+' && plus_is_space) {
-      out += ' ';
-    } else if (text[i] != '%') {
-      out += text[i];
-    } else {
-      const int high = i + 2 < text.size() ? HexDigit(text[i + 1]) : -1;
-      const int low = high >= 0 ? HexDigit(text[i + 2]) : -1;
-      if (low < 0) return std::nullopt;
-      out += static_cast<char>(high * 16 + low);
-      i += 2;
-    }
-  }
-  return out;
+// In queries, a plus is a space.
+std::optional<std::string> DecodeQuery(std::string_view text) {
+  std::string spaced(text);
+  std::ranges::replace(spaced, '+', ' ');
+  return DecodePercent(spaced);
 }
 
 }  // namespace
@@ -48,7 +32,7 @@ std::optional<Url> ParseUrl(std::string_view target) {
   const std::size_t question = target.find('?');
   // Decoded once. Later code sees only the decoded path, so an escaped character cannot pass a
   // check and then change its meaning.
-  const auto path = Decode(target.substr(0, question), false);
+  const auto path = DecodePercent(target.substr(0, question));
   if (!path) return std::nullopt;
   Url url{*path, {}};
   if (question == std::string_view::npos) return url;
@@ -60,9 +44,9 @@ std::optional<Url> ParseUrl(std::string_view target) {
     query = end == std::string_view::npos ? std::string_view() : query.substr(end + 1);
     if (item.empty()) continue;
     const std::size_t equals = item.find('=');
-    const auto name = Decode(item.substr(0, equals), true);
+    const auto name = DecodeQuery(item.substr(0, equals));
     const auto value = equals == std::string_view::npos ? std::optional<std::string>("")
-                                                        : Decode(item.substr(equals + 1), true);
+                                                        : DecodeQuery(item.substr(equals + 1));
     if (!name || !value) return std::nullopt;
     url.values.emplace_back(*name, *value);
   }

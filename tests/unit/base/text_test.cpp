@@ -62,5 +62,18 @@ TEST(AsText, SeesTheSameBytes) {
   EXPECT_EQ(AsText(bytes), std::string_view("ok\0", 3));
 }
 
+// RFC 3986, section 2.1.
+TEST(DecodePercent, ReplacesEscapesOfEitherCase) {
+  EXPECT_EQ(DecodePercent("brow_%2A%2c%C3%a9+%25"), "brow_*,\u00e9+%");
+  EXPECT_EQ(DecodePercent(""), "");
+  EXPECT_EQ(DecodePercent("%00")->size(), 1u);
+}
+
+TEST(DecodePercent, RefusesWhatIsCutOrNotHexadecimal) {
+  for (const char* const text : {"%", "%2", "a%", "%2g", "%g2", "%-1", "% 1", "%%41"}) {
+    EXPECT_FALSE(DecodePercent(text)) << text;
+  }
+}
+
 }  // namespace
 }  // namespace furrow
