@@ -4,14 +4,14 @@
 #include <cstring>
 #include <new>
 #include <string>
-#include <string_view>
 
+#include "base/text.h"
 #include "client/c/connection.h"
 #include "client/c/include/furrow/furrow.h"
 #include "client/c/struct_copy.h"
+#include "client/c/text_input.h"
 #include "client/cpp/address.h"
 #include "protocol/messages/limits.h"
-#include "protocol/messages/text.h"
 
 using furrow::Status;
 using furrow::StatusCode;
@@ -47,19 +47,14 @@ furrow_status Outside(furrow_connection* connection, Work&& work) noexcept {
 }
 
 // Copies as much of a text as fits between two characters, with its zero byte.
-void CopyCut(std::string_view text, char* buffer, std::uint32_t size) {
+void CopyCut(const std::string& text, char* buffer, std::uint32_t size) {
   if (buffer == nullptr || size == 0) return;
-  std::size_t length = std::min<std::size_t>(text.size(), size - 1);
-  while (length > 0 && length < text.size() &&
-         (static_cast<unsigned char>(text[length]) & 0xc0) == 0x80) {
-    --length;
-  }
-  std::memcpy(buffer, text.data(), length);
-  buffer[length] = '\0';
+  const std::string cut = furrow::CutText(text, size - 1);
+  std::memcpy(buffer, cut.c_str(), cut.size() + 1);
 }
 
 // Copies a whole name.
-furrow_status CopyName(Connection& connection, std::string_view name, char* buffer,
+furrow_status CopyName(Connection& connection, const std::string& name, char* buffer,
                        std::uint32_t size) {
   if (buffer == nullptr || size == 0) {
     return connection.Fail(FURROW_INVALID_ARGUMENT, "buffer is null, or size is 0");
@@ -96,9 +91,9 @@ Status CheckOptions(const furrow_options& options, std::string* program) {
     return {StatusCode::kUnsupported, "unknown flags", "options.flags"};
   }
   if (options.program == nullptr) return {};
-  const std::size_t most = furrow::protocol::kMaxProgramBytes;
-  program->assign(options.program, strnlen(options.program, most + 1));
-  if (program->size() <= most && furrow::protocol::IsPlainText(*program)) return {};
+  if (furrow::capi::ReadText(options.program, furrow::protocol::kMaxProgramBytes, program)) {
+    return {};
+  }
   return {StatusCode::kInvalidArgument, "use at most 64 bytes of UTF-8", "options.program"};
 }
 

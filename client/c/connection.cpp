@@ -9,13 +9,15 @@
 
 #include "base/text.h"
 #include "client/c/struct_copy.h"
+#include "client/c/text_input.h"
+#include "client/cpp/clock.h"
 #include "client/cpp/reconnecting_transport.h"
 #include "protocol/messages/limits.h"
-#include "protocol/messages/text.h"
 
 namespace furrow::capi {
 namespace {
 
+using client::SteadyMicroseconds;
 using std::chrono::milliseconds;
 
 // The longest wait of one step. Offers and requests are repeated every 200 ms.
@@ -25,11 +27,6 @@ constexpr milliseconds kSendTimeout(200);
 // A flood of messages must not keep furrow_poll() from returning.
 constexpr int kMostSteps = 4096;
 
-std::int64_t NowUs() {
-  const auto now = std::chrono::steady_clock::now().time_since_epoch();
-  return std::chrono::duration_cast<std::chrono::microseconds>(now).count();
-}
-
 furrow_status StatusOf(StatusCode code) {
   switch (code) {
     case StatusCode::kOk: return FURROW_OK;
@@ -38,15 +35,6 @@ furrow_status StatusOf(StatusCode code) {
     case StatusCode::kUnavailable: return FURROW_NO_CONNECTION;
     default: return FURROW_INVALID_ARGUMENT;
   }
-}
-
-// Reads an optional text of at most `most` bytes; a null pointer is an empty text.
-bool ReadText(const char* text, std::size_t most, std::string* out) {
-  out->clear();
-  if (text == nullptr) return true;
-  const std::size_t size = strnlen(text, most + 1);
-  out->assign(text, std::min(size, most));
-  return size <= most && protocol::IsPlainText(*out);
 }
 
 // True while a callback runs, also if the callback throws.
@@ -163,7 +151,7 @@ furrow_status Connection::Weights(const char* subject, float* values, std::uint3
                                   furrow_frame* frame) {
   const Feed* const feed = Find(subject);
   if (feed == nullptr) return FURROW_NOT_FOUND;
-  const furrow_frame now = feed->Frame(NowUs());
+  const furrow_frame now = feed->Frame(SteadyMicroseconds());
   if (frame != nullptr && CopyOut(now, frame) != FURROW_OK) {
     return Fail(FURROW_INVALID_ARGUMENT, "frame: struct_size is wrong");
   }
@@ -198,7 +186,7 @@ furrow_status Connection::LatestPose(const char* subject, furrow_pose_buffer* po
   const PoseFeed* const poses = FindPoses(subject, &status);
   if (poses != nullptr) status = poses->status();
   if (status != FURROW_OK) return status;
-  status = poses->Copy(NowUs(), &filled);
+  status = poses->Copy(SteadyMicroseconds(), &filled);
   (void)CopyOut(filled, pose);
   if (status == FURROW_OK) return status;
   return Fail(status, "the pose has " + Counted(filled.num_joints, "joint") + " and " +
@@ -257,15 +245,15 @@ furrow_status Connection::Poll(std::int32_t timeout_ms) {
     return Fail(FURROW_INVALID_ARGUMENT, "timeout_ms is outside 0 to 60000");
   }
   const Mark mark(&calling_back_);
-  const std::int64_t deadline_us = NowUs() + std::int64_t{timeout_ms} * 1000;
+  const std::int64_t deadline_us = SteadyMicroseconds() + std::int64_t{timeout_ms} * 1000;
   bool news = false;
   for (int step = 0; step < kMostSteps && !close_later_; ++step) {
-    const std::int64_t now_us = NowUs();
+    const std::int64_t now_us = SteadyMicroseconds();
     const std::int64_t left_ms = std::max<std::int64_t>(0, (deadline_us - now_us + 999) / 1000);
     const milliseconds wait(news ? 0 : std::min(left_ms, kSliceMs));
     bool idle = false;
     news |= Step(now_us, wait, &idle);
-    if (idle && (news || NowUs() >= deadline_us)) break;
+    if (idle && (news || SteadyMicroseconds() >= deadline_us)) break;
   }
   if (close_later_) return FURROW_CLOSED;
   return news ? FURROW_OK : FURROW_TIMEOUT;
@@ -333,7 +321,7 @@ furrow_status Connection::Offer(const furrow_skeleton* skeleton, std::uint32_t* 
     return Fail(status, "skeleton: struct_size is wrong, or an unknown field is set");
   }
   if (!sender_) sender_.emplace(OpenTransport());
-  const Status status = sender_->Offer(wanted, NowUs(), stream);
+  const Status status = sender_->Offer(wanted, SteadyMicroseconds(), stream);
   return status.ok() ? FURROW_OK : Fail(status.Within("skeleton"));
 }
 

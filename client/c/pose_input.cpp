@@ -7,8 +7,8 @@
 
 #include "base/text.h"
 #include "client/c/struct_copy.h"
+#include "client/c/text_input.h"
 #include "protocol/messages/limits.h"
-#include "protocol/messages/text.h"
 
 namespace furrow::capi {
 namespace {
@@ -47,13 +47,8 @@ bool ReadRotation(const float* xyzw, Quat* rotation) {
   return true;
 }
 
-// Reads at most one byte more than a name may have, in case the zero byte is missing.
 bool ReadName(const char* text, std::string* name) {
-  if (text == nullptr) return false;
-  const std::size_t size = strnlen(text, protocol::kMaxNameBytes + 1);
-  if (size == 0 || size > protocol::kMaxNameBytes) return false;
-  name->assign(text, size);
-  return protocol::IsPlainText(*name);
+  return ReadText(text, protocol::kMaxNameBytes, name) && !name->empty();
 }
 
 constexpr char kNameRule[] = "use 1 to 255 bytes of UTF-8 without control characters";

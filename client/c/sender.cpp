@@ -20,7 +20,7 @@ Status Sender::Offer(const furrow_skeleton& skeleton, std::int64_t now_us, std::
   ++num_offers_;
   const std::uint16_t number = publisher_.AddSubject(*offer, now_us);
   if (const std::string& why = publisher_.rejection(number); !why.empty()) {
-    const bool large = why.ends_with("use TCP");
+    const bool large = publisher_.oversized(number);
     return {large ? StatusCode::kLimit : StatusCode::kInvalidArgument, why};
   }
   *stream = num_streams();

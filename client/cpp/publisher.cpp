@@ -38,6 +38,7 @@ void Publisher::SendOffer(Stream& stream, std::int64_t now_us) {
   stream.offered_us = now_us;
   // Poll() repeats the offer until it is answered, so other send failures do not matter.
   if (transport_->Send(stream.offer) == IoStatus::kTooLarge) {
+    stream.oversized = true;
     stream.rejection = "the skeleton offer has " + std::to_string(stream.offer.size()) +
                        " bytes, more than UDP carries; use TCP";
   }
@@ -130,6 +131,8 @@ void Publisher::Close() {
 }
 
 bool Publisher::accepted(std::uint16_t stream) const { return streams_.at(stream).accepted; }
+
+bool Publisher::oversized(std::uint16_t stream) const { return streams_.at(stream).oversized; }
 
 const std::string& Publisher::rejection(std::uint16_t stream) const {
   return streams_.at(stream).rejection;

@@ -55,6 +55,8 @@ class Publisher {
   // Why the daemon rejected the stream, or why the offer could not be sent; empty if neither
   // happened.
   [[nodiscard]] const std::string& rejection(std::uint16_t stream) const;
+  // True if the offer was not sent because it is larger than the transport carries.
+  [[nodiscard]] bool oversized(std::uint16_t stream) const;
   // The last error message of the daemon; empty if there was none.
   [[nodiscard]] const std::string& last_error() const { return last_error_; }
   // The random session number in every message of this publisher.
@@ -68,6 +70,7 @@ class Publisher {
     std::uint32_t next_sequence = 0;
     bool accepted = false;
     std::string rejection;
+    bool oversized = false;
   };
 
   void SendOffer(Stream& stream, std::int64_t now_us);

@@ -6,6 +6,7 @@
 #include <thread>
 #include <utility>
 
+#include "client/cpp/clock.h"
 #include "protocol/messages/limits.h"
 
 namespace furrow::client {
@@ -38,13 +39,9 @@ ReconnectingTransport::ReconnectingTransport(TransportKind kind, Opener open, Cl
 std::unique_ptr<ReconnectingTransport> ReconnectingTransport::Create(
     TransportKind kind, const std::string& host, std::uint16_t port,
     std::chrono::milliseconds send_timeout, std::unique_ptr<Transport> first) {
-  const auto now_us = [] {
-    const auto now = std::chrono::steady_clock::now().time_since_epoch();
-    return std::int64_t{std::chrono::duration_cast<std::chrono::microseconds>(now).count()};
-  };
   const auto open = [=] { return Transport::Begin(kind, host, port, send_timeout); };
   return std::make_unique<ReconnectingTransport>(
-      kind, open, now_us, Backoff(std::random_device()(), {}), std::move(first));
+      kind, open, &SteadyMicroseconds, Backoff(std::random_device()(), {}), std::move(first));
 }
 
 bool ReconnectingTransport::Open(std::int64_t now_us) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/cli/common/endpoint.h"
 
+#include <chrono>
 #include <cstdio>
 #include <utility>
 
@@ -8,17 +9,6 @@
 #include "client/cpp/reconnecting_transport.h"
 
 namespace furrow::cli {
-namespace {
-
-// The clock's time in whole microseconds.
-template <class Clock>
-std::int64_t Microseconds() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(Clock::now().time_since_epoch())
-      .count();
-}
-
-}  // namespace
-
 bool ParseEndpoint(const std::string& text, client::TransportKind kind, Endpoint* endpoint) {
   const auto address = client::ParseAddress(text);
   if (!address.ok()) return false;
@@ -62,7 +52,10 @@ std::unique_ptr<client::Transport> OpenTransport(const client::Address& address,
                                                *std::move(transport));
 }
 
-std::int64_t SteadyMicroseconds() { return Microseconds<std::chrono::steady_clock>(); }
-std::int64_t SystemMicroseconds() { return Microseconds<std::chrono::system_clock>(); }
+std::int64_t SystemMicroseconds() {
+  return std::chrono::duration_cast<std::chrono::microseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
 
 }  // namespace furrow::cli

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "client/cpp/address.h"
+#include "client/cpp/clock.h"
 #include "client/cpp/transport.h"
 
 namespace furrow::cli {
@@ -42,8 +43,7 @@ struct HostKeys {
                                                                client::TransportKind kind,
                                                                bool once, int* exit_code);
 
-// The time of a monotonic clock, microseconds.
-[[nodiscard]] std::int64_t SteadyMicroseconds();
+using client::SteadyMicroseconds;
 // The time of the system clock, microseconds since 1970 (UTC).
 [[nodiscard]] std::int64_t SystemMicroseconds();
 

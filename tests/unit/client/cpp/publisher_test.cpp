@@ -83,8 +83,10 @@ TEST_F(PublisherTest, AnOfferThatTheWireCannotCarryIsRejectedLocally) {
   publisher_.Poll(900'000, milliseconds(0));
   EXPECT_TRUE(far_->sent.empty());
   far_->when_sent = IoStatus::kTooLarge;
-  EXPECT_NE(publisher_.rejection(publisher_.AddSubject(OneJoint(), 0)).find("TCP"),
-            std::string::npos);
+  const auto large = publisher_.AddSubject(OneJoint(), 0);
+  EXPECT_NE(publisher_.rejection(large).find("TCP"), std::string::npos);
+  EXPECT_TRUE(publisher_.oversized(large));
+  EXPECT_FALSE(publisher_.oversized(0)) << "invalid, not large";
 }
 
 TEST_F(PublisherTest, RepliesForOtherStreamsOrSkeletonsAreIgnored) {
