@@ -24,6 +24,13 @@ class ReconnectTest : public testing::Test {
   std::unique_ptr<Transport> Make(TransportKind kind) {
     return std::make_unique<FakeTransport>(kind, far_);
   }
+  // Subscribes, and answers as the daemon with session 5 and subscription 3. Returns the request.
+  std::uint32_t Subscribe(Subscriber& subscriber) {
+    const std::uint32_t request = subscriber.Subscribe(protocol::SubscribeWeights{});
+    far_->Answer({.session = 5}, protocol::Welcome{});
+    far_->Answer({.session = 5, .stream = 3, .sequence = request}, protocol::SubscribeReply{});
+    return request;
+  }
   // Reads all messages that wait, and returns the kinds of the events.
   std::vector<Kind> Drain(Subscriber& subscriber) {
     std::vector<Kind> kinds;
@@ -104,9 +111,7 @@ TEST_F(ReconnectTest, OverUdpAClosedPortLeadsToAnotherProof) {
 
 TEST_F(ReconnectTest, AClientThatTheDaemonForgotAsksAgain) {
   Subscriber subscriber(Make(TransportKind::kTcp), "test");
-  const std::uint32_t request = subscriber.Subscribe(protocol::SubscribeWeights{});
-  far_->Answer({.session = 5}, protocol::Welcome{});
-  far_->Answer({.session = 5, .stream = 3, .sequence = request}, protocol::SubscribeReply{});
+  const std::uint32_t request = Subscribe(subscriber);
   far_->Answer({.session = 5}, protocol::Goodbye{protocol::GoodbyeReason::kDraining});
   far_->Answer({.session = 5, .sequence = request},
                protocol::ErrorMessage{protocol::ErrorCode::kDraining, "shutting down"});
@@ -119,9 +124,7 @@ TEST_F(ReconnectTest, AClientThatTheDaemonForgotAsksAgain) {
 
 TEST_F(ReconnectTest, AProgramThatSleptLongerThanItsLeaseAsksAgain) {
   Subscriber subscriber(Make(TransportKind::kUdp), "test");
-  const std::uint32_t request = subscriber.Subscribe(protocol::SubscribeWeights{});
-  far_->Answer({.session = 5}, protocol::Welcome{});
-  far_->Answer({.session = 5, .stream = 3, .sequence = request}, protocol::SubscribeReply{});
+  (void)Subscribe(subscriber);
   EXPECT_EQ(Drain(subscriber), (std::vector{Kind::kConnected, Kind::kReply}));
   (void)far_->TakeKinds();
   now_us_ += protocol::kUdpLeaseMicroseconds + 1;

@@ -54,6 +54,15 @@ class ReconnectingTransportTest : public testing::Test {
     std::span<const std::uint8_t> message;
     return transport.Receive(message, milliseconds(0));
   }
+  // A transport with a connection that was open. The next Receive() notices its loss, and the one
+  // after the pause opens the second connection.
+  void ExpectOpensAgain(Transport& transport) {
+    EXPECT_EQ(Receive(transport), IoStatus::kNoConnection);
+    EXPECT_FALSE(transport.connected());
+    now_us_ += 4000;
+    EXPECT_EQ(Receive(transport), IoStatus::kTimeout);
+    EXPECT_EQ(transport.generation(), 2u);
+  }
 
   bool reachable_ = true;
   int attempts_ = 0;
@@ -106,11 +115,7 @@ TEST_F(ReconnectingTransportTest, AClosedTcpConnectionIsOpenedAgain) {
   ReconnectingTransport transport = Make(TransportKind::kTcp);
   EXPECT_EQ(Receive(transport), IoStatus::kTimeout);
   far_->when_empty = IoStatus::kClosed;
-  EXPECT_EQ(Receive(transport), IoStatus::kNoConnection);
-  EXPECT_FALSE(transport.connected());
-  now_us_ += 4000;
-  EXPECT_EQ(Receive(transport), IoStatus::kTimeout);
-  EXPECT_EQ(transport.generation(), 2u);
+  ExpectOpensAgain(transport);
 }
 
 TEST_F(ReconnectingTransportTest, AFailedSendOpensAgainToo) {
@@ -118,10 +123,7 @@ TEST_F(ReconnectingTransportTest, AFailedSendOpensAgainToo) {
   EXPECT_EQ(Receive(transport), IoStatus::kTimeout);
   far_->when_sent = IoStatus::kClosed;
   EXPECT_EQ(transport.Send(bytes_), IoStatus::kNoConnection);
-  EXPECT_EQ(Receive(transport), IoStatus::kNoConnection);
-  now_us_ += 4000;
-  EXPECT_EQ(Receive(transport), IoStatus::kTimeout);
-  EXPECT_EQ(transport.generation(), 2u);
+  ExpectOpensAgain(transport);
 }
 
 TEST_F(ReconnectingTransportTest, APortThatClosesEveryConnectionIsTriedLessOften) {
@@ -155,10 +157,7 @@ TEST_F(ReconnectingTransportTest, AnAbandonedConnectionIsOpenedAgain) {
   EXPECT_EQ(Receive(transport), IoStatus::kTimeout);
   transport.Abandon();
   EXPECT_EQ(transport.Send(bytes_), IoStatus::kNoConnection);
-  EXPECT_EQ(Receive(transport), IoStatus::kNoConnection);
-  now_us_ += 4000;
-  EXPECT_EQ(Receive(transport), IoStatus::kTimeout);
-  EXPECT_EQ(transport.generation(), 2u);
+  ExpectOpensAgain(transport);
 }
 
 TEST_F(ReconnectingTransportTest, MessagesThatNeverFitAreRefusedWithoutAConnection) {
