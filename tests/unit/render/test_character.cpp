@@ -216,6 +216,25 @@ Character MakePlane(int map_size, const std::function<float(float, float)>& base
   return character;
 }
 
+Character MakeSheet(std::uint32_t columns, std::uint32_t rows,
+                    const std::function<void(Vertex*)>& adjust) {
+  Character sheet = MakePlane(4, [](float, float) { return 0.0f; }, {});
+  Mesh& mesh = sheet.meshes[0];
+  mesh.vertices.clear();
+  mesh.indices.clear();
+  AddGrid(
+      columns, rows,
+      [&](float u, float v) {
+        Vertex vertex;
+        vertex.position = {2.0f * u - 1.0f, 1.0f - 2.0f * v, 0.0f};
+        vertex.uv = {u, v};
+        if (adjust) adjust(&vertex);
+        return vertex;
+      },
+      &mesh);
+  return sheet;
+}
+
 namespace {
 
 std::vector<std::string> BlendShapesOf(const Character& character) {

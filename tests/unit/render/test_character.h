@@ -49,6 +49,11 @@ T Expect(Result<T> result) {
     int map_size, const std::function<float(float, float)>& base,
     const std::vector<std::function<float(float, float)>>& wrinkles);
 
+// MakePlane() without maps, of columns x rows quads. `adjust` may change each vertex; optional.
+[[nodiscard]] character::Character MakeSheet(
+    std::uint32_t columns, std::uint32_t rows,
+    const std::function<void(character::Vertex*)>& adjust = {});
+
 // A subject of the character at rest with named weights, in the form that a FrameRequest needs.
 struct Subject {
   explicit Subject(const character::Character& character);

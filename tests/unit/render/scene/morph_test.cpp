@@ -327,22 +327,8 @@ TEST(Morph, CrowdsAreMorphedInParts) {
 
 // A plane of 2 m, flat at rest, with a shape that raises a bump in its middle.
 Character BumpedPlane() {
-  Character plane = test::MakePlane(4, [](float, float) { return 0.0f; }, {});
+  Character plane = test::MakeSheet(40, 40);
   character::Mesh& mesh = plane.meshes[0];
-  mesh.vertices.clear();
-  mesh.indices.clear();
-  test::AddGrid(
-      40, 40,
-      [](float u, float v) {
-        Vertex vertex;
-        vertex.position = {2.0f * u - 1.0f, 1.0f - 2.0f * v, 0.0f};
-        vertex.normal = {0.0f, 0.0f, 1.0f};
-        vertex.tangent = {1.0f, 0.0f, 0.0f, 1.0f};
-        vertex.uv = {u, v};
-        vertex.skin_weights[0] = 1.0f;
-        return vertex;
-      },
-      &mesh);
   plane.shapes = {"bump"};
   mesh.morph_targets = {TargetOf(mesh, 0, [](const Vertex& vertex) {
     const float near = std::max(0.0f, 1.0f - glm::dot(vertex.position, vertex.position) / 0.09f);

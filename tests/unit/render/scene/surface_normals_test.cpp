@@ -25,26 +25,15 @@ float Share(float x) { return std::exp(-x * x / (kWidth * kWidth)); }
 
 // A sheet of 2 m with one joint for its sides and one for its middle.
 Character Sheet(character::Material::Kind kind) {
-  Character sheet = test::MakePlane(4, [](float, float) { return 0.0f; }, {});
+  Character sheet = test::MakeSheet(64, 4, [](Vertex* vertex) {
+    vertex->joints[1] = 1;
+    vertex->skin_weights[1] = Share(vertex->position.x);
+    vertex->skin_weights[0] = 1.0f - vertex->skin_weights[1];
+  });
   test::SetSkeleton(
       {test::Joint("sides", -1, glm::vec3(0.0f)), test::Joint("middle", 0, glm::vec3(0.0f))},
       &sheet);
   sheet.materials[0].kind = kind;
-  character::Mesh& mesh = sheet.meshes[0];
-  mesh.vertices.clear();
-  mesh.indices.clear();
-  test::AddGrid(
-      64, 4,
-      [](float u, float v) {
-        Vertex vertex;
-        vertex.position = {2.0f * u - 1.0f, 1.0f - 2.0f * v, 0.0f};
-        vertex.uv = {u, v};
-        vertex.joints[1] = 1;
-        vertex.skin_weights[1] = Share(vertex.position.x);
-        vertex.skin_weights[0] = 1.0f - vertex.skin_weights[1];
-        return vertex;
-      },
-      &mesh);
   return sheet;
 }
 
