@@ -76,19 +76,26 @@ character::Picture EncodeNormals(const std::vector<SurfaceTexel>& texels,
   picture.width = width;
   picture.height = height;
   picture.channels = 3;
-  const auto encode = [](float v) {
-    return static_cast<std::uint16_t>(std::lround((v * 0.5f + 0.5f) * 65535.0f));
-  };
-  picture.pixels16.resize(static_cast<std::size_t>(width) * height * 3, encode(0.0f));
-  for (std::size_t i = 2; i < picture.pixels16.size(); i += 3) picture.pixels16[i] = encode(1.0f);
+  picture.pixels16.resize(static_cast<std::size_t>(width) * height * 3, NormalTexel(0.0f));
+  for (std::size_t i = 2; i < picture.pixels16.size(); i += 3) {
+    picture.pixels16[i] = NormalTexel(1.0f);
+  }
   for (std::size_t i = 0; i < texels.size() && i < slopes.size(); ++i) {
     const glm::vec3 n = glm::normalize(glm::vec3(slopes[i], 1.0f));
     const std::size_t at = (static_cast<std::size_t>(texels[i].y) * width + texels[i].x) * 3;
-    for (int c = 0; c < 3; ++c) picture.pixels16[at + c] = encode(n[c]);
+    for (int c = 0; c < 3; ++c) picture.pixels16[at + c] = NormalTexel(n[c]);
   }
   RoundNormals(bits, &picture);
   Dilate(&picture, texels, kSeamTexels);
   return picture;
+}
+
+std::uint16_t NormalTexel(float component) {
+  return static_cast<std::uint16_t>(std::lround((component * 0.5f + 0.5f) * 65535.0f));
+}
+
+float NormalComponent(std::uint16_t texel) {
+  return static_cast<float>(texel) / 65535.0f * 2.0f - 1.0f;
 }
 
 void RoundNormals(int bits, character::Picture* normals) {

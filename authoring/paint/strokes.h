@@ -65,6 +65,10 @@ struct FoldShape {
                                                std::span<const glm::vec2> slopes, int width,
                                                int height, int bits);
 
+// A component of a unit normal as a texel of such a map, and back.
+[[nodiscard]] std::uint16_t NormalTexel(float component);
+[[nodiscard]] float NormalComponent(std::uint16_t texel);
+
 // Rounds a 16-bit normal map to the first `bits` bits of x and y, [8, 16]. The last bits of a rough
 // surface are noise that PNG cannot compress. z keeps two bits fewer, since the slope x / z depends
 // little on it.

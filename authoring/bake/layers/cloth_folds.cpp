@@ -36,12 +36,14 @@ constexpr float kBentStrain = 0.1f;
 // The square of a slope that nobody sees.
 constexpr float kFlat = 1e-3f;
 
-vec3 PlaceOf(const FineMesh::Vertex& vertex, std::span<const PosedVertex> surface) {
-  vec3 place(0.0f);
-  for (int k = 0; k < 3; ++k) {
-    place += vertex.shares[k] * surface[vertex.corners[static_cast<std::size_t>(k)]].position;
+// The vertices of `mesh` on a posed surface.
+std::vector<vec3> PlacesOn(const FineMesh& mesh, std::span<const PosedVertex> surface) {
+  std::vector<vec3> welded, places;
+  for (const PosedVertex& vertex : surface) welded.push_back(vertex.position);
+  for (const FineMesh::Vertex& vertex : mesh.vertices()) {
+    places.push_back(vertex.Interpolate(std::span<const vec3>(welded)));
   }
-  return place;
+  return places;
 }
 
 }  // namespace
@@ -79,23 +81,22 @@ std::vector<float> ClothFolds::WiderWhereHanging(const Pose& pose) const {
   const Surface& surface = mesh_.surface();
   const std::vector<vec3> morphed =
       pose.shape_weights.empty() ? std::vector<vec3>() : surface.Morphed(pose.shape_weights);
-  const std::vector<PosedVertex> cut = PoseSurface(surface, pose.path.front(), surface.positions());
-  const std::vector<PosedVertex> bent = PoseSurface(
-      surface, pose.path.back(), morphed.empty() ? surface.positions() : std::span(morphed));
+  const std::vector<vec3> cut =
+      PlacesOn(mesh_, PoseSurface(surface, pose.path.front(), surface.positions()));
+  const std::vector<vec3> bent =
+      PlacesOn(mesh_, PoseSurface(surface, pose.path.back(),
+                                  morphed.empty() ? surface.positions() : std::span(morphed)));
   std::vector<float> strains(mesh_.vertices().size(), 0.0f);
-  const auto length = [&](const FineMesh::Edge& edge, std::span<const PosedVertex> posed) {
-    return glm::distance(PlaceOf(mesh_.vertices()[edge[0]], posed),
-                         PlaceOf(mesh_.vertices()[edge[1]], posed));
-  };
-  for (const FineMesh::Edge& edge : mesh_.edges()) {
-    const float before = std::max(length(edge, cut), 1e-9f);
-    const float strain = std::min(std::abs(length(edge, bent) / before - 1.0f), 1.0f);
+  for (const auto& edge : mesh_.edges()) {
+    const float before = std::max(glm::distance(cut[edge[0]], cut[edge[1]]), 1e-9f);
+    const float after = glm::distance(bent[edge[0]], bent[edge[1]]);
+    const float strain = std::min(std::abs(after / before - 1.0f), 1.0f);
     for (const std::uint32_t end : edge) {
       strains[end] += strain / static_cast<float>(mesh_.Around(end).size());
     }
   }
   Smooth(&strains, kFoldPasses);
-  const float most = std::pow(kBentPull / kHangingPull, 0.25f);
+  const float most = HangingWidth();
   for (float& strain : strains) {
     strain = std::lerp(most, 1.0f, Smoothstep(kHangingStrain, kBentStrain, strain));
   }

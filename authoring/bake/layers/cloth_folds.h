@@ -27,7 +27,7 @@ class ClothFolds {
 
   // Adds a pose (BakePose::path, shape_weights and weight count). `mask`: where it counts, one per
   // welded vertex, [0, 1]. `wavelength`: from fold to fold where the pose deforms cloth, metres, >
-  // 0. Where cloth hangs, it is wider, as kHangingPull says. Masks of one pose with one wavelength
+  // 0. Where cloth hangs, it is wider, by HangingWidth(). Masks of one pose with one wavelength
   // are joined, so that its folds cross the borders of regions.
   void Add(const BakePose& pose, std::span<const float> mask, float wavelength);
 

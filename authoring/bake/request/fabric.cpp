@@ -6,6 +6,13 @@
 #include "base/scalar.h"
 
 namespace furrow::authoring {
+namespace {
+
+// The pull on cloth, N/m.
+constexpr float kBentPull = 10.0f;
+constexpr float kHangingPull = 2.0f;
+
+}  // namespace
 
 std::optional<Fabric> FindFabric(std::string_view name) {
   for (const Fabric& fabric : kFabrics) {
@@ -23,10 +30,12 @@ std::string FabricNames() {
   return names;
 }
 
-float FoldWavelength(const Fabric& fabric, float pull) {
+float FoldWavelength(const Fabric& fabric) {
   constexpr float kLength = 0.15f;  // metres
-  return 2.0f * std::sqrt(kPi) * std::pow(1e-6f * fabric.bending / pull, 0.25f) *
+  return 2.0f * std::sqrt(kPi) * std::pow(1e-6f * fabric.bending / kBentPull, 0.25f) *
          std::sqrt(kLength);
 }
+
+float HangingWidth() { return std::pow(kBentPull / kHangingPull, 0.25f); }
 
 }  // namespace furrow::authoring

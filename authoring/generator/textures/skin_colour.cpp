@@ -104,7 +104,7 @@ vec3 LidRims(vec3 colour, const vec3& p) {
   const vec3 q = OnLeftSide(p);
   const vec3 eye = p - EyeCentre(p.x > 0.0f ? 1.0f : -1.0f);
   const float ball = glm::length(eye);
-  const float near = Smoothstep(1.80f, 1.6f, std::abs(eye.x)) * Smoothstep(0.0f, 0.4f, eye.z);
+  const float near = NearLids(eye);
   const float wet = Smoothstep(1.36f, 1.27f, ball) * near;
   colour = glm::mix(colour, vec3(0.70f, 0.45f, 0.41f), 0.55f * wet);
   const float edge = Bump(ball - 1.41f, 0.045f) * near;

@@ -24,6 +24,10 @@ vec3 OnLeftSide(const vec3& p) { return {std::abs(p.x), p.y, p.z}; }
 
 bool OnHand(const SurfaceTexel& texel) { return std::abs(texel.position.x) > 0.4f; }
 
+float NearLids(const vec3& eye) {
+  return Smoothstep(1.80f, 1.6f, std::abs(eye.x)) * Smoothstep(0.0f, 0.4f, eye.z);
+}
+
 float LipShare(const vec3& p) {
   const float x = std::abs(p.x);
   const float reach = 1.0f - std::pow(std::min(x / 2.72f, 1.0f), 2.0f);

@@ -74,8 +74,7 @@ float Thickness(const HeadShape& shape, const vec3& p, const vec3& normal) {
 // The tear film on the edges of the lids: 1 beside the eyeball, 0 from 1.5 mm on.
 float WetLid(const vec3& p) {
   const vec3 eye = p - EyeCentre(p.x > 0.0f ? 1.0f : -1.0f);
-  return Smoothstep(1.38f, 1.27f, glm::length(eye)) * Smoothstep(1.8f, 1.6f, std::abs(eye.x)) *
-         Smoothstep(0.0f, 0.4f, eye.z);
+  return Smoothstep(1.38f, 1.27f, glm::length(eye)) * NearLids(eye);
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 #include "authoring/generator/textures/wrinkle_maps.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -58,18 +57,14 @@ character::Picture* SkinNormals(character::Character* character) {
 
 void AddRestingFolds(const BakedMap& map, float share, character::Picture* normals) {
   if (map.width != normals->width || map.height != normals->height) return;
-  const auto decode = [](std::uint16_t value) {
-    return static_cast<float>(value) / 65535.0f * 2.0f - 1.0f;
-  };
   for (std::size_t i = 0; 3 * i + 2 < normals->pixels16.size(); ++i) {
     std::uint16_t* pixel = &normals->pixels16[3 * i];
     const glm::vec2 slope = share * glm::vec2(map.derivative[2 * i], map.derivative[2 * i + 1]);
     if (slope == glm::vec2(0.0f)) continue;
-    const glm::vec3 n(decode(pixel[0]), decode(pixel[1]), std::max(decode(pixel[2]), 0.01f));
+    const glm::vec3 n(NormalComponent(pixel[0]), NormalComponent(pixel[1]),
+                      std::max(NormalComponent(pixel[2]), 0.01f));
     const glm::vec3 folded = glm::normalize(glm::vec3(glm::vec2(n) / n.z + slope, 1.0f));
-    for (int c = 0; c < 3; ++c) {
-      pixel[c] = static_cast<std::uint16_t>(std::lround((folded[c] * 0.5f + 0.5f) * 65535.0f));
-    }
+    for (int c = 0; c < 3; ++c) pixel[c] = NormalTexel(folded[c]);
   }
 }
 
