@@ -1,15 +1,8 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Writes bash completions from what the programs print for --help.
-
-bash_completion.py BIN OUT: BIN holds furrow and furrowd; OUT receives the files furrow and furrowd. They complete
-commands, options, and the values of options that take one of a set of words. Everything else completes to files.
+"""Bash completions from what the programs print for --help. They complete commands, options, and the values of
+options that take one of a set of words. Everything else completes to files.
 """
-import pathlib
 import re
-import sys
-
-import cli_reference
 
 HEAD = """\
 # bash completion for {program}, generated from --help
@@ -70,13 +63,8 @@ def script(helps):
     return "\n".join(lines) + "\n"
 
 
-def write(bin_folder, out):
+def write(programs, out):
+    """Writes a file per program. `programs`: per program, the help of it and of all its commands."""
     out.mkdir(parents=True, exist_ok=True)
-    for program in ("furrow", "furrowd"):
-        (out / program).write_text(script(cli_reference.collect(bin_folder, [program])))
-
-
-if __name__ == "__main__":
-    if len(sys.argv) != 3:
-        sys.exit("usage: bash_completion.py BIN OUT")
-    write(pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]))
+    for helps in programs:
+        (out / helps[0].words[0]).write_text(script(helps))

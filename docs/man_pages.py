@@ -1,14 +1,8 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Writes man pages from what the programs print for --help.
-
-man_pages.py BIN OUT: BIN holds furrow and furrowd; OUT receives furrow.1, furrowd.1 and a page per command, such as
-furrow-rig-check.1. The pages say what --help says, because cli_reference.py reads it for both.
+"""Man pages from what the programs print for --help: furrow.1, furrowd.1 and a page per command, such as
+furrow-rig-check.1. They say what --help says, because cli_reference.py reads it for both.
 """
-import pathlib
 import re
-import subprocess
-import sys
 
 import cli_reference
 
@@ -20,13 +14,6 @@ def plain(text):
     """Text for troff: no character of it is a command."""
     text = text.replace("\\", "\\e").replace("-", "\\-")
     return re.sub(r"^([.'])", r"\\&\1", text, flags=re.M)
-
-
-def version(bin_folder):
-    """The release, from `furrow --version`."""
-    command = [str(bin_folder / "furrow"), "--version"]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=cli_reference.TIMEOUT, check=True)
-    return done.stdout.split()[-1]
 
 
 def entry_lines(entry):
@@ -65,18 +52,11 @@ def page(one, footer, release):
     return "\n".join(lines) + "\n"
 
 
-def write(bin_folder, out):
+def write(programs, release, out):
+    """Writes the pages of some programs. `programs`: per program, the help of it and of all its commands."""
     out.mkdir(parents=True, exist_ok=True)
     for old in out.glob("*.1"):
         old.unlink()  # a command that is gone leaves no page
-    release = version(bin_folder)
-    for program in ("furrow", "furrowd"):
-        helps = cli_reference.collect(bin_folder, [program])
+    for helps in programs:
         for one in helps:
             (out / f"{'-'.join(one.words)}.1").write_text(page(one, helps[0].footer, release))
-
-
-if __name__ == "__main__":
-    if len(sys.argv) != 3:
-        sys.exit("usage: man_pages.py BIN OUT")
-    write(pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]))

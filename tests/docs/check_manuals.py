@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Checks the generated man pages and bash completions (docs/man_pages.py, docs/bash_completion.py).
+"""Checks the generated man pages and bash completions (docs/manuals.py).
 
 Environment: FURROW_BIN, the folder with furrow and furrowd.
 """
@@ -12,9 +12,7 @@ import tempfile
 
 import documents
 
-import bash_completion  # from docs/
-import cli_reference
-import man_pages
+import manuals  # from docs/
 
 # A line as typed so far, and words of which all must be offered, or none at all ("" stands for no offer).
 COMPLETIONS = [
@@ -45,7 +43,6 @@ def completions(script, line):
 
 
 def check_completions(folder):
-    bash_completion.write(documents.programs(), folder)
     for line, wanted in COMPLETIONS:
         offered = completions(folder / line.split()[0], line)
         if not wanted <= offered or (not wanted and offered):
@@ -68,9 +65,8 @@ def check_page(path, one):
             yield f"{path.name}: groff: {done.stderr.strip()}"
 
 
-def check_man_pages(folder):
-    man_pages.write(documents.programs(), folder)
-    helps = {"-".join(one.words): one for one in cli_reference.all_commands(documents.programs()).values()}
+def check_man_pages(folder, programs):
+    helps = {"-".join(one.words): one for program in programs for one in program}
     if missing := sorted(helps.keys() - {path.stem for path in folder.glob("*.1")}):
         yield f"no man page for {', '.join(missing)}"
     for path in sorted(folder.glob("*.1")):
@@ -80,7 +76,8 @@ def check_man_pages(folder):
 def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        problems = [*check_man_pages(folder / "man"), *check_completions(folder / "bash")]
+        programs = manuals.write(documents.programs(), folder / "man", folder / "bash")
+        problems = [*check_man_pages(folder / "man", programs), *check_completions(folder / "bash")]
     return documents.report(problems, "man pages and completions")
 
 
