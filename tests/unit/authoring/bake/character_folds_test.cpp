@@ -65,6 +65,7 @@ struct Folded {
   std::unique_ptr<character::Character> character;
   std::unique_ptr<BakeSurface> surface;
   std::vector<Tensor2> strain;
+  BakePose pose;
   BakedMap map;
 };
 
@@ -84,7 +85,8 @@ Result<Folded> Fold(character::Character character) {
   folded.surface = std::move(*surface);
   folded.strain =
       folded.surface->solver().Solve(pose->skin_matrices, {}, Exact().skin.max_compression).tensors;
-  folded.map = toys::BakeFolds(*folded.character, {*pose}, Exact());
+  folded.pose = *pose;
+  folded.map = toys::BakeFolds(*folded.character, {folded.pose}, Exact());
   return folded;
 }
 
@@ -119,16 +121,16 @@ class CharacterFolds : public ::testing::TestWithParam<Subject> {
     vec3 across;  // unit vector
     vec3 slope;   // gradient of the height, in the surface
   };
-  [[nodiscard]] std::vector<Place> FoldedPlaces() const {
+  [[nodiscard]] std::vector<Place> FoldedPlaces(const BakedMap& map) const {
     const Surface& surface = folded_->surface->surface();
-    const std::vector<float>& derivative = folded_->map.derivative;
+    const std::vector<float>& derivative = map.derivative;
     std::vector<Place> places;
     for (const SurfaceTexel& t : folded_->surface->texels()) {
       const SurfacePoint point{t.triangle, t.corners, t.position};
       const Principal2 strain = PrincipalOf(surface.Interpolate(folded_->strain, point));
       if (strain.large < 0.1f) continue;
       const wrinkle::SurfaceAxes& axes = surface.triangles()[t.triangle].axes;
-      const std::size_t i = toys::At(folded_->map, t.x, t.y);
+      const std::size_t i = toys::At(map, t.x, t.y);
       places.push_back({strain.large, axes.x * strain.direction.x + axes.y * strain.direction.y,
                         -derivative[2 * i] * t.tangent - derivative[2 * i + 1] * t.bitangent});
     }
@@ -156,23 +158,28 @@ INSTANTIATE_TEST_SUITE_P(Of, CharacterFolds,
                                            Subject{"makehuman", MakeHumanCharacter, kMakeHuman}),
                          [](const auto& subject) { return std::string(subject.param.name); });
 
+// A mouth has room for some dozens of folds, whose mean length varies by 1.5% from seed to seed.
 TEST_P(CharacterFolds, KeepTheArcLength) {
-  double arc = 0.0;
-  const std::vector<Place> places = FoldedPlaces();
-  for (const Place& place : places) {
-    arc += static_cast<double>(
-        std::hypot(1.0f - place.compression, glm::dot(place.slope, place.across)));
+  double arc = 0.0, count = 0.0;
+  for (const std::uint32_t seed : {1u, 2u, 3u, 4u, 5u}) {
+    BakeOptions options = Exact();
+    options.seed = seed;
+    const std::vector<Place> places =
+        FoldedPlaces(toys::BakeFolds(*folded_->character, {folded_->pose}, options));
+    ASSERT_GT(places.size(), 500u);
+    for (const Place& place : places) {
+      arc += static_cast<double>(
+          std::hypot(1.0f - place.compression, glm::dot(place.slope, place.across)));
+    }
+    count += static_cast<double>(places.size());
   }
-  ASSERT_GT(places.size(), 500u);
-  RecordProperty("arc", std::to_string(arc / static_cast<double>(places.size())));
-  // The default face's lips are compressed over less than a wavelength, where waves of different
-  // lengths meet and are up to 4% too long.
-  EXPECT_NEAR(arc / static_cast<double>(places.size()), 1.0, 0.05);
+  RecordProperty("arc", std::to_string(arc / count));
+  EXPECT_NEAR(arc / count, 1.0, 0.02);
 }
 
 TEST_P(CharacterFolds, RunAcrossTheCompression) {
   std::vector<float> angles;
-  for (const Place& place : FoldedPlaces()) {
+  for (const Place& place : FoldedPlaces(folded_->map)) {
     const float length = glm::length(place.slope);
     if (length < 0.05f) continue;
     const float cosine = std::min(std::abs(glm::dot(place.slope, place.across)) / length, 1.0f);
