@@ -2,6 +2,9 @@
 #include "authoring/shapes/face_measures.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "base/scalar.h"
 
 namespace furrow::authoring {
 namespace {
@@ -39,6 +42,16 @@ FaceMeasures MeasureFace(const FaceSkin& skin, const ShapeLandmarks& at) {
   }
   face.corner_z = MeanOf(at.mouth_corner, kZ, face.eye_depth);
   return face;
+}
+
+float FoldDepthOf(const FaceMeasures& face) {
+  // From the upper lids to the chin, in distances between the eyes: 1.8 of adults, 1.6 of a small
+  // child, 1.2 of a face drawn by VRoid Studio.
+  constexpr float kDrawn = 1.25f;
+  constexpr float kChild = 1.6f;
+  constexpr float kLeast = 0.3f;
+  const float height = (face.lid - face.chin) / std::max(face.eye_distance, 1e-6f);
+  return std::lerp(kLeast, 1.0f, Smoothstep(kDrawn, kChild, height));
 }
 
 }  // namespace furrow::authoring

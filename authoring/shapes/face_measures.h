@@ -27,4 +27,9 @@ struct FaceMeasures {
 
 [[nodiscard]] FaceMeasures MeasureFace(const FaceSkin& skin, const ShapeLandmarks& landmarks);
 
+// How deep folds are on such a face, as a fraction of an adult's, [0.3, 1]. A face that is short
+// below its eyes is a child's, or a drawn one (anime): its skin is smooth, and folds of full depth
+// look like scars on it.
+[[nodiscard]] float FoldDepthOf(const FaceMeasures& face);
+
 }  // namespace furrow::authoring

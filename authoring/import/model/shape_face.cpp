@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 #include <set>
 #include <thread>
@@ -302,7 +303,14 @@ Result<std::vector<std::string>> BakeShapeFace(const ArkitFace& face,
   }
   BakeOptions options;
   options.size = size;
-  options.depth = depth;
+  const float own_depth = FoldDepthOf(measures);
+  if (own_depth < 1.0f) {
+    remarks.push_back(
+        "the face is short below its eyes, as a child's or a drawn one, so its folds are " +
+        std::to_string(std::lround(100.0f * own_depth)) +
+        "% as deep as an adult's; --depth changes this");
+  }
+  options.skin.depth = depth * own_depth;
   options.threads = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 64);
   const auto maps = Bake(*character, poses->poses, moved.strokes, options, progress);
   FURROW_RETURN_IF_ERROR(maps);

@@ -36,8 +36,8 @@ int MarkFace(const ArkitFace& face, character::Character* character);
 
 // Bakes and embeds the wrinkle maps of the character's rig from the strain of its shapes, of their
 // combinations and of its joints, and from `strokes`, which are drawn on the default character's
-// face and move to this one (TransferStrokes()). `size`: texels per side. `depth`: factor for all
-// heights, [0, 4]. `progress`: see Bake(). Returns warnings of CheckSurfaces() and notes of
+// face and move to this one (TransferStrokes()). `size`: texels per side. `depth`: factor for the
+// folds of skin, [0, 4], beside that of FoldDepthOf(). `progress`: see Bake(). Returns warnings of CheckSurfaces() and notes of
 // CollectBakePoses(). Errors: those of these, of FaceSkin::Create(), Bake() and EmbedMaps().
 [[nodiscard]] Result<std::vector<std::string>> BakeShapeFace(
     const ArkitFace& face, std::span<const BakeStroke> strokes, int size, float depth,

@@ -263,8 +263,9 @@ void AddCharacterImport(CLI::App& group, Action& action) {
   command
       ->add_option(
           "--depth", arguments->depth,
-          "Factor for the depth of the folds of a face of blend shapes: below 1 for a child "
-          "or a cartoon, above 1 for an old face")
+          "Factor for the depth of the skin's folds, for a character with a face of blend shapes: "
+          "below 1 for smooth skin, above 1 for old skin. A face that is short below its eyes, "
+          "as a child's or a cartoon's, has shallow folds at 1, too")
       ->check(CLI::Range(0.0f, 4.0f))
       ->capture_default_str();
   AddBvhOptions(*command, arguments->poses);
