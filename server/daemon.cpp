@@ -376,7 +376,9 @@ ExitCode LoadAndServe(const Config& config, const RunOptions& options) {
   Result<Assets> assets = LoadAssets(config);
   if (!assets.ok()) return Fail(ExitCode::kBadInput, assets.status());
   if (assets->rig->regions.empty()) {
-    spdlog::warn("the character has no wrinkle rig, so there are no weights; see --rig");
+    spdlog::warn(
+        "the character has no wrinkle rig, so there are no weights and no wrinkles: put "
+        "NAME.rig.json beside NAME.glb, or choose a rig by --rig");
   }
   if (config.render && assets->character != nullptr) {
     for (const std::string& warning : assets->character->warnings) {

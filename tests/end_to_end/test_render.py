@@ -38,6 +38,18 @@ class RenderTest(unittest.TestCase):
                 self.assertIn(says, result.stderr.decode())
                 self.assertFalse((self.root / "none").exists())
 
+    def test_a_character_without_its_rig_is_drawn_and_the_warning_names_the_rig(self):
+        alone = self.root / "alone.glb"
+        alone.write_bytes((SHARE / "default.glb").read_bytes())
+        out = self.root / "out"
+        result = furrow("render", ANGER, "--character", alone, "--out", out, "--frames", "30:30", "--size", "64x64",
+                        check=0)
+        self.assertIn(f"no rig {self.root / 'alone.rig.json'}", result.stderr.decode())
+        self.assertEqual(len(list(out.iterdir())), 1)
+        with_rig = furrow("render", ANGER, "--character", alone, "--rig", "default", "--out", out, "--frames", "30:30",
+                          "--size", "64x64", check=0)
+        self.assertNotIn("without wrinkles", with_rig.stderr.decode())
+
     def test_without_opengl_the_daemon_still_serves_weights(self):
         result = furrow("render", ANGER, "--out", self.root / "none", env=NO_DRIVER, check=1)
         self.assertIn("no EGL driver", result.stderr.decode())

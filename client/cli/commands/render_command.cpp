@@ -203,12 +203,24 @@ Status DrawFrames(const RenderOptions& options, const render::Settings& settings
   return sink.Finish();
 }
 
+// A picture of a character without a rig looks like one whose wrinkles are broken.
+void WarnWithoutRig(const RenderOptions& options, const character::Character& character) {
+  if (!character.rig.regions.empty()) return;
+  const std::string glb = options.character.empty() ? "default.glb" : options.character;
+  const std::string beside = fs::path(glb).replace_extension(".rig.json").string();
+  PrintWarnings({options.rig.empty() ? "the character is drawn without wrinkles: there is no rig " +
+                                           beside + "; put it there, or choose one by --rig"
+                                     : "the character is drawn without wrinkles: the rig " +
+                                           options.rig + " has no regions"});
+}
+
 int RenderFiles(const RenderOptions& options) {
   const auto settings = SettingsOf(options.picture);
   if (!settings.ok()) return Fail(settings.status());
   const auto character =
       LoadCharacterArgument(options.character, options.rig, options.read, options.skeleton_map);
   if (!character.ok()) return Fail(character.status());
+  WarnWithoutRig(options, *character);
   auto group = MakeGroup(options, *character);
   if (!group.ok()) return Fail(group.status());
   const auto frames = FramesOf(options, (*group)->num_frames());
