@@ -40,6 +40,6 @@ install(TARGETS furrow_pictures LIBRARY DESTINATION lib/furrow COMPONENT runtime
 install(DIRECTORY "${PROJECT_BINARY_DIR}/share/furrow" DESTINATION share COMPONENT runtime)
 install(FILES "${PROJECT_SOURCE_DIR}/server/furrow.example.toml" DESTINATION share/doc/furrow COMPONENT runtime)
 # docs/CMakeLists.txt generates these from --help, if Python is there.
-foreach(folder man bash-completion)
+foreach(folder man bash-completion zsh fish)
   install(DIRECTORY "${PROJECT_BINARY_DIR}/share/${folder}" DESTINATION share COMPONENT runtime OPTIONAL)
 endforeach()
