@@ -47,10 +47,10 @@ class FakeDaemon {
 
   // What the daemon does with the next requests.
   std::vector<std::string> names = {"brow_l.squash", "brow_l.stretch"};
-  protocol::ErrorCode reject{};      // 0: accept subscriptions
+  protocol::ErrorCode reject{};        // 0: accept subscriptions
   protocol::ErrorCode reject_poses{};  // 0: accept subscriptions to poses
-  protocol::SkeletonOffer skeleton;  // for a subscription to poses; none without a subject
-  std::string chosen = "ada";        // for a subscription to the oldest subject
+  protocol::SkeletonOffer skeleton;    // for a subscription to poses; none without a subject
+  std::string chosen = "ada";          // for a subscription to the oldest subject
 
   // What has arrived.
   std::vector<protocol::SubscribeWeights> subscriptions;
