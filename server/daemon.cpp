@@ -22,6 +22,7 @@
 #include "base/status.h"
 #include "rig/rig_file.h"
 #include "server/assets.h"
+#include "server/config/osc_profile_file.h"
 #include "server/core/status_line.h"
 #include "server/http/api/api.h"
 #include "server/http/http_server.h"
@@ -407,6 +408,11 @@ ExitCode LoadAndServe(const Config& config, const RunOptions& options) {
     for (const std::string& name : assets->character->missing_rig_pictures) {
       spdlog::warn("picture '{}' of the rig is missing; wrinkles that need it are not rendered",
                    name);
+    }
+  }
+  for (const OscTargetConfig& target : config.osc.targets) {
+    if (auto profile = LoadOscProfile(target.profile); !profile.ok()) {
+      return Fail(ExitCode::kBadInput, profile.status().Within("osc.target"));
     }
   }
   Daemon daemon(config, options, *std::move(assets));

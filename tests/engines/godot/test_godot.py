@@ -31,6 +31,16 @@ class GodotTest(EngineTest):
         self.assertNotRegex(output, "SCRIPT ERROR|failed to load|Removing from enabled", output)
         self.assertIn('enabled=PoolStringArray( "furrow" )', (project / "project.godot").read_text())
 
+    def test_hostile_messages_are_ignored(self):
+        project = self.project("hostile.gd")
+        program = Program([need("godot3-server"), "--path", project, "-s", "hostile.gd"], {"HOME": str(project)})
+        self.addCleanup(program.stop)
+        seen = program.wait_for("hostile")
+        self.assertEqual(program.finish(), 0)
+        self.assertEqual((seen["before_names"], seen["strange"], seen["good"]), (0, 0, 1))
+        self.assertEqual((seen["subjects"], seen["missed"]), (256, 1))
+        self.assertNotRegex(program.text, "FAILED|SCRIPT ERROR")
+
     def test_weights_reach_shaders(self):
         command = [need("xvfb-run"), "-a", need("godot3-runner"), "--audio-driver", "Dummy"]
         project = self.project("shaders.gd")

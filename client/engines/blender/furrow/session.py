@@ -178,12 +178,17 @@ class Session:
 
 
 session = Session()
+_drawn = 0.0  # when the timer last redrew the sidebar
 
 
 def tick():
     """The timer: polls the session and redraws the sidebar. Returns the seconds until the next call."""
+    global _drawn  # pylint: disable=global-statement
     try:
-        if session.poll(bpy.context.scene):
+        frames = session.poll(bpy.context.scene)
+        # Also without frames, so that the panel shows how old the last one is.
+        if frames or time.monotonic() - _drawn > _REFRESH:
+            _drawn = time.monotonic()
             for window in bpy.context.window_manager.windows:
                 for area in window.screen.areas:
                     if area.type == "VIEW_3D":

@@ -16,6 +16,8 @@ enum State { CLOSED, CONNECTING, CONNECTED, LOST }
 
 const SETTINGS = preload("furrow_settings.gd")
 const MAX_WEIGHTS = 2048
+const MAX_SUBJECTS = 256
+const MAX_SEQUENCE = 4294967296.0
 const FIRST_PAUSE_MSEC = 100
 const MAX_PAUSE_MSEC = 800
 const CONNECT_MSEC = 5000
@@ -217,7 +219,11 @@ func _set_state(to):
 
 func _on_data():
 	_heard_msec = OS.get_ticks_msec()
-	var text = _socket.get_peer(1).get_packet().get_string_from_utf8()
+	_on_message(_socket.get_peer(1).get_packet().get_string_from_utf8())
+
+
+# Takes one message. Anything that is not as the daemon writes it is ignored.
+func _on_message(text):
 	var parsed = JSON.parse(text)
 	if parsed.error != OK or typeof(parsed.result) != TYPE_DICTIONARY:
 		return
@@ -239,6 +245,8 @@ func _on_names(message):
 	if typeof(subject) != TYPE_STRING or typeof(names) != TYPE_ARRAY or names.size() > MAX_WEIGHTS:
 		return
 	if not _streams.has(subject):
+		if _streams.size() >= MAX_SUBJECTS:
+			return
 		_streams[subject] = Stream.new()
 	var stream = _streams[subject]
 	var fresh = PoolStringArray(names)
@@ -254,7 +262,7 @@ func _on_weights(message):
 	var sequence = message.get("sequence")
 	if stream == null or typeof(values) != TYPE_ARRAY or typeof(sequence) != TYPE_REAL:
 		return
-	if values.size() != stream.names.size():
+	if values.size() != stream.names.size() or not (sequence >= 0.0 and sequence < MAX_SEQUENCE):
 		return
 	var fresh = PoolRealArray(values)
 	for i in fresh.size():

@@ -11,6 +11,8 @@ signal state_changed(state: int)
 enum State { CLOSED, CONNECTING, CONNECTED, LOST }
 
 const MAX_WEIGHTS := 2048
+const MAX_SUBJECTS := 256
+const MAX_SEQUENCE := 4294967296.0
 const FIRST_PAUSE_MSEC := 100
 const MAX_PAUSE_MSEC := 800
 const CONNECT_MSEC := 5000
@@ -189,6 +191,8 @@ func _on_names(message: Dictionary) -> void:
 	if typeof(message.get("subject")) != TYPE_STRING or typeof(names) != TYPE_ARRAY or names.size() > MAX_WEIGHTS:
 		return
 	if not _streams.has(message.subject):
+		if _streams.size() >= MAX_SUBJECTS:
+			return
 		_streams[message.subject] = Stream.new()
 	var stream: Stream = _streams[message.subject]
 	var fresh := PackedStringArray(names)
@@ -204,7 +208,7 @@ func _on_weights(message: Dictionary) -> void:
 	var sequence: Variant = message.get("sequence")
 	if stream == null or typeof(values) != TYPE_ARRAY or typeof(sequence) != TYPE_FLOAT:
 		return
-	if values.size() != stream.names.size():
+	if values.size() != stream.names.size() or not (sequence >= 0.0 and sequence < MAX_SEQUENCE):
 		return
 	var fresh := PackedFloat32Array(values)
 	for i in fresh.size():
