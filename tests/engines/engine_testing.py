@@ -8,6 +8,7 @@ A plug-in's program prints one JSON object per event, each on a line after EVENT
   {"event": "again"}                                         weights of both subjects after the loss
 and then ends with exit code 0. Programs may print further events and anything else.
 """
+import concurrent.futures
 import json
 import os
 import pathlib
@@ -19,7 +20,7 @@ import time
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "end_to_end"))
-from furrow_testing import BIN, GUARD, SHARE, SOURCE, Daemon, spawn  # pylint: disable=wrong-import-position
+from furrow_testing import BIN, GUARD, SHARE, SOURCE, Daemon, furrow, spawn  # pylint: disable=wrong-import-position
 
 EVENT = "furrow-test: "
 FRAMES = 1000
@@ -99,6 +100,18 @@ class EngineTest(unittest.TestCase):
             self.addCleanup(performer.wait, timeout=GUARD)
             self.addCleanup(performer.send_signal, signal.SIGINT)
 
+    def time_of_weights(self, daemon):
+        """Starts a plain client for each subject. Returns a function that waits for their weights and returns the time of
+        the later ones."""
+        def watch(subject):
+            furrow("watch", daemon.tcp, "--subject", subject, "--wait", "--frames", 1, check=0)
+            return time.monotonic()
+
+        pool = concurrent.futures.ThreadPoolExecutor()
+        self.addCleanup(pool.shutdown)
+        times = [pool.submit(watch, subject) for subject in SUBJECTS]
+        return lambda: max(one.result(timeout=GUARD) for one in times)
+
     def check_plugin(self, make_command, env=None, cwd=None, daemon_args=()):
         """Runs the plug-in through the whole story. `make_command(daemon)` returns its command line. Returns the
         Program."""
@@ -112,14 +125,13 @@ class EngineTest(unittest.TestCase):
                 self.assertGreaterEqual(count, FRAMES, subject)
         program.wait_for("lost")
         with Daemon("--no-render", "--http", daemon.ports["http"], *daemon_args, ports=daemon.ports) as back:
-            # A plain client beside the plug-in shows when the performers are back.
-            watcher = spawn("watch", back.udp, "--subject", SUBJECTS[1], "--wait", "--frames", 1, "--format", "csv")
             returned = time.monotonic()
+            with_plain_client = self.time_of_weights(back)
             program.wait_for("again")
-            watcher.communicate(timeout=GUARD)
             delay = program.times["again"] - returned
             print(f"{self.id()}: weights again {delay:.2f} s after the daemon's return", file=sys.stderr)
-            self.assertLess(delay, 1.0)
+            # On a busy machine the performers themselves may return late; a plain client shows when they are back.
+            self.assertLess(program.times["again"] - max(returned, with_plain_client()), 1.0)
             self.assertEqual(program.finish(), 0, program.text[-3000:])
         return program
 
