@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """The tab in the sidebar, its buttons, and what a scene and the preferences store."""
+import textwrap
+
 import bpy
 from bpy.app.handlers import persistent
 
 from . import library, recording, targets
 from .session import session
+
+LINE = 30  # characters per line of the sidebar at its usual width
 
 
 class FurrowPreferences(bpy.types.AddonPreferences):
@@ -36,7 +40,7 @@ class FurrowScene(bpy.types.PropertyGroup):
 
 class FURROW_UL_rows(bpy.types.UIList):
     def draw_item(self, _context, layout, _data, item, _icon, _active_data, _active_property):
-        split = layout.split(factor=0.5)
+        split = layout.split(factor=0.4)
         split.prop(item, "subject", text="")
         split.prop(item, "target", text="")
 
@@ -133,6 +137,13 @@ class FURROW_OT_clear(bpy.types.Operator):
         return {"FINISHED"}
 
 
+def draw_text(layout, text, icon="NONE"):
+    """Labels do not wrap, and the sidebar is narrow."""
+    column = layout.column(align=True)
+    for number, line in enumerate(textwrap.wrap(text, LINE)):
+        column.label(text=line, icon=icon if number == 0 else "BLANK1" if icon != "NONE" else "NONE")
+
+
 class FURROW_PT_sidebar(bpy.types.Panel):
     bl_label = "Furrow"
     bl_space_type = "VIEW_3D"
@@ -141,19 +152,19 @@ class FURROW_PT_sidebar(bpy.types.Panel):
 
     def draw(self, context):
         layout, settings = self.layout, context.scene.furrow
-        layout.prop(settings, "address")
+        layout.prop(settings, "address", text="")
         if session.connection is None:
             layout.operator("furrow.connect", icon="LINKED")
         else:
             layout.operator("furrow.disconnect", icon="UNLINKED")
-        layout.label(text=session.status(), icon="ERROR" if session.error else "INFO")
+        draw_text(layout, session.status(), "ERROR" if session.error else "INFO")
         line = layout.row()
         line.template_list("FURROW_UL_rows", "", settings, "rows", settings, "active", rows=3)
         buttons = line.column(align=True)
         buttons.operator("furrow.add", text="", icon="ADD")
         buttons.operator("furrow.remove", text="", icon="REMOVE")
         for row in settings.rows:
-            layout.label(text=f"{row.subject or 'oldest'}: {session.row_status(row)}")
+            draw_text(layout, f"{row.subject or 'oldest'}: {session.row_status(row)}")
         layout.operator("furrow.record", text="Stop" if session.recording else "Record",
                         icon="SNAP_FACE" if session.recording else "REC")
         layout.operator("furrow.clear", icon="X")

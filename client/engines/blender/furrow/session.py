@@ -42,7 +42,6 @@ class Session:
 
     def __init__(self):
         self.connection = None
-        self.address = ""
         self.error = ""
         self.bindings = {}  # subject as asked for -> Binding
         self.recording = False
@@ -58,7 +57,6 @@ class Session:
         self.disconnect()
         self.error = ""
         self.connection = library.Connection(library.load(library_path), address)
-        self.address = address
         self._refreshed = 0.0
 
     def disconnect(self):
@@ -137,9 +135,8 @@ class Session:
             return self.error or "not connected"
         state = self.connection.state()
         if state == library.CONNECTED:
-            return f"connected to {self.address}"
-        what = "connecting to" if state == library.CONNECTING else "connection lost, trying again:"
-        return f"{what} {self.address}"
+            return "connected"
+        return "connecting" if state == library.CONNECTING else "connection lost, trying again"
 
     def row_status(self, row):
         """One line about a subject: age of the last frame, losses, names covered."""
