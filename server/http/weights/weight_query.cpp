@@ -5,6 +5,8 @@
 #include <string>
 
 #include "base/numbers.h"
+#include "base/status.h"
+#include "protocol/messages/limits.h"
 
 namespace furrow::server {
 namespace {
@@ -12,12 +14,21 @@ namespace {
 // Each subject is a message to the hub, and a peer may have 64 of them waiting.
 constexpr std::size_t kMaxSubjects = 64;
 
+// The limits of the wire. The hub answers what exceeds them without saying which field it was.
+Status CheckLength(const std::string& name, const std::string& value) {
+  const int most = name == "pattern" ? protocol::kMaxPatternBytes : protocol::kMaxNameBytes;
+  if (value.size() <= static_cast<std::size_t>(most)) return {};
+  return Status(StatusCode::kInvalidArgument,
+                "the value is longer than " + std::to_string(most) + " bytes", name);
+}
+
 }  // namespace
 
 Result<std::vector<protocol::SubscribeWeights>> WeightsOf(const Url& url) {
   protocol::SubscribeWeights common;
   std::vector<std::string> subjects;
   for (const auto& [name, value] : url.values) {
+    FURROW_RETURN_IF_ERROR(CheckLength(name, value));
     if (name == "subject") {
       if (std::ranges::find(subjects, value) != subjects.end()) {
         return Status(StatusCode::kInvalidArgument, "'" + value + "' is repeated", name);

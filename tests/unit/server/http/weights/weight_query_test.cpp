@@ -54,6 +54,13 @@ TEST(WeightQuery, NamesTheInvalidField) {
   }
 }
 
+TEST(WeightQuery, LimitsLengths) {
+  EXPECT_TRUE(Parse("/weights?subject=" + std::string(255, 's')).ok());
+  EXPECT_EQ(Parse("/weights?subject=" + std::string(256, 's')).status().where(), "subject");
+  EXPECT_TRUE(Parse("/weights?pattern=" + std::string(4096, 'p')).ok());
+  EXPECT_EQ(Parse("/weights?pattern=" + std::string(4097, 'p')).status().where(), "pattern");
+}
+
 TEST(WeightQuery, LimitsTheSubjects) {
   std::string target = "/weights?rate=0";
   for (int i = 0; i < 64; ++i) target += "&subject=s" + std::to_string(i);
