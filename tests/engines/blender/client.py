@@ -91,6 +91,7 @@ for subject, cube in cubes.items():
     key = cube.data.shape_keys.animation_data.action.fcurves.find(f'key_blocks["{WEIGHT}"].value')
     points = [point.co[:] for point in curve.keyframe_points]
     assert len(points) >= FRAMES and [p.co[:] for p in key.keyframe_points] == points
+    assert {point.interpolation for point in curve.keyframe_points} == {"LINEAR"}
     assert points[0][0] == bpy.context.scene.frame_start
     assert all(a[0] < b[0] for a, b in zip(points, points[1:])), "times ascend"
     channels[subject] = {"points": len(points), "span": points[-1][0] - points[0][0],

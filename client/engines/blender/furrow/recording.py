@@ -66,8 +66,9 @@ class Take:
         curve = curves.new(path, action_group=GROUP)
         curve.keyframe_points.add(len(column))
         curve.keyframe_points.foreach_set("co", [x for pair in zip(self.times, column) for x in pair])
-        for point in curve.keyframe_points:
-            point.interpolation = "LINEAR"
+        # One call instead of one per keyframe: a take of ten minutes has millions.
+        linear = bpy.types.Keyframe.bl_rna.properties["interpolation"].enum_items["LINEAR"].value
+        curve.keyframe_points.foreach_set("interpolation", [linear] * len(column))
         curve.update()
 
 
