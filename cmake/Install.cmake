@@ -26,6 +26,9 @@ string(REGEX REPLACE "/$" "" FURROW_PC_PREFIX "${FURROW_PC_PREFIX}")
 configure_file("${PROJECT_SOURCE_DIR}/cmake/furrow.pc.in" "${PROJECT_BINARY_DIR}/furrow.pc" @ONLY)
 install(FILES "${PROJECT_BINARY_DIR}/furrow.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig"
   COMPONENT development)
+# The plug-ins as they are in the source tree; docs/engines/ says where each of them goes. Templates are for `furrow`.
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/client/engines/" DESTINATION share/furrow/engines COMPONENT development
+        PATTERN "__pycache__" EXCLUDE PATTERN "*.in" EXCLUDE PATTERN ".clang-format" EXCLUDE)
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION share/doc/furrow COMPONENT runtime)
 if(NOT FURROW_BUILD_PROGRAMS)
   return()
@@ -40,6 +43,6 @@ install(TARGETS furrow_pictures LIBRARY DESTINATION lib/furrow COMPONENT runtime
 install(DIRECTORY "${PROJECT_BINARY_DIR}/share/furrow" DESTINATION share COMPONENT runtime)
 install(FILES "${PROJECT_SOURCE_DIR}/server/furrow.example.toml" DESTINATION share/doc/furrow COMPONENT runtime)
 # docs/CMakeLists.txt generates these from --help, if Python is there.
-foreach(folder man bash-completion)
+foreach(folder man bash-completion zsh fish)
   install(DIRECTORY "${PROJECT_BINARY_DIR}/share/${folder}" DESTINATION share COMPONENT runtime OPTIONAL)
 endforeach()

@@ -22,7 +22,8 @@ _{program}() {{
 def choices(entry):
     """The words that an option takes, or none."""
     found = re.search(r" (\w[\w-]*(?:\|\w[\w-]*)+)", entry.name)
-    return found[1].split("|") if found else []
+    # NAME|INDEX stands for values, csv|jsonl is a set of words.
+    return found[1].split("|") if found and found[1] == found[1].lower() else []
 
 
 def options(one):
@@ -30,19 +31,24 @@ def options(one):
     return sorted(name for name in one.flags if name.startswith("-"))
 
 
+def option_entries(one):
+    """Yields the names of each option of a command with its entry: (["-f", "--format"], Entry)."""
+    for section, entries in one.sections.items():
+        for entry in entries if section not in ("Positionals", "Subcommands") else []:
+            yield [name for name in entry.name.split(" ")[0].split(",") if name.startswith("-")], entry
+
+
 def value_cases(helps):
     """After an option that takes a value: its words, or nothing, so that files complete."""
     lines = []
     for one in helps:
         command = " ".join(one.words)
-        for section, entries in one.sections.items():
-            for entry in entries if section not in ("Positionals", "Subcommands") else []:
-                names = [name for name in entry.name.split(" ")[0].split(",") if one.flags.get(name)]
-                pattern = "|".join(f'"{command} {name}"' for name in names)
-                if pattern and (words := choices(entry)):
-                    lines.append(f'    {pattern}) COMPREPLY=($(compgen -W "{" ".join(words)}" -- "$current")); return ;;')
-                elif pattern:
-                    lines.append(f"    {pattern}) return ;;")
+        for names, entry in option_entries(one):
+            pattern = "|".join(f'"{command} {name}"' for name in names if one.flags.get(name))
+            if pattern and (words := choices(entry)):
+                lines.append(f'    {pattern}) COMPREPLY=($(compgen -W "{" ".join(words)}" -- "$current")); return ;;')
+            elif pattern:
+                lines.append(f"    {pattern}) return ;;")
     return lines
 
 

@@ -22,6 +22,7 @@
 #include "base/status.h"
 #include "rig/rig_file.h"
 #include "server/assets.h"
+#include "server/config/osc_profile_file.h"
 #include "server/core/status_line.h"
 #include "server/http/api/api.h"
 #include "server/http/http_server.h"
@@ -29,9 +30,9 @@
 #include "server/net/clock.h"
 #include "server/net/critical_task.h"
 #include "server/net/mocap_inputs.h"
-#include "server/net/osc_output.h"
 #include "server/net/tcp/tcp_server.h"
 #include "server/net/udp/udp_port.h"
+#include "server/osc/osc_targets.h"
 #include "server/pipeline/render_thread.h"
 #include "server/playback/player.h"
 #include "server/recording/recorder.h"
@@ -73,6 +74,7 @@ class Daemon {
 
  private:
   void MakeHub();
+  Status StartOsc();
   Status StartWeb();
   void Announce() const;
   asio::awaitable<void> TickLoop();
@@ -89,10 +91,10 @@ class Daemon {
   std::uint64_t session_ = 0;
   asio::io_context io_{1};  // run by the calling thread, which owns shard 0
   asio::signal_set signals_;
-  std::vector<std::unique_ptr<OscOutput>> osc_;  // by shard; empty: OSC output is off
   std::unique_ptr<Recorder> recorder_;
   std::unique_ptr<RenderThread> render_;
-  std::unique_ptr<Player> player_;  // a peer of the hub, so it outlives the hub
+  std::unique_ptr<Player> player_;   // a peer of the hub, so it outlives the hub
+  std::unique_ptr<OscTargets> osc_;  // called by the hub, so it outlives the hub
   std::unique_ptr<Hub> hub_;
   std::unique_ptr<TcpServer> tcp_;
   std::unique_ptr<UdpPort> udp_;
@@ -168,12 +170,6 @@ void Daemon::MakeHub() {
   parts.settings = assets_.settings;
   parts.metrics = metrics_;
   parts.make_token = RandomNumber;
-  if (config_.osc_out) {
-    parts.on_weights = [this](const Subject& subject, int shard) {
-      // Each shard has a socket and buffers of its own, so the shards' threads need no lock here.
-      osc_[static_cast<std::size_t>(shard)]->Send(subject);
-    };
-  }
   // The recorder is declared before the hub and therefore outlives it.
   parts.recording = recorder_.get();
   parts.shards = config_.threads;
@@ -189,17 +185,39 @@ Status Daemon::Listen() {
   udp_ = std::make_unique<UdpPort>(io_, config_.threads, config_.limits, hub_.get(), metrics_,
                                    recorder_.get());
   FURROW_RETURN_IF_ERROR(udp_->Open({address, config_.udp}));
-  // Sockets open before any thread starts, so an error ends the daemon before it serves.
-  for (int shard = 0; config_.osc_out && shard < config_.threads; ++shard) {
-    osc_.push_back(std::make_unique<OscOutput>(io_, metrics_));
-    FURROW_RETURN_IF_ERROR(osc_.back()->Open(*config_.osc_out, config_.osc_prefix));
-  }
   FURROW_RETURN_IF_ERROR(mocap_.Open({.bind = config_.bind,
                                       .vmc = config_.vmc,
                                       .livelink_face = config_.livelink_face,
                                       .allow = config_.mocap_allow},
                                      io_, hub_.get(), metrics_));
+  FURROW_RETURN_IF_ERROR(StartOsc());
   return StartWeb();
+}
+
+// No thread has started yet, so the hub needs no lock.
+Status Daemon::StartOsc() {
+  OscTargets::Parts parts;
+  parts.metrics = metrics_;
+  parts.shards = config_.threads;
+  parts.allow = config_.osc.allow;
+  parts.own_ports = {udp_->port()};
+  for (const auto& port : {mocap_.vmc_port(), mocap_.livelink_face_port()}) {
+    if (port) parts.own_ports.push_back(*port);
+  }
+  parts.on_active = [this](bool active) {
+    // Each shard has sockets and buffers of its own, so the shards' threads need no lock here.
+    hub_->SetOnWeights(active ? [this](const Subject& subject, int shard,
+                                       Time now) { osc_->Send(subject, shard, now); }
+                              : OnWeights());
+  };
+  osc_ = std::make_unique<OscTargets>(io_, std::move(parts));
+  std::vector<OscTargetConfig> targets = config_.osc.targets;
+  if (config_.osc_out)
+    targets.insert(targets.begin(), {.to = *config_.osc_out, .prefix = config_.osc_prefix});
+  for (const OscTargetConfig& target : targets) {
+    if (Status status = osc_->AddConfigured(target); !status.ok()) return status.Within("osc");
+  }
+  return {};
 }
 
 Status Daemon::LoadPlayer() {
@@ -220,6 +238,7 @@ Status Daemon::StartWeb() {
   parts.wants_pictures = config_.render && assets_.character != nullptr;
   if (render_ != nullptr) parts.renderer = render_->description();
   parts.player = player_.get();
+  parts.osc = osc_.get();
   // Called on the hub's thread while `http_` exists; the counters are atomic.
   parts.connections = [this] { return http_->connections(); };
   parts.viewers = [this] { return http_->viewers(); };
@@ -304,6 +323,10 @@ asio::awaitable<void> Daemon::TickLoop() {
     co_await timer.async_wait(kAwaitTuple);
     const Time now = ReadClock();
     hub_->Tick(now);
+    if (osc_->limits_rates()) {
+      const Hub::ExclusiveLock lock(*hub_, 0);
+      osc_->SendOwed(hub_->subjects(), now);
+    }
     mocap_.Tick(now);
   }
 }
@@ -387,6 +410,11 @@ ExitCode LoadAndServe(const Config& config, const RunOptions& options) {
     for (const std::string& name : assets->character->missing_rig_pictures) {
       spdlog::warn("picture '{}' of the rig is missing; wrinkles that need it are not rendered",
                    name);
+    }
+  }
+  for (const OscTargetConfig& target : config.osc.targets) {
+    if (auto profile = LoadOscProfile(target.profile); !profile.ok()) {
+      return Fail(ExitCode::kBadInput, profile.status().Within("osc.target"));
     }
   }
   Daemon daemon(config, options, *std::move(assets));

@@ -17,7 +17,7 @@ constexpr std::uint32_t kMostMissed = 100'000;
 bool Feed::OnReply(const protocol::SubscribeReply& reply, std::uint16_t subscription) {
   subscription_ = subscription;
   error_ = FURROW_OK;
-  retry_us_.reset();
+  retry_.Clear();
   if (!reply.subject.empty()) subject_ = reply.subject;
   if (reply.names.empty()) return false;  // the subject is absent
   gone_ = false;
@@ -58,14 +58,8 @@ Feed::Arrival Feed::OnFrame(const protocol::Header& header, const protocol::Weig
 
 void Feed::OnError(furrow_status status, std::int64_t retry_us) {
   error_ = status;
-  retry_us_ = retry_us;
+  retry_.SetDue(retry_us);
   subscription_ = 0;
-}
-
-bool Feed::TakeRetry(std::int64_t now_us) {
-  if (!retry_us_ || now_us < *retry_us_) return false;
-  retry_us_.reset();
-  return true;
 }
 
 furrow_status Feed::status() const {

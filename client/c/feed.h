@@ -3,12 +3,12 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "client/c/include/furrow/furrow.h"
 #include "client/c/pose_feed.h"
+#include "client/c/retry.h"
 #include "protocol/messages/messages.h"
 
 namespace furrow::capi {
@@ -45,7 +45,7 @@ class Feed {
   [[nodiscard]] PoseFeed* poses() const { return poses_.get(); }
 
   // True if a rejected request is due again; then false until the next rejection.
-  bool TakeRetry(std::int64_t now_us);
+  bool TakeRetry(std::int64_t now_us) { return retry_.Take(now_us); }
 
   [[nodiscard]] const protocol::SubscribeWeights& request() const { return request_; }
   [[nodiscard]] std::uint32_t request_number() const { return request_number_; }
@@ -70,7 +70,7 @@ class Feed {
   std::uint32_t request_number_ = 0;
   std::uint16_t subscription_ = 0;
   furrow_status error_ = FURROW_OK;
-  std::optional<std::int64_t> retry_us_;
+  Retry retry_;
 
   std::string subject_;
   std::vector<std::string> names_;

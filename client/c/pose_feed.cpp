@@ -28,6 +28,13 @@ void Put(const protocol::Quat& from, std::size_t index, float* to) {
 void PoseFeed::SetSubscription(std::uint16_t subscription) {
   subscription_ = subscription;
   error_ = FURROW_OK;
+  retry_.Clear();
+}
+
+void PoseFeed::OnError(furrow_status status, std::int64_t retry_us) {
+  error_ = status;
+  retry_.SetDue(retry_us);
+  subscription_ = 0;
 }
 
 void PoseFeed::OnSkeleton(const protocol::SkeletonOffer& skeleton) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "client/c/include/furrow/furrow.h"
+#include "client/c/retry.h"
 #include "protocol/messages/messages.h"
 
 namespace furrow::capi {
@@ -19,8 +20,10 @@ class PoseFeed {
   void OnSkeleton(const protocol::SkeletonOffer& skeleton);
   // A whole pose. Returns false if it is of another skeleton, or older than the newest pose.
   bool OnPose(const protocol::Header& header, const protocol::PoseFrame& pose, std::int64_t now_us);
-  // The daemon rejected the request.
-  void OnError(furrow_status status) { error_ = status; }
+  // The daemon rejected the request, which is to be repeated at `retry_us`.
+  void OnError(furrow_status status, std::int64_t retry_us);
+  // True if a rejected request is due again; then false until the next rejection.
+  bool TakeRetry(std::int64_t now_us) { return retry_.Take(now_us); }
 
   [[nodiscard]] std::uint32_t request_number() const { return request_number_; }
   [[nodiscard]] std::uint16_t subscription() const { return subscription_; }
@@ -42,6 +45,7 @@ class PoseFeed {
   std::uint32_t request_number_ = 0;
   std::uint16_t subscription_ = 0;
   furrow_status error_ = FURROW_OK;
+  Retry retry_;
   protocol::SkeletonOffer skeleton_;
   protocol::Header header_;
   std::int64_t received_us_ = 0;

@@ -86,6 +86,7 @@ Feed* Receiver::FindSubscription(std::uint16_t subscription) {
 void Receiver::AskAgain(std::int64_t now_us) {
   for (const auto& feed : feeds_) {
     if (feed->TakeRetry(now_us)) feed->SetRequest(subscriber_.Subscribe(feed->request()));
+    if (feed->poses() != nullptr && feed->poses()->TakeRetry(now_us)) AskForPoses(*feed);
   }
 }
 
@@ -151,7 +152,7 @@ Receiver::Step Receiver::OnPoses(const Event& event, std::int64_t now_us) {
 Receiver::Step Receiver::OnError(const Event& event, std::int64_t now_us, std::string* error) {
   *error = subscriber_.error().message;
   if (PoseFeed* const poses = FindPoses(event.header.sequence, 0)) {
-    poses->OnError(StatusOf(subscriber_.error().code));
+    poses->OnError(StatusOf(subscriber_.error().code), now_us + kRetryUs);
     return Step::kNews;
   }
   Feed* const feed = FindRequest(event.header.sequence);
@@ -162,11 +163,16 @@ Receiver::Step Receiver::OnError(const Event& event, std::int64_t now_us, std::s
 
 Receiver::Step Receiver::OnGoodbye(const Event& event, std::int64_t now_us,
                                    const Listener& listener) {
+  // The daemon has ended a subscription that says kDone, so it needs another request.
+  if (PoseFeed* const poses = FindPoses(0, event.header.stream)) {
+    if (subscriber_.goodbye().reason != protocol::GoodbyeReason::kDone) return Step::kOther;
+    poses->OnError(FURROW_REJECTED, now_us + kRetryUs);
+    return Step::kNews;
+  }
   Feed* const feed = FindSubscription(event.header.stream);
   if (feed == nullptr) return Step::kOther;
   switch (subscriber_.goodbye().reason) {
     case protocol::GoodbyeReason::kSubjectGone: break;
-    // The daemon has ended the subscription, which therefore needs another request.
     case protocol::GoodbyeReason::kDone:
       feed->OnError(FURROW_REJECTED, now_us + kRetryUs);
       return Step::kNews;

@@ -6,14 +6,14 @@
 #include <utility>
 
 #include "protocol/messages/limits.h"
+#include "protocol/messages/pattern.h"
 #include "protocol/mocap/osc.h"
 
 namespace furrow::protocol::mocap {
 namespace {
 
-constexpr std::string_view kBlendValue = "/VMC/Ext/Blend/Val";
-constexpr std::string_view kBlendApply = "/VMC/Ext/Blend/Apply";
 constexpr std::size_t kElementPrefixBytes = 4;
+constexpr std::size_t kBundleHeadBytes = 16;  // "#bundle" and the time tag
 
 std::string AddressPart(std::string_view name) {
   constexpr std::string_view kForbidden = " #*,/?[]{}";
@@ -27,62 +27,125 @@ std::string AddressPart(std::string_view name) {
   return part;
 }
 
+// ASCII alone, whatever the locale. The engine plug-ins name properties by the same rule.
+std::string Identifier(std::string_view name) {
+  std::string identifier(name);
+  std::replace_if(
+      identifier.begin(), identifier.end(),
+      [](char c) {
+        return !((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9'));
+      },
+      '_');
+  return identifier;
+}
+
+// Replaces every `{key}` by its value; the values are not searched again.
+std::string Expand(std::string_view text,
+                   std::span<const std::pair<std::string_view, std::string>> values) {
+  std::string out;
+  while (!text.empty()) {
+    const auto match = std::ranges::find_if(
+        values, [text](const auto& value) { return text.starts_with(value.first); });
+    if (match != values.end()) {
+      out += match->second;
+      text.remove_prefix(match->first.size());
+    } else {
+      out += text.front();
+      text.remove_prefix(1);
+    }
+  }
+  return out;
+}
+
+char TagOf(OscField field) {
+  switch (field) {
+    case OscField::kName:
+    case OscField::kSubject: return 's';
+    case OscField::kValue: return 'f';
+    case OscField::kSequence: return 'i';
+    case OscField::kCaptureTime: return 'h';
+  }
+  return 'f';
+}
+
 }  // namespace
 
-OscWeightWriter::OscWeightWriter(OscProfile profile, std::string prefix)
-    : profile_(profile), prefix_(std::move(prefix)) {}
-
-void OscWeightWriter::SetNames(const std::string& subject, std::span<const std::string> names) {
-  addresses_.clear();
-  const std::string base = prefix_ + "/" + AddressPart(subject) + "/";
-  frame_address_ = base + "frame";
-  for (const std::string& name : names) {
-    addresses_.push_back(profile_ == OscProfile::kVmc ? name : base + AddressPart(name));
+OscWeightWriter::Message OscWeightWriter::MakeMessage(const OscTemplate& form,
+                                                      const std::string& name) const {
+  const std::pair<std::string_view, std::string> values[] = {{"{prefix}", prefix_},
+                                                             {"{subject}", AddressPart(subject_)},
+                                                             {"{name}", AddressPart(name)},
+                                                             {"{identifier}", Identifier(name)}};
+  Message message;
+  message.address = Expand(form.address, values);
+  message.name = name;
+  for (const OscField field : form.arguments) message.tags += TagOf(field);
+  message.bytes = kElementPrefixBytes + OscStringBytes(message.address.size()) +
+                  OscStringBytes(1 + form.arguments.size());
+  for (const OscField field : form.arguments) {
+    switch (field) {
+      case OscField::kName: message.bytes += OscStringBytes(name.size()); break;
+      case OscField::kSubject: message.bytes += OscStringBytes(subject_.size()); break;
+      case OscField::kValue:
+      case OscField::kSequence: message.bytes += 4; break;
+      case OscField::kCaptureTime: message.bytes += 8; break;
+    }
   }
+  return message;
 }
 
-std::size_t OscWeightWriter::MessageBytes(const std::string& address) const {
-  const bool vmc = profile_ == OscProfile::kVmc;
-  const std::size_t addressed =
-      vmc ? OscStringBytes(kBlendValue.size()) + OscStringBytes(address.size())
-          : OscStringBytes(address.size());
-  return kElementPrefixBytes + addressed + OscStringBytes(vmc ? 3 : 2) + sizeof(float);
-}
-
-std::size_t OscWeightWriter::MarkBytes() const {
-  return profile_ == OscProfile::kVmc
-             ? kElementPrefixBytes + OscStringBytes(kBlendApply.size()) + OscStringBytes(1)
-             : kElementPrefixBytes + OscStringBytes(frame_address_.size()) + OscStringBytes(3) +
-                   sizeof(std::int32_t) + sizeof(std::int64_t);
+std::size_t OscWeightWriter::SetNames(const std::string& subject,
+                                      std::span<const std::string> names,
+                                      std::string_view pattern) {
+  subject_ = subject;
+  messages_.clear();
+  end_.reset();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (!MatchesPattern(pattern, names[i])) continue;
+    const auto renamed = profile_->names.find(names[i]);
+    if (renamed == profile_->names.end() && profile_->only_renamed) continue;
+    Message message =
+        MakeMessage(profile_->value, renamed == profile_->names.end() ? names[i] : renamed->second);
+    message.index = i;
+    if (kBundleHeadBytes + message.bytes <= kMaxDatagramBytes) {
+      messages_.push_back(std::move(message));
+    }
+  }
+  if (profile_->end) {
+    end_ = MakeMessage(*profile_->end, {});
+    if (kBundleHeadBytes + end_->bytes > kMaxDatagramBytes) end_.reset();
+  }
+  return messages_.size();
 }
 
 void OscWeightWriter::Write(std::uint32_t sequence, std::int64_t capture_time_us,
                             std::span<const float> values, const Emit& emit) {
-  const bool vmc = profile_ == OscProfile::kVmc;
   OscWriter writer(datagram_);
   writer.BeginBundle();
-  // Sizes are computed before writing, because a message cannot be split over two bundles.
-  const auto make_room = [&](std::size_t bytes) {
-    if (datagram_.size() + bytes <= kMaxDatagramBytes) return;
-    emit(datagram_);
-    datagram_.clear();
-    writer.BeginBundle();
-  };
-  for (std::size_t i = 0; i < std::min(values.size(), addresses_.size()); ++i) {
-    make_room(MessageBytes(addresses_[i]));
-    writer.BeginMessage(vmc ? kBlendValue : std::string_view(addresses_[i]), vmc ? "sf" : "f");
-    if (vmc) writer.String(addresses_[i]);
-    writer.Float(values[i]);
+  const auto add = [&](const OscTemplate& form, const Message& message, float value) {
+    // Sizes are known before writing, because a message cannot be split over two bundles.
+    if (datagram_.size() + message.bytes > kMaxDatagramBytes) {
+      emit(datagram_);
+      datagram_.clear();
+      writer.BeginBundle();
+    }
+    writer.BeginMessage(message.address, message.tags);
+    for (const OscField field : form.arguments) {
+      switch (field) {
+        case OscField::kName: writer.String(message.name); break;
+        case OscField::kSubject: writer.String(subject_); break;
+        case OscField::kValue: writer.Float(value); break;
+        case OscField::kSequence: writer.Int(static_cast<std::int32_t>(sequence)); break;
+        case OscField::kCaptureTime: writer.Int64(capture_time_us); break;
+      }
+    }
     writer.EndMessage();
+  };
+  for (const Message& message : messages_) {
+    if (message.index < values.size()) add(profile_->value, message, values[message.index]);
   }
-  make_room(MarkBytes());
-  writer.BeginMessage(vmc ? kBlendApply : std::string_view(frame_address_), vmc ? "" : "ih");
-  if (!vmc) {
-    writer.Int(static_cast<std::int32_t>(sequence));
-    writer.Int64(capture_time_us);
-  }
-  writer.EndMessage();
-  emit(datagram_);
+  if (end_) add(*profile_->end, *end_, 0.0f);
+  if (datagram_.size() > kBundleHeadBytes) emit(datagram_);
 }
 
 }  // namespace furrow::protocol::mocap

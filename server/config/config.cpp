@@ -118,11 +118,20 @@ Status ValidateConfig(const Config& config) {
   if (config.require_render && !config.render) {
     return Invalid("--require-render and --no-render cannot be combined");
   }
-  if (config.osc_prefix.empty() ||
-      // OSC 1.0 reserves these characters.
-      config.osc_prefix.find_first_of(" #*,?[]{}") != std::string::npos) {
-    return Invalid("osc.prefix '" + config.osc_prefix +
-                   "' must not be empty or contain blanks or any of #*,?[]{}");
+  if (Status status = CheckOscTarget({.prefix = config.osc_prefix}); !status.ok()) {
+    return Invalid("osc." + status.where() + " " + status.what());
+  }
+  for (const OscTargetConfig& target : config.osc.targets) {
+    if (Status status = CheckOscTarget(target); !status.ok()) {
+      return Invalid("osc.target: " + status.where() + " " + status.what());
+    }
+  }
+  for (const std::string& address : config.osc.allow) {
+    if (!IsNumericAddress(address)) {
+      return Status(StatusCode::kInvalidArgument,
+                    "osc.allow: '" + address + "' is not a numeric address", "",
+                    "for example 192.168.0.20 or ::1");
+    }
   }
   const std::pair<const char*, double> limits[] = {
       {"record.rotate_megabytes", config.record.rotate_megabytes},

@@ -12,6 +12,7 @@
 #include "base/status.h"
 #include "motion/clip/clip.h"
 #include "server/config/http_config.h"
+#include "server/config/osc_config.h"
 #include "server/core/exit_code.h"
 #include "server/core/limits.h"
 #include "server/core/network_address.h"
@@ -52,6 +53,7 @@ struct Config {
   std::vector<std::string> mocap_allow;        // numeric sender addresses; empty: any sender
   std::optional<HostPort> osc_out;             // absent: off
   std::string osc_prefix = "furrow";           // /<prefix>/<subject>/<wrinkle weight>
+  OscConfig osc;                               // further targets
   RecordConfig record;
   HttpConfig http;
   std::filesystem::path play;          // recording to play inside the daemon; empty: none

@@ -12,6 +12,7 @@
 #include "base/files.h"
 #include "base/status.h"
 #include "server/config/config.h"
+#include "server/config/toml_file.h"
 
 namespace furrow::server {
 namespace {
@@ -19,84 +20,20 @@ namespace {
 // Far above any real file. --config may name a device or a file of the wrong kind.
 constexpr std::uint64_t kMaxConfigBytes = 1 << 20;
 
-// One key of a table. `assign` stores the value and returns an error, or an empty string.
-struct Key {
-  std::string_view name;
-  std::function<std::string(const toml::node&)> assign;
-};
+using toml_file::Count;
+using toml_file::Flag;
+using toml_file::Key;
+using toml_file::NameOrFile;
+using toml_file::Number;
+using toml_file::Path;
+using toml_file::Port;
+using toml_file::Tables;
+using toml_file::Text;
+using toml_file::Texts;
 
-// Each of these makes the key of one type. value_exact() converts nothing: 1.0 is not a port, and 1
-// is not a flag.
-Key Text(std::string_view name, std::string* target) {
-  return {name, [target](const toml::node& node) -> std::string {
-            const auto value = node.value_exact<std::string>();
-            if (!value) return "must be a string";
-            *target = *value;
-            return {};
-          }};
-}
-
-Key Path(std::string_view name, std::filesystem::path* target, std::filesystem::path folder) {
-  return {name, [target, folder = std::move(folder)](const toml::node& node) -> std::string {
-            const auto value = node.value_exact<std::string>();
-            if (!value) return "must be a string";
-            *target = folder / *value;  // an absolute path stays as it is
-            return {};
-          }};
-}
-
-// A name or a file. Values with a slash or the ending .json are files, relative to `folder`.
+// A HOST:PORT with a numeric host.
 template <class Target>
-Key NameOrFile(std::string_view name, Target* target, std::filesystem::path folder) {
-  return {name, [target, folder = std::move(folder)](const toml::node& node) -> std::string {
-            const auto value = node.value_exact<std::string>();
-            if (!value) return "must be a string";
-            const bool file = value->find('/') != std::string::npos || value->ends_with(".json");
-            *target = file ? (folder / *value).string() : *value;
-            return {};
-          }};
-}
-
-Key Flag(std::string_view name, bool* target) {
-  return {name, [target](const toml::node& node) -> std::string {
-            const auto value = node.value_exact<bool>();
-            if (!value) return "must be true or false";
-            *target = *value;
-            return {};
-          }};
-}
-
-template <class Target>
-Key Port(std::string_view name, Target* target) {
-  return {name, [target](const toml::node& node) -> std::string {
-            const auto value = node.value_exact<std::int64_t>();
-            if (!value || *value < 0 || *value > 65535) return "must be a port number, 0 to 65535";
-            *target = static_cast<std::uint16_t>(*value);
-            return {};
-          }};
-}
-
-Key Count(std::string_view name, int* target) {
-  return {name, [target](const toml::node& node) -> std::string {
-            const auto value = node.value_exact<std::int64_t>();
-            if (!value || !std::in_range<int>(*value)) return "must be a whole number";
-            *target = static_cast<int>(*value);
-            return {};
-          }};
-}
-
-Key Number(std::string_view name, double* target) {
-  return {name, [target](const toml::node& node) -> std::string {
-            // Whole numbers are valid numbers, so value() converts them; is_number() rules out
-            // other types.
-            const auto value = node.value<double>();
-            if (!node.is_number() || !value) return "must be a number";
-            *target = *value;
-            return {};
-          }};
-}
-
-Key Destination(std::string_view name, std::optional<HostPort>* target) {
+Key Destination(std::string_view name, Target* target) {
   return {name, [target](const toml::node& node) -> std::string {
             const auto value = node.value_exact<std::string>();
             if (!value) return "must be a string, HOST:PORT";
@@ -107,81 +44,40 @@ Key Destination(std::string_view name, std::optional<HostPort>* target) {
           }};
 }
 
-Key Texts(std::string_view name, std::vector<std::string>* target) {
-  return {name, [target](const toml::node& node) -> std::string {
+// [[osc.target]]
+Key OscTargets(std::string_view name, std::vector<OscTargetConfig>* targets,
+               const std::filesystem::path& folder) {
+  return {name, [targets, folder](const toml::node& node) -> std::string {
             const toml::array* list = node.as_array();
-            if (list == nullptr) return "must be a list of strings";
-            std::vector<std::string> texts;
+            if (list == nullptr) return "must be a list of tables: [[osc.target]]";
+            targets->clear();
             for (const toml::node& element : *list) {
-              const auto value = element.value_exact<std::string>();
-              if (!value) return "must be a list of strings";
-              texts.push_back(*value);
+              OscTargetConfig target;
+              const Key keys[] = {Destination("to", &target.to),
+                                  NameOrFile("profile", ".toml", &target.profile, folder),
+                                  Text("prefix", &target.prefix),
+                                  Text("subject", &target.subject),
+                                  Text("pattern", &target.pattern),
+                                  Number("rate_hz", &target.rate_hz)};
+              const std::string number = std::to_string(targets->size() + 1);
+              std::string fault = toml_file::ReadTable(element, keys);
+              if (fault.empty() && target.to.port == 0) fault = "needs the key 'to'";
+              if (!fault.empty()) return "number " + number + ": " + fault;
+              targets->push_back(std::move(target));
             }
-            *target = std::move(texts);
             return {};
           }};
 }
 
-// The name of a table (empty: the top level of the file) and its keys.
-using NamedKeys = std::pair<std::string_view, std::vector<Key>>;
-using Tables = std::vector<NamedKeys>;
-
-class Reader {
- public:
-  // Reads a parsed file into the targets of the keys. Unknown names are errors, so that a typing
-  // mistake is not silently ignored.
-  Reader(std::string_view source_name) : source_name_(source_name) {}
-
-  // Reads the top level, which is the first of `tables`, and then the other tables.
-  Status ReadFile(const toml::table& root, std::span<const NamedKeys> tables) const {
-    Status status = ReadTable(root, "", tables.front().second, tables.subspan(1));
-    for (const auto& [name, keys] : tables.subspan(1)) {
-      const toml::table* table = root[name].as_table();
-      if (status.ok() && table != nullptr) {
-        status = ReadTable(*table, std::string(name) + ".", keys, {});
-      }
-    }
-    return status;
-  }
-
- private:
-  // `subtables`: names at this level that are tables, not keys.
-  Status ReadTable(const toml::table& table, std::string_view prefix, std::span<const Key> keys,
-                   std::span<const NamedKeys> subtables) const {
-    for (const auto& [key, node] : table) {
-      const std::string name = std::string(prefix) + std::string(key.str());
-      const auto known = std::ranges::find(keys, key.str(), &Key::name);
-      const auto subtable = std::ranges::find(subtables, key.str(), &NamedKeys::first);
-      if (known != keys.end()) {
-        if (std::string fault = known->assign(node); !fault.empty()) {
-          return Error(StatusCode::kSchema, node, name + " " + fault);
-        }
-      } else if (subtable == subtables.end()) {
-        return Error(StatusCode::kSchema, node, "unknown key '" + name + "'");
-      } else if (!node.is_table()) {
-        return Error(StatusCode::kSchema, node, name + " must be a table");
-      }
-    }
-    return {};
-  }
-
-  // `where` is file and line, as compilers write it.
-  Status Error(StatusCode code, const toml::node& node, std::string what) const {
-    return Status(code, std::move(what),
-                  std::string(source_name_) + ":" + std::to_string(node.source().begin.line));
-  }
-
-  std::string_view source_name_;
-};
-
 // The keys by table. Three functions, because the whole list is long.
 Tables InputTables(Config* config, const std::filesystem::path& folder) {
   return {{"",
-           {Path("character", &config->character, folder), NameOrFile("rig", &config->rig, folder),
-            Path("play", &config->play, folder), Text("bvh_positions", &config->bvh_positions),
-            Text("up_axis", &config->up_axis), Count("rest_frame", &config->rest_frame),
-            NameOrFile("skeleton_map", &config->skeleton_map, folder),
-            NameOrFile("shape_map", &config->shape_map, folder)}},
+           {Path("character", &config->character, folder),
+            NameOrFile("rig", ".json", &config->rig, folder), Path("play", &config->play, folder),
+            Text("bvh_positions", &config->bvh_positions), Text("up_axis", &config->up_axis),
+            Count("rest_frame", &config->rest_frame),
+            NameOrFile("skeleton_map", ".json", &config->skeleton_map, folder),
+            NameOrFile("shape_map", ".json", &config->shape_map, folder)}},
           {"listen",
            {Text("bind", &config->bind), Port("tcp", &config->tcp), Port("udp", &config->udp),
             Count("threads", &config->threads)}},
@@ -198,7 +94,9 @@ Tables OutputTables(Config* config, const std::filesystem::path& folder) {
        {Flag("enabled", &config->render), Flag("required", &config->require_render),
         Text("device", &config->render_device),
         Path("settings", &config->render_settings, folder)}},
-      {"osc", {Destination("out", &config->osc_out), Text("prefix", &config->osc_prefix)}},
+      {"osc",
+       {Destination("out", &config->osc_out), Text("prefix", &config->osc_prefix),
+        OscTargets("target", &config->osc.targets, folder), Texts("allow", &config->osc.allow)}},
       {"record",
        {Path("dir", &record.folder, folder), Number("rotate_megabytes", &record.rotate_megabytes),
         Number("rotate_seconds", &record.rotate_seconds), Flag("datagrams", &record.datagrams)}},
@@ -227,14 +125,6 @@ Tables LimitTables(Limits* limits) {
 }  // namespace
 
 Status ParseConfig(std::string_view text, std::string_view source_name, Config* config) {
-  toml::table root;
-  try {
-    root = toml::parse(text, source_name);
-  } catch (const toml::parse_error& error) {
-    // The parser of toml++ throws; the rest of the daemon uses Status.
-    return Status(StatusCode::kParse, std::string(error.description()),
-                  std::string(source_name) + ":" + std::to_string(error.source().begin.line));
-  }
   // Reads into a copy, so that an error leaves `config` as it was.
   Config read = *config;
   // Paths in the file are relative to the file.
@@ -242,8 +132,7 @@ Status ParseConfig(std::string_view text, std::string_view source_name, Config* 
   Tables tables = InputTables(&read, folder);
   std::ranges::move(OutputTables(&read, folder), std::back_inserter(tables));
   std::ranges::move(LimitTables(&read.limits), std::back_inserter(tables));
-  const Reader reader(source_name);
-  Status status = reader.ReadFile(root, tables);
+  Status status = toml_file::ReadText(text, source_name, tables);
   if (status.ok()) *config = std::move(read);
   return status;
 }

@@ -33,6 +33,11 @@ Result<HostPort> ParseHostPort(std::string_view text) {
   return result;
 }
 
+std::string HostPortText(const HostPort& address) {
+  const bool v6 = address.host.find(':') != std::string::npos;
+  return (v6 ? "[" + address.host + "]:" : address.host + ":") + std::to_string(address.port);
+}
+
 bool IsNumericAddress(const std::string& address) {
   in6_addr buffer;  // large enough for both families
   return inet_pton(AF_INET, address.c_str(), &buffer) == 1 ||

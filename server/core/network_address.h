@@ -20,6 +20,9 @@ struct HostPort {
 // for an IPv6 address without brackets.
 [[nodiscard]] Result<HostPort> ParseHostPort(std::string_view text);
 
+// "127.0.0.1:9000" or "[::1]:9000".
+[[nodiscard]] std::string HostPortText(const HostPort& address);
+
 // True for "127.0.0.1" and "::1"; false for host names and for addresses in brackets.
 [[nodiscard]] bool IsNumericAddress(const std::string& address);
 

@@ -17,6 +17,8 @@
 #include "server/http/pictures/picture_stream.h"
 #include "server/http/request/reply_writer.h"
 #include "server/http/socket/web_socket.h"
+#include "server/http/weights/weight_query.h"
+#include "server/http/weights/weight_stream.h"
 
 namespace furrow::server {
 namespace {
@@ -77,7 +79,9 @@ net::awaitable<bool> WritePageFile(beast::tcp_stream& stream, const WebRequest& 
   co_return co_await WriteResponse(stream, request, response);
 }
 
+// The routes that only read; /mjpeg and /weights go on until the client closes.
 bool IsPicture(const std::string& path) { return path == "/mjpeg" || path == "/snapshot.png"; }
+bool IsStream(const std::string& path) { return IsPicture(path) || path == "/weights"; }
 
 bool IsRead(const WebRequest& request) {
   return request.method() == http::verb::get || request.method() == http::verb::head;
@@ -190,7 +194,27 @@ class HttpSession {
     if (IsPicture(url->path) && IsRead(request_)) {
       co_return co_await ServePictures(&stream_, context_, request_, *url);
     }
+    if (url->path == "/weights" && IsRead(request_)) co_return co_await AnswerWeights(*url);
     co_return co_await AnswerPlainRequest(*std::move(url));
+  }
+
+  // JSON lines, by WebSocket or as an endless body. Returns whether the connection goes on.
+  net::awaitable<bool> AnswerWeights(const Url& url) {
+    Result<std::vector<protocol::SubscribeWeights>> wanted = WeightsOf(url);
+    if (!wanted.ok()) {
+      co_return co_await WriteReply(stream_, request_, ErrorReply(wanted.status()));
+    }
+    if (beast::websocket::is_upgrade(request_)) {
+      co_await ServeWeightSocket(std::move(stream_), context_, std::move(request_),
+                                 *std::move(wanted));
+      co_return false;
+    }
+    if (request_.method() == http::verb::head) {  // the query is valid; subscribe to nothing
+      ApiReply reply{.type = "application/jsonl"};
+      co_return co_await WriteReply(stream_, request_, std::move(reply));
+    }
+    co_await ServeWeightLines(&stream_, context_, *std::move(wanted));
+    co_return false;
   }
 
   net::awaitable<bool> AnswerPlainRequest(Url url) {
@@ -198,7 +222,7 @@ class HttpSession {
     if (file != nullptr && IsRead(request_)) {
       co_return co_await WritePageFile(stream_, request_, *file);
     }
-    if (file != nullptr || IsPicture(url.path)) {
+    if (file != nullptr || IsStream(url.path)) {
       ApiReply reply = MethodReply(ToView(request_.method_string()), url.path, "GET, HEAD");
       co_return co_await WriteReply(stream_, request_, std::move(reply));
     }

@@ -265,6 +265,11 @@ void Hub::SetNeutral(Subject& subject, std::optional<wrinkle::LocalPose> neutral
   if (subject.pipeline->SetNeutral(std::move(neutral))) RepublishWeights(subject, now);
 }
 
+void Hub::SetOnWeights(OnWeights on_weights) {
+  subscribers_.SetAllDrivers(recording_ != nullptr || on_weights != nullptr);
+  router_.SetOnWeights(std::move(on_weights));
+}
+
 // The age is at least 1: only a new pose has age 0.
 void Hub::RepublishWeights(Subject& subject, Time now) {
   if (!subject.pipeline->has_pose()) return;

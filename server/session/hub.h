@@ -139,6 +139,9 @@ class Hub {
   // Measures the subject's weights from this pose instead of the rest pose; nullopt: from the rest
   // pose. A pose with other joint or blend-shape counts is ignored.
   void SetNeutral(Subject& subject, std::optional<wrinkle::LocalPose> neutral, Time now);
+  // Replaces Parts::on_weights; empty: nobody is called. With a function, all drivers of all
+  // subjects are evaluated.
+  void SetOnWeights(OnWeights on_weights);
 
   [[nodiscard]] bool draining() const { return draining_; }
   [[nodiscard]] std::size_t num_subjects() const { return subjects_.size(); }

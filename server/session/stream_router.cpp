@@ -59,7 +59,7 @@ void StreamRouter::Publish(Shard& shard, Subject& subject, std::span<const std::
   }
   // OSC output and the recording continue while the daemon drains; only peers stop receiving
   // frames.
-  if (parts_.on_weights) parts_.on_weights(subject, shard.index);
+  if (on_weights_) on_weights_(subject, shard.index, now);
   if (parts_.recording != nullptr) parts_.recording->OnWeights(subject, age_us, now);
 }
 

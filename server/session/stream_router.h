@@ -20,7 +20,7 @@ namespace furrow::server {
 
 // Called with each new or decayed set of weights. `shard`: of the calling thread; 0 if that thread
 // holds the exclusive lock.
-using OnWeights = std::function<void(const Subject& subject, int shard)>;
+using OnWeights = std::function<void(const Subject& subject, int shard, Time now)>;
 
 // Connects publishers to subscribers: takes skeleton offers and decoded poses, solves the poses in
 // batches, and hands each result to the subscriptions, the recorder and OSC.
@@ -33,7 +33,8 @@ class StreamRouter {
     RecordingTap* recording = nullptr;            // optional
     OnWeights on_weights;                         // optional
   };
-  explicit StreamRouter(Parts parts) : parts_(std::move(parts)) {}
+  explicit StreamRouter(Parts parts)
+      : parts_(std::move(parts)), on_weights_(std::move(parts_.on_weights)) {}
 
   // Starts or changes a subject. False: the offer was rejected, ignored or throttled. Requires the
   // exclusive lock.
@@ -61,11 +62,15 @@ class StreamRouter {
   // Stops sending to subscribers, which have been sent a goodbye. Recorder and OSC go on.
   void StopFanOut() { fans_out_ = false; }
 
+  // Replaces Parts::on_weights. Requires the exclusive lock.
+  void SetOnWeights(OnWeights on_weights) { on_weights_ = std::move(on_weights); }
+
  private:
   void Publish(Shard& shard, Subject& subject, std::span<const std::uint8_t> payload,
                std::int64_t age_us, Time now);
 
-  const Parts parts_;
+  Parts parts_;
+  OnWeights on_weights_;
   bool fans_out_ = true;
 };
 

@@ -37,6 +37,7 @@ DIRECT = {
     "server": {"wrinkle", "protocol", "gltf", "report", "rig", "motion", "character", "recording", "render"},
     "client/cpp": {"protocol"},
     "client/c": {"protocol", "client/cpp"},
+    "client/engines": {"client/c"},
     "client/net": {"protocol", "client/cpp"},
     "client/chaos": {"protocol", "report", "client/cpp", "client/net"},
     "client/load": {"wrinkle", "protocol", "report", "client/cpp", "client/net"},

@@ -131,7 +131,8 @@ class Installed(unittest.TestCase):
         for name in ("furrow", "furrowd", "libfurrow.so.1", "default.glb", "furrow-watch.1"):
             self.assertIn(name, names[runtime])
             self.assertNotIn(name, names[development])
-        for name in ("furrow.h", "furrow.hpp", "libfurrow.so", "furrow.pc", "FurrowConfig.cmake"):
+        for name in ("furrow.h", "furrow.hpp", "libfurrow.so", "furrow.pc", "FurrowConfig.cmake", "blender_manifest.toml",
+                     "furrow_client.gd", "package.json", "Furrow.uplugin"):
             self.assertIn(name, names[development])
             self.assertNotIn(name, names[runtime])
 

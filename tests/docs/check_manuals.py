@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Checks the generated man pages and bash completions (docs/manuals.py).
+"""Checks the generated man pages and completions of bash, zsh and fish (docs/manuals.py). Shells that are missing are
+left out.
 
 Environment: FURROW_BIN, the folder with furrow and furrowd.
 """
+import os
 import pathlib
 import shutil
 import subprocess
@@ -30,26 +32,55 @@ COMPLETIONS = [
 ]
 
 
-def completions(script, line):
-    """What bash offers for a line."""
-    words = line.split(" ")
-    program = f"source '{script}'; COMP_WORDS=({' '.join(repr(word) for word in words)}); " \
-              f"COMP_CWORD={len(words) - 1}; _{words[0]}; printf '%s\\n' \"${{COMPREPLY[@]}}\""
-    done = subprocess.run(["bash", "-uc", program], capture_output=True, text=True, timeout=documents.TIMEOUT,
-                          check=False)
-    if done.returncode:
-        return {f"bash failed: {done.stderr}"}
+def answer(shell, *command):
+    """The words that a shell prints."""
+    done = subprocess.run([shell, *command], capture_output=True, text=True, timeout=documents.TIMEOUT, check=False)
+    if done.returncode or done.stderr:
+        return {f"{shell} failed: {done.stderr}"}
     return set(done.stdout.split())
 
 
-def check_completions(folder):
-    for line, wanted in COMPLETIONS:
-        offered = completions(folder / line.split()[0], line)
-        if not wanted <= offered or (not wanted and offered):
-            yield f"completion of '{line}': offered {sorted(offered)}, expected {sorted(wanted)}"
-        prefix = line.split(" ")[-1]
-        if strange := [word for word in offered if not word.startswith(prefix)]:
-            yield f"completion of '{line}': {strange} do not begin so"
+def bash_offers(share, line):
+    script = share / "bash-completion" / "completions" / line.split()[0]
+    words = line.split(" ")
+    program = f"source '{script}'; COMP_WORDS=({' '.join(repr(word) for word in words)}); " \
+              f"COMP_CWORD={len(words) - 1}; _{words[0]}; printf '%s\\n' \"${{COMPREPLY[@]}}\""
+    return answer("bash", "-uc", program)
+
+
+def zsh_offers(share, line):
+    """Stand-ins for zsh's own functions print what they receive. zsh itself drops what does not begin so."""
+    script = share / "zsh" / "site-functions" / f"_{line.split()[0]}"
+    words = line.split(" ")
+    program = f"""
+        compadd() {{ print -l -- ${{@[2,-1]}} }}
+        _describe() {{ print -l -- ${{${{(P)2}}%%:*}} }}
+        _files() {{ }}
+        words=({' '.join(repr(word) for word in words)}); CURRENT={len(words)}; source '{script}'"""
+    return {word for word in answer("zsh", "-fc", program) if word.startswith(words[-1]) or " " in word}
+
+
+def fish_offers(share, line):
+    """Words with their descriptions. Files are left out: fish offers those of the present folder."""
+    script = share / "fish" / "vendor_completions.d" / f"{line.split()[0]}.fish"
+    done = subprocess.run(["fish", "--no-config", "-c", f"source '{script}'; complete -C '{line}'"], cwd=script.parent,
+                          capture_output=True, text=True, timeout=documents.TIMEOUT, check=False,
+                          env={**os.environ, "HOME": str(share)})
+    if done.returncode or done.stderr:
+        return {f"fish failed: {done.stderr}"}
+    words = {offer.split("\t")[0] for offer in done.stdout.splitlines()}
+    return {word for word in words if not (script.parent / word).exists()}
+
+
+def check_completions(share):
+    for shell, offers in (("bash", bash_offers), ("zsh", zsh_offers), ("fish", fish_offers)):
+        for line, wanted in COMPLETIONS if shutil.which(shell) else ():
+            offered = offers(share, line)
+            if not wanted <= offered or (not wanted and offered):
+                yield f"{shell}, completion of '{line}': offered {sorted(offered)}, expected {sorted(wanted)}"
+            prefix = line.split(" ")[-1]
+            if strange := [word for word in offered if not word.startswith(prefix)]:
+                yield f"{shell}, completion of '{line}': {strange} do not begin so"
 
 
 def check_page(path, one):
@@ -76,8 +107,8 @@ def check_man_pages(folder, programs):
 def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        programs = manuals.write(documents.programs(), folder / "man", folder / "bash")
-        problems = [*check_man_pages(folder / "man", programs), *check_completions(folder / "bash")]
+        programs = manuals.write(documents.programs(), folder)
+        problems = [*check_man_pages(folder / "man" / "man1", programs), *check_completions(folder)]
     return documents.report(problems, "man pages and completions")
 
 

@@ -8,6 +8,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/numbers.h"
+
 namespace furrow::cli {
 namespace {
 
@@ -31,25 +33,35 @@ class CsvWriter : public WeightWriter {
   }
 };
 
-// One JSON object per line, for programs that read a stream.
+// One JSON object per line, for programs that read a stream. Written by hand: a JSON library writes
+// floats as doubles, so that 0.0333 becomes 0.033300001174211502.
 class JsonlWriter : public WeightWriter {
  public:
   void Names(std::span<const std::string> names) override {
-    names_.assign(names.begin(), names.end());
+    keys_.clear();
+    // Names come from the network; dump() would throw on bytes that are not UTF-8.
+    constexpr auto kReplace = nlohmann::json::error_handler_t::replace;
+    for (const std::string& name : names) {
+      keys_.push_back(nlohmann::json(name).dump(-1, ' ', false, kReplace) + ":");
+    }
   }
 
   bool Row(std::int64_t frame, double seconds, std::span<const float> values) override {
-    nlohmann::ordered_json row{{"frame", frame}, {"time", seconds}};
-    auto& weights = row["weights"] = nlohmann::ordered_json::object();
-    for (std::size_t i = 0; i < std::min(names_.size(), values.size()); ++i) {
-      weights[names_[i]] = values[i];
+    line_ = "{\"frame\":" + std::to_string(frame) + ",\"time\":" + nlohmann::json(seconds).dump() +
+            ",\"weights\":{";
+    for (std::size_t i = 0; i < std::min(keys_.size(), values.size()); ++i) {
+      if (i > 0) line_ += ',';
+      line_ += keys_[i];
+      AppendShortest(values[i], &line_);
     }
-    std::printf("%s\n", row.dump().c_str());
+    line_ += "}}\n";
+    std::fputs(line_.c_str(), stdout);
     return Flush();
   }
 
  private:
-  std::vector<std::string> names_;
+  std::vector<std::string> keys_;  // the names as JSON, each with its colon
+  std::string line_;
 };
 
 // The largest weights of each frame with bars, for people.

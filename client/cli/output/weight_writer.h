@@ -15,7 +15,8 @@ enum class TableFormat { kTable, kCsv, kJsonl };
 // Writes rows of named numbers to standard output; used by `solve` and `watch`.
 //
 // - CSV: a header "frame,time,<names...>", then one row per frame, %.6f.
-// - JSON lines: {"frame":0,"time":0.0,"weights":{name: value}}.
+// - JSON lines: {"frame":0,"time":0.0,"weights":{name: value}}; each value is the shortest number
+//   that reads back as the same float.
 // - Table, for people: the eight largest weights of each frame as bars.
 class WeightWriter {
  public:

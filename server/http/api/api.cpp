@@ -18,6 +18,7 @@ Api::Api(Parts parts)
       settings_(parts.pictures),
       rig_(&captures_),
       playback_(parts.player),
+      osc_(parts.osc),
       routes_{
           {"GET", "/api/subjects",
            [this](const ApiRequest&, Hub& hub, Time now) { return status_.Subjects(hub, now); }},
@@ -53,6 +54,11 @@ Api::Api(Parts parts)
            [this](const ApiRequest& request, Hub&, Time now) {
              return playback_.Patch(request, now);
            }},
+          {"GET", "/api/osc", [this](const ApiRequest&, Hub&, Time) { return osc_.List(); }},
+          {"POST", "/api/osc",
+           [this](const ApiRequest& request, Hub&, Time) { return osc_.Add(request); }},
+          {"DELETE", "/api/osc",
+           [this](const ApiRequest& request, Hub&, Time) { return osc_.Remove(request); }},
           {"GET", "/healthz", [this](const ApiRequest&, Hub&, Time) { return status_.Health(); }},
           {"GET", "/readyz",
            [this](const ApiRequest&, Hub& hub, Time) { return status_.Ready(hub); }},

@@ -10,11 +10,13 @@
 #include "server/core/metrics.h"
 #include "server/core/time.h"
 #include "server/http/api/capture_api.h"
+#include "server/http/api/osc_api.h"
 #include "server/http/api/playback_api.h"
 #include "server/http/api/rig_api.h"
 #include "server/http/api/settings_api.h"
 #include "server/http/api/status_api.h"
 #include "server/http/request/api_types.h"
+#include "server/osc/osc_control.h"
 #include "server/pipeline/picture_source.h"
 #include "server/playback/player.h"
 #include "server/session/hub.h"
@@ -34,6 +36,7 @@ class Api {
     bool wants_pictures = false;        // the configuration asks for pictures
     std::string renderer;               // description of the renderer, for people
     Player* player = nullptr;           // null: started without --play
+    OscControl* osc = nullptr;          // not null
     std::function<int()> connections;   // number of HTTP connections
     std::function<int()> viewers;       // number of WebSockets and picture streams
   };
@@ -57,6 +60,7 @@ class Api {
   CaptureApi captures_;
   RigApi rig_;
   PlaybackApi playback_;
+  OscApi osc_;
   const std::vector<Route> routes_;
 };
 

@@ -225,6 +225,11 @@ void Subscribers::UpdateDriverLevel(Subject& subject) {
   subject.pipeline->SetLevel(needed);
 }
 
+void Subscribers::SetAllDrivers(bool all_drivers) {
+  all_drivers_ = all_drivers;
+  for (const auto& subject : subjects_->all()) UpdateDriverLevel(*subject);
+}
+
 void Subscribers::UpdatePictures(Peer& peer, const protocol::Header& header,
                                  const protocol::SubscribePictures& request, Time now) {
   Subscription* subscription = table_.Find(peer, header.stream);

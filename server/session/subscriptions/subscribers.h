@@ -73,6 +73,8 @@ class Subscribers {
   // The daemon's settings for pictures; a view may override some of them.
   [[nodiscard]] const render::Settings& own_settings() const { return pictures_.own_settings(); }
   void SetOwnSettings(const render::Settings& settings, Time now);
+  // Changes `all_drivers` of the constructor.
+  void SetAllDrivers(bool all_drivers);
 
   [[nodiscard]] FanOut& fan_out() { return fan_out_; }
   [[nodiscard]] std::size_t size() const { return table_.size(); }
@@ -94,7 +96,7 @@ class Subscribers {
 
   const Limits limits_;
   SubjectRegistry* const subjects_;
-  const bool all_drivers_;
+  bool all_drivers_;
   MessageSender* const messages_;
   Metrics* const metrics_;
   SubscriptionTable table_;

@@ -389,7 +389,8 @@ typedef struct furrow_skeleton_info {
 /*
  * Describes the skeleton of a subject; info->struct_size must be set. Returns FURROW_NO_DATA before
  * it has arrived. Errors: FURROW_NOT_FOUND (no such subscription, or one without poses),
- * FURROW_LIMIT (the skeleton is too large for UDP), FURROW_REJECTED.
+ * FURROW_LIMIT (the skeleton is too large for UDP), FURROW_REJECTED. After a rejection the library
+ * asks again every 2 s.
  */
 FURROW_API furrow_status furrow_get_skeleton(furrow_connection* connection, const char* subject,
                                              furrow_skeleton_info* info);

@@ -114,6 +114,27 @@ TEST_F(CApiTest, SubjectsAreOfferedAndPosesSent) {
   ASSERT_TRUE(Polled([&] { return daemon_->goodbyes == 1; }));
 }
 
+TEST_F(CApiTest, ARejectedRequestForPosesIsReportedAndRequestedAgain) {
+  daemon_->skeleton.subject = "bob";
+  daemon_->skeleton.joints = {{.name = "head"}};
+  daemon_->skeleton.skeleton_hash = protocol::SkeletonHash(daemon_->skeleton);
+  daemon_->reject_poses = protocol::ErrorCode::kLimit;
+  Connect();
+  furrow_subscription more{};
+  more.struct_size = sizeof more;
+  more.subject = "bob";
+  more.flags = FURROW_SUBSCRIBE_POSES;
+  ASSERT_EQ(furrow_subscribe(c(), &more), FURROW_OK);
+  furrow_skeleton_info info{};
+  info.struct_size = sizeof info;
+  ASSERT_TRUE(Polled([&] { return furrow_get_skeleton(c(), "bob", &info) == FURROW_LIMIT; }));
+  EXPECT_EQ(LastError(c()), "rejected by the test");
+  EXPECT_EQ(furrow_layout(c(), "bob", nullptr, nullptr), FURROW_OK) << "weights go on";
+  daemon_->reject_poses = {};
+  ASSERT_TRUE(Polled([&] { return furrow_get_skeleton(c(), "bob", &info) == FURROW_OK; }));
+  EXPECT_EQ(info.num_joints, 1u);
+}
+
 TEST_F(CApiTest, InvalidSkeletonsAreRejectedWithAReason) {
   connection_ = Open(daemon_->address());
   const char* const shapes[2] = {"jawOpen", "jawOpen"};

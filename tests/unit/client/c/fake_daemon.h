@@ -47,9 +47,10 @@ class FakeDaemon {
 
   // What the daemon does with the next requests.
   std::vector<std::string> names = {"brow_l.squash", "brow_l.stretch"};
-  protocol::ErrorCode reject{};      // 0: accept subscriptions
-  protocol::SkeletonOffer skeleton;  // for a subscription to poses; none without a subject
-  std::string chosen = "ada";        // for a subscription to the oldest subject
+  protocol::ErrorCode reject{};        // 0: accept subscriptions
+  protocol::ErrorCode reject_poses{};  // 0: accept subscriptions to poses
+  protocol::SkeletonOffer skeleton;    // for a subscription to poses; none without a subject
+  std::string chosen = "ada";          // for a subscription to the oldest subject
 
   // What has arrived.
   std::vector<protocol::SubscribeWeights> subscriptions;
@@ -143,6 +144,10 @@ class FakeDaemon {
   void OnSubscribePoses(const protocol::MessageView& view) {
     protocol::SubscribePoses request;
     EXPECT_EQ(protocol::Decode(view, request), protocol::DecodeStatus::kOk);
+    if (reject_poses != protocol::ErrorCode{}) {
+      return Send({.sequence = view.header.sequence},
+                  protocol::ErrorMessage{reject_poses, "rejected by the test"});
+    }
     requests.push_back(view.header.sequence);
     const auto stream = static_cast<std::uint16_t>(requests.size());
     const protocol::Header header{.stream = stream, .sequence = view.header.sequence};

@@ -94,9 +94,16 @@ TEST_F(PoseFeedTest, LatePosesAreIgnoredAndAnotherSkeletonStartsOver) {
   EXPECT_EQ(feed_.status(), FURROW_NO_DATA);
 }
 
-TEST_F(PoseFeedTest, ARejectedRequestIsReported) {
-  feed_.OnError(FURROW_LIMIT);
+TEST_F(PoseFeedTest, ARejectedRequestIsReportedAndDueAgainOnce) {
+  feed_.OnError(FURROW_LIMIT, 500);
   EXPECT_EQ(feed_.status(), FURROW_LIMIT);
+  EXPECT_FALSE(feed_.TakeRetry(499));
+  EXPECT_TRUE(feed_.TakeRetry(500));
+  EXPECT_FALSE(feed_.TakeRetry(501));
+  feed_.OnError(FURROW_LIMIT, 600);
+  feed_.SetSubscription(3);
+  EXPECT_FALSE(feed_.TakeRetry(700)) << "the daemon has accepted it since";
+  feed_.OnError(FURROW_LIMIT, 800);
   feed_.OnSkeleton(skeleton_);
   EXPECT_EQ(feed_.status(), FURROW_NO_DATA);
 }

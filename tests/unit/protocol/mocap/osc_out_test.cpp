@@ -25,8 +25,32 @@ std::vector<float> Values(int count) {
   return values;
 }
 
+// The shipped profiles, written by hand.
+const OscProfile kFurrow{
+    .name = "furrow",
+    .value = {"/{prefix}/{subject}/{name}", {OscField::kValue}},
+    .end = OscTemplate{"/{prefix}/{subject}/frame", {OscField::kSequence, OscField::kCaptureTime}},
+    .names = {},
+    .only_renamed = false};
+const OscProfile kVmc{.name = "vmc",
+                      .value = {"/VMC/Ext/Blend/Val", {OscField::kName, OscField::kValue}},
+                      .end = OscTemplate{"/VMC/Ext/Blend/Apply", {}},
+                      .names = {},
+                      .only_renamed = false};
+
+// The addresses of the messages that a writer sends.
+std::vector<std::string> Addresses(OscWeightWriter& writer, const std::vector<float>& values) {
+  std::vector<std::string> addresses;
+  writer.Write(0, 0, values, [&](std::span<const std::uint8_t> datagram) {
+    EXPECT_LE(datagram.size(), 1200u);
+    EXPECT_EQ(VisitOsc(datagram, [&](const OscMessage& m) { addresses.emplace_back(m.address); }),
+              OscStatus::kOk);
+  });
+  return addresses;
+}
+
 TEST(OscWeightWriter, WritesEveryWeightInBoundedBundlesAndTheMarkLast) {
-  OscWeightWriter writer;
+  OscWeightWriter writer(&kFurrow);
   writer.SetNames("anna b", Names(100));
   std::vector<test::Bytes> datagrams;
   writer.Write(41, 1'234'567'890'123, Values(100), [&](std::span<const std::uint8_t> datagram) {
@@ -57,7 +81,7 @@ TEST(OscWeightWriter, WritesEveryWeightInBoundedBundlesAndTheMarkLast) {
 }
 
 TEST(OscWeightWriter, VmcProfileSuitsVmcReceivers) {
-  OscWeightWriter writer(OscProfile::kVmc);
+  OscWeightWriter writer(&kVmc);
   writer.SetNames("anna", Names(60));
   const auto receiver = MakeVmcAdapter();
   std::vector<NeutralFrame> frames;
@@ -73,18 +97,45 @@ TEST(OscWeightWriter, VmcProfileSuitsVmcReceivers) {
 }
 
 TEST(OscWeightWriter, ReplacesForbiddenCharacters) {
-  OscWeightWriter writer(OscProfile::kFurrow, "/w");
+  OscWeightWriter writer(&kFurrow, "w");
   writer.SetNames("a/b#*", std::vector<std::string>{"x,y?[z]{q}"});
-  writer.Write(0, 0, Values(1), [](std::span<const std::uint8_t> datagram) {
-    std::vector<std::string> addresses;
-    ASSERT_EQ(VisitOsc(datagram, [&](const OscMessage& m) { addresses.emplace_back(m.address); }),
-              OscStatus::kOk);
-    EXPECT_EQ(addresses, (std::vector<std::string>{"/w/a_b__/x_y__z__q_", "/w/a_b__/frame"}));
-  });
+  EXPECT_EQ(Addresses(writer, Values(1)),
+            (std::vector<std::string>{"/w/a_b__/x_y__z__q_", "/w/a_b__/frame"}));
+}
+
+TEST(OscWeightWriter, NamesThatLookLikePlaceholdersAreNotExpanded) {
+  OscWeightWriter writer(&kFurrow, "{name}");
+  writer.SetNames("{prefix}", std::vector<std::string>{"a"});
+  EXPECT_EQ(Addresses(writer, Values(1))[0], "/{name}/_prefix_/a");
+}
+
+TEST(OscWeightWriter, SendsIdentifiersRenamedWeightsAndPatterns) {
+  OscProfile profile{.name = "vrchat",
+                     .value = {"/avatar/parameters/{prefix}_{identifier}", {OscField::kValue}},
+                     .end = std::nullopt,
+                     .names = {{"brow_l.squash", "BrowDownLeft"}},
+                     .only_renamed = false};
+  const std::vector<std::string> names = {"brow_l.squash", "brow_\u00e9.squash", "nose.squash"};
+  OscWeightWriter writer(&profile);
+  EXPECT_EQ(writer.SetNames("ann", names, "brow_*"), 2u);
+  EXPECT_EQ(Addresses(writer, Values(3)),
+            (std::vector<std::string>{"/avatar/parameters/furrow_BrowDownLeft",
+                                      "/avatar/parameters/furrow_brow____squash"}));
+  profile.only_renamed = true;
+  EXPECT_EQ(writer.SetNames("ann", names), 1u);
+  // Fewer values than names, for example while a rig changes.
+  EXPECT_EQ(Addresses(writer, {}), std::vector<std::string>());
+}
+
+TEST(OscWeightWriter, LeavesOutWhatExceedsADatagram) {
+  OscWeightWriter writer(&kVmc);
+  EXPECT_EQ(writer.SetNames("ann", std::vector<std::string>{std::string(1300, 'x'), "a"}), 1u);
+  EXPECT_EQ(Addresses(writer, Values(2)),
+            (std::vector<std::string>{"/VMC/Ext/Blend/Val", "/VMC/Ext/Blend/Apply"}));
 }
 
 TEST(OscWeightWriter, DoesNotAllocateAfterWarmUp) {
-  OscWeightWriter writer;
+  OscWeightWriter writer(&kFurrow);
   writer.SetNames("anna", Names(100));
   const std::vector<float> values = Values(100);
   const OscWeightWriter::Emit emit = [](std::span<const std::uint8_t>) {};

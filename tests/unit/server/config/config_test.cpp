@@ -179,7 +179,10 @@ TEST(ParseConfig, ReadsEveryTable) {
       "[listen]\nbind = '0.0.0.0'\ntcp = 0\nudp = 1\nthreads = 3\n"
       "[render]\nenabled = true\nrequired = true\ndevice = '1'\n"
       "[mocap]\nvmc = 39539\nlivelink_face = 11111\n"
-      "[osc]\nout = '[::1]:9000'\nprefix = 'x'\n"
+      "[osc]\nout = '[::1]:9000'\nprefix = 'x'\nallow = ['10.0.0.7']\n"
+      "[[osc.target]]\nto = '10.0.0.8:39539'\nprofile = 'vmc'\nsubject = 'ada'\n"
+      "[[osc.target]]\nto = '127.0.0.1:9001'\nprofile = './mine.toml'\nprefix = 'p'\n"
+      "pattern = 'brow_*'\nrate_hz = 30\n"
       "[record]\ndir = 'takes'\nrotate_megabytes = 2\nrotate_seconds = 60\ndatagrams = false\n"
       "[log]\nverbose = true\njson = true\n"
       "[limits]\nmax_subjects = 5\nidle_seconds = 2.5\npacket_burst = 10\n",
@@ -194,6 +197,12 @@ TEST(ParseConfig, ReadsEveryTable) {
   EXPECT_EQ(config.up_axis, "y");
   EXPECT_TRUE(config.require_render);
   EXPECT_EQ(config.osc_out->host, "::1");
+  EXPECT_THAT(config.osc.allow, testing::ElementsAre("10.0.0.7"));
+  ASSERT_EQ(config.osc.targets.size(), 2u);
+  EXPECT_EQ(config.osc.targets[0],
+            (OscTargetConfig{{"10.0.0.8", 39539}, "vmc", "furrow", "ada", "*", 0}));
+  EXPECT_EQ(config.osc.targets[1],
+            (OscTargetConfig{{"127.0.0.1", 9001}, "./mine.toml", "p", "", "brow_*", 30}));
   EXPECT_EQ(config.record, (RecordConfig{"takes", 2.0, 60.0, false}));
   EXPECT_EQ(config.limits.max_subjects, 5);
   EXPECT_DOUBLE_EQ(config.limits.idle_seconds, 2.5);
@@ -242,6 +251,10 @@ TEST(ParseConfig, AnErrorLeavesTheConfigUnchanged) {
         Case{"[listen]\nbind = 7", StatusCode::kSchema, ":2", "listen.bind"},
         Case{"[log]\njson = 'yes'", StatusCode::kSchema, ":2", "log.json"},
         Case{"[osc]\nout = 'x'", StatusCode::kSchema, ":2", "osc.out"},
+        Case{"[[osc.target]]\nto = '127.0.0.1:9000'\n[[osc.target]]\nto = 'x'", StatusCode::kSchema,
+             "", "osc.target number 2: to 'x'"},
+        Case{"[osc]\ntarget = 3", StatusCode::kSchema, ":2", "osc.target must be a list of tables"},
+        Case{"[osc]\ntarget = [3]", StatusCode::kSchema, ":2", "number 1: must be a table"},
         Case{"[limits]\nmax_subjects = 1.5", StatusCode::kSchema, ":2", "limits.max_subjects"},
         Case{"[limits]\nmax_subjects = -9223372036854775808", StatusCode::kSchema, ":2",
              "limits.max_subjects"},
@@ -266,6 +279,12 @@ TEST(ValidateConfig, NamesTheLimitThatIsOutOfRange) {
   config = {};
   config.osc_prefix = "a b";
   EXPECT_THAT(ValidateConfig(config).what(), HasSubstr("osc.prefix"));
+  config = {};
+  config.osc.targets = {{.to = {"127.0.0.1", 9000}, .rate_hz = 1e9}};
+  EXPECT_THAT(ValidateConfig(config).what(), HasSubstr("osc.target: rate_hz"));
+  config = {};
+  config.osc.allow = {"stage"};
+  EXPECT_THAT(ValidateConfig(config).what(), HasSubstr("osc.allow: 'stage'"));
 }
 
 TEST(ValidateConfig, FramesCountFrom0) {

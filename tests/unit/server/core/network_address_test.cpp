@@ -14,5 +14,13 @@ TEST(NetworkAddress, OnlyNumericAddressesWithoutBracketsAreNumeric) {
   }
 }
 
+TEST(NetworkAddress, TextReadsBack) {
+  for (const char* text : {"127.0.0.1:9000", "[::1]:1"}) {
+    const Result<HostPort> parsed = ParseHostPort(text);
+    ASSERT_TRUE(parsed.ok()) << text;
+    EXPECT_EQ(HostPortText(*parsed), text);
+  }
+}
+
 }  // namespace
 }  // namespace furrow::server

@@ -38,7 +38,7 @@ class UdpPortTest : public HubTest {
     parts.metrics = &metrics;
     parts.make_token = [] { return 900u; };
     parts.shards = kShards;
-    parts.on_weights = [this](const Subject& subject, int shard) {
+    parts.on_weights = [this](const Subject& subject, int shard, Time) {
       const std::lock_guard lock(mutex_);
       shards_of_[subject.name].insert(shard);
       ++num_poses_;

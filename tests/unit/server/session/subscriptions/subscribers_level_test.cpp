@@ -86,12 +86,23 @@ TEST_F(HubTest, OscOutputNeedsAllDrivers) {
   parts.rig = std::make_shared<const wrinkle::Rig>(MakeRig(false));
   parts.metrics = &metrics;
   parts.make_token = [] { return std::uint64_t{1}; };
-  parts.on_weights = [](const Subject&, int) {};
+  parts.on_weights = [](const Subject&, int, Time) {};
   hub = std::make_unique<Hub>(std::move(parts));
   FakePeer sender;
   Connect(&sender);
   Publish(sender, "ann");
-  EXPECT_EQ(hub->subjects().all().front()->pipeline->level(), kAllDrivers);
+  const SubjectPipeline& pipeline = *hub->subjects().all().front()->pipeline;
+  EXPECT_EQ(pipeline.level(), kAllDrivers);
+  {
+    const Hub::ExclusiveLock lock(*hub, 0);
+    hub->SetOnWeights({});
+  }
+  EXPECT_EQ(pipeline.level(), 0u) << "nobody needs drivers";
+  {
+    const Hub::ExclusiveLock lock(*hub, 0);
+    hub->SetOnWeights([](const Subject&, int, Time) {});
+  }
+  EXPECT_EQ(pipeline.level(), kAllDrivers);
 }
 
 }  // namespace

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+using UnityEditor;
+using UnityEngine;
+
+namespace Furrow.Editor
+{
+    /// <summary>Shows the status of a target, records it with one button, and removes the recording with another.</summary>
+    [CustomEditor(typeof(FurrowTarget))]
+    public sealed class FurrowTargetEditor : UnityEditor.Editor
+    {
+        public override void OnInspectorGUI()
+        {
+            DrawDefaultInspector();
+            var one = (FurrowTarget)target;
+            EditorGUILayout.LabelField("Status", one.Status);
+            if (GUILayout.Button(one.IsRecording ? "Stop" : "Record"))
+            {
+                if (one.IsRecording)
+                {
+                    Take take = one.StopRecording();
+                    if (take != null)
+                    {
+                        RecordingAssets.Save(one, take);
+                    }
+                }
+                else
+                {
+                    one.StartRecording();
+                }
+            }
+            if (GUILayout.Button("Clear Recording"))
+            {
+                RecordingAssets.Delete(one);
+            }
+        }
+
+        public override bool RequiresConstantRepaint()
+        {
+            return Application.isPlaying;
+        }
+    }
+}

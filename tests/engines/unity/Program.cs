@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+// The package in a program of its own, which sends Unity's messages to the components. Arguments: the address, and the
+// number of frames to receive.
+using System;
+using System.Collections.Generic;
+using System.Linq;
+using System.Reflection;
+using System.Threading;
+using Furrow;
+using UnityEngine;
+
+public static class Program
+{
+    private static readonly string[] SubjectNames = { "ada", "bob" };
+    private static FurrowReceiver receiver;
+    private static readonly List<FurrowTarget> Targets = new List<FurrowTarget>();
+    private static readonly Dictionary<string, Run> Runs = new Dictionary<string, Run>();
+
+    private sealed class Run
+    {
+        public int Current;
+        public int Longest;
+        public uint Last;
+    }
+
+    private static void Tell(string name, string more = "")
+    {
+        Console.WriteLine("furrow-test: {\"event\": \"" + name + "\"" + more + "}");
+    }
+
+    private static void Check(bool condition, string what)
+    {
+        if (!condition)
+        {
+            throw new Exception("check failed: " + what);
+        }
+    }
+
+    // One picture of the engine.
+    private static void Picture()
+    {
+        receiver.Send("Update");
+        foreach (FurrowTarget target in Targets)
+        {
+            target.Send("LateUpdate");
+        }
+        Thread.Sleep(2);
+    }
+
+    private static void RunTestsOfThePackage()
+    {
+        int count = 0;
+        foreach (MethodInfo test in typeof(Furrow.Tests.CoreTests).GetMethods())
+        {
+            if (test.GetCustomAttributes(typeof(NUnit.Framework.TestAttribute), false).Length > 0)
+            {
+                test.Invoke(new Furrow.Tests.CoreTests(), null);
+                ++count;
+            }
+        }
+        Check(count == 4, "tests of the package");
+    }
+
+    private static SkinnedMeshRenderer MeshWithShape(string name)
+    {
+        var mesh = new SkinnedMeshRenderer { name = name };
+        mesh.sharedMesh = new Mesh { blendShapes = new[] { "furrow_brow_l_squash" } };
+        mesh.gameObject.name = name;
+        return mesh;
+    }
+
+    private static void Watch(Subject subject)
+    {
+        var run = new Run();
+        Runs[subject.Requested] = run;
+        subject.Received += one =>
+        {
+            bool follows = one.Frames == 1 || one.Sequence == run.Last + 1;
+            run.Last = one.Sequence;
+            run.Current = follows && !one.IsDecaying ? run.Current + 1 : 1;
+            run.Longest = Math.Max(run.Longest, run.Current);
+        };
+    }
+
+    public static int Main(string[] arguments)
+    {
+        RunTestsOfThePackage();
+        int needed = int.Parse(arguments[1]);
+        var sample = new TwoFaces { first = MeshWithShape("Ada's face"), second = MeshWithShape("bob") };
+        sample.Send("Start");
+        receiver = (FurrowReceiver)sample.gameObject.components.Single();
+        receiver.address = arguments[0];
+        foreach (SkinnedMeshRenderer mesh in new[] { sample.first, sample.second })
+        {
+            Targets.Add((FurrowTarget)mesh.gameObject.components.Single());
+        }
+        Targets[0].wrinkles = new TextAsset
+        {
+            text = "{\"format\": \"furrow-wrinkles\", \"version\": 1, \"masks\": [1.5e0, null, [true]], \"weights\": [" +
+                   "{\"name\": \"nose.squash\", \"index\": 0}, {\"name\": \"elsewhere\"}, {\"name\": \"brow_l.squash\"}]}",
+        };
+        receiver.Send("OnEnable");
+        // Until the performance raises the brows.
+        while (SubjectNames.Any(name => receiver.Follow(name).Frames == 0) || sample.first.shapes[0] == 0)
+        {
+            Picture();
+        }
+        foreach (string name in SubjectNames)
+        {
+            Watch(receiver.Follow(name));
+        }
+        Targets[0].StartRecording();
+        float highest = 0;
+        while (Runs.Values.Any(run => run.Longest < needed))
+        {
+            Picture();
+            float shape = sample.first.shapes[0] / 100;
+            float[] array = sample.first.block.arrays[Shader.PropertyToID("_FurrowWeights")];
+            Check(array.Length == 3 && array[1] == 0 && Math.Abs(array[2] - shape) < 1e-6f, "the order of wrinkles.json");
+            highest = Math.Max(highest, shape);
+        }
+        Tell("received", ", \"runs\": {" + string.Join(", ", Runs.Select(run => "\"" + run.Key + "\": " + run.Value.Longest)) +
+             "}, \"highest\": " + highest.ToString(System.Globalization.CultureInfo.InvariantCulture) +
+             ", \"status\": \"" + Targets[0].Status + "\"");
+        CheckRecording();
+
+        while (receiver.Status != "connection lost, trying again: " + receiver.address)
+        {
+            Picture();
+        }
+        Tell("lost");
+        Dictionary<string, long> before = SubjectNames.ToDictionary(name => name, name => receiver.Follow(name).Frames);
+        while (SubjectNames.Any(name => receiver.Follow(name).Frames == before[name] || receiver.Follow(name).IsDecaying))
+        {
+            Picture();
+        }
+        Tell("again");
+
+        // Disconnect and connect at run time.
+        receiver.Disconnect();
+        Picture();
+        Check(!receiver.IsOpen && receiver.Status == "not connected" && receiver.Follow("ada") == null, "disconnected");
+        receiver.Connect();
+        while (receiver.Follow("bob").Frames == 0)
+        {
+            Picture();
+        }
+        CheckOldestSubject();
+        Targets[0].Send("OnDisable");
+        receiver.Send("OnDisable");
+        receiver.address = "nowhere://";
+        receiver.Connect();
+        Check(!receiver.IsOpen && receiver.Status.Contains("furrow://"), "an invalid address is explained");
+        Tell("end");
+        return 0;
+    }
+
+    private static void CheckRecording()
+    {
+        Furrow.Take take = Targets[0].StopRecording();
+        int index = Array.IndexOf(take.Names, "brow_l.squash");
+        int width = take.Names.Length;
+        int peak = Enumerable.Range(0, take.Times.Count)
+            .OrderByDescending(frame => take.Values[frame * width + index]).First();
+        Furrow.Editor.RecordingAssetsTest.Save(Targets[0], take);
+        var clip = (AnimationClip)UnityEditor.AssetDatabase.Assets["Assets/Furrow/Ada_s_face.anim"];
+        Check(clip.curves["SkinnedMeshRenderer.blendShape.furrow_brow_l_squash"].keys.Length == take.Times.Count, "keys");
+        // The asset plays without the connection, and moves the mesh as the performer did.
+        Targets[0].takeTime = take.Times[peak];
+        Targets[0].Send("LateUpdate");
+        Check(Math.Abs(Targets[0].mesh.shapes[0] / 100 - take.Values[peak * width + index]) < 1e-6f, "the take plays");
+        Tell("recorded", ", \"keys\": " + take.Times.Count + ", \"length\": " +
+             take.Length.ToString(System.Globalization.CultureInfo.InvariantCulture));
+        Furrow.Editor.RecordingAssetsTest.Delete(Targets[0]);
+        Check(UnityEditor.AssetDatabase.Assets.Count == 0 && Targets[0].take == null, "cleared");
+    }
+
+    private static void CheckOldestSubject()
+    {
+        Subject oldest = receiver.Follow("");
+        while (oldest.Frames == 0)
+        {
+            Picture();
+        }
+        Check(SubjectNames.Contains(oldest.Name), "the oldest subject has a name");
+        Check(oldest.Names.Length == oldest.Values.Length, "names and values");
+    }
+}
+
+namespace Furrow.Editor
+{
+    /// <summary>Reaches the internal class.</summary>
+    public static class RecordingAssetsTest
+    {
+        public static void Save(FurrowTarget target, Take take)
+        {
+            RecordingAssets.Save(target, take);
+        }
+
+        public static void Delete(FurrowTarget target)
+        {
+            RecordingAssets.Delete(target);
+        }
+    }
+}
