@@ -89,12 +89,12 @@ class Exporter {
   Status WriteMaps() {
     for (std::size_t i = 0; i < plan_.maps.size(); ++i) {
       const ExportPlan::Map& map = plan_.maps[i];
-      const wrinkle::WrinkleMap& of = character_.rig.wrinkle_maps[static_cast<std::size_t>(map.map)];
+      const wrinkle::WrinkleMap& of =
+          character_.rig.wrinkle_maps[static_cast<std::size_t>(map.map)];
       const auto key = [&](const char* part) { return PictureKey("map", map.name, part); };
       if (map.has_relief()) {
-        FURROW_RETURN_IF_ERROR(
-            WritePicture(key("normal"), map.name + "_normal",
-                         NormalMapPicture(SlopesOf(character_, map), normals_)));
+        FURROW_RETURN_IF_ERROR(WritePicture(key("normal"), map.name + "_normal",
+                                            NormalMapPicture(SlopesOf(character_, map), normals_)));
       }
       if (map.height >= 0) {
         const HeightMap height = HeightMapOf(PictureAt(map.height), of.height_mm);

@@ -33,7 +33,8 @@ using FileSink = std::function<Status(const std::string& name, std::string_view 
 
 // Writes a character's wrinkles for an engine: textures/, shaders/, wrinkles.json and README.md.
 //
-// - Each wrinkle map becomes a tangent-space normal map in the engine's convention; heights, colours
+// - Each wrinkle map becomes a tangent-space normal map in the engine's convention; heights,
+// colours
 //   and cavities are written if the character has them. Masks are packed four to a picture.
 // - Equal inputs give equal files.
 //

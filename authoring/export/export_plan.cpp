@@ -109,8 +109,8 @@ class Planner {
     if (unpainted.empty()) return;
     std::string names;
     for (const std::string& name : unpainted) names += (names.empty() ? "" : ", ") + name;
-    plan_.notes.push_back(Counted(unpainted.size(), "region") + " without a painted mask: " +
-                          CutText(names, 200));
+    plan_.notes.push_back(Counted(unpainted.size(), "region") +
+                          " without a painted mask: " + CutText(names, 200));
   }
 
   void Place(int region, int picture, int channel) {
@@ -171,7 +171,7 @@ class Planner {
 
   const character::Character& character_;
   ExportPlan plan_;
-  std::map<std::string, int> map_of_;              // rig's name -> index into plan_.maps
+  std::map<std::string, int> map_of_;            // rig's name -> index into plan_.maps
   std::map<int, std::pair<int, int>> place_of_;  // region -> mask and channel
 };
 

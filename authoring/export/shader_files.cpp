@@ -42,8 +42,7 @@ constexpr std::array<FileRule, 12> kRules = {{
      "shaders/furrow_*.shader"},
     {Engine::kGodot, "client/engines/godot/addons/furrow/shaders/furrow_wrinkles.gdshader.in",
      "shaders/furrow_*.gdshader"},
-    {Engine::kGodot, "client/engines/godot/addons/furrow/furrow_material.gd",
-     "furrow_material.gd"},
+    {Engine::kGodot, "client/engines/godot/addons/furrow/furrow_material.gd", "furrow_material.gd"},
     {Engine::kBlender, "client/engines/blender/furrow/nodes.py", "nodes.py"},
 }};
 
@@ -121,13 +120,13 @@ class MaterialData {
     if (material.texture_scale == glm::vec2(1.0f) && material.texture_offset == glm::vec2(0.0f)) {
       return uv;
     }
-    const std::string vec2 = engine_ == Engine::kUnity || engine_ == Engine::kUnreal ? "float2"
-                                                                                     : "vec2";
+    const std::string vec2 =
+        engine_ == Engine::kUnity || engine_ == Engine::kUnreal ? "float2" : "vec2";
     const auto pair = [&](const glm::vec2& v) {
       return vec2 + "(" + Literal(v.x) + ", " + Literal(v.y) + ")";
     };
-    return "(" + uv + " * " + pair(material.texture_scale) + " + " +
-           pair(material.texture_offset) + ")";
+    return "(" + uv + " * " + pair(material.texture_scale) + " + " + pair(material.texture_offset) +
+           ")";
   }
 
   // The expression of a weight in the engine's language.

@@ -24,8 +24,8 @@ struct TextFile {
 // list `materials` holds the data of each material, with the lists `maps`, `masks`, `weights` and
 // `packs` (four weights each), and for each map `terms`: the weights that raise it, as expressions
 // of the engine's language, one vector per mask.
-[[nodiscard]] TemplateData ShaderData(const character::Character& character,
-                                      const ExportPlan& plan, Engine engine,
+[[nodiscard]] TemplateData ShaderData(const character::Character& character, const ExportPlan& plan,
+                                      Engine engine,
                                       const std::map<std::string, std::string>& files);
 
 // The shaders and scripts of an engine: files that are copied, and one file per material. Error:

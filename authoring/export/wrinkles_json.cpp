@@ -34,7 +34,8 @@ Json Numbers(const Vector& v) {
 
 Json Curve(const std::vector<wrinkle::CurvePoint>& points) {
   Json list = Json::array();
-  for (const wrinkle::CurvePoint& point : points) list.push_back(Json::array({Number(point.x), Number(point.y)}));
+  for (const wrinkle::CurvePoint& point : points)
+    list.push_back(Json::array({Number(point.x), Number(point.y)}));
   return list;
 }
 
@@ -152,7 +153,7 @@ class Writer {
   // Hints: what raises the weight. A daemon sends the finished weight.
   [[nodiscard]] Json Drivers(const wrinkle::Region& region, const wrinkle::Feed& feed) const {
     constexpr std::array kCombine = {"max", "sum", "mean", "sum_modulated"};  // wrinkle::Combine
-    constexpr std::array kModulation = {"linear", "cosine", "cubic"};  // wrinkle::Modulation
+    constexpr std::array kModulation = {"linear", "cosine", "cubic"};         // wrinkle::Modulation
     Json sources = Json::array();
     for (const wrinkle::Feed::Source& source : feed.sources) {
       Json json = {{"driver", source.driver}};

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "authoring/export/engine.h"
-#include "authoring/export/export_plan.h"
 #include "authoring/export/export_pictures.h"
+#include "authoring/export/export_plan.h"
 #include "character/character.h"
 #include "rig/exports/export_profile.h"
 

@@ -107,7 +107,8 @@ class ProfileReader {
 
   Status AddName(const std::string& name, const Json& value, const std::string& side,
                  const std::string& field, ExportProfile* profile) {
-    if (name.empty() || name.size() > kMaxText) return Error(field, "the name is empty or too long");
+    if (name.empty() || name.size() > kMaxText)
+      return Error(field, "the name is empty or too long");
     if (!seen_.insert(name).second) return Error(field, "duplicate name " + Quoted(name));
     if (profile->names.size() == kMaxExports) {
       return Error("names", "has more than 4096 names", StatusCode::kLimit);
@@ -180,8 +181,8 @@ Result<ExportProfile> ParseExportProfile(std::string_view json, std::string_view
 Result<ExportProfile> LoadExportProfile(const std::string& name_or_file) {
   const auto file = FindMap(kFolder, name_or_file);
   if (!file.ok()) {
-    return Status(StatusCode::kNotFound, "there is no export profile '" + name_or_file + "'",
-                  "", "shipped profiles: " + ListProfiles() + "; or name a file");
+    return Status(StatusCode::kNotFound, "there is no export profile '" + name_or_file + "'", "",
+                  "shipped profiles: " + ListProfiles() + "; or name a file");
   }
   return ReadProfileFile(*file);
 }

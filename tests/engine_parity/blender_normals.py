@@ -8,7 +8,12 @@ import math
 import sys
 
 import bpy
+import numpy
 from mathutils import Vector
+
+# The glTF importer of Blender 3.4.1 uses a name that Debian's numpy 1.24 has removed.
+if not hasattr(numpy, "bool"):
+    numpy.bool = bool
 
 job = json.load(open(sys.argv[sys.argv.index("--") + 1], encoding="utf-8"))
 sys.path.insert(0, job["nodes"])

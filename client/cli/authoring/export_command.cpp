@@ -49,9 +49,8 @@ int Export(const ExportArguments& arguments) {
   options.generator = std::string("furrow ") + FURROW_VERSION;
   if (profiles.ok()) options.profiles = *profiles;
   const auto done = authoring::ExportCharacter(
-      *character, options, [&](const std::string& name, std::string_view bytes) {
-        return folder->Write(name, bytes);
-      });
+      *character, options,
+      [&](const std::string& name, std::string_view bytes) { return folder->Write(name, bytes); });
   if (!done.ok()) return Fail(done.status().At(arguments.character));
   if (Status status = folder->Commit(); !status.ok()) return Fail(status);
   PrintWarnings(done->notes);

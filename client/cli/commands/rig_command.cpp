@@ -93,8 +93,8 @@ int Check(const RigOptions& options) {
   std::set<std::string> missing;
   const auto poses = RigPoses(options.read, options.skeleton_map);
   if (!poses.ok()) return Fail(poses.status());
-  const auto rig = rig::LoadRig(ResolveRigPath(options.rig), *poses,
-                                options.file.empty() ? &missing : nullptr);
+  const auto rig =
+      rig::LoadRig(ResolveRigPath(options.rig), *poses, options.file.empty() ? &missing : nullptr);
   if (!rig.ok()) return Fail(rig.status());
   const auto profiles = LoadProfiles(options.profiles, *rig);
   if (!profiles.ok()) return Fail(profiles.status());

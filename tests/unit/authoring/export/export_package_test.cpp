@@ -142,14 +142,17 @@ TEST(ExportPackage, NormalMapsFollowTheEngine) {
   ExportOptions options;
   options.engine = Engine::kBlender;
   options.bits = 8;
-  EXPECT_FALSE(Decoded(Export(test::SmallFace(), options), "textures/squash_normal.png").pixels.empty());
+  EXPECT_FALSE(
+      Decoded(Export(test::SmallFace(), options), "textures/squash_normal.png").pixels.empty());
 }
 
 TEST(ExportPackage, ShadersSumTheWeightsOfEachMap) {
   const std::string glsl = ExportFor(Engine::kThree).at("shaders/furrow_skin.glsl");
   EXPECT_THAT(glsl, HasSubstr("#define FURROW_WEIGHTS 6\n"));
-  EXPECT_THAT(glsl, HasSubstr("c += dot(mask0, vec4(furrowWeights[0], furrowWeights[2], 0.0, 0.0));"));
-  EXPECT_THAT(glsl, HasSubstr("c += dot(mask0, vec4(furrowWeights[1], furrowWeights[3], 0.0, 0.0));"));
+  EXPECT_THAT(glsl,
+              HasSubstr("c += dot(mask0, vec4(furrowWeights[0], furrowWeights[2], 0.0, 0.0));"));
+  EXPECT_THAT(glsl,
+              HasSubstr("c += dot(mask0, vec4(furrowWeights[1], furrowWeights[3], 0.0, 0.0));"));
   EXPECT_THAT(glsl, HasSubstr("slope += 0.5 * c * furrowSlope(texture(furrowNormal1, uv).xyz);"));
   EXPECT_THAT(glsl, HasSubstr("1.25 * furrowLinear(texture(furrowColour1, uv).rgb)"));
   const std::string unreal = ExportFor(Engine::kUnreal).at("shaders/Furrow_skin.ush");
@@ -175,19 +178,19 @@ TEST(ExportPackage, TilesOfAnAtlasMoveTheBaseTextures) {
 TEST(ExportPackage, RefusesWeightsThatShareAParameter) {
   character::Character face = test::SmallFace();
   face.rig.regions[1].name = "brow-l";
-  const auto done = ExportCharacter(face, {}, [](const std::string&, std::string_view) {
-    return Status();
-  });
+  const auto done =
+      ExportCharacter(face, {}, [](const std::string&, std::string_view) { return Status(); });
   EXPECT_EQ(done.status().code(), StatusCode::kInvalidArgument);
   EXPECT_THAT(done.status().what(), HasSubstr("furrow_brow_l_stretch"));
 }
 
 TEST(ExportPackage, StopsAtTheFirstErrorOfTheSink) {
   int calls = 0;
-  const auto done = ExportCharacter(test::SmallFace(), {}, [&](const std::string&, std::string_view) {
-    ++calls;
-    return Status(StatusCode::kIo, "disk full");
-  });
+  const auto done =
+      ExportCharacter(test::SmallFace(), {}, [&](const std::string&, std::string_view) {
+        ++calls;
+        return Status(StatusCode::kIo, "disk full");
+      });
   EXPECT_EQ(done.status().code(), StatusCode::kIo);
   EXPECT_EQ(calls, 1);
 }

@@ -19,7 +19,8 @@ TEST(ExportPictures, NormalsAreUnitVectorsInTheEnginesConvention) {
   // n = (1, 2, 1) / sqrt(6): values worked out by hand.
   const auto up = NormalMapPicture(OneSlope(1.0f, 2.0f), {8, false});
   EXPECT_EQ(up.channels, 3);
-  EXPECT_THAT(up.pixels, ElementsAre(180, 232, 180));  // 127.5 + 127.5 * (0.40825, 0.81650, 0.40825)
+  EXPECT_THAT(up.pixels,
+              ElementsAre(180, 232, 180));  // 127.5 + 127.5 * (0.40825, 0.81650, 0.40825)
   const auto down = NormalMapPicture(OneSlope(1.0f, 2.0f), {8, true});
   EXPECT_THAT(down.pixels, ElementsAre(180, 23, 180));
   const auto fine = NormalMapPicture(OneSlope(0.0f, 0.0f), {16, false});
@@ -71,7 +72,7 @@ TEST(ExportPictures, MasksArePackedByRegion) {
   const character::Character face = test::SmallFace();
   const auto picture = MaskPicture(face, {{1, 0, 2, -1}, 4, 4});
   ASSERT_EQ(picture.pixels.size(), 64u);
-  const std::size_t texel = 4 * (2 * 4 + 1);  // x = 1, y = 2
+  const std::size_t texel = 4 * (2 * 4 + 1);                 // x = 1, y = 2
   EXPECT_EQ(picture.pixels[texel + 0], 16 * 2 + 4 * 1 + 1);  // brow_r: green of "masks"
   EXPECT_EQ(picture.pixels[texel + 1], 16 * 2 + 4 * 1 + 0);  // brow_l: red
   // knee: 2 x 2 texels of 100 x + 50 y. (1.5, 2.5) of 4 lies at (0.25, 0.75) between their centres.

@@ -9,9 +9,9 @@
 #include "character/character.h"
 
 // A character of one triangle with pictures whose texels are known. It has the materials "skin",
-// "shirt" (cloth) and "hair", and a rig of four regions: brow_l and brow_r with the painted masks of
-// "masks" (red and green) and the maps stretch and squash; knee with a mask of its own size and the
-// cloth map folds, which follows an angle; arm with a mask by skin weights.
+// "shirt" (cloth) and "hair", and a rig of four regions: brow_l and brow_r with the painted masks
+// of "masks" (red and green) and the maps stretch and squash; knee with a mask of its own size and
+// the cloth map folds, which follows an angle; arm with a mask by skin weights.
 namespace furrow::authoring::test {
 
 inline character::Picture MakePicture(const std::string& name, int width, int height, int channels,
@@ -42,10 +42,9 @@ inline character::Character SmallFace() {
   using wrinkle::Mask;
   character::Character face;
   face.name = "small";
-  for (const auto& [name, kind] :
-       {std::pair("skin", character::Material::Kind::kSkin),
-        std::pair("shirt", character::Material::Kind::kCloth),
-        std::pair("hair", character::Material::Kind::kHair)}) {
+  for (const auto& [name, kind] : {std::pair("skin", character::Material::Kind::kSkin),
+                                   std::pair("shirt", character::Material::Kind::kCloth),
+                                   std::pair("hair", character::Material::Kind::kHair)}) {
     face.materials.emplace_back();
     face.materials.back().name = name;
     face.materials.back().kind = kind;

@@ -12,7 +12,8 @@ TemplateData Data() {
   TemplateData data;
   data.texts = {{"name", "outer"}, {"empty", ""}};
   data.lists["none"] = {};
-  data.lists["maps"] = {{{{"name", "a"}, {"file", "a.png"}}, {}}, {{{"name", "b"}, {"file", ""}}, {}}};
+  data.lists["maps"] = {{{{"name", "a"}, {"file", "a.png"}}, {}},
+                        {{{"name", "b"}, {"file", ""}}, {}}};
   data.lists["maps"][0].lists["terms"] = {{{{"mask", "0"}}, {}}, {{{"mask", "3"}}, {}}};
   data.lists["maps"][1].lists["terms"] = {};
   return data;
@@ -30,8 +31,10 @@ TEST(TextTemplate, ReplacesNames) {
 }
 
 TEST(TextTemplate, RepeatsBlocksWithInnerNamesFirst) {
-  EXPECT_EQ(Expanded("// @each maps\n@{name}\n// @each terms\n  @{name}@{mask}\n// @end\n// @end\n@{name}\n"),
-            "a\n  a0\n  a3\nb\nouter\n");
+  EXPECT_EQ(
+      Expanded(
+          "// @each maps\n@{name}\n// @each terms\n  @{name}@{mask}\n// @end\n// @end\n@{name}\n"),
+      "a\n  a0\n  a3\nb\nouter\n");
   EXPECT_EQ(Expanded("# @each none\nx\n# @end\n"), "");
 }
 
@@ -46,8 +49,8 @@ TEST(TextTemplate, ReportsFaultsWithTheirLine) {
   const struct {
     const char* text;
     const char* where;
-  } cases[] = {{"x\n@{missing}\n", "t:2"},     {"@{name\n", "t:1"},
-               {"\n// @each maps\n", "t:2"},   {"// @end\n", "t:1"},
+  } cases[] = {{"x\n@{missing}\n", "t:2"},        {"@{name\n", "t:1"},
+               {"\n// @each maps\n", "t:2"},      {"// @end\n", "t:1"},
                {"// @each name\n// @end", "t:1"}, {"// @if missing\n// @end", "t:1"}};
   for (const auto& c : cases) {
     const auto result = ExpandTemplate(c.text, Data(), "t");

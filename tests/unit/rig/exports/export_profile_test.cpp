@@ -28,7 +28,8 @@ constexpr char kValid[] = R"({
 wrinkle::Rig SmallRig() {
   wrinkle::Rig rig;
   for (const char* region : {"brow_l", "brow_r", "nose"}) {
-    rig.regions.push_back({.name = region, .mask = {}, .feeds = {{.map = "squash", .sources = {}}}});
+    rig.regions.push_back(
+        {.name = region, .mask = {}, .feeds = {{.map = "squash", .sources = {}}}});
   }
   return rig;
 }
@@ -61,8 +62,7 @@ TEST(ExportProfile, RefusesEachMalformedFieldByName) {
       {R"({"version": 1, "name": "a", "names": {"b": 3}})", StatusCode::kSchema, "names.'b'"},
       {R"({"version": 1, "name": "a", "names": {"b": [3]}})", StatusCode::kSchema, "names.'b'"},
       {R"({"version": 1, "name": "a", "names": {"b_*": []}})", StatusCode::kSchema, "names.'b_*'"},
-      {R"({"version": 1, "name": "a", "names": {"b": "x_*.y"}})", StatusCode::kSchema,
-       "names.'b'"},
+      {R"({"version": 1, "name": "a", "names": {"b": "x_*.y"}})", StatusCode::kSchema, "names.'b'"},
       {R"({"version": 1, "name": "a", "name2": 1, "names": {"b": []}})", StatusCode::kSchema,
        "'name2'"},
       {R"({"version": 1, "name": "a", "sides": {"left": "x", "right": "x"}, "names": {"b": []}})",
@@ -89,7 +89,8 @@ TEST(ExportProfile, RefusesEveryTruncationAndExtraBytes) {
 
 TEST(ExportProfile, RefusesTooManyNamesAndWeights) {
   std::string names;
-  for (int i = 0; i <= 4096; ++i) names += (i > 0 ? "," : "") + ("\"n" + std::to_string(i)) + "\":[]";
+  for (int i = 0; i <= 4096; ++i)
+    names += (i > 0 ? "," : "") + ("\"n" + std::to_string(i)) + "\":[]";
   const std::string head = R"({"version":1,"name":"a","names":{)";
   EXPECT_EQ(ParseExportProfile(head + names + "}}", "p").status().code(), StatusCode::kLimit);
   std::string weights = "\"w\"";
