@@ -2,12 +2,15 @@
 #include "authoring/export/export_pictures.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
+
+#include "authoring/export/skinned_mask.h"
 
 namespace furrow::authoring {
 namespace {
@@ -110,13 +113,19 @@ Picture MaskPicture(const character::Character& character, const ExportPlan::Mas
     const Picture* picture = nullptr;
     int channel = 0;
   };
+  std::array<Picture, 4> painted;  // masks by skin weights
   std::array<Source, 4> sources;
   for (std::size_t c = 0; c < 4; ++c) {
     if (mask.regions[c] < 0) continue;
-    const wrinkle::Mask& from =
-        character.rig.regions[static_cast<std::size_t>(mask.regions[c])].mask;
-    const int index = character.FindRigPicture(from.texture);
-    sources[c] = {&character.pictures[static_cast<std::size_t>(index)], from.channel};
+    const wrinkle::Region& region =
+        character.rig.regions[static_cast<std::size_t>(mask.regions[c])];
+    if (region.mask.kind == wrinkle::Mask::Kind::kSkinning) {
+      painted[c] = SkinnedMaskPicture(character, region, kSkinnedMaskSide);
+      sources[c] = {&painted[c], 0};
+    } else {
+      const int index = character.FindRigPicture(region.mask.texture);
+      sources[c] = {&character.pictures[static_cast<std::size_t>(index)], region.mask.channel};
+    }
   }
   for (int y = 0; y < mask.height; ++y) {
     const float v = (static_cast<float>(y) + 0.5f) / static_cast<float>(mask.height);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "authoring/export/engine.h"
+#include "authoring/export/skinned_mask.h"
 #include "base/text.h"
 #include "render/wrinkles/wrinkle_table.h"
 
@@ -93,9 +94,8 @@ class Planner {
         const wrinkle::Region& region = rig().regions[i];
         if (IsDrawnOn(region, WrinkleGroup::kSkin) != skin) continue;
         if (!skin && !IsDrawnOn(region, WrinkleGroup::kCloth)) continue;
-        const int picture =
-            region.mask.kind == Mask::Kind::kTexture ? Find(region.mask.texture) : -1;
-        if (picture < 0) {
+        const glm::ivec2 size = MaskSize(region);
+        if (size == glm::ivec2(0)) {
           unpainted.push_back(region.name);
           continue;
         }
@@ -103,22 +103,37 @@ class Planner {
           plan_.masks.emplace_back();
           channel = 0;
         }
-        Place(static_cast<int>(i), picture, channel++);
+        Place(static_cast<int>(i), size, channel++);
       }
     }
     if (unpainted.empty()) return;
     std::string names;
     for (const std::string& name : unpainted) names += (names.empty() ? "" : ", ") + name;
     plan_.notes.push_back(Counted(unpainted.size(), "region") +
-                          " without a painted mask: " + CutText(names, 200));
+                          " whose mask cannot become a picture: " + CutText(names, 200));
   }
 
-  void Place(int region, int picture, int channel) {
+  // The texels of a region's mask; 0 x 0 if it cannot become a picture.
+  [[nodiscard]] glm::ivec2 MaskSize(const wrinkle::Region& region) const {
+    switch (region.mask.kind) {
+      case Mask::Kind::kTexture: {
+        const int index = Find(region.mask.texture);
+        if (index < 0) return glm::ivec2(0);
+        const character::Picture& picture = character_.pictures[static_cast<std::size_t>(index)];
+        return {picture.width, picture.height};
+      }
+      case Mask::Kind::kSkinning:
+        return glm::ivec2(MaskJoints(character_, region).empty() ? 0 : kSkinnedMaskSide);
+      case Mask::Kind::kSliding: break;
+    }
+    return glm::ivec2(0);
+  }
+
+  void Place(int region, const glm::ivec2& size, int channel) {
     ExportPlan::Mask& mask = plan_.masks.back();
-    const character::Picture& source = character_.pictures[static_cast<std::size_t>(picture)];
     mask.regions[static_cast<std::size_t>(channel)] = region;
-    mask.width = std::max(mask.width, source.width);
-    mask.height = std::max(mask.height, source.height);
+    mask.width = std::max(mask.width, size.x);
+    mask.height = std::max(mask.height, size.y);
     place_of_[region] = {static_cast<int>(plan_.masks.size()) - 1, channel};
   }
 

@@ -62,8 +62,11 @@ struct ExportPlan {
 //
 // - Painted masks are packed anew, four to a picture, in the order of the rig's regions. Skin and
 //   cloth have pictures of their own, so that a material reads as few as possible.
-// - Masks that follow the joints (`skinning`, `sliding`) have no picture. Their weights are listed,
-//   so that indices match the stream, but they are not drawn.
+// - Masks by skin weights become pictures (skinned_mask.h).
+// - Sliding masks follow the pose and cannot become pictures, and pictures of the rig may be
+// missing.
+//   The weights of these regions are listed, so that indices match the stream, but they are not
+//   drawn.
 //
 // Errors: kNotFound (no rig), kUnsupported (no weight can be drawn; the text lists the reasons).
 [[nodiscard]] Result<ExportPlan> PlanExport(const character::Character& character);

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs in Blender: draws the normals of a character as seen, once for each set of weights.
 
-blender -b --factory-startup --python blender_normals.py -- JOB.json; the job names the files (test_blender_parity.py).
+blender -b --factory-startup --python blender_normals.py -- JOB.json; the job names the files (test_parity.py).
 """
 import json
 import math

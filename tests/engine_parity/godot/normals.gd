@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Draws the normals of a character as seen, once for each set of weights. The job names the files
-# (test_godot_parity.py): godot3-runner -s normals.gd JOB.json
+# (test_parity.py): godot3-runner -s normals.gd JOB.json
 extends SceneTree
 
 var job := {}
@@ -37,7 +37,6 @@ func _run():
 	for mesh in job.meshes:
 		_add_mesh(mesh)
 	for picture in job.pictures:
-		var zero := []
 		for weight in wrinkles.wrinkles.weights:
 			wrinkles.set_weights([weight.name], [0.0])
 		wrinkles.set_weights(picture.weights.keys(), picture.weights.values())

@@ -51,7 +51,8 @@ TEST(ExportPlan, MasksWithoutAPictureAreNoted) {
   const auto plan = PlanExport(test::SmallFace());
   ASSERT_TRUE(plan.ok());
   EXPECT_FALSE(plan->weights[5].is_drawn());
-  EXPECT_THAT(plan->notes, ElementsAre(HasSubstr("1 region without a painted mask: arm")));
+  EXPECT_THAT(plan->notes,
+              ElementsAre(HasSubstr("1 region whose mask cannot become a picture: arm")));
 }
 
 TEST(ExportPlan, FiveRegionsNeedASecondPicture) {
