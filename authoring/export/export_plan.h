@@ -60,13 +60,11 @@ struct ExportPlan {
 
 // Plans the export of a character with a rig.
 //
-// - Painted masks are packed anew, four to a picture, in the order of the rig's regions. Skin and
-//   cloth have pictures of their own, so that a material reads as few as possible.
+// - Masks are packed four to a picture, in the order of the rig's regions. Skin and cloth have
+//   pictures of their own, so that a material reads as few as possible.
 // - Masks by skin weights become pictures (skinned_mask.h).
-// - Sliding masks follow the pose and cannot become pictures, and pictures of the rig may be
-// missing.
-//   The weights of these regions are listed, so that indices match the stream, but they are not
-//   drawn.
+// - A region has no picture if its mask slides, because it then follows the pose, or if the rig's
+//   picture is missing. Its weights are listed, so that indices match the stream, but not drawn.
 //
 // Errors: kNotFound (no rig), kUnsupported (no weight can be drawn; the text lists the reasons).
 [[nodiscard]] Result<ExportPlan> PlanExport(const character::Character& character);

@@ -83,7 +83,9 @@ for obj in list(bpy.context.scene.objects):
     if obj.type != "MESH":
         continue
     try:
-        materials = nodes.build_material(job["wrinkles"], obj)
+        count = {name: len(m.node_tree.nodes) for name, m in nodes.build_material(job["wrinkles"], obj).items()}
+        materials = nodes.build_material(job["wrinkles"], obj)  # the second call replaces the nodes of the first
+        assert count == {name: len(m.node_tree.nodes) for name, m in materials.items()}, count
     except ValueError:
         materials = {}
     if not set(materials) & set(job["materials"]):

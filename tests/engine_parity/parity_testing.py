@@ -125,11 +125,11 @@ class Parity:
 
 
 def run(command, **options):
-    """Runs an engine; its output is shown if it fails."""
+    """Runs an engine and returns what it prints, which is shown if it fails."""
     done = subprocess.run([str(c) for c in command], capture_output=True, text=True, timeout=600, **options)
     if done.returncode != 0:
         raise AssertionError(f"{command[0]} ended with {done.returncode}\n{done.stdout[-4000:]}\n{done.stderr[-4000:]}")
-    return done.stdout
+    return done.stdout + done.stderr
 
 
 class GlbMeshes:
