@@ -10,6 +10,7 @@
 #include "authoring/export/export_plan.h"
 #include "authoring/export/shader_files.h"
 #include "authoring/export/wrinkles_json.h"
+#include "base/text.h"
 #include "character/pictures/picture_file.h"
 #include "render/wrinkles/derivative_map.h"
 
@@ -34,11 +35,7 @@ class Exporter {
     plan_ = std::move(*plan);
     FURROW_RETURN_IF_ERROR(CheckParameters());
     FURROW_RETURN_IF_ERROR(WriteMaps());
-    for (std::size_t i = 0; i < plan_.masks.size(); ++i) {
-      const std::string number = std::to_string(i);
-      FURROW_RETURN_IF_ERROR(WritePicture(PictureKey("mask", number), "masks_" + number,
-                                          MaskPicture(character_, plan_.masks[i])));
-    }
+    FURROW_RETURN_IF_ERROR(WriteMasks());
     for (const ExportPlan::Material& material : plan_.materials) {
       FURROW_RETURN_IF_ERROR(WriteMaterial(material));
     }
@@ -104,6 +101,22 @@ class Exporter {
       FURROW_RETURN_IF_ERROR(WriteCopy(key("colour"), map.name + "_colour", map.colour));
       FURROW_RETURN_IF_ERROR(WriteCopy(key("cavity"), map.name + "_cavity", map.cavity));
     }
+    return {};
+  }
+
+  Status WriteMasks() {
+    std::vector<std::string> shared;
+    for (std::size_t i = 0; i < plan_.masks.size(); ++i) {
+      const std::string number = std::to_string(i);
+      FURROW_RETURN_IF_ERROR(WritePicture(PictureKey("mask", number), "masks_" + number,
+                                          MaskPicture(character_, plan_.masks[i], &shared)));
+    }
+    if (shared.empty()) return {};
+    std::string names;
+    for (const std::string& name : shared) names += (names.empty() ? "" : ", ") + name;
+    plan_.notes.push_back(Counted(shared.size(), "region") +
+                          " on parts that share a texture, so that these parts fold together: " +
+                          CutText(names, 200));
     return {};
   }
 

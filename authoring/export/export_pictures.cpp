@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -101,7 +102,8 @@ HeightMap HeightMapOf(const Picture& source, float millimetres) {
   return map;
 }
 
-Picture MaskPicture(const character::Character& character, const ExportPlan::Mask& mask) {
+Picture MaskPicture(const character::Character& character, const ExportPlan::Mask& mask,
+                    std::vector<std::string>* shared) {
   Picture picture{.name = {},
                   .width = mask.width,
                   .height = mask.height,
@@ -120,7 +122,9 @@ Picture MaskPicture(const character::Character& character, const ExportPlan::Mas
     const wrinkle::Region& region =
         character.rig.regions[static_cast<std::size_t>(mask.regions[c])];
     if (region.mask.kind == wrinkle::Mask::Kind::kSkinning) {
-      painted[c] = SkinnedMaskPicture(character, region, kSkinnedMaskSide);
+      SkinnedMask skinned = PaintSkinnedMask(character, region, kSkinnedMaskSide);
+      if (skinned.is_shared) shared->push_back(region.name);
+      painted[c] = std::move(skinned.picture);
       sources[c] = {&painted[c], 0};
     } else {
       const int index = character.FindRigPicture(region.mask.texture);

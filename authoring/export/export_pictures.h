@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "authoring/export/export_plan.h"
 #include "base/status.h"
 #include "character/character.h"
@@ -34,9 +37,11 @@ struct HeightMap {
 [[nodiscard]] HeightMap HeightMapOf(const character::Picture& source, float millimetres);
 
 // The masks of up to four regions in red, green, blue and alpha, 8 bits. Sources of other sizes are
-// resampled bilinearly; unused channels are 0.
+// resampled bilinearly; unused channels are 0. Appends to `shared` the regions whose skin weights
+// differ where the surface shares texels (SkinnedMask::is_shared).
 [[nodiscard]] character::Picture MaskPicture(const character::Character& character,
-                                             const ExportPlan::Mask& mask);
+                                             const ExportPlan::Mask& mask,
+                                             std::vector<std::string>* shared);
 
 // The picture with 8 or 16 bits per channel; float pictures become RGBA of 8 bits.
 [[nodiscard]] character::Picture IntegerPicture(const character::Picture& picture);

@@ -19,6 +19,12 @@ namespace {
 using render::WrinkleGroup;
 
 constexpr float kReach = 2.5f;  // texels beyond the surface that filtering may sample
+// Points inside their triangles that share a texel: how far their masks may differ, the barycentric
+// distance from an edge, beyond which a texel may belong to the neighbour, and the number of specks
+// that are allowed.
+constexpr float kMaxDifference = 2.0f / 255.0f;
+constexpr float kEdge = 1e-3f;
+constexpr int kMaxShared = 16;
 
 // True if one of the region's maps is drawn on the material.
 bool IsOn(const character::Character& character, const wrinkle::Region& region,
@@ -63,16 +69,28 @@ struct Canvas {
       };
       const glm::vec3 corners(at(0), at(1), at(2));
       render::ForTexels(triangles[t], glm::ivec2(side), kReach, [&](const render::UvTexel& texel) {
-        if (texel.distance_squared >= distances[texel.index]) return;
-        distances[texel.index] = texel.distance_squared;
-        values[texel.index] = glm::dot(texel.shares, corners);
+        Add(texel, glm::dot(texel.shares, corners));
       });
     }
+  }
+
+  void Add(const render::UvTexel& texel, float value) {
+    float& distance = distances[texel.index];
+    float& stored = values[texel.index];
+    if (texel.distance_squared > distance) return;
+    const bool is_shared = distance == 0.0f;
+    if (is_shared && std::min({texel.shares.x, texel.shares.y, texel.shares.z}) > kEdge &&
+        std::abs(Saturate(value) - Saturate(stored)) > kMaxDifference) {
+      ++shared;
+    }
+    stored = is_shared ? std::max(stored, value) : value;
+    distance = texel.distance_squared;
   }
 
   int side;
   std::vector<float> values;
   std::vector<float> distances;  // squared, in texels
+  int shared = 0;                // visits to a texel with another mask
 };
 
 }  // namespace
@@ -93,8 +111,8 @@ std::vector<int> MaskJoints(const character::Character& character, const wrinkle
   return {joints.begin(), joints.end()};
 }
 
-character::Picture SkinnedMaskPicture(const character::Character& character,
-                                      const wrinkle::Region& region, int side) {
+SkinnedMask PaintSkinnedMask(const character::Character& character, const wrinkle::Region& region,
+                             int side) {
   const std::vector<int> joints = MaskJoints(character, region);
   Canvas canvas(side);
   for (const character::Mesh& mesh : character.meshes) {
@@ -103,7 +121,9 @@ character::Picture SkinnedMaskPicture(const character::Character& character,
       canvas.Paint(mesh, joints, region.mask);
     }
   }
-  character::Picture picture;
+  SkinnedMask mask;
+  mask.is_shared = canvas.shared > kMaxShared;
+  character::Picture& picture = mask.picture;
   picture.name = region.name;
   picture.width = picture.height = side;
   picture.channels = 1;
@@ -111,7 +131,7 @@ character::Picture SkinnedMaskPicture(const character::Character& character,
   for (const float value : canvas.values) {
     picture.pixels.push_back(static_cast<std::uint8_t>(std::lround(255.0f * Saturate(value))));
   }
-  return picture;
+  return mask;
 }
 
 }  // namespace furrow::authoring

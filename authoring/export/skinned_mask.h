@@ -21,7 +21,14 @@ inline constexpr int kSkinnedMaskSide = 1024;  // texels of a mask that an expor
 //   equal if one driver value raises the region, as at a knee or an elbow.
 // - Texels beyond the edge of the surface get the value of its nearest point, as far as filtering
 //   reaches. Materials whose UVs overlap themselves too much are left out.
-[[nodiscard]] character::Picture SkinnedMaskPicture(const character::Character& character,
-                                                    const wrinkle::Region& region, int side);
+// - A picture cannot tell apart points that share a texel, such as two sleeves with one texture.
+// The
+//   largest of their masks counts, and `is_shared` says so.
+struct SkinnedMask {
+  character::Picture picture;
+  bool is_shared = false;
+};
+[[nodiscard]] SkinnedMask PaintSkinnedMask(const character::Character& character,
+                                           const wrinkle::Region& region, int side);
 
 }  // namespace furrow::authoring

@@ -70,7 +70,9 @@ TEST(ExportPictures, FloatHeightsGetTheirLargest) {
 
 TEST(ExportPictures, MasksArePackedByRegion) {
   const character::Character face = test::SmallFace();
-  const auto picture = MaskPicture(face, {{1, 0, 2, -1}, 4, 4});
+  std::vector<std::string> shared;
+  const auto picture = MaskPicture(face, {{1, 0, 2, -1}, 4, 4}, &shared);
+  EXPECT_TRUE(shared.empty());
   ASSERT_EQ(picture.pixels.size(), 64u);
   const std::size_t texel = 4 * (2 * 4 + 1);                 // x = 1, y = 2
   EXPECT_EQ(picture.pixels[texel + 0], 16 * 2 + 4 * 1 + 1);  // brow_r: green of "masks"

@@ -47,7 +47,7 @@ character::Character Dressed() {
 
 TEST(SkinnedMask, FollowsTheSkinWeightsOfTheDriversJoints) {
   const character::Character face = Dressed();
-  const auto picture = SkinnedMaskPicture(face, face.rig.regions[3], 16);
+  const auto picture = PaintSkinnedMask(face, face.rig.regions[3], 16).picture;
   ASSERT_EQ(picture.pixels.size(), 256u);
   for (int x = 0; x < 8; ++x) {
     // The weight rises from 0 to 1 over 8 texels; centres lie at halves.
@@ -60,7 +60,7 @@ TEST(SkinnedMask, FollowsTheSkinWeightsOfTheDriversJoints) {
 TEST(SkinnedMask, OtherMaterialsLeaveNoTrace) {
   character::Character face = Dressed();
   face.meshes[0].material = 0;  // the map is for cloth
-  const auto picture = SkinnedMaskPicture(face, face.rig.regions[3], 16);
+  const auto picture = PaintSkinnedMask(face, face.rig.regions[3], 16).picture;
   EXPECT_THAT(picture.pixels, ::testing::Each(0));
 }
 
@@ -74,16 +74,36 @@ TEST(SkinnedMask, ThePlanPlacesItAndThePictureHoldsIt) {
   ASSERT_EQ(plan->masks.size(), 2u);
   EXPECT_THAT(plan->masks[1].regions, ElementsAre(2, 3, -1, -1));
   EXPECT_EQ(plan->masks[1].width, kSkinnedMaskSide);
-  const auto picture = MaskPicture(face, plan->masks[1]);
+  std::vector<std::string> shared;
+  const auto picture = MaskPicture(face, plan->masks[1], &shared);
   const std::size_t middle = 4 * (512 * kSkinnedMaskSide + 256);
   EXPECT_NEAR(picture.pixels[middle + 1], 128, 1);
+}
+
+TEST(SkinnedMask, PartsThatShareTexelsTakeTheLargest) {
+  character::Character face = Dressed();
+  EXPECT_FALSE(PaintSkinnedMask(face, face.rig.regions[3], 16).is_shared);
+  // A second square in the same place that the elbow does not move; in both orders.
+  character::Mesh still = face.meshes[0];
+  for (character::Vertex& vertex : still.vertices) vertex.skin_weights[1] = 0.0f;
+  for (const bool first : {true, false}) {
+    face.meshes.insert(first ? face.meshes.begin() : face.meshes.end(), still);
+    const SkinnedMask mask = PaintSkinnedMask(face, face.rig.regions[3], 16);
+    EXPECT_TRUE(mask.is_shared);
+    EXPECT_NEAR(mask.picture.pixels[16 * 5 + 4], 255.0 * 4.5 / 8.0, 1.0);
+    face.meshes.erase(first ? face.meshes.begin() : face.meshes.end() - 1);
+  }
+  std::vector<std::string> shared;
+  face.meshes.push_back(still);
+  (void)MaskPicture(face, {{2, 3, -1, -1}, 4, 4}, &shared);
+  EXPECT_THAT(shared, ElementsAre("arm"));
 }
 
 TEST(SkinnedMask, OverlappingUvsAreLeftOut) {
   character::Character face = Dressed();
   character::Mesh& mesh = face.meshes[0];
   for (int i = 0; i < 5000; ++i) mesh.indices.insert(mesh.indices.end(), {0, 1, 2});
-  EXPECT_THAT(SkinnedMaskPicture(face, face.rig.regions[3], 16).pixels, ::testing::Each(0));
+  EXPECT_THAT(PaintSkinnedMask(face, face.rig.regions[3], 16).picture.pixels, ::testing::Each(0));
 }
 
 }  // namespace
