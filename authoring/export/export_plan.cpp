@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "authoring/export/engine.h"
@@ -85,11 +86,26 @@ class Planner {
     });
   }
 
-  // Places regions with a painted mask: first those on skin, then the rest.
+  // A region of `placed` with the same mask by skin weights; -1: none.
+  [[nodiscard]] int FindTwin(std::size_t region, const std::vector<int>& placed) const {
+    const wrinkle::Region& of = rig().regions[region];
+    if (of.mask.kind != Mask::Kind::kSkinning) return -1;
+    const auto is_twin = [&](int other) {
+      const wrinkle::Region& with = rig().regions[static_cast<std::size_t>(other)];
+      return with.mask.kind == of.mask.kind && with.mask.lambda == of.mask.lambda &&
+             with.mask.smooth_width == of.mask.smooth_width &&
+             MaskJoints(character_, with) == MaskJoints(character_, of);
+    };
+    const auto found = std::ranges::find_if(placed, is_twin);
+    return found == placed.end() ? -1 : *found;
+  }
+
+  // Places the masks of all regions: first of those on skin, then of the rest.
   void AddMasks() {
     std::vector<std::string> unpainted;
     for (const bool skin : {true, false}) {
       int channel = 4;
+      std::vector<int> placed;
       for (std::size_t i = 0; i < rig().regions.size(); ++i) {
         const wrinkle::Region& region = rig().regions[i];
         if (IsDrawnOn(region, WrinkleGroup::kSkin) != skin) continue;
@@ -99,6 +115,11 @@ class Planner {
           unpainted.push_back(region.name);
           continue;
         }
+        if (const int twin = FindTwin(i, placed); twin >= 0) {
+          place_of_[static_cast<int>(i)] = place_of_[twin];
+          continue;
+        }
+        placed.push_back(static_cast<int>(i));
         if (channel == 4) {
           plan_.masks.emplace_back();
           channel = 0;
@@ -149,6 +170,7 @@ class Planner {
         if (map != map_of_.end() && place != place_of_.end()) {
           weight.map = map->second;
           std::tie(weight.mask, weight.channel) = place->second;
+          weight.is_skinned = region.mask.kind == Mask::Kind::kSkinning;
         }
         plan_.weights.push_back(std::move(weight));
       }
@@ -194,6 +216,17 @@ class Planner {
 
 Result<ExportPlan> PlanExport(const character::Character& character) {
   return Planner(character).Run();
+}
+
+std::string RegionsOf(const wrinkle::Rig& rig, const ExportPlan& plan, int mask, int channel) {
+  std::string names;
+  int last = -1;  // the weights of a region follow one another
+  for (const ExportPlan::Weight& weight : plan.weights) {
+    if (weight.mask != mask || weight.channel != channel || weight.region == last) continue;
+    last = weight.region;
+    names += (names.empty() ? "" : " ") + rig.regions[static_cast<std::size_t>(last)].name;
+  }
+  return names;
 }
 
 }  // namespace furrow::authoring

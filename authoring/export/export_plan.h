@@ -26,8 +26,9 @@ struct ExportPlan {
   };
   // One RGBA picture with the masks of up to four regions.
   struct Mask {
-    std::array<int, 4> regions{-1, -1, -1, -1};  // per channel: index into Rig::regions; -1: none
-    int width = 1;                               // texels: the largest of its sources
+    // Per channel: index into Rig::regions, the first of those that share it; -1: none.
+    std::array<int, 4> regions{-1, -1, -1, -1};
+    int width = 1;  // texels: the largest of its sources
     int height = 1;
   };
   // One wrinkle weight, in the order in which a daemon sends them (RigBinding::weight_names()).
@@ -38,6 +39,9 @@ struct ExportPlan {
     int map = -1;      // index into `maps`; -1: the weight is not drawn
     int mask = -1;     // index into `masks`; -1: the weight is not drawn
     int channel = 0;   // 0..3 = r, g, b, a
+    // The mask follows skin weights. As in the renderer, the sum of these weights times their masks
+    // is limited to 1, and of weights of one map in one channel, the largest counts.
+    bool is_skinned = false;
     [[nodiscard]] bool is_drawn() const { return map >= 0 && mask >= 0; }
   };
   // A material with wrinkles.
@@ -62,11 +66,16 @@ struct ExportPlan {
 //
 // - Masks are packed four to a picture, in the order of the rig's regions. Skin and cloth have
 //   pictures of their own, so that a material reads as few as possible.
-// - Masks by skin weights become pictures (skinned_mask.h).
+// - Masks by skin weights become pictures (skinned_mask.h). Regions of the same joints, such as the
+//   inner and the outer side of a knee, share a channel.
 // - A region has no picture if its mask slides, because it then follows the pose, or if the rig's
 //   picture is missing. Its weights are listed, so that indices match the stream, but not drawn.
 //
 // Errors: kNotFound (no rig), kUnsupported (no weight can be drawn; the text lists the reasons).
 [[nodiscard]] Result<ExportPlan> PlanExport(const character::Character& character);
+
+// The names of the regions in a channel of a mask, separated by blanks; empty: unused.
+[[nodiscard]] std::string RegionsOf(const wrinkle::Rig& rig, const ExportPlan& plan, int mask,
+                                    int channel);
 
 }  // namespace furrow::authoring

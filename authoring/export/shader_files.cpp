@@ -145,6 +145,33 @@ class MaterialData {
     }
   }
 
+  // The weights that raise a map, one vector per mask.
+  [[nodiscard]] std::vector<TemplateData> Terms(int map, const ExportPlan::Material& entry,
+                                                bool skinned) const {
+    std::vector<TemplateData> terms;
+    for (const int mask : entry.masks) {
+      std::array<std::string, 4> channels;
+      for (const int w : entry.weights) {
+        const ExportPlan::Weight& weight = plan_.weights[static_cast<std::size_t>(w)];
+        if (weight.map != map || weight.mask != mask || weight.is_skinned != skinned) continue;
+        std::string& channel = channels[static_cast<std::size_t>(weight.channel)];
+        const std::string value = Accessor(w, entry);
+        channel = channel.empty() ? value : "max(" + channel + ", " + value + ")";
+      }
+      if (std::ranges::all_of(channels, &std::string::empty)) continue;
+      for (std::string& channel : channels) {
+        if (channel.empty()) channel = "0.0";
+      }
+      TemplateData& term = terms.emplace_back();
+      term.texts = {{"mask", std::to_string(mask)},
+                    {"r", channels[0]},
+                    {"g", channels[1]},
+                    {"b", channels[2]},
+                    {"a", channels[3]}};
+    }
+    return terms;
+  }
+
   [[nodiscard]] TemplateData Map(int index, const ExportPlan::Material& entry) const {
     const ExportPlan::Map& map = plan_.maps[static_cast<std::size_t>(index)];
     const wrinkle::WrinkleMap& of = character_.rig.wrinkle_maps[static_cast<std::size_t>(map.map)];
@@ -158,35 +185,18 @@ class MaterialData {
                   {"strength", Literal(of.amplitude)},
                   {"colour_scale", Literal(of.colour_scale)}};
     data.texts["looks"] = data.texts["colour"] + data.texts["cavity"];
-    for (const int mask : entry.masks) {
-      std::array<std::string, 4> channels{"0.0", "0.0", "0.0", "0.0"};
-      bool used = false;
-      for (const int w : entry.weights) {
-        const ExportPlan::Weight& weight = plan_.weights[static_cast<std::size_t>(w)];
-        if (weight.map != index || weight.mask != mask) continue;
-        channels[static_cast<std::size_t>(weight.channel)] = Accessor(w, entry);
-        used = true;
-      }
-      if (!used) continue;
-      TemplateData& term = data.lists["terms"].emplace_back();
-      term.texts = {{"mask", std::to_string(mask)},
-                    {"r", channels[0]},
-                    {"g", channels[1]},
-                    {"b", channels[2]},
-                    {"a", channels[3]}};
-    }
+    data.lists["terms"] = Terms(index, entry, false);
+    data.lists["skinned"] = Terms(index, entry, true);
     return data;
   }
 
   [[nodiscard]] TemplateData Mask(int index) const {
     TemplateData data;
     std::string channels;
-    const ExportPlan::Mask& mask = plan_.masks[static_cast<std::size_t>(index)];
-    for (std::size_t c = 0; c < 4; ++c) {
-      if (mask.regions[c] < 0) continue;
-      const auto region = static_cast<std::size_t>(mask.regions[c]);
-      channels += (channels.empty() ? "" : ", ") + std::string(1, "rgba"[c]) + " " +
-                  character_.rig.regions[region].name;
+    for (int channel = 0; channel < 4; ++channel) {
+      const std::string regions = RegionsOf(character_.rig, plan_, index, channel);
+      if (regions.empty()) continue;
+      channels += (channels.empty() ? "" : ", ") + std::string(1, "rgba"[channel]) + " " + regions;
     }
     data.texts = {{"index", std::to_string(index)},
                   {"file", File("mask", std::to_string(index))},

@@ -96,9 +96,9 @@ class Writer {
     Json list = Json::array();
     for (std::size_t i = 0; i < plan_.masks.size(); ++i) {
       Json channels = Json::array();
-      for (const int region : plan_.masks[i].regions) {
-        channels.push_back(region < 0 ? Json(nullptr)
-                                      : Json(rig().regions[static_cast<std::size_t>(region)].name));
+      for (int channel = 0; channel < 4; ++channel) {
+        const std::string regions = RegionsOf(rig(), plan_, static_cast<int>(i), channel);
+        channels.push_back(regions.empty() ? Json(nullptr) : Json(regions));
       }
       list.push_back({{"file", File(PictureKey("mask", std::to_string(i)))},
                       {"channels", std::move(channels)}});
@@ -123,6 +123,7 @@ class Writer {
       json["map"] = weight.map;
       json["mask"] = weight.mask;
       json["channel"] = kChannels.at(static_cast<std::size_t>(weight.channel));
+      json["skinned"] = weight.is_skinned;
       json["strength"] = Number(rig().wrinkle_maps[static_cast<std::size_t>(map)].amplitude);
     } else {
       json["map"] = nullptr;

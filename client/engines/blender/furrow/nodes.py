@@ -283,17 +283,27 @@ class _Group:
         return sockets
 
     def _coefficient(self, map_index, weights, masks):
-        """The sum of weight * mask over the regions of a map."""
-        total = None
+        """The sum of weight * mask over the regions of a map; the part of masks by skin weights is at most 1."""
+        painted = self._sum(map_index, [w for w in weights if not w["skinned"]], masks)
+        skinned = self._sum(map_index, [w for w in weights if w["skinned"]], masks)
+        if skinned is None:
+            return painted
+        limited = self._math("MINIMUM", skinned, 1.0)
+        return limited if painted is None else self._math("ADD", painted, limited)
+
+    def _sum(self, map_index, weights, masks):
+        channels = {}  # of weights of one map in one channel, the largest counts
         for weight in weights:
-            if weight["map"] != map_index:
-                continue
-            mask = masks[weight["mask"], weight["channel"]]
-            value = self.input.outputs[weight["name"]]
+            if weight["map"] == map_index:
+                value = self.input.outputs[weight["name"]]
+                place = weight["mask"], weight["channel"]
+                channels[place] = self._math("MAXIMUM", channels[place], value) if place in channels else value
+        total = None
+        for place, value in channels.items():
             if total is None:
-                total = self._math("MULTIPLY", value, mask)
+                total = self._math("MULTIPLY", value, masks[place])
             else:
-                total = self._math("MULTIPLY_ADD", value, mask, total)
+                total = self._math("MULTIPLY_ADD", value, masks[place], total)
         return total
 
     def _factor(self, so_far, texel, coefficient):

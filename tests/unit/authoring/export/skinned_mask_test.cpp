@@ -5,12 +5,14 @@
 #include <gtest/gtest.h>
 
 #include "authoring/export/export_pictures.h"
+#include "authoring/export/shader_files.h"
 #include "tests/unit/authoring/export/small_face.h"
 
 namespace furrow::authoring {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 
 // The small face with joints and a shirt: a square that fills the left half of the texture. Its
 // left edge belongs to `upper` and its right edge to `lower`, which the elbow moves.
@@ -97,6 +99,31 @@ TEST(SkinnedMask, PartsThatShareTexelsTakeTheLargest) {
   face.meshes.push_back(still);
   (void)MaskPicture(face, {{2, 3, -1, -1}, 4, 4}, &shared);
   EXPECT_THAT(shared, ElementsAre("arm"));
+}
+
+TEST(SkinnedMask, RegionsOfTheSameJointsShareAChannel) {
+  character::Character face = Dressed();
+  wrinkle::Region outer = face.rig.regions[3];
+  outer.name = "outer";
+  face.rig.regions.push_back(outer);
+  outer.name = "linear";
+  outer.mask.lambda = wrinkle::LambdaMode::kBinary;  // another mask
+  face.rig.regions.push_back(outer);
+  const auto plan = PlanExport(face);
+  ASSERT_TRUE(plan.ok()) << plan.status().ToString();
+  EXPECT_THAT(plan->masks[1].regions, ElementsAre(2, 3, 5, -1));
+  EXPECT_EQ(RegionsOf(face.rig, *plan, 1, 1), "arm outer");
+  EXPECT_EQ(plan->weights[6].channel, plan->weights[5].channel);
+  EXPECT_TRUE(plan->weights[6].is_skinned);
+  EXPECT_FALSE(plan->weights[4].is_skinned);
+  // The largest counts, and the sum is at most 1.
+  const TemplateData data = ShaderData(face, *plan, Engine::kGeneric, {});
+  const auto files = ShaderFiles(Engine::kGeneric, data);
+  ASSERT_TRUE(files.ok()) << files.status().ToString();
+  const std::string& glsl = files->back().text;
+  EXPECT_THAT(glsl, HasSubstr("c += dot(mask1, vec4(furrowWeights[4], 0.0, 0.0, 0.0));"));
+  EXPECT_THAT(glsl, HasSubstr("s += dot(mask1, vec4(0.0, max(furrowWeights[5], furrowWeights[6]), "
+                              "furrowWeights[7], 0.0));\n    c += min(s, 1.0);"));
 }
 
 TEST(SkinnedMask, OverlappingUvsAreLeftOut) {
