@@ -53,7 +53,7 @@ class Export(unittest.TestCase):
         self.assertIn("missing.glb", self.error(BAD_INPUT, self.root / "missing.glb", "--out", out))
         rig = self.root / "bare.json"
         rig.write_text(BARE_RIG)
-        message = self.error(BAD_INPUT, "--rig", rig, "--out", out)
+        message = self.error(BAD_INPUT, "default", "--rig", rig, "--out", out)  # a shipped name
         self.assertIn("no wrinkle weight can be drawn; map 'squash' has no picture", message)
         self.assertIn("furrow bake", message)
         self.assertEqual(list(self.root.iterdir()), [rig])

@@ -65,8 +65,9 @@ int Export(const ExportArguments& arguments) {
 void AddExport(CLI::App& app, Action& action) {
   auto arguments = std::make_shared<ExportArguments>();
   CLI::App* command = app.add_subcommand("export", HelpOf("export"));
-  command->add_option("CHARACTER", arguments->character,
-                      "Character package, .glb (default: the default character)");
+  command->add_option(
+      "CHARACTER", arguments->character,
+      "Character package (.glb), or the name of a shipped character (default: default)");
   std::map<std::string, Engine> engines;
   for (const authoring::EngineTraits& traits : authoring::Engines()) {
     engines[std::string(traits.name)] = traits.engine;
@@ -86,7 +87,7 @@ void AddExport(CLI::App& app, Action& action) {
       ->check(CLI::Validator(CheckBits, ""))
       ->type_name("8|16");
   AddSkeletonMap(*command, arguments->skeleton_map);
-  AddReadOptions(*command, arguments->read);
+  AddBvhOptions(*command, arguments->read);
   command->callback([arguments, &action] { action = [arguments] { return Export(*arguments); }; });
 }
 

@@ -164,6 +164,12 @@ TEST(ExportPackage, ShadersSumTheWeightsOfEachMap) {
   EXPECT_THAT(godot, Not(HasSubstr("furrow_brow_l_squash")));
 }
 
+// Each engine's plug-in needs a file of its own, but there is one blend.
+TEST(ExportPackage, UnityAndUnrealShareTheBlend) {
+  EXPECT_EQ(ExportFor(Engine::kUnity).at("shaders/FurrowWrinkles.hlsl"),
+            ExportFor(Engine::kUnreal).at("shaders/FurrowWrinkles.ush"));
+}
+
 TEST(ExportPackage, TilesOfAnAtlasMoveTheBaseTextures) {
   character::Character face = test::SmallFace();
   face.materials[0].normal_texture = 0;
