@@ -33,13 +33,13 @@ using FileSink = std::function<Status(const std::string& name, std::string_view 
 
 // Writes a character's wrinkles for an engine: textures/, shaders/, wrinkles.json and README.md.
 //
-// - Each wrinkle map becomes a tangent-space normal map in the engine's convention; heights,
-// colours
-//   and cavities are written if the character has them. Masks are packed four to a picture.
+// - Each wrinkle map becomes a tangent-space normal map in the engine's convention.
+// - Heights, colours and cavities are written if the character has them.
+// - Masks are packed four to a picture.
 // - Equal inputs give equal files.
 //
 // Errors: those of PlanExport() and EncodePng(), kInvalidArgument (two weights that share a
-// parameter name in this engine), and those of `write`.
+// parameter name), and those of `write`.
 [[nodiscard]] Result<ExportedFiles> ExportCharacter(const character::Character& character,
                                                     const ExportOptions& options,
                                                     const FileSink& write);

@@ -60,8 +60,10 @@ class Planner {
     std::set<std::string> taken;
     for (std::size_t i = 0; i < rig().wrinkle_maps.size(); ++i) {
       const wrinkle::WrinkleMap& map = rig().wrinkle_maps[i];
+      // "material_" begins the files of materials.
+      const std::string name = (map.name.starts_with("material_") ? "map_" : "") + map.name;
       ExportPlan::Map entry{.map = static_cast<int>(i),
-                            .name = Free(map.name, &taken),
+                            .name = Free(name, &taken),
                             .normal = Find(map.normal),
                             .height = Find(map.height),
                             .colour = Find(map.colour),

@@ -43,6 +43,11 @@ def load_wrinkles(path):
         raise ValueError(f"{path}: version {wrinkles.get('version')}, expected {VERSION}; update this add-on")
     if wrinkles["normals"]["green"] != "up":
         raise ValueError(f"{path}: green points down; export with --for blender")
+    parts = ("normal", "height", "colour", "cavity", "file", "base_colour", "base_normal", "roughness")
+    for entry in wrinkles["maps"] + wrinkles["masks"] + wrinkles["materials"]:
+        for file in (entry.get(part) for part in parts):
+            if file is not None and (os.path.isabs(file) or ".." in re.split(r"[/\\\\]", file)):
+                raise ValueError(f"{path}: the file {file!r} lies outside the export's folder")
     return wrinkles
 
 

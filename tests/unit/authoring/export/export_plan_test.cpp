@@ -74,8 +74,10 @@ TEST(ExportPlan, NamesOfFilesAreUniqueAndSafe) {
   face.materials[0].name = "../x";
   face.materials[1].kind = character::Material::Kind::kSkin;
   face.materials[1].name = "..-x";
+  face.rig.wrinkle_maps[0].name = face.rig.regions[0].feeds[0].map = "material_skin";
   const auto plan = PlanExport(face);
   ASSERT_TRUE(plan.ok());
+  EXPECT_EQ(plan->maps[0].name, "map_material_skin");
   EXPECT_EQ(plan->materials[0].name, "___x");
   EXPECT_EQ(plan->materials[1].name, "___x_2");
 }

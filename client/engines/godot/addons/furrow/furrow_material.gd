@@ -144,6 +144,9 @@ func _shader(name: String) -> Shader:
 # exported game finds it, too.
 func _texture(name: String) -> Texture:
 	var path := _folder.plus_file(name)
+	if name.is_abs_path() or ".." in name.replace("\\", "/").split("/"):
+		message = path + ": lies outside the export's folder"
+		return null
 	if path.begins_with("res://") and ResourceLoader.exists(path):
 		return load(path) as Texture
 	var image := Image.new()
