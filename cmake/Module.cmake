@@ -65,3 +65,17 @@ function(furrow_test name)
                          PROPERTIES LABELS "${ARG_LABEL}" TIMEOUT 300)
   endif()
 endfunction()
+
+# furrow_embed_texts(OUTPUT ROOT HEADER NAMESPACE TYPE FUNCTION FILES...): sets OUTPUT to a generated source that holds
+# the files; see EmbedTexts.cmake. Programs then need no such files at run time.
+function(furrow_embed_texts output root header namespace type function)
+  set(source "${CMAKE_CURRENT_BINARY_DIR}/embedded_texts.cpp")
+  string(REPLACE ";" "," files "${ARGN}")
+  add_custom_command(
+    OUTPUT "${source}"
+    COMMAND "${CMAKE_COMMAND}" "-DROOT=${root}" "-DFILES=${files}" "-DOUTPUT=${source}" "-DHEADER=${header}"
+            "-DNAMESPACE=${namespace}" "-DTYPE=${type}" "-DFUNCTION=${function}"
+            -P "${PROJECT_SOURCE_DIR}/cmake/EmbedTexts.cmake"
+    DEPENDS ${ARGN} "${PROJECT_SOURCE_DIR}/cmake/EmbedTexts.cmake" VERBATIM)
+  set(${output} "${source}" PARENT_SCOPE)
+endfunction()

@@ -246,6 +246,20 @@ makehuman_people() {
   sheet makehuman_people 6x2 1440 "${names[@]}"
 }
 
+# Normals as engines draw them, beside the renderer's, from the test that compares them. Needs Blender and Godot.
+engine_normals() {
+  local names=() set engine
+  FURROW_PARITY_PICTURES=$work FURROW_BIN=$(realpath "$build/bin") FURROW_SOURCE=$PWD \
+    python3 -B tests/engine_parity/test_parity.py
+  for set in squash mixed; do
+    for engine in furrow cycles blender_eevee godot; do
+      oiiotool "$work/${engine}_$set.png" --ch R,G,B --cut 360x440+140+110 -o "$work/cut_${engine}_$set.png"
+      names+=("cut_${engine}_$set")
+    done
+  done
+  sheet engine_normals 4x2 1000 "${names[@]}"
+}
+
 if (($# > 1)); then
   for name in "${@:2}"; do "$name"; done
   exit
@@ -266,6 +280,11 @@ sliding_masks
 default_faces default default
 default_faces elder elder
 bodies default
+if command -v blender godot3-runner xvfb-run >/dev/null; then
+  engine_normals
+else
+  echo "make-pictures: Blender, Godot or xvfb-run is missing; the picture of engines stays as it is" >&2
+fi
 if [[ -d $shared/makehuman && -f $shared/performances/emotions.bvh ]]; then
   makehuman
   if [[ -n $people ]]; then makehuman_people; fi

@@ -24,6 +24,7 @@ void AddCommands(CLI::App& app, Action& action) {
   AddInfo(app, action);
   AddHelperEntry(app, "character");
   AddHelperEntry(app, "bake");
+  AddHelperEntry(app, "export");
 }
 
 }  // namespace

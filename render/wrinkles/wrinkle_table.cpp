@@ -135,6 +135,18 @@ WrinkleGroup GroupOf(const character::Character& character, const Material& mate
   return Has(character, Material::Kind::kSkin) ? WrinkleGroup::kNone : WrinkleGroup::kSkin;
 }
 
+bool IsDrawnOn(const character::Character& character, const wrinkle::WrinkleMap& map,
+               WrinkleGroup group) {
+  using Surface = wrinkle::WrinkleMap::Surface;
+  switch (group) {
+    case WrinkleGroup::kSkin:
+      return map.surface != Surface::kCloth || !Has(character, Material::Kind::kCloth);
+    case WrinkleGroup::kCloth: return map.surface != Surface::kSkin;
+    case WrinkleGroup::kNone: break;
+  }
+  return false;
+}
+
 void WrinkleTables::NameMap::Match(std::span<const std::string> from,
                                    std::span<const std::string> to) {
   // Names rarely change from frame to frame, so the comparison is usually all the work.
@@ -180,8 +192,6 @@ WrinkleTables::WrinkleTables(const character::Character& character, WrinkleLayou
 }
 
 void WrinkleTables::DescribeMaps(const character::Character& character) {
-  using Surface = wrinkle::WrinkleMap::Surface;
-  const bool has_cloth = Has(character, Material::Kind::kCloth);
   for (const wrinkle::WrinkleMap& map : character.rig.wrinkle_maps) {
     const int index = static_cast<int>(maps_.size());
     MapInfo info;
@@ -196,10 +206,9 @@ void WrinkleTables::DescribeMaps(const character::Character& character) {
     }
     info.entry.amplitude = layer < 0 ? 0.0f : map.amplitude;  // without a texture there is no
                                                               // relief
-    // In the order of WrinkleGroup. Maps without a surface belong to both groups.
-    info.in_group[static_cast<int>(WrinkleGroup::kSkin)] =
-        map.surface != Surface::kCloth || !has_cloth;
-    info.in_group[static_cast<int>(WrinkleGroup::kCloth)] = map.surface != Surface::kSkin;
+    for (const WrinkleGroup group : {WrinkleGroup::kSkin, WrinkleGroup::kCloth}) {
+      info.in_group[static_cast<int>(group)] = IsDrawnOn(character, map, group);
+    }
     maps_.push_back(info);
   }
 }

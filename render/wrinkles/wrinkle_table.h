@@ -103,6 +103,9 @@ struct PartMasks {
 // The group of a material of this character.
 [[nodiscard]] WrinkleGroup GroupOf(const character::Character& character,
                                    const character::Material& material);
+// Returns true if a wrinkle map of the character's rig is drawn on the group's surfaces.
+[[nodiscard]] bool IsDrawnOn(const character::Character& character, const wrinkle::WrinkleMap& map,
+                             WrinkleGroup group);
 
 // Converts the wrinkle weights and driver values of a request's subjects to the tables that the
 // shaders read.

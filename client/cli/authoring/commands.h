@@ -9,6 +9,7 @@ namespace furrow::cli {
 // command line names the subcommand, parsing sets `action`.
 void AddCharacter(CLI::App& app, Action& action);  // import, check and propose-rig
 void AddBake(CLI::App& app, Action& action);
+void AddExport(CLI::App& app, Action& action);
 void AddRigPatch(CLI::App& app, Action& action);  // `rig patch`; adds the group `rig` to `app`
 
 }  // namespace furrow::cli

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -13,6 +14,7 @@
 #include "client/cli/common/inputs.h"
 #include "client/cli/output/explanation_text.h"
 #include "motion/clip/clip.h"
+#include "rig/exports/export_profile.h"
 #include "rig/rig_file.h"
 #include "wrinkle/solver/solver.h"
 
@@ -25,6 +27,7 @@ struct RigOptions {
   std::string skeleton_map;
   std::string shape_map;
   std::string out;
+  std::vector<std::string> profiles;  // of exports
   motion::LoadOptions read;
   int frame = 0;
   float threshold = 0.01f;
@@ -66,15 +69,35 @@ int Explain(const RigOptions& options) {
   return kDone;
 }
 
+// The profiles of --export: shipped ones, files, and those that only the rig has.
+Result<std::vector<rig::ExportProfile>> LoadProfiles(const std::vector<std::string>& names,
+                                                     const wrinkle::Rig& rig) {
+  std::vector<rig::ExportProfile> profiles;
+  for (const std::string& name : names) {
+    auto profile = rig::LoadExportProfile(name);
+    if (profile.ok()) {
+      profiles.push_back(std::move(*profile));
+    } else if (std::ranges::find(rig.exports, name, &wrinkle::Export::profile) !=
+               rig.exports.end()) {
+      profiles.push_back({name, "of the rig alone", {}});
+    } else {
+      return profile.status().At("--export");
+    }
+  }
+  return profiles;
+}
+
 int Check(const RigOptions& options) {
   // The rig that ships for MakeHuman names a recording of MakeHuman, which does not ship. Only
   // binding to a skeleton needs the poses.
   std::set<std::string> missing;
   const auto poses = RigPoses(options.read, options.skeleton_map);
   if (!poses.ok()) return Fail(poses.status());
-  const auto rig = rig::LoadRig(ResolveRigPath(options.rig), *poses,
-                                options.file.empty() ? &missing : nullptr);
+  const auto rig =
+      rig::LoadRig(ResolveRigPath(options.rig), *poses, options.file.empty() ? &missing : nullptr);
   if (!rig.ok()) return Fail(rig.status());
+  const auto profiles = LoadProfiles(options.profiles, *rig);
+  if (!profiles.ok()) return Fail(profiles.status());
   for (const std::string& file : missing) {
     PrintWarnings({"the recording '" + file +
                    "' was not found, so the poses taken from it are not "
@@ -105,6 +128,9 @@ int Check(const RigOptions& options) {
   }
   const character::RigReport report = character::ReportOnRig(*rig, report_options);
   std::fputs(character::ToText(report).c_str(), stdout);
+  for (const rig::ExportProfile& profile : *profiles) {
+    std::fputs(rig::ToText(rig::CoverExports(*rig, profile)).c_str(), stdout);
+  }
   return report.binding.ok() ? kDone : Fail(report.binding.At(options.rig));
 }
 
@@ -146,6 +172,11 @@ void AddCheck(CLI::App& group, Action& action) {
   command->add_option(
       "--skeleton", options->file,
       "Recording to check the rig's joints and blend shapes against (default: none)");
+  command
+      ->add_option("--export", options->profiles,
+                   "Export profile, by file or shipped name: list which of its names the rig's "
+                   "weights cover (repeatable; default: none)")
+      ->allow_extra_args(false);
   AddSkeletonMap(*command, options->skeleton_map);
   AddShapeMap(*command, options->shape_map);
   AddReadOptions(*command, options->read);

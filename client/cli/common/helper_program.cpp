@@ -27,6 +27,8 @@ constexpr std::array kHelperCommands = {
                   kAuthorProgram},
     HelperCommand{"bake", "Bake wrinkle maps from the strain of a character's own poses",
                   kAuthorProgram},
+    HelperCommand{"export", "Export a character's wrinkle maps, masks and shader for an engine",
+                  kAuthorProgram},
     HelperCommand{"rig patch", "Cut a surface patch from a character: a strain driver for a rig",
                   kAuthorProgram}};
 

@@ -209,10 +209,15 @@ Result<character::Character> LoadCharacterArgument(const std::string& glb, const
                                                    const motion::LoadOptions& read,
                                                    const std::string& skeleton_map) {
   fs::path package = glb;
+  std::error_code error;
   if (glb.empty()) {
     const auto shipped = furrow::FindDataFile("default.glb");
     FURROW_RETURN_IF_ERROR(shipped);
     package = *shipped;
+  } else if (glb.find_first_of("/.") == std::string::npos && !fs::exists(package, error)) {
+    // Neither a path nor a file name: a shipped character. The loader reports a missing file.
+    const auto shipped = furrow::FindDataFile(glb + ".glb");
+    if (shipped.ok()) package = *shipped;
   }
   const auto poses = RigPoses(read, skeleton_map, package);
   FURROW_RETURN_IF_ERROR(poses);

@@ -114,9 +114,9 @@ void PrintMatchesOf(std::span<const wrinkle::Skeleton> skeletons);
 // gives no warning about blend shapes.
 void WarnAboutMissing(const wrinkle::RigBinding& binding, const motion::Clip& clip);
 
-// Loads a character package. `glb`: its file; empty: the default character. `rig`: a rig that
-// replaces the rig of the package, by path or name of a shipped rig; empty: keep the rig of the
-// package. `read` and `skeleton_map`: see RigPoses().
+// Loads a character package. `glb`: its file, or the name of a shipped character ("elder"); empty:
+// the default character. `rig`: a rig that replaces the rig of the package, by path or name of a
+// shipped rig; empty: keep the rig of the package. `read` and `skeleton_map`: see RigPoses().
 [[nodiscard]] Result<character::Character> LoadCharacterArgument(
     const std::string& glb, const std::string& rig, const motion::LoadOptions& read = {},
     const std::string& skeleton_map = {});
