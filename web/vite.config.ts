@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// CMake runs this file and passes the folders of the generated wire code and of the built page.
+// CMake runs this file and passes the folders of the npm packages' sources and builds, and of the built page.
 import { fileURLToPath } from 'node:url';
 import { defineConfig } from 'vite';
 
@@ -14,7 +14,8 @@ export default defineConfig({
   cacheDir: `${setting('FURROW_WEB_BUILD')}/vite-cache`,
   resolve: {
     alias: {
-      '@wire': `${setting('FURROW_WEB_BUILD')}/wire/furrow/protocol/wire`,
+      '@wire': `${setting('FURROW_JS_BUILD')}/wire/furrow/protocol/wire`,
+      'furrow/protocol': `${setting('FURROW_JS_SOURCE')}/furrow/src/protocol.ts`,
       flatbuffers: fileURLToPath(new URL('./node_modules/flatbuffers/mjs/flatbuffers.js', import.meta.url)),
     },
   },

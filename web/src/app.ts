@@ -105,7 +105,7 @@ export class App {
     });
     state.subject.watch((subject) => this.weights.choose(subject));
     this.weights.subject.watch(() => void this.readRig());
-    this.connection.state.watch((link) => {
+    this.connection.link.watch((link) => {
       if (link === 'open') {
         this.everConnected = true;
         void this.askDaemon().then(() => this.showCondition());
@@ -198,7 +198,7 @@ export class App {
   }
 
   private async askDaemon(): Promise<void> {
-    if (this.connection.state.value !== 'open') return;
+    if (this.connection.link.value !== 'open') return;
     try {
       [this.subjects, this.status] = await Promise.all([api.subjects(), api.status()]);
       this.showDaemon();
@@ -221,7 +221,7 @@ export class App {
 
   private showCondition(): void {
     this.header.showCondition(assess({
-      link: this.connection.state.value,
+      link: this.connection.link.value,
       everConnected: this.everConnected,
       notDrawn: this.viewer.notDrawn.value,
       renders: this.status?.render ?? true,
