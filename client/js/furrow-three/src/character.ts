@@ -6,8 +6,9 @@ import {
 } from 'three';
 import { type CharacterFile, readCharacter } from './character_file.js';
 import { addWeightGradients } from './mesh/weight_gradients.js';
-import { type Joint, JointPoser, type Pose } from './pose/joint_poser.js';
+import { type Joint, JointPoser, type Pose, type PoseSkeleton } from './pose/joint_poser.js';
 import { SlopeMaker } from './wrinkles/slopes.js';
+import { Studio } from './view/studio.js';
 import { addWrinkles, type View, type WrinkleInput, type WrinkleTextures } from './wrinkles/wrinkle_material.js';
 import { WrinkleSet } from './wrinkles/wrinkle_set.js';
 
@@ -33,6 +34,8 @@ type Kind = 'skin' | 'cloth' | 'eye' | 'hair' | 'other';
 const REFLECTANCE: Record<Kind, number> = { skin: 0.028, eye: 0.04, hair: 0.03, cloth: 0.012, other: 0.03 };
 /** An eye's surface is the smooth tear film, whatever its texture says. */
 const ROUGHEST_EYE = 0.3;
+/** Base colour below which skin counts as a painted hollow, which has no gloss. */
+const CAVITY_ALBEDO = 0.02;
 /** Textures that three and its shadow maps use themselves. */
 const OTHER_TEXTURES = 6;
 
@@ -54,10 +57,22 @@ export class FurrowCharacter extends Group {
     private readonly poser: JointPoser,
     private readonly targets: readonly WebGLRenderTarget[],
     private readonly textures: readonly Texture[],
+    /** The lamps of the view 'studio'. Call update() before each picture. */
+    readonly studio: Studio,
     /** Regions that are not drawn, because their masks follow joints. */
     readonly notDrawn: readonly string[],
   ) {
     super();
+  }
+
+  /** The wrinkle weights that are drawn. */
+  get weightNames(): string[] {
+    return [...new Set(this.sets.flatMap((set) => set.weightNames))];
+  }
+
+  /** True if a skeleton has this character's joints at these places, so that setPose() needs no retargeting. */
+  fits(skeleton: PoseSkeleton): boolean {
+    return this.poser.fits(skeleton);
   }
 
   /** Names of the joints. */
@@ -96,7 +111,10 @@ export class FurrowCharacter extends Group {
     for (const set of this.sets) set.setWeights(names, values);
   }
 
-  /** 'final', or 'normal': the normals as seen, as `furrow render --view normal` shows them. */
+  /**
+   * 'final': lit by the scene. 'studio': as the daemon's default picture. 'normal': the normals as seen, as
+   * `furrow render --view normal` shows them.
+   */
   setView(view: View): void {
     if (view === this.view) return;
     this.view = view;
@@ -141,6 +159,7 @@ class Builder {
   private readonly sets: Record<'skin' | 'cloth', WrinkleSet>;
   private readonly inputs = new Map<WrinkleSet, Promise<Pick<WrinkleInput, 'masks' | 'maps'>>>();
   private readonly materials = new Map<string, { material: MeshPhysicalMaterial; input: WrinkleInput }>();
+  private readonly studio = new Studio();
   private hasSkin = false;
 
   constructor(private readonly file: CharacterFile, private readonly renderer: WebGLRenderer, private readonly softEdges: boolean) {
@@ -160,7 +179,7 @@ class Builder {
     this.slopes.dispose();
     const joints = this.jointsOf(meshes[0]!);
     const character = new FurrowCharacter(this.parts, Object.values(this.sets), joints, new JointPoser(joints), this.targets,
-      [...this.textures], this.file.rig.notDrawn);
+      [...this.textures], this.studio, this.file.rig.notDrawn);
     character.add(scene);
     return character;
   }
@@ -222,6 +241,11 @@ class Builder {
       weights: set?.weights ?? [],
       gradients,
       oneNormal: kind === 'hair',
+      studio: {
+        ...this.studio.uniforms,
+        furrowSpecular: { value: REFLECTANCE[kind] },
+        furrowCavityAlbedo: { value: kind === 'skin' ? CAVITY_ALBEDO : 0 },
+      },
     };
     for (const texture of [material.map, material.normalMap, material.roughnessMap]) if (texture) this.textures.add(texture);
     addWrinkles(material, input, 'final');
@@ -238,9 +262,6 @@ class Builder {
     const target = this.slopes.make(texture, scale);
     texture.dispose();
     this.targets.push(target);
-    // The slopes stand at the UVs of the source.
-    target.texture.offset.copy(source.offset);
-    target.texture.repeat.copy(source.repeat);
     this.slopesOf.set(source, target.texture);
     return target.texture;
   }

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads a character package: a .glb file, its wrinkle rig, and the pictures that the rig names.
-import { LinearMipmapNearestFilter, NoColorSpace, RepeatWrapping, SRGBColorSpace, type Texture, TextureLoader } from 'three';
-import { type GLTF, GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
-import { MeshoptDecoder } from 'three/addons/libs/meshopt_decoder.module.js';
+import {
+  LinearFilter, LinearMipmapLinearFilter, LinearMipmapNearestFilter, NoColorSpace, RepeatWrapping, SRGBColorSpace, Texture,
+  TextureLoader,
+} from 'three';
+import { type GLTF, GLTFLoader, type GLTFLoaderPlugin, type GLTFParser } from 'three/addons/loaders/GLTFLoader.js';
 import { type DrawnRig, readRig } from './rig/rig_file.js';
 
 export interface CharacterFile {
@@ -13,7 +15,8 @@ export interface CharacterFile {
 }
 
 interface GltfJson {
-  images?: { name?: string }[];
+  extensionsUsed?: string[];
+  images?: { name?: string; bufferView?: number; mimeType?: string }[];
   textures?: { source?: number; extensions?: Record<string, { source?: number }> }[];
   scene?: number;
   scenes?: { extras?: { furrow_rig?: unknown } }[];
@@ -23,6 +26,47 @@ async function fetchText(url: string): Promise<string> {
   const response = await fetch(url);
   if (!response.ok) throw new Error(`${url}: HTTP status ${response.status}`);
   return response.text();
+}
+
+async function fetchBytes(url: string): Promise<ArrayBuffer> {
+  const response = await fetch(url);
+  if (!response.ok) throw new Error(`${url}: HTTP status ${response.status}`);
+  return response.arrayBuffer();
+}
+
+/** True if a .glb file states that it uses an extension. */
+function uses(bytes: ArrayBuffer, extension: string): boolean {
+  const view = new DataView(bytes);
+  if (bytes.byteLength < 20) return false;
+  const size = Math.min(view.getUint32(12, true), bytes.byteLength - 20);
+  return new TextDecoder().decode(new Uint8Array(bytes, 20, size)).includes(`"${extension}"`);
+}
+
+/** Decodes embedded pictures from memory. Three would fetch them from blob: addresses, which pages may forbid. */
+class EmbeddedPictures implements GLTFLoaderPlugin {
+  readonly name = 'FURROW_embedded_pictures';
+
+  constructor(private readonly parser: GLTFParser) {}
+
+  loadTexture(index: number): Promise<Texture> | null {
+    const json = this.parser.json as GltfJson;
+    const texture = json.textures?.[index];
+    const source = Object.values(texture?.extensions ?? {}).find((extension) => extension.source !== undefined)?.source ?? texture?.source;
+    const image = source === undefined ? undefined : json.images?.[source];
+    return image?.bufferView === undefined ? null : this.decode(image.bufferView, image.mimeType ?? 'image/png');
+  }
+
+  private async decode(bufferView: number, type: string): Promise<Texture> {
+    const bytes = (await this.parser.getDependency('bufferView', bufferView)) as ArrayBuffer;
+    const bitmap = await createImageBitmap(new Blob([bytes], { type }), { premultiplyAlpha: 'none', colorSpaceConversion: 'none' });
+    const texture = new Texture(bitmap);
+    texture.flipY = false;
+    texture.wrapS = texture.wrapT = RepeatWrapping;
+    texture.minFilter = LinearMipmapLinearFilter;
+    texture.magFilter = LinearFilter;
+    texture.needsUpdate = true;
+    return texture;
+  }
 }
 
 /** The index of the texture that shows an image; -1: none. */
@@ -49,8 +93,13 @@ function prepare(texture: Texture, kind: 'mask' | 'data' | 'colour'): Texture {
  */
 export async function readCharacter(url: string, rigUrl?: string): Promise<CharacterFile> {
   const loader = new GLTFLoader();
-  loader.setMeshoptDecoder(MeshoptDecoder);
-  const gltf = await loader.loadAsync(url);
+  loader.register((parser) => new EmbeddedPictures(parser));
+  const bytes = await fetchBytes(url);
+  if (uses(bytes, 'EXT_meshopt_compression')) {
+    // Loaded only if it is needed: it is WebAssembly, which pages may forbid.
+    loader.setMeshoptDecoder((await import('three/addons/libs/meshopt_decoder.module.js')).MeshoptDecoder);
+  }
+  const gltf = await loader.parseAsync(bytes, url.replace(/[^/]*$/, ''));
   const json = gltf.parser.json as GltfJson;
   const embedded = json.scenes?.[json.scene ?? 0]?.extras?.furrow_rig;
   const beside = rigUrl ?? url.replace(/(\.glb)?(\?.*)?$/, '.rig.json');

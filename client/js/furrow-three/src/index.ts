@@ -5,3 +5,4 @@ export { addWrinkles, type View, type WrinkleInput, type WrinkleTextures } from 
 export { SlopeMaker } from './wrinkles/slopes.js';
 export { type DrawnRig, readRig } from './rig/rig_file.js';
 export { type CameraPlace, Follower } from './view/follow.js';
+export { Studio, STUDIO_BACKGROUND } from './view/studio.js';

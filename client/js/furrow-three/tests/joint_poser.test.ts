@@ -79,6 +79,18 @@ test('joint axes and units may differ', () => {
   }
 });
 
+test('a skeleton fits if its joints rest at the same places', () => {
+  const poser = new JointPoser(character(TURNED));
+  assert(poser.fits(skeleton(TURNED, 1)));
+  assert(poser.fits(skeleton(TURNED, 0.01)));
+  assert(!poser.fits(skeleton(STRAIGHT, 1)));
+  const moved = skeleton(TURNED, 1);
+  assert(!poser.fits({ ...moved, restTranslations: Array.from(moved.restTranslations, (x) => x + 0.002) }));
+  assert(!poser.fits({ ...moved, names: ['hips', 'spine', 'neck'] }));
+  assert(!poser.fits({ ...moved, parents: [-1, 0, 0] }));
+  assert(!poser.fits({ ...moved, names: [...NAMES, 'more'] }));
+});
+
 test('joints that the stream lacks rest, also after a stream that had them', () => {
   const joints = character(TURNED);
   const rest = places(joints);

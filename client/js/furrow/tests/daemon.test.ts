@@ -26,14 +26,16 @@ async function startDaemon(ports: Ports = { tcp: 0, udp: 0, http: 0 }): Promise<
   const listen = Object.entries(ports).flatMap(([name, port]) => [`--${name}`, String(port)]);
   const child = spawn(join(FURROW_BIN!, 'furrowd'), ['--no-render', ...listen], { stdio: ['ignore', 'pipe', 'ignore'] });
   let out = '';
-  for await (const text of child.stdout) {
-    out += String(text);
-    const ready = /^furrowd ready .*$/m.exec(out);
-    if (ready === null) continue;
-    const port = (name: string): number => Number(new RegExp(`${name}=\\S*?:(\\d+)`).exec(ready[0])![1]);
-    return { process: child, ports: { tcp: port('tcp'), udp: port('udp'), http: port('http') } };
-  }
-  throw new Error(`furrowd ended: ${out}`);
+  const ready = await new Promise<string>((resolve, reject) => {
+    child.stdout.on('data', (text) => {
+      out += String(text);
+      const line = /^furrowd ready .*$/m.exec(out);
+      if (line !== null) resolve(line[0]);
+    });
+    child.on('exit', (code) => reject(new Error(`furrowd ended with ${String(code)}: ${out}`)));
+  });
+  const port = (name: string): number => Number(new RegExp(`${name}=\\S*?:(\\d+)`).exec(ready)![1]);
+  return { process: child, ports: { tcp: port('tcp'), udp: port('udp'), http: port('http') } };
 }
 
 function play(subject: string, ports: Ports): ChildProcess {

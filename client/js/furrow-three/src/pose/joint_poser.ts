@@ -81,6 +81,19 @@ export class JointPoser {
     return this.joints.filter(({ name }) => skeleton.names.includes(name)).map(({ name }) => name);
   }
 
+  /** True if a skeleton has the same joints, which rest at the same places (1 mm) with the same axes. */
+  fits(skeleton: PoseSkeleton): boolean {
+    return skeleton.names.length === this.joints.length && this.joints.every(({ name, parent }, i) => {
+      const source = skeleton.names.indexOf(name);
+      if (source < 0) return false;
+      const { translation, rotation } = this.rest[i]!;
+      const above = skeleton.parents[source]!;
+      return (above < 0 ? '' : skeleton.names[above]) === (parent < 0 ? '' : this.joints[parent]!.name) &&
+        vectorAt(skeleton.restTranslations, source).multiplyScalar(skeleton.metresPerUnit).distanceTo(translation) < 1e-3 &&
+        quaternionAt(skeleton.restRotations, source).angleTo(rotation) < 1e-3;
+    });
+  }
+
   private bind(skeleton: PoseSkeleton): void {
     if (skeleton.hash === this.hash) return;
     this.hash = skeleton.hash;

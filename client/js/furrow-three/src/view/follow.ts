@@ -66,8 +66,8 @@ export class Follower {
       .multiply(new Matrix4().makeTranslation(-x, -y, -z));
   }
 
-  /** Places a camera of three.js; `aspect`: width / height. Returns the distance to the target, metres. */
-  place(camera: PerspectiveCamera, place: CameraPlace, aspect: number): number {
+  /** Places a camera of three.js; `aspect`: width / height. Returns what it looks at. */
+  place(camera: PerspectiveCamera, place: CameraPlace, aspect: number): Vector3 {
     const follow = place.follows ? this.transform() : new Matrix4();
     const eye = new Vector3(...place.eye).applyMatrix4(follow);
     const target = new Vector3(...place.target).applyMatrix4(follow);
@@ -80,6 +80,6 @@ export class Follower {
     camera.position.copy(eye);
     camera.lookAt(target);
     camera.updateProjectionMatrix();
-    return distance;
+    return target;
   }
 }

@@ -2,6 +2,7 @@
 // Adds wrinkles to a material of three.js: shaders/wrinkles/wrinkles.glsl and shaders/scene/skinning.glsl, as changes to
 // three's own shaders, so that lights, shadows and environment maps work as usual.
 import type { IUniform, MeshStandardMaterial, Texture, Vector4, WebGLProgramParametersWithUniforms } from 'three';
+import { STUDIO_GLSL } from '../view/studio.js';
 
 /** Textures of one wrinkle map; null: it has none. */
 export interface WrinkleTextures {
@@ -24,16 +25,24 @@ export interface WrinkleInput {
   weights: Vector4[];
   /** The geometry has the attributes of addWeightGradients(). */
   gradients: boolean;
+  /** Uniforms of the view 'studio': those of Studio, `furrowSpecular` and `furrowCavityAlbedo`. */
+  studio?: Record<string, IUniform>;
   /** Both sides of the surface have the same normals, as hair has. */
   oneNormal: boolean;
 }
 
-/** 'normal': 0.5 n + 0.5 of the shading normal in world space, as `furrow render --view normal`. */
-export type View = 'final' | 'normal';
+/**
+ * 'studio': the light of the daemon's default picture, without the scene's lights (Studio).
+ * 'normal': 0.5 n + 0.5 of the shading normal in world space, as `furrow render --view normal`.
+ */
+export type View = 'final' | 'studio' | 'normal';
 
 const VERTEX_HEAD = `
 varying vec2 vFurrowUv;
 varying vec4 vFurrowTangent;
+#ifdef FURROW_STUDIO
+varying vec3 vFurrowWorld;
+#endif
 #ifdef FURROW_GRADIENTS
 attribute vec4 furrowAlong;
 attribute vec4 furrowAcross;
@@ -174,13 +183,16 @@ function patchVertex(shader: WebGLProgramParametersWithUniforms): void {
   source = replace(source, '#include <skinnormal_vertex>', `#include <skinnormal_vertex>\n${VERTEX_GRADIENTS}`);
   source = replace(source, '#include <begin_vertex>',
     'vFurrowUv = uv;\nvFurrowTangent = vec4(transformedTangent, tangent.w);\n#include <begin_vertex>');
+  source = replace(source, '#include <project_vertex>',
+    '#include <project_vertex>\n#ifdef FURROW_STUDIO\nvFurrowWorld = (modelMatrix * vec4(transformed, 1.0)).xyz;\n#endif\n');
   shader.vertexShader = source;
 }
 
 function patchFragment(shader: WebGLProgramParametersWithUniforms, input: WrinkleInput, view: View): void {
-  let source = replace(shader.fragmentShader, '#include <common>', `#include <common>\n${fragmentHead(input)}`);
-  source = replace(source, '#include <map_fragment>', '#include <map_fragment>\nfurrowReadMasks();\nvec4 furrowFactors = furrowLook();\n' +
-    'diffuseColor.rgb *= furrowFactors.rgb;');
+  let source = replace(shader.fragmentShader, '#include <common>', `#include <common>\n${fragmentHead(input)}${view === 'studio' ? STUDIO_GLSL : ''}`);
+  // The daemon's shading "diffuse" has no colours and cavities of wrinkle maps.
+  source = replace(source, '#include <map_fragment>', '#include <map_fragment>\nfurrowReadMasks();\n' +
+    (view === 'studio' ? 'vec4 furrowFactors = vec4(1.0);\n' : 'vec4 furrowFactors = furrowLook();\ndiffuseColor.rgb *= furrowFactors.rgb;\n'));
   source = replace(source, '#include <alphatest_fragment>', ALPHA_TEST);
   const baseUv = input.base ? 'vNormalMapUv' : 'vec2(0.0)';
   // Three turns `normal` for double-sided materials before this point; the tangent frame here starts from the surface's side.
@@ -191,6 +203,10 @@ function patchFragment(shader: WebGLProgramParametersWithUniforms, input: Wrinkl
   source = replace(source, '#include <aomap_fragment>',
     '#include <aomap_fragment>\nreflectedLight.indirectDiffuse *= furrowFactors.a;\nreflectedLight.directSpecular *= furrowFactors.a;\n' +
     'reflectedLight.indirectSpecular *= furrowFactors.a;');
+  if (view === 'studio') {
+    source = replace(source, '#include <opaque_fragment>',
+      'outgoingLight = furrowStudio(diffuseColor.rgb, inverseTransformDirection(normal, viewMatrix), roughnessFactor);\n#include <opaque_fragment>');
+  }
   if (view === 'normal') {
     source = replace(source, '#include <dithering_fragment>',
       '#include <dithering_fragment>\ngl_FragColor = vec4(inverseTransformDirection(normal, viewMatrix) * 0.5 + 0.5, gl_FragColor.a);');
@@ -204,9 +220,13 @@ function patchFragment(shader: WebGLProgramParametersWithUniforms, input: Wrinkl
  */
 export function addWrinkles(material: MeshStandardMaterial, input: WrinkleInput, view: View): void {
   const defined = material as { defines?: Record<string, unknown> };
-  defined.defines = { ...defined.defines, USE_TANGENT: '', ...(input.gradients ? { FURROW_GRADIENTS: '' } : {}) };
+  const { FURROW_STUDIO: _, ...others } = defined.defines ?? {};
+  defined.defines = {
+    ...others, USE_TANGENT: '', ...(input.gradients ? { FURROW_GRADIENTS: '' } : {}), ...(view === 'studio' ? { FURROW_STUDIO: '' } : {}),
+  };
   material.onBeforeCompile = (shader) => {
     addUniforms(shader.uniforms, input);
+    if (view === 'studio') Object.assign(shader.uniforms, input.studio);
     patchVertex(shader);
     patchFragment(shader, input, view);
   };

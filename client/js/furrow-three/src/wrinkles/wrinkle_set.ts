@@ -30,6 +30,10 @@ export class WrinkleSet {
     }
   }
 
+  get weightNames(): string[] {
+    return [...this.slots.keys()];
+  }
+
   /** Names that are not of this set are ignored; weights that are not named are 0. */
   setWeights(names: readonly string[], values: ArrayLike<number>): void {
     for (const row of this.weights) row.set(0, 0, 0, 0);
