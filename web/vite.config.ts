@@ -16,6 +16,9 @@ export default defineConfig({
     alias: {
       '@wire': `${setting('FURROW_JS_BUILD')}/wire/furrow/protocol/wire`,
       'furrow/protocol': `${setting('FURROW_JS_SOURCE')}/furrow/src/protocol.ts`,
+      'furrow-three': `${setting('FURROW_JS_SOURCE')}/furrow-three/src/index.ts`,
+      'three/addons': `${setting('FURROW_JS_SOURCE')}/node_modules/three/examples/jsm`,
+      three: `${setting('FURROW_JS_SOURCE')}/node_modules/three/build/three.module.js`,
       flatbuffers: fileURLToPath(new URL('./node_modules/flatbuffers/mjs/flatbuffers.js', import.meta.url)),
     },
   },
@@ -24,6 +27,7 @@ export default defineConfig({
     emptyOutDir: true,
     modulePreload: { polyfill: false },
     target: 'es2022',
+    chunkSizeWarningLimit: 1000, // three.js, which is loaded only if this browser draws
     assetsInlineLimit: 0,
   },
 });

@@ -44,6 +44,7 @@ export class PictureStream implements Subscriber {
   ) {}
 
   start(): void {
+    this.pending.set(true);
     this.subscription ??= this.connection.subscribe(this);
   }
 

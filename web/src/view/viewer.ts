@@ -7,6 +7,7 @@ import type { AppState } from '../state/app_state';
 import { assignments, type Values } from '../state/settings';
 import { Signal } from '../ui/signal';
 import type { Connection } from '../wire/connection';
+import { BrowserView } from './browser_view';
 import { type Picture, PictureStream } from './picture_stream';
 import { PictureStats } from './picture_stats';
 import { AdaptiveScale, pictureSize } from './resolution';
@@ -27,6 +28,8 @@ const WIPES: Record<Exclude<Wipe, 'none'>, WipeSides> = {
 export class Viewer {
   readonly stage = new Stage();
   readonly stats = new PictureStats();
+  /** Draws the picture instead of the daemon while it is active. */
+  readonly drawing: BrowserView;
   /** The daemon's reason for not rendering; empty if it renders. */
   readonly notDrawn = new Signal('');
   private readonly scale = new AdaptiveScale();
@@ -44,11 +47,30 @@ export class Viewer {
       (signal as Signal<unknown>).watch(() => this.refresh());
     }
     new ResizeObserver(() => this.refresh()).observe(this.stage.surface);
+    this.drawing = new BrowserView(connection, state);
+    this.stage.surface.append(this.drawing.canvas);
+    this.drawing.active.watch((active) => this.onDrawing(active));
     connection.link.watch(() => this.onLink());
+  }
+
+  /** The daemon draws nothing for this page while the browser does. */
+  private onDrawing(active: boolean): void {
+    this.stage.element.dataset.drawnBy = active ? 'browser' : 'daemon';
+    if (active) {
+      this.main?.stop();
+      this.stage.element.setAttribute('aria-busy', 'false');
+    } else {
+      this.refresh();
+      this.main?.start();
+      // The picture on the stage is from before.
+      this.stage.element.dataset.still = 'false';
+      this.stage.element.setAttribute('aria-busy', 'true');
+    }
   }
 
   /** Called once per second to check whether the daemon keeps up with `posesHz`. */
   observeRate(posesHz: number, nowS: number): void {
+    if (this.drawing.active.value) return;
     if (this.state.sharpness.value !== 'auto' || this.stats.resting || posesHz < 1) return;
     if (this.scale.observe(this.stats.rateHz(nowS), posesHz, nowS)) this.refresh();
   }
@@ -92,6 +114,7 @@ export class Viewer {
   }
 
   private refresh(): void {
+    if (this.drawing.active.value) return;
     const values = this.wantedValues();
     const request = this.requestFor(values, 'right');
     if (request === null) return;
