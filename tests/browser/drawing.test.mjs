@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page draws the picture itself, in software here, and the daemon's picture comes first and returns when it must.
 import assert from 'node:assert/strict';
-import { writeFileSync } from 'node:fs';
+import { copyFileSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { PNG } from 'pngjs';
 import { changedShare, difference, eventually, launch, openPage, shown, still } from './browser.mjs';
-import { Daemon, recording } from './daemon.mjs';
+import { Daemon, recording, SHARE } from './daemon.mjs';
 
 const FROWN_S = 6.5;
 const SMALL = { viewport: { width: 640, height: 480 } }; // large pictures take seconds in software
@@ -79,10 +80,30 @@ test('the daemon draws what the browser cannot', async () => {
   await page.selectOption('select[aria-label="Split the picture"]', 'none');
   await drawnBy(page, 'browser');
   // The GPU goes away, as after a driver's restart.
-  await page.evaluate(() => document.querySelector('canvas.drawn-here').getContext('webgl2').getExtension('WEBGL_lose_context').loseContext());
+  await page.evaluate(() => document.querySelector('.drawn-here canvas').getContext('webgl2').getExtension('WEBGL_lose_context').loseContext());
   await drawnBy(page, 'daemon');
   await still(page);
-  assert(await page.locator('canvas.drawn-here').isHidden());
+  assert(await page.locator('.drawn-here').isHidden());
+  await page.context().close();
+});
+
+test('after a restart the page asks for the character again', async (context) => {
+  const folder = mkdtempSync(join(tmpdir(), 'furrow-drawing-'));
+  context.after(() => rmSync(folder, { recursive: true }));
+  // The same character without a package for browsers.
+  for (const [name, copy] of [['default.glb', 'other.glb'], ['default.rig.json', 'other.rig.json']]) {
+    copyFileSync(join(SHARE, name), join(folder, copy));
+  }
+  const first = await Daemon.start(['--play', recording('performance')]);
+  context.after(() => first.stop('SIGKILL'));
+  const page = await openPage(browser, `${first.address}#drawn=browser&panel=`, SMALL);
+  await drawnBy(page, 'browser');
+  await first.stop('SIGKILL');
+  await drawnBy(page, 'daemon');
+  const second = await Daemon.start(['--character', join(folder, 'other.glb'), '--play', recording('performance')], first.ports);
+  context.after(() => second.stop());
+  await shown(page);
+  await eventually('the reason', async () => /no character for browsers/.test(await whyOf(page)));
   await page.context().close();
 });
 

@@ -5,7 +5,7 @@ import { decide, type DrawSituation, isSoftware } from '../src/view/draw_choice'
 
 /** A fast GPU, and everything is there. */
 const READY: DrawSituation = {
-  choice: 'auto', gpu: 'GeForce', isSpecial: false, hasNeutral: false, character: 'ready', fits: true, browserHz: 60, daemonHz: 7,
+  choice: 'auto', isConnected: true, gpu: 'GeForce', isSpecial: false, hasNeutral: false, character: 'ready', fits: true, browserHz: 60, daemonHz: 7,
 };
 const step = (change: Partial<DrawSituation>): string => decide({ ...READY, ...change }).step;
 
@@ -26,7 +26,7 @@ test('the daemon draws first', () => {
 });
 
 test('the daemon draws what the browser cannot', () => {
-  for (const change of [{ gpu: '' }, { gpu: 'ANGLE (Google, Vulkan (SwiftShader))' }, { isSpecial: true }, { hasNeutral: true },
+  for (const change of [{ isConnected: false }, { gpu: '' }, { gpu: 'ANGLE (Google, Vulkan (SwiftShader))' }, { isSpecial: true }, { hasNeutral: true },
     { character: 'none' as const }, { character: 'failed' as const }, { fits: false }]) {
     const decision = decide({ ...READY, ...change });
     assert.equal(decision.step, 'daemon', JSON.stringify(change));

@@ -29,7 +29,8 @@ function nameOfGpu(): string {
 }
 
 export class BrowserView {
-  readonly canvas = h('canvas', { class: 'picture drawn-here', 'aria-hidden': 'true', hidden: true });
+  /** Holds the canvas while there is a character. */
+  readonly element = h('div', { class: 'drawn-here', 'aria-hidden': 'true', hidden: true });
   /** True while this browser draws. */
   readonly active = new Signal(false);
   /** Why the daemon draws; empty while the browser does. */
@@ -54,9 +55,8 @@ export class BrowserView {
     for (const signal of [settings.changed, wipe, comparing, drawnBy, subject]) {
       (signal as Signal<unknown>).watch(() => this.update());
     }
-    this.canvas.addEventListener('webglcontextlost', () => this.fail('failed'));
     connection.onState((link) => {
-      // Another daemon may have another character.
+      // The next daemon may have another character.
       if (link === 'lost') this.forget();
       this.update();
     });
@@ -91,6 +91,7 @@ export class BrowserView {
     const isOne = pose !== null && weights !== null && pose.subject === weights.subject;
     return decide({
       choice: this.state.drawnBy.value,
+      isConnected: this.connection.state === 'open',
       gpu: this.gpu ?? '',
       isSpecial: this.isSpecial(),
       hasNeutral: this.hasNeutral,
@@ -104,7 +105,7 @@ export class BrowserView {
   /** The browser draws the daemon's default picture only. */
   private isSpecial(): boolean {
     const { settings, wipe, comparing } = this.state;
-    return wipe.value !== 'none' || comparing.value || settings.overrides.size > 0 ||
+    return settings.infos.length === 0 || wipe.value !== 'none' || comparing.value || settings.overrides.size > 0 ||
       settings.infos.some(({ value, default: usual }) => value !== usual);
   }
 
@@ -121,40 +122,52 @@ export class BrowserView {
     this.shownAtS = [];
     // Shown with the first picture (draw()), so that the daemon's stays until then.
     if (!active) {
-      this.canvas.hidden = true;
+      this.element.hidden = true;
       this.active.set(false);
     }
   }
 
   private async load(): Promise<void> {
     this.character = 'loading';
+    const canvas = h('canvas');
+    canvas.addEventListener('webglcontextlost', () => canvas.isConnected && this.give('failed'));
+    this.element.replaceChildren(canvas);
     try {
       const reply = await fetch(CHARACTER_URL, { method: 'HEAD' });
       if (!reply.ok) {
-        this.fail('none');
+        if (canvas.isConnected) this.give('none');
         return;
       }
       const { BrowserScene: Scene } = await import('./browser_scene');
-      this.scene = await Scene.create(this.canvas, CHARACTER_URL);
+      const scene = await Scene.create(canvas, CHARACTER_URL);
+      if (!canvas.isConnected) {
+        scene.dispose(); // the daemon was lost meanwhile
+        return;
+      }
+      this.scene = scene;
       this.character = 'ready';
     } catch (error) {
       console.warn('this browser cannot draw the character:', error);
-      this.fail('failed');
+      if (canvas.isConnected) this.give('failed');
     }
     this.update();
   }
 
-  private fail(reason: 'none' | 'failed'): void {
+  /** Gives the picture back to the daemon. */
+  private give(reason: 'unknown' | 'none' | 'failed'): void {
     this.character = reason;
     this.scene?.dispose();
     this.scene = null;
+    this.browserHz = null;
+    this.measured = [];
+    this.element.replaceChildren();
     this.stopFeeds();
     this.update();
   }
 
   private forget(): void {
-    if (this.character === 'none') this.character = 'unknown';
     this.daemonHz = 0;
+    if (this.character !== 'failed') this.give('unknown');
   }
 
   private follow(): void {
@@ -188,7 +201,7 @@ export class BrowserView {
     const pose = this.poses?.pose() ?? null;
     const weights = this.weights?.frame() ?? null;
     const camera = this.state.camera.value;
-    const surface = this.canvas.parentElement;
+    const surface = this.element.parentElement;
     if (this.scene === null || pose === null || weights === null || camera === null || surface === null) return;
     if (step !== 'measure' && step !== 'browser') return;
     const { width, height } = pictureSize(surface.clientWidth, surface.clientHeight, devicePixelRatio, 1);
@@ -218,7 +231,7 @@ export class BrowserView {
   private show(nowS: number): void {
     this.shownAtS.push(nowS);
     if (this.active.value) return;
-    this.canvas.hidden = false;
+    this.element.hidden = false;
     this.active.set(true);
   }
 }

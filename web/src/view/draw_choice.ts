@@ -6,13 +6,14 @@ export type DrawnBy = 'auto' | 'browser' | 'daemon';
 
 export interface DrawSituation {
   choice: DrawnBy;
+  isConnected: boolean;
   /** The name of the GPU; empty: this browser has no WebGL 2. */
   gpu: string;
   /** Something in the picture's settings, view or wipe differs from the daemon's default picture. */
   isSpecial: boolean;
   /** A neutral pose was captured for the subject. */
   hasNeutral: boolean;
-  /** 'none': the daemon has no character for browsers. */
+  /** 'none': the daemon has no character for browsers. 'failed': it does not load, or the GPU is lost. */
   character: 'unknown' | 'loading' | 'ready' | 'none' | 'failed';
   /** Null: no pose or no weights yet. False: the subject has another skeleton or other weights. */
   fits: boolean | null;
@@ -43,6 +44,7 @@ const byDaemon = (why: string): DrawDecision => ({ step: 'daemon', why });
 export function decide(at: DrawSituation): DrawDecision {
   const isAuto = at.choice === 'auto';
   if (at.choice === 'daemon') return byDaemon('you chose the daemon');
+  if (!at.isConnected) return byDaemon('there is no connection');
   if (at.gpu === '') return byDaemon('this browser has no WebGL 2');
   if (isAuto && isSoftware(at.gpu)) return byDaemon('this browser draws in software');
   if (at.character === 'none') return byDaemon('the daemon has no character for browsers');

@@ -48,7 +48,7 @@ export class Viewer {
     }
     new ResizeObserver(() => this.refresh()).observe(this.stage.surface);
     this.drawing = new BrowserView(connection, state);
-    this.stage.surface.append(this.drawing.canvas);
+    this.stage.surface.append(this.drawing.element);
     this.drawing.active.watch((active) => this.onDrawing(active));
     connection.link.watch(() => this.onLink());
   }
