@@ -51,6 +51,7 @@ npm_ci() {
   fi
 }
 install_npm_packages() {
+  npm_ci client/js 'the npm packages and the preview page will not be built'
   npm_ci web 'the preview page will not be built'
   [[ $want != build ]] || return 0
   npm_ci tests/mcap_interop 'the tests that need @mcap/core will be skipped'

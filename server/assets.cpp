@@ -41,6 +41,14 @@ Status LoadRigAlone(const fs::path& path, const wrinkle::PoseSource& poses, Asse
 }
 
 // Null without shapes, and if neither pictures nor the rig show them.
+// The file that client/js/furrow-three/tools/pack_character.mjs makes of a package; empty if there
+// is none.
+fs::path WebPackageOf(const fs::path& character) {
+  fs::path packed = character.parent_path() / (character.stem().string() + ".web.glb");
+  std::error_code error;
+  return fs::exists(packed, error) ? packed : fs::path();
+}
+
 std::shared_ptr<const CharacterShapes> ShapesOf(const character::Character& character, bool draws) {
   const bool reads = !wrinkle::BlendShapesOf(character.rig).empty();
   if (character.shapes.empty() || !(draws || reads)) return nullptr;
@@ -129,6 +137,7 @@ Result<Assets> LoadAssets(const Config& config) {
   // The aliasing constructor: the pointer to the rig keeps the whole character alive.
   assets.rig = std::shared_ptr<const wrinkle::Rig>(shared, &shared->rig);
   assets.character = std::move(shared);
+  if (chosen_rig.empty()) assets.web_package = WebPackageOf(glb);
   return assets;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -28,7 +29,10 @@ struct CharacterShapes {
 struct Assets {
   std::shared_ptr<const wrinkle::Rig> rig;
   std::shared_ptr<const character::Character> character;  // null: weights only
-  std::shared_ptr<const CharacterShapes> shapes;          // null: joints move no shapes
+  // The character for browsers, "<stem>.web.glb" beside it, with the rig in it. Empty: there is
+  // none, or the daemon uses another rig.
+  std::filesystem::path web_package;
+  std::shared_ptr<const CharacterShapes> shapes;  // null: joints move no shapes
   // Finds the rig's joints by other names. It knows the roles that the character's package states.
   rig::SkeletonMatcher skeletons;
   rig::ShapeMatcher shape_matcher;  // finds its blend shapes by other names

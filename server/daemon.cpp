@@ -246,6 +246,7 @@ Status Daemon::StartWeb() {
   auto started = HttpServer::Start(
       {.config = config_.http,
        .bind = config_.bind,
+       .character = render_ != nullptr ? assets_.web_package : std::filesystem::path(),
        .post_to_hub =
            [this](std::function<void(Hub&, Time)> task) {
              // The time is read when the task runs: it may have waited behind other work.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// CMake runs this file and passes the folders of the generated wire code and of the built page.
+// CMake runs this file and passes the folders of the npm packages' sources and builds, and of the built page.
 import { fileURLToPath } from 'node:url';
 import { defineConfig } from 'vite';
 
@@ -14,7 +14,11 @@ export default defineConfig({
   cacheDir: `${setting('FURROW_WEB_BUILD')}/vite-cache`,
   resolve: {
     alias: {
-      '@wire': `${setting('FURROW_WEB_BUILD')}/wire/furrow/protocol/wire`,
+      '@wire': `${setting('FURROW_JS_BUILD')}/wire/furrow/protocol/wire`,
+      'furrow/protocol': `${setting('FURROW_JS_SOURCE')}/furrow/src/protocol.ts`,
+      'furrow-three': `${setting('FURROW_JS_SOURCE')}/furrow-three/src/index.ts`,
+      'three/addons': `${setting('FURROW_JS_SOURCE')}/node_modules/three/examples/jsm`,
+      three: `${setting('FURROW_JS_SOURCE')}/node_modules/three/build/three.module.js`,
       flatbuffers: fileURLToPath(new URL('./node_modules/flatbuffers/mjs/flatbuffers.js', import.meta.url)),
     },
   },
@@ -23,6 +27,7 @@ export default defineConfig({
     emptyOutDir: true,
     modulePreload: { polyfill: false },
     target: 'es2022',
+    chunkSizeWarningLimit: 1000, // three.js, which is loaded only if this browser draws
     assetsInlineLimit: 0,
   },
 });

@@ -80,7 +80,8 @@ Status SetTransport(const std::string& value, Address* address) {
             "use transport=udp or transport=tcp"};
   }
   if (value != "udp" && value != "tcp") {
-    return Invalid("transport=" + value + " is unknown", "use transport=udp or transport=tcp");
+    return Invalid("transport=" + Quoted(value) + " is unknown",
+                   "use transport=udp or transport=tcp");
   }
   if (address->transport) return Invalid("transport is stated twice");
   address->transport = value == "udp" ? TransportKind::kUdp : TransportKind::kTcp;

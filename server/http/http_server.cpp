@@ -39,12 +39,21 @@ Result<PageFiles> LoadPage(const HttpConfig& config) {
   return PageFiles::Load(index->parent_path());
 }
 
+// Strangers may ask for the character, so it is small, and read and compressed only once.
+constexpr std::uintmax_t kMaxCharacterBytes = 4'000'000;
+
 // An installation without the page still has the API, WebSockets and pictures.
-PageFiles PageOrNone(const HttpConfig& config) {
-  Result<PageFiles> page = LoadPage(config);
-  if (page.ok()) return *std::move(page);
-  spdlog::warn("serving without a web page: {}", page.status().ToString());
-  return {};
+PageFiles PageOrNone(const HttpServer::Parts& parts) {
+  Result<PageFiles> page = LoadPage(parts.config);
+  if (!page.ok()) {
+    spdlog::warn("serving without a web page: {}", page.status().ToString());
+    return {};
+  }
+  if (!parts.character.empty()) {
+    const Status status = page->Add("/character.glb", parts.character, kMaxCharacterBytes);
+    if (!status.ok()) spdlog::warn("browsers cannot draw the character: {}", status.ToString());
+  }
+  return *std::move(page);
 }
 
 }  // namespace
@@ -53,7 +62,7 @@ struct HttpServer::Impl {
   explicit Impl(Parts parts)
       : context{.config = parts.config,
                 .guard = RequestGuard(parts.config),
-                .page = PageOrNone(parts.config),
+                .page = PageOrNone(parts),
                 .post_to_hub = std::move(parts.post_to_hub),
                 .answer = std::move(parts.answer),
                 .metrics = parts.metrics} {

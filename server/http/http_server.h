@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -19,6 +20,8 @@ class HttpServer {
   struct Parts {
     HttpConfig config;
     std::string bind;  // numeric address
+    // The character for browsers that draw it themselves, served as /character.glb; empty: none.
+    std::filesystem::path character;
     PostToHub post_to_hub;
     AnswerApi answer;            // called on the hub's thread
     Metrics* metrics = nullptr;  // not null; outlives the server

@@ -8,13 +8,14 @@ import { PNG } from 'pngjs';
 const ARTEFACTS = process.env.FURROW_ARTEFACTS;
 const PATIENCE_MS = 60_000;
 
-export function launch() {
+/** `options`: further switches of the browser. */
+export function launch(options = []) {
   mkdirSync(ARTEFACTS, { recursive: true });
   return chromium.launch({
     executablePath: '/usr/bin/chromium',
     headless: true,
     args: ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
-      '--disable-component-update', '--disable-sync'],
+      '--disable-component-update', '--disable-sync', ...options],
   });
 }
 

@@ -28,6 +28,8 @@ export interface SubjectInfo {
   late: number;
   jitter_ms: number;
   age_ms: number;
+  /** A neutral pose was captured. */
+  neutral: boolean;
 }
 
 export interface DaemonStatus {

@@ -25,6 +25,8 @@ import { Connection } from './wire/connection';
 import { WeightStream } from './wire/weight_stream';
 
 const POLL_MS = 1000;
+/** While the browser draws, another viewer's change of the daemon's settings is noticed after so many polls. */
+const POLLS_PER_SETTINGS = 3;
 
 export class App {
   private readonly state = new AppState(location.hash);
@@ -51,6 +53,7 @@ export class App {
   private daemonSession = '';
   private everConnected = false;
   private began = false;
+  private numPolls = 0;
 
   constructor(parent: HTMLElement) {
     const { state, toasts } = this;
@@ -67,7 +70,7 @@ export class App {
     this.menu = new SettingsMenu(state, toasts, () => text.open());
     this.timeline = new Timeline(toasts);
     this.strip = new DebugStrip(this.connection, state);
-    this.viewBar = new ViewBar(state, this.strip.adder);
+    this.viewBar = new ViewBar(state, this.strip.adder, this.viewer.drawing);
     const commands = this.commands();
     this.help = helpDialog(commands);
     this.header = new Header(state, {
@@ -105,7 +108,7 @@ export class App {
     });
     state.subject.watch((subject) => this.weights.choose(subject));
     this.weights.subject.watch(() => void this.readRig());
-    this.connection.state.watch((link) => {
+    this.connection.link.watch((link) => {
       if (link === 'open') {
         this.everConnected = true;
         void this.askDaemon().then(() => this.showCondition());
@@ -178,6 +181,15 @@ export class App {
     await this.readRig();
   }
 
+  /** The browser draws the default settings only, so it must know those of the daemon. */
+  private async readSettings(): Promise<void> {
+    try {
+      this.state.settings.setInfos(await api.settings());
+    } catch {
+      // The header reports the state of the connection.
+    }
+  }
+
   private async readRig(): Promise<void> {
     try {
       await this.faceMap.load(this.weights.subject.value);
@@ -192,13 +204,15 @@ export class App {
     if (!document.hidden) await this.askDaemon();
     const shown = this.subjects?.find(({ name }) => name === this.weights.subject.value);
     this.viewer.observeRate(shown?.rate_hz ?? 0, nowS);
-    this.header.showStats(this.viewer.stats, nowS);
+    this.viewer.drawing.observe(shown, this.viewer.stats.rateHz(nowS));
+    this.header.showStats(this.viewer, nowS);
+    if (this.viewer.drawing.active.value && this.numPolls++ % POLLS_PER_SETTINGS === 0) void this.readSettings();
     this.showCondition();
     setTimeout(() => void this.poll(), POLL_MS);
   }
 
   private async askDaemon(): Promise<void> {
-    if (this.connection.state.value !== 'open') return;
+    if (this.connection.link.value !== 'open') return;
     try {
       [this.subjects, this.status] = await Promise.all([api.subjects(), api.status()]);
       this.showDaemon();
@@ -221,7 +235,7 @@ export class App {
 
   private showCondition(): void {
     this.header.showCondition(assess({
-      link: this.connection.state.value,
+      link: this.connection.link.value,
       everConnected: this.everConnected,
       notDrawn: this.viewer.notDrawn.value,
       renders: this.status?.render ?? true,

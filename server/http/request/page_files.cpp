@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kTypes = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 13> kTypes = {{
     {".html", "text/html; charset=utf-8"},
     {".js", "text/javascript; charset=utf-8"},
     {".mjs", "text/javascript; charset=utf-8"},
@@ -28,6 +28,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kTypes =
     {".ico", "image/x-icon"},
     {".woff2", "font/woff2"},
     {".txt", "text/plain; charset=utf-8"},
+    {".glb", "model/gltf-binary"},
 }};
 
 std::string_view TypeOf(const fs::path& path) {
@@ -55,6 +56,21 @@ std::string Gzip(const std::string& bytes) {
   return done && out.size() < bytes.size() ? out : std::string();
 }
 
+PageFile MakeFile(const fs::path& name, std::string bytes) {
+  PageFile file;
+  file.type = TypeOf(name);
+  file.gzip = Gzip(bytes);
+  // A checksum finds changes; an ETag need not resist an attacker.
+  file.etag = fmt::format(
+      "\"{:08x}-{:x}\"",
+      crc32(0, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(bytes.size())),
+      bytes.size());
+  // The build names the files there after their content.
+  file.immutable = name.native().starts_with("/assets/");
+  file.bytes = std::move(bytes);
+  return file;
+}
+
 }  // namespace
 
 Result<PageFiles> PageFiles::Load(const fs::path& folder) {
@@ -72,24 +88,21 @@ Result<PageFiles> PageFiles::Load(const fs::path& folder) {
     Result<std::string> bytes = ReadFile(entry->path(), kMaxBytes);
     FURROW_RETURN_IF_ERROR(bytes);
     const std::string name = "/" + fs::relative(entry->path(), folder).generic_string();
-    PageFile file;
-    file.type = TypeOf(entry->path());
-    file.gzip = Gzip(*bytes);
-    // A checksum finds changes; an ETag need not resist an attacker.
-    file.etag = fmt::format(
-        "\"{:08x}-{:x}\"",
-        crc32(0, reinterpret_cast<const Bytef*>(bytes->data()), static_cast<uInt>(bytes->size())),
-        bytes->size());
-    // The build names the files there after their content.
-    file.immutable = name.starts_with("/assets/");
-    file.bytes = *std::move(bytes);
-    page.files_.emplace(name, std::move(file));
+    page.files_.emplace(name, MakeFile(name, *std::move(bytes)));
   }
   if (page.Find("/") == nullptr) {
     return Status(StatusCode::kNotFound, "the web page is not installed", folder,
                   "build the target furrow-web, which needs nodejs and npm");
   }
   return page;
+}
+
+Status PageFiles::Add(std::string name, const fs::path& file, std::uintmax_t most) {
+  Result<std::string> bytes = ReadFile(file, most);
+  FURROW_RETURN_IF_ERROR(bytes);
+  PageFile made = MakeFile(name, *std::move(bytes));
+  files_.insert_or_assign(std::move(name), std::move(made));
+  return {};
 }
 
 const PageFile* PageFiles::Find(std::string_view path) const {

@@ -28,6 +28,10 @@ class PageFiles {
   // folder or no index.html), kIo, kLimit.
   [[nodiscard]] static Result<PageFiles> Load(const std::filesystem::path& folder);
 
+  // Adds one more file as `name` ("/character.glb"). Errors: kIo, kLimit (more than `most` bytes).
+  [[nodiscard]] Status Add(std::string name, const std::filesystem::path& file,
+                           std::uintmax_t most);
+
   // The file at `path` ("/app.js"), owned by this object; null if there is none.
   [[nodiscard]] const PageFile* Find(std::string_view path) const;
 

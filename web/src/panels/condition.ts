@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Describes the state of the page in the one sentence that helps most. Pure, so every case has a test.
 import type { SubjectInfo } from '../api';
-import type { LinkState } from '../wire/connection';
+import type { LinkState } from 'furrow/protocol';
 
 export interface Situation {
   link: LinkState;

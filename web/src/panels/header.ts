@@ -2,7 +2,7 @@
 // The bar at the top: subject, condition and picture statistics.
 import type { AppState } from '../state/app_state';
 import { button, h, select, setOptions } from '../ui/dom';
-import type { PictureStats } from '../view/picture_stats';
+import type { Viewer } from '../view/viewer';
 import type { Condition } from './condition';
 
 const TIERS = ['best', 'medium', 'low'];
@@ -47,12 +47,13 @@ export class Header {
     this.status.replaceChildren(h('strong', {}, text), advice === '' ? '' : `. ${advice}`);
   }
 
-  showStats(stats: PictureStats, nowS: number): void {
-    const latency = stats.latencyMs();
-    this.put('rate', `${stats.rateHz(nowS).toFixed(0)} /s`);
+  showStats({ stats, drawing }: Viewer, nowS: number): void {
+    const isHere = drawing.active.value;
+    const latency = isHere ? null : stats.latencyMs();
+    this.put('rate', `${(isHere ? drawing.rateHz(nowS) : stats.rateHz(nowS)).toFixed(0)} /s`);
     this.put('latency', latency === null ? '–' : `${latency.toFixed(0)} ms`);
     this.put('dropped', String(stats.dropped));
-    this.put('tier', stats.still ? 'still' : (TIERS[stats.tier] ?? '–'));
+    this.put('tier', isHere ? 'drawn here' : stats.still ? 'still' : (TIERS[stats.tier] ?? '–'));
   }
 
   private put(id: string, text: string): void {

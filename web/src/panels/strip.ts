@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The debug strip: small live pictures of render targets beside the main picture.
+import type { PictureRequest } from 'furrow/protocol';
 import type { AppState } from '../state/app_state';
 import { assignments } from '../state/settings';
 import { button, h, readable, select, setOptions } from '../ui/dom';
 import type { Signal } from '../ui/signal';
 import { PictureStream } from '../view/picture_stream';
 import type { Connection } from '../wire/connection';
-import type { PictureRequest } from '../wire/messages';
 
 const MAX_THUMBNAILS = 6;
 const CSS_WIDTH = 144;

@@ -3,6 +3,8 @@
 import type { Wipe } from '../state/address';
 import type { AppState } from '../state/app_state';
 import { button, h, readable, select } from '../ui/dom';
+import type { BrowserView } from '../view/browser_view';
+import type { DrawnBy } from '../view/draw_choice';
 import type { Sharpness } from '../view/resolution';
 
 const WIPES: readonly (readonly [Wipe, string])[] = [
@@ -10,6 +12,10 @@ const WIPES: readonly (readonly [Wipe, string])[] = [
 ];
 const SHARPNESS: readonly (readonly [Sharpness, string])[] = [
   ['auto', 'Auto detail'], ['sharp', 'Full detail'], ['fast', 'Fast (coarse)'],
+];
+
+const DRAWN_BY: readonly (readonly [DrawnBy, string])[] = [
+  ['auto', 'Drawn by the faster'], ['browser', 'Drawn by this browser'], ['daemon', 'Drawn by the daemon'],
 ];
 
 /** A short label, because all framings share one row. */
@@ -21,15 +27,21 @@ export class ViewBar {
   readonly element: HTMLElement;
   private readonly framings = h('div', { class: 'framings', role: 'group', 'aria-label': 'Framing' });
   private readonly wipe: HTMLSelectElement;
+  private readonly drawnBy: HTMLSelectElement;
 
-  constructor(private readonly state: AppState, debugViews: HTMLElement) {
+  constructor(private readonly state: AppState, debugViews: HTMLElement, drawing: BrowserView) {
     this.wipe = select('Split the picture', WIPES, (value) => state.wipe.set(value as Wipe));
     const sharpness = select('Sharpness', SHARPNESS, (value) => state.sharpness.set(value as Sharpness));
+    this.drawnBy = select('Drawn by', DRAWN_BY, (value) => state.drawnBy.set(value as DrawnBy));
     this.element = h('div', { class: 'view-bar', role: 'toolbar', 'aria-label': 'View' },
-      this.framings, h('span', { class: 'space' }), h('div', { class: 'choices' }, debugViews, this.wipe, sharpness));
+      this.framings, h('span', { class: 'space' }), h('div', { class: 'choices' }, debugViews, this.wipe, sharpness, this.drawnBy));
     state.presets.bind(() => this.fill());
     state.camera.watch(() => this.mark());
     state.wipe.bind((wipe) => (this.wipe.value = wipe));
+    state.drawnBy.bind((drawnBy) => (this.drawnBy.value = drawnBy));
+    drawing.why.bind((why) => {
+      this.drawnBy.title = why === '' ? 'This browser draws the picture' : `The daemon draws the picture: ${why}`;
+    });
   }
 
   /** Chooses the preset at `index`, counted from 0. */

@@ -2,6 +2,7 @@
 // The page's state in the fragment of its URL, so that a reload or a link restores the page. Settings
 // have their own names; everything else has short names.
 import type { Camera, Vec3 } from '../view/camera';
+import type { DrawnBy } from '../view/draw_choice';
 
 export type Wipe = 'none' | 'wrinkles' | 'shading';
 
@@ -17,9 +18,10 @@ export interface PageState {
   curves: string[];
   /** The open tab of the side panel. Empty: the panel is closed. */
   panel: string;
+  drawnBy: DrawnBy;
 }
 
-const RESERVED = ['subject', 'camera', 'wipe', 'debug', 'curves', 'panel'] as const;
+const RESERVED = ['subject', 'camera', 'wipe', 'debug', 'curves', 'panel', 'drawn'] as const;
 
 function writeCamera(camera: Camera): string {
   const numbers = [...camera.eye, ...camera.target, camera.fovDegrees];
@@ -47,6 +49,7 @@ const words = (text: string | null): string[] => (text ? text.split(',').filter(
 export function readAddress(hash: string): PageState {
   const parameters = new URLSearchParams(hash.replace(/^#/, ''));
   const wipe = parameters.get('wipe');
+  const drawn = parameters.get('drawn');
   const state: PageState = {
     subject: parameters.get('subject') ?? '',
     camera: readCamera(parameters.get('camera') ?? ''),
@@ -55,6 +58,7 @@ export function readAddress(hash: string): PageState {
     strip: words(parameters.get('debug')),
     curves: words(parameters.get('curves')),
     panel: parameters.get('panel') ?? 'look',
+    drawnBy: drawn === 'browser' || drawn === 'daemon' ? drawn : 'auto',
   };
   for (const [name, value] of parameters) {
     if (!(RESERVED as readonly string[]).includes(name)) state.settings.set(name, value);
@@ -74,6 +78,7 @@ export function writeAddress(state: PageState): string {
   if (state.strip.length > 0) pairs.push(['debug', state.strip.join(',')]);
   if (state.curves.length > 0) pairs.push(['curves', state.curves.join(',')]);
   if (state.panel !== 'look') pairs.push(['panel', state.panel]);
+  if (state.drawnBy !== 'auto') pairs.push(['drawn', state.drawnBy]);
   pairs.push(...state.settings);
   const encode = (text: string): string => encodeURIComponent(text).replaceAll('%2C', ',');
   return pairs.length === 0 ? '' : `#${pairs.map(([k, v]) => `${encode(k)}=${encode(v)}`).join('&')}`;

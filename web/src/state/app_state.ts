@@ -2,6 +2,7 @@
 // The complete state of the page. The URL follows it.
 import { Signal } from '../ui/signal';
 import { type Camera, type CameraPreset, fromPreset, sameCamera } from '../view/camera';
+import type { DrawnBy } from '../view/draw_choice';
 import type { Sharpness } from '../view/resolution';
 import { type PageState, readAddress, type Wipe, writeAddress } from './address';
 import { SettingsModel } from './settings';
@@ -20,6 +21,7 @@ export class AppState {
   /** The open tab of the side panel. Empty: closed. */
   readonly panel: Signal<string>;
   readonly sharpness = new Signal<Sharpness>('auto');
+  readonly drawnBy: Signal<DrawnBy>;
   /** True while the user compares: the picture is drawn without the last change. */
   readonly comparing = new Signal(false);
   private readonly wishes: PageState;
@@ -32,13 +34,14 @@ export class AppState {
     this.strip = new Signal<readonly string[]>(this.wishes.strip);
     this.curves = new Signal<readonly string[]>(this.wishes.curves);
     this.panel = new Signal(this.wishes.panel);
+    this.drawnBy = new Signal(this.wishes.drawnBy);
   }
 
   /** Applies the URL once the daemon has replied. Returns names in the URL that the daemon does not know. */
   begin(presets: readonly CameraPreset[]): string[] {
     const unknown = this.settings.begin(this.wishes.settings);
     this.setPresets(presets);
-    for (const signal of [this.subject, this.wipe, this.strip, this.curves, this.panel, this.camera, this.settings.changed]) {
+    for (const signal of [this.subject, this.wipe, this.strip, this.curves, this.panel, this.drawnBy, this.camera, this.settings.changed]) {
       (signal as Signal<unknown>).watch(() => this.writeSoon());
     }
     return unknown;
@@ -77,6 +80,7 @@ export class AppState {
       strip: [...this.strip.value],
       curves: [...this.curves.value],
       panel: this.panel.value,
+      drawnBy: this.drawnBy.value,
     };
   }
 

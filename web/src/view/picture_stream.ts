@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // One picture subscription: requests, updates, decoding and acknowledgements.
+import { type Envelope, frameAck, type PictureMessage, type PictureRequest, readPicture, type ReplyMessage,
+  type Subscriber, subscribePictures, type Subscription, updatePictures } from 'furrow/protocol';
 import { Signal } from '../ui/signal';
-import type { Connection, Subscriber, Subscription } from '../wire/connection';
-import type { Envelope } from '../wire/envelope';
-import { frameAck, type PictureMessage, type PictureRequest, readPicture, type ReplyMessage,
-  subscribePictures, unsubscribe, updatePictures } from '../wire/messages';
+import type { Connection } from '../wire/connection';
 
 /** A decoded picture. The receiver must close the bitmap. */
 export interface Picture extends Omit<PictureMessage, 'bytes'> {
@@ -45,13 +44,14 @@ export class PictureStream implements Subscriber {
   ) {}
 
   start(): void {
+    this.pending.set(true);
     this.subscription ??= this.connection.subscribe(this);
   }
 
   stop(): void {
     if (this.timer !== null) clearTimeout(this.timer);
     this.timer = null;
-    this.subscription?.close(unsubscribe());
+    this.subscription?.close();
     this.subscription = null;
     this.answered = false;
   }

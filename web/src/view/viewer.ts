@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Keeps the picture in step with the state of the page. Requests a second picture while two are
 // compared.
+import { ERROR, type PictureRequest } from 'furrow/protocol';
 import type { Wipe } from '../state/address';
 import type { AppState } from '../state/app_state';
 import { assignments, type Values } from '../state/settings';
 import { Signal } from '../ui/signal';
-import { nowUs } from '../wire/clock';
 import type { Connection } from '../wire/connection';
-import type { PictureRequest } from '../wire/messages';
+import { BrowserView } from './browser_view';
 import { type Picture, PictureStream } from './picture_stream';
 import { PictureStats } from './picture_stats';
 import { AdaptiveScale, pictureSize } from './resolution';
@@ -25,13 +25,11 @@ const WIPES: Record<Exclude<Wipe, 'none'>, WipeSides> = {
   shading: { setting: 'shading', left: 'diffuse', right: 'skin', labels: { left: 'Diffuse', right: 'Skin' } },
 };
 
-/** Codes of STANDARD.md section 10. */
-const NOT_RENDERING = 8;
-const BAD_PICTURE = 9;
-
 export class Viewer {
   readonly stage = new Stage();
   readonly stats = new PictureStats();
+  /** Draws the picture instead of the daemon while it is active. */
+  readonly drawing: BrowserView;
   /** The daemon's reason for not rendering; empty if it renders. */
   readonly notDrawn = new Signal('');
   private readonly scale = new AdaptiveScale();
@@ -49,18 +47,37 @@ export class Viewer {
       (signal as Signal<unknown>).watch(() => this.refresh());
     }
     new ResizeObserver(() => this.refresh()).observe(this.stage.surface);
-    connection.state.watch(() => this.onLink());
+    this.drawing = new BrowserView(connection, state);
+    this.stage.surface.append(this.drawing.element);
+    this.drawing.active.watch((active) => this.onDrawing(active));
+    connection.link.watch(() => this.onLink());
+  }
+
+  /** The daemon draws nothing for this page while the browser does. */
+  private onDrawing(active: boolean): void {
+    this.stage.element.dataset.drawnBy = active ? 'browser' : 'daemon';
+    if (active) {
+      this.main?.stop();
+      this.stage.element.setAttribute('aria-busy', 'false');
+    } else {
+      this.refresh();
+      this.main?.start();
+      // The picture on the stage is from before.
+      this.stage.element.dataset.still = 'false';
+      this.stage.element.setAttribute('aria-busy', 'true');
+    }
   }
 
   /** Called once per second to check whether the daemon keeps up with `posesHz`. */
   observeRate(posesHz: number, nowS: number): void {
+    if (this.drawing.active.value) return;
     if (this.state.sharpness.value !== 'auto' || this.stats.resting || posesHz < 1) return;
     if (this.scale.observe(this.stats.rateHz(nowS), posesHz, nowS)) this.refresh();
   }
 
   private onLink(): void {
-    this.stage.setDimmed(this.connection.state.value === 'lost');
-    if (this.connection.state.value === 'open') this.notDrawn.set('');
+    this.stage.setDimmed(this.connection.link.value === 'lost');
+    if (this.connection.link.value === 'open') this.notDrawn.set('');
   }
 
   private wantedValues(): Values {
@@ -97,6 +114,7 @@ export class Viewer {
   }
 
   private refresh(): void {
+    if (this.drawing.active.value) return;
     const values = this.wantedValues();
     const request = this.requestFor(values, 'right');
     if (request === null) return;
@@ -136,7 +154,7 @@ export class Viewer {
     this.stage.show(side, picture);
     if (side === 'left') return;
     const wasResting = this.stats.resting;
-    this.stats.add(picture, nowUs(), this.connection.clock.offsetUs());
+    this.stats.add(picture, this.connection.nowUs(), this.connection.clock.offsetUs());
     this.notDrawn.set('');
     if (!this.main!.pending.value) this.accepted = this.state.settings.overrides;
     // A slow machine draws motion smaller; the first picture at rest may still be small.
@@ -146,14 +164,14 @@ export class Viewer {
   }
 
   private onRefused(code: number, message: string): void {
-    if (code === NOT_RENDERING) {
+    if (code === ERROR.notRendering) {
       this.notDrawn.set(message);
       return;
     }
     this.say(message);
     const { settings } = this.state;
     const isNews = assignments(settings.overrides).join() !== assignments(this.accepted).join();
-    if (code !== BAD_PICTURE || !isNews) return; // there is no change to revert, so a new request would fail too
+    if (code !== ERROR.badPicture || !isNews) return; // there is no change to revert, so a new request would fail too
     settings.reject(this.accepted);
     // A rejected request leaves no subscription, so subscribe again.
     this.main?.restart(this.main.view);

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The subscription of one subject's wrinkle weights.
+import { type Envelope, readWeights, type ReplyMessage, type Subscriber, subscribeWeights, type Subscription } from 'furrow/protocol';
 import type { WeightHistory } from '../state/weight_history';
 import { Signal } from '../ui/signal';
-import type { Connection, Subscriber, Subscription } from './connection';
-import type { Envelope } from './envelope';
-import { readWeights, type ReplyMessage, subscribeWeights, unsubscribe } from './messages';
+import type { Connection } from './connection';
 
 const MAX_RATE_HZ = 120;
 
@@ -28,13 +27,13 @@ export class WeightStream implements Subscriber {
   choose(subject: string): void {
     if (subject === this.wanted) return;
     this.wanted = subject;
-    this.subscription.close(unsubscribe());
+    this.subscription.close();
     this.history.clear();
     this.subscription = this.connection.subscribe(this);
   }
 
   request(): Uint8Array {
-    return subscribeWeights(this.wanted, MAX_RATE_HZ);
+    return subscribeWeights({ subject: this.wanted, maxRateHz: MAX_RATE_HZ });
   }
 
   onReply(reply: ReplyMessage): void {

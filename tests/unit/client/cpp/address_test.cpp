@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/cpp/address.h"
 
+#include <fstream>
 #include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace furrow::client {
 namespace {
 
-using testing::ElementsAre;
 using testing::HasSubstr;
-using testing::IsEmpty;
+using testing::Not;
 
 Address Parsed(const std::string& text) {
   const auto address = ParseAddress(text);
@@ -19,36 +21,34 @@ Address Parsed(const std::string& text) {
   return address.ok() ? *address : Address{};
 }
 
-TEST(Address, StatesAHostAndPerhapsAPort) {
-  struct Case {
-    const char* text;
-    const char* host;
-    int port;
-  };
-  for (const Case& c :
-       {Case{"localhost", "localhost", 0}, Case{"10.0.0.1:80", "10.0.0.1", 80},
-        Case{"::1", "::1", 0}, Case{"[::1]", "::1", 0}, Case{"[::1]:9", "::1", 9},
-        Case{"furrow://localhost", "localhost", 0}, Case{"furrow://localhost/", "localhost", 0},
-        Case{"furrow://localhost?", "localhost", 0},
-        Case{"furrow://[fe80::1%eth0]:65535", "fe80::1%eth0", 65535}}) {
-    const Address address = Parsed(c.text);
-    EXPECT_EQ(address.host, c.host) << c.text;
-    EXPECT_EQ(address.port, c.port) << c.text;
-    EXPECT_FALSE(address.transport.has_value()) << c.text;
-    EXPECT_THAT(address.subjects, IsEmpty()) << c.text;
+// All clients agree on these addresses and on the messages: client/js reads the same file.
+TEST(Address, TextsOfAllClientsAreReadAlike) {
+  std::ifstream file(FURROW_ADDRESSES);
+  const auto cases = nlohmann::json::parse(file);
+  ASSERT_GT(cases.size(), 50u);
+  for (const auto& expected : cases) {
+    const std::string text = expected["text"];
+    const auto address = ParseAddress(text);
+    if (expected.contains("error")) {
+      ASSERT_FALSE(address.ok()) << text;
+      EXPECT_EQ(address.status().ToString(), expected["error"]) << text;
+      EXPECT_EQ(address.status().code(), expected["code"] == "unsupported"
+                                             ? StatusCode::kUnsupported
+                                             : StatusCode::kInvalidArgument)
+          << text;
+      continue;
+    }
+    ASSERT_TRUE(address.ok()) << text << ": " << address.status().ToString();
+    EXPECT_EQ(address->host, expected["host"]) << text;
+    EXPECT_EQ(address->port, expected["port"]) << text;
+    EXPECT_EQ(address->subjects, expected["subjects"].get<std::vector<std::string>>()) << text;
+    EXPECT_EQ(address->pattern, expected["pattern"]) << text;
+    EXPECT_FLOAT_EQ(address->max_rate_hz, expected["rate"].get<float>()) << text;
+    const std::string transport = !address->transport                         ? ""
+                                  : address->transport == TransportKind::kTcp ? "tcp"
+                                                                              : "udp";
+    EXPECT_EQ(transport, expected["transport"]) << text;
   }
-}
-
-TEST(Address, StatesSubjectsPatternRateAndTransport) {
-  const Address address = Parsed(
-      "furrow://stage:7000?subject=ada&rate=59.94&pattern=brow_*,mouth_?.*&transport=tcp&subject="
-      "b%26b%25");
-  EXPECT_EQ(address.host, "stage");
-  EXPECT_EQ(address.port, 7000);
-  EXPECT_THAT(address.subjects, ElementsAre("ada", "b&b%"));
-  EXPECT_FLOAT_EQ(address.max_rate_hz, 59.94f);
-  EXPECT_EQ(address.pattern, "brow_*,mouth_?.*");
-  EXPECT_EQ(address.transport, TransportKind::kTcp);
 }
 
 TEST(Address, ThePortDependsOnTheTransport) {
@@ -57,61 +57,10 @@ TEST(Address, ThePortDependsOnTheTransport) {
   EXPECT_EQ(Parsed("a:5").PortFor(TransportKind::kUdp), 5);
 }
 
-TEST(Address, InvalidTextIsRejected) {
-  for (const char* text : {"",
-                           ":80",
-                           "a:",
-                           "a:0",
-                           "a:65536",
-                           "a:80x",
-                           "a:-1",
-                           "[::1",
-                           "[::1]9",
-                           "[::1]:",
-                           "[]",
-                           "a b",
-                           "a/b",
-                           "a?subject=b",
-                           "user@a",
-                           "http://a",
-                           "furrow://",
-                           "furrow://?subject=a",
-                           "furrow://a/b",
-                           "furrow://a:x",
-                           "furrow://a#b",
-                           "furrow://a?subject",
-                           "furrow://a?subject=",
-                           "furrow://a?subject=%",
-                           "furrow://a?subject=%4",
-                           "furrow://a?subject=%GG",
-                           "furrow://a?subject=%0A",
-                           "furrow://a?subject=%FF",
-                           "furrow://a?nonsense=1",
-                           "furrow://a?Subject=b",
-                           "furrow://a?rate=0",
-                           "furrow://a?rate=-1",
-                           "furrow://a?rate=1001",
-                           "furrow://a?rate=nan",
-                           "furrow://a?rate=1&rate=2",
-                           "furrow://a?pattern=a&pattern=b",
-                           "furrow://a?transport=quic",
-                           "furrow://a?transport=udp&transport=udp"}) {
-    const auto address = ParseAddress(text);
-    ASSERT_FALSE(address.ok()) << text;
-    EXPECT_EQ(address.status().code(), StatusCode::kInvalidArgument) << text;
-    EXPECT_THAT(address.status().ToString(), HasSubstr("address: ")) << text;
-  }
-}
-
-TEST(Address, ReservedKeysAreNotIgnored) {
-  for (const char* text : {"furrow://a?token=secret", "furrow://a?key=AA", "furrow://a?tls",
-                           "furrow://a?transport=shm"}) {
-    const auto address = ParseAddress(text);
-    ASSERT_FALSE(address.ok()) << text;
-    EXPECT_EQ(address.status().code(), StatusCode::kUnsupported) << text;
-    // A token must not end up in a log.
-    EXPECT_THAT(address.status().ToString(), Not(HasSubstr("secret")));
-  }
+TEST(Address, ATokenDoesNotEndUpInALog) {
+  const auto address = ParseAddress("furrow://a?token=secret");
+  ASSERT_FALSE(address.ok());
+  EXPECT_THAT(address.status().ToString(), Not(HasSubstr("secret")));
 }
 
 TEST(Address, SizesAreBounded) {

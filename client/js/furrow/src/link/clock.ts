@@ -44,8 +44,3 @@ export class ServerClock {
     return this.best()?.roundTripUs ?? null;
   }
 }
-
-/** Our own clock: microseconds, never running backwards. */
-export function nowUs(): number {
-  return Math.round(performance.now() * 1000);
-}

@@ -2,14 +2,21 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { Builder, ByteBuffer } from 'flatbuffers';
+import { Hello } from '@wire/hello';
 import { Image } from '@wire/image';
 import { SubscribePictures } from '@wire/subscribe-pictures';
+import { SubscribePoses } from '@wire/subscribe-poses';
+import { SubscribeWeights } from '@wire/subscribe-weights';
 import { UpdatePictures } from '@wire/update-pictures';
 import { Weights } from '@wire/weights';
-import { ServerClock } from '../src/wire/clock';
-import { retryDelayMs } from '../src/wire/connection';
-import { readMessage, writeMessage } from '../src/wire/envelope';
-import { frameAck, type PictureRequest, readPicture, readWeights, subscribePictures, updatePictures } from '../src/wire/messages';
+import { Backoff } from '../src/link/backoff.js';
+import { ServerClock } from '../src/link/clock.js';
+import { readMessage, writeMessage } from '../src/wire/envelope.js';
+import { Malformed } from '../src/wire/flat_table.js';
+import { readPicture, readWeights } from '../src/wire/replies.js';
+import {
+  frameAck, hello, type PictureRequest, subscribePictures, subscribePoses, subscribeWeights, updatePictures,
+} from '../src/wire/requests.js';
 
 const REQUEST: PictureRequest = {
   subject: 'demo', width: 1280, height: 720, maxRateHz: 60, view: 'normal', settings: ['shading=skin', 'wrinkles=off'],
@@ -22,22 +29,40 @@ test('the envelope matches STANDARD.md section 2', () => {
   assert.deepEqual([...bytes.subarray(0, 20)], head);
   const view = new DataView(bytes.buffer);
   assert.equal(view.getUint32(20, true), bytes.length - 32);
-  const message = readMessage(bytes.buffer)!;
+  const message = readMessage(bytes);
   assert.equal(message.identifier, 'FACK');
   assert.equal(message.stream, 0x0102);
   assert.equal(message.sequence, 7);
 });
 
-test('bytes that are not a message read as null', () => {
+test('bytes that are not a message are malformed', () => {
   const good = writeMessage({ stream: 0, session: 1n, sequence: 0 }, frameAck(1));
   for (let length = 0; length < good.length; ++length) {
-    assert.equal(readMessage(good.slice(0, length).buffer), null, `of ${length} bytes`);
+    assert.throws(() => readMessage(good.slice(0, length)), Malformed, `of ${length} bytes`);
   }
-  for (const at of [0, 4, 20]) {
+  for (const at of [0, 4, 5, 20]) {
     const bad = good.slice();
     bad[at]! ^= 0xff;
-    assert.equal(readMessage(bad.buffer), null, `byte ${at}`);
+    assert.throws(() => readMessage(bad), Malformed, `byte ${at}`);
   }
+});
+
+test('requests for weights and poses have all their fields, and wait for their subject', () => {
+  const weights = SubscribeWeights.getRootAsSubscribeWeights(new ByteBuffer(
+    subscribeWeights({ subject: 'ada', pattern: 'brow_*', maxRateHz: 60, eightBit: true, drivers: true })));
+  assert.deepEqual([weights.subject(), weights.pattern(), weights.maxRateHz(), weights.format(), weights.source(), weights.wait()],
+    ['ada', 'brow_*', 60, 1, 1, true]);
+  const all = SubscribeWeights.getRootAsSubscribeWeights(new ByteBuffer(subscribeWeights({ subject: '' })));
+  assert.deepEqual([all.subject(), all.pattern(), all.maxRateHz(), all.format()], ['', null, 0, 0]);
+  const poses = SubscribePoses.getRootAsSubscribePoses(new ByteBuffer(subscribePoses({ subject: 'ada', maxRateHz: 30 })));
+  assert.deepEqual([poses.subject(), poses.maxRateHz(), poses.wait(), poses.every()], ['ada', 30, true, false]);
+});
+
+test('the first hello is large enough to prove an address', () => {
+  const first = hello('test 1.0', 0n, true);
+  assert(32 + first.length >= 256);
+  const second = Hello.getRootAsHello(new ByteBuffer(hello('test 1.0', 0xfedcba9876543210n, true)));
+  assert.deepEqual([second.client(), second.token(), second.bundles()], ['test 1.0', 0xfedcba9876543210n, true]);
 });
 
 test('a picture request has all its fields', () => {
@@ -59,6 +84,7 @@ test('a picture is copied out of its message', () => {
   const bytes = Image.createBytesVector(builder, [9, 8, 7]);
   Image.startImage(builder);
   Image.addWidth(builder, 640);
+  Image.addHeight(builder, 480);
   Image.addBytes(builder, bytes);
   Image.addNumber(builder, 12);
   Image.addStill(builder, true);
@@ -98,8 +124,13 @@ test('the clock uses the shortest recent round trip', () => {
   assert.equal(clock.offsetUs(), 60_000); // the first measurement is dropped, because clocks drift
 });
 
-test('retries start quickly and slow down', () => {
-  const delays = Array.from({ length: 12 }, (_, i) => retryDelayMs(i));
-  assert(delays[0]! <= 100 && delays.at(-1) === 4000);
-  assert(delays.every((delay, i) => i === 0 || delay >= delays[i - 1]!));
+test('pauses between attempts grow, and stay below a second', () => {
+  for (const random of [0, 0.5, 0.999]) {
+    const backoff = new Backoff(() => random);
+    const pauses = Array.from({ length: 12 }, () => backoff.failed());
+    assert(pauses[0]! <= 50 && pauses.at(-1)! <= 800 && pauses.at(-1)! >= 400);
+    assert(pauses.every((pause, i) => i === 0 || pause >= pauses[i - 1]!));
+    backoff.succeeded();
+    assert(backoff.failed() <= 50);
+  }
 });

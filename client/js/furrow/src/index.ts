@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// The package in a browser.
+import { DEFAULT_HTTP_PORT } from './api.js';
+import { type Client, openClient, type OpenOptions } from './feed/client.js';
+import { FurrowError } from './link/errors.js';
+import { browserSocket } from './transport/web_socket.js';
+
+export * from './api.js';
+
+/**
+ * Opens a connection to a daemon and returns at once. In a browser it is a WebSocket to the daemon's web server
+ * (default port: 7480); in Node it is UDP (default port: 7401) or what the address states with `transport=tcp`.
+ *
+ * `address`: `furrow://host[:port][?subject=ada&rate=60&pattern=brow_*]`. Throws FurrowError if it is invalid.
+ */
+export function open(address: string, options: OpenOptions = {}): Client {
+  return openClient(address, options, ({ host, port, transport }) => {
+    if (transport !== null) {
+      throw new FurrowError('unsupported', `address: transport=${transport} needs Node (leave it out in browsers)`);
+    }
+    // A page from https may open secure sockets only.
+    const scheme = typeof location !== 'undefined' && location.protocol === 'https:' ? 'wss' : 'ws';
+    const name = host.includes(':') ? `[${host}]` : host;
+    return browserSocket(`${scheme}://${name}:${port === 0 ? DEFAULT_HTTP_PORT : port}/ws`);
+  });
+}

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// TCP: each message follows its length (protocol/STANDARD.md section 1).
+import { createConnection } from 'node:net';
+import { ENVELOPE_BYTES, MAX_REPLY_BYTES } from '../../wire/envelope.js';
+import type { Transport, TransportEvents, TransportOpener } from '../transport.js';
+import { ByteQueue } from './byte_queue.js';
+
+export function tcpSocket(host: string, port: number): TransportOpener {
+  return { kind: 'tcp', open: (events) => openTcp(host, port, events) };
+}
+
+function openTcp(host: string, port: number, events: TransportEvents): Transport {
+  const socket = createConnection({ host, port, noDelay: true });
+  const queue = new ByteQueue();
+  let why = '';
+  let isClosed = false;
+  const giveUp = (reason: string): void => {
+    why = reason;
+    socket.destroy();
+  };
+  socket.on('connect', () => events.onOpen());
+  socket.on('data', (chunk) => {
+    queue.push(chunk);
+    while (!isClosed) {
+      const head = queue.peek(4);
+      if (head === null) return;
+      const size = new DataView(head.buffer, head.byteOffset).getUint32(0, true);
+      if (size < ENVELOPE_BYTES || size > MAX_REPLY_BYTES) {
+        events.onMalformed();
+        giveUp('the daemon sent a frame of an invalid length');
+        return;
+      }
+      const frame = queue.take(4 + size);
+      if (frame === null) return;
+      events.onMessage(frame.subarray(4));
+    }
+  });
+  socket.on('error', (error) => {
+    why = error.message;
+  });
+  socket.on('close', () => {
+    if (!isClosed) events.onClose(why);
+  });
+  return {
+    send: (message) => {
+      if (socket.readyState !== 'open') return;
+      const length = new Uint8Array(4);
+      new DataView(length.buffer).setUint32(0, message.length, true);
+      socket.cork();
+      socket.write(length);
+      socket.write(message);
+      socket.uncork();
+    },
+    close: () => {
+      isClosed = true;
+      socket.end();
+      socket.destroySoon();
+    },
+  };
+}

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+
+export type TransportKind = 'ws' | 'tcp' | 'udp';
+
+/** What happens to a transport. After onClose() nothing follows. */
+export interface TransportEvents {
+  onOpen(): void;
+  /** One whole message, which the receiver may keep. */
+  onMessage(message: Uint8Array): void;
+  /** Bytes that are not a message were dropped. */
+  onMalformed(): void;
+  /** `why`: one sentence, or empty. */
+  onClose(why: string): void;
+}
+
+/** One connection that carries whole messages. It opens at once and never opens again. */
+export interface Transport {
+  /** Sends a message, or drops it if there is no connection. */
+  send(message: Uint8Array<ArrayBuffer>): void;
+  /** Closes without onClose(). */
+  close(): void;
+}
+
+/** Starts one attempt. */
+export interface TransportOpener {
+  kind: TransportKind;
+  open(events: TransportEvents): Transport;
+}

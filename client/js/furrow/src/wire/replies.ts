@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// The messages that a client receives, as plain objects. Every reader throws Malformed (protocol/STANDARD.md section
+// 11): a message that fails a check is dropped as a whole.
+import { FlatTable, require } from './flat_table.js';
+import { namesHash } from './hash.js';
+
+export const MAX_NAMES = 2048;
+const MAX_ERROR_BYTES = 1024;
+const MAX_SERVER_BYTES = 64;
+const NUM_ERROR_CODES = 13;
+
+export interface PictureMessage {
+  width: number;
+  height: number;
+  mimeType: string;
+  /** A copy, which outlives the message. */
+  bytes: Uint8Array<ArrayBuffer>;
+  ageUs: number;
+  number: number;
+  tier: number;
+  still: boolean;
+  dropped: number;
+  /** On the daemon's clock. */
+  receivedUs: number;
+  /** Sequence of the request that defined the view. */
+  viewRequest: number;
+}
+
+export interface WeightsMessage {
+  namesHash: bigint;
+  /** Time without a new pose, microseconds; 0: a fresh pose. */
+  ageUs: number;
+  /** Each in [0, 1]. */
+  values: Float32Array;
+}
+
+export interface ReplyMessage {
+  /** Empty while the subscription waits for its subject. */
+  subject: string;
+  /** Equal names in equal order have equal hashes; 0n: no names. */
+  namesHash: bigint;
+  names: string[];
+}
+
+export function readPicture(payload: Uint8Array): PictureMessage {
+  const table = new FlatTable(payload);
+  const [width, height, format, tier] = [table.u16(0), table.u16(1), table.u8(2), table.u8(6)];
+  require(width >= 1 && width <= 4096 && height >= 1 && height <= 4096, 'size of a picture');
+  require(format <= 1 && tier <= 2, 'an unknown enumeration value');
+  const bytes = table.bytes(4);
+  require(bytes !== null, 'a picture without bytes');
+  return {
+    width,
+    height,
+    mimeType: format === 1 ? 'image/png' : 'image/jpeg',
+    bytes: new Uint8Array(bytes),
+    ageUs: Number(table.i64(3)),
+    number: table.u32(5),
+    tier,
+    still: table.flag(7),
+    dropped: table.u32(8),
+    receivedUs: Number(table.i64(9)),
+    viewRequest: table.u32(10),
+  };
+}
+
+export function readWeights(payload: Uint8Array): WeightsMessage {
+  const table = new FlatTable(payload);
+  const plain = table.vector(2, 4, MAX_NAMES);
+  const packed = table.vector(3, 1, MAX_NAMES);
+  require(plain === null || packed === null, 'both forms of one field');
+  const found = plain ?? packed ?? { start: 0, count: 0 };
+  const values = new Float32Array(found.count);
+  for (let i = 0; i < found.count; ++i) {
+    values[i] = plain !== null ? table.number(found.start + 4 * i) : payload[found.start + i]! / 255;
+    require(values[i]! >= 0 && values[i]! <= 1, 'a weight outside 0 to 1');
+  }
+  const ageUs = Number(table.i64(1));
+  require(ageUs >= 0, 'an age below 0');
+  return { namesHash: table.u64(0), ageUs, values };
+}
+
+export function readReply(payload: Uint8Array): ReplyMessage {
+  const table = new FlatTable(payload);
+  const names = table.names(2, MAX_NAMES);
+  const hash = table.u64(1);
+  require(hash === namesHash(names), 'a hash that does not match the names');
+  return { subject: table.text(0), namesHash: hash, names };
+}
+
+export function readPong(payload: Uint8Array): { timeUs: number; serverTimeUs: number } {
+  const table = new FlatTable(payload);
+  return { timeUs: Number(table.i64(0)), serverTimeUs: Number(table.i64(1)) };
+}
+
+export function readWelcome(payload: Uint8Array): { server: string; token: bigint } {
+  const table = new FlatTable(payload);
+  return { server: table.text(0, MAX_SERVER_BYTES), token: table.u64(1) };
+}
+
+/** `code`: as in STANDARD.md section 10. */
+export function readError(payload: Uint8Array): { code: number; message: string } {
+  const table = new FlatTable(payload);
+  const code = table.u16(0);
+  require(code >= 1 && code <= NUM_ERROR_CODES, 'an unknown error code');
+  return { code, message: table.text(1, MAX_ERROR_BYTES) };
+}
+
+/** 0 done, 1 subject gone, 2 draining, 3 timed out. */
+export function readGoodbye(payload: Uint8Array): number {
+  const reason = new FlatTable(payload).u8(0);
+  require(reason <= 3, 'an unknown reason');
+  return reason;
+}

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page draws the picture itself, in software here, and the daemon's picture comes first and returns when it must.
+import assert from 'node:assert/strict';
+import { copyFileSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { PNG } from 'pngjs';
+import { changedShare, difference, eventually, launch, openPage, shown, still } from './browser.mjs';
+import { Daemon, recording, SHARE } from './daemon.mjs';
+
+const FROWN_S = 6.5;
+const SMALL = { viewport: { width: 640, height: 480 } }; // large pictures take seconds in software
+let daemon;
+let browser;
+
+before(async () => {
+  daemon = await Daemon.start(['--play', recording('performance')]);
+  browser = await launch(['--enable-unsafe-swiftshader']);
+});
+after(async () => {
+  await browser?.close();
+  await daemon?.stop();
+});
+
+/** What is on the screen, whoever draws it. */
+async function screen(page) {
+  return PNG.sync.read(await page.locator('.surface').screenshot());
+}
+
+const drawnBy = (page, who) => page.waitForSelector(`.stage[data-drawn-by=${who}]`, { timeout: 120_000 });
+const whyOf = (page) => page.locator('select[aria-label="Drawn by"]').getAttribute('title');
+
+test('the browser draws the daemon\'s picture, and it moves', async (context) => {
+  await daemon.patch('api/playback', { playing: true });
+  const page = await openPage(browser, `${daemon.address}#drawn=browser&panel=`, SMALL);
+  await page.keyboard.press('g'); // without the curves, the picture is larger
+  await shown(page); // the daemon's picture is shown while the character loads
+  await eventually('the rate of the daemon', async () => Number.parseInt(await page.locator('[data-number=rate]').textContent(), 10) > 0);
+  const daemonHz = await page.locator('[data-number=rate]').textContent();
+  await drawnBy(page, 'browser');
+  assert.equal(await whyOf(page), 'This browser draws the picture');
+  const first = await screen(page);
+  await eventually('another pose', async () => changedShare(first, await screen(page)) > 0.005);
+  const rendered = async () => (await daemon.get('api/status')).pictures_rendered;
+  const drawn = await rendered();
+  await eventually('the rate of the browser', async () => Number.parseInt(await page.locator('[data-number=rate]').textContent(), 10) > 0);
+  const { width, height } = await page.locator('.surface').boundingBox();
+  context.diagnostic(`pictures of ${width} x ${height}: the daemon ${daemonHz}, this browser in software ` +
+    `${await page.locator('[data-number=rate]').textContent()}`);
+  assert((await rendered()) - drawn <= 2, 'the daemon draws nothing for this page');
+
+  await daemon.hold(FROWN_S);
+  let here = await screen(page);
+  await eventually('a picture at rest', async () => {
+    const former = here;
+    here = await screen(page);
+    return difference(former, here) === 0;
+  });
+  writeFileSync(join(process.env.FURROW_ARTEFACTS, 'drawn-by-browser.png'), PNG.sync.write(here));
+  await page.selectOption('select[aria-label="Drawn by"]', 'daemon');
+  await drawnBy(page, 'daemon');
+  await still(page);
+  const there = await screen(page);
+  writeFileSync(join(process.env.FURROW_ARTEFACTS, 'drawn-by-daemon.png'), PNG.sync.write(there));
+  context.diagnostic(`mean difference from the daemon's picture: ${difference(here, there).toFixed(2)} of 255`);
+  assert(difference(here, there) < 4, `${difference(here, there)} of 255`);
+  assert(difference(here, there) > 0, 'two pictures, not one');
+  assert.deepEqual(page.errors, []);
+  await page.context().close();
+});
+
+test('the daemon draws what the browser cannot', async () => {
+  await daemon.hold(FROWN_S);
+  const page = await openPage(browser, `${daemon.address}#drawn=browser&panel=`, SMALL);
+  await drawnBy(page, 'browser');
+  await page.selectOption('select[aria-label="Split the picture"]', 'wrinkles');
+  await drawnBy(page, 'daemon');
+  assert.match(await whyOf(page), /only the daemon draws/);
+  await page.selectOption('select[aria-label="Split the picture"]', 'none');
+  await drawnBy(page, 'browser');
+  // The GPU goes away, as after a driver's restart.
+  await page.evaluate(() => document.querySelector('.drawn-here canvas').getContext('webgl2').getExtension('WEBGL_lose_context').loseContext());
+  await drawnBy(page, 'daemon');
+  await still(page);
+  assert(await page.locator('.drawn-here').isHidden());
+  await page.context().close();
+});
+
+test('after a restart the page asks for the character again', async (context) => {
+  const folder = mkdtempSync(join(tmpdir(), 'furrow-drawing-'));
+  context.after(() => rmSync(folder, { recursive: true }));
+  // The same character without a package for browsers.
+  for (const [name, copy] of [['default.glb', 'other.glb'], ['default.rig.json', 'other.rig.json']]) {
+    copyFileSync(join(SHARE, name), join(folder, copy));
+  }
+  const first = await Daemon.start(['--play', recording('performance')]);
+  context.after(() => first.stop('SIGKILL'));
+  const page = await openPage(browser, `${first.address}#drawn=browser&panel=`, SMALL);
+  await drawnBy(page, 'browser');
+  await first.stop('SIGKILL');
+  await drawnBy(page, 'daemon');
+  const second = await Daemon.start(['--character', join(folder, 'other.glb'), '--play', recording('performance')], first.ports);
+  context.after(() => second.stop());
+  await shown(page);
+  await eventually('the reason', async () => /no character for browsers/.test(await whyOf(page)));
+  await page.context().close();
+});
+
+test('by default a browser in software leaves the drawing to the daemon', async () => {
+  const page = await openPage(browser, `${daemon.address}#panel=`, SMALL);
+  await still(page);
+  assert.match(await whyOf(page), /this browser draws in software/);
+  assert.deepEqual(page.errors, []);
+  await page.context().close();
+});
+
+test('without WebGL the daemon draws', async () => {
+  const poor = await launch(['--disable-3d-apis']);
+  try {
+    const page = await openPage(poor, `${daemon.address}#drawn=browser&panel=`, SMALL);
+    await still(page);
+    assert.match(await whyOf(page), /no WebGL 2/);
+  } finally {
+    await poor.close();
+  }
+});

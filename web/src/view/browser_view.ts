@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+// Draws the picture in this browser while that is faster and gives the same picture as the daemon. Otherwise the daemon
+// draws.
+import { PoseFeed, WeightFeed } from 'furrow/protocol';
+import type { SubjectInfo } from '../api';
+import type { AppState } from '../state/app_state';
+import { h } from '../ui/dom';
+import { Signal } from '../ui/signal';
+import type { Connection } from '../wire/connection';
+import type { BrowserScene } from './browser_scene';
+import { decide, type DrawDecision } from './draw_choice';
+import { pictureSize } from './resolution';
+
+const CHARACTER_URL = 'character.glb';
+/** The first pictures compile shaders and upload textures. */
+const WARM_UP = 3;
+const MEASURED = 8;
+const RATE_WINDOW_S = 2;
+/** After so many slow seconds, the measurement counts as wrong. */
+const SLOW_S = 3;
+
+function nameOfGpu(): string {
+  const gl = document.createElement('canvas').getContext('webgl2');
+  if (gl === null) return '';
+  const names = gl.getExtension('WEBGL_debug_renderer_info');
+  const name = String(gl.getParameter(names === null ? gl.RENDERER : names.UNMASKED_RENDERER_WEBGL));
+  gl.getExtension('WEBGL_lose_context')?.loseContext(); // browsers allow few contexts
+  return name === '' ? 'unknown' : name;
+}
+
+export class BrowserView {
+  /** Holds the canvas while there is a character. */
+  readonly element = h('div', { class: 'drawn-here', 'aria-hidden': 'true', hidden: true });
+  /** True while this browser draws. */
+  readonly active = new Signal(false);
+  /** Why the daemon draws; empty while the browser does. */
+  readonly why = new Signal('');
+  private scene: BrowserScene | null = null;
+  private poses: PoseFeed | null = null;
+  private weights: WeightFeed | null = null;
+  private subject: string | null = null;
+  private gpu: string | null = null;
+  private character: 'unknown' | 'loading' | 'ready' | 'none' | 'failed' = 'unknown';
+  private hasNeutral = false;
+  private daemonHz = 0;
+  private browserHz: number | null = null;
+  private measured: number[] = [];
+  private shownAtS: number[] = [];
+  private slowS = 0;
+  private lastDrawn = '';
+  private isScheduled = false;
+
+  constructor(private readonly connection: Connection, private readonly state: AppState) {
+    const { settings, wipe, comparing, drawnBy, subject } = state;
+    for (const signal of [settings.changed, wipe, comparing, drawnBy, subject]) {
+      (signal as Signal<unknown>).watch(() => this.update());
+    }
+    connection.onState((link) => {
+      // The next daemon may have another character.
+      if (link === 'lost') this.forget();
+      this.update();
+    });
+  }
+
+  /** Pictures per second, of the last two seconds. */
+  rateHz(nowS: number): number {
+    this.shownAtS = this.shownAtS.filter((at) => nowS - at <= RATE_WINDOW_S);
+    return this.shownAtS.length / RATE_WINDOW_S;
+  }
+
+  /** Called once per second: what the daemon says of the shown subject, and how fast it draws a moving pose. */
+  observe(subject: SubjectInfo | undefined, daemonHz: number): void {
+    this.hasNeutral = subject?.neutral ?? false;
+    if (this.active.value) this.checkRate(subject?.rate_hz ?? 0);
+    else this.daemonHz = Math.max(this.daemonHz, daemonHz);
+    this.update();
+  }
+
+  /** The GPU may be busier than it was when it was measured. */
+  private checkRate(posesHz: number): void {
+    const hz = this.rateHz(performance.now() / 1000);
+    this.slowS = hz < Math.min(this.daemonHz, 0.8 * posesHz) ? this.slowS + 1 : 0;
+    if (this.slowS >= SLOW_S && document.visibilityState === 'visible') this.browserHz = hz;
+  }
+
+  private decide(): DrawDecision {
+    this.gpu ??= this.state.drawnBy.value === 'daemon' ? null : nameOfGpu();
+    const pose = this.poses?.pose() ?? null;
+    const weights = this.weights?.frame() ?? null;
+    // Without a chosen subject, the two subscriptions may follow different ones for a moment.
+    const isOne = pose !== null && weights !== null && pose.subject === weights.subject;
+    return decide({
+      choice: this.state.drawnBy.value,
+      isConnected: this.connection.state === 'open',
+      gpu: this.gpu ?? '',
+      isSpecial: this.isSpecial(),
+      hasNeutral: this.hasNeutral,
+      character: this.character,
+      fits: this.scene === null || !isOne ? null : this.scene.fits(pose, weights),
+      browserHz: this.browserHz,
+      daemonHz: this.daemonHz,
+    });
+  }
+
+  /** The browser draws the daemon's default picture only. */
+  private isSpecial(): boolean {
+    const { settings, wipe, comparing } = this.state;
+    return settings.infos.length === 0 || wipe.value !== 'none' || comparing.value || settings.overrides.size > 0 ||
+      settings.infos.some(({ value, default: usual }) => value !== usual);
+  }
+
+  private update(): void {
+    const { step, why } = this.decide();
+    this.why.set(why);
+    if (step === 'load') void this.load();
+    if (step === 'measure' || step === 'browser') this.schedule();
+    if (this.state.drawnBy.value === 'daemon') this.stopFeeds();
+    else if (this.scene !== null) this.follow();
+    const active = step === 'browser';
+    if (active === this.active.value) return;
+    this.lastDrawn = '';
+    this.shownAtS = [];
+    // Shown with the first picture (draw()), so that the daemon's stays until then.
+    if (!active) {
+      this.element.hidden = true;
+      this.active.set(false);
+    }
+  }
+
+  private async load(): Promise<void> {
+    this.character = 'loading';
+    const canvas = h('canvas');
+    canvas.addEventListener('webglcontextlost', () => canvas.isConnected && this.give('failed'));
+    this.element.replaceChildren(canvas);
+    try {
+      const reply = await fetch(CHARACTER_URL, { method: 'HEAD' });
+      if (!reply.ok) {
+        if (canvas.isConnected) this.give('none');
+        return;
+      }
+      const { BrowserScene: Scene } = await import('./browser_scene');
+      const scene = await Scene.create(canvas, CHARACTER_URL);
+      if (!canvas.isConnected) {
+        scene.dispose(); // the daemon was lost meanwhile
+        return;
+      }
+      this.scene = scene;
+      this.character = 'ready';
+    } catch (error) {
+      console.warn('this browser cannot draw the character:', error);
+      if (canvas.isConnected) this.give('failed');
+    }
+    this.update();
+  }
+
+  /** Gives the picture back to the daemon. */
+  private give(reason: 'unknown' | 'none' | 'failed'): void {
+    this.character = reason;
+    this.scene?.dispose();
+    this.scene = null;
+    this.browserHz = null;
+    this.measured = [];
+    this.element.replaceChildren();
+    this.stopFeeds();
+    this.update();
+  }
+
+  private forget(): void {
+    this.daemonHz = 0;
+    if (this.character !== 'failed') this.give('unknown');
+  }
+
+  private follow(): void {
+    const subject = this.state.subject.value;
+    if (this.subject === subject) return;
+    this.stopFeeds();
+    this.subject = subject;
+    const onNews = (): void => this.update();
+    const ignore = (): void => {};
+    this.poses = new PoseFeed(this.connection, { subject }, { onPose: onNews, onProblem: ignore });
+    this.weights = new WeightFeed(this.connection, { subject }, { onLayout: ignore, onFrame: onNews, onGone: ignore, onProblem: ignore });
+  }
+
+  private stopFeeds(): void {
+    this.poses?.close();
+    this.weights?.close();
+    this.poses = this.weights = this.subject = null;
+  }
+
+  private schedule(): void {
+    if (this.isScheduled) return;
+    this.isScheduled = true;
+    requestAnimationFrame(() => {
+      this.isScheduled = false;
+      this.draw();
+    });
+  }
+
+  private draw(): void {
+    const { step } = this.decide();
+    const pose = this.poses?.pose() ?? null;
+    const weights = this.weights?.frame() ?? null;
+    const camera = this.state.camera.value;
+    const surface = this.element.parentElement;
+    if (this.scene === null || pose === null || weights === null || camera === null || surface === null) return;
+    if (step !== 'measure' && step !== 'browser') return;
+    const { width, height } = pictureSize(surface.clientWidth, surface.clientHeight, devicePixelRatio, 1);
+    const drawn = JSON.stringify([pose.number, weights.number, camera, width, height]);
+    if (step === 'browser' && drawn === this.lastDrawn) {
+      this.schedule(); // nothing has changed
+      return;
+    }
+    this.lastDrawn = drawn;
+    const beganMs = performance.now();
+    this.scene.draw(pose, weights, camera, width, height, step === 'measure');
+    const endedMs = performance.now();
+    if (step === 'measure') this.note(endedMs - beganMs);
+    else this.show(endedMs / 1000);
+    this.schedule();
+  }
+
+  private note(ms: number): void {
+    this.measured.push(ms);
+    if (this.measured.length < WARM_UP + MEASURED) return;
+    const sorted = this.measured.slice(WARM_UP).sort((a, b) => a - b);
+    this.browserHz = 1000 / Math.max(sorted[MEASURED >> 1]!, 1);
+    this.measured = [];
+    this.update();
+  }
+
+  private show(nowS: number): void {
+    this.shownAtS.push(nowS);
+    if (this.active.value) return;
+    this.element.hidden = false;
+    this.active.set(true);
+  }
+}

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// Decides whether the browser or the daemon draws the picture. Pure, so every case has a test.
+
+/** 'auto': the browser, once it has proved faster than the daemon. */
+export type DrawnBy = 'auto' | 'browser' | 'daemon';
+
+export interface DrawSituation {
+  choice: DrawnBy;
+  isConnected: boolean;
+  /** The name of the GPU; empty: this browser has no WebGL 2. */
+  gpu: string;
+  /** Something in the picture's settings, view or wipe differs from the daemon's default picture. */
+  isSpecial: boolean;
+  /** A neutral pose was captured for the subject. */
+  hasNeutral: boolean;
+  /** 'none': the daemon has no character for browsers. 'failed': it does not load, or the GPU is lost. */
+  character: 'unknown' | 'loading' | 'ready' | 'none' | 'failed';
+  /** Null: no pose or no weights yet. False: the subject has another skeleton or other weights. */
+  fits: boolean | null;
+  /** Pictures per second that the browser could draw; null: not measured. */
+  browserHz: number | null;
+  /** The most pictures per second that the daemon has sent; 0: none yet. */
+  daemonHz: number;
+}
+
+export interface DrawDecision {
+  /** 'measure': draw some pictures without showing them. */
+  step: 'daemon' | 'load' | 'measure' | 'browser';
+  /** Why the daemon draws; empty if the browser does. */
+  why: string;
+}
+
+/** The browser has to be this much faster. Equal rates are no reason to change. */
+const ADVANTAGE = 1.2;
+const LEAST_HZ = 15;
+
+/** A GPU in software competes with the daemon for the processor, and loses. */
+export function isSoftware(gpu: string): boolean {
+  return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(gpu);
+}
+
+const byDaemon = (why: string): DrawDecision => ({ step: 'daemon', why });
+
+export function decide(at: DrawSituation): DrawDecision {
+  const isAuto = at.choice === 'auto';
+  if (at.choice === 'daemon') return byDaemon('you chose the daemon');
+  if (!at.isConnected) return byDaemon('there is no connection');
+  if (at.gpu === '') return byDaemon('this browser has no WebGL 2');
+  if (isAuto && isSoftware(at.gpu)) return byDaemon('this browser draws in software');
+  if (at.character === 'none') return byDaemon('the daemon has no character for browsers');
+  if (at.character === 'failed') return byDaemon('this browser cannot load the character');
+  if (at.isSpecial) return byDaemon('only the daemon draws this view and these settings');
+  if (at.hasNeutral) return byDaemon('the subject has a neutral pose of its own');
+  if (at.character === 'unknown') return { step: isAuto && at.daemonHz === 0 ? 'daemon' : 'load', why: 'the character is not loaded yet' };
+  if (at.character === 'loading') return byDaemon('the character is loading');
+  if (at.fits === null) return byDaemon('no pose has arrived yet');
+  if (!at.fits) return byDaemon("the subject's skeleton is not that of the character");
+  if (at.browserHz === null) return { step: 'measure', why: 'measuring this browser' };
+  if (isAuto && at.browserHz < Math.max(LEAST_HZ, ADVANTAGE * at.daemonHz)) {
+    return byDaemon(`the daemon is faster: ${at.daemonHz.toFixed(0)} pictures per second, and ${at.browserHz.toFixed(0)} here`);
+  }
+  return { step: 'browser', why: '' };
+}
