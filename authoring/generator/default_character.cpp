@@ -19,6 +19,7 @@
 #include "authoring/generator/head/face_parts.h"
 #include "authoring/generator/head/hair_mesh.h"
 #include "authoring/generator/head/head_skin.h"
+#include "authoring/generator/head/lid_strips.h"
 #include "authoring/generator/head/skinning.h"
 #include "authoring/generator/mesh/mesh_tools.h"
 #include "authoring/generator/recordings/recording_bvh.h"
@@ -117,6 +118,10 @@ void AddHeadParts(const CharacterOptions& options, const HeadShape& shape,
   character::Material tears = MakeMaterial("tears", character::Material::Kind::kEye, 0.1f);
   tears.base_colour = glm::vec4(0.48f, 0.27f, 0.23f, 1.0f);  // of the flesh below
   AddMesh(character, SkinnedPart(character->skeleton, MakeTears(shape)), std::move(tears));
+
+  character::Material shades = MakeMaterial("lid_shades", character::Material::Kind::kShade, 1.0f);
+  shades.base_colour_texture = AddPicture(character, PaintLidShade());
+  AddMesh(character, SkinnedPart(character->skeleton, MakeLidShades(shape)), std::move(shades));
 
   character::Material teeth = MakeMaterial("teeth", character::Material::Kind::kOther, 0.3f);
   character::Mesh rows = SkinnedPart(character->skeleton, MakeTeeth());

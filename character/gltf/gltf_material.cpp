@@ -18,11 +18,12 @@ namespace {
 
 using Kind = Material::Kind;
 
-constexpr std::array<std::pair<std::string_view, Kind>, 5> kKindNames = {{{"skin", Kind::kSkin},
+constexpr std::array<std::pair<std::string_view, Kind>, 6> kKindNames = {{{"skin", Kind::kSkin},
                                                                           {"cloth", Kind::kCloth},
                                                                           {"eye", Kind::kEye},
                                                                           {"hair", Kind::kHair},
-                                                                          {"other", Kind::kOther}}};
+                                                                          {"other", Kind::kOther},
+                                                                          {"shade", Kind::kShade}}};
 
 // The first match counts: "eyebrow" and "eyelash" are hair, not eyes.
 constexpr std::array<std::pair<std::string_view, Kind>, 42> kHints = {

@@ -16,7 +16,7 @@ namespace furrow::character {
 // and "beard" are hair; "cloth", "suit", "shirt", "jeans" and similar words are cloth. kOther if no
 // word matches.
 [[nodiscard]] Material::Kind GuessMaterialKind(std::string_view name);
-// The lowercase name: "skin", "cloth", "eye", "hair" or "other".
+// The lowercase name: "skin", "cloth", "eye", "hair", "other" or "shade".
 [[nodiscard]] std::string_view MaterialKindName(Material::Kind kind);
 
 // Decodes all images of the file, in the file's order.

@@ -15,7 +15,9 @@ namespace furrow::character {
 
 // The parts of glTF's metallic-roughness material that are drawn, and the kind of surface.
 struct Material {
-  enum class Kind { kSkin, kCloth, kEye, kHair, kOther };
+  // kShade: a shell that only darkens what lies behind it, such as the shadow of the lids on the
+  // eyeball. Its base colour is the share of light that passes, as if multiplied.
+  enum class Kind { kSkin, kCloth, kEye, kHair, kOther, kShade };
   std::string name;
   Kind kind = Kind::kOther;
   // False: the rig's wrinkle maps are not drawn on this material, because its UVs overlap those of

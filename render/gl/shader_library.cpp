@@ -31,6 +31,7 @@ std::vector<std::string> Defines(const SceneShader& shader) {
       Define("MATERIAL_EYE", static_cast<int>(Kind::kEye)),
       Define("MATERIAL_HAIR", static_cast<int>(Kind::kHair)),
       Define("MATERIAL_OTHER", static_cast<int>(Kind::kOther)),
+      Define("MATERIAL_SHADE", static_cast<int>(Kind::kShade)),
       Define("MATERIAL", static_cast<int>(shader.material)),
       Define("MATERIALS", shader.any_material),
       Define("SHADOW_FILTER", static_cast<int>(shader.shadow_filter)),
@@ -47,6 +48,9 @@ std::vector<std::string> Defines(const SceneShader& shader) {
       Define("DISPLACED", shader.displaced),
       Define("SHADOW", shader.shadow),
       Define("CROWD", shader.crowd),
+      Define("STRETCH", shader.stretch),
+      Define("SKIN_TARGETS", shader.shading == Shading::kSkin),
+      Define("FACETS", shader.unlit),
       Define("COMPOSED_LOOKS", shader.composed_looks),
       "BECKMANN_SIZE float(" + std::to_string(kBeckmannTableSize) + ")",
       "ALBEDO_SIZE float(" + std::to_string(kAlbedoTableSize) + ")",
@@ -72,6 +76,7 @@ Result<GLuint> ShaderLibrary::Get(const SceneShader& shader) {
   ProgramFiles files{"scene/scene.vert.glsl", "scene/scene.frag.glsl"};
   if (shader.shading == Shading::kSkin) files.fragment = "skin/skin.frag.glsl";
   if (shader.unlit) files.fragment = "scene/surface.frag.glsl";
+  if (shader.shade) files.fragment = "scene/shade.frag.glsl";
   if (shader.shadow) files.fragment = "shadow/shadow.frag.glsl";
   if (shader.displaced) {
     files.tess_control = "scene/displace.tesc.glsl";

@@ -63,6 +63,8 @@ struct SceneShader {
   bool displaced = false;       // tessellated and moved by heights
   bool shadow = false;          // displaced geometry for a shadow map: depth only
   bool composed_looks = false;  // the base colour already includes the wrinkles' colour and cavity
+  bool shade = false;           // a shell that only darkens what lies behind it
+  bool stretch = false;         // the mesh is posed with PoseShader::gradients
   bool crowd = false;           // several subjects, each with its own wrinkle weights
 
   friend auto operator<=>(const SceneShader&, const SceneShader&) = default;

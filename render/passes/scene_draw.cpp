@@ -60,6 +60,24 @@ gl::Sampler MakeCutOutSampler() {
   return sampler;
 }
 
+// Sets how a mesh is drawn over others. A shade multiplies what the targets hold (shade.frag.glsl)
+// and leaves the depth of the surface behind it.
+void SetShade(bool shade) {
+  glDepthMask(shade ? GL_FALSE : GL_TRUE);
+  if (shade) {
+    glEnable(GL_BLEND);
+    glBlendFuncSeparate(GL_ZERO, GL_SRC_COLOR, GL_ZERO, GL_SRC_ALPHA);
+  } else {
+    glDisable(GL_BLEND);
+  }
+}
+
+// Returns true if a view shows light, which a shade darkens. Other views show data.
+bool ShowsShade(const Settings& settings) {
+  return settings.view == View::kFinal || settings.view == View::kSpecular ||
+         settings.view == View::kBloom;
+}
+
 // Returns true if a view can use composed wrinkles. Views that show masks or weights need each
 // wrinkle separately, and the tangent-space blend cannot be composed in advance.
 bool TakesComposed(const Settings& settings, View view) {
@@ -289,6 +307,7 @@ Status SceneDraw::DrawShadow(const Settings& settings, int light) {
 Status SceneDraw::DrawCaster(const Settings& settings, int light, std::size_t index) {
   const int number = gpu_->meshes()[index].material;
   const GpuMaterial& material = gpu_->material(number);
+  if (material.kind == character::Material::Kind::kShade) return {};
   SceneShader shader;
   if (tables_->IsDisplaced(material.group, settings)) {
     shader = SurfaceShader(material, {});
@@ -325,8 +344,11 @@ Status SceneDraw::DrawMesh(const Settings& settings, SceneKind kind, std::size_t
   const bool wireframe = kind == SceneKind::kPlain && settings.view == View::kWireframe;
   const int number = gpu_->meshes()[index].material;
   const GpuMaterial& material = gpu_->material(number);
+  const bool shade = material.kind == character::Material::Kind::kShade;
+  if (shade && !ShowsShade(settings)) return {};
   const WrinkleCache::Composed composed = ComposedOf(number, settings);
-  const SceneShader shader = ShaderFor(material, composed, settings, kind);
+  SceneShader shader = ShaderFor(material, composed, settings, kind);
+  shader.stretch = static_cast<bool>(gpu_->meshes()[index].gradients);
   const Result<GLuint> program = shaders_->Get(shader);
   FURROW_RETURN_IF_ERROR(program);
   auto form = wireframe ? PosedMeshes::Form::kUnindexed : PosedMeshes::Form::kIndexed;
@@ -337,7 +359,9 @@ Status SceneDraw::DrawMesh(const Settings& settings, SceneKind kind, std::size_t
   if (shader.preintegrated) glBindTextureUnit(kPreintegratedUnit, lookup_tables_.preintegrated());
   glUseProgram(*program);
   SetCulling(!material.double_sided);
+  SetShade(shade);
   DrawSubjects(*posed, index, form, DrawList::kCamera);
+  SetShade(false);
   return {};
 }
 
@@ -370,6 +394,7 @@ SceneShader SceneDraw::ShaderFor(const GpuMaterial& material,
   shader.normal_blend = settings.normal_blend;
   shader.displaced =
       tables_->IsDisplaced(material.group, settings) && settings.view != View::kWireframe;
+  shader.shade = material.kind == character::Material::Kind::kShade;
   if (kind == SceneKind::kPlain) return shader;
   const bool skin = material.kind == character::Material::Kind::kSkin;
   shader.shading = Shading::kSkin;
@@ -378,7 +403,7 @@ SceneShader SceneDraw::ShaderFor(const GpuMaterial& material,
   shader.wrinkle_looks = gpu_->wrinkle_looks() != 0;
   shader.thickness_map = skin && CanShineThrough(settings) && material.thickness != 0;
   shader.unlit = kind == SceneKind::kFacets;
-  if (shader.unlit) {
+  if (shader.unlit || shader.shade) {
     shader.view = View::kFinal;
   } else {
     AddLight(settings, skin, &shader);

@@ -37,13 +37,15 @@ float SpecularOf(Material::Kind kind) {
     case Material::Kind::kHair: return 0.03f;
     case Material::Kind::kCloth: return 0.012f;
     case Material::Kind::kOther: return 0.03f;
+    case Material::Kind::kShade: return 0.0f;
   }
   return 0.03f;
 }
 
 // Drawing order. Materials that hide others come first, so that hidden fragments are not shaded:
 // cloth, skin, and then the inside of the head. Hair comes after the skin that it lies on: it has
-// many layers, and skin then hides those at the back of the head.
+// many layers, and skin then hides those at the back of the head. Shades come last, because they
+// darken what is already drawn.
 int LayerOf(Material::Kind kind) {
   switch (kind) {
     case Material::Kind::kCloth: return 0;
@@ -51,6 +53,7 @@ int LayerOf(Material::Kind kind) {
     case Material::Kind::kHair: return 2;
     case Material::Kind::kEye:
     case Material::Kind::kOther: return 3;
+    case Material::Kind::kShade: return 4;
   }
   return 3;
 }

@@ -129,7 +129,8 @@ WrinkleGroup GroupOf(const character::Character& character, const Material& mate
     case Material::Kind::kSkin: return WrinkleGroup::kSkin;
     case Material::Kind::kCloth: return WrinkleGroup::kCloth;
     case Material::Kind::kEye:
-    case Material::Kind::kHair: return WrinkleGroup::kNone;
+    case Material::Kind::kHair:
+    case Material::Kind::kShade: return WrinkleGroup::kNone;
     case Material::Kind::kOther: break;
   }
   return Has(character, Material::Kind::kSkin) ? WrinkleGroup::kNone : WrinkleGroup::kSkin;

@@ -33,7 +33,7 @@ layout(location = 10) in vec4 a_weights_across;
 layout(xfb_buffer = 0, xfb_stride = 52 + 4 * DISPLACED + 16 * WRINKLE_DYNAMIC * MAP_SLOTS) out;
 layout(location = 0, xfb_offset = 0) out vec3 p_position;  // model space of the picture
 layout(location = 1, xfb_offset = 12) out vec3 p_normal;
-layout(location = 2, xfb_offset = 24) out vec4 p_tangent;
+layout(location = 2, xfb_offset = 24) out vec4 p_tangent;   // GRADIENTS: see stretchedSlope()
 layout(location = 3, xfb_offset = 40) out vec2 p_uv;
 layout(location = 4, xfb_offset = 48) flat out uint p_subject;
 #if DISPLACED
@@ -63,10 +63,13 @@ void main() {
   vec3 restAcross = normalizeOrZero(cross(normal, tangent));
   vec3 across = skinDirection(skin, restAcross);
   vec3 along = skinDirection(skin, normalizeOrZero(cross(restAcross, normal)));
+  vec3 turnedAlong = along;
+  vec3 turnedAcross = across;
   addWeightChanges(a_subject, a_joints, position, p_position, a_weights_along, a_weights_across,
                    along, across);
   p_normal = surfaceNormal(p_normal, along, across);
-  p_tangent = vec4(along, a_tangent.w);
+  vec2 stretch = stretchOf(along, across, turnedAlong, turnedAcross);
+  p_tangent = vec4(normalizeOrZero(along) * stretch.x, a_tangent.w * stretch.y);
 #else
   p_tangent = vec4(skinDirection(skin, tangent), a_tangent.w);
 #endif

@@ -46,6 +46,15 @@ void addWeightChanges(uint subject, uvec4 joints, vec3 p, vec3 posed, vec4 weigh
   }
 }
 
+// How far the surface is stretched along its tangents (x: along, y: across `along`): 1 at rest, less
+// where it is compressed; [0.4, 2.5]. `turnedAlong` and `turnedAcross`: the tangents as the joints
+// alone turn them, which a placement may scale.
+vec2 stretchOf(vec3 along, vec3 across, vec3 turnedAlong, vec3 turnedAcross) {
+  float first = length(along) / max(length(turnedAlong), 1e-6);
+  float area = length(cross(along, across)) / max(length(cross(turnedAlong, turnedAcross)), 1e-9);
+  return clamp(vec2(first, area / max(first, 1e-6)), vec2(0.4), vec2(2.5));
+}
+
 // The unit normal of a surface with these tangents. `turned`: the normal as the joints alone turn
 // it, which counts where skinning folds the surface over, so that no normal flips.
 vec3 surfaceNormal(vec3 turned, vec3 along, vec3 across) {

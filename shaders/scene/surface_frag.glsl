@@ -121,6 +121,9 @@ vec3 surfaceNormal(vec4 masks[MASK_LAYERS], vec4 dynamicMasks[MAP_SLOTS], out fl
 #else
   vec3 n = normalFromDerivative(base.xy);
 #endif
+#if STRETCH
+  n = normalFromDerivative(stretchedSlope(n.xy / max(n.z, 1e-3), v_tangent));
+#endif
   vec3 normal = tangentToModel(n, v_normal, v_tangent);
   return facesCamera() ? normal : -normal;
 }

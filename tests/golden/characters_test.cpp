@@ -22,6 +22,8 @@ namespace {
 
 constexpr auto kBlend = NormalBlend::kPartialDerivative;
 constexpr auto kSkin = Shading::kSkin;
+// Under the default threshold only the brightest highlights glow.
+constexpr float kGlow = 0.3f;
 
 constexpr Shot kDefault[] = {
     {"final", View::kFinal, "face"},
@@ -45,7 +47,7 @@ constexpr Shot kDefault[] = {
     {"depth", View::kDepth, "three_quarter"},
     {"material", View::kMaterial, "face"},
     {"occlusion", View::kOcclusion, "face"},
-    {"bloom", View::kBloom, "face"},
+    {"bloom", View::kBloom, "face", kBlend, kSkin, 4, kGlow},
 };
 
 constexpr Shot kMakeHuman[] = {

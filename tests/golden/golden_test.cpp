@@ -9,6 +9,9 @@ namespace {
 
 constexpr auto kBlend = NormalBlend::kPartialDerivative;
 
+// Under the default threshold only the brightest highlights glow.
+constexpr float kGlow = 0.3f;
+
 constexpr Shot kShots[] = {
     {"final", View::kFinal, "face"},
     {"final_tangent_space", View::kFinal, "face", NormalBlend::kTangentSpace},
@@ -32,7 +35,7 @@ constexpr Shot kShots[] = {
     {"depth", View::kDepth, "three_quarter"},
     {"material", View::kMaterial, "face"},
     {"occlusion", View::kOcclusion, "face"},
-    {"bloom", View::kBloom, "face"},
+    {"bloom", View::kBloom, "face", kBlend, Shading::kDiffuse, 4, kGlow},
 };
 
 class Golden : public testing::TestWithParam<Shot> {};

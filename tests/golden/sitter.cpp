@@ -48,6 +48,7 @@ Image Sitter::Draw(const Shot& shot) {
   request.settings.normal_blend = shot.blend;
   request.settings.shading = shot.shading;
   request.settings.anti_aliasing.samples = shot.samples;
+  request.settings.bloom.threshold = shot.bloom_threshold;
   request.camera = *renderer_->Preset(shot.camera);
   request.width = request.height = kSize;
   return test::Expect(renderer_->Render(request));

@@ -20,6 +20,7 @@ struct Shot {
   NormalBlend blend = NormalBlend::kPartialDerivative;
   Shading shading = Shading::kDiffuse;
   int samples = 4;  // on every device
+  float bloom_threshold = BloomSettings().threshold;
 };
 void PrintTo(const Shot& shot, std::ostream* out);
 

@@ -13,7 +13,7 @@ namespace {
 constexpr float kMaxChange =
     2.0f;  // largest factor of the area, or its inverse; more is a skinning artefact
 constexpr float kPressedOut =
-    0.6f;  // fraction of the blood that leaves the bottom of a deep furrow
+    0.25f;  // fraction of the blood that leaves the bottom of a deep furrow
 constexpr float kAbsorbance = 0.36f;  // absorbance of green light by the blood at rest
 const glm::vec3 kBlood(0.30f, 1.0f,
                        0.95f);  // absorption per colour channel: haemoglobin absorbs green and blue

@@ -36,7 +36,8 @@ bool Belongs(const character::Character& character, const character::Mesh& mesh,
     case character::Material::Kind::kSkin: return !cloth;
     case character::Material::Kind::kCloth: return cloth;
     case character::Material::Kind::kEye:
-    case character::Material::Kind::kHair: return false;
+    case character::Material::Kind::kHair:
+    case character::Material::Kind::kShade: return false;
     case character::Material::Kind::kOther: break;
   }
   return !cloth && !HasKind(character, character::Material::Kind::kSkin);

@@ -11,6 +11,7 @@
 
 #include "authoring/generator/head/head_grid.h"
 #include "authoring/generator/head/head_shape.h"
+#include "authoring/generator/head/lid_strips.h"
 #include "authoring/generator/mesh/mesh_tools.h"
 #include "authoring/paint/noise.h"
 #include "authoring/paint/teeth.h"
@@ -21,18 +22,6 @@ namespace {
 
 using glm::vec2;
 using glm::vec3;
-
-// The edge of a lid on the skin, from the inner to the outer corner.
-std::vector<vec3> LidEdge(const HeadGrid& grid, float side, bool upper) {
-  const std::vector<glm::ivec2> outline = grid.EyeOutline();
-  const std::size_t half = outline.size() / 2;
-  std::vector<vec3> edge;
-  for (std::size_t i = 0; i <= half; ++i) {
-    const glm::ivec2 v = outline[upper ? (outline.size() - i) % outline.size() : i];
-    edge.push_back(grid.Surface(grid.Warped(side > 0.0f ? v.x : -v.x, v.y)));
-  }
-  return edge;
-}
 
 // The point at the share `t` of the vertices of a line.
 vec3 Along(const std::vector<vec3>& line, float t) {
@@ -85,42 +74,6 @@ void AddLashRow(const HeadGrid& grid, float side, bool upper, HeadMesh* lashes) 
                          (0.85f + 0.3f * RandomAt(i, 3, upper));
     const vec3 across = glm::normalize(glm::cross(out, vec3(0, 1, 0)));
     AddLash(root, out, curl, across, length, upper ? 1.0f : -1.0f, lashes);
-  }
-}
-
-// The surface of the liquid is hollow: it rises on the lid and on the eyeball.
-void AddTearLine(const HeadGrid& grid, float side, HeadMesh* tears) {
-  struct Line {
-    float radius;  // from the centre of the eye, centimetres
-    float rise;    // above the edge of the lid, on the unit sphere
-  };
-  constexpr Line kLines[] = {{1.262f, 0.0f}, {1.225f, 0.012f}, {1.212f, 0.045f}};
-  constexpr std::uint32_t kAcross = std::size(kLines);
-  const std::vector<vec3> edge = LidEdge(grid, side, false);
-  const vec3 centre = EyeCentre(side);
-  const auto first = static_cast<std::uint32_t>(tears->mesh.vertices.size());
-  for (std::size_t i = 0; i < edge.size(); ++i) {
-    const float along = static_cast<float>(i) / static_cast<float>(edge.size() - 1);
-    for (std::uint32_t k = 0; k < kAcross; ++k) {
-      vec3 direction = glm::normalize(edge[i] - centre);
-      // The line ends in the corners of the eye.
-      direction.y += kLines[k].rise * std::sqrt(std::max(std::sin(kPi * along), 0.0f));
-      HeadVertex info;
-      info.eye_side = -1.0f;
-      info.place = centre + glm::normalize(direction) * kLines[k].radius;
-      const float across = static_cast<float>(k) / static_cast<float>(kAcross - 1);
-      AddHeadVertex(tears, info, vec2(along, (side > 0.0f ? 0.02f : 0.52f) + 0.46f * across));
-    }
-  }
-  for (std::uint32_t i = 0; i + 1 < edge.size(); ++i) {
-    for (std::uint32_t k = 0; k + 1 < kAcross; ++k) {
-      const std::uint32_t a = first + i * kAcross + k, b = a + kAcross;
-      if (side > 0.0f) {
-        AddQuad(&tears->mesh, a, b, b + 1, a + 1);
-      } else {
-        AddQuad(&tears->mesh, a, a + 1, b + 1, b);
-      }
-    }
   }
 }
 
@@ -200,16 +153,6 @@ HeadMesh MakeLashes(const HeadShape& shape) {
   }
   FinishSurface(&lashes.mesh);
   return lashes;
-}
-
-HeadMesh MakeTears(const HeadShape& shape) {
-  HeadMesh tears;
-  tears.mesh.name = "tears";
-  const HeadGrid grid(shape);
-  AddTearLine(grid, 1.0f, &tears);
-  AddTearLine(grid, -1.0f, &tears);
-  FinishSurface(&tears.mesh);
-  return tears;
 }
 
 HeadMesh MakeTongue() {

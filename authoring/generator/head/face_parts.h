@@ -15,10 +15,6 @@ namespace furrow::authoring {
 // The lashes of the four lids of a head.
 [[nodiscard]] HeadMesh MakeLashes(const HeadShape& shape = DefaultHead());
 
-// The tear lines: the strip of liquid between each lower lid and its eyeball, which reflects the
-// lamps as one line. It moves with the lid.
-[[nodiscard]] HeadMesh MakeTears(const HeadShape& shape = DefaultHead());
-
 // Both rows of teeth, with gums.
 [[nodiscard]] HeadMesh MakeTeeth();
 

@@ -156,7 +156,8 @@ class SkinBuilder {
         const float corner = 1.0f - std::abs(info.place.x) / kMouthCornerX;
         info.place.x *= step.narrow;
         info.place.y += info.mouth_side * step.height * std::sqrt(std::max(corner, 0.0f));
-        info.place.z -= step.back;
+        // Behind the corner, the cheek's lining joins the lips: a shallow web, and no black slit.
+        info.place.z -= step.back * glm::mix(0.25f, 1.0f, Smoothstep(0.0f, 0.4f, corner));
         next.push_back(AddHeadVertex(&head_, info, island(i, step.radius)));
       }
       if (!ring.empty()) Bridge(ring, next);

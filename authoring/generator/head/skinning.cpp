@@ -55,11 +55,11 @@ const Muscle kMuscles[] = {
     {"nasalis*", {1.2f, -3.4f, 9.6f}, {1.35f, 1.9f, 2.0f}, 0.75f, 0},
     {"levator*", {1.7f, -5.4f, 9.2f}, {1.5f, 1.35f, 2.0f}, 0.75f, 1},
     {"zygomaticus*", {4.2f, -3.3f, 7.2f}, {2.4f, 2.3f, 3.0f}, 0.85f, 0},
-    {"risorius*", {2.75f, -6.95f, 8.5f}, {1.75f, 1.75f, 2.2f}, 1.0f, 0},
+    {"risorius*", {2.75f, -6.95f, 8.5f}, {2.4f, 1.9f, 2.8f}, 1.0f, 0},
     {"orbicularis_oris_upper*", {0.9f, -6.5f, 9.8f}, {1.6f, 0.95f, 1.8f}, 0.95f, 1},
-    {"orbicularis_oris_lower*", {0.9f, -7.5f, 9.6f}, {1.6f, 1.0f, 1.8f}, 0.95f, -1},
+    {"orbicularis_oris_lower*", {0.9f, -7.6f, 9.6f}, {1.7f, 1.5f, 1.9f}, 0.95f, -1},
     {"depressor*", {2.7f, -8.5f, 8.2f}, {1.7f, 1.6f, 2.4f}, 0.7f, -1},
-    {"mentalis", {0.0f, -9.6f, 9.2f}, {2.0f, 1.3f, 2.0f}, 0.8f, -1},
+    {"mentalis", {0.0f, -9.6f, 9.2f}, {2.1f, 1.8f, 2.2f}, 0.8f, -1},
     {"platysma*", {3.2f, -13.0f, 2.4f}, {3.0f, 3.2f, 3.5f}, 0.7f, 0},
 };
 

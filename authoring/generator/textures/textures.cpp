@@ -22,6 +22,7 @@
 #include "authoring/paint/noise.h"
 #include "authoring/paint/surface_texels.h"
 #include "base/scalar.h"
+#include "base/srgb.h"
 
 namespace furrow::authoring {
 namespace {
@@ -83,6 +84,21 @@ character::Picture PaintLash() {
       const float alpha = Smoothstep(half + 0.06f, half - 0.06f, across);
       SetTexel(&picture, x, y, glm::vec4(glm::vec3(1.0f), alpha));
     }
+  }
+  return picture;
+}
+
+character::Picture PaintLidShade() {
+  // The lids reflect reddish light into their own shadow.
+  constexpr vec3 kDarkest(0.42f, 0.33f, 0.30f);  // linear
+  constexpr int kHeight = 64;
+  character::Picture picture = BlankPicture("lid_shade", 1, kHeight, 3);
+  for (int y = 0; y < kHeight; ++y) {
+    const float v = (static_cast<float>(y) + 0.5f) / kHeight;
+    const float light = Smoothstep(0.2f, 0.75f, v);
+    const vec3 passes = glm::mix(kDarkest, vec3(1.0f), light);
+    const vec3 bytes(SrgbFromLinear(passes.r), SrgbFromLinear(passes.g), SrgbFromLinear(passes.b));
+    SetTexel(&picture, 0, y, vec4(bytes, 1.0f));
   }
   return picture;
 }
@@ -154,7 +170,8 @@ character::Picture PaintMasksA(const character::Mesh& skin, int size) {
 character::Picture PaintMasksB(const character::Mesh& skin, int size) {
   return PaintMasks("face_masks_b", skin, size, [](const vec3& p) {
     const vec3 q = OnLeftSide(p);
-    const float eye = Soft(q, {{{4.2f, -0.2f, 7.2f}, {3.4f, 2.6f, 4.5f}}});
+    const float eye = Soft(q, {{{4.2f, -0.2f, 7.2f}, {3.4f, 2.6f, 4.5f}},
+                               {{3.2f, 1.0f, 8.6f}, {2.5f, 1.5f, 2.8f}}});  // the upper lid
     const float mouth =
         Soft(q, {{{1.8f, -7.0f, 8.5f}, {4.4f, 4.2f, 6.0f}},
                  {{1.5f, -10.0f, 8.0f}, {3.6f, 2.6f, 5.0f}},

@@ -16,6 +16,11 @@ namespace furrow::authoring {
 // small mip levels fall below the alpha cutoff of the material: a lash thinner than about a pixel
 // disappears instead of becoming a row of dots.
 [[nodiscard]] character::Picture PaintLash();
+
+// The share of light that the shadows of the lids let through, sRGB: a column of texels, dark up to
+// v = 0.25 and white from v = 0.75 on, where MakeLidShades() begins and ends. The margins keep the
+// two ends apart in small mip levels.
+[[nodiscard]] character::Picture PaintLidShade();
 // The pictures of the hair. The upper part shows strands with transparent gaps, the lower part the
 // opaque cap of the scalp.
 struct HairPictures {

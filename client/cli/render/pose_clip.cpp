@@ -3,10 +3,14 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 
 #include "base/ascii.h"
 #include "base/status.h"
@@ -128,6 +132,35 @@ Result<Mix> ParseMix(const wrinkle::Rig& rig, std::string_view text) {
   return mix;
 }
 
+// True if two poses move the same joints in the same way, up to rounding.
+bool MovesAlike(const wrinkle::ReferencePose& a, const wrinkle::ReferencePose& b) {
+  constexpr float kSame = 1e-4f;
+  return std::ranges::equal(
+      a.joints, b.joints, [](const wrinkle::JointDelta& x, const wrinkle::JointDelta& y) {
+        return x.joint == y.joint && std::abs(glm::dot(x.rotation, y.rotation)) > 1.0f - kSame &&
+               glm::distance(x.translation, y.translation) < kSame &&
+               glm::distance(x.unscaled_translation, y.unscaled_translation) < kSame;
+      });
+}
+
+// Limits mouthClose to jawOpen, as for streams (wrinkle::BlendShapePose): it brings the lips
+// together on an open jaw, and alone it would push each lip through the other. Poses that move as
+// jawOpen does, such as the one that it mixes, open the jaw as well.
+void LimitMouthClose(const wrinkle::Rig& rig, std::vector<WeightedPose>* parts) {
+  const wrinkle::ReferencePose* open = FindPose(rig, "jawOpen");
+  const wrinkle::ReferencePose* close = FindPose(rig, "mouthClose");
+  if (open == nullptr || close == nullptr) return;
+  float jaw = 0.0f, closed = 0.0f;
+  for (const WeightedPose& part : *parts) {
+    if (part.pose == close) closed += part.weight;
+    if (part.pose == open || MovesAlike(*part.pose, *open)) jaw += part.weight;
+  }
+  if (closed <= std::max(jaw, 0.0f)) return;
+  for (WeightedPose& part : *parts) {
+    if (part.pose == close) part.weight *= std::max(jaw, 0.0f) / closed;
+  }
+}
+
 // Gives the clip the blend shapes of a mix, and those of the pose that its poses add up to.
 void AddShapes(const Mix& mix, std::span<const wrinkle::ShapeValue> of_poses,
                const wrinkle::Rig& rig, motion::Clip* clip) {
@@ -153,8 +186,9 @@ void AddShapes(const Mix& mix, std::span<const wrinkle::ShapeValue> of_poses,
 }  // namespace
 
 Result<motion::Clip> PoseClip(const character::Character& character, const std::string& text) {
-  const auto mix = ParseMix(character.rig, text);
+  auto mix = ParseMix(character.rig, text);
   FURROW_RETURN_IF_ERROR(mix);
+  LimitMouthClose(character.rig, &mix->poses);
   motion::Clip clip;
   clip.name = text;
   clip.skeleton = character.skeleton;

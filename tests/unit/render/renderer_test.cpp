@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -91,6 +92,62 @@ TEST(Renderer, BlackSkinIsDarkAndABlackEyeIsGlossy) {
     const int brightest = *std::max_element(image->rgb.begin(), image->rgb.end());
     if (kind == character::Material::Kind::kSkin) EXPECT_EQ(brightest, 0);
     if (kind == character::Material::Kind::kEye) EXPECT_GT(brightest, 60);
+  }
+}
+
+// A shade in front of the right half of a plane.
+character::Character ShadedPlane(bool shaded) {
+  character::Character plane = test::MakeSheet(4, 4);
+  plane.materials[0].kind = character::Material::Kind::kEye;
+  plane.materials[0].base_colour = {0.4f, 0.4f, 0.4f, 1.0f};
+  if (!shaded) return plane;
+  character::Mesh shade = plane.meshes[0];
+  for (character::Vertex& vertex : shade.vertices) {
+    vertex.position.x = 0.5f * vertex.position.x + 0.5f;
+    vertex.position.z = 0.01f;
+  }
+  shade.material = 1;
+  plane.meshes.push_back(shade);
+  character::Material& material = plane.materials.emplace_back();
+  material.kind = character::Material::Kind::kShade;
+  material.base_colour = {0.25f, 0.25f, 0.25f, 1.0f};
+  return plane;
+}
+
+TEST(Renderer, AShadeOnlyDarkensWhatLiesBehindIt) {
+  const character::Character bare = ShadedPlane(false), covered = ShadedPlane(true);
+  const auto render = [](const character::Character& character, View view, Shading shading,
+                         int samples) {
+    const auto renderer = Renderer::Create(character);
+    EXPECT_TRUE(renderer.ok()) << renderer.status().ToString();
+    const test::Subject subject(character);
+    FrameRequest request;
+    request.model = subject.model;
+    request.camera = {.position = {0.0f, 0.0f, 3.0f}, .target = {0.0f, 0.0f, 0.0f}};
+    request.settings.view = view;
+    request.settings.shading = shading;
+    request.settings.anti_aliasing.samples = samples;
+    request.width = request.height = kSize;
+    const Result<Image> image = (*renderer)->Render(request);
+    EXPECT_TRUE(image.ok()) << image.status().ToString();
+    return *image;
+  };
+  const auto green = [](const Image& image, int x) {
+    return int{image.rgb[static_cast<std::size_t>(3 * (kSize / 2 * kSize + x)) + 1]};
+  };
+  for (const auto& [shading, samples] :
+       {std::pair(Shading::kDiffuse, 1), {Shading::kSkin, 1}, {Shading::kSkin, 4}}) {
+    const Image off = render(bare, View::kFinal, shading, samples);
+    const Image on = render(covered, View::kFinal, shading, samples);
+    EXPECT_NEAR(green(on, kSize / 3), green(off, kSize / 3), 1) << samples;
+    EXPECT_GT(green(off, kSize * 2 / 3), 60) << samples;
+    EXPECT_LT(green(on, kSize * 2 / 3), 0.7 * green(off, kSize * 2 / 3)) << samples;
+    EXPECT_GT(green(on, kSize * 2 / 3), 0.2 * green(off, kSize * 2 / 3)) << samples;
+  }
+  for (const View view : {View::kNormal, View::kAlbedo, View::kDepth, View::kShadow}) {
+    EXPECT_EQ(render(bare, view, Shading::kSkin, 1).rgb,
+              render(covered, view, Shading::kSkin, 1).rgb)
+        << ViewName(view);
   }
 }
 

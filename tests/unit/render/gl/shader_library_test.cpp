@@ -91,6 +91,22 @@ TEST_F(ShaderLibraryTest, EverySkinConfigurationCompiles) {
   }
 }
 
+// A shade has one target, or those of a scene pass.
+TEST_F(ShaderLibraryTest, ShadesCompileForEveryTarget) {
+  for (const Shading shading : {Shading::kDiffuse, Shading::kSkin}) {
+    for (const bool unlit : {false, true}) {
+      SceneShader shader;
+      shader.shade = true;
+      shader.material = character::Material::Kind::kShade;
+      shader.shading = shading;
+      shader.unlit = unlit && shading == Shading::kSkin;
+      shader.base_colour_map = true;
+      const Result<GLuint> program = library_.Get(shader);
+      ASSERT_TRUE(program.ok()) << program.status().ToString();
+    }
+  }
+}
+
 // The facets of every material, and the shader that lights them.
 TEST_F(ShaderLibraryTest, EveryFacetConfigurationCompiles) {
   using Kind = character::Material::Kind;

@@ -163,6 +163,7 @@ std::string Name(const testing::TestParamInfo<Kind>& kind) {
     case Kind::kEye: return "eye";
     case Kind::kHair: return "hair";
     case Kind::kOther: return "other";
+    case Kind::kShade: return "shade";
   }
   return {};
 }

@@ -13,6 +13,7 @@
 #include "authoring/generator/head/face_parts.h"
 #include "authoring/generator/head/hair_mesh.h"
 #include "authoring/generator/head/head_skin.h"
+#include "authoring/generator/head/lid_strips.h"
 #include "authoring/generator/head/skinning.h"
 
 namespace furrow::authoring {
@@ -144,6 +145,23 @@ TEST(HeadMesh, TearsLieBetweenTheLowerLidsAndTheEyes) {
   int facing = 0;
   for (const character::Vertex& vertex : tears.mesh.vertices) facing += vertex.normal.z > 0.3f;
   EXPECT_GT(facing, static_cast<int>(tears.mesh.vertices.size()) * 3 / 4);
+}
+
+// The shells lie in front of the corneas (12.7 mm) and are as large as the openings of the eyes.
+TEST(HeadMesh, LidShadesLieBetweenTheLidsInFrontOfTheEyes) {
+  const HeadMesh shades = MakeLidShades();
+  int facing = 0;
+  for (std::size_t i = 0; i < shades.info.size(); ++i) {
+    const glm::vec3 place = shades.info[i].place;
+    const glm::vec3 d = place - EyeCentre(place.x > 0.0f ? 1.0f : -1.0f);
+    EXPECT_GT(glm::length(d), kEyeRadius + 0.07f);
+    EXPECT_LT(glm::length(d), kEyeRadius + 0.1f);
+    EXPECT_GT(d.z, 0.0f);
+    facing += shades.mesh.vertices[i].normal.z > 0.0f;
+    EXPECT_GE(shades.mesh.vertices[i].uv.y, 0.25f);
+    EXPECT_LE(shades.mesh.vertices[i].uv.y, 0.75f);
+  }
+  EXPECT_EQ(facing, static_cast<int>(shades.info.size()));
 }
 
 // A lash follows the edge of its lid from root to tip.

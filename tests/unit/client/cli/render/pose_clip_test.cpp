@@ -109,6 +109,26 @@ TEST(PoseClip, ReferencePosesMoveTheirBlendShapes) {
   EXPECT_FLOAT_EQ(sum, 1.0f);
 }
 
+// Alone, mouthClose would push each lip through the other.
+TEST(PoseClip, MouthCloseIsAtMostJawOpen) {
+  character::Character face = Brows();
+  const glm::quat still(1, 0, 0, 0);
+  face.rig.reference_poses.push_back({"jaw_open", {{"head", still, {0, -4, 0}}}, 0});
+  face.rig.reference_poses.push_back({"jawOpen", {{"head", still, {0, -4, 0}}}, 0});
+  face.rig.reference_poses.push_back({"mouthClose", {{"brow_l", still, {0, 3, 0}}}, 0});
+  const auto closed = [&](const char* text) {
+    const auto clip = PoseClip(face, text);
+    EXPECT_TRUE(clip.ok()) << clip.status().ToString();
+    return clip.ok() ? clip->locals[1].translation.y : -1.0f;
+  };
+  EXPECT_FLOAT_EQ(closed("mouthClose"), 0.0f);
+  EXPECT_FLOAT_EQ(closed("mouthClose=0.4,jawOpen"), 1.2f);
+  EXPECT_FLOAT_EQ(closed("mouthClose,jawOpen=0.5"), 1.5f);
+  EXPECT_FLOAT_EQ(closed("jaw_open=0.5,mouthClose=0.8"), 1.5f) << "the same motion by another name";
+  EXPECT_FLOAT_EQ(closed("mouthClose,jawOpen=-1"), 0.0f);
+  EXPECT_FLOAT_EQ(closed("mouthClose=-0.5"), -1.5f) << "pulling the lips apart has no limit";
+}
+
 TEST(PoseClip, AnUnknownNameIsAnErrorThatListsTheValidNames) {
   const auto unknown = PoseClip(Brows(), "lower_l,smirk");
   EXPECT_EQ(unknown.status().code(), StatusCode::kNotFound);
