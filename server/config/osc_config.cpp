@@ -2,6 +2,7 @@
 #include "server/config/osc_config.h"
 
 #include "protocol/messages/limits.h"
+#include "protocol/messages/text.h"
 
 namespace furrow::server {
 namespace {
@@ -13,11 +14,19 @@ Status Invalid(const char* field, std::string what) {
 }  // namespace
 
 Status CheckOscTarget(const OscTargetConfig& target) {
-  if (target.prefix.empty() || target.prefix.size() > protocol::kMaxNameBytes ||
+  const std::string& prefix = target.prefix;
+  if (prefix.empty() || prefix.size() > protocol::kMaxNameBytes ||
       // OSC 1.0 reserves these characters.
-      target.prefix.find_first_of(" #*,?[]{}") != std::string::npos) {
-    return Invalid(
-        "prefix", "'" + target.prefix + "' must not be empty or contain blanks or any of #*,?[]{}");
+      prefix.find_first_of(" #*,?[]{}") != std::string::npos) {
+    return Invalid("prefix", "'" + prefix + "' must have 1 to " +
+                                 std::to_string(protocol::kMaxNameBytes) +
+                                 " bytes and no blanks or any of #*,?[]{}");
+  }
+  // A zero byte ends an OSC string, so the rest of the prefix could forge arguments. Addresses have
+  // their own slashes around the prefix.
+  if (!protocol::IsPlainText(prefix) || prefix.front() == '/' || prefix.back() == '/') {
+    return Invalid("prefix",
+                   "must be UTF-8 without control characters and without '/' at its ends");
   }
   if (target.subject.size() > protocol::kMaxNameBytes) {
     return Invalid("subject",

@@ -10,6 +10,7 @@
 #include "base/data_dir.h"
 #include "base/files.h"
 #include "protocol/messages/limits.h"
+#include "protocol/messages/text.h"
 #include "server/config/toml_file.h"
 
 namespace furrow::server {
@@ -89,8 +90,10 @@ toml_file::Key Names(std::map<std::string, std::string>* target) {
             if (table == nullptr) return "must be a table";
             for (const auto& [name, value] : *table) {
               const auto text = value.value_exact<std::string>();
-              if (!text || text->empty() || text->size() > protocol::kMaxNameBytes) {
-                return "'" + std::string(name.str()) + "' must be a text of 1 to 255 bytes";
+              if (!text || text->empty() || text->size() > protocol::kMaxNameBytes ||
+                  !protocol::IsPlainText(*text)) {
+                return "'" + std::string(name.str()) +
+                       "' must be a text of 1 to 255 bytes without control characters";
               }
               target->emplace(std::string(name.str()), *text);
             }
@@ -119,12 +122,16 @@ Result<OscProfile> ParseOscProfile(std::string_view text, std::string_view sourc
   if (profile.value.address.empty()) {
     return Status(StatusCode::kSchema, "value.address is missing", std::string(source_name));
   }
-  if (!end.address.empty()) profile.end = std::move(end);
+  if (!end.address.empty()) {
+    profile.end = std::move(end);
+  } else if (!end.arguments.empty()) {
+    return Status(StatusCode::kSchema, "end.address is missing", std::string(source_name));
+  }
   return profile;
 }
 
 bool IsShippedOscProfile(const std::string& name) {
-  return !IsFile(name) && FindDataFile("osc/" + name + ".toml").ok();
+  return std::ranges::binary_search(ShippedOscProfiles(), name);
 }
 
 std::vector<std::string> ShippedOscProfiles() {

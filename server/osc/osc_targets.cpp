@@ -31,13 +31,13 @@ Result<int> OscTargets::Add(const OscTargetConfig& config) {
     return Status(StatusCode::kNotFound, "there is no profile '" + config.profile + "'", "profile",
                   "one of: " + known);
   }
+  for (const auto& target : targets_) {
+    if (target->config == config) return target->id;  // a repeated request changes nothing
+  }
   const auto added = std::ranges::count(targets_, false, &Target::configured);
   if (static_cast<std::size_t>(added) >= kMaxAdded) {
     return Status(StatusCode::kLimit, "there are " + std::to_string(kMaxAdded) + " targets already",
                   "", "remove one with DELETE /api/osc?id=N");
-  }
-  for (const auto& target : targets_) {
-    if (target->config == config) return target->id;  // a repeated request changes nothing
   }
   Result<int> id = Open(config, /*configured=*/false);
   if (id.ok()) spdlog::info("OSC target {} added: {}", *id, HostPortText(config.to));
@@ -61,12 +61,17 @@ Status OscTargets::CheckAddress(const HostPort& to) const {
                     "to", "add it to osc.allow in the daemon's configuration");
     }
   }
-  if (std::ranges::find(parts_.own_ports, to.port) != parts_.own_ports.end()) {
-    return Status(StatusCode::kInvalidArgument,
-                  "port " + std::to_string(to.port) + " belongs to this daemon", "to",
-                  "give the port of the program that receives OSC");
-  }
   return {};
+}
+
+// True if a socket that is connected to `to` sends to this daemon. Another machine may well use
+// the same port, as all VMC programs do. To an address of this machine, the system sends from the
+// same address.
+bool OscTargets::IsOwn(const asio::ip::udp::endpoint& to,
+                       const asio::ip::udp::socket& socket) const {
+  if (std::ranges::find(parts_.own_ports, to.port()) == parts_.own_ports.end()) return false;
+  asio::error_code ignored;
+  return to.address().is_loopback() || socket.local_endpoint(ignored).address() == to.address();
 }
 
 Result<int> OscTargets::Open(const OscTargetConfig& config, bool configured) {
@@ -91,6 +96,11 @@ Result<int> OscTargets::Open(const OscTargetConfig& config, bool configured) {
   if (error) {
     return Status(StatusCode::kUnavailable,
                   "cannot send OSC to " + HostPortText(config.to) + ": " + error.message(), "to");
+  }
+  if (!configured && IsOwn(to, target->lanes.front()->socket)) {
+    return Status(StatusCode::kInvalidArgument,
+                  "port " + std::to_string(to.port()) + " belongs to this daemon", "to",
+                  "give the port of the program that receives OSC");
   }
   target->id = ++last_id_;
   targets_.push_back(std::move(target));
@@ -156,7 +166,11 @@ void OscTargets::Send(const Subject& subject, int shard, Time now) {
     Lane& lane = *target->lanes[static_cast<std::size_t>(shard)];
     Stream& stream = StreamOf(*target, lane, subject);
     stream.owed = !stream.gate.Pass(now);
-    if (!stream.owed) Write(lane, stream, subject);
+    if (stream.owed) {
+      lane.owes = true;
+    } else {
+      Write(lane, stream, subject);
+    }
   }
 }
 
@@ -169,15 +183,27 @@ void OscTargets::SendOwed(const SubjectRegistry& subjects, Time now) {
   for (const auto& target : targets_) {
     if (target->config.rate_hz == 0.0) continue;
     for (const auto& lane : target->lanes) {
-      for (const auto& subject : subjects.all()) {
-        const auto stream = lane->streams.find(subject->id);
-        if (stream == lane->streams.end() || !stream->second.owed ||
-            !stream->second.gate.Pass(now)) {
-          continue;
-        }
-        stream->second.owed = false;
-        Write(*lane, StreamOf(*target, *lane, *subject), *subject);
-      }
+      if (lane->owes) SendOwed(*target, *lane, subjects, now);
+    }
+  }
+}
+
+// All shards wait meanwhile, so only the lane's own streams are looked at.
+void OscTargets::SendOwed(const Target& target, Lane& lane, const SubjectRegistry& subjects,
+                          Time now) {
+  lane.owes = false;
+  for (auto& [id, stream] : lane.streams) {
+    if (!stream.owed) continue;
+    if (!stream.gate.Pass(now)) {
+      lane.owes = true;
+      continue;
+    }
+    stream.owed = false;
+    // Subjects are in order of arrival, and their ids count up.
+    const auto subject =
+        std::ranges::lower_bound(subjects.all(), id, {}, [](const auto& each) { return each->id; });
+    if (subject != subjects.all().end() && (*subject)->id == id) {
+      Write(lane, StreamOf(target, lane, **subject), **subject);
     }
   }
 }

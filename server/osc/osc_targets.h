@@ -70,6 +70,7 @@ class OscTargets : public OscControl {
     explicit Lane(asio::io_context& io) : socket(io) {}
     asio::ip::udp::socket socket;
     std::unordered_map<SubjectId, Stream> streams;
+    bool owes = false;  // false: no stream is owed
     std::uint64_t packets = 0;
     std::uint64_t errors = 0;
     asio::error_code last_error;
@@ -83,8 +84,11 @@ class OscTargets : public OscControl {
   };
 
   [[nodiscard]] Status CheckAddress(const HostPort& to) const;
+  [[nodiscard]] bool IsOwn(const asio::ip::udp::endpoint& to,
+                           const asio::ip::udp::socket& socket) const;
   Result<int> Open(const OscTargetConfig& config, bool configured);
   Stream& StreamOf(const Target& target, Lane& lane, const Subject& subject) const;
+  void SendOwed(const Target& target, Lane& lane, const SubjectRegistry& subjects, Time now);
   void Write(Lane& lane, Stream& stream, const Subject& subject);
 
   asio::io_context& io_;

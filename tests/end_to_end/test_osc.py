@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Weights as OSC, read by liblo's oscdump: targets of the configuration, and targets over HTTP."""
+import contextlib
 import http.client
 import json
 import pathlib
 import re
+import select
 import shutil
 import socket
 import subprocess
@@ -34,10 +36,19 @@ class OscTest(unittest.TestCase):
         self.addCleanup(process.kill)
 
         def read():
-            line = process.stdout.readline()
-            assert line, "oscdump ended"
-            return line.split()[1:]  # without the time
+            while True:
+                line = process.stdout.readline()
+                assert line, "oscdump ended"
+                words = line.split()[1:]  # without the time
+                if words[0] != "/ready":
+                    return words
 
+        # Until oscdump listens, the daemon would count errors.
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+            probe.connect(("127.0.0.1", port))
+            while not select.select([process.stdout], [], [], 0.05)[0]:
+                with contextlib.suppress(ConnectionRefusedError):
+                    probe.send(b"/ready\0\0,\0\0\0")
         return port, read
 
     def play(self, daemon, *subjects):

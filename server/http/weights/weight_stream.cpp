@@ -101,6 +101,17 @@ std::string PeerName(const beast::tcp_stream& stream) {
 
 using Socket = websocket::stream<beast::tcp_stream>;
 
+void Close(Socket& socket) {
+  beast::error_code ignored;
+  beast::get_lowest_layer(socket).socket().close(ignored);
+}
+
+// Closes the socket, which ends ReadAndDrop(), also after an exception.
+struct CloseOnExit {
+  Socket* socket;
+  ~CloseOnExit() { Close(*socket); }
+};
+
 // Reads until the connection ends, which also answers pings and close frames.
 net::awaitable<void> ReadAndDrop(std::shared_ptr<Socket> socket,
                                  std::shared_ptr<LineSource> lines) {
@@ -139,15 +150,26 @@ net::awaitable<void> ServeWeightSocket(beast::tcp_stream stream, WebContext* con
       std::make_shared<LineSource>(socket->get_executor(), context, std::move(requests));
   lines->Open(name);
   net::co_spawn(socket->get_executor(), ReadAndDrop(socket, lines), net::detached);
+  const CloseOnExit close_on_exit{socket.get()};
+  // The WebSocket's own timeout does not end a client that sends and never reads.
+  net::steady_timer write_watch(socket->get_executor());
   std::string line;
   while (!error) {
     const bool more = co_await lines->Next(&line);
     if (!more) break;
+    write_watch.expires_after(kWebDeadline);
+    write_watch.async_wait(
+        [weak = std::weak_ptr<Socket>(socket), context](beast::error_code cancelled) {
+          const auto alive = weak.lock();
+          if (cancelled || !alive) return;
+          context->metrics->Add(Counter::kConnectionsIdle);
+          Close(*alive);
+        });
     co_await socket->async_write(net::buffer(line), Redirect(error));
+    write_watch.cancel();
   }
   // After the last line the daemon shuts down; otherwise the client is slow or has gone already.
   co_await socket->async_close(websocket::close_code::going_away, Redirect(error));
-  beast::get_lowest_layer(*socket).socket().close(error);
 }
 
 net::awaitable<void> ServeWeightLines(beast::tcp_stream* stream, WebContext* context,

@@ -132,6 +132,11 @@ bpy.ops.furrow.connect()
 while "ada" not in session.bindings or session.bindings["ada"].frames == 0:
     assert tick() < 0.1, "the window's timer polls often while connected"
     time.sleep(0.002)
+try:
+    bpy.ops.furrow.build_material(filepath="/absent.json")
+    raise AssertionError("a file that is absent is an error")
+except RuntimeError as error:
+    assert "/absent.json" in str(error) or "no nodes.py" in str(error), str(error)
 bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
 assert session.connection is None, "loading a file disconnects"
 assert tick() >= 0.5

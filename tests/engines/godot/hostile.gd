@@ -36,6 +36,9 @@ func _init():
 		client._on_message(NAMES.left(size))
 	for text in STRANGE:
 		client._on_message(text)
+	for opening in ["[", '{"a":']:
+		client._on_message(opening.repeat(1000000 / opening.length()))
+		client._on_message('{"type": "names", "subject": "ada", "names": [' + opening.repeat(100000))
 	var before_names = frames
 	client._on_message(NAMES)
 	for size in WEIGHTS.length():

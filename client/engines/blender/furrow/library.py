@@ -80,13 +80,11 @@ def load(path=""):
             library = ctypes.CDLL(name, use_errno=False)
             library.furrow_abi_version.restype = ctypes.c_uint32
             version = library.furrow_abi_version()
-        except (OSError, AttributeError) as error:
-            faults.append(f"{name}: {error}")
-            continue
-        if version not in (0, 1):
+            if version in (0, 1):
+                return _declare(library)
             faults.append(f"{name}: interface version {version}; this add-on needs 0 or 1")
-            continue
-        return _declare(library)
+        except (OSError, AttributeError) as error:  # no file, no library, or an older one without a function
+            faults.append(f"{name}: {error}")
     raise FurrowError(f"cannot load {SONAME} ({'; '.join(faults)}); set its path in the preferences of the add-on, or "
                       "add its folder to LD_LIBRARY_PATH")
 

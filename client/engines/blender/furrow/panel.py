@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The tab in the sidebar, its buttons, and what a scene and the preferences store."""
+import json
 import textwrap
 
 import bpy
@@ -137,6 +138,43 @@ class FURROW_OT_clear(bpy.types.Operator):
         return {"FINISHED"}
 
 
+class FURROW_OT_build_material(bpy.types.Operator):
+    """Add the wrinkles of an export to the materials of the active object"""
+    bl_idname = "furrow.build_material"
+    bl_label = "Build Wrinkle Material"
+    bl_options = {"UNDO"}
+
+    filepath: bpy.props.StringProperty(
+        name="wrinkles.json", subtype="FILE_PATH", description="File of 'furrow export --for blender'")
+    filter_glob: bpy.props.StringProperty(default="*.json", options={"HIDDEN"})
+
+    @classmethod
+    def poll(cls, context):
+        return context.object is not None
+
+    def invoke(self, context, _event):
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def execute(self, context):
+        try:
+            from . import nodes  # pylint: disable=import-outside-toplevel
+        except ImportError:
+            return self._fail("the add-on has no nodes.py; install an add-on that contains this file")
+        try:
+            built = nodes.build_material(bpy.path.abspath(self.filepath), context.object)
+        except (json.JSONDecodeError, UnicodeDecodeError, AttributeError, IndexError, KeyError, TypeError) as error:
+            return self._fail(f"{self.filepath}: damaged ({error!r}); export it again")
+        except (OSError, ValueError, RuntimeError) as error:
+            return self._fail(str(error))
+        self.report({"INFO"}, f"built: {', '.join(built)}")
+        return {"FINISHED"}
+
+    def _fail(self, text):
+        self.report({"ERROR"}, text)
+        return {"CANCELLED"}
+
+
 def draw_text(layout, text, icon="NONE"):
     """Labels do not wrap, and the sidebar is narrow."""
     column = layout.column(align=True)
@@ -168,6 +206,7 @@ class FURROW_PT_sidebar(bpy.types.Panel):
         layout.operator("furrow.record", text="Stop" if session.recording else "Record",
                         icon="SNAP_FACE" if session.recording else "REC")
         layout.operator("furrow.clear", icon="X")
+        layout.operator("furrow.build_material", icon="MATERIAL")
 
 
 @persistent
@@ -177,7 +216,7 @@ def disconnect_before_load(_):
 
 
 CLASSES = (FurrowPreferences, FurrowRow, FurrowScene, FURROW_UL_rows, FURROW_OT_add, FURROW_OT_remove, FURROW_OT_connect,
-           FURROW_OT_disconnect, FURROW_OT_record, FURROW_OT_clear, FURROW_PT_sidebar)
+           FURROW_OT_disconnect, FURROW_OT_record, FURROW_OT_clear, FURROW_OT_build_material, FURROW_PT_sidebar)
 
 
 def register():

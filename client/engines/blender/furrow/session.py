@@ -12,6 +12,7 @@ from .targets import Targets
 
 # How often what costs time is looked up again, seconds: coverage, and subjects in the list of objects.
 _REFRESH = 1.0
+MAX_FRAME = 1_048_574  # Blender's last frame
 
 
 class Binding:
@@ -170,7 +171,8 @@ class Session:
             if take:
                 longest = max(longest, take.write(row.target))
                 if take.times:
-                    scene.frame_end = max(scene.frame_end, int(take.times[-1]) + 1)
+                    # Capture times come from the network: a publisher's clock may jump by years.
+                    scene.frame_end = max(scene.frame_end, min(int(take.times[-1]) + 1, MAX_FRAME))
         return longest
 
 

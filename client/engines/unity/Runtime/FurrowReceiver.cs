@@ -63,12 +63,12 @@ namespace Furrow
         /// <summary>Ends the connection. Targets keep their last weights.</summary>
         public void Disconnect()
         {
-            subjects.Clear();
             if (connection != null)
             {
-                connection.Dispose();
+                connection.Dispose();  // throws inside Subject.Received, and then everything stays as it was
                 connection = null;
             }
+            subjects.Clear();
         }
 
         /// <summary>Follows a subject; an empty name means the oldest one. Null while there is no connection.</summary>

@@ -46,6 +46,8 @@ TEST(OscProfileFile, ErrorsNameFileLineAndKey) {
       {"[value]\naddress = '/a'\narguments = 'value'", "value.arguments must be a list"},
       {"[value]\naddress = '/a'\narguments = [1]", "value.arguments may list name"},
       {"[names]\na = 1", "names 'a' must be a text"},
+      {"[names]\na = \"b\\u0000c\"", "without control characters"},
+      {"[value]\naddress = '/a'\n[end]\narguments = ['sequence']", "end.address is missing"},
       {"[value]\nadress = '/a'", "unknown key 'value.adress'"},
       {"speed = 1", "unknown key 'speed'"},
       {"[end]\naddress = '/a'", "value.address is missing"},
@@ -70,7 +72,10 @@ TEST(OscProfileFile, ShippedProfilesLoad) {
 }
 
 TEST(OscProfileFile, FilesAreNoShippedProfiles) {
-  for (const char* name : {"../osc/vmc.toml", "vmc.toml", "/etc/passwd", "", "."}) {
+  // A path ends at a zero byte.
+  for (const std::string& name :
+       {std::string("../osc/vmc.toml"), std::string("vmc.toml"), std::string("/etc/passwd"),
+        std::string(), std::string("."), std::string("vmc.toml\0", 9)}) {
     EXPECT_FALSE(IsShippedOscProfile(name)) << name;
   }
   EXPECT_FALSE(LoadOscProfile("./absent.toml").ok());

@@ -145,6 +145,12 @@ TEST_F(OscTargetsTest, ARateSkipsFramesAndSendsTheLastOneLater) {
   EXPECT_FALSE(receiver_.Take().empty());
   targets_->SendOwed(hub->subjects(), FromSeconds(2.00));
   EXPECT_TRUE(receiver_.Take().empty()) << "nothing is owed any more";
+  targets_->Send(subject(), 0, FromSeconds(3.00));
+  targets_->Send(subject(), 0, FromSeconds(3.02));
+  EXPECT_FALSE(receiver_.Take().empty());
+  const SubjectRegistry nobody;
+  targets_->SendOwed(nobody, FromSeconds(3.20));
+  EXPECT_TRUE(receiver_.Take().empty()) << "the subject has left";
 }
 
 TEST_F(OscTargetsTest, ClientsCannotAimAtOthers) {
@@ -164,6 +170,8 @@ TEST_F(OscTargetsTest, ClientsCannotAimAtOthers) {
   const Status status = Refusal(allowed);
   // A machine without a network has no route to the address.
   EXPECT_TRUE(status.ok() || status.code() == StatusCode::kUnavailable) << status.ToString();
+  allowed.to.port = 7401;  // the daemon's port on another machine
+  EXPECT_THAT(Refusal(allowed).what(), testing::Not(HasSubstr("belongs to this daemon")));
 }
 
 TEST_F(OscTargetsTest, ClientsCannotFeedTheDaemonWithItsOwnWeights) {
@@ -186,7 +194,11 @@ TEST_F(OscTargetsTest, InvalidFieldsAreNamed) {
     change(config);
     return Refusal(config).where();
   };
-  EXPECT_EQ(field([](auto& config) { config.prefix = "a b"; }), "prefix");
+  for (const std::string& prefix :
+       {std::string("a b"), std::string(), std::string("/a"), std::string("a/"),
+        std::string("a\0,s\0\0b", 7), std::string("\xFF"), std::string(256, 'a')}) {
+    EXPECT_EQ(field([&](auto& config) { config.prefix = prefix; }), "prefix") << prefix;
+  }
   EXPECT_EQ(field([](auto& config) { config.rate_hz = -1; }), "rate_hz");
   EXPECT_EQ(field([](auto& config) { config.rate_hz = std::nan(""); }), "rate_hz");
   EXPECT_EQ(field([](auto& config) { config.pattern = ""; }), "pattern");
@@ -198,6 +210,7 @@ TEST_F(OscTargetsTest, TargetsAreLimited) {
     ASSERT_TRUE(targets_->Add(To(static_cast<std::uint16_t>(20'000 + i))).ok());
   }
   EXPECT_EQ(Refusal(To(30'000)).code(), StatusCode::kLimit);
+  EXPECT_TRUE(targets_->Add(To(20'000)).ok()) << "a repeated request adds nothing";
   ASSERT_TRUE(targets_->AddConfigured(To(30'000)).ok()) << "the operator is not limited";
 }
 

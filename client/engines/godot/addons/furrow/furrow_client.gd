@@ -18,6 +18,9 @@ const SETTINGS = preload("furrow_settings.gd")
 const MAX_WEIGHTS = 2048
 const MAX_SUBJECTS = 256
 const MAX_SEQUENCE = 4294967296.0
+# Godot 3 reads JSON recursively without a limit, and some 16,000 levels overflow its stack. The daemon nests 2 deep, but
+# names may contain brackets.
+const MAX_BRACKETS = 4096
 const FIRST_PAUSE_MSEC = 100
 const MAX_PAUSE_MSEC = 800
 const CONNECT_MSEC = 5000
@@ -224,6 +227,8 @@ func _on_data():
 
 # Takes one message. Anything that is not as the daemon writes it is ignored.
 func _on_message(text):
+	if text.length() > MAX_BRACKETS and _count(text, "[") + _count(text, "{") > MAX_BRACKETS:
+		return
 	var parsed = JSON.parse(text)
 	if parsed.error != OK or typeof(parsed.result) != TYPE_DICTIONARY:
 		return
@@ -237,6 +242,11 @@ func _on_message(text):
 			_on_gone(message)
 		"error":
 			last_error = str(message.get("message", ""))
+
+
+# How often a character occurs; counts no further than just beyond MAX_BRACKETS.
+func _count(text, character):
+	return text.split(character, true, MAX_BRACKETS + 1).size() - 1
 
 
 func _on_names(message):
