@@ -125,8 +125,10 @@ class MaterialData {
     const auto pair = [&](const glm::vec2& v) {
       return vec2 + "(" + Literal(v.x) + ", " + Literal(v.y) + ")";
     };
-    return "(" + uv + " * " + pair(material.texture_scale) + " + " + pair(material.texture_offset) +
-           ")";
+    glm::vec2 offset = material.texture_offset;
+    // Unity counts v from the bottom of the picture, glTF from the top.
+    if (engine_ == Engine::kUnity) offset.y = 1.0f - material.texture_scale.y - offset.y;
+    return "(" + uv + " * " + pair(material.texture_scale) + " + " + pair(offset) + ")";
   }
 
   // The expression of a weight in the engine's language.

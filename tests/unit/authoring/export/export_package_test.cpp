@@ -176,9 +176,12 @@ TEST(ExportPackage, TilesOfAnAtlasMoveTheBaseTextures) {
   face.materials[0].texture_scale = {2.0f, 4.0f};
   face.materials[0].texture_offset = {0.0f, -0.5f};
   ExportOptions options;
+  EXPECT_THAT(Export(face, options).at("shaders/furrow_skin.glsl"),
+              HasSubstr("(uv * vec2(2.0, 4.0) + vec2(0.0, -0.5))"));
+  // v from the bottom: 1 - (4 (1 - v) - 0.5) = 4 v - 2.5.
   options.engine = Engine::kUnity;
   EXPECT_THAT(Export(face, options).at("shaders/Furrow_skin.hlsl"),
-              HasSubstr("(uv * float2(2.0, 4.0) + float2(0.0, -0.5))"));
+              HasSubstr("(uv * float2(2.0, 4.0) + float2(0.0, -2.5))"));
 }
 
 TEST(ExportPackage, RefusesWeightsThatShareAParameter) {
