@@ -92,6 +92,7 @@ class MaterialData {
     for (const int mask : entry.masks) data.lists["masks"].push_back(Mask(mask));
     for (const int weight : entry.weights) data.lists["weights"].push_back(Weight(weight));
     data.lists["packs"] = Packs(entry);
+    data.texts["textures"] = Counted(NumTextures(data), "texture");
     return data;
   }
 
@@ -106,6 +107,18 @@ class MaterialData {
   }
 
  private:
+  // Pictures that the shader of a material reads. Engines limit their number.
+  [[nodiscard]] static std::size_t NumTextures(const TemplateData& material) {
+    std::size_t count = material.lists.at("masks").size();
+    if (!material.texts.at("base_normal").empty()) ++count;
+    for (const TemplateData& map : material.lists.at("maps")) {
+      for (const char* part : {"normal", "colour", "cavity"}) {
+        if (!map.texts.at(part).empty()) ++count;
+      }
+    }
+    return count;
+  }
+
   [[nodiscard]] std::string File(const std::string& kind, const std::string& name,
                                  const std::string& part = {}) const {
     const auto found = files_.find(PictureKey(kind, name, part));

@@ -82,6 +82,8 @@ TEST_P(EveryEngine, ReadmeNamesTheWeights) {
   const std::string readme = ExportFor(GetParam()).at("README.md");
   EXPECT_THAT(readme, HasSubstr("brow_l.squash"));
   EXPECT_THAT(readme, HasSubstr(std::string(TraitsOf(GetParam()).title)));
+  // Two normal maps, a colour, a cavity and a mask.
+  EXPECT_THAT(readme, HasSubstr("`skin`, shader name `skin`, 5 textures:"));
 }
 
 TEST_P(EveryEngine, EqualInputsGiveEqualFiles) {
