@@ -77,9 +77,14 @@ class MaterialData {
       : character_(character), plan_(plan), engine_(engine), files_(files) {}
 
   [[nodiscard]] TemplateData Run(const ExportPlan::Material& entry) const {
+    const character::Material& material =
+        character_.materials[static_cast<std::size_t>(entry.material)];
+    const bool is_cut = material.alpha_cutoff > 0.0f;
     TemplateData data;
     data.texts = {{"material", entry.name},
-                  {"original", character_.materials[static_cast<std::size_t>(entry.material)].name},
+                  {"original", material.name},
+                  {"double_sided", material.double_sided ? "yes" : ""},
+                  {"alpha_cutoff", is_cut ? Literal(material.alpha_cutoff) : ""},
                   {"base_colour", File("material", entry.name, "colour")},
                   {"base_normal", File("material", entry.name, "normal")},
                   {"roughness", File("material", entry.name, "roughness")},

@@ -186,6 +186,23 @@ TEST(ExportPackage, TilesOfAnAtlasMoveTheBaseTextures) {
               HasSubstr("(uv * float2(2.0, 4.0) + float2(0.0, -2.5))"));
 }
 
+// Godot's material is replaced as a whole.
+TEST(ExportPackage, GodotKeepsBothSidesAndHoles) {
+  character::Character face = test::SmallFace();
+  face.materials[1].double_sided = true;
+  face.materials[1].alpha_cutoff = 0.25f;
+  ExportOptions options;
+  options.engine = Engine::kGodot;
+  const Files files = Export(face, options);
+  for (const char* name : {"shaders/furrow_shirt.shader", "shaders/furrow_shirt.gdshader"}) {
+    EXPECT_THAT(files.at(name), HasSubstr("shader_type spatial;\nrender_mode cull_disabled;\n"));
+    EXPECT_THAT(files.at(name), HasSubstr("ALPHA = base_colour_factor.a;\n\tALPHA_SCISSOR"));
+    EXPECT_THAT(files.at(name), HasSubstr(" = 0.25;\n"));
+  }
+  EXPECT_THAT(files.at("shaders/furrow_skin.shader"), Not(HasSubstr("cull_disabled")));
+  EXPECT_THAT(files.at("shaders/furrow_skin.shader"), Not(HasSubstr("ALPHA")));
+}
+
 TEST(ExportPackage, RefusesWeightsThatShareAParameter) {
   character::Character face = test::SmallFace();
   face.rig.regions[1].name = "brow-l";
