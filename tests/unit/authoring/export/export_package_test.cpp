@@ -93,7 +93,9 @@ TEST_P(EveryEngine, EqualInputsGiveEqualFiles) {
 INSTANTIATE_TEST_SUITE_P(ExportPackage, EveryEngine,
                          ::testing::Values(Engine::kGeneric, Engine::kUnity, Engine::kUnreal,
                                            Engine::kGodot, Engine::kBlender, Engine::kThree),
-                         [](const auto& info) { return std::string(TraitsOf(info.param).name); });
+                         [](const auto& tested) {
+                           return std::string(TraitsOf(tested.param).name);
+                         });
 
 TEST(ExportPackage, WeightsSayWhatRaisesThem) {
   const Json json = Json::parse(ExportFor(Engine::kGodot).at("wrinkles.json"));
