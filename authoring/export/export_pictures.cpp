@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <utility>
 
@@ -19,6 +20,19 @@ namespace {
 using character::Picture;
 
 constexpr float kLeastHeight = 1e-3f;  // millimetres
+
+// Reserves the list that `bits` selects. A normal map of 4096 x 4096 texels and 16 bits has 100 MB,
+// and twice as much while it grows.
+void Reserve(int bits, Picture* picture) {
+  const std::size_t count = static_cast<std::size_t>(picture->width) *
+                            static_cast<std::size_t>(picture->height) *
+                            static_cast<std::size_t>(picture->channels);
+  if (bits == 16) {
+    picture->pixels16.reserve(count);
+  } else {
+    picture->pixels.reserve(count);
+  }
+}
 
 // Appends a value in [0, 1] to the list that `bits` selects.
 void Append(float value, int bits, Picture* picture) {
@@ -56,6 +70,7 @@ Picture NormalMapPicture(const render::DerivativeMap& slopes, const NormalFormat
                   .pixels = {},
                   .pixels16 = {},
                   .pixels_float = {}};
+  Reserve(format.bits, &picture);
   const float up = format.green_down ? -1.0f : 1.0f;
   for (std::size_t i = 0; i + 1 < slopes.texels.size(); i += 2) {
     const glm::vec3 normal =
@@ -93,6 +108,7 @@ HeightMap HeightMapOf(const Picture& source, float millimetres) {
       }
     }
   }
+  Reserve(16, &map.picture);
   for (int y = 0; y < source.height; ++y) {
     for (int x = 0; x < source.width; ++x) {
       const float texel = render::Texel(source, x, y, 0);
@@ -111,6 +127,7 @@ Picture MaskPicture(const character::Character& character, const ExportPlan::Mas
                   .pixels = {},
                   .pixels16 = {},
                   .pixels_float = {}};
+  Reserve(8, &picture);
   struct Source {
     const Picture* picture = nullptr;
     int channel = 0;

@@ -18,6 +18,16 @@ namespace {
 using render::WrinkleGroup;
 using wrinkle::Mask;
 
+constexpr std::size_t kMaxStem = 100;  // bytes; file systems accept 255 for a whole name
+
+// ASCII only, as Identifier() returns.
+std::string LowerCase(std::string name) {
+  for (char& c : name) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return name;
+}
+
 // Collects a plan step by step; each step refers to those before.
 class Planner {
  public:
@@ -48,11 +58,14 @@ class Planner {
     return name.empty() ? -1 : character_.FindRigPicture(name);
   }
 
-  // An unused name for files and functions.
+  // An unused name for files and functions. `taken` holds names in lower case, because file systems
+  // of Windows and macOS do not distinguish case.
   static std::string Free(const std::string& name, std::set<std::string>* taken) {
-    const std::string base = Identifier(name);
+    const std::string base = Identifier(name).substr(0, kMaxStem);
     std::string free = base;
-    for (int i = 2; !taken->insert(free).second; ++i) free = base + "_" + std::to_string(i);
+    for (int i = 2; !taken->insert(LowerCase(free)).second; ++i) {
+      free = base + "_" + std::to_string(i);
+    }
     return free;
   }
 
@@ -61,7 +74,8 @@ class Planner {
     for (std::size_t i = 0; i < rig().wrinkle_maps.size(); ++i) {
       const wrinkle::WrinkleMap& map = rig().wrinkle_maps[i];
       // "material_" begins the files of materials.
-      const std::string name = (map.name.starts_with("material_") ? "map_" : "") + map.name;
+      const bool is_reserved = LowerCase(Identifier(map.name)).starts_with("material_");
+      const std::string name = (is_reserved ? "map_" : "") + map.name;
       ExportPlan::Map entry{.map = static_cast<int>(i),
                             .name = Free(name, &taken),
                             .normal = Find(map.normal),
@@ -94,7 +108,9 @@ class Planner {
     if (of.mask.kind != Mask::Kind::kSkinning) return -1;
     const auto is_twin = [&](int other) {
       const wrinkle::Region& with = rig().regions[static_cast<std::size_t>(other)];
-      return with.mask.kind == of.mask.kind && with.mask.lambda == of.mask.lambda &&
+      // Both are on skin, or neither is; the mask must be painted on the same materials.
+      return IsDrawnOn(with, WrinkleGroup::kCloth) == IsDrawnOn(of, WrinkleGroup::kCloth) &&
+             with.mask.kind == of.mask.kind && with.mask.lambda == of.mask.lambda &&
              with.mask.smooth_width == of.mask.smooth_width &&
              MaskJoints(character_, with) == MaskJoints(character_, of);
     };
@@ -180,7 +196,7 @@ class Planner {
   }
 
   void AddMaterials() {
-    std::set<std::string> taken;
+    std::set<std::string> taken = {"wrinkles"};  // of shaders/furrow_wrinkles.glsl
     for (std::size_t i = 0; i < character_.materials.size(); ++i) {
       const character::Material& material = character_.materials[i];
       const WrinkleGroup group = render::GroupOf(character_, material);

@@ -59,7 +59,7 @@ struct ExportPlan {
   std::vector<Mask> masks;
   std::vector<Weight> weights;
   std::vector<Material> materials;
-  std::vector<std::string> notes;  // what is left out, and what to do; one sentence each
+  std::vector<std::string> notes;  // what is left out or different, and why; one sentence each
 };
 
 // Plans the export of a character with a rig.

@@ -77,9 +77,14 @@ class MaterialData {
       : character_(character), plan_(plan), engine_(engine), files_(files) {}
 
   [[nodiscard]] TemplateData Run(const ExportPlan::Material& entry) const {
+    const character::Material& material =
+        character_.materials[static_cast<std::size_t>(entry.material)];
+    const bool is_cut = material.alpha_cutoff > 0.0f;
     TemplateData data;
     data.texts = {{"material", entry.name},
-                  {"original", character_.materials[static_cast<std::size_t>(entry.material)].name},
+                  {"original", material.name},
+                  {"double_sided", material.double_sided ? "yes" : ""},
+                  {"alpha_cutoff", is_cut ? Literal(material.alpha_cutoff) : ""},
                   {"base_colour", File("material", entry.name, "colour")},
                   {"base_normal", File("material", entry.name, "normal")},
                   {"roughness", File("material", entry.name, "roughness")},
@@ -92,6 +97,7 @@ class MaterialData {
     for (const int mask : entry.masks) data.lists["masks"].push_back(Mask(mask));
     for (const int weight : entry.weights) data.lists["weights"].push_back(Weight(weight));
     data.lists["packs"] = Packs(entry);
+    data.texts["textures"] = Counted(NumTextures(data), "texture");
     return data;
   }
 
@@ -106,6 +112,18 @@ class MaterialData {
   }
 
  private:
+  // Pictures that the shader of a material reads. Engines limit their number.
+  [[nodiscard]] static std::size_t NumTextures(const TemplateData& material) {
+    std::size_t count = material.lists.at("masks").size();
+    if (!material.texts.at("base_normal").empty()) ++count;
+    for (const TemplateData& map : material.lists.at("maps")) {
+      for (const char* part : {"normal", "colour", "cavity"}) {
+        if (!map.texts.at(part).empty()) ++count;
+      }
+    }
+    return count;
+  }
+
   [[nodiscard]] std::string File(const std::string& kind, const std::string& name,
                                  const std::string& part = {}) const {
     const auto found = files_.find(PictureKey(kind, name, part));
@@ -125,8 +143,10 @@ class MaterialData {
     const auto pair = [&](const glm::vec2& v) {
       return vec2 + "(" + Literal(v.x) + ", " + Literal(v.y) + ")";
     };
-    return "(" + uv + " * " + pair(material.texture_scale) + " + " + pair(material.texture_offset) +
-           ")";
+    glm::vec2 offset = material.texture_offset;
+    // Unity counts v from the bottom of the picture, glTF from the top.
+    if (engine_ == Engine::kUnity) offset.y = 1.0f - material.texture_scale.y - offset.y;
+    return "(" + uv + " * " + pair(material.texture_scale) + " + " + pair(offset) + ")";
   }
 
   // The expression of a weight in the engine's language.

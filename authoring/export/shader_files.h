@@ -21,9 +21,9 @@ struct TextFile {
 };
 
 // What the templates of an engine may name, for the whole export. `files`: see WrinklesFile. Its
-// list `materials` holds the data of each material, with the lists `maps`, `masks`, `weights` and
-// `packs` (four weights each), and for each map `terms`: the weights that raise it, as expressions
-// of the engine's language, one vector per mask.
+// list `materials` holds the data of each material, with `textures` ("9 textures"), the lists
+// `maps`, `masks`, `weights` and `packs` (four weights each), and for each map `terms`: the weights
+// that raise it, as expressions of the engine's language, one vector per mask.
 [[nodiscard]] TemplateData ShaderData(const character::Character& character, const ExportPlan& plan,
                                       Engine engine,
                                       const std::map<std::string, std::string>& files);

@@ -50,9 +50,9 @@ float MaskAt(const character::Vertex& vertex, const std::vector<int>& joints,
 
 // A mask under construction: the value of the nearest point of the surface for each texel.
 struct Canvas {
-  explicit Canvas(int side)
-      : side(side),
-        values(static_cast<std::size_t>(side) * static_cast<std::size_t>(side), 0.0f),
+  explicit Canvas(int texels)
+      : side(texels),
+        values(static_cast<std::size_t>(texels) * static_cast<std::size_t>(texels), 0.0f),
         distances(values.size(), std::numeric_limits<float>::max()) {}
 
   void Paint(const character::Mesh& mesh, const std::vector<int>& joints,

@@ -22,8 +22,7 @@ inline constexpr int kSkinnedMaskSide = 1024;  // texels of a mask that an expor
 // - Texels beyond the edge of the surface get the value of its nearest point, as far as filtering
 //   reaches. Materials whose UVs overlap themselves too much are left out.
 // - A picture cannot tell apart points that share a texel, such as two sleeves with one texture.
-// The
-//   largest of their masks counts, and `is_shared` says so.
+//   The largest of their masks counts, and `is_shared` says so.
 struct SkinnedMask {
   character::Picture picture;
   bool is_shared = false;

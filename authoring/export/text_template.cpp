@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "authoring/export/text_template.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <utility>

@@ -12,6 +12,7 @@
 #include "base/text.h"
 #include "rig/rig_check.h"
 #include "rig/shipped_maps.h"
+#include "wrinkle/fields/field_check.h"
 
 namespace furrow::rig {
 namespace {
@@ -80,7 +81,13 @@ class ProfileReader {
     if (text->size() > kMaxText) {
       return Error(field, "is longer than 255 bytes", StatusCode::kLimit);
     }
-    return {};
+    return CheckPrintable(*text, field);
+  }
+
+  // Names are printed in a terminal.
+  Status CheckPrintable(const std::string& text, const std::string& field) const {
+    if (wrinkle::CheckLabel(text, field).ok()) return {};
+    return Error(field, "holds a control byte");
   }
 
   Status ReadSides(const Json& root) {
@@ -109,6 +116,7 @@ class ProfileReader {
                  const std::string& field, ExportProfile* profile) {
     if (name.empty() || name.size() > kMaxText)
       return Error(field, "the name is empty or too long");
+    FURROW_RETURN_IF_ERROR(CheckPrintable(name, field));
     if (!seen_.insert(name).second) return Error(field, "duplicate name " + Quoted(name));
     if (profile->names.size() == kMaxExports) {
       return Error("names", "has more than 4096 names", StatusCode::kLimit);

@@ -58,6 +58,18 @@ class Export(unittest.TestCase):
         self.assertIn("furrow bake", message)
         self.assertEqual(list(self.root.iterdir()), [rig])
 
+    def test_a_foreign_readme_stays(self):
+        out = self.root / "project"
+        out.mkdir()
+        (out / "README.md").write_text("mine")
+        message = self.error(BAD_INPUT, "--out", out)
+        self.assertIn("the folder has a README.md", message)
+        self.assertIn("--out", message)
+        self.assertEqual([path.read_text() for path in out.iterdir()], ["mine"])
+        (out / "wrinkles.json").write_text("{}")  # an earlier export is replaced
+        furrow("export", "--out", out, check=DONE)
+        self.assertIn("# Wrinkles for", (out / "README.md").read_text())
+
     def test_unwritable_folder(self):
         (self.root / "file").write_text("")
         self.assertIn("file", self.error(FAILED, "--out", self.root / "file" / "out"))

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "authoring/export/export_package.h"
@@ -34,7 +36,18 @@ std::string CheckBits(std::string& text) {
   return text == "8" || text == "16" ? std::string() : "'" + text + "' is not one of 8|16";
 }
 
+// An export replaces an earlier one, but not the README.md of a project.
+Status CheckFolder(const std::filesystem::path& folder) {
+  std::error_code ignored;  // StagedFolder reports folders that cannot be read
+  if (!std::filesystem::exists(folder / "README.md", ignored)) return {};
+  if (std::filesystem::exists(folder / "wrinkles.json", ignored)) return {};
+  return {StatusCode::kInvalidArgument,
+          "the folder has a README.md and no wrinkles.json, so it is not an earlier export",
+          folder.string(), "name a folder of its own with --out"};
+}
+
 int Export(const ExportArguments& arguments) {
+  if (Status status = CheckFolder(arguments.out); !status.ok()) return Fail(status);
   const auto character = LoadCharacterArgument(arguments.character, arguments.rig, arguments.read,
                                                arguments.skeleton_map);
   if (!character.ok()) return Fail(character.status());

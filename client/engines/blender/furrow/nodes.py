@@ -46,7 +46,8 @@ def load_wrinkles(path):
     parts = ("normal", "height", "colour", "cavity", "file", "base_colour", "base_normal", "roughness")
     for entry in wrinkles["maps"] + wrinkles["masks"] + wrinkles["materials"]:
         for file in (entry.get(part) for part in parts):
-            if file is not None and (os.path.isabs(file) or ".." in re.split(r"[/\\\\]", file)):
+            if file is not None and (os.path.isabs(file) or os.path.splitdrive(file)[0]
+                                     or ".." in re.split(r"[/\\]", file)):
                 raise ValueError(f"{path}: the file {file!r} lies outside the export's folder")
     return wrinkles
 
@@ -250,6 +251,7 @@ class _Group:
         """An image texture. Alpha is a channel of its own, so that it does not change the colours."""
         path = os.path.join(self.folder, file)
         image = bpy.data.images.load(path, check_existing=True)
+        image.reload()  # the export may be newer than what Blender has in memory
         image.colorspace_settings.name = "sRGB" if is_colour else "Non-Color"
         image.alpha_mode = "CHANNEL_PACKED"
         node = self._node("ShaderNodeTexImage")

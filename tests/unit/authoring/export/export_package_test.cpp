@@ -82,6 +82,8 @@ TEST_P(EveryEngine, ReadmeNamesTheWeights) {
   const std::string readme = ExportFor(GetParam()).at("README.md");
   EXPECT_THAT(readme, HasSubstr("brow_l.squash"));
   EXPECT_THAT(readme, HasSubstr(std::string(TraitsOf(GetParam()).title)));
+  // Two normal maps, a colour, a cavity and a mask.
+  EXPECT_THAT(readme, HasSubstr("`skin`, shader name `skin`, 5 textures:"));
 }
 
 TEST_P(EveryEngine, EqualInputsGiveEqualFiles) {
@@ -91,7 +93,9 @@ TEST_P(EveryEngine, EqualInputsGiveEqualFiles) {
 INSTANTIATE_TEST_SUITE_P(ExportPackage, EveryEngine,
                          ::testing::Values(Engine::kGeneric, Engine::kUnity, Engine::kUnreal,
                                            Engine::kGodot, Engine::kBlender, Engine::kThree),
-                         [](const auto& info) { return std::string(TraitsOf(info.param).name); });
+                         [](const auto& tested) {
+                           return std::string(TraitsOf(tested.param).name);
+                         });
 
 TEST(ExportPackage, WeightsSayWhatRaisesThem) {
   const Json json = Json::parse(ExportFor(Engine::kGodot).at("wrinkles.json"));
@@ -176,9 +180,29 @@ TEST(ExportPackage, TilesOfAnAtlasMoveTheBaseTextures) {
   face.materials[0].texture_scale = {2.0f, 4.0f};
   face.materials[0].texture_offset = {0.0f, -0.5f};
   ExportOptions options;
+  EXPECT_THAT(Export(face, options).at("shaders/furrow_skin.glsl"),
+              HasSubstr("(uv * vec2(2.0, 4.0) + vec2(0.0, -0.5))"));
+  // v from the bottom: 1 - (4 (1 - v) - 0.5) = 4 v - 2.5.
   options.engine = Engine::kUnity;
   EXPECT_THAT(Export(face, options).at("shaders/Furrow_skin.hlsl"),
-              HasSubstr("(uv * float2(2.0, 4.0) + float2(0.0, -0.5))"));
+              HasSubstr("(uv * float2(2.0, 4.0) + float2(0.0, -2.5))"));
+}
+
+// Godot's material is replaced as a whole.
+TEST(ExportPackage, GodotKeepsBothSidesAndHoles) {
+  character::Character face = test::SmallFace();
+  face.materials[1].double_sided = true;
+  face.materials[1].alpha_cutoff = 0.25f;
+  ExportOptions options;
+  options.engine = Engine::kGodot;
+  const Files files = Export(face, options);
+  for (const char* name : {"shaders/furrow_shirt.shader", "shaders/furrow_shirt.gdshader"}) {
+    EXPECT_THAT(files.at(name), HasSubstr("shader_type spatial;\nrender_mode cull_disabled;\n"));
+    EXPECT_THAT(files.at(name), HasSubstr("ALPHA = base_colour_factor.a;\n\tALPHA_SCISSOR"));
+    EXPECT_THAT(files.at(name), HasSubstr(" = 0.25;\n"));
+  }
+  EXPECT_THAT(files.at("shaders/furrow_skin.shader"), Not(HasSubstr("cull_disabled")));
+  EXPECT_THAT(files.at("shaders/furrow_skin.shader"), Not(HasSubstr("ALPHA")));
 }
 
 TEST(ExportPackage, RefusesWeightsThatShareAParameter) {

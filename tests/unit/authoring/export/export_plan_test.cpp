@@ -82,6 +82,24 @@ TEST(ExportPlan, NamesOfFilesAreUniqueAndSafe) {
   EXPECT_EQ(plan->materials[1].name, "___x_2");
 }
 
+TEST(ExportPlan, NamesOfFilesDifferByMoreThanCase) {
+  character::Character face = test::SmallFace();
+  face.materials[0].name = "Wrinkles";  // furrow_wrinkles.glsl holds the functions of all materials
+  face.materials[1].name = std::string(300, 'M');
+  face.rig.wrinkle_maps[0].name = "Squash";
+  face.rig.regions[0].feeds[0].map = face.rig.regions[1].feeds[0].map = "Squash";
+  face.rig.wrinkle_maps[2].name = "Material-skin";
+  face.rig.regions[2].feeds[0].map = face.rig.regions[3].feeds[0].map = "Material-skin";
+  const auto plan = PlanExport(face);
+  ASSERT_TRUE(plan.ok()) << plan.status().ToString();
+  EXPECT_EQ(plan->maps[0].name, "Squash");
+  EXPECT_EQ(plan->maps[1].name, "squash_2");
+  EXPECT_EQ(plan->maps[2].name, "map_Material_skin");
+  ASSERT_EQ(plan->materials.size(), 2u);
+  EXPECT_EQ(plan->materials[0].name, "Wrinkles_2");
+  EXPECT_EQ(plan->materials[1].name, std::string(100, 'M'));
+}
+
 TEST(ExportPlan, RefusesWhatCannotBeDrawn) {
   character::Character face = test::SmallFace();
   face.rig_pictures.clear();  // all pictures are missing

@@ -35,9 +35,9 @@ func open(path: String) -> int:
 		return _fail(error, path + ": cannot be read")
 	var parsed := JSON.parse(file.get_as_text())
 	file.close()
-	if parsed.error != OK or typeof(parsed.result) != TYPE_DICTIONARY:
+	if parsed.error != OK:
 		return _fail(ERR_PARSE_ERROR, "%s:%d: %s" % [path, parsed.error_line, parsed.error_string])
-	if parsed.result.get("format") != FORMAT:
+	if typeof(parsed.result) != TYPE_DICTIONARY or parsed.result.get("format") != FORMAT:
 		return _fail(ERR_FILE_UNRECOGNIZED, path + ": not a wrinkles.json; write one with 'furrow export --for godot'")
 	if int(parsed.result.get("version", 0)) != VERSION:
 		return _fail(ERR_FILE_UNRECOGNIZED, path + ": another version; update this add-on")
@@ -128,7 +128,17 @@ func _build(entry: Dictionary) -> int:
 	return OK
 
 
+# Returns true and sets `message` if the name of a file leads out of the export's folder.
+func _is_outside(name: String) -> bool:
+	if not name.is_abs_path() and not ".." in name.replace("\\", "/").split("/"):
+		return false
+	message = _folder.plus_file(name) + ": lies outside the export's folder"
+	return true
+
+
 func _shader(name: String) -> Shader:
+	if _is_outside(name):
+		return null
 	var path := _folder.plus_file(name)
 	var file := File.new()
 	if file.open(path, File.READ) != OK:
@@ -143,10 +153,9 @@ func _shader(name: String) -> Shader:
 # An imported texture, or a picture file outside the project. Only the latter is read here, so that an
 # exported game finds it, too.
 func _texture(name: String) -> Texture:
-	var path := _folder.plus_file(name)
-	if name.is_abs_path() or ".." in name.replace("\\", "/").split("/"):
-		message = path + ": lies outside the export's folder"
+	if _is_outside(name):
 		return null
+	var path := _folder.plus_file(name)
 	if path.begins_with("res://") and ResourceLoader.exists(path):
 		return load(path) as Texture
 	var image := Image.new()
