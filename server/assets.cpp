@@ -40,7 +40,6 @@ Status LoadRigAlone(const fs::path& path, const wrinkle::PoseSource& poses, Asse
   return rig.status();
 }
 
-// Null without shapes, and if neither pictures nor the rig show them.
 // The file that client/js/furrow-three/tools/pack_character.mjs makes of a package; empty if there
 // is none.
 fs::path WebPackageOf(const fs::path& character) {
@@ -49,6 +48,7 @@ fs::path WebPackageOf(const fs::path& character) {
   return fs::exists(packed, error) ? packed : fs::path();
 }
 
+// Null without shapes, and if neither pictures nor the rig show them.
 std::shared_ptr<const CharacterShapes> ShapesOf(const character::Character& character, bool draws) {
   const bool reads = !wrinkle::BlendShapesOf(character.rig).empty();
   if (character.shapes.empty() || !(draws || reads)) return nullptr;

@@ -21,9 +21,9 @@ foreach(test IN LISTS tests)
   string(REGEX REPLACE "^([^/]*)/tests/([^.]*).*" "js.\\1.\\2" name "${path}")
   string(REPLACE "-" "_" name "${name}")
   add_test(NAME ${name} COMMAND "${FURROW_NODE}" --test "${bundles}/${path}")
-  # Real daemons and browsers take more than a few seconds.
+  # A real daemon takes more than a few seconds.
   set(labels web)
-  if(path MATCHES "daemon|parity")
+  if(path MATCHES "daemon")
     list(APPEND labels all)
   endif()
   set_tests_properties(${name} PROPERTIES LABELS "${labels}" TIMEOUT 300

@@ -25,7 +25,7 @@ import { Connection } from './wire/connection';
 import { WeightStream } from './wire/weight_stream';
 
 const POLL_MS = 1000;
-/** While the browser draws, another viewer's change of the daemon's settings is noticed after so many polls. */
+/** While the browser draws: polls until the page notices that another viewer changed the daemon's settings. */
 const POLLS_PER_SETTINGS = 3;
 
 export class App {

@@ -5,14 +5,23 @@ import { Follower, type FurrowCharacter, loadCharacter, type Pose, STUDIO_BACKGR
 import type { PoseFrame, WeightFrame } from 'furrow/protocol';
 import type { Camera } from './camera';
 
+/** Also gives the context back, of which browsers allow few. */
+function release(renderer: WebGLRenderer): void {
+  renderer.dispose();
+  if (!renderer.getContext().isContextLost()) renderer.forceContextLoss();
+}
+
 export class BrowserScene {
   private readonly scene = new Scene();
   private readonly camera = new PerspectiveCamera();
   private readonly follower: Follower;
   private readonly weightNames: ReadonlySet<string>;
+  private hasShaders = true;
   private judged: { skeleton: bigint; layout: bigint; fits: boolean } | null = null;
 
   private constructor(private readonly renderer: WebGLRenderer, private readonly character: FurrowCharacter) {
+    // three.js would only report it, and draw nothing.
+    renderer.debug.onShaderError = () => (this.hasShaders = false);
     character.setView('studio');
     this.scene.background = STUDIO_BACKGROUND;
     this.scene.add(character);
@@ -26,7 +35,7 @@ export class BrowserScene {
     try {
       return new BrowserScene(renderer, await loadCharacter(url, renderer));
     } catch (error) {
-      renderer.dispose();
+      release(renderer);
       throw error;
     }
   }
@@ -42,7 +51,10 @@ export class BrowserScene {
     return this.judged.fits;
   }
 
-  /** `wait`: returns when the GPU has drawn the picture, so that its time can be measured. */
+  /**
+   * `wait`: returns when the GPU has drawn the picture, so that its time can be measured. Throws an Error if the GPU's
+   * driver rejects the shaders.
+   */
   draw(pose: Pose, weights: Weights, camera: Camera, width: number, height: number, wait: boolean): void {
     const { renderer, character } = this;
     const { canvas } = renderer.getContext();
@@ -51,6 +63,7 @@ export class BrowserScene {
     character.setWeights(weights);
     character.studio.update(this.camera, this.follower.place(this.camera, camera, width / height));
     renderer.render(this.scene, this.camera);
+    if (!this.hasShaders) throw new Error("the GPU's driver rejects the shaders");
     if (!wait) return;
     const gl = renderer.getContext();
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
@@ -58,6 +71,6 @@ export class BrowserScene {
 
   dispose(): void {
     this.character.dispose();
-    this.renderer.dispose();
+    release(this.renderer);
   }
 }

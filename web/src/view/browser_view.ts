@@ -16,8 +16,10 @@ const CHARACTER_URL = 'character.glb';
 const WARM_UP = 3;
 const MEASURED = 8;
 const RATE_WINDOW_S = 2;
-/** After so many slow seconds, the measurement counts as wrong. */
+/** Slow seconds after which the measurement counts as wrong. */
 const SLOW_S = 3;
+/** Rates are counted, and screens have rates of their own, so this share of a rate counts as the whole. */
+const ENOUGH = 0.8;
 
 function nameOfGpu(): string {
   const gl = document.createElement('canvas').getContext('webgl2');
@@ -76,11 +78,12 @@ export class BrowserView {
     this.update();
   }
 
-  /** The GPU may be busier than it was when it was measured. */
+  /** The GPU may be busier than it was when it was measured. A hidden page draws nothing, which says nothing. */
   private checkRate(posesHz: number): void {
     const hz = this.rateHz(performance.now() / 1000);
-    this.slowS = hz < Math.min(this.daemonHz, 0.8 * posesHz) ? this.slowS + 1 : 0;
-    if (this.slowS >= SLOW_S && document.visibilityState === 'visible') this.browserHz = hz;
+    const isSlow = document.visibilityState === 'visible' && hz < ENOUGH * Math.min(this.daemonHz, posesHz);
+    this.slowS = isSlow ? this.slowS + 1 : 0;
+    if (this.slowS >= SLOW_S) this.browserHz = hz;
   }
 
   private decide(): DrawDecision {
@@ -134,10 +137,11 @@ export class BrowserView {
     this.element.replaceChildren(canvas);
     try {
       const reply = await fetch(CHARACTER_URL, { method: 'HEAD' });
-      if (!reply.ok) {
+      if (reply.status === 404) {
         if (canvas.isConnected) this.give('none');
         return;
       }
+      if (!reply.ok) throw new Error(`${CHARACTER_URL}: HTTP status ${reply.status}`);
       const { BrowserScene: Scene } = await import('./browser_scene');
       const scene = await Scene.create(canvas, CHARACTER_URL);
       if (!canvas.isConnected) {
@@ -147,10 +151,14 @@ export class BrowserView {
       this.scene = scene;
       this.character = 'ready';
     } catch (error) {
-      console.warn('this browser cannot draw the character:', error);
-      if (canvas.isConnected) this.give('failed');
+      if (canvas.isConnected) this.fail(error);
     }
     this.update();
+  }
+
+  private fail(error: unknown): void {
+    console.warn('this browser cannot draw the character:', error);
+    this.give('failed');
   }
 
   /** Gives the picture back to the daemon. */
@@ -160,6 +168,7 @@ export class BrowserView {
     this.scene = null;
     this.browserHz = null;
     this.measured = [];
+    this.slowS = 0;
     this.element.replaceChildren();
     this.stopFeeds();
     this.update();
@@ -167,7 +176,7 @@ export class BrowserView {
 
   private forget(): void {
     this.daemonHz = 0;
-    if (this.character !== 'failed') this.give('unknown');
+    this.give('unknown');
   }
 
   private follow(): void {
@@ -212,7 +221,12 @@ export class BrowserView {
     }
     this.lastDrawn = drawn;
     const beganMs = performance.now();
-    this.scene.draw(pose, weights, camera, width, height, step === 'measure');
+    try {
+      this.scene.draw(pose, weights, camera, width, height, step === 'measure');
+    } catch (error) {
+      this.fail(error);
+      return;
+    }
     const endedMs = performance.now();
     if (step === 'measure') this.note(endedMs - beganMs);
     else this.show(endedMs / 1000);

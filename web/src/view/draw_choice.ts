@@ -13,7 +13,7 @@ export interface DrawSituation {
   isSpecial: boolean;
   /** A neutral pose was captured for the subject. */
   hasNeutral: boolean;
-  /** 'none': the daemon has no character for browsers. 'failed': it does not load, or the GPU is lost. */
+  /** 'none': the daemon has no character for browsers. 'failed': it does not load or draw, or the GPU is lost. */
   character: 'unknown' | 'loading' | 'ready' | 'none' | 'failed';
   /** Null: no pose or no weights yet. False: the subject has another skeleton or other weights. */
   fits: boolean | null;
@@ -48,13 +48,13 @@ export function decide(at: DrawSituation): DrawDecision {
   if (at.gpu === '') return byDaemon('this browser has no WebGL 2');
   if (isAuto && isSoftware(at.gpu)) return byDaemon('this browser draws in software');
   if (at.character === 'none') return byDaemon('the daemon has no character for browsers');
-  if (at.character === 'failed') return byDaemon('this browser cannot load the character');
+  if (at.character === 'failed') return byDaemon('this browser cannot draw the character');
   if (at.isSpecial) return byDaemon('only the daemon draws this view and these settings');
   if (at.hasNeutral) return byDaemon('the subject has a neutral pose of its own');
   if (at.character === 'unknown') return { step: isAuto && at.daemonHz === 0 ? 'daemon' : 'load', why: 'the character is not loaded yet' };
   if (at.character === 'loading') return byDaemon('the character is loading');
   if (at.fits === null) return byDaemon('no pose has arrived yet');
-  if (!at.fits) return byDaemon("the subject's skeleton is not that of the character");
+  if (!at.fits) return byDaemon("the subject's skeleton or weights are not those of the character");
   if (at.browserHz === null) return { step: 'measure', why: 'measuring this browser' };
   if (isAuto && at.browserHz < Math.max(LEAST_HZ, ADVANTAGE * at.daemonHz)) {
     return byDaemon(`the daemon is faster: ${at.daemonHz.toFixed(0)} pictures per second, and ${at.browserHz.toFixed(0)} here`);

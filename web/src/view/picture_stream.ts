@@ -125,16 +125,18 @@ export class PictureStream implements Subscriber {
 
   private async decode(sequence: number, picture: PictureMessage): Promise<void> {
     const { bytes, ...rest } = picture;
+    const { subscription } = this;
     let bitmap: ImageBitmap | null = null;
     try {
       bitmap = await createImageBitmap(new Blob([bytes], { type: picture.mimeType }));
     } catch {
       // Undecodable pictures are acknowledged too, because the next picture may be valid.
     }
-    this.subscription?.send(frameAck(picture.number));
+    subscription?.send(frameAck(picture.number));
     if (bitmap === null) return;
-    if (this.subscription === null || picture.number <= this.newestShown) {
-      bitmap.close(); // a newer picture was shown while this one was decoded
+    // A newer picture was shown while this one was decoded, or the subscription has ended; another one counts from 1.
+    if (subscription === null || this.subscription !== subscription || picture.number <= this.newestShown) {
+      bitmap.close();
       return;
     }
     this.newestShown = picture.number;

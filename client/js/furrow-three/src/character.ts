@@ -168,6 +168,17 @@ class Builder {
   }
 
   async build(): Promise<FurrowCharacter> {
+    try {
+      return await this.assemble();
+    } catch (error) {
+      for (const made of [...this.targets, ...this.textures]) made.dispose();
+      throw error;
+    } finally {
+      this.slopes.dispose();
+    }
+  }
+
+  private async assemble(): Promise<FurrowCharacter> {
     const { scene } = this.file.gltf;
     const meshes: SkinnedMesh[] = [];
     scene.traverse((object) => {
@@ -176,7 +187,6 @@ class Builder {
     if (meshes.length === 0) throw new Error('furrow-three: the file has no skinned mesh');
     this.hasSkin = meshes.some(({ material }) => kindOf(material as Material) === 'skin');
     for (const mesh of meshes) await this.addMesh(mesh);
-    this.slopes.dispose();
     const joints = this.jointsOf(meshes[0]!);
     const character = new FurrowCharacter(this.parts, Object.values(this.sets), joints, new JointPoser(joints), this.targets,
       [...this.textures], this.studio, this.file.rig.notDrawn);

@@ -22,8 +22,7 @@ const COMPONENT = { 5120: Int8Array, 5121: Uint8Array, 5122: Int16Array, 5123: U
 const SIZE = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4, MAT4: 16 };
 
 function fail(message) {
-  console.error(`pack_character: ${message}`);
-  process.exit(1);
+  throw new Error(message);
 }
 
 function readGlb(path) {
@@ -156,7 +155,8 @@ function shrink(bytes, side, folder, options) {
   writeFileSync(from, bytes);
   const longest = Math.max(bytes.readUInt32BE(16), bytes.readUInt32BE(20));
   const resize = longest > side ? ['--resize', `${Math.round((100 * side) / longest)}%`] : [];
-  execFileSync('oiiotool', [from, ...resize, '-d', 'uint8', ...options, '--quality', String(QUALITY), '-o', to]);
+  // Without the attribute, the picture would hold the command with the temporary folder, another one in every build.
+  execFileSync('oiiotool', ['--nosoftwareattrib', from, ...resize, '-d', 'uint8', ...options, '--quality', String(QUALITY), '-o', to]);
   return readFileSync(to);
 }
 
@@ -258,6 +258,9 @@ try {
   if (bytes.length > LIMIT_BYTES) fail(`${input}: ${bytes.length} bytes with pictures of ${side} pixels; browsers get at most ${LIMIT_BYTES}`);
   writeFileSync(output, bytes);
   console.log(`${output}: ${bytes.length} bytes, pictures of at most ${side} pixels`);
+} catch (error) {
+  console.error(`pack_character: ${error.code === 'ENOENT' && error.path === 'oiiotool' ? 'oiiotool is missing (install openimageio-tools)' : error.message}`);
+  process.exitCode = 1;
 } finally {
   rmSync(folder, { recursive: true });
 }

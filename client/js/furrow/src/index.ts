@@ -21,6 +21,12 @@ export function open(address: string, options: OpenOptions = {}): Client {
     // A page from https may open secure sockets only.
     const scheme = typeof location !== 'undefined' && location.protocol === 'https:' ? 'wss' : 'ws';
     const name = host.includes(':') ? `[${host}]` : host;
-    return browserSocket(`${scheme}://${name}:${port === 0 ? DEFAULT_HTTP_PORT : port}/ws`);
+    const url = `${scheme}://${name}:${port === 0 ? DEFAULT_HTTP_PORT : port}/ws`;
+    try {
+      new URL(url);
+    } catch {
+      throw new FurrowError('invalid-address', 'address: browsers do not accept this host name (use a DNS name or an IP address)');
+    }
+    return browserSocket(url);
   });
 }

@@ -2,7 +2,7 @@
 // The client against a daemon in memory, with a clock that the tests advance.
 import assert from 'node:assert/strict';
 import test from 'node:test';
-import { Client, type ClientState } from '../src/feed/client.js';
+import { Client, type ClientState, openClient } from '../src/feed/client.js';
 import { FurrowError } from '../src/link/errors.js';
 import type { TransportKind } from '../src/transport/transport.js';
 import { FakeDaemon, FakeMachine, settle } from './fake_daemon.js';
@@ -197,6 +197,48 @@ test('a dead connection is given up', async () => {
   assert(daemon.numOpened > opened);
   daemon.isMute = false;
   await until(machine, () => client.state === 'connected');
+});
+
+test('a daemon that is silent after a restart is not reported as connected', async () => {
+  const { machine, daemon, client } = start('udp');
+  await until(machine, () => client.names().length > 0);
+  daemon.goodbye(0, 3); // timed out: the client says hello again
+  daemon.isMute = true; // and nobody answers
+  for (let ms = 0; ms < 7000; ms += 100) {
+    machine.advance(100);
+    await settle();
+  }
+  assert.equal(client.state, 'disconnected');
+  daemon.isMute = false;
+  await until(machine, () => client.state === 'connected');
+});
+
+test('a listener may close the client when the connection is lost', async () => {
+  const { machine, daemon, client } = start('tcp');
+  await until(machine, () => client.names().length > 0);
+  client.on('state', () => client.close());
+  daemon.kill();
+  assert.equal(machine.numTimers, 0);
+});
+
+test('a daemon that was never reached leaves the state at connecting', async () => {
+  const machine = new FakeMachine();
+  const daemon = new FakeDaemon('ws');
+  daemon.isUp = false;
+  const client = new Client(daemon, { environment: machine });
+  const states: ClientState[] = [];
+  client.on('state', (state) => states.push(state));
+  await until(machine, () => daemon.numOpened > 3);
+  assert.deepEqual([client.state, states, client.lastFailure], ['connecting', [], 'refused']);
+  daemon.isUp = true;
+  await until(machine, () => client.state === 'connected');
+  assert.deepEqual(states, ['connected']);
+});
+
+test('an address that names a subject twice leaves no connection behind', () => {
+  const machine = new FakeMachine();
+  assert.throws(() => openClient('furrow://host?subject=ada&subject=ada', { environment: machine }, () => new FakeDaemon('ws')), FurrowError);
+  assert.equal(machine.numTimers, 0);
 });
 
 test('wrong requests throw', () => {

@@ -2,6 +2,7 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { Builder, ByteBuffer } from 'flatbuffers';
+import { Error as WireError } from '@wire/error';
 import { Hello } from '@wire/hello';
 import { Image } from '@wire/image';
 import { SubscribePictures } from '@wire/subscribe-pictures';
@@ -13,7 +14,7 @@ import { Backoff } from '../src/link/backoff.js';
 import { ServerClock } from '../src/link/clock.js';
 import { readMessage, writeMessage } from '../src/wire/envelope.js';
 import { Malformed } from '../src/wire/flat_table.js';
-import { readPicture, readWeights } from '../src/wire/replies.js';
+import { readError, readPicture, readWeights } from '../src/wire/replies.js';
 import {
   frameAck, hello, type PictureRequest, subscribePictures, subscribePoses, subscribeWeights, updatePictures,
 } from '../src/wire/requests.js';
@@ -45,6 +46,13 @@ test('bytes that are not a message are malformed', () => {
     bad[at]! ^= 0xff;
     assert.throws(() => readMessage(bad), Malformed, `byte ${at}`);
   }
+});
+
+test('texts keep every character, a byte order mark too', () => {
+  const builder = new Builder(64);
+  const words = builder.createString('\ufeffada');
+  WireError.finishErrorBuffer(builder, WireError.createError(builder, 5, words));
+  assert.equal(readError(builder.asUint8Array()).message, '\ufeffada');
 });
 
 test('requests for weights and poses have all their fields, and wait for their subject', () => {

@@ -82,12 +82,14 @@ test('TCP: a closed port', async () => {
 
 /** A server that accepts the upgrade, unless told otherwise, and then sends `bytes`. */
 function webServer(bytes: Buffer, accept: (key: string) => string = (key) =>
-  createHash('sha1').update(`${key}258EAFA5-E914-47DA-95CA-C5AB0DC85B11`).digest('base64')): Promise<{ port: number; server: Server }> {
+  createHash('sha1').update(`${key}258EAFA5-E914-47DA-95CA-C5AB0DC85B11`).digest('base64'),
+onUpgrade: (socket: Socket) => void = () => {}): Promise<{ port: number; server: Server }> {
   return serve((socket) => {
     socket.once('data', (request) => {
       const key = /Sec-WebSocket-Key: (\S+)/.exec(String(request))![1]!;
       socket.write(`HTTP/1.1 101 Switching Protocols\r\nSec-WebSocket-Accept: ${accept(key)}\r\n\r\n`);
       socket.write(bytes);
+      onUpgrade(socket);
     });
   });
 }
@@ -113,6 +115,7 @@ test('WebSocket: invalid servers and frames end the connection', async () => {
     [Buffer.from([0xc2, 4, 0, 0, 0, 0]), ['open', 'malformed', 'closed']], // compressed
     [huge, ['open', 'malformed', 'closed']],
     [Buffer.from([0x89, 126, 0, 200]), ['open', 'malformed', 'closed']], // a long ping
+    [Buffer.concat(Array.from({ length: 5000 }, () => Buffer.from([0, 0]))), ['open', 'malformed', 'closed']], // empty parts without end
   ] as const) {
     const { port, server } = await webServer(bytes);
     assert.deepEqual(await run(nodeWebSocket('127.0.0.1', port)).ended, expected);
@@ -124,6 +127,19 @@ test('WebSocket: invalid servers and frames end the connection', async () => {
   const endless = await serve((socket) => socket.write('x'.repeat(100_000)));
   assert.deepEqual(await run(nodeWebSocket('127.0.0.1', endless.port)).ended, ['closed']);
   endless.server.close();
+});
+
+test('a server that does not read ends the connection', async () => {
+  for (const [opener, { port, server }] of [
+    [tcpSocket, await serve((socket) => socket.pause())],
+    [nodeWebSocket, await webServer(Buffer.alloc(0), undefined, (socket) => socket.pause())],
+  ] as const) {
+    const { transport, seen, ended } = run(opener('127.0.0.1', port));
+    await seen('open');
+    for (let i = 0; i < 64; ++i) transport.send(new Uint8Array(1 << 20)); // more than the system's buffers hold
+    assert.deepEqual(await ended, ['open', 'closed']);
+    server.close();
+  }
 });
 
 test('UDP: datagrams that are none are counted, and messages arrive', async () => {

@@ -66,7 +66,12 @@ export class Client {
   /** Programs call open() instead. */
   constructor(opener: TransportOpener, options: ConnectionOptions = {}) {
     this.connection = new Connection(opener, options);
-    this.connection.onState(() => this.emit('state', this.state));
+    let former = this.state;
+    this.connection.onState(() => {
+      if (this.state === former) return; // such as a second attempt that fails
+      former = this.state;
+      this.emit('state', former);
+    });
   }
 
   get state(): ClientState {
@@ -74,7 +79,7 @@ export class Client {
       case 'connecting':
         return 'connecting';
       case 'lost':
-        return 'disconnected';
+        return this.connects > 0 ? 'disconnected' : 'connecting';
       default:
         return 'connected';
     }
@@ -212,11 +217,16 @@ export function openClient(
   const { subscribe = true, poses, eightBit, drivers, ...connection } = options;
   const client = new Client(choose(parsed), connection);
   if (!subscribe) return client;
-  for (const subject of parsed.subjects.length > 0 ? parsed.subjects : ['']) {
-    client.subscribe({
-      subject, pattern: parsed.pattern, rate: parsed.maxRateHz,
-      poses: poses ?? false, eightBit: eightBit ?? false, drivers: drivers ?? false,
-    });
+  try {
+    for (const subject of parsed.subjects.length > 0 ? parsed.subjects : ['']) {
+      client.subscribe({
+        subject, pattern: parsed.pattern, rate: parsed.maxRateHz,
+        poses: poses ?? false, eightBit: eightBit ?? false, drivers: drivers ?? false,
+      });
+    }
+  } catch (error) {
+    client.close(); // the caller never gets it, and it would connect for ever
+    throw error;
   }
   return client;
 }

@@ -54,7 +54,7 @@ export interface Subscription {
   repeat(): void;
 }
 
-/** 'draining': the daemon is shutting down. */
+/** 'lost': also if the first attempt failed. 'draining': the daemon is shutting down. */
 export type LinkState = 'connecting' | 'open' | 'lost' | 'draining';
 
 interface Entry {
@@ -250,9 +250,9 @@ export class Connection {
     this.serverSession = 0n;
     this.failure = why;
     for (const entry of this.entries) forget(entry);
-    if (this.numConnects > 0) this.setState('lost');
     this.cancelTimer();
     this.cancelTimer = this.environment.after(this.backoff.failed(), () => this.connect());
+    this.setState('lost'); // last, because a listener may close the connection
   }
 
   private schedule(): void {
@@ -268,8 +268,10 @@ export class Connection {
       return;
     }
     const silentMs = nowMs - this.heardMs;
-    // A dead connection never completes a closing handshake, so it is given up.
-    if (this.isProven && silentMs > SILENCE_MS && this.environment.isAwake()) {
+    // A dead connection never completes a closing handshake, so it is given up. So is a daemon that does not answer the
+    // Hello after a restart. Before the first answer, UDP keeps asking on the same socket.
+    const isOpen = this.current === 'open' || this.current === 'draining';
+    if (isOpen && silentMs > SILENCE_MS && this.environment.isAwake()) {
       this.lost('the daemon is silent');
       return;
     }

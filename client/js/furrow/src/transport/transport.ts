@@ -13,6 +13,9 @@ export interface TransportEvents {
   onClose(why: string): void;
 }
 
+/** A connection with more unsent bytes is given up, because its peer does not read. All requests of a client are fewer. */
+export const MAX_UNSENT_BYTES = 1 << 22;
+
 /** One connection that carries whole messages. It opens at once and never opens again. */
 export interface Transport {
   /** Sends a message, or drops it if there is no connection. */

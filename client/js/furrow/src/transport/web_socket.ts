@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The browser's WebSocket.
-import type { Transport, TransportEvents, TransportOpener } from './transport.js';
+import { MAX_UNSENT_BYTES, type Transport, type TransportEvents, type TransportOpener } from './transport.js';
 
 export const WEB_SOCKET_PROTOCOL = 'furrow.1';
 
@@ -17,14 +17,21 @@ function openSocket(url: string, events: TransportEvents): Transport {
     else events.onMalformed();
   };
   socket.onclose = ({ reason }) => events.onClose(reason);
+  const close = (): void => {
+    socket.onclose = null;
+    socket.onmessage = null;
+    socket.close();
+  };
   return {
     send: (message) => {
-      if (socket.readyState === WebSocket.OPEN) socket.send(message);
+      if (socket.readyState !== WebSocket.OPEN) return;
+      if (socket.bufferedAmount <= MAX_UNSENT_BYTES) {
+        socket.send(message);
+        return;
+      }
+      close();
+      queueMicrotask(() => events.onClose('the daemon does not read'));
     },
-    close: () => {
-      socket.onclose = null;
-      socket.onmessage = null;
-      socket.close();
-    },
+    close,
   };
 }

@@ -17,7 +17,7 @@ export interface Elements {
 
 export const MAX_NAME_BYTES = 255;
 
-const UTF8 = new TextDecoder('utf-8', { fatal: true });
+const UTF8 = new TextDecoder('utf-8', { fatal: true, ignoreBOM: true });
 const CONTROL = /[\u0000-\u001f\u007f]/;
 
 /** A table of a message's payload. Slots are the field ids in protocol/STANDARD.md. */

@@ -2,7 +2,7 @@
 // TCP: each message follows its length (protocol/STANDARD.md section 1).
 import { createConnection } from 'node:net';
 import { ENVELOPE_BYTES, MAX_REPLY_BYTES } from '../../wire/envelope.js';
-import type { Transport, TransportEvents, TransportOpener } from '../transport.js';
+import { MAX_UNSENT_BYTES, type Transport, type TransportEvents, type TransportOpener } from '../transport.js';
 import { ByteQueue } from './byte_queue.js';
 
 export function tcpSocket(host: string, port: number): TransportOpener {
@@ -44,6 +44,10 @@ function openTcp(host: string, port: number, events: TransportEvents): Transport
   return {
     send: (message) => {
       if (socket.readyState !== 'open') return;
+      if (socket.writableLength > MAX_UNSENT_BYTES) {
+        giveUp('the daemon does not read');
+        return;
+      }
       const length = new Uint8Array(4);
       new DataView(length.buffer).setUint32(0, message.length, true);
       socket.cork();
@@ -53,8 +57,9 @@ function openTcp(host: string, port: number, events: TransportEvents): Transport
     },
     close: () => {
       isClosed = true;
-      socket.end();
-      socket.destroySoon();
+      // The last messages are still to be sent. A socket that is not connected has none, and would wait for minutes.
+      if (socket.connecting) socket.destroy();
+      else socket.destroySoon();
     },
   };
 }

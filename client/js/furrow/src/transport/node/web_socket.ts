@@ -4,7 +4,7 @@
 import { createHash, randomBytes } from 'node:crypto';
 import { createConnection, type Socket } from 'node:net';
 import { MAX_REPLY_BYTES } from '../../wire/envelope.js';
-import type { Transport, TransportEvents, TransportOpener } from '../transport.js';
+import { MAX_UNSENT_BYTES, type Transport, type TransportEvents, type TransportOpener } from '../transport.js';
 import { WEB_SOCKET_PROTOCOL } from '../web_socket.js';
 import { ByteQueue } from './byte_queue.js';
 
@@ -12,6 +12,8 @@ const GUID = '258EAFA5-E914-47DA-95CA-C5AB0DC85B11';
 const MAX_HEAD_BYTES = 8192;
 const OPCODE = { continuation: 0, text: 1, binary: 2, close: 8, ping: 9, pong: 10 } as const;
 const MAX_CONTROL_BYTES = 125;
+/** Frames of one message. Empty ones would otherwise take memory without end. */
+const MAX_PARTS = 4096;
 
 export function nodeWebSocket(host: string, port: number, path = '/ws'): TransportOpener {
   return { kind: 'ws', open: (events) => new NodeWebSocket(host, port, path, events) };
@@ -90,7 +92,7 @@ class NodeWebSocket implements Transport {
     const isControl = opcode >= OPCODE.close;
     // Frames of a server have no mask (section 5.1), and without extensions no reserved bits.
     if ((head[1]! & 0x80) !== 0 || (head[0]! & 0x70) !== 0 || this.numBytes + size > MAX_REPLY_BYTES ||
-        (isControl && size > MAX_CONTROL_BYTES)) {
+        this.parts.length >= MAX_PARTS || (isControl && size > MAX_CONTROL_BYTES)) {
       this.events.onMalformed();
       this.giveUp('the daemon sent an invalid frame');
       return false;
@@ -120,7 +122,9 @@ class NodeWebSocket implements Transport {
   }
 
   send(message: Uint8Array<ArrayBuffer>): void {
-    if (this.head === null && !this.isClosed) this.write(OPCODE.binary, message);
+    if (this.head !== null || this.isClosed) return;
+    if (this.socket.writableLength > MAX_UNSENT_BYTES) this.giveUp('the daemon does not read');
+    else this.write(OPCODE.binary, message);
   }
 
   private write(opcode: number, payload: Uint8Array): void {
@@ -140,7 +144,8 @@ class NodeWebSocket implements Transport {
     if (this.isClosed) return;
     if (this.head === null) this.write(OPCODE.close, Uint8Array.of(0x03, 0xe8)); // 1000: done
     this.isClosed = true;
-    this.socket.end();
-    this.socket.destroySoon();
+    // The last messages are still to be sent. A socket that is not connected has none, and would wait for minutes.
+    if (this.socket.connecting) this.socket.destroy();
+    else this.socket.destroySoon();
   }
 }
