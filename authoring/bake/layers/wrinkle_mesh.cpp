@@ -26,8 +26,6 @@ constexpr float kWavelengthVariation = 0.6f;
 // Noise from which on cloth has ease, and at which it has most, in parts of the variation.
 constexpr float kTightNoise = -0.4f;
 constexpr float kLooseNoise = 0.5f;
-// The least ease, times the mean. With none, whole sleeves would be as smooth as a pipe.
-constexpr float kTight = 0.4f;
 // The curvature at which cloth creases, times the wavelength. A sine that is as high as a fifth of
 // its length has 4 at its crests.
 constexpr float kYield = 10.0f;
@@ -35,7 +33,7 @@ constexpr float kYield = 10.0f;
 // a pull along the surface hold a crest down.
 constexpr float kFree = 0.3f;
 // How much more a pull presses cloth to the surface, per strain.
-constexpr float kPress = 4.0f;
+constexpr float kPress = 16.0f;
 // The strength of bending, at edges of a wavelength / pi.
 constexpr float kBending = 0.05f;
 // A share of the bending that an iteration removes. Larger values make the heights oscillate.
@@ -66,12 +64,6 @@ glm::mat3 RotationIn(const glm::mat3& m) {
   const float second = glm::length(y);
   if (!(second > 1e-6f)) return glm::mat3(1.0f);
   return {x, y / second, glm::cross(x, y / second)};
-}
-
-// A Pade approximant of tanh(x), within 0.024, in a tenth of the time: 1 from 3 on.
-float Saturate(float x) {
-  const float c = std::clamp(x, -3.0f, 3.0f);
-  return c * (27.0f + c * c) / (27.0f + 9.0f * c * c);
 }
 
 vec3 UnitOr(const vec3& v, const vec3& otherwise) {
@@ -128,8 +120,7 @@ void WrinkleMesh::MakeLinks() {
     const float room_a = active_[a].room, room_b = active_[b].room;
     if (room_a <= 0.0f && room_b <= 0.0f) continue;
     const float mobile = (room_a > 0.0f ? 1.0f : 0.0f) + (room_b > 0.0f ? 1.0f : 0.0f);
-    const float loose =
-        std::lerp(kTight, 2.0f - kTight, Smoothstep(kTightNoise, kLooseNoise, NoiseAt(edge[0], 2)));
+    const float loose = 2.0f * Smoothstep(kTightNoise, kLooseNoise, NoiseAt(edge[0], 2));
     const float looser = std::lerp(1.0f, loose, options_.variation);
     links_.push_back({.a = a,
                       .b = b,
@@ -295,7 +286,7 @@ void WrinkleMesh::Bend() {
   Laplacian(heights_, &bends_);
   for (std::size_t i = 0; i < active_.size(); ++i) {
     const float yield = std::max(active_[i].yield, 1e-9f);
-    bends_[i] = yield * Saturate(bends_[i] / yield);
+    bends_[i] = yield * std::tanh(bends_[i] / yield);
   }
   Laplacian(bends_, &changes_);
   Laplacian(slides_, &slide_changes_);
@@ -303,7 +294,7 @@ void WrinkleMesh::Bend() {
   for (std::size_t i = 0; i < active_.size(); ++i) {
     Active& point = active_[i];
     if (point.room <= 0.0f) continue;
-    const float held = point.support * free * Saturate(heights_[i] / free) +
+    const float held = point.support * free * std::tanh(heights_[i] / free) +
                        (point.pressed - point.support) * heights_[i];
     point.cloth -= point.normal * (point.bending * changes_[i] + held);
     point.cloth += kSlideTogether * slide_changes_[i];

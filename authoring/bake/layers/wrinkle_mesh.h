@@ -25,7 +25,7 @@ namespace furrow::authoring {
 // - Hanging cloth is pulled straight by its weight, so most of its ease lies across gravity.
 // - Sharply bent cloth creases: beyond a curvature, its resistance stops growing.
 // - Seams, wear and the body below make cloth uneven: over about three wavelengths, its ease varies
-//   between 0.4 and 1.6 times the mean, and its wavelength by up to half. Otherwise folds would be
+//   between none and twice the mean, and its wavelength by up to half. Otherwise folds would be
 //   rings.
 // - Step() moves the surface a little and lets the cloth settle. Folds keep their identity from
 //   step to step: they deepen, travel and merge.
