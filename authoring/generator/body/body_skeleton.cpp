@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "authoring/generator/head/face_parts.h"
 #include "authoring/generator/head/head_shape.h"
 
 namespace furrow::authoring {

@@ -130,10 +130,6 @@ void AddEye(float side, HeadMesh* eyes) {
 
 }  // namespace
 
-vec3 EyeCentre(float side) {
-  return {side * kEyeCentre.x, kEyeCentre.y - side * 0.057f, kEyeCentre.z};
-}
-
 HeadMesh MakeEyes() {
   HeadMesh eyes;
   eyes.mesh.name = "eyes";

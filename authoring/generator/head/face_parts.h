@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <glm/vec3.hpp>
-
 #include "authoring/generator/head/head_mesh.h"
 #include "authoring/generator/head/head_shape.h"
 
@@ -20,9 +18,5 @@ namespace furrow::authoring {
 
 // The tongue. It lies between the lower teeth and follows the jaw.
 [[nodiscard]] HeadMesh MakeTongue();
-
-// The centre of an eyeball in head space, centimetres, the same for every face. `side`: +1 for the
-// subject's left, -1 for the right.
-[[nodiscard]] glm::vec3 EyeCentre(float side);
 
 }  // namespace furrow::authoring

@@ -89,6 +89,10 @@ vec3 Asymmetry(const vec3& p) {
 
 }  // namespace
 
+vec3 EyeCentre(float side) {
+  return {side * kEyeCentre.x, kEyeCentre.y - side * 0.057f, kEyeCentre.z};
+}
+
 glm::vec3 HeadToModel(const glm::vec3& p) { return (p + kHeadOrigin) * 0.01f; }
 glm::vec3 ModelToHead(const glm::vec3& p) { return p * 100.0f - kHeadOrigin; }
 

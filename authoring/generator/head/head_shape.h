@@ -24,6 +24,10 @@ inline constexpr float kOuterCanthusX = 4.66f;
 inline constexpr float kMouthCornerX = 2.52f;
 inline constexpr float kMouthY = -6.90f;
 
+// The centre of an eyeball in head space, centimetres, the same for every face. `side`: +1 for the
+// subject's left, -1 for the right.
+[[nodiscard]] glm::vec3 EyeCentre(float side);
+
 // Convert a point from head space (centimetres) to model space (metres), and back.
 [[nodiscard]] glm::vec3 HeadToModel(const glm::vec3& p);
 [[nodiscard]] glm::vec3 ModelToHead(const glm::vec3& p);

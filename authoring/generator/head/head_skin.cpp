@@ -8,7 +8,6 @@
 #include <glm/geometric.hpp>
 
 #include "authoring/generator/head/ear_mesh.h"
-#include "authoring/generator/head/face_parts.h"
 #include "authoring/generator/head/head_grid.h"
 #include "authoring/generator/head/head_shape.h"
 #include "authoring/generator/mesh/mesh_tools.h"

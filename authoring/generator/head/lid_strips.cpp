@@ -10,7 +10,6 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
-#include "authoring/generator/head/face_parts.h"
 #include "authoring/generator/mesh/mesh_tools.h"
 #include "base/scalar.h"
 

@@ -9,7 +9,6 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "authoring/generator/head/face_parts.h"
 #include "authoring/generator/head/head_shape.h"
 #include "authoring/generator/mesh/mesh_tools.h"
 #include "authoring/skinning/influences.h"

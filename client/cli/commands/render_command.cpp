@@ -220,11 +220,11 @@ int RenderFiles(const RenderOptions& options) {
   const auto character =
       LoadCharacterArgument(options.character, options.rig, options.read, options.skeleton_map);
   if (!character.ok()) return Fail(character.status());
-  WarnWithoutRig(options, *character);
   auto group = MakeGroup(options, *character);
   if (!group.ok()) return Fail(group.status());
   const auto frames = FramesOf(options, (*group)->num_frames());
   if (!frames.ok()) return Fail(frames.status());
+  WarnWithoutRig(options, *character);
   auto renderer = render::Renderer::Create(*character, {.device = options.device});
   if (!renderer.ok()) return Fail(renderer.status());
   const auto camera = (*renderer)->Preset(options.camera);
