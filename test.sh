@@ -45,31 +45,46 @@ run_tests() {
   ctest --preset "$1" -j "$jobs" "${exclude[@]}" "${@:2}"
 }
 
-# fuzz_all SECONDS: runs every fuzz target for SECONDS, with the committed seeds.
+# fuzz_one TARGET SECONDS: runs one fuzz target with the committed seeds, and prints what it did when it ends.
+fuzz_one() {
+  local name corpus log statistics seeds=()
+  name=$(basename "$1")
+  corpus=build/fuzz/corpus/$name
+  mkdir -p "$corpus"
+  case "$name" in
+    fuzz_datagram) seeds=(protocol/vectors) ;;
+    fuzz_rig) seeds=(rig/rigs) ;;
+    fuzz_gltf) seeds=(tests/fuzz/seeds/gltf tests/unit/character/gltf/fixtures) ;;
+    *) [[ ! -d tests/fuzz/seeds/${name#fuzz_} ]] || seeds=("tests/fuzz/seeds/${name#fuzz_}") ;;
+  esac
+  log=build/fuzz/$name.log
+  if ! "$1" -max_total_time="$2" -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
+      -artifact_prefix="build/fuzz/$name-" "$corpus" "${seeds[@]}" >"$log" 2>&1; then
+    tail -n 40 "$log" >&2
+    echo "test.sh: $name found a fault; the input is build/fuzz/$name-*, the log is $log" >&2
+    return 1
+  fi
+  statistics=$(grep -E 'stat::number_of_executed_units|stat::peak_rss_mb' "$log")
+  printf '\n== fuzz: %s, %s s\n%s\n' "$name" "$2" "$statistics"
+}
+
+# fuzz_all SECONDS: runs every fuzz target for SECONDS, one per core at a time.
 fuzz_all() {
   build fuzz fuzz_targets
-  local target name corpus log
+  local target running=0 failed=0
   for target in build/fuzz/bin/fuzz_*; do
-    name=$(basename "$target")
-    corpus=build/fuzz/corpus/$name
-    mkdir -p "$corpus"
-    step "fuzz: $name, $1 s"
-    local seeds=()
-    case "$name" in
-      fuzz_datagram) seeds=(protocol/vectors) ;;
-      fuzz_rig) seeds=(rig/rigs) ;;
-      fuzz_gltf) seeds=(tests/fuzz/seeds/gltf tests/unit/character/gltf/fixtures) ;;
-      *) [[ ! -d tests/fuzz/seeds/${name#fuzz_} ]] || seeds=("tests/fuzz/seeds/${name#fuzz_}") ;;
-    esac
-    log=build/fuzz/$name.log
-    if ! "$target" -max_total_time="$1" -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
-        -artifact_prefix="build/fuzz/$name-" "$corpus" "${seeds[@]}" >"$log" 2>&1; then
-      tail -n 40 "$log" >&2
-      echo "test.sh: $name found a fault; the input is build/fuzz/$name-*, the log is $log" >&2
-      exit 1
+    fuzz_one "$target" "$1" &
+    running=$((running + 1))
+    if ((running >= jobs)); then
+      wait -n || failed=1
+      running=$((running - 1))
     fi
-    grep -E 'stat::number_of_executed_units|stat::peak_rss_mb' "$log"
   done
+  while ((running > 0)); do
+    wait -n || failed=1
+    running=$((running - 1))
+  done
+  return "$failed"
 }
 
 case "$tier" in
