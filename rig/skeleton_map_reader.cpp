@@ -7,6 +7,7 @@
 
 #include "base/status.h"
 #include "base/text.h"
+#include "rig/json/map_file.h"
 #include "rig/skeleton_map.h"
 
 namespace furrow::rig {
@@ -16,24 +17,18 @@ using Json = nlohmann::json;
 using wrinkle::JointRole;
 
 // Limits on hostile files. The largest map that ships is far below all of them.
-constexpr std::size_t kMaxBytes = 1 << 20;
 constexpr std::size_t kMaxPrefixes = 64;
 constexpr std::size_t kMaxChain = 16;
 constexpr std::size_t kMaxName = 255;
 
 // Reads one file. Every error names the file and the field.
-class MapReader {
+class MapReader : private MapErrors {
  public:
-  explicit MapReader(std::string_view source) : source_(source) {}
+  using MapErrors::MapErrors;
 
   Status Read(const Json& root, SkeletonMap* map);
 
  private:
-  [[nodiscard]] Status Error(const std::string& field, std::string what,
-                             StatusCode code = StatusCode::kSchema) const {
-    return {code, std::move(what), source_ + ": " + field};
-  }
-  Status CheckFields(const Json& root) const;
   Status ReadText(const Json& value, const std::string& field, std::string* text) const;
   Status ReadPrefixes(const Json& root, SkeletonMap* map) const;
   Status ReadSides(const Json& root);
@@ -45,20 +40,10 @@ class MapReader {
   Status AddPlace(const Json& value, const std::string& side, const std::string& field,
                   SkeletonMap::Entry* entry) const;
 
-  std::string source_;
   std::string left_;
   std::string right_;
   std::set<JointRole> seen_;
 };
-
-// Continues behind each replacement, so a side that contains '*' cannot loop.
-std::string Replaced(std::string text, const std::string& by) {
-  for (std::size_t at = text.find('*'); at != std::string::npos;
-       at = text.find('*', at + by.size())) {
-    text.replace(at, 1, by);
-  }
-  return text;
-}
 
 std::vector<std::string> Alternatives(const std::string& text) {
   std::vector<std::string> names;
@@ -68,21 +53,6 @@ std::vector<std::string> Alternatives(const std::string& text) {
     names.push_back(text.substr(start, end == std::string::npos ? end : end - start));
   }
   return names;
-}
-
-Status MapReader::CheckFields(const Json& root) const {
-  if (!root.is_object()) return Error("(root)", "expected an object");
-  static const std::set<std::string> kKnown = {"version",     "name",  "title",  "prefixes",
-                                               "ignore_case", "sides", "joints", "toes_height"};
-  // Unknown fields are errors: a misspelled field would otherwise have no effect.
-  for (const auto& [key, value] : root.items()) {
-    if (!kKnown.contains(key)) return Error(Quoted(key), "unknown field");
-  }
-  for (const char* key : {"version", "name", "joints"}) {
-    if (!root.contains(key)) return Error(key, "is missing");
-  }
-  if (root["version"] != 1) return Error("version", "expected 1", StatusCode::kUnsupported);
-  return {};
 }
 
 Status MapReader::ReadText(const Json& value, const std::string& field, std::string* text) const {
@@ -131,7 +101,7 @@ Status MapReader::AddPlace(const Json& value, const std::string& side, const std
   if (text.find('*') != std::string::npos && side.empty()) {
     return Error(field, "a '*' in a name requires a '*' in its role, and \"sides\"");
   }
-  std::vector<std::string> names = Alternatives(Replaced(text, side));
+  std::vector<std::string> names = Alternatives(WithSide(text, side));
   // An empty name could match a joint that consists of a prefix alone.
   if (std::ranges::any_of(names, &std::string::empty))
     return Error(field, "contains an empty name");
@@ -186,7 +156,8 @@ Status MapReader::ReadJoints(const Json& root, SkeletonMap* map) {
 }
 
 Status MapReader::Read(const Json& root, SkeletonMap* map) {
-  FURROW_RETURN_IF_ERROR(CheckFields(root));
+  FURROW_RETURN_IF_ERROR(
+      CheckRoot(root, "joints", {"title", "prefixes", "ignore_case", "sides", "toes_height"}));
   FURROW_RETURN_IF_ERROR(ReadText(root["name"], "name", &map->name));
   if (map->name.empty()) return Error("name", "is empty");
   if (root.contains("title")) {
@@ -215,18 +186,8 @@ Status MapReader::Read(const Json& root, SkeletonMap* map) {
 }  // namespace
 
 Result<SkeletonMap> ParseSkeletonMap(std::string_view json, std::string_view source_name) {
-  if (json.size() > kMaxBytes) {
-    return Status(StatusCode::kLimit, "larger than 1 MiB", std::string(source_name));
-  }
   Json root;
-  // Comments are allowed, as in rigs. The parser throws on malformed text, and nothing here lets an
-  // exception out.
-  try {
-    root = Json::parse(json.begin(), json.end(), nullptr, true, /*ignore_comments=*/true);
-  } catch (const Json::exception& error) {
-    return Status(StatusCode::kParse, std::string("malformed JSON: ") + error.what(),
-                  std::string(source_name));
-  }
+  FURROW_RETURN_IF_ERROR(ParseMapText(json, source_name, &root));
   SkeletonMap map;
   FURROW_RETURN_IF_ERROR(MapReader(source_name).Read(root, &map));
   return map;

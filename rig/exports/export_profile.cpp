@@ -10,6 +10,7 @@
 
 #include "base/files.h"
 #include "base/text.h"
+#include "rig/json/map_file.h"
 #include "rig/rig_check.h"
 #include "rig/shipped_maps.h"
 #include "wrinkle/fields/field_check.h"
@@ -20,25 +21,16 @@ namespace {
 using Json = nlohmann::ordered_json;  // names keep the order of the file
 
 constexpr const char* kFolder = "export_profiles";
-constexpr std::size_t kMaxBytes = 1 << 20;
 constexpr std::size_t kMaxWeights = 16;  // of one name
 constexpr std::size_t kMaxText = 255;
 
-std::string Replaced(std::string text, const std::string& by) {
-  for (std::size_t at = text.find('*'); at != std::string::npos;
-       at = text.find('*', at + by.size())) {
-    text.replace(at, 1, by);
-  }
-  return text;
-}
-
 // Reads one file. Every error names the file and the field.
-class ProfileReader {
+class ProfileReader : private MapErrors {
  public:
-  explicit ProfileReader(std::string_view source) : source_(source) {}
+  using MapErrors::MapErrors;
 
   Status Read(const Json& root, ExportProfile* profile) {
-    FURROW_RETURN_IF_ERROR(CheckFields(root));
+    FURROW_RETURN_IF_ERROR(CheckRoot(root, "names", {"title", "sides"}));
     FURROW_RETURN_IF_ERROR(ReadText(root["name"], "name", &profile->name));
     if (root.contains("title")) {
       FURROW_RETURN_IF_ERROR(ReadText(root["title"], "title", &profile->title));
@@ -55,25 +47,6 @@ class ProfileReader {
   }
 
  private:
-  [[nodiscard]] Status Error(const std::string& field, std::string what,
-                             StatusCode code = StatusCode::kSchema) const {
-    return {code, std::move(what), source_ + ": " + field};
-  }
-
-  Status CheckFields(const Json& root) const {
-    if (!root.is_object()) return Error("(root)", "expected an object");
-    static const std::set<std::string> kKnown = {"version", "name", "title", "sides", "names"};
-    // Unknown fields are errors: a misspelled field would otherwise have no effect.
-    for (const auto& [key, value] : root.items()) {
-      if (!kKnown.contains(key)) return Error(Quoted(key), "unknown field");
-    }
-    for (const char* key : {"version", "name", "names"}) {
-      if (!root.contains(key)) return Error(key, "is missing");
-    }
-    if (root["version"] != 1) return Error("version", "expected 1", StatusCode::kUnsupported);
-    return {};
-  }
-
   Status ReadText(const Json& value, const std::string& field, std::string* text) const {
     if (!value.is_string()) return Error(field, "expected a string");
     *text = value.get<std::string>();
@@ -108,8 +81,8 @@ class ProfileReader {
     const std::string field = "names." + Quoted(key);
     if (key.find('*') == std::string::npos) return AddName(key, value, "", field, profile);
     if (left_.empty()) return Error(field, "a '*' in a name requires \"sides\"");
-    FURROW_RETURN_IF_ERROR(AddName(Replaced(key, left_), value, "l", field, profile));
-    return AddName(Replaced(key, right_), value, "r", field, profile);
+    FURROW_RETURN_IF_ERROR(AddName(WithSide(key, left_), value, "l", field, profile));
+    return AddName(WithSide(key, right_), value, "r", field, profile);
   }
 
   Status AddName(const std::string& name, const Json& value, const std::string& side,
@@ -142,18 +115,17 @@ class ProfileReader {
     if (text.find('*') != std::string::npos && side.empty()) {
       return Error(field, "a '*' in a weight requires a '*' in its name");
     }
-    entry->weights.push_back(Replaced(text, side));
+    entry->weights.push_back(WithSide(text, side));
     return {};
   }
 
-  std::string source_;
   std::string left_;
   std::string right_;
   std::set<std::string> seen_;
 };
 
 Result<ExportProfile> ReadProfileFile(const std::filesystem::path& file) {
-  const auto text = ReadFile(file, kMaxBytes);
+  const auto text = ReadFile(file, kMaxMapBytes);
   FURROW_RETURN_IF_ERROR(text);
   return ParseExportProfile(*text, file.string());
 }
@@ -170,17 +142,8 @@ std::string ListProfiles() {
 }  // namespace
 
 Result<ExportProfile> ParseExportProfile(std::string_view json, std::string_view source_name) {
-  if (json.size() > kMaxBytes) {
-    return Status(StatusCode::kLimit, "larger than 1 MiB", std::string(source_name));
-  }
   Json root;
-  // The parser throws on malformed text, and nothing here lets an exception out.
-  try {
-    root = Json::parse(json.begin(), json.end(), nullptr, true, /*ignore_comments=*/true);
-  } catch (const Json::exception& error) {
-    return Status(StatusCode::kParse, std::string("malformed JSON: ") + error.what(),
-                  std::string(source_name));
-  }
+  FURROW_RETURN_IF_ERROR(ParseMapText(json, source_name, &root));
   ExportProfile profile;
   FURROW_RETURN_IF_ERROR(ProfileReader(source_name).Read(root, &profile));
   return profile;

@@ -11,6 +11,7 @@
 
 #include "base/status.h"
 #include "base/text.h"
+#include "rig/json/map_file.h"
 #include "rig/shapes/shape_map.h"
 #include "rig/shapes/shape_names.h"
 
@@ -20,7 +21,6 @@ namespace {
 using ShapeJson = nlohmann::json;
 
 // Limits on hostile files. The largest map that ships is far below all of them.
-constexpr std::size_t kMaxMapBytes = 1 << 20;
 constexpr std::size_t kMaxMapPrefixes = 64;
 constexpr std::size_t kMaxPerList = 32;
 constexpr std::size_t kMaxFactors = 8;
@@ -33,21 +33,13 @@ struct MapSide {
   std::string arkit;
 };
 
-std::string WithSide(std::string text, const std::string& side) {
-  for (std::size_t at = text.find('*'); at != std::string::npos;
-       at = text.find('*', at + side.size())) {
-    text.replace(at, 1, side);
-  }
-  return text;
-}
-
 bool HasStar(std::string_view text) { return text.find('*') != std::string_view::npos; }
 
 // Reads one file. Every error names the file and the field. Reads JSON in place, because copying
 // deeply nested JSON would overflow the stack.
-class ShapeMapReader {
+class ShapeMapReader : private MapErrors {
  public:
-  explicit ShapeMapReader(std::string_view source) : source_(source) {}
+  using MapErrors::MapErrors;
 
   Status Read(const ShapeJson& root, ShapeMap* map);
 
@@ -60,10 +52,6 @@ class ShapeMapReader {
     std::string field;
   };
 
-  [[nodiscard]] Status Error(const std::string& field, std::string what,
-                             StatusCode code = StatusCode::kSchema) const {
-    return {code, std::move(what), source_ + ": " + field};
-  }
   Status CheckKeys(const ShapeJson& object, const std::string& field,
                    const std::set<std::string>& known) const;
   Status ReadText(const ShapeJson& value, const std::string& field, std::string* text) const;
@@ -88,7 +76,6 @@ class ShapeMapReader {
   Status ReadTerm(const ShapeJson& value, const Entry& entry, Names names, MapTerm* term) const;
   Status ReadFactor(std::string_view word, const Entry& entry, Names names, MapTerm* term) const;
 
-  std::string source_;
   MapSide left_;
   MapSide right_;
   std::map<std::string, Entry> entries_;      // shapes by name
@@ -438,18 +425,8 @@ Status ShapeMapReader::Read(const ShapeJson& root, ShapeMap* map) {
 }  // namespace
 
 Result<ShapeMap> ParseShapeMap(std::string_view json, std::string_view source_name) {
-  if (json.size() > kMaxMapBytes) {
-    return Status(StatusCode::kLimit, "larger than 1 MiB", std::string(source_name));
-  }
   ShapeJson root;
-  // Comments are allowed, as in rigs. The parser throws on malformed text, and nothing here lets an
-  // exception out.
-  try {
-    root = ShapeJson::parse(json.begin(), json.end(), nullptr, true, /*ignore_comments=*/true);
-  } catch (const ShapeJson::exception& error) {
-    return Status(StatusCode::kParse, std::string("malformed JSON: ") + error.what(),
-                  std::string(source_name));
-  }
+  FURROW_RETURN_IF_ERROR(ParseMapText(json, source_name, &root));
   ShapeMap map;
   FURROW_RETURN_IF_ERROR(ShapeMapReader(source_name).Read(root, &map));
   return map;
