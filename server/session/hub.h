@@ -53,7 +53,6 @@ class Hub {
     render::Settings settings;          // defaults for all pictures
     Metrics* metrics = nullptr;
     std::function<std::uint64_t()> make_token;  // returns unpredictable numbers, never 0
-    OnWeights on_weights;                       // optional; used for OSC output
     RecordingTap* recording = nullptr;          // optional; outlives the hub
     int shards = 1;                             // one per network thread
   };
@@ -139,8 +138,8 @@ class Hub {
   // Measures the subject's weights from this pose instead of the rest pose; nullopt: from the rest
   // pose. A pose with other joint or blend-shape counts is ignored.
   void SetNeutral(Subject& subject, std::optional<wrinkle::LocalPose> neutral, Time now);
-  // Replaces Parts::on_weights; empty: nobody is called. With a function, all drivers of all
-  // subjects are evaluated.
+  // Calls `on_weights` with each subject's new weights, for OSC output; empty: calls nobody, as at
+  // first. With a function, all drivers of all subjects are evaluated. Requires the exclusive lock.
   void SetOnWeights(OnWeights on_weights);
 
   [[nodiscard]] bool draining() const { return draining_; }

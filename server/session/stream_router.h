@@ -31,10 +31,8 @@ class StreamRouter {
     Subscribers* subscribers = nullptr;
     PublishContext* exclusive_context = nullptr;  // used under the exclusive lock
     RecordingTap* recording = nullptr;            // optional
-    OnWeights on_weights;                         // optional
   };
-  explicit StreamRouter(Parts parts)
-      : parts_(std::move(parts)), on_weights_(std::move(parts_.on_weights)) {}
+  explicit StreamRouter(const Parts& parts) : parts_(parts) {}
 
   // Starts or changes a subject. False: the offer was rejected, ignored or throttled. Requires the
   // exclusive lock.
@@ -62,7 +60,8 @@ class StreamRouter {
   // Stops sending to subscribers, which have been sent a goodbye. Recorder and OSC go on.
   void StopFanOut() { fans_out_ = false; }
 
-  // Replaces Parts::on_weights. Requires the exclusive lock.
+  // Is called with each subject's new weights; empty, as at first: nobody is. Requires the
+  // exclusive lock.
   void SetOnWeights(OnWeights on_weights) { on_weights_ = std::move(on_weights); }
 
  private:
@@ -70,7 +69,7 @@ class StreamRouter {
                std::int64_t age_us, Time now);
 
   Parts parts_;
-  OnWeights on_weights_;
+  OnWeights on_weights_;  // may be empty
   bool fans_out_ = true;
 };
 

@@ -49,9 +49,9 @@ struct World {
     parts.rig = std::make_shared<const wrinkle::Rig>(std::move(rig));
     parts.metrics = &metrics;
     parts.make_token = [] { return std::uint64_t{900}; };
-    parts.on_weights = [this](const Subject& subject, int, Time) { heard.push_back(subject.name); };
     parts.recording = &tap;
     hub = std::make_unique<Hub>(std::move(parts));
+    hub->SetOnWeights([this](const Subject& subject, int, Time) { heard.push_back(subject.name); });
     peers[0].id = hub->AddPeer(Transport::kUdp, "udp", &peers[0], Time{0});
     peers[1].id = hub->AddPeer(Transport::kTcp, "tcp", &peers[1], Time{0});
   }

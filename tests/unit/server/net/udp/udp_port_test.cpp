@@ -38,12 +38,12 @@ class UdpPortTest : public HubTest {
     parts.metrics = &metrics;
     parts.make_token = [] { return 900u; };
     parts.shards = kShards;
-    parts.on_weights = [this](const Subject& subject, int shard, Time) {
+    hub = std::make_unique<Hub>(std::move(parts));
+    hub->SetOnWeights([this](const Subject& subject, int shard, Time) {
       const std::lock_guard lock(mutex_);
       shards_of_[subject.name].insert(shard);
       ++num_poses_;
-    };
-    hub = std::make_unique<Hub>(std::move(parts));
+    });
     port_ = std::make_unique<UdpPort>(io_, kShards, Limits(), hub.get(), &metrics, nullptr);
     const Status status = port_->Open({asio::ip::address_v4::loopback(), 0});
     ASSERT_TRUE(status.ok()) << status.ToString();

@@ -86,8 +86,8 @@ TEST_F(HubTest, OscOutputNeedsAllDrivers) {
   parts.rig = std::make_shared<const wrinkle::Rig>(MakeRig(false));
   parts.metrics = &metrics;
   parts.make_token = [] { return std::uint64_t{1}; };
-  parts.on_weights = [](const Subject&, int, Time) {};
   hub = std::make_unique<Hub>(std::move(parts));
+  hub->SetOnWeights([](const Subject&, int, Time) {});
   FakePeer sender;
   Connect(&sender);
   Publish(sender, "ann");
