@@ -29,7 +29,7 @@ fs::path RigOf(const fs::path& character, const fs::path& rig) {
   std::error_code error;
   if (!fs::exists(character, error)) return {};
   if (!rig.empty()) return rig;
-  fs::path beside = character.parent_path() / (character.stem().string() + ".rig.json");
+  fs::path beside = character::RigBeside(character);
   return fs::exists(beside, error) ? beside : fs::path();
 }
 

@@ -220,8 +220,7 @@ Status WriteCharacter(const std::filesystem::path& rigs, const CharacterOptions&
   const bool shapes = options.face_kind == FaceKind::kBlendShapes;
   if (shapes) FURROW_RETURN_IF_ERROR(MakeBlendShapeFace(&character));
   FURROW_RETURN_IF_ERROR(character::SaveCharacterGlb(character, glb));
-  std::filesystem::path beside = glb;
-  beside.replace_extension(".rig.json");
+  const std::filesystem::path beside = character::RigBeside(glb);
   if (shapes) return rig::SaveRig(character.rig, beside);
   // Copied, because the file has comments.
   constexpr std::size_t kMaxRig = 16u << 20;

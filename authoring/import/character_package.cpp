@@ -12,8 +12,7 @@ namespace furrow::authoring {
 
 Status WriteCharacterPackage(const character::Character& character,
                              const std::filesystem::path& glb) {
-  std::filesystem::path rig = glb;
-  rig.replace_extension(".rig.json");
+  const std::filesystem::path rig = character::RigBeside(glb);
   if (const Status s = rig::CheckRig(character.rig); !s.ok()) return s.Within(rig.string());
   const Result<std::string> bytes = character::CharacterGlb(character);
   if (!bytes.ok()) return bytes.status().Within(glb.string());

@@ -79,6 +79,8 @@ Result<Character> ParseCharacter(std::string_view bytes, const fs::path& folder,
   return character;
 }
 
+fs::path RigBeside(const fs::path& glb) { return fs::path(glb).replace_extension(".rig.json"); }
+
 Result<Character> LoadCharacter(const fs::path& glb, const fs::path& rig,
                                 const wrinkle::PoseSource& poses) {
   const Result<std::string> bytes = ReadFile(glb, gltf::kMaxFileBytes);
@@ -89,7 +91,7 @@ Result<Character> LoadCharacter(const fs::path& glb, const fs::path& rig,
 
   fs::path rig_path = rig;
   if (rig.empty()) {
-    rig_path = glb.parent_path() / (glb.stem().string() + ".rig.json");
+    rig_path = RigBeside(glb);
     std::error_code error;
     if (!fs::exists(rig_path, error)) return character;  // a character that does not wrinkle
   }

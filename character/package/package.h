@@ -17,8 +17,11 @@
 // Reading and writing character packages: a glTF file, its wrinkle rig and the rig's pictures.
 namespace furrow::character {
 
-// Reads a .glb or .gltf file and its rig. An empty `rig` means "<stem>.rig.json" in the folder of
-// the file; if that does not exist, the character has no rig.
+// Where the rig of a character lies: "<stem>.rig.json" in the folder of its .glb or .gltf file.
+[[nodiscard]] std::filesystem::path RigBeside(const std::filesystem::path& glb);
+
+// Reads a .glb or .gltf file and its rig. An empty `rig` means RigBeside(glb); if that does not
+// exist, the character has no rig.
 //
 // - `poses` loads the reference poses that the rig takes from a file. If it is empty, a rig with
 //   such poses is kUnsupported.

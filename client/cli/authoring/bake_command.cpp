@@ -17,6 +17,7 @@
 #include "authoring/bake/surface/surface_check.h"
 #include "base/status.h"
 #include "base/text.h"
+#include "character/package/package.h"
 #include "character/pictures/picture_file.h"
 #include "client/cli/authoring/commands.h"
 #include "client/cli/authoring/staged_folder.h"
@@ -59,11 +60,11 @@ struct BakeJob {
 // The path of the rig, for messages.
 std::string RigName(const BakeArguments& arguments) {
   if (!arguments.rig.empty()) return ResolveRigPath(arguments.rig).string();
-  return fs::path(arguments.character).replace_extension(".rig.json").string();
+  return character::RigBeside(arguments.character).string();
 }
 
 fs::path NewRig(const BakeArguments& arguments) {
-  return fs::path(arguments.out) / (fs::path(arguments.character).stem().string() + ".rig.json");
+  return fs::path(arguments.out) / character::RigBeside(arguments.character).filename();
 }
 
 // Protects the rig that the bake starts from.

@@ -34,7 +34,7 @@ struct CheckArguments {
 Result<bool> AttachOptionalRig(const CheckArguments& arguments, character::Character* character) {
   fs::path path = ResolveRigPath(arguments.rig);
   if (arguments.rig.empty()) {
-    path = fs::path(arguments.file).replace_extension(".rig.json");
+    path = character::RigBeside(arguments.file);
     std::error_code error;
     if (!fs::exists(path, error)) return false;
   }
