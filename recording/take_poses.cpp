@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/ascii.h"
+#include "base/joined.h"
 #include "base/status.h"
 #include "base/text.h"
 #include "motion/clip/limits.h"
@@ -22,12 +23,6 @@ constexpr char kExtension[] = ".mcap";
 
 using Names = std::set<std::string, std::less<>>;
 
-std::string Join(const Names& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
 bool EndsInMcap(std::string_view text) {
   return text.size() > std::string_view(kExtension).size() &&
          EqualsIgnoreCase(text.substr(text.size() - 5), kExtension);
@@ -41,7 +36,7 @@ Status NoPoses(const TakeReader& take, std::string_view subject, const Names& na
     return {StatusCode::kNotFound, "the take has no poses", file};
   }
   return {StatusCode::kNotFound, "the take has no poses of '" + std::string(subject) + "'", file,
-          "its subjects are: " + Join(names)};
+          "its subjects are: " + Joined(names)};
 }
 
 // "take.mcap: skipped 2 <one>s of 'ada'<why>".
@@ -176,9 +171,10 @@ Result<std::vector<TakePoses>> TakePoses::LoadOf(TakeReader& take, std::string_v
   }
   const Names& names = loader.names();
   if (loader.is_ambiguous()) {
-    return Status(StatusCode::kInvalidArgument, "the take has several subjects: " + Join(names),
-                  take.path().string(),
-                  "choose one, for example " + take.path().filename().string() + "#" + *names.begin());
+    return Status(
+        StatusCode::kInvalidArgument, "the take has several subjects: " + Joined(names),
+        take.path().string(),
+        "choose one, for example " + take.path().filename().string() + "#" + *names.begin());
   }
   std::vector<TakePoses> all = loader.Finish(take, report);
   for (const std::string& text : take.file().warnings())

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/asset_path.h"
+#include "base/joined.h"
 #include "base/status.h"
 #include "wrinkle/fields/rig_field.h"
 #include "wrinkle/rig/driver_values.h"
@@ -128,10 +129,8 @@ class References {
     }
     const auto& values = driver->second;
     if (std::find(values.begin(), values.end(), source.value) == values.end()) {
-      std::string known;
-      for (const std::string& value : values) known += (known.empty() ? "" : ", ") + value;
       return InvalidField("driver '" + source.driver + "' has no value '" + source.value + "'",
-                          at + ".from", "its values are " + known);
+                          at + ".from", "its values are " + Joined(values));
     }
     return {};
   }

@@ -14,6 +14,7 @@
 #include "authoring/bake/surface/bake_surface.h"
 #include "authoring/shapes/shape_combinations.h"
 #include "base/ascii.h"
+#include "base/joined.h"
 #include "base/scalar.h"
 #include "base/status.h"
 #include "wrinkle/fields/rig_field.h"
@@ -151,10 +152,9 @@ class PoseCollector {
   }
 
   CollectedPoses Take() {
-    std::string names;
-    for (const std::string& name : missing_) names += (names.empty() ? "" : ", ") + name;
-    if (!names.empty()) {
-      Note("no shape of the character means " + names + "; only strokes can give these folds");
+    if (!missing_.empty()) {
+      Note("no shape of the character means " + Joined(missing_) +
+           "; only strokes can give these folds");
     }
     return std::move(found_);
   }
@@ -350,10 +350,7 @@ class PoseCollector {
 };
 
 Status CheckMaps(const Rig& rig, std::span<const std::string> maps) {
-  std::string known;
-  for (const wrinkle::WrinkleMap& map : rig.wrinkle_maps) {
-    known += (known.empty() ? "" : ", ") + map.name;
-  }
+  const std::string known = Joined(rig.wrinkle_maps, &wrinkle::WrinkleMap::name);
   for (const std::string& wanted : maps) {
     const auto named = [&](const wrinkle::WrinkleMap& map) { return map.name == wanted; };
     if (std::any_of(rig.wrinkle_maps.begin(), rig.wrinkle_maps.end(), named)) continue;

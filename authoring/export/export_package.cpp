@@ -10,6 +10,7 @@
 #include "authoring/export/export_plan.h"
 #include "authoring/export/shader_files.h"
 #include "authoring/export/wrinkles_json.h"
+#include "base/joined.h"
 #include "base/text.h"
 #include "character/pictures/picture_file.h"
 #include "render/wrinkles/derivative_map.h"
@@ -112,11 +113,9 @@ class Exporter {
                                           MaskPicture(character_, plan_.masks[i], &shared)));
     }
     if (shared.empty()) return {};
-    std::string names;
-    for (const std::string& name : shared) names += (names.empty() ? "" : ", ") + name;
     plan_.notes.push_back(Counted(shared.size(), "region") +
                           " on parts that share a texture, so that these parts fold together: " +
-                          CutText(names, 200));
+                          CutText(Joined(shared), 200));
     return {};
   }
 

@@ -9,6 +9,7 @@
 
 #include "authoring/export/engine.h"
 #include "authoring/export/skinned_mask.h"
+#include "base/joined.h"
 #include "base/text.h"
 #include "render/wrinkles/wrinkle_table.h"
 
@@ -146,10 +147,9 @@ class Planner {
       }
     }
     if (unpainted.empty()) return;
-    std::string names;
-    for (const std::string& name : unpainted) names += (names.empty() ? "" : ", ") + name;
-    plan_.notes.push_back(Counted(unpainted.size(), "region") +
-                          " whose mask cannot become a picture: " + CutText(names, 200));
+    plan_.notes.push_back(
+        Counted(unpainted.size(), "region") +
+        " whose mask cannot become a picture: " + CutText(Joined(unpainted), 200));
   }
 
   // The texels of a region's mask; 0 x 0 if it cannot become a picture.

@@ -11,6 +11,8 @@
 #include <glm/common.hpp>
 #include <glm/trigonometric.hpp>
 
+#include "base/joined.h"
+
 namespace furrow::render {
 namespace {
 
@@ -220,10 +222,6 @@ Status UnknownPreset(std::string_view name) {
           "one of " + ListCameraPresets()};
 }
 
-std::string ListCameraPresets() {
-  std::string list;
-  for (const std::string_view name : kNames) list += (list.empty() ? "" : ", ") + std::string(name);
-  return list;
-}
+std::string ListCameraPresets() { return Joined(kNames); }
 
 }  // namespace furrow::render

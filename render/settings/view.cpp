@@ -5,6 +5,8 @@
 #include <array>
 #include <string>
 
+#include "base/joined.h"
+
 namespace furrow::render {
 namespace {
 
@@ -22,12 +24,8 @@ std::string_view ViewName(View view) { return kViewNames[static_cast<std::size_t
 Result<View> ParseView(std::string_view name) {
   const auto found = std::ranges::find(kViewNames, name);
   if (found != kViewNames.end()) return static_cast<View>(found - kViewNames.begin());
-  std::string list;
-  for (const std::string_view known : kViewNames) {
-    list += (list.empty() ? "" : ", ") + std::string(known);
-  }
   return Status(StatusCode::kInvalidArgument, "no view '" + std::string(name) + "'", "view",
-                "one of " + list);
+                "one of " + Joined(kViewNames));
 }
 
 }  // namespace furrow::render

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/files.h"
+#include "base/joined.h"
 #include "base/text.h"
 #include "rig/json/map_file.h"
 #include "rig/rig_check.h"
@@ -133,10 +134,8 @@ Result<ExportProfile> ReadProfileFile(const std::filesystem::path& file) {
 // "arkit, metahuman", for messages; empty if the data is missing.
 std::string ListProfiles() {
   const auto files = ListShippedMaps(kFolder);
-  std::string names;
-  if (!files.ok()) return names;
-  for (const auto& file : *files) names += (names.empty() ? "" : ", ") + file.stem().string();
-  return names;
+  if (!files.ok()) return {};
+  return Joined(*files, [](const auto& file) { return file.stem().string(); });
 }
 
 }  // namespace

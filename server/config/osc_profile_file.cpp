@@ -9,6 +9,7 @@
 
 #include "base/data_dir.h"
 #include "base/files.h"
+#include "base/joined.h"
 #include "protocol/messages/limits.h"
 #include "protocol/messages/text.h"
 #include "server/config/toml_file.h"
@@ -151,12 +152,9 @@ Result<OscProfile> LoadOscProfile(const std::string& name) {
   if (!IsFile(name)) {
     auto shipped = FindDataFile("osc/" + name + ".toml");
     if (!shipped.ok()) {
-      std::string known;
-      for (const std::string& each : ShippedOscProfiles()) {
-        known += (known.empty() ? "" : ", ") + each;
-      }
       return Status(StatusCode::kNotFound, "there is no OSC profile '" + name + "'", "profile",
-                    "shipped profiles: " + known + "; a file needs a '/' or the ending .toml");
+                    "shipped profiles: " + Joined(ShippedOscProfiles()) +
+                        "; a file needs a '/' or the ending .toml");
     }
     path = *std::move(shipped);
   }

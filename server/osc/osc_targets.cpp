@@ -6,6 +6,7 @@
 #include <asio/ip/address.hpp>
 #include <spdlog/spdlog.h>
 
+#include "base/joined.h"
 #include "server/config/osc_profile_file.h"
 
 namespace furrow::server {
@@ -25,11 +26,8 @@ Result<int> OscTargets::Add(const OscTargetConfig& config) {
   FURROW_RETURN_IF_ERROR(CheckAddress(config.to));
   // A file would let a client probe the daemon's disk.
   if (!IsShippedOscProfile(config.profile)) {
-    std::string known;
-    for (const std::string& name : ShippedOscProfiles())
-      known += (known.empty() ? "" : ", ") + name;
     return Status(StatusCode::kNotFound, "there is no profile '" + config.profile + "'", "profile",
-                  "one of: " + known);
+                  "one of: " + Joined(ShippedOscProfiles()));
   }
   for (const auto& target : targets_) {
     if (target->config == config) return target->id;  // a repeated request changes nothing

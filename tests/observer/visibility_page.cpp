@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <map>
 
+#include "base/joined.h"
+
 namespace furrow::observer {
 namespace {
 
@@ -75,12 +77,6 @@ bool IsClose(const std::string& a, const std::string& b) {
   const double allowed =
       unit == "%" ? kSharePoints : kVisibilityJnd + kVisibilityShare * std::abs(y);
   return std::abs(x - y) <= allowed;
-}
-
-std::string Joined(const std::vector<std::string>& labels) {
-  std::string joined;
-  for (const std::string& label : labels) joined += (joined.empty() ? "" : ", ") + label;
-  return joined;
 }
 
 void Compare(const PageRow& row, const std::vector<std::string>& on_page,

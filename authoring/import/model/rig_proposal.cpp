@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 
 #include "authoring/import/model/face_frame.h"
+#include "base/joined.h"
 #include "wrinkle/rig/rig_joints.h"
 #include "wrinkle/skeleton/retarget.h"
 
@@ -291,9 +292,7 @@ class Proposer {
       remarks.push_back("joint names match '" + map + "'");
     }
     if (!left_out_.empty()) {
-      std::string names;
-      for (const std::string& name : left_out_) names += (names.empty() ? "" : ", ") + name;
-      remarks.push_back("no joint found for the drivers " + names);
+      remarks.push_back("no joint found for the drivers " + Joined(left_out_));
     }
     if (!poses_.empty()) {
       remarks.emplace_back(

@@ -21,6 +21,7 @@
 #include "authoring/shapes/region_masks.h"
 #include "authoring/shapes/shape_landmarks.h"
 #include "authoring/shapes/stroke_transfer.h"
+#include "base/joined.h"
 #include "base/status.h"
 #include "base/text.h"
 #include "rig/shapes/arkit_shapes.h"
@@ -31,12 +32,6 @@ namespace {
 using character::Character;
 using character::Material;
 using Kind = wrinkle::Driver::Kind;
-
-std::string Listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
 
 // The joints on both sides of a driver's bend: the skin between them folds. Of skin, only hinges
 // and twists fold: a ball's four directions would fold the same place along and across.
@@ -221,11 +216,11 @@ std::vector<std::string> MissingShapes(const FaceSkin& skin, const ArkitFace& fa
   }
   std::vector<std::string> remarks;
   if (!missing.empty()) {
-    remarks.push_back("the face lacks the blend shapes " + Listed(missing) +
+    remarks.push_back("the face lacks the blend shapes " + Joined(missing) +
                       "; they wrinkle it only where other shapes fold it");
   }
   if (!still.empty()) {
-    remarks.push_back("the blend shapes " + Listed(still) + " exist, but do not move the skin");
+    remarks.push_back("the blend shapes " + Joined(still) + " exist, but do not move the skin");
   }
   return remarks;
 }
@@ -258,7 +253,7 @@ Result<std::vector<std::string>> ProposeShapeFace(const wrinkle::Rig& arkit, con
   MarkSkin(skin->material(), character);
   if (const auto without = ChooseAtlases(skin->material(), character); !without.empty()) {
     remarks.push_back(
-        "no wrinkles on " + Listed(without) +
+        "no wrinkles on " + Joined(without) +
         ": their UVs overlap those of a material that has wrinkles ('furrow character import' "
         "gives each material a tile of the atlas)");
   }

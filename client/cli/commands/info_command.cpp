@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 
+#include "base/joined.h"
 #include "base/text.h"
 #include "client/cli/commands/commands.h"
 #include "client/cli/common/exit_code.h"
@@ -132,9 +133,7 @@ int DescribeTake(const std::string& path) {
   const auto summary = recording::Summarise(**take);
   if (!summary.ok()) return Fail(summary.status());
   if (!only.empty() && !summary->subjects.contains(only)) {
-    std::string names;
-    for (const auto& [name, subject] : summary->subjects)
-      names += (names.empty() ? "" : ", ") + name;
+    const std::string names = Joined(std::views::keys(summary->subjects));
     return Fail({StatusCode::kNotFound, "the take has no subject '" + only + "'", file,
                  "subjects: " + (names.empty() ? "none" : names)});
   }

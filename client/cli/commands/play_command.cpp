@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/joined.h"
 #include "client/cli/commands/commands.h"
 #include "client/cli/common/endpoint.h"
 #include "client/cli/common/exit_code.h"
@@ -60,8 +61,7 @@ int NotAccepted(const client::Acceptance& answer, const std::string& host) {
 Result<std::vector<PlaySource>> LoadSources(const PlayOptions& options) {
   auto sources = PlaySource::Load(options.file, options.read);
   if (!sources.ok() || options.subject.empty() || sources->size() == 1) return sources;
-  std::string names;
-  for (const PlaySource& source : *sources) names += (names.empty() ? "" : ", ") + source.subject();
+  const std::string names = Joined(*sources, &PlaySource::subject);
   return Status(StatusCode::kInvalidArgument, "the take has several subjects: " + names,
                 options.file,
                 "to play one under another name, use: " + options.file + "#" +
