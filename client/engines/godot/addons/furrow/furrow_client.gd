@@ -29,7 +29,7 @@ const SILENCE_MSEC = 30000
 
 # HOST:PORT of the daemon's HTTP server; empty: the setting of the project.
 export var address = ""
-# Who to follow; empty: the oldest subject.
+# The subject to follow. Empty: the oldest.
 export(PoolStringArray) var subjects = PoolStringArray()
 # Names of the weights, as comma-separated globs; empty: all.
 export var pattern = ""
@@ -50,7 +50,7 @@ var _heard_msec = 0
 var _streams = {}  # subject -> Stream
 
 
-# What is known of one subject.
+# The state of one subject.
 class Stream:
 	var names = PoolStringArray()
 	var values = PoolRealArray()
@@ -132,7 +132,7 @@ func get_subjects():
 	return _streams.keys()
 
 
-# What is known of a subject: names, values, sequence, time_us, frames, missed, gone; null before its first names.
+# The state of a subject: names, values, sequence, time_us, frames, missed, gone; null before its first names.
 func get_stream(subject):
 	return _streams.get(subject)
 

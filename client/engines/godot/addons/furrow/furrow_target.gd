@@ -9,7 +9,7 @@ extends Node
 
 export(NodePath) var client
 export(NodePath) var mesh
-# Whose weights; empty: whoever comes first.
+# The subject whose weights to apply. Empty: the first to come.
 export var subject = ""
 # The names of the weights. The client sets them; they are saved with the scene, so that animations play without it.
 export(PoolStringArray) var names = PoolStringArray() setget set_names

@@ -21,7 +21,7 @@ const SILENCE_MSEC := 30000
 
 # HOST:PORT of the daemon's HTTP server; empty: the setting of the project.
 @export var address := ""
-# Who to follow; empty: the oldest subject.
+# The subject to follow. Empty: the oldest.
 @export var subjects := PackedStringArray()
 # Names of the weights, as comma-separated globs; empty: all.
 @export var pattern := ""
@@ -39,7 +39,7 @@ var _heard_msec := 0
 var _streams := {}  # subject -> Stream
 
 
-# What is known of one subject.
+# The state of one subject.
 class Stream:
 	var names := PackedStringArray()
 	var values := PackedFloat32Array()
@@ -111,7 +111,7 @@ func get_address() -> String:
 	return address if address != "" else str(ProjectSettings.get_setting("furrow/network/address", "127.0.0.1:7480"))
 
 
-# What is known of a subject; null before its first names.
+# The state of a subject; null before its first names.
 func get_stream(subject: String) -> Stream:
 	return _streams.get(subject)
 

@@ -6,7 +6,7 @@ extends Node
 
 @export var client: NodePath
 @export var mesh: NodePath
-# Whose weights; empty: whoever comes first.
+# The subject whose weights to apply. Empty: the first to come.
 @export var subject := ""
 
 var names := PackedStringArray()
