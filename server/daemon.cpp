@@ -169,7 +169,7 @@ void Daemon::MakeHub() {
   parts.pictures = render_.get();
   parts.settings = assets_.settings;
   parts.metrics = metrics_;
-  parts.make_token = RandomNumber;
+  parts.random = RandomNumber;
   // The recorder is declared before the hub and therefore outlives it.
   parts.recording = recorder_.get();
   parts.shards = config_.threads;
@@ -403,6 +403,11 @@ ExitCode LoadAndServe(const Config& config, const RunOptions& options) {
     spdlog::warn(
         "the character has no wrinkle rig, so there are no weights and no wrinkles: put "
         "NAME.rig.json beside NAME.glb, or choose a rig by --rig");
+  }
+  if (ListensToNetwork(config)) {
+    spdlog::warn(
+        "open to the network: everybody who reaches {} may publish, watch and change settings",
+        config.bind);
   }
   if (config.render && assets->character != nullptr) {
     for (const std::string& warning : assets->character->warnings) {

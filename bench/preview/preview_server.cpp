@@ -85,7 +85,7 @@ PreviewServer::PreviewServer(render::Image picture)
   parts.character = &skeleton_;
   parts.pictures = render_.get();
   parts.metrics = &metrics_;
-  parts.make_token = [] { return 1; };
+  parts.random = [] { return 1; };
   hub_ = std::make_unique<server::Hub>(std::move(parts));
   http_ = ValueOrExit(
       server::HttpServer::Start({.config = {.port = 0, .max_connections = 1024},

@@ -16,9 +16,10 @@ std::uint64_t NewSession() {
   return session;
 }
 
-Publisher::Publisher(std::unique_ptr<Transport> transport)
+Publisher::Publisher(std::unique_ptr<Transport> transport, std::string name)
     : transport_(std::move(transport)),
       session_(NewSession()),
+      introduction_(transport_.get(), std::move(name), session_),
       generation_(transport_->generation()) {}
 
 std::uint16_t Publisher::AddSubject(const protocol::SkeletonOffer& offer, std::int64_t now_us) {
@@ -29,19 +30,30 @@ std::uint16_t Publisher::AddSubject(const protocol::SkeletonOffer& offer, std::i
   encoder_.Encode({.session = session_, .stream = number}, offer, stream.offer);
   // A daemon does not answer malformed datagrams, so check the offer here.
   stream.rejection = protocol::FindOfferProblem(stream.offer);
-  if (stream.rejection.empty()) SendOffer(stream, now_us);
+  if (stream.rejection.empty() && transport_->kind() == TransportKind::kUdp &&
+      stream.offer.size() > protocol::kMaxUdpMessageBytes) {
+    OnOversized(stream);
+  }
+  if (!stream.rejection.empty()) return number;
+  if (introduction_.proven()) {
+    SendOffer(stream, now_us);
+  } else if (!introduced_us_) {
+    Introduce(now_us);
+  }
   return number;
+}
+
+void Publisher::OnOversized(Stream& stream) {
+  stream.oversized = true;
+  stream.rejection = "the skeleton offer has " + std::to_string(stream.offer.size()) +
+                     " bytes, more than UDP carries; use TCP";
 }
 
 void Publisher::SendOffer(Stream& stream, std::int64_t now_us) {
   // Also after a failed send: the interval to the next attempt begins now.
   stream.offered_us = now_us;
   // Poll() repeats the offer until it is answered, so other send failures do not matter.
-  if (transport_->Send(stream.offer) == IoStatus::kTooLarge) {
-    stream.oversized = true;
-    stream.rejection = "the skeleton offer has " + std::to_string(stream.offer.size()) +
-                       " bytes, more than UDP carries; use TCP";
-  }
+  if (transport_->Send(stream.offer) == IoStatus::kTooLarge) OnOversized(stream);
 }
 
 IoStatus Publisher::Send(std::uint16_t number, protocol::PoseFrame& pose,
@@ -57,13 +69,17 @@ IoStatus Publisher::Send(std::uint16_t number, protocol::PoseFrame& pose,
 }
 
 IoStatus Publisher::Poll(std::int64_t now_us, std::chrono::milliseconds wait) {
-  for (Stream& stream : streams_) {
-    const bool due = now_us - stream.offered_us >= protocol::kOfferResendMicroseconds;
-    if (!stream.accepted && stream.rejection.empty() && due) SendOffer(stream, now_us);
+  if (introduction_.proven()) {
+    for (Stream& stream : streams_) {
+      const bool due = now_us - stream.offered_us >= protocol::kOfferResendMicroseconds;
+      if (!stream.accepted && stream.rejection.empty() && due) SendOffer(stream, now_us);
+    }
+  } else if (introduced_us_ && now_us - *introduced_us_ >= protocol::kOfferResendMicroseconds) {
+    Introduce(now_us);
   }
   std::span<const std::uint8_t> message;
   IoStatus status = transport_->Receive(message, wait);
-  if (transport_->generation() != generation_) OfferAgain(now_us);
+  if (transport_->generation() != generation_) StartOver(now_us);
   while (status == IoStatus::kOk) {
     Handle(message, now_us);
     // Reads all waiting answers. A timeout after the first one is not a timeout of this call.
@@ -78,14 +94,29 @@ void Publisher::Handle(std::span<const std::uint8_t> message, std::int64_t now_u
   using protocol::DecodeStatus;
   protocol::MessageView view;
   if (protocol::OpenMessage(message, view, protocol::kMaxReplyBytes) != DecodeStatus::kOk) return;
-  if (view.kind == protocol::MessageKind::kError) {
-    if (protocol::Decode(view, error_) == DecodeStatus::kOk) last_error_ = error_.message;
-    return;
+  switch (view.kind) {
+    case protocol::MessageKind::kError:
+      if (protocol::Decode(view, error_) == DecodeStatus::kOk) OnError(now_us);
+      return;
+    case protocol::MessageKind::kWelcome:
+      if (protocol::Decode(view, welcome_) == DecodeStatus::kOk &&
+          introduction_.OnWelcome(welcome_)) {
+        OfferAll(now_us);
+      }
+      return;
+    case protocol::MessageKind::kPing:
+      if (protocol::Decode(view, ping_) == DecodeStatus::kOk) introduction_.OnPing(ping_);
+      return;
+    case protocol::MessageKind::kSkeletonReply:
+      if (protocol::Decode(view, reply_) == DecodeStatus::kOk) OnReply(view.header, now_us);
+      return;
+    default: return;
   }
-  if (view.kind != protocol::MessageKind::kSkeletonReply) return;
-  if (view.header.stream >= streams_.size()) return;
-  if (protocol::Decode(view, reply_) != DecodeStatus::kOk) return;
-  Stream& stream = streams_[view.header.stream];
+}
+
+void Publisher::OnReply(const protocol::Header& header, std::int64_t now_us) {
+  if (header.stream >= streams_.size()) return;
+  Stream& stream = streams_[header.stream];
   // A late answer to an earlier offer of this stream number.
   if (reply_.skeleton_hash != stream.skeleton_hash) return;
   switch (reply_.status) {
@@ -101,12 +132,37 @@ void Publisher::Handle(std::span<const std::uint8_t> message, std::int64_t now_u
   }
 }
 
-// The transport has another connection, and the daemon knows nothing of it.
-void Publisher::OfferAgain(std::int64_t now_us) {
-  generation_ = transport_->generation();
+void Publisher::OfferAll(std::int64_t now_us) {
   for (Stream& stream : streams_) {
     stream.accepted = false;
     if (stream.rejection.empty()) SendOffer(stream, now_us);
+  }
+}
+
+// Says Hello again if the daemon does not know the address, for example after a restart. Each pose
+// on its way then earns this error, and only the first one counts.
+void Publisher::OnError(std::int64_t now_us) {
+  if (error_.code != protocol::ErrorCode::kUnprovenAddress) {
+    last_error_ = error_.message;
+  } else if (introduction_.proven() && transport_->kind() == TransportKind::kUdp) {
+    introduction_.Restart();
+    Introduce(now_us);
+  }
+}
+
+void Publisher::Introduce(std::int64_t now_us) {
+  introduced_us_ = now_us;
+  introduction_.SendHello();
+}
+
+// The transport has another connection, and the daemon knows nothing of it.
+void Publisher::StartOver(std::int64_t now_us) {
+  generation_ = transport_->generation();
+  introduction_.Restart();
+  if (introduction_.proven()) {
+    OfferAll(now_us);
+  } else if (!streams_.empty()) {
+    Introduce(now_us);
   }
 }
 

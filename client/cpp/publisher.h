@@ -3,15 +3,17 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "client/cpp/introduction.h"
 #include "client/cpp/transport.h"
 #include "protocol/codec/codec.h"
 
 namespace furrow::client {
 
-// Sends the poses of one or several subjects to a daemon.
+// Sends the poses of one or several subjects to a daemon. Over UDP it first proves its address.
 //
 //   Publisher publisher(std::move(transport));
 //   auto stream = publisher.AddSubject(offer, now_us);
@@ -25,8 +27,8 @@ namespace furrow::client {
 // used on one thread.
 class Publisher {
  public:
-  // `transport`: not null.
-  explicit Publisher(std::unique_ptr<Transport> transport);
+  // `transport`: not null. `name`: program and version, for the daemon's log.
+  explicit Publisher(std::unique_ptr<Transport> transport, std::string name = "furrow publisher");
 
   // Offers a subject and returns its stream number. Poll() repeats the offer until the daemon
   // answers, and again whenever the daemon asks for it, for example after a restart.
@@ -74,17 +76,26 @@ class Publisher {
   };
 
   void SendOffer(Stream& stream, std::int64_t now_us);
-  void OfferAgain(std::int64_t now_us);
+  void OfferAll(std::int64_t now_us);
+  void Introduce(std::int64_t now_us);
+  void StartOver(std::int64_t now_us);
+  void OnError(std::int64_t now_us);
+  void OnReply(const protocol::Header& header, std::int64_t now_us);
+  static void OnOversized(Stream& stream);
   void SendGoodbye(std::size_t stream);
   void Handle(std::span<const std::uint8_t> message, std::int64_t now_us);
 
   std::unique_ptr<Transport> transport_;
   protocol::Encoder encoder_;
   std::uint64_t session_;
+  Introduction introduction_;
+  std::optional<std::int64_t> introduced_us_;  // when the last Hello was sent
   std::uint64_t generation_;  // of the transport's connection that the offers went to
   std::vector<Stream> streams_;
   std::vector<std::uint8_t> bytes_;
   protocol::SkeletonReply reply_;
+  protocol::Welcome welcome_;
+  protocol::Ping ping_;
   protocol::ErrorMessage error_;
   std::string last_error_;
 };

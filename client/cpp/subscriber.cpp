@@ -26,19 +26,10 @@ constexpr std::int64_t kSilenceMicroseconds = 3 * protocol::kUdpLeaseMicrosecond
 
 Subscriber::Subscriber(std::unique_ptr<Transport> transport, std::string name)
     : transport_(std::move(transport)),
-      name_(std::move(name)),
       session_(NewSession()),
       generation_(transport_->generation()),
-      proven_(transport_->kind() == TransportKind::kTcp) {
-  SendHello();
-}
-
-// Over UDP the first Hello asks for a token, and the second returns it. That proves the address.
-void Subscriber::SendHello() {
-  const protocol::Hello hello{
-      .client = name_, .token = token_, .bundles = transport_->takes_bundles()};
-  encoder_.Encode({.session = session_}, hello, bytes_);
-  (void)transport_->Send(bytes_);
+      introduction_(transport_.get(), std::move(name), session_) {
+  introduction_.SendHello();
 }
 
 // Stores the request until its subscription ends and sends it, over UDP only once the address is
@@ -54,7 +45,8 @@ std::uint32_t Subscriber::Ask(const Message& message) {
     resumed.wait = true;
     encoder_.Encode({.session = session_, .sequence = request.number}, resumed, request.resumed);
   }
-  if (proven_) (void)transport_->Send(request.bytes);  // Next() reports a closed connection
+  if (introduction_.proven())
+    (void)transport_->Send(request.bytes);  // Next() reports a closed connection
   return request.number;
 }
 
@@ -112,11 +104,10 @@ void Subscriber::ResumeAll() {
 
 // The daemon does not know this address, or forgot it: start over and repeat all requests.
 void Subscriber::ProveAgain() {
-  proven_ = false;
   answered_ = false;
-  token_ = 0;
+  introduction_.Restart();
   ResumeAll();
-  SendHello();
+  introduction_.SendHello();
 }
 
 // The transport has another connection, and the daemon knows nothing of it.
@@ -126,8 +117,7 @@ void Subscriber::StartOver() {
   // Numbers of subscriptions belong to a connection.
   for (Request& request : requests_) request.subscription = 0;
   ProveAgain();
-  proven_ = transport_->kind() == TransportKind::kTcp;
-  if (!proven_) return;
+  if (!introduction_.proven()) return;
   SendWaiting();
   if (!list_.empty()) (void)transport_->Send(list_);
 }
@@ -137,8 +127,7 @@ void Subscriber::StartOver() {
 void Subscriber::OnNoConnection() {
   answered_ = false;
   if (!transport_->reconnects() || transport_->kind() != TransportKind::kUdp) return;
-  proven_ = false;
-  token_ = 0;
+  introduction_.Restart();
   ResumeAll();
 }
 
@@ -146,7 +135,9 @@ void Subscriber::NoticeRestart(std::uint64_t server_session) {
   const bool restarted = server_session_ != 0 && server_session != server_session_;
   server_session_ = server_session;
   // Over TCP a restart also closes the connection, so there is nothing to repeat on it.
-  if (restarted && proven_ && transport_->kind() == TransportKind::kUdp) ProveAgain();
+  if (restarted && introduction_.proven() && transport_->kind() == TransportKind::kUdp) {
+    ProveAgain();
+  }
 }
 
 void Subscriber::Maintain(std::int64_t now_us) {
@@ -166,7 +157,7 @@ void Subscriber::Maintain(std::int64_t now_us) {
   }
   // TCP does not lose requests, so only UDP repeats them.
   const bool asking = udp && std::ranges::any_of(requests_, &Request::waiting);
-  const bool unsettled = !proven_ || asking;
+  const bool unsettled = !introduction_.proven() || asking;
   const bool silent =
       unanswered_since_us_ && now_us - *unanswered_since_us_ > protocol::kUdpLeaseMicroseconds;
   const std::int64_t resend = silent ? kSlowResendMicroseconds : kResendMicroseconds;
@@ -174,8 +165,8 @@ void Subscriber::Maintain(std::int64_t now_us) {
   last_sent_us_ = now_us;
   // Silence counts from the first unanswered send. A daemon that has nothing to say is not gone.
   if (!unanswered_since_us_) unanswered_since_us_ = now_us;
-  if (!proven_) {
-    SendHello();
+  if (!introduction_.proven()) {
+    introduction_.SendHello();
   } else if (asking) {
     SendWaiting();
   } else {
@@ -276,9 +267,10 @@ bool Subscriber::Handle(std::span<const std::uint8_t> message, Event& event) {
     case MessageKind::kGoodbye:
       status = protocol::Decode(view, goodbye_);
       event.kind = Event::Kind::kGoodbye;
-      if (status == DecodeStatus::kOk) OnGoodbye(view.header.stream);
+      if (status == DecodeStatus::kOk && !OnGoodbye(view.header.stream)) return false;
       break;
     case MessageKind::kWelcome: return HandleWelcome(view, event);
+    case MessageKind::kPing: HandlePing(view); return false;
     default: return false;  // pongs, and messages of a newer protocol
   }
   if (status == DecodeStatus::kOk) return true;
@@ -292,21 +284,20 @@ bool Subscriber::HandleWelcome(const protocol::MessageView& view, Event& event) 
     ++malformed_;
     return false;
   }
-  if (!proven_) {
-    // A token means that the address is not proven yet; no token means that it is, or needs no
-    // proof.
-    if (welcome.token != 0) {
-      token_ = welcome.token;
-      SendHello();
-    } else {
-      proven_ = true;
-      SendWaiting();
-    }
-  }
-  if (!proven_ || answered_ || !transport_->reconnects()) return false;
+  if (introduction_.OnWelcome(welcome)) SendWaiting();
+  if (!introduction_.proven() || answered_ || !transport_->reconnects()) return false;
   answered_ = true;
   event.kind = Event::Kind::kConnected;
   return true;
+}
+
+void Subscriber::HandlePing(const protocol::MessageView& view) {
+  protocol::Ping ping;
+  if (protocol::Decode(view, ping) == DecodeStatus::kOk) {
+    introduction_.OnPing(ping);
+  } else {
+    ++malformed_;
+  }
 }
 
 void Subscriber::OnReply(const protocol::Header& header) {
@@ -333,7 +324,7 @@ void Subscriber::OnFrame(std::uint16_t subscription, std::uint64_t hash) {
 bool Subscriber::OnError(const protocol::Header& header) {
   if (error_.code == protocol::ErrorCode::kUnprovenAddress &&
       transport_->kind() == TransportKind::kUdp) {
-    if (proven_) ProveAgain();
+    if (introduction_.proven()) ProveAgain();
     return false;
   }
   // The daemon is shutting down. The next one will be asked again.
@@ -343,18 +334,23 @@ bool Subscriber::OnError(const protocol::Header& header) {
   return true;
 }
 
-// A subscription with `wait` outlives its subject. Every other reason ends the subscription.
-void Subscriber::OnGoodbye(std::uint16_t subscription) {
+// Returns false if the goodbye is handled here and not passed to the caller. A subscription with
+// `wait` outlives its subject. Every other reason ends the subscription.
+bool Subscriber::OnGoodbye(std::uint16_t subscription) {
+  // The daemon heard nothing from here for too long, but this program is still there.
+  if (goodbye_.reason == protocol::GoodbyeReason::kTimedOut) {
+    for (Request& request : requests_) request.waiting |= request.subscription == subscription;
+    return false;
+  }
   const bool may_return = goodbye_.reason == protocol::GoodbyeReason::kSubjectGone;
-  if (transport_->reconnects() && !may_return &&
-      goodbye_.reason != protocol::GoodbyeReason::kDone) {
-    // The daemon is shutting down, or it heard nothing from here for too long.
-    if (goodbye_.reason == protocol::GoodbyeReason::kTimedOut) ResumeAll();
-    return;
+  // The daemon is shutting down. The next one will be asked again.
+  if (transport_->reconnects() && goodbye_.reason == protocol::GoodbyeReason::kDraining) {
+    return true;
   }
   std::erase_if(requests_, [=](const Request& request) {
     return request.subscription == subscription && !(request.wait && may_return);
   });
+  return true;
 }
 
 }  // namespace furrow::client

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "client/cpp/introduction.h"
 #include "client/cpp/transport.h"
 #include "protocol/codec/codec.h"
 
@@ -107,7 +108,6 @@ class Subscriber {
 
   template <class Message>
   std::uint32_t Ask(const Message& message);
-  void SendHello();
   void SendWaiting();
   void ResumeAll();
   void ProveAgain();
@@ -119,14 +119,14 @@ class Subscriber {
   void NoticeRestart(std::uint64_t server_session);
   bool Handle(std::span<const std::uint8_t> message, Event& event);
   bool HandleWelcome(const protocol::MessageView& view, Event& event);
+  void HandlePing(const protocol::MessageView& view);
   void OnReply(const protocol::Header& header);
   void OnSkeleton(std::uint16_t subscription);
   void OnFrame(std::uint16_t subscription, std::uint64_t hash);
   [[nodiscard]] bool OnError(const protocol::Header& header);
-  void OnGoodbye(std::uint16_t subscription);
+  [[nodiscard]] bool OnGoodbye(std::uint16_t subscription);
 
   std::unique_ptr<Transport> transport_;
-  std::string name_;
   protocol::Encoder encoder_;
   std::uint64_t session_;
   std::uint32_t next_request_ = 1;
@@ -135,8 +135,7 @@ class Subscriber {
   std::uint64_t generation_;          // of the transport's connection that the requests went to
   bool answered_ = false;             // the daemon has answered since the last loss
   std::uint64_t server_session_ = 0;  // 0: unknown
-  bool proven_;
-  std::uint64_t token_ = 0;
+  Introduction introduction_;
   std::int64_t last_sent_us_ = 0;
   std::optional<std::int64_t> unanswered_since_us_;  // oldest send without any message since
   bool started_ = false;

@@ -60,7 +60,8 @@ flatbuffers::Offset<wire::Goodbye> WriteTable(PayloadBuilder& payload, const Goo
 
 DecodeStatus ReadTable(const wire::Error& table, ErrorMessage& message) {
   const auto code = static_cast<ErrorCode>(table.code());
-  if (code < ErrorCode::kMalformed || code > ErrorCode::kInternal) return DecodeStatus::kBadValue;
+  if (code < ErrorCode::kMalformed || code > ErrorCode::kSubjectTaken)
+    return DecodeStatus::kBadValue;
   message.code = code;
   return ReadText(table.message(), kMaxTextBytes, message.message);
 }

@@ -92,9 +92,10 @@ enum class ErrorCode : std::uint16_t {
   kNotRendering = 8,      // a picture request to a server that does not render
   kBadPicture = 9,        // unavailable size, view or camera
   kNeedsTcp = 10,         // a picture or list request over UDP
-  kUnprovenAddress = 11,  // a UDP subscription without a token from Hello
+  kUnprovenAddress = 11,  // a UDP address without a token from Hello
   kDraining = 12,
   kInternal = 13,
+  kSubjectTaken = 14,  // another publisher is sending the subject
 };
 
 // Reports that a request failed. header.sequence and header.stream are those of the request.

@@ -44,7 +44,11 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
   app->add_option("--shape-map", config->shape_map,
                   "Map blend-shape names of streams with this map, by name or file\n"
                   "(default: the best match of the shipped maps)");
-  app->add_option("--bind", config->bind, "Listen on this address (default: 127.0.0.1)");
+  app->add_option("--bind", config->bind,
+                  "Listen on this address (default: 127.0.0.1); others need --open");
+  app->add_flag("--open", config->open,
+                "Let everybody in who can reach the address of --bind: they may publish,\n"
+                "watch and change settings (see docs/SECURITY.md)");
   app->add_option("--tcp", config->tcp, "TCP port for poses, weights and pictures (default: 7400)");
   app->add_option("--udp", config->udp, "UDP port for poses and weights (default: 7401)");
   app->add_option(

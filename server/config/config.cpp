@@ -6,6 +6,8 @@
 #include <map>
 #include <utility>
 
+#include <asio/ip/address.hpp>
+
 #include "base/status.h"
 
 namespace furrow::server {
@@ -87,11 +89,24 @@ motion::LoadOptions PlayOptions(const Config& config) {
   return options;
 }
 
+bool ListensToNetwork(const Config& config) {
+  asio::error_code error;
+  const auto address = asio::ip::make_address(config.bind, error);
+  return !error && !address.is_loopback();
+}
+
 Status ValidateConfig(const Config& config) {
   if (!IsNumericAddress(config.bind)) {
     return Status(StatusCode::kInvalidArgument,
                   "--bind: '" + config.bind + "' is not a numeric address", "",
                   "for example 127.0.0.1, 0.0.0.0 or ::1");
+  }
+  if (ListensToNetwork(config) && !config.open) {
+    return Status(StatusCode::kInvalidArgument,
+                  "--bind " + config.bind +
+                      " lets everybody on the network publish, watch and change settings",
+                  "",
+                  "add --open (listen.open = true) if that is intended, or use --bind 127.0.0.1");
   }
   for (const std::string& address : config.mocap_allow) {
     if (!IsNumericAddress(address)) {

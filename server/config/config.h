@@ -41,6 +41,7 @@ struct Config {
   // A file or the name of a shipped rig. Without a character: weights only; else replaces its rig.
   std::filesystem::path rig;
   std::string bind = "127.0.0.1";  // numeric, IPv4 or IPv6
+  bool open = false;               // lets everybody in who reaches an address beyond this computer
   std::uint16_t tcp = 7400;        // 0: any free port; the ready line shows it
   std::uint16_t udp = 7401;
   int threads = 1;  // threads that receive UDP, [1, kMaxThreads]; see docs/CAPACITY.md
@@ -79,6 +80,9 @@ struct Config {
 [[nodiscard]] Status LoadConfigFile(const std::filesystem::path& path, Config* config);
 [[nodiscard]] Status ParseConfig(std::string_view toml, std::string_view source_name,
                                  Config* config);
+
+// True if programs on other computers can reach the daemon.
+[[nodiscard]] bool ListensToNetwork(const Config& config);
 
 // Checks values and their combination: addresses, ranges, conflicting ports and flags. Errors:
 // kInvalidArgument, naming the flag or the key.

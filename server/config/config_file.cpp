@@ -79,8 +79,8 @@ Tables InputTables(Config* config, const std::filesystem::path& folder) {
             NameOrFile("skeleton_map", ".json", &config->skeleton_map, folder),
             NameOrFile("shape_map", ".json", &config->shape_map, folder)}},
           {"listen",
-           {Text("bind", &config->bind), Port("tcp", &config->tcp), Port("udp", &config->udp),
-            Count("threads", &config->threads)}},
+           {Text("bind", &config->bind), Flag("open", &config->open), Port("tcp", &config->tcp),
+            Port("udp", &config->udp), Count("threads", &config->threads)}},
           {"mocap",
            {Port("vmc", &config->vmc), Port("livelink_face", &config->livelink_face),
             Texts("allow", &config->mocap_allow)}}};

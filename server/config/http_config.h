@@ -18,7 +18,7 @@ struct HttpConfig {
   std::vector<std::string> allow_hosts;  // names accepted in the Host field
   std::vector<std::string>
       allow_origins;           // foreign pages that may connect: "https://stage.example"
-  int max_connections = 128;   // at a time, [1, 1'000'000]
+  int max_connections = 256;   // at a time, [1, 1'000'000]; one host gets half
   std::filesystem::path page;  // folder of the page; empty: share/furrow/web
   friend bool operator==(const HttpConfig&, const HttpConfig&) = default;
 };

@@ -7,10 +7,10 @@ namespace furrow::server {
 // rates and times in (0, 1e9]; ValidateConfig() checks them. Each limit applies to the whole daemon
 // unless its comment names something smaller.
 struct Limits {
-  int max_connections = 256;  // TCP connections
-  int max_udp_peers =
-      4096;  // UDP addresses remembered, over all threads; a full table evicts an idle one
-  int max_subjects = 1024;            // subjects published at a time
+  // Shared between hosts (FairShare): one host alone gets half.
+  int max_connections = 512;          // TCP connections
+  int max_udp_peers = 8192;           // proven UDP addresses, over all threads
+  int max_subjects = 2048;            // subjects published at a time
   int max_skeletons = 256;            // bound skeletons kept for reuse
   int max_subscriptions = 64;         // per peer, at most 65,535
   double packets_per_second = 20000;  // per peer: datagrams or TCP messages

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/core/network_address.h"
 
+#include <algorithm>
 #include <charconv>
+#include <iterator>
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -36,6 +38,18 @@ Result<HostPort> ParseHostPort(std::string_view text) {
 std::string HostPortText(const HostPort& address) {
   const bool v6 = address.host.find(':') != std::string::npos;
   return (v6 ? "[" + address.host + "]:" : address.host + ":") + std::to_string(address.port);
+}
+
+std::string HostOf(const std::string& address) {
+  in6_addr bytes;
+  if (inet_pton(AF_INET6, address.c_str(), &bytes) != 1) return address;
+  char text[INET6_ADDRSTRLEN];
+  if (IN6_IS_ADDR_V4MAPPED(&bytes)) {
+    constexpr std::size_t kIpv4 = 12;  // the offset of the mapped address
+    return inet_ntop(AF_INET, &bytes.s6_addr[kIpv4], text, sizeof(text));
+  }
+  std::fill(std::begin(bytes.s6_addr) + 8, std::end(bytes.s6_addr), std::uint8_t{0});
+  return inet_ntop(AF_INET6, &bytes, text, sizeof(text));
 }
 
 bool IsNumericAddress(const std::string& address) {

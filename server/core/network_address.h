@@ -23,6 +23,10 @@ struct HostPort {
 // "127.0.0.1:9000" or "[::1]:9000".
 [[nodiscard]] std::string HostPortText(const HostPort& address);
 
+// The host that an address counts to in fair shares: an IPv4 address itself; for an IPv6 address
+// its network of 64 bits, because one customer has all of that. Other text is returned unchanged.
+[[nodiscard]] std::string HostOf(const std::string& address);
+
 // True for "127.0.0.1" and "::1"; false for host names and for addresses in brackets.
 [[nodiscard]] bool IsNumericAddress(const std::string& address);
 

@@ -14,6 +14,8 @@
 
 #include "base/data_dir.h"
 #include "base/status.h"
+#include "server/core/fair_share.h"
+#include "server/core/network_address.h"
 #include "server/http/http_session.h"
 
 namespace furrow::server {
@@ -74,10 +76,11 @@ struct HttpServer::Impl {
 
   Status Listen(const std::string& bind, std::uint16_t port);
   net::awaitable<void> Accept();
-  net::awaitable<void> Serve(tcp::socket socket);
+  net::awaitable<void> Serve(tcp::socket socket, std::string host);
   void Run();
 
   WebContext context;  // outlives the loop; its connections use it
+  FairShare shares{static_cast<std::size_t>(context.config.max_connections)};
   std::shared_ptr<net::io_context> loop = std::make_shared<net::io_context>(1);
   tcp::acceptor acceptor{*loop};
   std::uint16_t port = 0;
@@ -114,20 +117,24 @@ net::awaitable<void> HttpServer::Impl::Accept() {
       net::steady_timer pause(*loop, kAcceptPause);
       beast::error_code ignored;
       co_await pause.async_wait(Redirect(ignored));
-    } else if (context.connections >= context.config.max_connections) {
-      // Each connection may hold a request of kMaxWebMessageBytes, so their number bounds the
-      // memory.
+      continue;
+    }
+    const auto client = socket.remote_endpoint(error);
+    std::string host = error ? std::string() : HostOf(client.address().to_string());
+    // Each connection may hold a request of kMaxWebMessageBytes, so their number bounds the memory.
+    if (!shares.Enter(host)) {
       context.metrics->Add(Counter::kConnectionsRefused);
       Refuse(std::move(socket));
     } else {
       context.metrics->Add(Counter::kHttpConnections);
       // Detached is safe: Serve() lets no exception out, and the context outlives the loop.
-      net::co_spawn(*loop, Serve(std::move(socket)), net::detached);
+      net::co_spawn(*loop, Serve(std::move(socket), std::move(host)), net::detached);
     }
   }
 }
 
-net::awaitable<void> HttpServer::Impl::Serve(tcp::socket socket) {
+// `host`: of the client, which has a place in `shares`.
+net::awaitable<void> HttpServer::Impl::Serve(tcp::socket socket, std::string host) {
   ++context.connections;
   try {
     co_await ServeConnection(beast::tcp_stream(std::move(socket)), &context);
@@ -135,6 +142,7 @@ net::awaitable<void> HttpServer::Impl::Serve(tcp::socket socket) {
     spdlog::error("a web connection failed: {}", error.what());
   }
   --context.connections;
+  shares.Leave(host);
 }
 
 // An exception that ends the web loop also ends the hub's loop, so that the daemon does not run on

@@ -70,12 +70,14 @@ void MocapInput::OnDatagram(std::span<const std::uint8_t> bytes, const asio::ip:
   if (!gate_.Admits(sender, now)) return Reject(sender);
   // Half a frame of the former sender must not mix with the first of the new one.
   if (gate_.IsSuccessor(sender)) adapter_->Forget();
-  // Only a valid datagram lets its sender hold the port: a port scan must not lock a tracker out.
+  // Only valid datagrams let their sender hold the port: a port scan must not lock a tracker out.
   const std::uint64_t malformed = adapter_->counters().malformed;
   adapter_->Push(bytes, ToMicroseconds(now),
                  [&](const auto& frame) { hub_->OnMocapFrame(peer_, frame, now); });
   const bool is_valid = adapter_->counters().malformed == malformed;
-  if (is_valid && gate_.Hold(sender, now)) {
+  if (!is_valid) {
+    gate_.Discard(sender);
+  } else if (gate_.Hold(sender, now)) {
     spdlog::info("{} now accepts {}", flag_, sender.to_string());
     has_logged_rejected_ = false;
   }

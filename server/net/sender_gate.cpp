@@ -20,24 +20,61 @@ SenderGate::SenderGate(std::span<const asio::ip::address> allowed, Policy policy
   std::ranges::transform(allowed, std::back_inserter(allowed_), Plain);
 }
 
-bool SenderGate::Admits(const asio::ip::address& sender, Time now) const {
+bool SenderGate::Admits(const asio::ip::address& sender, Time now) {
   const asio::ip::address plain = Plain(sender);
   if (!allowed_.empty() && std::ranges::find(allowed_, plain) == allowed_.end()) return false;
-  // A holder that has been silent for kRelease has lost its claim, although holder_ still names it.
-  return !exclusive_ || !holder_ || *holder_ == plain || now - heard_ > kRelease;
+  if (!exclusive_) return true;
+  if (IsHeld(now)) return *holder_ == plain;
+  const Candidate& candidate = Count(plain, now);
+  // Of two with equal counts, the first in the list has come first.
+  const auto leader = std::ranges::max_element(candidates_, {}, &Candidate::datagrams);
+  return leader->address == candidate.address;
+}
+
+// Counts a datagram while nobody holds the port.
+SenderGate::Candidate& SenderGate::Count(const asio::ip::address& sender, Time now) {
+  std::erase_if(candidates_, [now](const Candidate& each) { return now - each.last > kRelease; });
+  auto found = std::ranges::find(candidates_, sender, &Candidate::address);
+  if (found == candidates_.end()) {
+    // Of those that have sent least, the last one makes room. A flood of forged addresses thus
+    // replaces itself.
+    if (candidates_.size() == kMaxCandidates) {
+      const auto least = std::ranges::min_element(candidates_.rbegin(), candidates_.rend(), {},
+                                                  &Candidate::datagrams);
+      candidates_.erase(std::next(least).base());
+    }
+    candidates_.push_back({sender});
+    found = std::prev(candidates_.end());
+  }
+  ++found->datagrams;
+  found->last = now;
+  return *found;
 }
 
 bool SenderGate::IsSuccessor(const asio::ip::address& sender) const {
-  return exclusive_ && holder_ && *holder_ != Plain(sender);
+  return exclusive_ && read_ && *read_ != Plain(sender);
 }
 
 bool SenderGate::Hold(const asio::ip::address& sender, Time now) {
   if (!exclusive_) return false;
   const asio::ip::address plain = Plain(sender);
+  read_ = plain;
+  if (IsHeld(now)) {
+    heard_ = now;  // Admits() has let nobody else through
+    return false;
+  }
+  const auto candidate = std::ranges::find(candidates_, plain, &Candidate::address);
+  if (candidate == candidates_.end() || candidate->datagrams < kSteady) return false;
   const bool is_new = holder_ != plain;
   holder_ = plain;
   heard_ = now;
+  candidates_.clear();
   return is_new;
+}
+
+void SenderGate::Discard(const asio::ip::address& sender) {
+  const asio::ip::address plain = Plain(sender);
+  std::erase_if(candidates_, [&](const Candidate& each) { return each.address == plain; });
 }
 
 }  // namespace furrow::server

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
@@ -14,11 +15,14 @@ namespace furrow::server {
 
 // Decides which sender may use a motion-capture port. Most foreign protocols neither authenticate
 // nor identify the sender, so two senders at once would mix into one performance. The first sender
-// with valid datagrams therefore holds the port until it has sent nothing for kRelease. Senders are
-// distinguished by address, not by port, because they may change ports at any time.
+// that sends steadily therefore holds the port until it has sent nothing for kRelease. A single
+// datagram from a forged address takes nothing from anybody. Senders are distinguished by address,
+// not by port, because they may change ports at any time.
 class SenderGate {
  public:
   static constexpr Time kRelease = std::chrono::seconds(3);
+  // Valid datagrams that make a sender hold the port.
+  static constexpr int kSteady = 8;
 
   // kOne: one sender at a time. kAllAllowed: all allowed senders at once, for wires that identify
   // their senders.
@@ -27,19 +31,35 @@ class SenderGate {
   // `allowed`: the addresses that may send; empty: any address, and the policy is then kOne.
   SenderGate(std::span<const asio::ip::address> allowed, Policy policy);
 
-  // True if a datagram from this address may be read.
-  [[nodiscard]] bool Admits(const asio::ip::address& sender, Time now) const;
-  // True if this sender would replace another one, whose state must be discarded first.
+  // Counts a datagram from this address. True if it may be read: its sender holds the port, or
+  // nobody does and no other sender has sent more.
+  [[nodiscard]] bool Admits(const asio::ip::address& sender, Time now);
+  // True if the datagrams before came from another sender, whose state must be discarded first.
   [[nodiscard]] bool IsSuccessor(const asio::ip::address& sender) const;
-  // Call after a valid datagram of an admitted sender, which then holds the port. True if it did
-  // not hold the port before. With kAllAllowed, nobody holds the port.
+  // Call after a valid datagram of an admitted sender. True if it holds the port from now on and
+  // did not before. With kAllAllowed, nobody holds the port.
   bool Hold(const asio::ip::address& sender, Time now);
+  // Call after an invalid datagram of an admitted sender, for example a port scan.
+  void Discard(const asio::ip::address& sender);
 
  private:
+  // A sender that sends while nobody holds the port.
+  struct Candidate {
+    asio::ip::address address;
+    int datagrams = 0;
+    Time last{0};
+  };
+  static constexpr std::size_t kMaxCandidates = 16;
+
+  Candidate& Count(const asio::ip::address& sender, Time now);
+  [[nodiscard]] bool IsHeld(Time now) const { return holder_ && now - heard_ <= kRelease; }
+
   std::vector<asio::ip::address> allowed_;
   bool exclusive_;
-  std::optional<asio::ip::address> holder_;
+  std::optional<asio::ip::address> holder_;  // also after its claim has ended
   Time heard_{0};
+  std::optional<asio::ip::address> read_;  // the sender of the last valid datagram
+  std::vector<Candidate> candidates_;      // in order of arrival
 };
 
 }  // namespace furrow::server

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "protocol/messages/limits.h"
+#include "server/session/peers/server_name.h"
 
 namespace furrow::server {
 namespace {
@@ -11,8 +12,6 @@ namespace {
 using protocol::DecodeStatus;
 using protocol::ErrorCode;
 using protocol::MessageKind;
-
-constexpr char kServerName[] = "furrowd " FURROW_VERSION;
 
 }  // namespace
 
@@ -30,8 +29,8 @@ void Dispatcher::Dispatch(Shard& shard, Peer& peer, std::span<const std::uint8_t
   }
 }
 
-// Counts a message that is not of this protocol. UDP senders get no answer: their address may be
-// forged, and an answer would turn the daemon into a reflector.
+// Counts a message that is not of this protocol. UDP senders get no answer: the message may be
+// forged, or damaged on its way.
 void Dispatcher::RejectEnvelope(Shard& shard, Peer& peer, const protocol::MessageView& view,
                                 DecodeStatus status) {
   parts_.metrics->Add(Counter::kMessagesMalformed);
@@ -85,7 +84,7 @@ void Dispatcher::DispatchVerified(Shard& shard, Peer& peer, const protocol::Mess
                                          protocol::Pong{in.ping.time_us, ToMicroseconds(now)});
       });
     case MessageKind::kPong:
-      return Decode(shard, peer, view, in.pong, [] {});  // only proves that the peer is alive
+      return Decode(shard, peer, view, in.pong, [&] { peer.consent.Answered(in.pong.time_us); });
     default: {
       // `peer` and `view` stay valid while the lock changes hands: only this thread removes the
       // peer or reuses the buffer of the message. Subjects may have left, so the handlers look them
@@ -111,7 +110,15 @@ void Dispatcher::DispatchExclusive(Shard& shard, Peer& peer, const protocol::Mes
     case MessageKind::kGoodbye:
       return Decode(shard, peer, view, in.goodbye,
                     [&] { parts_.publishers->OnGoodbye(peer, header, now); });
-    default: DispatchRequest(shard, peer, view, now);
+    default:
+      // A forged request must not make the daemon send much to an address. The sender repeats its
+      // request, and by then it has answered the challenge of the next tick.
+      if (peer.transport == Transport::kUdp && !peer.consent.Holds(now)) {
+        peer.consent.Want();
+        parts_.metrics->Add(Counter::kRepliesWithoutConsent);
+        return;
+      }
+      DispatchRequest(shard, peer, view, now);
   }
 }
 
@@ -158,21 +165,12 @@ void Dispatcher::Subscribe(Shard& shard, Peer& peer, const protocol::MessageView
   });
 }
 
+// A UDP peer has proved its address with this Hello or an earlier one (Reception), so the answer
+// has no token.
 void Dispatcher::OnHello(Peer& peer, const protocol::Header& header, const protocol::Hello& hello) {
-  protocol::Welcome welcome{kServerName, 0};
-  // The token proves that the sender receives what is sent to its address (SendCredit). Until then,
-  // every Welcome repeats the same token, so that a lost datagram does no harm.
-  if (peer.transport == Transport::kUdp) {
-    const bool proves = hello.token != 0 && hello.token == peer.token;
-    if (proves) peer.credit.Prove();
-    // A forged Hello must not turn on bundles for a client that cannot read them.
-    if (proves || !hello.bundles) peer.link->SetTakesBundles(hello.bundles);
-    if (!peer.credit.proven()) {
-      if (peer.token == 0) peer.token = parts_.make_token();
-      welcome.token = peer.token;
-    }
-  }
-  parts_.messages->SendReply(peer, MessageSender::ReplyHeader(header), welcome);
+  if (peer.transport == Transport::kUdp) peer.link->SetTakesBundles(hello.bundles);
+  parts_.messages->SendReply(peer, MessageSender::ReplyHeader(header),
+                             protocol::Welcome{kServerName, 0});
 }
 
 void Dispatcher::OnListSubjects(Peer& peer, const protocol::Header& header,

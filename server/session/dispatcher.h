@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <utility>
 
@@ -34,7 +33,6 @@ class Dispatcher {
     const SubjectRegistry* subjects = nullptr;
     MessageSender* messages = nullptr;  // used under the exclusive lock
     Metrics* metrics = nullptr;
-    std::function<std::uint64_t()> make_token;  // unpredictable and not 0
   };
   explicit Dispatcher(Parts parts) : parts_(std::move(parts)) {}
 

@@ -2,6 +2,8 @@
 #include "server/session/hub.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <chrono>
 #include <utility>
 #include <vector>
@@ -17,6 +19,11 @@ using protocol::ErrorCode;
 
 constexpr Time kUdpLease = std::chrono::microseconds(protocol::kUdpLeaseMicroseconds);
 
+AddressProof::Key MakeKey(const std::function<std::uint64_t()>& random) {
+  const std::array<std::uint64_t, 2> numbers = {random(), random()};
+  return std::bit_cast<AddressProof::Key>(numbers);
+}
+
 }  // namespace
 
 // The members point at each other, so their order in the class is the order of construction: what a
@@ -24,13 +31,18 @@ constexpr Time kUdpLease = std::chrono::microseconds(protocol::kUdpLeaseMicrosec
 // share the one exclusive context; each shard has a context of its own.
 Hub::Hub(Parts parts)
     : limits_(parts.limits),
+      session_(parts.session),
       metrics_(parts.metrics),
+      random_(std::move(parts.random)),
+      address_proof_(MakeKey(random_)),
       recording_(parts.recording),
       exclusive_context_(parts.session, metrics_, Link::kExclusive),
       definitions_(std::move(parts.rig), parts.character,
                    static_cast<std::size_t>(parts.limits.max_skeletons), std::move(parts.skeletons),
                    std::move(parts.shape_matcher)),
-      publishers_(limits_, &definitions_, &subjects_, &exclusive_context_.messages, metrics_),
+      subjects_(static_cast<std::size_t>(limits_.max_subjects)),
+      publishers_(limits_, &definitions_, &subjects_, &exclusive_context_.messages, random_,
+                  metrics_),
       subscribers_(limits_, &subjects_, parts.pictures, parts.settings,
                    /*all_drivers=*/recording_ != nullptr, &exclusive_context_, metrics_),
       router_({.publishers = &publishers_,
@@ -44,11 +56,10 @@ Hub::Hub(Parts parts)
                    .subscribers = &subscribers_,
                    .subjects = &subjects_,
                    .messages = &exclusive_context_.messages,
-                   .metrics = metrics_,
-                   .make_token = std::move(parts.make_token)}),
+                   .metrics = metrics_}),
       mocap_(limits_.idle_seconds, &shards_, &router_, metrics_) {}
 
-PeerId Hub::AddPeer(Transport transport, std::string name, Link* link, Time now, int shard) {
+PeerId Hub::AddPeer(Transport transport, PeerLabel name, Link* link, Time now, int shard) {
   // An address book of one shard changes under its shard lock alone, so a new peer stops nobody
   // else.
   const ShardLock lock(*this, shard);
@@ -63,8 +74,7 @@ void Hub::RemovePeer(PeerId id) {
   if (peer == nullptr) return;
   // The pointer stays valid while the exclusive lock is being taken, although the shard is unlocked
   // for a moment: only this thread removes peers of this shard.
-  // Only peers that take part in the session need the exclusive lock. Evicting one of many forged
-  // addresses must not stop the other shards.
+  // Only peers that take part in the session need the exclusive lock, which stops the other shards.
   if (peer->publishes || peer->num_subscriptions > 0) {
     const ExclusiveLock exclusive(*this, shard.index);
     subscribers_.RemovePeer(*peer);
@@ -73,13 +83,8 @@ void Hub::RemovePeer(PeerId id) {
   shard.peers.Remove(id);
 }
 
-void Hub::OnBytesReceived(PeerId id, std::size_t bytes, Time now) {
-  // Fragments count here and not in GatherMessage(), so that the credit of an address (SendCredit)
-  // covers every byte that it sent.
-  if (Peer* peer = shards_.Of(id).peers.Find(id); peer != nullptr) {
-    peer->credit.Received(bytes);
-    peer->last_heard = now;
-  }
+void Hub::OnFragment(PeerId id, Time now) {
+  if (Peer* peer = shards_.Of(id).peers.Find(id); peer != nullptr) peer->last_heard = now;
 }
 
 void Hub::OnMessage(PeerId id, std::span<const std::uint8_t> bytes, Time now) {
@@ -120,7 +125,8 @@ void Hub::RefuseConnection(Link* link) {
   Peer peer;  // never added: it only carries the link
   peer.link = link;
   shards_.at(0).context.messages.SendError(peer, {}, ErrorCode::kLimit,
-                                           "at most " + std::to_string(limits_.max_connections) +
+                                           "this address has its share of the " +
+                                               std::to_string(limits_.max_connections) +
                                                " connections; see limits.max_connections");
 }
 
@@ -138,15 +144,6 @@ bool Hub::IsIdle(PeerId id, Time now) {
                              now - peer->last_heard > FromSeconds(limits_.idle_seconds));
 }
 
-bool Hub::ShouldEvictBefore(PeerId a, PeerId b) {
-  // Pairs compare the first member first: false (takes no part) before true, then the older time.
-  const auto worth = [this](PeerId id) {
-    const Peer* peer = shards_.Of(id).peers.Find(id);
-    return std::pair(peer->publishes || peer->num_subscriptions > 0, peer->last_heard);
-  };
-  return worth(a) < worth(b);
-}
-
 void Hub::OnPicture(const FinishedPicture& picture) {
   const ExclusiveLock lock(*this, 0);
   if (!draining_) subscribers_.OnPicture(picture);
@@ -159,12 +156,13 @@ void Hub::Tick(Time now) {
   const ExclusiveLock lock(*this, 0);
   AgeSubjects(now);
   mocap_.ForgetRejected(now);
-  shards_.ForEachPeer([now](Peer& peer) { peer.stuck = peer.link->IsStuck(now); });
-  if (!draining_) subscribers_.fan_out().SendOwed(now);
   shards_.ForEachPeer([&](Peer& peer) {
-    dispatcher_.UpdateSubjectList(peer);
-    ExpireUdpLease(peer, now);
+    if (peer.transport == Transport::kUdp) RenewConsent(peer, now);
+    peer.stuck =
+        peer.link->IsStuck(now) || (peer.transport == Transport::kUdp && !peer.consent.Holds(now));
   });
+  if (!draining_) subscribers_.fan_out().SendOwed(now);
+  shards_.ForEachPeer([&](Peer& peer) { dispatcher_.UpdateSubjectList(peer); });
 }
 
 void Hub::AgeSubjects(Time now) {
@@ -194,15 +192,18 @@ void Hub::RemoveSubject(Subject& subject) {
   subjects_.Remove(subject.id);
 }
 
-// A UDP address must be heard from regularly: it has no connection that could close.
-void Hub::ExpireUdpLease(Peer& peer, Time now) {
-  if (peer.transport != Transport::kUdp || now - peer.last_heard < kUdpLease) return;
-  // Publishing needs no lease: silence ends a subject through Limits::loss_seconds and
-  // idle_seconds.
-  if (peer.num_subscriptions > 0) {
+// A UDP address has no connection that could close. Publishing needs no consent: silence ends a
+// subject through Limits::loss_seconds and idle_seconds.
+void Hub::RenewConsent(Peer& peer, Time now) {
+  if (peer.num_subscriptions > 0 && now - peer.consent.answered() >= kUdpLease) {
     subscribers_.RemovePeer(peer, protocol::GoodbyeReason::kTimedOut);
   }
-  peer.credit = {};  // the address must prove itself again
+  const bool needed = peer.num_subscriptions > 0 || peer.consent.wanted();
+  if (!needed || !peer.consent.ChallengeDue(now)) return;
+  // The wire's times are within 62 bits.
+  const auto number = static_cast<std::int64_t>(random_() >> 2);
+  peer.consent.Sent(number, now);
+  exclusive_context_.messages.SendChallenge(peer, number);
 }
 
 void Hub::Drain() {

@@ -22,6 +22,7 @@
 #include "server/session/delivery/publish_context.h"
 #include "server/session/dispatcher.h"
 #include "server/session/mocap_streams.h"
+#include "server/session/peers/address_proof.h"
 #include "server/session/recording_tap.h"
 #include "server/session/shards.h"
 #include "server/session/stream_router.h"
@@ -52,11 +53,15 @@ class Hub {
     PictureSource* pictures = nullptr;  // null: render nothing
     render::Settings settings;          // defaults for all pictures
     Metrics* metrics = nullptr;
-    std::function<std::uint64_t()> make_token;  // returns unpredictable numbers, never 0
-    RecordingTap* recording = nullptr;          // optional; outlives the hub
-    int shards = 1;                             // one per network thread
+    std::function<std::uint64_t()> random;  // returns unpredictable numbers, never 0
+    RecordingTap* recording = nullptr;      // optional; outlives the hub
+    int shards = 1;                         // one per network thread
   };
   explicit Hub(Parts parts);
+
+  // What a UDP server needs to meet addresses that are not peers yet. Safe on several threads.
+  [[nodiscard]] const AddressProof& address_proof() const { return address_proof_; }
+  [[nodiscard]] std::uint64_t session() const { return session_; }
 
   // Locks the calling thread's shard. The end of the outermost lock publishes the gathered poses
   // and sends the buffered messages. Nests.
@@ -77,8 +82,8 @@ class Hub {
   }
 
   // Called by the shard's thread, like all functions with a PeerId. `link` outlives the peer.
-  // `name` appears in the log.
-  PeerId AddPeer(Transport transport, std::string name, Link* link, Time now, int shard = 0);
+  // A UDP peer must have proved its address (Reception).
+  PeerId AddPeer(Transport transport, PeerLabel name, Link* link, Time now, int shard = 0);
   // Ends the peer's subscriptions and forgets the peer. Subjects that it publishes are not removed
   // at once: without poses they decay, then leave.
   void RemovePeer(PeerId id);
@@ -90,14 +95,10 @@ class Hub {
   // ends, so that many poses are solved together; `bytes` must stay valid until then. The output
   // and its order are those of OnMessage(). Requires the shard's lock.
   void GatherMessage(PeerId id, std::span<const std::uint8_t> bytes, Time now);
-  // UDP: records that `bytes` bytes arrived, fragments included, so that as many may be sent to an
-  // address that is not proven yet. Requires the shard's lock.
-  void OnBytesReceived(PeerId id, std::size_t bytes, Time now);
+  // UDP: records that a part of a message arrived. Requires the shard's lock.
+  void OnFragment(PeerId id, Time now);
   // True if the peer may be forgotten: no subscriptions, and silent for Limits::idle_seconds.
   [[nodiscard]] bool IsIdle(PeerId id, Time now);
-  // True if peer `a` is the better one to evict: peers that neither publish nor subscribe first,
-  // then the longest silent. Both belong to one shard. Requires its lock.
-  [[nodiscard]] bool ShouldEvictBefore(PeerId a, PeerId b);
   // TCP: answers a frame with an invalid length. The caller closes the connection afterwards.
   void OnBadFrame(PeerId id);
   // TCP: answers a connection beyond Limits::max_connections, which never becomes a peer.
@@ -149,11 +150,14 @@ class Hub {
  private:
   void AgeSubjects(Time now);
   void RemoveSubject(Subject& subject);
-  void ExpireUdpLease(Peer& peer, Time now);
+  void RenewConsent(Peer& peer, Time now);
   void RepublishWeights(Subject& subject, Time now);
 
   const Limits limits_;
+  const std::uint64_t session_;
   Metrics* const metrics_;
+  const std::function<std::uint64_t()> random_;
+  const AddressProof address_proof_;
   RecordingTap* const recording_;
   PublishContext exclusive_context_;
   StreamDefinitions definitions_;

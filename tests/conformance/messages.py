@@ -96,7 +96,7 @@ def goodbye(t):
 
 def error(t):
     code = t.scalar(0, "H")
-    require(1 <= code <= 13, "unknown error code")
+    require(1 <= code <= 14, "unknown error code")
     return {"code": code, "message": t.text(1, limit=1024)}
 
 

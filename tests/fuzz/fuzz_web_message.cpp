@@ -38,7 +38,7 @@ void Feed(std::span<const std::uint8_t> bytes) {
   parts.rig = std::make_shared<const wrinkle::Rig>();
   parts.pictures = &pictures;
   parts.metrics = &metrics;
-  parts.make_token = [] { return 1; };
+  parts.random = [] { return 1; };
   Hub hub(std::move(parts));
   Time now = FromSeconds(1);
   const PeerId peer = hub.AddPeer(Transport::kWeb, "fuzz", &link, now);

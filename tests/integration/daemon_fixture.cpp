@@ -146,10 +146,21 @@ std::vector<std::vector<float>> Solve(const motion::Clip& clip, const std::strin
 }
 
 void Offer(RawClient& client, const protocol::SkeletonOffer& offer, std::uint16_t stream) {
+  ASSERT_TRUE(client.Introduce());
   client.Send(offer, stream);
-  const auto reply = client.Await<protocol::SkeletonReply>();
-  ASSERT_TRUE(reply.has_value());
-  ASSERT_EQ(reply->status, protocol::SkeletonStatus::kAccepted) << reply->message;
+  while (auto received = client.Next()) {
+    protocol::ErrorMessage error;
+    if (protocol::Decode(received->view, error) == protocol::DecodeStatus::kOk) {
+      // The subject still belongs to the sender before, until the daemon notices that it is silent.
+      ASSERT_EQ(error.code, protocol::ErrorCode::kSubjectTaken) << error.message;
+      client.Send(offer, stream);
+    }
+    protocol::SkeletonReply reply;
+    if (protocol::Decode(received->view, reply) != protocol::DecodeStatus::kOk) continue;
+    ASSERT_EQ(reply.status, protocol::SkeletonStatus::kAccepted) << reply.message;
+    return;
+  }
+  FAIL() << "no answer to the offer";
 }
 
 std::optional<protocol::SubscribeReply> Watch(RawClient& client,

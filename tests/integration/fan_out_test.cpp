@@ -93,7 +93,8 @@ TEST(FanOut, WeightsArriveAtEverySubscriberInFewerDatagrams) {
   }
   EXPECT_EQ(daemon.Count(server::Counter::kWeightsSent),
             std::uint64_t{kSubscribers * kSubjects * kFrames});
-  EXPECT_EQ(watchers[0].datagrams() - before, std::uint64_t{kSubjects * kFrames});
+  EXPECT_GE(watchers[0].datagrams() - before, std::uint64_t{kSubjects * kFrames});
+  EXPECT_LE(watchers[0].datagrams() - before, kSubjects * kFrames + watchers[0].challenges());
   // While the first pose goes to 64 subscribers, the others arrive, so some messages share
   // datagrams.
   EXPECT_GT(daemon.Count(server::Counter::kMessagesBundled), 0u);

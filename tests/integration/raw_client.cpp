@@ -52,17 +52,25 @@ long RawClient::ReadSome(std::span<std::uint8_t> buffer) {
 }
 
 std::optional<Received> RawClient::Next() {
-  while (ready_.empty()) {
-    if (!Fill()) return std::nullopt;
+  for (;;) {
+    while (ready_.empty()) {
+      if (!Fill()) return std::nullopt;
+    }
+    Received received;
+    received.bytes = std::move(ready_.front());
+    ready_.pop_front();
+    if (protocol::OpenMessage(received.bytes, received.view, protocol::kMaxReplyBytes) !=
+        protocol::DecodeStatus::kOk) {
+      return std::nullopt;
+    }
+    protocol::Ping challenge;
+    if (received.view.kind != protocol::MessageKind::kPing ||
+        protocol::Decode(received.view, challenge) != protocol::DecodeStatus::kOk) {
+      return received;
+    }
+    ++challenges_;
+    Send(protocol::Pong{challenge.time_us, 0});
   }
-  Received received;
-  received.bytes = std::move(ready_.front());
-  ready_.pop_front();
-  if (protocol::OpenMessage(received.bytes, received.view, protocol::kMaxReplyBytes) !=
-      protocol::DecodeStatus::kOk) {
-    return std::nullopt;
-  }
-  return received;
 }
 
 bool RawClient::AwaitClose() {
@@ -141,7 +149,7 @@ bool UdpClient::Prove(bool bundles) {
   if (!welcome) return false;
   Send(protocol::Hello{"test", welcome->token, bundles}, 0, 2);
   const auto proven = Await<protocol::Welcome>();
-  return proven && proven->token == 0;
+  return proven_ = proven && proven->token == 0;
 }
 
 }  // namespace furrow::testing_net

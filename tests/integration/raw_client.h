@@ -39,7 +39,8 @@ class RawClient {
   // Sends raw bytes: a datagram, or a part of a TCP stream.
   void SendRaw(std::span<const std::uint8_t> bytes);
 
-  // The next message of any kind; nullopt after the peer has closed or the timeout.
+  // The next message of any kind but challenges, which it answers; nullopt after the peer has
+  // closed or the timeout.
   std::optional<Received> Next();
   // The next message of this kind. Others before it are kept in `skipped`.
   template <class Message>
@@ -54,10 +55,14 @@ class RawClient {
     }
     return std::nullopt;
   }
+  // Does what the daemon asks of a client before anything else. False: the daemon did not reply.
+  virtual bool Introduce() { return true; }
   // Reads until the peer closes. False: timeout.
   bool AwaitClose();
   [[nodiscard]] std::uint16_t local_port() const;
   [[nodiscard]] int socket() const { return socket_; }
+  // That Next() has answered so far.
+  [[nodiscard]] std::uint64_t challenges() const { return challenges_; }
 
   std::uint64_t session = 0x5E5510;
   std::vector<Received> skipped;
@@ -73,6 +78,7 @@ class RawClient {
   std::deque<std::vector<std::uint8_t>> ready_;
 
  private:
+  std::uint64_t challenges_ = 0;
   protocol::Encoder encoder_;
   std::vector<std::uint8_t> out_;
 };
@@ -94,6 +100,7 @@ class UdpClient : public RawClient {
   // Proves the address with Hello, Welcome, Hello. False: the daemon did not reply. `bundles`: also
   // accepts bundles; otherwise a bundle fails to decode.
   bool Prove(bool bundles = false);
+  bool Introduce() override { return proven_ || Prove(); }
   // That came so far.
   [[nodiscard]] std::uint64_t datagrams() const { return datagrams_; }
 
@@ -102,6 +109,7 @@ class UdpClient : public RawClient {
   bool Fill() override;
   protocol::Reassembler reassembler_;
   bool bundles_ = false;
+  bool proven_ = false;
   std::uint64_t datagrams_ = 0;
   std::uint32_t message_id_ = 0;
 };

@@ -59,7 +59,7 @@ class WebFailure : public testing::Test {
     Hub::Parts parts;
     parts.rig = std::make_shared<const wrinkle::Rig>();
     parts.metrics = &metrics;
-    parts.make_token = [] { return 1; };
+    parts.random = [] { return 1; };
     hub = std::make_unique<Hub>(std::move(parts));
     auto started = server::HttpServer::Start(
         {.config = {.port = 0},

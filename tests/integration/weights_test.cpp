@@ -88,6 +88,7 @@ TEST(Weights, ARestartedSenderRestartsTheSubject) {
     TcpClient viewer(daemon.ready().tcp);
     sender.session = session;
     PlayAndCompare(sender, viewer, clip, expected, 1e-5, {});
+    sender.Send(protocol::Goodbye{}, 1);
   }
   EXPECT_EQ(daemon.Count(server::Counter::kSubjectsRestarted), 2u);
 }

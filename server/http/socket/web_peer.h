@@ -22,7 +22,7 @@ class WebPeer {
 
   // Adds the peer to the hub. `wake` is called on the hub's thread when the outbox is no longer
   // empty or the peer is overrun; it must post to the web thread.
-  WebPeer(PostToHub post_to_hub, std::string name, std::function<void()> wake);
+  WebPeer(PostToHub post_to_hub, PeerLabel label, std::function<void()> wake);
   ~WebPeer();  // removes the peer from the hub
   WebPeer(const WebPeer&) = delete;
   WebPeer& operator=(const WebPeer&) = delete;

@@ -15,6 +15,7 @@
 #include <boost/beast/websocket/stream.hpp>
 
 #include "protocol/codec/codec.h"
+#include "server/core/network_address.h"
 #include "server/http/socket/web_message.h"
 #include "server/http/socket/web_peer.h"
 
@@ -47,7 +48,7 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
     // Made before the peer, so that the writer ends and the hub forgets the peer whatever happens
     // below.
     const AbortOnExit abort_on_exit{this};  // also after an exception
-    peer_.emplace(context_->post_to_hub, name_,
+    peer_.emplace(context_->post_to_hub, label_,
                   [post_to_web = context_->post_to_web, wake] { post_to_web(wake); });
     // The writer holds the session, which therefore outlives this function until the writer has
     // seen closed_.
@@ -73,7 +74,8 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
     beast::error_code ignored;
     auto& tcp = beast::get_lowest_layer(socket_);
     const auto remote = tcp.socket().remote_endpoint(ignored);
-    name_ = "web " + remote.address().to_string() + " port " + std::to_string(remote.port());
+    const std::string host = remote.address().to_string();
+    label_ = {"web " + host + " port " + std::to_string(remote.port()), HostOf(host)};
     // Weights are small messages that must not wait for an acknowledgement (Nagle's algorithm).
     tcp.socket().set_option(net::ip::tcp::no_delay(true), ignored);
     tcp.expires_never();  // the WebSocket has its own timeouts
@@ -202,7 +204,7 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
   net::steady_timer wake_;
   net::steady_timer write_watch_;
   WebContext* context_;
-  std::string name_;
+  PeerLabel label_ = "web";
   std::optional<WebPeer> peer_;  // while the connection is open
   bool closed_ = false;
   bool closing_ = false;  // the close frame is being sent

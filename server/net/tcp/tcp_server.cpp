@@ -11,6 +11,7 @@
 #include <spdlog/spdlog.h>
 
 #include "protocol/framing/tcp_framing.h"
+#include "server/core/network_address.h"
 #include "server/net/await_tuple.h"
 #include "server/net/critical_task.h"
 
@@ -48,7 +49,12 @@ class RefusalLink : public Link {
 }  // namespace
 
 TcpServer::TcpServer(asio::io_context& io, const Limits& limits, Hub* hub, Metrics* metrics)
-    : io_(io), acceptor_(io), limits_(limits), hub_(hub), metrics_(metrics) {}
+    : io_(io),
+      acceptor_(io),
+      limits_(limits),
+      hub_(hub),
+      metrics_(metrics),
+      shares_(static_cast<std::size_t>(limits.max_connections)) {}
 
 Status TcpServer::Open(const tcp::endpoint& endpoint) {
   asio::error_code error;
@@ -81,7 +87,11 @@ asio::awaitable<void> TcpServer::Accept() {
       spdlog::warn("cannot accept a connection: {}", error.message());
       asio::steady_timer pause(io_, kAcceptPause);
       co_await pause.async_wait(kAwaitTuple);
-    } else if (sessions_.size() >= static_cast<std::size_t>(limits_.max_connections)) {
+      continue;
+    }
+    const tcp::endpoint client = socket.remote_endpoint(error);
+    const std::string host = error ? std::string() : HostOf(client.address().to_string());
+    if (!shares_.Enter(host)) {
       Refuse(std::move(socket));
     } else {
       metrics_->Add(Counter::kConnectionsAccepted);
@@ -89,7 +99,9 @@ asio::awaitable<void> TcpServer::Accept() {
           std::move(socket), limits_, hub_, metrics_,
           // Runs on this thread, in Close(). The server outlives its sessions: the daemon destroys
           // it after the event loop has ended.
-          [this](const std::shared_ptr<TcpSession>& closed) { sessions_.erase(closed); });
+          [this, host](const std::shared_ptr<TcpSession>& closed) {
+            if (sessions_.erase(closed) > 0) shares_.Leave(host);
+          });
       sessions_.insert(session);
       session->Start();
     }

@@ -10,6 +10,7 @@
 #include <asio/ip/tcp.hpp>
 
 #include "base/status.h"
+#include "server/core/fair_share.h"
 #include "server/core/limits.h"
 #include "server/core/metrics.h"
 #include "server/net/tcp/tcp_session.h"
@@ -17,7 +18,8 @@
 
 namespace furrow::server {
 
-// Accepts TCP connections, at most Limits::max_connections at a time, and owns their sessions.
+// Accepts TCP connections, at most Limits::max_connections at a time, shared fairly between hosts,
+// and owns their sessions.
 class TcpServer {
  public:
   // `io`, `hub` and `metrics` must outlive the server. All functions run on the thread of `io`.
@@ -45,6 +47,7 @@ class TcpServer {
   const Limits limits_;
   Hub* const hub_;
   Metrics* const metrics_;
+  FairShare shares_;  // of the sessions
   std::unordered_set<std::shared_ptr<TcpSession>> sessions_;
 };
 

@@ -15,6 +15,7 @@
 
 #include "protocol/framing/tcp_framing.h"
 #include "protocol/messages/limits.h"
+#include "server/core/network_address.h"
 #include "server/net/await_tuple.h"
 #include "server/net/clock.h"
 
@@ -33,12 +34,13 @@ constexpr std::size_t kMaxReplies = 1024;
 constexpr Time kStuckAfter = std::chrono::milliseconds(100);
 constexpr auto kWatchInterval = std::chrono::milliseconds(500);
 
-// The peer's name in the log: "tcp 127.0.0.1 port 50112".
-std::string NameOf(const asio::ip::tcp::socket& socket) {
+// The text is "tcp 127.0.0.1 port 50112".
+PeerLabel NameOf(const asio::ip::tcp::socket& socket) {
   asio::error_code error;
   const auto endpoint = socket.remote_endpoint(error);
   if (error) return "tcp, disconnected";
-  return "tcp " + endpoint.address().to_string() + " port " + std::to_string(endpoint.port());
+  const std::string host = endpoint.address().to_string();
+  return {"tcp " + host + " port " + std::to_string(endpoint.port()), HostOf(host)};
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <new>
 #include <string>
 
 #include <asio/post.hpp>
@@ -11,6 +12,7 @@
 #include <sys/socket.h>
 
 #include "protocol/framing/envelope.h"
+#include "server/core/network_address.h"
 #include "server/net/await_tuple.h"
 #include "server/net/clock.h"
 #include "server/net/critical_task.h"
@@ -24,7 +26,6 @@ using asio::ip::udp;
 constexpr int kReceiveBufferBytes = 4 * 1024 * 1024;
 // Batches read before the event loop may run other work.
 constexpr int kMaxBatches = 8;
-constexpr int kEvictionCandidates = 16;
 
 // Sets SO_REUSEPORT, for which Asio has no option.
 asio::error_code AllowSharing(int socket) {
@@ -39,7 +40,8 @@ asio::error_code AllowSharing(int socket) {
 // them. Sending never blocks; if the socket buffer is full, datagrams are lost.
 class UdpServer::UdpPeer : public Link {
  public:
-  UdpPeer(UdpServer* server, udp::endpoint endpoint) : server_(server), endpoint_(endpoint) {}
+  UdpPeer(UdpServer* server, udp::endpoint endpoint, std::uint64_t peer_session)
+      : session(peer_session), server_(server), endpoint_(endpoint) {}
 
   void SendReply(std::span<const std::uint8_t> message) override {
     Send(message, server_->sender_);
@@ -58,7 +60,10 @@ class UdpServer::UdpPeer : public Link {
   void SetTakesBundles(bool takes) override { takes_bundles_ = takes; }
   void DropFrames(std::uint64_t) override {}  // nothing is queued
 
+  [[nodiscard]] std::string host() const { return HostOf(endpoint_.address().to_string()); }
+
   PeerId id = 0;
+  const std::uint64_t session;  // in all messages of the peer
 
  private:
   void Send(std::span<const std::uint8_t> message, UdpSender& sender) {
@@ -88,7 +93,9 @@ UdpServer::UdpServer(asio::io_context& io, const Limits& limits, Hub* hub, Metri
       recording_(recording),
       shard_(shard),
       // Enough for a server without Join(), as in tests.
-      by_shard_(static_cast<std::size_t>(shard) + 1, this) {
+      by_shard_(static_cast<std::size_t>(shard) + 1, this),
+      reception_(hub->session(), &hub->address_proof(), metrics),
+      shares_(static_cast<std::size_t>(limits.max_udp_peers)) {
   hub_->SetBufferedSender(shard_, this);
 }
 
@@ -153,7 +160,13 @@ asio::awaitable<void> UdpServer::Read() {
       // Held for a whole batch: its end solves the poses together and flushes the messages. Not
       // held across co_await, which would let other coroutines of this thread run inside it.
       const Hub::ShardLock lock(*hub_, shard_);
-      for (std::size_t i = 0; i < count; ++i) OnDatagram(batch_.bytes(i), batch_.sender(i), now);
+      for (std::size_t i = 0; i < count; ++i) {
+        try {
+          OnDatagram(batch_.bytes(i), batch_.sender(i), now);
+        } catch (const std::bad_alloc&) {
+          metrics_->Add(Counter::kAllocationsFailed);  // it costs one datagram, not the daemon
+        }
+      }
       is_drained = count < UdpBatch::kSize;
     }
     // Lets timers and TCP run while datagrams keep arriving.
@@ -178,10 +191,12 @@ void UdpServer::OnDatagram(std::span<const std::uint8_t> bytes, const udp::endpo
     metrics_->Add(Counter::kDatagramsMalformed);
     return;
   }
-  if (recording_ != nullptr) recording_->OnDatagram(AddressOf(sender), bytes, now);
-  // After the envelope: a random datagram must not create state.
-  UdpPeer* peer = FindOrAdd(sender, now);
-  hub_->OnBytesReceived(peer->id, bytes.size(), now);
+  const Address address = AddressOf(sender);
+  const std::uint64_t session = envelope.header.session;
+  UdpPeer* peer = Find(address, session);
+  if (peer == nullptr) peer = Receive(address, sender, session, bytes, now);
+  if (peer == nullptr) return;
+  if (recording_ != nullptr) recording_->OnDatagram(address, bytes, now);
   std::span<const std::uint8_t> message;
   switch (reassembler_.Push(peer->id, bytes, ToMicroseconds(now), message)) {
     // The batch keeps whole datagrams until the lock ends, so poses may wait. The reassembler
@@ -189,7 +204,7 @@ void UdpServer::OnDatagram(std::span<const std::uint8_t> bytes, const udp::endpo
     case protocol::FragmentStatus::kWhole: hub_->GatherMessage(peer->id, message, now); break;
     case protocol::FragmentStatus::kComplete: hub_->OnMessage(peer->id, message, now); break;
     case protocol::FragmentStatus::kPending:
-    case protocol::FragmentStatus::kDuplicate: break;
+    case protocol::FragmentStatus::kDuplicate: hub_->OnFragment(peer->id, now); break;
     case protocol::FragmentStatus::kMalformed: metrics_->Add(Counter::kFragmentsMalformed); break;
     case protocol::FragmentStatus::kOverLimit: metrics_->Add(Counter::kFragmentsRefused); break;
   }
@@ -206,32 +221,54 @@ UdpServer::Address UdpServer::AddressOf(const udp::endpoint& sender) {
   return address;
 }
 
-UdpServer::UdpPeer* UdpServer::FindOrAdd(const udp::endpoint& sender, Time now) {
-  const Address address = AddressOf(sender);
-  auto found = peers_.find(address);
-  if (found != peers_.end()) return found->second.get();
-  // A full table evicts instead of refusing: forged addresses must not lock real ones out for
-  // idle_seconds.
-  if (peers_.size() >= static_cast<std::size_t>(limits_.max_udp_peers)) {
-    // Compares only a few peers, so that a flood of forged addresses stays cheap.
-    // The first entries of a hash table are in no particular order, so they are a sample.
-    auto victim = peers_.begin();
-    int candidates = kEvictionCandidates;
-    for (auto it = peers_.begin(); it != peers_.end() && candidates-- > 0; ++it) {
-      if (hub_->ShouldEvictBefore(it->second->id, victim->second->id)) victim = it;
-    }
-    // The hub first: it may use the Link until then. Messages that the sender still holds have
-    // their own copy of the address.
-    hub_->RemovePeer(victim->second->id);
-    reassembler_.ForgetPeer(victim->second->id);
-    peers_.erase(victim);
+UdpServer::UdpPeer* UdpServer::Find(const Address& address, std::uint64_t session) {
+  const auto found = peers_.find(address);
+  return found != peers_.end() && found->second->session == session ? found->second.get() : nullptr;
+}
+
+// Meets a stranger. Returns the new peer if the datagram proves the address, null otherwise.
+UdpServer::UdpPeer* UdpServer::Receive(const Address& address, const udp::endpoint& sender,
+                                       std::uint64_t session, std::span<const std::uint8_t> bytes,
+                                       Time now) {
+  if (reception_.Admits(address, bytes, now)) return Add(address, sender, session, now);
+  if (const auto reply = reception_.reply(); !reply.empty()) {
+    // Each stranger has a key of its own, which no peer has.
+    constexpr std::uint64_t kStranger = std::uint64_t{1} << 63;
+    const auto datagram = sender_.Prepare();
+    sender_.Commit(kStranger | num_strangers_++, sender,
+                   protocol::WriteDatagram(reply, 0, 0, datagram));
+  }
+  return nullptr;
+}
+
+UdpServer::UdpPeer* UdpServer::Add(const Address& address, const udp::endpoint& sender,
+                                   std::uint64_t session, Time now) {
+  // Another program has taken over the address, or the same one after a restart.
+  if (const auto former = peers_.find(address); former != peers_.end()) {
+    Forget(*former->second);
+    peers_.erase(former);
+  }
+  const std::string host = HostOf(sender.address().to_string());
+  if (!shares_.Enter(host)) {
+    metrics_->Add(Counter::kConnectionsRefused);
+    return nullptr;
   }
   // On the heap, because the hub keeps its address while the map grows.
-  auto peer = std::make_unique<UdpPeer>(this, sender);
-  const std::string name =
-      "udp " + sender.address().to_string() + " port " + std::to_string(sender.port());
-  peer->id = hub_->AddPeer(Transport::kUdp, name, peer.get(), now, shard_);
+  auto peer = std::make_unique<UdpPeer>(this, sender, session);
+  peer->id = hub_->AddPeer(
+      Transport::kUdp,
+      PeerLabel("udp " + sender.address().to_string() + " port " + std::to_string(sender.port()),
+                host),
+      peer.get(), now, shard_);
   return peers_.emplace(address, std::move(peer)).first->second.get();
+}
+
+// The hub first: it may use the Link until then. Messages that the sender still holds have their
+// own copy of the address.
+void UdpServer::Forget(const UdpPeer& peer) {
+  hub_->RemovePeer(peer.id);
+  reassembler_.ForgetPeer(peer.id);
+  shares_.Leave(peer.host());
 }
 
 void UdpServer::Expire(Time now) {
@@ -239,10 +276,8 @@ void UdpServer::Expire(Time now) {
   const Hub::ShardLock lock(*hub_, shard_);
   metrics_->Add(Counter::kFragmentsExpired, reassembler_.Expire(ToMicroseconds(now)));
   std::erase_if(peers_, [&](const auto& entry) {
-    const PeerId id = entry.second->id;
-    if (!hub_->IsIdle(id, now)) return false;
-    hub_->RemovePeer(id);
-    reassembler_.ForgetPeer(id);
+    if (!hub_->IsIdle(entry.second->id, now)) return false;
+    Forget(*entry.second);
     return true;
   });
 }

@@ -16,22 +16,25 @@
 
 #include "base/status.h"
 #include "protocol/framing/fragment.h"
+#include "server/core/fair_share.h"
 #include "server/core/limits.h"
 #include "server/core/metrics.h"
 #include "server/net/udp/udp_batch.h"
 #include "server/net/udp/udp_sender.h"
 #include "server/session/hub.h"
+#include "server/session/peers/reception.h"
 
 namespace furrow::server {
 
 // The UDP socket of one shard: receives and sends datagrams in batches, reassembles fragments, and
 // keeps one peer per address.
 //
-// An address becomes a peer only after a datagram with a valid envelope, so an invalid datagram
-// costs only a check of its first 32 bytes. At most Limits::max_udp_peers peers are remembered.
+// An address becomes a peer when it has proved that it receives what is sent to it (Reception). A
+// peer has one session number, which it alone knows: datagrams with another one are a stranger's.
+// At most Limits::max_udp_peers peers are remembered, shared fairly between hosts.
 class UdpServer : public BufferedSender {
  public:
-  // `recording`: optional; receives every datagram with a valid envelope.
+  // `recording`: optional; receives every datagram of a peer.
   UdpServer(asio::io_context& io, const Limits& limits, Hub* hub, Metrics* metrics,
             RecordingTap* recording = nullptr, int shard = 0);
   ~UdpServer() override;
@@ -65,7 +68,7 @@ class UdpServer : public BufferedSender {
 
  private:
   class UdpPeer;
-  using Address = std::array<std::uint8_t, 18>;  // IPv6 (or mapped IPv4) and port
+  using Address = UdpAddress;
   struct AddressHash {
     std::size_t operator()(const Address& address) const {
       return std::hash<std::string_view>()(
@@ -77,7 +80,12 @@ class UdpServer : public BufferedSender {
   void OnDatagram(std::span<const std::uint8_t> bytes, const asio::ip::udp::endpoint& sender,
                   Time now);
   static Address AddressOf(const asio::ip::udp::endpoint& sender);
-  UdpPeer* FindOrAdd(const asio::ip::udp::endpoint& sender, Time now);
+  UdpPeer* Find(const Address& address, std::uint64_t session);
+  UdpPeer* Receive(const Address& address, const asio::ip::udp::endpoint& sender,
+                   std::uint64_t session, std::span<const std::uint8_t> bytes, Time now);
+  UdpPeer* Add(const Address& address, const asio::ip::udp::endpoint& sender, std::uint64_t session,
+               Time now);
+  void Forget(const UdpPeer& peer);
 
   asio::io_context& io_;
   asio::ip::udp::socket socket_;
@@ -89,6 +97,9 @@ class UdpServer : public BufferedSender {
   std::vector<UdpServer*> by_shard_;
   UdpBatch batch_;
   UdpSender sender_;
+  Reception reception_;
+  FairShare shares_;                 // of the peers
+  std::uint64_t num_strangers_ = 0;  // that were answered
   protocol::Reassembler reassembler_;
   std::unordered_map<Address, std::unique_ptr<UdpPeer>, AddressHash> peers_;
 };

@@ -14,8 +14,7 @@
 namespace furrow::server {
 
 // Encodes messages and sends them to peers. It has one encoder and one buffer, so two threads must
-// not share a sender. Every message carries the daemon's session number. Messages that exceed the
-// credit of an unproven UDP address are dropped and counted.
+// not share a sender. Every message carries the daemon's session number.
 class MessageSender {
  public:
   // `session`: of the daemon. `metrics`: not null; outlives this object. `shard`: of the calling
@@ -24,9 +23,20 @@ class MessageSender {
       : session_(session), metrics_(metrics), shard_(shard) {}
 
   // Sends a reply. `header`: see ReplyHeader(); its session number is replaced by the daemon's.
+  // Replies to a UDP peer that exceed its consent are dropped and counted.
   template <class Message>
   void SendReply(Peer& peer, protocol::Header header, const Message& message) {
-    if (!Encode(peer, header, message)) return;
+    Encode(header, message);
+    if (peer.transport == Transport::kUdp && !peer.consent.Spend(buffer_.size())) {
+      metrics_->Add(Counter::kRepliesWithoutConsent);
+      return;
+    }
+    peer.link->SendReply(buffer_);
+  }
+  // Sends a UDP peer a challenge (Consent), which its replies do not use up.
+  void SendChallenge(Peer& peer, std::int64_t number) {
+    protocol::Header header;
+    Encode(header, protocol::Ping{number});
     peer.link->SendReply(buffer_);
   }
   // Sends one frame of the subscription `key`, counts it as `sent`, and counts the frames that it
@@ -34,7 +44,7 @@ class MessageSender {
   template <class Message>
   std::uint64_t SendFrame(Peer& peer, std::uint64_t key, protocol::Header header,
                           const Message& message, Counter sent, Counter dropped, std::size_t keep) {
-    if (!Encode(peer, header, message)) return 0;
+    Encode(header, message);
     return Push(peer, key, sent, dropped, keep);
   }
   // Sends one frame as SendFrame() does, from a FlatBuffers payload that is already encoded.
@@ -43,7 +53,7 @@ class MessageSender {
                                  Counter dropped, std::size_t keep) {
     header.session = session_;
     protocol::WriteMessage(header, payload, buffer_);
-    return SpendCredit(peer) ? Push(peer, key, sent, dropped, keep) : 0;
+    return Push(peer, key, sent, dropped, keep);
   }
   // Encodes a message without an addressee into `out`, envelope included.
   template <class Message>
@@ -72,10 +82,9 @@ class MessageSender {
 
  private:
   template <class Message>
-  bool Encode(Peer& peer, protocol::Header& header, const Message& message) {
+  void Encode(protocol::Header& header, const Message& message) {
     header.session = session_;
     encoder_.Encode(header, message, buffer_);
-    return SpendCredit(peer);
   }
   std::uint64_t Push(Peer& peer, std::uint64_t key, Counter sent, Counter dropped,
                      std::size_t keep) {
@@ -83,11 +92,6 @@ class MessageSender {
     const auto count = static_cast<std::uint64_t>(peer.link->SendFrame(key, buffer_, keep, shard_));
     metrics_->Add(dropped, count);
     return count;
-  }
-  bool SpendCredit(Peer& peer) {
-    if (peer.transport != Transport::kUdp || peer.credit.Spend(buffer_.size())) return true;
-    metrics_->Add(Counter::kDatagramsUnproven);
-    return false;
   }
 
   std::uint64_t session_;

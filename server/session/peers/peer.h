@@ -7,11 +7,12 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "protocol/messages/messages.h"
 #include "server/core/time.h"
 #include "server/core/token_bucket.h"
-#include "server/session/peers/send_credit.h"
+#include "server/session/peers/consent.h"
 #include "server/session/peers/skeleton_request_limiter.h"
 
 namespace furrow::server {
@@ -50,19 +51,30 @@ class Link {
   [[nodiscard]] virtual bool IsStuck(Time /*now*/) const { return false; }
 };
 
-// The other end of a connection, or a UDP address.
+// The name of a peer in the log, and the host that it counts to in fair shares.
+struct PeerLabel {
+  PeerLabel(const char* name) : text(name) {}  // NOLINT: implicit, for peers without a host
+  PeerLabel(std::string name, std::string address = {})  // NOLINT: implicit
+      : text(std::move(name)), host(std::move(address)) {}
+
+  std::string text;  // for the log: "udp 127.0.0.1 port 50112"
+  std::string host;  // the address without the port; empty: this program itself
+};
+
+// The other end of a connection, or a proven UDP address.
 struct Peer {
   PeerId id = 0;
   Transport transport = Transport::kTcp;
-  std::string name;              // for the log: "udp 127.0.0.1 port 50112"
+  std::string name;              // PeerLabel::text
   Link* link = nullptr;          // not null; outlives the peer
   TokenBucket bucket{1.0, 1.0};  // limits incoming messages
-  SendCredit credit;             // UDP: bytes that may be sent before the address is proven
-  std::uint64_t token = 0;       // UDP: Hello must return it to prove the address; 0: none sent
+  std::string host;              // PeerLabel::host
+  Consent consent;               // UDP: whether the address still wants what it is sent
   Time last_heard{0};
   SkeletonRequestLimiter skeleton_requests;
   int num_subscriptions = 0;
-  bool stuck = false;                            // Link::IsStuck() at the last tick
+  // At the last tick: the peer has stopped reading (Link::IsStuck()), or its consent has expired.
+  bool stuck = false;
   bool publishes = false;                        // the hub has accepted an offer of this peer
   std::uint16_t last_subscription = 0;           // the newest subscription id
   std::optional<protocol::Header> list_request;  // set while the peer follows the subject list

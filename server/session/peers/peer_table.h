@@ -23,14 +23,16 @@ class PeerTable {
   [[nodiscard]] static std::size_t TableOf(PeerId id, std::size_t tables) { return id % tables; }
 
   // Adds a peer with the next id. `link` must outlive the peer.
-  Peer& Add(Transport transport, std::string name, Link* link, TokenBucket bucket, Time now) {
+  Peer& Add(Transport transport, PeerLabel name, Link* link, TokenBucket bucket, Time now) {
     auto peer = std::make_unique<Peer>();
     peer->id = std::exchange(next_id_, next_id_ + step_);
     peer->transport = transport;
-    peer->name = std::move(name);
+    peer->name = std::move(name.text);
+    peer->host = std::move(name.host);
     peer->link = link;
     peer->bucket = bucket;
     peer->last_heard = now;
+    peer->consent.Begin(now);
     Peer& added = *peer;
     peers_.emplace(added.id, std::move(peer));
     return added;

@@ -17,18 +17,25 @@ namespace {
 // is.
 constexpr Time kDecayInterval = FromSeconds(1.0 / 60.0);
 
+// True if the peer chose its session number at random. Foreign wires and recordings have none.
+bool HasSecretSession(const Peer& peer) {
+  return peer.transport == Transport::kUdp || peer.transport == Transport::kTcp;
+}
+
 }  // namespace
 
 Publishers::Publishers(const Limits& limits, StreamDefinitions* definitions,
-                       SubjectRegistry* subjects, MessageSender* messages, Metrics* metrics)
+                       SubjectRegistry* subjects, MessageSender* messages,
+                       std::function<std::uint64_t()> random, Metrics* metrics)
     : limits_(limits),
       definitions_(definitions),
       subjects_(subjects),
       messages_(messages),
+      random_(std::move(random)),
       metrics_(metrics) {}
 
-// Decides between four cases: a repeated offer, a sender that was replaced and does not know it,
-// too many subjects, and a stream that starts, restarts or takes over its subject.
+// Decides between four cases: a repeated offer, a subject that another sender is sending, too many
+// subjects, and a stream that starts, restarts or takes over its subject.
 Subject* Publishers::OnOffer(Peer& peer, const protocol::Header& header,
                              const protocol::SkeletonOffer& offer, Time now) {
   metrics_->Add(Counter::kSkeletonsOffered);
@@ -37,17 +44,18 @@ Subject* Publishers::OnOffer(Peer& peer, const protocol::Header& header,
   const bool is_owner = subject != nullptr && subject->owner == key;
   if (is_owner && subject->skeleton_hash == offer.skeleton_hash) {
     subject->ended = false;  // a repeated offer, or the sender is back after its goodbye
-  } else if (!is_owner && subject != nullptr && subjects_->IsRetired(key) && !subject->lost &&
-             !subject->ended) {
-    // The newest sender wins a name. The one that it replaced keeps sending and would win the name
-    // back with its next offer, so a retired stream is refused while the present one is alive.
-    Reject(peer, header, offer.skeleton_hash,
-           "another sender has taken over '" + offer.subject + "'", now);
+  } else if (subject != nullptr && !is_owner && IsContested(*subject, peer, key, now)) {
+    metrics_->Add(Counter::kSubjectsContested);
+    // Not a rejection: the sender repeats its offer, and takes over when the present one falls
+    // silent.
+    messages_->SendError(
+        peer, header, protocol::ErrorCode::kSubjectTaken,
+        "another sender is sending '" + offer.subject + "'; stop it, or send under another name");
     return nullptr;
   } else {
-    if (subject == nullptr && subjects_->size() >= static_cast<std::size_t>(limits_.max_subjects)) {
+    if (subject == nullptr && !subjects_->HasRoomFor(peer.host)) {
       Reject(peer, header, offer.skeleton_hash,
-             "the daemon has reached its limit of " + std::to_string(limits_.max_subjects) +
+             "this address has its share of the " + std::to_string(limits_.max_subjects) +
                  " subjects; see limits.max_subjects",
              now);
       return nullptr;
@@ -55,7 +63,7 @@ Subject* Publishers::OnOffer(Peer& peer, const protocol::Header& header,
     // Binding a skeleton to the rig takes milliseconds under the exclusive lock. Known skeletons
     // are free; new ones need a token, or a flood of random offers would stop the daemon.
     auto definition =
-        definitions_->Get(ToStreamOffer(offer), [&] { return new_skeletons_.Take(now); });
+        definitions_->Get(ToStreamOffer(offer), [&] { return TakeNewSkeleton(peer.host, now); });
     if (!definition.ok()) {
       Reject(peer, header, offer.skeleton_hash, definition.status().ToString(), now);
       return nullptr;
@@ -73,6 +81,18 @@ Subject* Publishers::OnOffer(Peer& peer, const protocol::Header& header,
   return subject;
 }
 
+// True if the host may offer another skeleton that the daemon does not know.
+bool Publishers::TakeNewSkeleton(const std::string& host, Time now) {
+  // Forgetting fills the buckets again, but the one of all hosts stays. So the memory is bounded.
+  constexpr std::size_t kMaxHosts = 1024;
+  if (new_skeletons_of_.size() >= kMaxHosts && !new_skeletons_of_.contains(host)) {
+    new_skeletons_of_.clear();
+  }
+  const TokenBucket full(kShareOfHost * kNewSkeletonsPerSecond, kShareOfHost * kNewSkeletonsBurst);
+  return new_skeletons_of_.try_emplace(host, full).first->second.Take(now) &&
+         new_skeletons_.Take(now);
+}
+
 // Makes the stream the owner of the subject `offer.subject`, with a new pipeline.
 Subject* Publishers::Accept(Peer& peer, const StreamKey& key, const protocol::SkeletonOffer& offer,
                             std::shared_ptr<const StreamDefinition> stream, Time now) {
@@ -83,7 +103,7 @@ Subject* Publishers::Accept(Peer& peer, const StreamKey& key, const protocol::Sk
   }
   Subject* subject = subjects_->Find(offer.subject);
   if (subject == nullptr) {
-    subject = &subjects_->Add(offer.subject, now);
+    subject = &subjects_->Add(offer.subject, peer.host, now);
     spdlog::info("subject '{}' from {}: {} joints, {} blend shapes", offer.subject, peer.name,
                  offer.joints.size(), offer.blend_shape_names.size());
   } else if (subject->owner != key) {
@@ -92,7 +112,10 @@ Subject* Publishers::Accept(Peer& peer, const StreamKey& key, const protocol::Sk
   }
   // A new stream numbers its poses from anywhere.
   if (subject->owner != key) subject->window = {};
+  // Subscribers learn this number, and not the session, which is the publisher's secret.
+  if (subject->owner.session != key.session) subject->run = random_();
   subjects_->SetOwner(*subject, key);
+  subject->can_move = HasSecretSession(peer);
   const bool has_neutral =
       subject->pipeline != nullptr && subject->skeleton_hash == offer.skeleton_hash;
   const auto former =
@@ -105,8 +128,20 @@ Subject* Publishers::Accept(Peer& peer, const StreamKey& key, const protocol::Sk
   // The time without poses counts from the offer, so that the subject is not lost before its first
   // pose.
   subject->last_pose = subject->last_update = now;
-  subject->ended = subject->lost = subject->no_face = false;
+  subject->ended = subject->lost = subject->no_face = subject->orphaned = false;
   return subject;
+}
+
+// True if the subject belongs to another sender that is still sending. A publisher that comes from
+// another address or by a new connection still has its session number, which nobody else knows.
+bool Publishers::IsContested(const Subject& subject, const Peer& peer, const StreamKey& key,
+                             Time now) const {
+  if (subject.ended || subject.orphaned || subject.owner.session == 0) return false;
+  const bool has_moved =
+      subject.owner.session == key.session && subject.can_move && HasSecretSession(peer);
+  if (has_moved || peer.id == subject.owner.peer) return false;
+  const Time heard = std::max(subject.last_pose, subject.last_no_face);
+  return now - heard < FromSeconds(limits_.loss_seconds);
 }
 
 // Subjects with equal skeletons share one copy of the offer, which has kilobytes of names. An equal
@@ -191,18 +226,12 @@ bool Publishers::IsNew(Subject& subject, const protocol::Header& header) {
 
 void Publishers::OnUnknownStream(Peer& peer, const protocol::Header& header, std::uint64_t hash,
                                  MessageSender& messages, Time now) {
-  const bool retired = subjects_->IsRetired({peer.id, header.session, header.stream});
-  metrics_->Add(retired ? Counter::kPosesRetiredSession : Counter::kPosesUnknownStream);
+  metrics_->Add(Counter::kPosesUnknownStream);
   // Poses of an unknown stream arrive at the frame rate; a reply to each would amplify the traffic.
   if (!peer.skeleton_requests.Allow(header.session, header.stream, now)) return;
-  protocol::SkeletonReply reply{hash, protocol::SkeletonStatus::kNeeded, {}};
-  if (retired) {
-    reply.status = protocol::SkeletonStatus::kRejected;
-    reply.message = "another sender has taken over this subject";
-  } else {
-    metrics_->Add(Counter::kSkeletonsRequested);
-  }
-  messages.SendReply(peer, MessageSender::ReplyHeader(header), reply);
+  metrics_->Add(Counter::kSkeletonsRequested);
+  messages.SendReply(peer, MessageSender::ReplyHeader(header),
+                     protocol::SkeletonReply{hash, protocol::SkeletonStatus::kNeeded, {}});
 }
 
 void Publishers::OnGoodbye(const Peer& peer, const protocol::Header& header, Time now) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -27,15 +28,18 @@ namespace furrow::server {
 // all other functions require the exclusive lock.
 class Publishers {
  public:
+  // `random`: returns unpredictable numbers, never 0.
   Publishers(const Limits& limits, StreamDefinitions* definitions, SubjectRegistry* subjects,
-             MessageSender* messages, Metrics* metrics);
+             MessageSender* messages, std::function<std::uint64_t()> random, Metrics* metrics);
 
-  // Limits new skeletons of all senders together, because binding one takes milliseconds.
+  // Limits new skeletons of all senders together, because binding one takes milliseconds. One host
+  // gets half of it, so that a flood of offers leaves room for the others.
   static constexpr double kNewSkeletonsPerSecond = 20.0;
   static constexpr double kNewSkeletonsBurst = 256.0;
+  static constexpr double kShareOfHost = 0.5;
 
-  // Replies to the offer, unless too many new skeletons arrive; senders then repeat it. Returns the
-  // subject that was started or changed; null if the offer was rejected or not answered.
+  // Replies to the offer, unless it has to wait for a place; senders then repeat it. Returns the
+  // subject that was started or changed; null if the offer was refused or not answered.
   Subject* OnOffer(Peer& peer, const protocol::Header& header, const protocol::SkeletonOffer& offer,
                    Time now);
   // The subject of the pose; null if no accepted offer matches (see OnUnknownStream()).
@@ -50,8 +54,7 @@ class Publishers {
   // Records that a stream arrives without a face. Its subject decays as if it were silent, but
   // stays and is not reported as lost. Requires the lock of the stream's shard.
   void OnNoFace(const Peer& peer, const protocol::Header& header, Time now);
-  // Asks the sender of a pose for its skeleton, or, if another sender has taken over the subject,
-  // rejects the stream. Replies at most once per stream and interval.
+  // Asks the sender of a pose for its skeleton. Replies at most once per stream and interval.
   void OnUnknownStream(Peer& peer, const protocol::Header& header, std::uint64_t skeleton_hash,
                        MessageSender& messages, Time now);
   // Lets the stream's subject, if it has one, decay and leave.
@@ -68,6 +71,9 @@ class Publishers {
                   std::shared_ptr<const StreamDefinition> stream, Time now);
   void Reject(Peer& peer, const protocol::Header& header, std::uint64_t hash, std::string why,
               Time now);
+  [[nodiscard]] bool IsContested(const Subject& subject, const Peer& peer, const StreamKey& key,
+                                 Time now) const;
+  bool TakeNewSkeleton(const std::string& host, Time now);
   bool IsNew(Subject& subject, const protocol::Header& header);
   std::shared_ptr<const protocol::SkeletonOffer> ShareOffer(const protocol::SkeletonOffer& offer);
 
@@ -75,9 +81,11 @@ class Publishers {
   StreamDefinitions* const definitions_;
   SubjectRegistry* const subjects_;
   MessageSender* const messages_;
+  const std::function<std::uint64_t()> random_;
   Metrics* const metrics_;
   // By skeleton hash. Entries of offers that no subject uses expire.
   std::map<std::uint64_t, std::weak_ptr<const protocol::SkeletonOffer>> offers_;
+  std::map<std::string, TokenBucket, std::less<>> new_skeletons_of_;  // by host
   TokenBucket new_skeletons_{kNewSkeletonsPerSecond, kNewSkeletonsBurst};
   TokenBucket log_bucket_{2.0, 20.0};  // repeated bad offers must not flood the log
 };

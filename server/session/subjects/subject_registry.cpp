@@ -29,11 +29,13 @@ Subject* SubjectRegistry::Find(SubjectId id) {
 
 Subject* SubjectRegistry::First() { return subjects_.empty() ? nullptr : subjects_.front().get(); }
 
-Subject& SubjectRegistry::Add(std::string name, Time now) {
+Subject& SubjectRegistry::Add(std::string name, std::string host, Time now) {
   ++version_;
+  (void)shares_.Enter(host);
   auto subject = std::make_unique<Subject>();
   subject->id = next_id_++;
   subject->name = std::move(name);
+  subject->host = std::move(host);
   // A subject that never sends a pose must go idle as any other.
   subject->last_pose = subject->last_update = now;
   // The subject is on the heap, so its address and its name are stable while the list grows.
@@ -46,27 +48,9 @@ Subject& SubjectRegistry::Add(std::string name, Time now) {
 void SubjectRegistry::SetOwner(Subject& subject, const StreamKey& key) {
   if (subject.owner == key) return;
   // Session 0 means that no stream feeds the subject: it is new or was released.
-  if (subject.owner.session != 0) {
-    by_stream_.erase(subject.owner);
-    Retire(subject.owner, subject.id);
-  }
-  retired_.erase(key);
+  if (subject.owner.session != 0) by_stream_.erase(subject.owner);
   subject.owner = key;
   by_stream_[key] = &subject;
-}
-
-// A peer may restart a subject under new session numbers without end, so the memory is bounded.
-void SubjectRegistry::Retire(const StreamKey& key, SubjectId subject) {
-  retired_[key] = {subject, ++num_retired_};
-  retired_order_.emplace_back(key, num_retired_);
-  if (retired_order_.size() <= kMaxRetired) return;
-  // The number tells a stale entry from a later retirement of the same stream.
-  const auto& [oldest, number] = retired_order_.front();
-  if (const auto known = retired_.find(oldest);
-      known != retired_.end() && known->second.number == number) {
-    retired_.erase(known);
-  }
-  retired_order_.pop_front();
 }
 
 void SubjectRegistry::Release(Subject& subject) {
@@ -76,15 +60,16 @@ void SubjectRegistry::Release(Subject& subject) {
 
 void SubjectRegistry::Remove(SubjectId id) {
   ++version_;
-  // Without the subject there is nobody to protect, so its former senders may offer it again.
-  std::erase_if(retired_, [id](const auto& entry) { return entry.second.subject == id; });
+  if (const Subject* subject = Find(id); subject != nullptr) shares_.Leave(subject->host);
   std::erase_if(by_stream_, [id](const auto& entry) { return entry.second->id == id; });
   std::erase_if(by_name_, [id](const auto& entry) { return entry.second->id == id; });
   std::erase_if(subjects_, [id](const auto& subject) { return subject->id == id; });
 }
 
 void SubjectRegistry::ForgetPeer(PeerId peer) {
-  std::erase_if(retired_, [peer](const auto& entry) { return entry.first.peer == peer; });
+  for (const auto& subject : subjects_) {
+    if (subject->owner.peer == peer) subject->orphaned = true;
+  }
 }
 
 std::string SubjectRegistry::Names() const {

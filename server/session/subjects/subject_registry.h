@@ -4,7 +4,6 @@
 #include <compare>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <map>
 #include <memory>
 #include <string>
@@ -15,6 +14,7 @@
 
 #include "protocol/framing/sequence.h"
 #include "protocol/messages/messages.h"
+#include "server/core/fair_share.h"
 #include "server/core/time.h"
 #include "server/pipeline/subject_pipeline.h"
 #include "server/session/peers/peer.h"
@@ -47,6 +47,8 @@ struct Subject {
   SubjectId id = 0;
   std::string name;
   StreamKey owner;
+  std::string host;                 // PeerLabel::host of the first owner, whose share it counts to
+  std::uint64_t run = 0;            // an unpredictable number for each session that feeds it
   std::uint64_t skeleton_hash = 0;  // of the owner's offer
   // The owner's offer without the subject name, shared by all subjects with an equal offer.
   std::shared_ptr<const protocol::SkeletonOffer> offer;
@@ -58,6 +60,8 @@ struct Subject {
   bool no_face = false;            // the publisher sends, but its tracker sees no face
   bool ended = false;              // the publisher said goodbye: the subject decays, then leaves
   bool lost = false;               // no pose for Limits::loss_seconds: the subject decays
+  bool can_move = false;           // the owner's session number is a secret that proves who it is
+  bool orphaned = false;           // its publisher's connection has closed
   bool needs_all_drivers = false;  // evaluate all drivers, not only subscribed ones
   SubjectStats stats;
   RestDetector rest;  // updated only while a viewer uses flow control
@@ -66,7 +70,7 @@ struct Subject {
 // All subjects of a daemon, by name and by the stream that feeds them, in order of arrival.
 class SubjectRegistry {
  public:
-  static constexpr std::size_t kMaxRetired = 4096;  // bounds the memory that reconnecting peers use
+  explicit SubjectRegistry(std::size_t max_subjects) : shares_(max_subjects) {}
 
   // The subject with this name, id or stream; null if there is none. Its address is stable until
   // Remove().
@@ -76,18 +80,17 @@ class SubjectRegistry {
   // The oldest subject; null if there is none.
   [[nodiscard]] Subject* First();
 
-  // Precondition: there is no subject of this name.
-  Subject& Add(std::string name, Time now);
-  // Makes `key` the stream that feeds `subject`. The previous stream is retired.
+  // True if Add() may be called for the host (FairShare).
+  [[nodiscard]] bool HasRoomFor(const std::string& host) const { return shares_.HasRoomFor(host); }
+  // Preconditions: there is no subject of this name, and HasRoomFor(host).
+  Subject& Add(std::string name, std::string host, Time now);
+  // Makes `key` the stream that feeds `subject`.
   void SetOwner(Subject& subject, const StreamKey& key);
-  // True if the stream fed a subject until another stream took over. The last kMaxRetired streams
-  // are remembered.
-  [[nodiscard]] bool IsRetired(const StreamKey& key) const { return retired_.contains(key); }
   // Detaches the subject from its stream; the subject stays.
   void Release(Subject& subject);
 
   void Remove(SubjectId id);
-  // Forgets the retired streams of a peer.
+  // Marks the subjects of a peer that has left as orphaned.
   void ForgetPeer(PeerId peer);
 
   [[nodiscard]] std::size_t size() const { return subjects_.size(); }
@@ -97,19 +100,10 @@ class SubjectRegistry {
   [[nodiscard]] std::string Names() const;  // the first few, for messages: "ann, bob"
 
  private:
-  void Retire(const StreamKey& key, SubjectId subject);
-
+  FairShare shares_;
   std::vector<std::unique_ptr<Subject>> subjects_;
   std::unordered_map<StreamKey, Subject*, StreamKeyHash> by_stream_;
   std::map<std::string, Subject*, std::less<>> by_name_;
-  struct Retired {
-    SubjectId subject = 0;
-    std::uint64_t number = 0;  // counts retirements, from 1
-  };
-  std::map<StreamKey, Retired> retired_;
-  // Oldest first. An entry may be stale: the stream was forgotten or retired again since.
-  std::deque<std::pair<StreamKey, std::uint64_t>> retired_order_;
-  std::uint64_t num_retired_ = 0;
   SubjectId next_id_ = 1;
   std::uint64_t version_ = 1;
 };

@@ -7,6 +7,15 @@
 #include "server/session/subscriptions/weight_sender.h"
 
 namespace furrow::server {
+namespace {
+
+// A subscription to every frame must not be held back: its frames queue (kKeepAll). Pictures have
+// their own flow control.
+bool CanWait(const Subscription& subscription) {
+  return !subscription.every && !std::holds_alternative<PictureRequest>(subscription.request);
+}
+
+}  // namespace
 
 void FanOut::Publish(Subject& subject, std::span<const std::uint8_t> pose, std::int64_t age_us,
                      Time now, PublishContext* context) {
@@ -54,7 +63,7 @@ void FanOut::SendOwed(Time now) {
 }
 
 void FanOut::SendOwed(Subscription& subscription, Time now) {
-  if (subscription.held_back && subscription.peer->stuck) return;
+  if (subscription.peer->stuck && CanWait(subscription)) return;
   subscription.held_back = false;
   // Ask the flow control before the gate: Pass() spends the time slot even if nothing is sent.
   const PictureRequest* viewer = PictureViews::FlowControlled(subscription);
@@ -72,12 +81,9 @@ void FanOut::SendOwed(Subscription& subscription, Time now) {
 }
 
 // A stuck peer costs nothing: its queued frames are dropped once, nothing is encoded for it, and
-// the newest pose comes first when it reads again. Pictures have their own flow control.
+// the newest pose comes first when it reads again.
 bool FanOut::HoldBack(Subscription& subscription) {
-  // A subscription to every frame must not be held back: its frames queue (kKeepAll).
-  const bool can_wait =
-      !subscription.every && !std::holds_alternative<PictureRequest>(subscription.request);
-  if (!subscription.peer->stuck || !can_wait) return subscription.held_back = false;
+  if (!subscription.peer->stuck || !CanWait(subscription)) return subscription.held_back = false;
   if (!subscription.held_back) subscription.peer->link->DropFrames(subscription.uid);
   ++subscription.dropped;
   metrics_->Add(std::holds_alternative<PoseRequest>(subscription.request)

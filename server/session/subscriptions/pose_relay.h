@@ -28,8 +28,7 @@ class PoseRelay {
   void SendSkeleton(const Subscription& subscription);
   // True if the subscriber has received the current publisher and skeleton of the subject.
   [[nodiscard]] static bool IsCurrent(const PoseRequest& request, const Subject& subject) {
-    return request.publisher == subject.owner.session &&
-           request.skeleton_hash == subject.skeleton_hash;
+    return request.publisher == subject.run && request.skeleton_hash == subject.skeleton_hash;
   }
 
   // Sends the subject's pose: `payload` as it was received, or, if it is empty, the whole pose

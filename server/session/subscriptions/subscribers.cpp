@@ -105,13 +105,6 @@ void Subscribers::Subscribe(Peer& peer, const protocol::Header& header,
 
 // The checks that all kinds of request share. False: the request has been answered.
 bool Subscribers::CheckRequest(Peer& peer, const protocol::Header& header) {
-  // A subscription makes the daemon send far more than it received, so a forged address must not
-  // get one.
-  if (peer.transport == Transport::kUdp && !peer.credit.proven()) {
-    RefuseRequest(peer, header, ErrorCode::kUnprovenAddress,
-                  "the address is not proven; send Hello with the token from Welcome first");
-    return false;
-  }
   // Before the limit: repeating a request whose reply was lost creates nothing.
   if (Subscription* known = table_.FindRepeated(peer, header); known != nullptr) {
     ReplyAgain(*known);
@@ -197,7 +190,7 @@ bool Subscribers::BindPoses(Subscription& subscription, PoseRequest& request, Su
         "the skeleton of '" + subject.name + "' does not fit into a UDP message; use TCP");
     return false;
   }
-  request = {subject.owner.session, subject.skeleton_hash};
+  request = {subject.run, subject.skeleton_hash};
   Attach(subscription, subject);
   Reply(subscription, {});
   poses_.SendSkeleton(subscription);

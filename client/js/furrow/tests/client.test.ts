@@ -83,6 +83,16 @@ for (const kind of KINDS) {
   });
 }
 
+test('challenges are answered', async () => {
+  const { machine, daemon, client } = start('udp');
+  await until(machine, () => client.names('ada').length > 0);
+  const numbers = [5n, (1n << 61n) + 1n];
+  for (const number of numbers) daemon.challenge(number);
+  await settle();
+  assert.deepEqual(daemon.answers, numbers);
+  client.close();
+});
+
 test('frames in another order are dropped, and missing ones counted', async () => {
   const { machine, daemon, client } = start('udp');
   await until(machine, () => client.names().length > 0);

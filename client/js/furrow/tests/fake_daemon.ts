@@ -67,6 +67,8 @@ export class FakeDaemon implements TransportOpener {
   readonly subjects = new Map<string, string[]>();
   /** Identifiers of all received messages. */
   received: string[] = [];
+  /** The times of all Pongs, which answer challenges. */
+  answers: bigint[] = [];
   /** Drops everything that it would send. */
   isMute = false;
   events: TransportEvents | null = null;
@@ -126,8 +128,15 @@ export class FakeDaemon implements TransportOpener {
     this.received.push(message.identifier);
     this.credit += 32 + message.payload.length;
     if (message.identifier === 'FPIN') this.pong(message);
+    if (message.identifier === 'FPON') this.answers.push(Pong.getRootAsPong(new ByteBuffer(message.payload)).timeUs());
     if (message.identifier === 'FHEL') this.welcome(message);
     if (message.identifier === 'FSUW') this.reply(message);
+  }
+
+  challenge(number: bigint): void {
+    const builder = new Builder(32);
+    Ping.finishPingBuffer(builder, Ping.createPing(builder, number));
+    this.send(0, 0, builder.asUint8Array());
   }
 
   private welcome(message: Envelope): void {

@@ -27,6 +27,11 @@ class PublisherTest : public ::testing::Test {
   std::shared_ptr<FarEnd> far_ = std::make_shared<FarEnd>();
   Publisher publisher_{std::make_unique<FakeTransport>(TransportKind::kUdp, far_)};
 
+  // The daemon has accepted the address; the offers of all subjects have left.
+  void Prove() {
+    far_->Answer({.session = 7}, protocol::Welcome{"daemon", 0});
+    publisher_.Poll(0, milliseconds(0));
+  }
   void Reply(std::uint16_t stream, SkeletonStatus status, const std::string& message = {},
              std::uint64_t hash = protocol::SkeletonHash(OneJoint())) {
     far_->Answer(
@@ -37,6 +42,8 @@ class PublisherTest : public ::testing::Test {
 
 TEST_F(PublisherTest, OfferIsRepeatedUntilItIsAnswered) {
   const auto stream = publisher_.AddSubject(OneJoint(), 0);
+  (void)far_->TakeKinds();
+  Prove();
   EXPECT_EQ(far_->TakeKinds(), std::vector{MessageKind::kSkeletonOffer});
   publisher_.Poll(100'000, milliseconds(0));
   EXPECT_TRUE(far_->sent.empty()) << "not due yet";
@@ -49,8 +56,76 @@ TEST_F(PublisherTest, OfferIsRepeatedUntilItIsAnswered) {
   EXPECT_TRUE(far_->sent.empty());
 }
 
+TEST_F(PublisherTest, NothingIsOfferedBeforeTheAddressIsProven) {
+  (void)publisher_.AddSubject(OneJoint(), 0);
+  EXPECT_EQ(far_->TakeKinds(), std::vector{MessageKind::kHello});
+  publisher_.Poll(100'000, milliseconds(0));
+  EXPECT_TRUE(far_->sent.empty()) << "not due yet";
+  publisher_.Poll(200'000, milliseconds(0));
+  EXPECT_EQ(far_->TakeKinds(), std::vector{MessageKind::kHello});
+  far_->Answer({.session = 7}, protocol::Welcome{"daemon", 99});
+  publisher_.Poll(210'000, milliseconds(0));
+  protocol::MessageView view;
+  protocol::Hello hello;
+  ASSERT_EQ(protocol::OpenMessage(far_->sent.back(), view), protocol::DecodeStatus::kOk);
+  ASSERT_EQ(protocol::Decode(view, hello), protocol::DecodeStatus::kOk);
+  EXPECT_EQ(hello.token, 99u);
+  (void)far_->TakeKinds();
+  Prove();
+  EXPECT_EQ(far_->TakeKinds(), std::vector{MessageKind::kSkeletonOffer});
+  (void)publisher_.AddSubject(OneJoint(), 0);
+  EXPECT_EQ(far_->TakeKinds(), std::vector{MessageKind::kSkeletonOffer}) << "once is enough";
+}
+
+TEST_F(PublisherTest, ADaemonThatForgotTheAddressIsGreetedAgain) {
+  const auto stream = publisher_.AddSubject(OneJoint(), 0);
+  Prove();
+  Reply(stream, SkeletonStatus::kAccepted);
+  publisher_.Poll(1, milliseconds(0));
+  (void)far_->TakeKinds();
+  // One error for each pose that was on its way.
+  for (int i = 0; i < 3; ++i) {
+    far_->Answer({.session = 8},
+                 protocol::ErrorMessage{protocol::ErrorCode::kUnprovenAddress, "who are you?"});
+  }
+  publisher_.Poll(2, milliseconds(0));
+  EXPECT_EQ(far_->TakeKinds(), std::vector{MessageKind::kHello});
+  EXPECT_EQ(publisher_.last_error(), "") << "nothing that a user could do";
+  Prove();
+  EXPECT_EQ(far_->TakeKinds(), std::vector{MessageKind::kSkeletonOffer});
+  EXPECT_FALSE(publisher_.accepted(stream));
+}
+
+TEST_F(PublisherTest, ChallengesAreAnswered) {
+  (void)publisher_.AddSubject(OneJoint(), 0);
+  Prove();
+  (void)far_->TakeKinds();
+  far_->Answer({.session = 7}, protocol::Ping{123456789});
+  publisher_.Poll(1, milliseconds(0));
+  ASSERT_EQ(far_->sent.size(), 1u);
+  protocol::MessageView view;
+  protocol::Pong pong;
+  ASSERT_EQ(protocol::OpenMessage(far_->sent.back(), view), protocol::DecodeStatus::kOk);
+  ASSERT_EQ(protocol::Decode(view, pong), protocol::DecodeStatus::kOk);
+  EXPECT_EQ(pong.time_us, 123456789);
+}
+
+TEST_F(PublisherTest, ASubjectThatAnotherOneSendsIsOfferedUntilItIsFree) {
+  const auto stream = publisher_.AddSubject(OneJoint(), 0);
+  Prove();
+  (void)far_->TakeKinds();
+  far_->Answer({.session = 7, .stream = stream},
+               protocol::ErrorMessage{protocol::ErrorCode::kSubjectTaken, "another one sends it"});
+  publisher_.Poll(1, milliseconds(0));
+  EXPECT_EQ(publisher_.last_error(), "another one sends it");
+  EXPECT_EQ(publisher_.rejection(stream), "");
+  publisher_.Poll(200'000, milliseconds(0));
+  EXPECT_EQ(far_->TakeKinds(), std::vector{MessageKind::kSkeletonOffer});
+}
+
 TEST_F(PublisherTest, ADaemonThatAsksGetsTheOfferAtOnce) {
   const auto stream = publisher_.AddSubject(OneJoint(), 0);
+  Prove();
   Reply(stream, SkeletonStatus::kAccepted);
   publisher_.Poll(1, milliseconds(0));
   (void)far_->TakeKinds();
@@ -62,6 +137,7 @@ TEST_F(PublisherTest, ADaemonThatAsksGetsTheOfferAtOnce) {
 
 TEST_F(PublisherTest, RejectionIsFinalAndHasAReason) {
   const auto stream = publisher_.AddSubject(OneJoint(), 0);
+  Prove();
   (void)far_->TakeKinds();
   Reply(stream, SkeletonStatus::kRejected, "no joint of the rig");
   publisher_.Poll(1, milliseconds(0));
@@ -82,6 +158,7 @@ TEST_F(PublisherTest, AnOfferThatTheWireCannotCarryIsRejectedLocally) {
   EXPECT_NE(publisher_.rejection(publisher_.AddSubject(offer, 0)), "");
   publisher_.Poll(900'000, milliseconds(0));
   EXPECT_TRUE(far_->sent.empty());
+  Prove();
   far_->when_sent = IoStatus::kTooLarge;
   const auto large = publisher_.AddSubject(OneJoint(), 0);
   EXPECT_NE(publisher_.rejection(large).find("TCP"), std::string::npos);

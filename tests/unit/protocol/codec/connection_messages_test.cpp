@@ -50,7 +50,7 @@ TEST(ConnectionMessages, RejectsUnknownValuesAndBadText) {
   EXPECT_EQ(OpenAndDecode(Encoded(Goodbye{static_cast<GoodbyeReason>(4)}), goodbye),
             DecodeStatus::kBadValue);
   ErrorMessage error;
-  EXPECT_EQ(OpenAndDecode(Encoded(ErrorMessage{static_cast<ErrorCode>(14), ""}), error),
+  EXPECT_EQ(OpenAndDecode(Encoded(ErrorMessage{static_cast<ErrorCode>(15), ""}), error),
             DecodeStatus::kBadValue);
   EXPECT_EQ(OpenAndDecode(Encoded(ErrorMessage{static_cast<ErrorCode>(0), ""}), error),
             DecodeStatus::kBadValue);

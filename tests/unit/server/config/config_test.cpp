@@ -142,6 +142,22 @@ TEST(CommandLine, InvalidUsageExitsWithTwo) {
   }
 }
 
+TEST(CommandLine, OnlyOpenListensBeyondThisComputer) {
+  for (const char* address : {"0.0.0.0", "192.168.0.10", "::"}) {
+    const CommandLine line = Parse({"--bind", address});
+    EXPECT_EQ(line.exit_code, ExitCode::kUsage) << address;
+    EXPECT_THAT(line.text, HasSubstr("--open")) << address;
+    const CommandLine open = Parse({"--bind", address, "--open"});
+    ASSERT_TRUE(open.config.has_value()) << open.text;
+    EXPECT_TRUE(ListensToNetwork(*open.config));
+  }
+  for (const char* address : {"127.0.0.1", "127.0.0.2", "::1"}) {
+    const CommandLine line = Parse({"--bind", address});
+    ASSERT_TRUE(line.config.has_value()) << line.text;
+    EXPECT_FALSE(ListensToNetwork(*line.config));
+  }
+}
+
 TEST(CommandLine, FlagsOverrideTheFileAndTheFileTheDefaults) {
   const ConfigFile file(
       "[listen]\ntcp = 100\nudp = 200\n[mocap]\nvmc = 300\n"
@@ -176,7 +192,7 @@ TEST(ParseConfig, ReadsEveryTable) {
   const Status status = ParseText(
       "character = 'face.glb'\nrig = '/abs/rig.json'\nskeleton_map = 'cmu'\nshape_map = 'cc4'\n"
       "rest_frame = 7\nup_axis = 'y'\n"
-      "[listen]\nbind = '0.0.0.0'\ntcp = 0\nudp = 1\nthreads = 3\n"
+      "[listen]\nbind = '0.0.0.0'\nopen = true\ntcp = 0\nudp = 1\nthreads = 3\n"
       "[render]\nenabled = true\nrequired = true\ndevice = '1'\n"
       "[mocap]\nvmc = 39539\nlivelink_face = 11111\n"
       "[osc]\nout = '[::1]:9000'\nprefix = 'x'\nallow = ['10.0.0.7']\n"

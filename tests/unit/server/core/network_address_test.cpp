@@ -14,6 +14,16 @@ TEST(NetworkAddress, OnlyNumericAddressesWithoutBracketsAreNumeric) {
   }
 }
 
+TEST(NetworkAddress, AHostIsAnAddressOrAnIpv6Network) {
+  EXPECT_EQ(HostOf("192.168.0.20"), "192.168.0.20");
+  EXPECT_EQ(HostOf("::ffff:192.168.0.20"), "192.168.0.20");
+  EXPECT_EQ(HostOf("2001:db8:1:2:3:4:5:6"), "2001:db8:1:2::");
+  EXPECT_EQ(HostOf("2001:db8:1:2::9"), HostOf("2001:db8:1:2:3:4:5:6"));
+  EXPECT_NE(HostOf("2001:db8:1:3::9"), HostOf("2001:db8:1:2::9"));
+  EXPECT_EQ(HostOf("::1"), "::");
+  EXPECT_EQ(HostOf("somewhere"), "somewhere");
+}
+
 TEST(NetworkAddress, TextReadsBack) {
   for (const char* text : {"127.0.0.1:9000", "[::1]:1"}) {
     const Result<HostPort> parsed = ParseHostPort(text);

@@ -16,24 +16,74 @@ const auto kBen = make_address("192.168.0.21");
 constexpr Time kStart = FromSeconds(1000);
 constexpr Time kMoment{1};
 
-TEST(SenderGate, TheFirstSenderHoldsThePortUntilItIsSilent) {
+// Sends valid datagrams until the sender holds the port. Returns how many were not admitted.
+int SendSteadily(SenderGate& gate, const asio::ip::address& sender, Time now) {
+  int rejected = 0;
+  for (int i = 0; i < 2 * SenderGate::kSteady; ++i) {
+    if (!gate.Admits(sender, now)) {
+      ++rejected;
+    } else if (gate.Hold(sender, now)) {
+      return rejected;
+    }
+  }
+  ADD_FAILURE() << sender << " does not hold the port";
+  return rejected;
+}
+
+TEST(SenderGate, TheFirstSteadySenderHoldsThePortUntilItIsSilent) {
   SenderGate gate({}, Policy::kOne);
-  EXPECT_TRUE(gate.Admits(kBen, kStart)) << "no sender holds the port yet";
-  EXPECT_TRUE(gate.Hold(kAnn, kStart));
-  EXPECT_FALSE(gate.Hold(kAnn, kStart + FromSeconds(1)));
+  EXPECT_EQ(SendSteadily(gate, kAnn, kStart), 0);
+  EXPECT_TRUE(gate.Admits(kAnn, kStart + FromSeconds(1)));
+  EXPECT_FALSE(gate.Hold(kAnn, kStart + FromSeconds(1))) << "it did before";
   const Time silent = kStart + FromSeconds(1) + SenderGate::kRelease;
-  EXPECT_TRUE(gate.Admits(kAnn, silent));
   EXPECT_FALSE(gate.Admits(kBen, silent));
-  EXPECT_TRUE(gate.Admits(kBen, silent + kMoment));
-  EXPECT_TRUE(gate.Hold(kBen, silent + kMoment));
+  EXPECT_EQ(SendSteadily(gate, kBen, silent + kMoment), 0);
   EXPECT_FALSE(gate.Admits(kAnn, silent + kMoment));
 }
 
-TEST(SenderGate, InvalidDatagramsDoNotTakeThePort) {
+TEST(SenderGate, AFewForgedDatagramsLockNobodyOut) {
   SenderGate gate({}, Policy::kOne);
-  EXPECT_TRUE(gate.Admits(kAnn, kStart));  // without Hold(): the datagram was invalid
-  EXPECT_TRUE(gate.Admits(kBen, kStart));
-  EXPECT_FALSE(gate.IsSuccessor(kBen)) << "no sender held the port before";
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_TRUE(gate.Admits(kBen, kStart));
+    EXPECT_FALSE(gate.Hold(kBen, kStart));
+  }
+  EXPECT_EQ(SendSteadily(gate, kAnn, kStart), 3) << "until it has sent more";
+  EXPECT_FALSE(gate.Admits(kBen, kStart));
+}
+
+TEST(SenderGate, AFloodOfForgedAddressesLocksNobodyOut) {
+  SenderGate gate({}, Policy::kOne);
+  int rejected = 0;
+  int sent = 0;
+  for (bool holds = false; !holds; ++sent) {
+    ASSERT_LT(sent, 20);
+    if (gate.Admits(kAnn, kStart)) {
+      holds = gate.Hold(kAnn, kStart);
+    } else {
+      ++rejected;
+    }
+    for (unsigned forged = 0; forged < 100; ++forged) {
+      const auto address =
+          asio::ip::address_v4(0x0A000000u + static_cast<unsigned>(sent) * 100 + forged);
+      if (gate.Admits(address, kStart)) gate.Hold(address, kStart);
+    }
+  }
+  EXPECT_LE(rejected, 2);
+}
+
+TEST(SenderGate, InvalidDatagramsDoNotCount) {
+  SenderGate gate({}, Policy::kOne);
+  for (int i = 0; i < 100; ++i) {
+    EXPECT_TRUE(gate.Admits(kBen, kStart));
+    gate.Discard(kBen);
+  }
+  EXPECT_EQ(SendSteadily(gate, kAnn, kStart), 0);
+}
+
+TEST(SenderGate, TheStateOfTheSenderBeforeIsDiscarded) {
+  SenderGate gate({}, Policy::kOne);
+  EXPECT_FALSE(gate.IsSuccessor(kBen)) << "nobody sent before";
+  ASSERT_TRUE(gate.Admits(kBen, kStart));
   gate.Hold(kBen, kStart);
   EXPECT_FALSE(gate.IsSuccessor(kBen));
   EXPECT_TRUE(gate.IsSuccessor(kAnn));
@@ -52,14 +102,14 @@ TEST(SenderGate, AllAllowedSendersMaySendAtOnceIfListed) {
   EXPECT_FALSE(gate.IsSuccessor(kBen));
   EXPECT_FALSE(gate.Admits(make_address("192.168.0.22"), kStart));
   SenderGate open({}, Policy::kAllAllowed);
-  EXPECT_TRUE(open.Hold(kAnn, kStart)) << "without a list, one at a time";
+  EXPECT_EQ(SendSteadily(open, kAnn, kStart), 0) << "without a list, one at a time";
   EXPECT_FALSE(open.Admits(kBen, kStart));
 }
 
 TEST(SenderGate, MappedIpv4AddressesMatch) {
   SenderGate gate(std::vector{make_address("::ffff:192.168.0.20")}, Policy::kOne);
+  EXPECT_EQ(SendSteadily(gate, make_address("::ffff:192.168.0.20"), kStart), 0);
   EXPECT_TRUE(gate.Admits(kAnn, kStart));
-  gate.Hold(make_address("::ffff:192.168.0.20"), kStart);
   EXPECT_FALSE(gate.IsSuccessor(kAnn));
 }
 

@@ -148,7 +148,7 @@ TEST_F(OscTargetsTest, ARateSkipsFramesAndSendsTheLastOneLater) {
   targets_->Send(subject(), 0, FromSeconds(3.00));
   targets_->Send(subject(), 0, FromSeconds(3.02));
   EXPECT_FALSE(receiver_.Take().empty());
-  const SubjectRegistry nobody;
+  const SubjectRegistry nobody{64};
   targets_->SendOwed(nobody, FromSeconds(3.20));
   EXPECT_TRUE(receiver_.Take().empty()) << "the subject has left";
 }

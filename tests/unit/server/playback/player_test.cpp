@@ -106,11 +106,15 @@ TEST_F(PlayerTest, AForgottenSubjectIsOfferedAgain) {
 }
 
 TEST_F(PlayerTest, PlaybackRegainsItsSubjectWhenTheOtherSenderLeaves) {
+  Advance(1.0);  // playback stands still, as when the daemon is busy
   FakePeer other;
   Connect(&other);
   Publish(other, "take");
   const StreamKey taken = subject().owner;
-  PlayFor(3.0);
+  for (std::uint32_t i = 0; i < 30; ++i) {
+    Send(other, Pose(1), 1, i);
+    PlayFor(0.1);
+  }
   EXPECT_EQ(subject().owner, taken) << "it does not fight for it";
   Send(other, protocol::Goodbye{}, 1);
   hub->Tick(now);

@@ -30,7 +30,7 @@ class RecorderTest : public HubTest {
     parts.session = 4242;
     parts.rig = std::make_shared<const wrinkle::Rig>(MakeRig(/*filter=*/false));
     parts.metrics = &metrics;
-    parts.make_token = [] { return 1u; };
+    parts.random = [] { return 1u; };
     parts.recording = recorder_.get();
     hub = std::make_unique<Hub>(std::move(parts));
     Connect(&sender_);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hello: bundles are sent only to proven addresses that ask for them.
+// Hello of a proven address: bundles are sent only to clients that ask for them.
 #include <optional>
 
 #include <gtest/gtest.h>
@@ -22,38 +22,18 @@ class DispatcherHelloTest : public HubTest {
     HubTest::SetUp();
     Connect(&udp, Transport::kUdp);
   }
-  // The token in the reply.
-  std::uint64_t Hello(std::uint64_t token, bool bundles) {
-    Send(udp, protocol::Hello{"test", token, bundles});
-    const auto welcome = udp.Take<protocol::Welcome>();
-    return welcome ? welcome->message.token : 0;
-  }
   BundlePeer udp;
 };
 
-TEST_F(DispatcherHelloTest, AProvenAddressMayTurnBundlesOn) {
-  const std::uint64_t token = Hello(0, true);
-  EXPECT_FALSE(udp.takes_bundles.has_value()) << "anybody can say so from a forged address";
-  EXPECT_EQ(Hello(token, true), 0u);
-  EXPECT_EQ(udp.takes_bundles, true);
-}
-
-TEST_F(DispatcherHelloTest, ClientsThatDoNotOptInNeverReceiveBundles) {
-  const std::uint64_t token = Hello(0, false);
-  Hello(token, false);
-  EXPECT_EQ(udp.takes_bundles, false);
-}
-
-TEST_F(DispatcherHelloTest, AForgedHelloCanOnlyTurnBundlesOff) {
-  const std::uint64_t token = Hello(0, false);
-  Hello(token, false);
-  Hello(0, true);
-  Hello(token + 1, true);
-  EXPECT_EQ(udp.takes_bundles, false);
-  Hello(token, true);
-  EXPECT_EQ(udp.takes_bundles, true);
-  Hello(0, false);  // perhaps another client at this address, without bundles
-  EXPECT_EQ(udp.takes_bundles, false);
+TEST_F(DispatcherHelloTest, ItTurnsBundlesOnAndOff) {
+  for (const bool bundles : {true, false, true}) {
+    Send(udp, protocol::Hello{"test", 1, bundles}, 0, 9);
+    const auto welcome = udp.Take<protocol::Welcome>();
+    ASSERT_TRUE(welcome.has_value());
+    EXPECT_EQ(welcome->message.token, 0u) << "nothing is left to prove";
+    EXPECT_EQ(welcome->header.sequence, 9u);
+    EXPECT_EQ(udp.takes_bundles, bundles);
+  }
 }
 
 TEST_F(DispatcherHelloTest, BundlesFromClientsAreMalformed) {
@@ -61,7 +41,6 @@ TEST_F(DispatcherHelloTest, BundlesFromClientsAreMalformed) {
   for (auto& ping : pings) encoder.Encode({.session = 77}, protocol::Ping{}, ping);
   std::vector<std::uint8_t> bundle;
   ASSERT_TRUE(protocol::WriteBundle(pings, bundle));
-  hub->OnBytesReceived(udp.id, bundle.size(), now);
   hub->OnMessage(udp.id, bundle, now);
   EXPECT_EQ(Count(Counter::kMessagesMalformed), 1u);
   EXPECT_TRUE(udp.inbox.empty());

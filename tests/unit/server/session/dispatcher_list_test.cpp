@@ -72,7 +72,6 @@ TEST_F(DispatcherListTest, AFollowerReceivesChanges) {
 TEST_F(DispatcherListTest, IsUnavailableOverUdp) {
   FakePeer udp;
   Connect(&udp, Transport::kUdp);
-  hub->OnBytesReceived(udp.id, 1000, now);
   Send(udp, protocol::ListSubjects{});
   const auto error = udp.Take<protocol::ErrorMessage>();
   ASSERT_TRUE(error);

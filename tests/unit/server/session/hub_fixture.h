@@ -115,7 +115,7 @@ class HubTest : public testing::Test {
     parts.rig = std::make_shared<const wrinkle::Rig>(std::move(rig));
     parts.pictures = &pictures;
     parts.metrics = &metrics;
-    parts.make_token = [this] { return ++last_token; };
+    parts.random = [this] { return ++last_token; };
     hub = std::make_unique<Hub>(std::move(parts));
   }
 
@@ -128,7 +128,6 @@ class HubTest : public testing::Test {
                    std::uint32_t sequence = 0, std::int64_t capture_us = 0) {
     std::vector<std::uint8_t> bytes;
     encoder.Encode({peer.session, stream, sequence, capture_us}, message, bytes);
-    hub->OnBytesReceived(peer.id, bytes.size(), now);
     hub->OnMessage(peer.id, bytes, now);
     return bytes.size();
   }

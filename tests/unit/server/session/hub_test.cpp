@@ -31,7 +31,6 @@ TEST_F(HubSessionTest, PeersThatNeitherSendNorSubscribeAreIdle) {
 TEST_F(HubSessionTest, GarbageIsAnsweredOnTcpAndIgnoredOnUdp) {
   FakePeer udp;
   Connect(&udp, Transport::kUdp);
-  hub->OnBytesReceived(udp.id, 10'000, now);
   std::vector<std::uint8_t> good;
   encoder.Encode({1, 0, 0, 0}, protocol::Ping{}, good);
   for (std::size_t size = 0; size < good.size(); ++size) {

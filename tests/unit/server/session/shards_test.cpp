@@ -94,6 +94,7 @@ TEST_F(ShardsTest, ASenderOfAnotherShardTakesOverASubject) {
   EXPECT_NE(Watch(viewer, {.subject = "ada"}), 0);
   Send(first, Pose(0.5f), 1, 1);
   ASSERT_TRUE(viewer.Take<protocol::WeightFrame>().has_value());
+  Advance(0.6);
   Publish(second, "ada");
   Send(second, Pose(0.75f), 1, 1);
   const auto weights = viewer.Take<protocol::WeightFrame>();
@@ -102,7 +103,7 @@ TEST_F(ShardsTest, ASenderOfAnotherShardTakesOverASubject) {
   Send(first, Pose(0.25f), 1, 2);
   const auto reply = first.Take<protocol::SkeletonReply>();
   ASSERT_TRUE(reply.has_value());
-  EXPECT_EQ(reply->message.status, protocol::SkeletonStatus::kRejected);
+  EXPECT_EQ(reply->message.status, protocol::SkeletonStatus::kNeeded);
   EXPECT_TRUE(viewer.inbox.empty());
   EXPECT_EQ(hub->num_subjects(), 1u);
 }

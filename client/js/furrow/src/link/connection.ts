@@ -4,8 +4,8 @@
 import type { Transport, TransportKind, TransportOpener } from '../transport/transport.js';
 import { type Envelope, readMessage, writeMessage } from '../wire/envelope.js';
 import { Malformed } from '../wire/flat_table.js';
-import { readError, readGoodbye, readPong, readReply, readWelcome, type ReplyMessage } from '../wire/replies.js';
-import { hello, ping, unsubscribe } from '../wire/requests.js';
+import { readError, readGoodbye, readPing, readPong, readReply, readWelcome, type ReplyMessage } from '../wire/replies.js';
+import { hello, ping, pong, unsubscribe } from '../wire/requests.js';
 import { Backoff } from './backoff.js';
 import { ServerClock } from './clock.js';
 import { type Environment, MACHINE } from './environment.js';
@@ -107,7 +107,7 @@ export class Connection {
     this.environment = options.environment ?? MACHINE;
     this.backoff = new Backoff(this.environment.random);
     this.program = cut(options.program ?? 'furrow.js', MAX_CLIENT_BYTES);
-    this.session = randomSession(this.environment.random);
+    this.session = opener.makeSession?.() || randomSession(this.environment.random);
     this.connect();
   }
 
@@ -340,9 +340,12 @@ export class Connection {
     switch (message.identifier) {
       case 'FWEL':
         return this.welcomed(readWelcome(message.payload).token);
+      case 'FPIN': // over UDP, a challenge: whether this address still wants what is sent to it
+        this.send(0, pong(readPing(message.payload)));
+        return;
       case 'FPON': {
-        const pong = readPong(message.payload);
-        this.clock.add(pong.timeUs, this.nowUs(), pong.serverTimeUs);
+        const answer = readPong(message.payload);
+        this.clock.add(answer.timeUs, this.nowUs(), answer.serverTimeUs);
         return;
       }
       case 'FERR':

@@ -27,5 +27,10 @@ export interface Transport {
 /** Starts one attempt. */
 export interface TransportOpener {
   kind: TransportKind;
+  /**
+   * A random number of 64 bits for the session. UDP needs one that nobody can guess: it is what tells the messages of
+   * this client from forged ones (protocol/STANDARD.md section 4).
+   */
+  makeSession?(): bigint;
   open(events: TransportEvents): Transport;
 }

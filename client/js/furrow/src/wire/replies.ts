@@ -7,7 +7,7 @@ import { namesHash } from './hash.js';
 export const MAX_NAMES = 2048;
 const MAX_ERROR_BYTES = 1024;
 const MAX_SERVER_BYTES = 64;
-const NUM_ERROR_CODES = 13;
+const NUM_ERROR_CODES = 14;
 
 export interface PictureMessage {
   width: number;
@@ -86,6 +86,11 @@ export function readReply(payload: Uint8Array): ReplyMessage {
   const hash = table.u64(1);
   require(hash === namesHash(names), 'a hash that does not match the names');
   return { subject: table.text(0), namesHash: hash, names };
+}
+
+/** The time of the sender, microseconds. A Pong repeats it. */
+export function readPing(payload: Uint8Array): bigint {
+  return new FlatTable(payload).i64(0);
 }
 
 export function readPong(payload: Uint8Array): { timeUs: number; serverTimeUs: number } {

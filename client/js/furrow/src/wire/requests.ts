@@ -5,6 +5,7 @@ import { Camera as WireCamera } from '@wire/camera';
 import { FrameAck } from '@wire/frame-ack';
 import { Hello } from '@wire/hello';
 import { Ping } from '@wire/ping';
+import { Pong } from '@wire/pong';
 import { SubscribePictures } from '@wire/subscribe-pictures';
 import { SubscribePoses } from '@wire/subscribe-poses';
 import { SubscribeWeights } from '@wire/subscribe-weights';
@@ -143,6 +144,13 @@ export function unsubscribe(): Uint8Array {
 export function frameAck(number: number): Uint8Array {
   const builder = new Builder(32);
   FrameAck.finishFrameAckBuffer(builder, FrameAck.createFrameAck(builder, number));
+  return builder.asUint8Array();
+}
+
+/** The answer to a Ping of the daemon with this time. */
+export function pong(timeUs: bigint): Uint8Array {
+  const builder = new Builder(64);
+  Pong.finishPongBuffer(builder, Pong.createPong(builder, timeUs, 0n));
   return builder.asUint8Array();
 }
 

@@ -143,6 +143,7 @@ class ApiShapeCaptureTest : public HubTest {
     parts.rig = std::make_shared<const wrinkle::Rig>(rig);
     parts.shape_matcher = rig::ShippedShapeMatcher();
     parts.metrics = &metrics;
+    parts.random = [] { return 1; };
     hub = std::make_unique<Hub>(std::move(parts));
     Connect(&sender);
     protocol::SkeletonOffer offer;
@@ -226,6 +227,7 @@ class ApiForeignCaptureTest : public HubTest {
     parts.rig = std::make_shared<const wrinkle::Rig>(std::move(rig));
     parts.skeletons = *std::move(matcher);
     parts.metrics = &metrics;
+    parts.random = [] { return 1; };
     hub = std::make_unique<Hub>(std::move(parts));
     Connect(&sender);
   }

@@ -11,6 +11,7 @@
 #include "protocol/framing/bundle.h"
 #include "server/net/clock.h"
 #include "server/net/udp/udp_server.h"
+#include "tests/unit/server/net/udp/proven_hello.h"
 #include "tests/unit/server/session/hub_fixture.h"
 
 namespace furrow::server {
@@ -81,6 +82,8 @@ class UdpFanOutTest : public HubTest {
     server = std::make_unique<UdpServer>(io, Limits(), hub.get(), &metrics);
     ASSERT_TRUE(server->Open({asio::ip::address_v4::loopback(), 0}).ok());
     server->Start();
+    publisher.send_to(asio::buffer(ProvenHello(*hub, publisher)),
+                      {asio::ip::address_v4::loopback(), server->port()});
     for (std::uint16_t i = 0; i < kSubjects; ++i) Say(Offer(NameOf(i)), {.stream = i});
     Work();
   }

@@ -11,6 +11,7 @@
 #include "protocol/messages/hash.h"
 #include "server/net/udp/udp_server.h"
 #include "tests/unit/allocation_counter.h"
+#include "tests/unit/server/net/udp/proven_hello.h"
 #include "tests/unit/server/session/hub_fixture.h"
 
 namespace furrow::server {
@@ -75,9 +76,6 @@ class UdpPathTest : public HubTest, public testing::WithParamInterface<int> {
       if (error) return count;
       protocol::MessageView view;
       EXPECT_EQ(protocol::OpenMessage({received.data(), size}, view), protocol::DecodeStatus::kOk);
-      if (view.kind == protocol::MessageKind::kWelcome) {
-        EXPECT_EQ(protocol::Decode(view, welcome), protocol::DecodeStatus::kOk);
-      }
       if (view.kind != protocol::MessageKind::kWeights) continue;
       EXPECT_EQ(protocol::Decode(view, weights), protocol::DecodeStatus::kOk);
       ++count;
@@ -95,9 +93,8 @@ class UdpPathTest : public HubTest, public testing::WithParamInterface<int> {
     return offer;
   }
   void Meet() {
-    Say(viewer, protocol::Hello{"test", 0}, {});
-    TakeWeights();
-    Say(viewer, protocol::Hello{"test", welcome.token}, {});
+    viewer.send(asio::buffer(ProvenHello(*hub, viewer)));
+    for (udp::socket& sender : senders) sender.send(asio::buffer(ProvenHello(*hub, sender)));
     for (int i = 0; i < kSubjects; ++i) {
       const auto stream = static_cast<std::uint16_t>(i);
       Say(senders[static_cast<std::size_t>(i)], OfferOf(i), {.stream = stream});
@@ -130,7 +127,6 @@ class UdpPathTest : public HubTest, public testing::WithParamInterface<int> {
   std::deque<udp::socket> senders;  // by subject
   std::vector<std::uint8_t> bytes;
   std::vector<std::uint8_t> received = std::vector<std::uint8_t>(65536);
-  protocol::Welcome welcome;
   protocol::WeightFrame weights;
   protocol::PoseFrame pose;
   const protocol::PoseEncoding floats;

@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <new>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -19,6 +20,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/server/net/udp/proven_hello.h"
 #include "tests/unit/server/session/hub_fixture.h"
 
 namespace furrow::server {
@@ -36,7 +38,7 @@ class UdpPortTest : public HubTest {
     parts.session = 4242;
     parts.rig = std::make_shared<const wrinkle::Rig>(MakeRig(/*filter=*/false));
     parts.metrics = &metrics;
-    parts.make_token = [] { return 900u; };
+    parts.random = [] { return 900u; };
     parts.shards = kShards;
     hub = std::make_unique<Hub>(std::move(parts));
     hub->SetOnWeights([this](const Subject& subject, int shard, Time) {
@@ -76,6 +78,9 @@ TEST_F(UdpPortTest, SendersAreSpreadOverShardsAndStayThere) {
   for (int i = 0; i < kSenders; ++i) {
     udp::socket& socket = senders.emplace_back(io, udp::v4());
     socket.connect({asio::ip::address_v4::loopback(), port_->port()});
+    socket.send(asio::buffer(ProvenHello(*hub, socket)));
+    bytes.resize(2000);
+    socket.receive(asio::buffer(bytes));  // welcome
     send(socket, Offer("subject " + std::to_string(i)), 0);
     bytes.resize(2000);
     socket.receive(asio::buffer(bytes));  // accepted
@@ -100,24 +105,55 @@ Hub::Parts TwoShards(Metrics* metrics) {
   parts.session = 1;
   parts.rig = std::make_shared<const wrinkle::Rig>();
   parts.metrics = metrics;
-  parts.make_token = [] { return 1u; };
+  parts.random = [] { return 1u; };
   parts.shards = 2;
   return parts;
+}
+
+class BrokenTap : public RecordingTap {
+ public:
+  void OnOffer(const Subject&, const protocol::SkeletonOffer&, Time) override {}
+  void OnPose(const Subject&, std::span<const std::uint8_t>, Time) override {}
+  void OnWeights(const Subject&, std::int64_t, Time) override {}
+  void OnSubjectGone(const Subject&) override {}
+  void OnDatagram(const std::array<std::uint8_t, 18>&, std::span<const std::uint8_t>,
+                  Time) override {
+    if (out_of_memory) throw std::bad_alloc();
+    throw std::runtime_error("broken");
+  }
+  bool out_of_memory = false;
+};
+
+TEST(UdpPortFailure, LackOfMemoryCostsOneDatagram) {
+  Metrics metrics;
+  Hub hub(TwoShards(&metrics));
+  asio::io_context io{1};
+  BrokenTap broken;
+  broken.out_of_memory = true;
+  UdpServer server(io, Limits(), &hub, &metrics, &broken);
+  ASSERT_TRUE(server.Open({asio::ip::address_v4::loopback(), 0}).ok());
+  server.Start();
+  udp::socket sender(io, udp::v4());
+  const std::vector<std::uint8_t> hello = ProvenHello(hub, sender);
+  for (std::uint64_t i = 1; i <= 3; ++i) {
+    sender.send_to(asio::buffer(hello), {asio::ip::address_v4::loopback(), server.port()});
+    while (metrics.Get(Counter::kAllocationsFailed) < i) io.run_one_for(std::chrono::seconds(1));
+  }
+  server.Close();
 }
 
 TEST(UdpPortFailure, AnExceptionInAShardEndsTheCallersLoop) {
   Metrics metrics;
   Hub::Parts parts = TwoShards(&metrics);
-  parts.make_token = []() -> std::uint64_t { throw std::runtime_error("no more numbers"); };
   Hub hub(std::move(parts));
   asio::io_context io{1};
-  UdpPort port(io, 2, Limits(), &hub, &metrics, nullptr);
+  BrokenTap broken;
+  UdpPort port(io, 2, Limits(), &hub, &metrics, &broken);
   ASSERT_TRUE(port.Open({asio::ip::address_v4::loopback(), 0}).ok());
   port.Start();
   udp::socket sender(io, udp::v4());
-  std::vector<std::uint8_t> hello;
-  protocol::Encoder().Encode({77, 0, 1, 0}, protocol::Hello{}, hello);
-  sender.send_to(asio::buffer(hello), {asio::ip::address_v4::loopback(), port.port()});
+  sender.send_to(asio::buffer(ProvenHello(hub, sender)),
+                 {asio::ip::address_v4::loopback(), port.port()});
   EXPECT_THROW(io.run_for(std::chrono::seconds(20)), std::runtime_error);
 }
 
@@ -131,7 +167,7 @@ TEST(UdpPortFailure, DatagramsFromBeforeAllSocketsWereOpenAreDropped) {
   sender.connect({asio::ip::address_v4::loopback(), server.port()});
   std::vector<std::uint8_t> hello;
   const auto send = [&](std::uint32_t sequence) {
-    protocol::Encoder().Encode({77, 0, sequence, 0}, protocol::Hello{}, hello);
+    protocol::Encoder().Encode({77, 0, sequence, 0}, protocol::Hello{"test"}, hello);
     sender.send(asio::buffer(hello));
   };
   send(1);

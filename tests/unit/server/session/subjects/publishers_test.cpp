@@ -81,10 +81,10 @@ TEST_F(PublishersTest, NewSkeletonsAreThrottled) {
   };
   int accepted = 0;
   while (accepted < 1000 && offer_another(accepted)) ++accepted;
-  EXPECT_EQ(accepted, static_cast<int>(Publishers::kNewSkeletonsBurst));
+  EXPECT_EQ(accepted, static_cast<int>(Publishers::kNewSkeletonsBurst / 2));
   EXPECT_EQ(Count(Counter::kSkeletonsThrottled), 1u);
   EXPECT_TRUE(offer_another(accepted - 1)) << "one that is known";
-  Advance(1.1 / Publishers::kNewSkeletonsPerSecond);
+  Advance(2.1 / Publishers::kNewSkeletonsPerSecond);
   EXPECT_TRUE(offer_another(accepted));
   EXPECT_FALSE(offer_another(accepted + 1));
 }
@@ -104,22 +104,6 @@ TEST_F(PublishersTest, TheNeutralSurvivesARestartWithTheSameSkeleton) {
   other.blend_shape_names.push_back("jaw");
   Send(sender, other, 1);
   EXPECT_FALSE(subject.pipeline->neutral_pose().has_value());
-}
-
-TEST_F(PublishersTest, EndlessRestartsUseBoundedMemory) {
-  Publish(sender, "ann");
-  const std::uint64_t first = sender.session;
-  for (std::size_t i = 0; i <= SubjectRegistry::kMaxRetired; ++i) {
-    Advance(0.001);
-    ++sender.session;
-    Publish(sender, "ann");
-  }
-  Advance(1);
-  sender.session = first + SubjectRegistry::kMaxRetired;  // the second oldest is still remembered
-  Send(sender, Offer("ann"), 1);
-  EXPECT_EQ(sender.Take<protocol::SkeletonReply>()->message.status, SkeletonStatus::kRejected);
-  sender.session = first;  // forgotten, so treated as new
-  Publish(sender, "ann");
 }
 
 TEST_F(PublishersTest, LateAndDuplicatePosesAreDroppedAndCounted) {
@@ -145,39 +129,113 @@ TEST_F(PublishersTest, APoseWithOtherCountsIsInvalid) {
   EXPECT_EQ(viewer.inbox.size(), 1u);
 }
 
-TEST_F(PublishersTest, ARestartedSenderTakesOverItsSubject) {
+TEST_F(PublishersTest, ALiveSubjectIsNotTakenOver) {
   Publish(sender, "ann");
   Watch(viewer, {.subject = "ann"});
   Send(sender, Pose(1), 1, 500);
-  FakePeer restarted;
-  restarted.session = 78;
-  Connect(&restarted);
-  Publish(restarted, "ann");
-  Send(restarted, Pose(0.5f), 1, 0);
-  EXPECT_EQ(viewer.inbox.size(), 2u);
-  Send(sender, Pose(1), 1, 501);  // a late pose of the old sender
-  EXPECT_EQ(viewer.inbox.size(), 2u);
-  EXPECT_EQ(sender.Take<protocol::SkeletonReply>()->message.status, SkeletonStatus::kRejected);
-  EXPECT_EQ(Count(Counter::kPosesRetiredSession), 1u);
-  EXPECT_EQ(Count(Counter::kSubjectsRestarted), 1u);
-  // Its offers do not take the subject back either.
-  Advance(0.1);
-  Send(sender, Offer("ann"), 1);
-  EXPECT_EQ(sender.Take<protocol::SkeletonReply>()->message.status, SkeletonStatus::kRejected);
-}
-
-TEST_F(PublishersTest, ARetiredSenderMayReturnAfterTheOtherHasLeft) {
-  Publish(sender, "ann");
   FakePeer other;
   other.session = 78;
   Connect(&other);
+  Send(other, Offer("ann"), 1);
+  const auto error = other.Take<protocol::ErrorMessage>();
+  ASSERT_TRUE(error.has_value());
+  EXPECT_EQ(error->message.code, protocol::ErrorCode::kSubjectTaken);
+  EXPECT_THAT(error->message.message, HasSubstr("another sender is sending 'ann'"));
+  EXPECT_EQ(Count(Counter::kSubjectsContested), 1u);
+  Send(other, Pose(0.5f), 1, 600);
+  Send(sender, Pose(1), 1, 501);
+  EXPECT_EQ(viewer.inbox.size(), 2u) << "the poses of the first sender";
+}
+
+TEST_F(PublishersTest, ASilentSubjectIsTakenOver) {
+  Publish(sender, "ann");
+  Watch(viewer, {.subject = "ann"});
+  Send(sender, Pose(1), 1, 500);
+  FakePeer other;
+  other.session = 78;
+  Connect(&other);
+  Advance(0.51);
+  Publish(other, "ann");
+  Send(other, Pose(0.5f), 1, 0);
+  EXPECT_EQ(viewer.inbox.size(), 2u);
+  EXPECT_EQ(Count(Counter::kSubjectsRestarted), 1u);
+  // The first one is a stranger now, and the subject is not its own.
+  Send(sender, Pose(1), 1, 501);
+  EXPECT_EQ(viewer.inbox.size(), 2u);
+  EXPECT_EQ(sender.Take<protocol::SkeletonReply>()->message.status, SkeletonStatus::kNeeded);
+  Send(sender, Offer("ann"), 1);
+  EXPECT_EQ(sender.Take<protocol::ErrorMessage>()->message.code,
+            protocol::ErrorCode::kSubjectTaken);
+}
+
+TEST_F(PublishersTest, ASubjectWhoseSenderHasLeftIsFree) {
+  Publish(sender, "ann");
+  Send(sender, Pose(1), 1, 0);
+  FakePeer other;
+  other.session = 78;
+  Connect(&other);
+  Send(sender, protocol::Goodbye{}, 1);
   Publish(other, "ann");
   Send(other, Pose(1), 1, 0);
-  Send(other, protocol::Goodbye{}, 1);
+  hub->RemovePeer(other.id);  // its connection has closed
   Publish(sender, "ann");
   Send(sender, Pose(1), 1, 0);
   EXPECT_EQ(hub->num_subjects(), 1u);
   EXPECT_EQ(Count(Counter::kPosesLate), 0u);
+}
+
+TEST_F(PublishersTest, ASenderKeepsItsSubjectWhenItsAddressChanges) {
+  for (const Transport transport : {Transport::kTcp, Transport::kUdp}) {
+    Make({});
+    FakePeer first;
+    FakePeer second;
+    Connect(&first, transport);
+    Connect(&second, transport);
+    Publish(first, "ann");
+    Send(first, Pose(1), 1, 0);
+    second.session = first.session;
+    Publish(second, "ann");
+    Send(second, Pose(1), 1, 1);
+    EXPECT_EQ(Count(Counter::kPosesLate), 0u);
+  }
+}
+
+TEST_F(PublishersTest, NoSessionOpensASubjectOfAForeignWireOrARecording) {
+  for (const Transport transport : {Transport::kMocap, Transport::kWeb}) {
+    Make({});
+    FakePeer owner;
+    FakePeer thief;
+    Connect(&owner, transport);
+    Connect(&thief);
+    Send(owner, Offer("ann"), 1);
+    Send(owner, Pose(1), 1, 0);
+    ASSERT_EQ(hub->num_subjects(), 1u);
+    thief.session = owner.session;  // these sessions can be guessed
+    Send(thief, Offer("ann"), 1);
+    EXPECT_EQ(thief.Take<protocol::ErrorMessage>()->message.code,
+              protocol::ErrorCode::kSubjectTaken);
+  }
+}
+
+TEST_F(PublishersTest, NoHostTakesAllPlaces) {
+  Limits limits;
+  limits.max_subjects = 6;
+  Make(limits);
+  FakePeer greedy;
+  greedy.id = hub->AddPeer(Transport::kTcp, {"greedy", "10.0.0.1"}, &greedy, now);
+  FakePeer modest;
+  modest.id = hub->AddPeer(Transport::kTcp, {"modest", "10.0.0.2"}, &modest, now);
+  const char* const names[] = {"a", "b", "c"};
+  for (std::uint16_t i = 0; i < 3; ++i) Publish(greedy, names[i], i);
+  Send(greedy, Offer("d"), 3);
+  EXPECT_EQ(greedy.Take<protocol::SkeletonReply>()->message.status, SkeletonStatus::kRejected);
+  Publish(modest, "new", 1);
+  // A subject that has left gives its place back.
+  Send(greedy, protocol::Goodbye{}, 0);
+  hub->Tick(now);
+  ASSERT_EQ(hub->num_subjects(), 3u);
+  Send(modest, Offer("second"), 2);
+  EXPECT_EQ(modest.Take<protocol::SkeletonReply>()->message.status, SkeletonStatus::kAccepted);
 }
 
 TEST_F(PublishersTest, RepeatingAnOfferChangesNothing) {

@@ -328,7 +328,6 @@ TEST_F(PictureViewsTest, InvalidPictureRequestsAreErrors) {
   ExpectError(viewer, ErrorCode::kBadPicture);
   FakePeer udp;
   Connect(&udp, Transport::kUdp);
-  hub->OnBytesReceived(udp.id, 1000, now);
   Send(udp, protocol::SubscribePictures{});
   ExpectError(udp, ErrorCode::kNeedsTcp);
 }
@@ -337,7 +336,7 @@ TEST_F(PictureViewsTest, WithoutARendererPicturesAreRefused) {
   Hub::Parts parts;
   parts.rig = std::make_shared<const wrinkle::Rig>(MakeRig(false));
   parts.metrics = &metrics;
-  parts.make_token = [] { return 1; };
+  parts.random = [] { return 1; };
   hub = std::make_unique<Hub>(std::move(parts));
   Connect(&viewer);
   Send(viewer, protocol::SubscribePictures{.wait = true});

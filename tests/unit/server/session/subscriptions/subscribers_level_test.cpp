@@ -85,7 +85,7 @@ TEST_F(HubTest, OscOutputNeedsAllDrivers) {
   Hub::Parts parts;
   parts.rig = std::make_shared<const wrinkle::Rig>(MakeRig(false));
   parts.metrics = &metrics;
-  parts.make_token = [] { return std::uint64_t{1}; };
+  parts.random = [] { return std::uint64_t{1}; };
   hub = std::make_unique<Hub>(std::move(parts));
   hub->SetOnWeights([](const Subject&, int, Time) {});
   FakePeer sender;

@@ -188,58 +188,6 @@ TEST_F(SubscribersTest, LimitsAreEnforced) {
   EXPECT_EQ(Count(Counter::kMessagesThrottled), 7u);
 }
 
-TEST_F(SubscribersTest, AUdpAddressMustProveItselfBeforeSubscribing) {
-  Publish(sender, "ann");
-  FakePeer udp;
-  Connect(&udp, Transport::kUdp);
-  std::uint64_t sent = Send(udp, protocol::SubscribeWeights{.subject = "ann"}, 0, 1);
-  if (!udp.inbox.empty()) ExpectError(udp, ErrorCode::kUnprovenAddress);
-  sent += Send(udp, protocol::Hello{"test", 0}, 0, 2);
-  const auto welcome = udp.Take<protocol::Welcome>();
-  ASSERT_TRUE(welcome.has_value());
-  EXPECT_NE(welcome->message.token, 0u);
-  EXPECT_LE(udp.bytes_received, sent);
-  Send(udp, protocol::Hello{"test", welcome->message.token + 1}, 0, 3);
-  EXPECT_NE(udp.Take<protocol::Welcome>()->message.token, 0u) << "a wrong token proves nothing";
-  Send(udp, protocol::Hello{"test", welcome->message.token}, 0, 4);
-  EXPECT_EQ(udp.Take<protocol::Welcome>()->message.token, 0u);
-  EXPECT_NE(Watch(udp, {.subject = "ann"}), 0);
-}
-
-TEST_F(SubscribersTest, AForgedAddressReceivesNoMoreBytesThanItSent) {
-  FakePeer forged;
-  Connect(&forged, Transport::kUdp);
-  std::uint64_t sent = 0;
-  for (std::uint32_t i = 0; i < 50; ++i) {
-    sent += Send(forged, Pose(1), 1, i);
-    sent += Send(forged, protocol::SubscribeWeights{.subject = "x"}, 0, i);
-    sent += Send(forged, protocol::Ping{}, 0, i);
-    Advance(0.3);
-    ASSERT_LE(forged.bytes_received, sent);
-  }
-}
-
-TEST_F(SubscribersTest, AUdpSubscriptionExpiresWithItsLease) {
-  Publish(sender, "ann");
-  FakePeer udp;
-  Connect(&udp, Transport::kUdp);
-  Send(udp, protocol::Hello{"test", 0}, 0, 1);
-  Send(udp, protocol::Hello{"test", udp.Take<protocol::Welcome>()->message.token}, 0, 2);
-  udp.Take<protocol::Welcome>();
-  Watch(udp, {.subject = "ann"});
-  for (int i = 0; i < 10; ++i) {
-    Advance(1.0);
-    Send(udp, protocol::Ping{.time_us = i}, 0, 10);
-    EXPECT_EQ(udp.Take<protocol::Pong>()->message.time_us, i);
-    hub->Tick(now);
-  }
-  EXPECT_EQ(hub->num_subscriptions(), 1u);
-  Advance(5.1);
-  hub->Tick(now);
-  EXPECT_EQ(udp.Take<protocol::Goodbye>()->message.reason, protocol::GoodbyeReason::kTimedOut);
-  EXPECT_EQ(hub->num_subscriptions(), 0u);
-}
-
 TEST_F(SubscribersTest, TooManyNamesAreAnError) {
   // 256 regions with 9 maps are 2,304 weights; 8 maps are the maximum of one subscription.
   wrinkle::Rig rig = MakeRig(false);
@@ -265,10 +213,6 @@ TEST_F(SubscribersTest, TooManyNamesAreAnError) {
   EXPECT_NE(Watch(viewer, {.subject = "ann", .pattern = fitting}), 0);
   FakePeer udp;
   Connect(&udp, Transport::kUdp);
-  hub->OnBytesReceived(udp.id, 1000, now);
-  Send(udp, protocol::Hello{"test", 0}, 0, 1);
-  Send(udp, protocol::Hello{"test", udp.Take<protocol::Welcome>()->message.token}, 0, 2);
-  udp.Take<protocol::Welcome>();
   Send(udp, protocol::SubscribeWeights{.subject = "ann", .pattern = fitting}, 0, 1);
   ExpectError(udp, ErrorCode::kLimit);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // UDP: one message, several, or a fragment of one per datagram (protocol/STANDARD.md section 3).
+import { randomBytes } from 'node:crypto';
 import { createSocket } from 'node:dgram';
 import { lookup } from 'node:dns';
 import { Datagrams, splitMessage } from '../../wire/datagrams.js';
@@ -9,7 +10,11 @@ import type { Transport, TransportEvents, TransportOpener } from '../transport.j
 const RECEIVE_BYTES = 1 << 20;
 
 export function udpSocket(host: string, port: number): TransportOpener {
-  return { kind: 'udp', open: (events) => new UdpSocket(host, port, events) };
+  return {
+    kind: 'udp',
+    makeSession: () => randomBytes(8).readBigUInt64LE(),
+    open: (events) => new UdpSocket(host, port, events),
+  };
 }
 
 class UdpSocket implements Transport {

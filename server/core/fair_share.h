@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <unordered_map>
+
+namespace furrow::server {
+
+// Shares a number of places between hosts, so that no host can take them all: a host gets another
+// place only while it holds fewer than are free. So one host gets half of the places, the next one
+// half of the rest, and so on. Of 256 places there are some for a newcomer until the ninth host
+// that takes all it can get.
+//
+// The rule is the dynamic threshold of Choudhury and Hahne, "Dynamic queue length thresholds for
+// shared-memory packet switches" (1998), with alpha 1. Not thread-safe.
+class FairShare {
+ public:
+  explicit FairShare(std::size_t places) : places_(places) {}
+
+  // False: the host has its share, or there is no place left.
+  [[nodiscard]] bool HasRoomFor(const std::string& host) const {
+    const auto held = held_.find(host);
+    return (held == held_.end() ? 0 : held->second) < places_ - taken_;
+  }
+  // Takes a place. False: HasRoomFor() is.
+  [[nodiscard]] bool Enter(const std::string& host) {
+    if (!HasRoomFor(host)) return false;
+    ++held_[host];
+    ++taken_;
+    return true;
+  }
+  // Gives back a place that Enter() took for the host.
+  void Leave(const std::string& host) {
+    const auto held = held_.find(host);
+    if (--held->second == 0) held_.erase(held);
+    --taken_;
+  }
+
+  [[nodiscard]] std::size_t taken() const { return taken_; }
+
+ private:
+  const std::size_t places_;
+  std::size_t taken_ = 0;
+  std::unordered_map<std::string, std::size_t> held_;  // by host; none is 0
+};
+
+}  // namespace furrow::server

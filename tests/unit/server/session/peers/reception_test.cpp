@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/session/peers/reception.h"
+
+#include <optional>
+
+#include <gtest/gtest.h>
+
+#include "protocol/framing/fragment.h"
+#include "tests/unit/server/session/hub_fixture.h"
+
+namespace furrow::server {
+namespace {
+
+constexpr Time kNow = FromSeconds(1000);
+
+class ReceptionTest : public testing::Test {
+ protected:
+  template <class Message>
+  bool Say(const Message& message, std::uint64_t session = 77) {
+    encoder.Encode({.session = session, .stream = 3, .sequence = 9}, message, sent);
+    const bool admitted = reception.Admits(address, sent, kNow);
+    EXPECT_LE(reception.reply().size(), sent.size()) << "an address that is not proven";
+    return admitted;
+  }
+  template <class Message>
+  std::optional<Message> Reply() {
+    protocol::MessageView view;
+    Message message;
+    if (protocol::OpenMessage(reception.reply(), view) != protocol::DecodeStatus::kOk ||
+        protocol::Decode(view, message) != protocol::DecodeStatus::kOk) {
+      return std::nullopt;
+    }
+    header = view.header;
+    return message;
+  }
+
+  Metrics metrics;
+  AddressProof proof{AddressProof::Key{9}};
+  Reception reception{4242, &proof, &metrics};
+  protocol::Encoder encoder;
+  std::vector<std::uint8_t> sent;
+  UdpAddress address{1, 2, 3};
+  protocol::Header header;
+};
+
+TEST_F(ReceptionTest, TheSecondHelloProvesTheAddress) {
+  EXPECT_FALSE(Say(protocol::Hello{"test", 0}));
+  const auto welcome = Reply<protocol::Welcome>();
+  ASSERT_TRUE(welcome.has_value());
+  EXPECT_EQ(header.session, 4242u);
+  EXPECT_EQ(header.sequence, 9u);
+  EXPECT_FALSE(Say(protocol::Hello{"test", welcome->token + 1}));
+  EXPECT_EQ(Reply<protocol::Welcome>()->token, welcome->token) << "a wrong token proves nothing";
+  EXPECT_FALSE(Say(protocol::Hello{"test", welcome->token}, 78)) << "another program";
+  EXPECT_TRUE(Say(protocol::Hello{"test", welcome->token}));
+}
+
+TEST_F(ReceptionTest, EverythingElseIsRefused) {
+  EXPECT_FALSE(Say(protocol::SubscribeWeights{.subject = "ann", .pattern = std::string(60, '*')}));
+  const auto error = Reply<protocol::ErrorMessage>();
+  ASSERT_TRUE(error.has_value());
+  EXPECT_EQ(error->code, protocol::ErrorCode::kUnprovenAddress);
+  EXPECT_FALSE(error->message.empty());
+  EXPECT_EQ(header.stream, 3);
+  EXPECT_EQ(header.sequence, 9u);
+  EXPECT_EQ(metrics.Get(Counter::kDatagramsUnproven), 1u);
+}
+
+TEST_F(ReceptionTest, APingIsLongEnoughForTheCodeOfTheError) {
+  EXPECT_FALSE(Say(protocol::Ping{5}));
+  const auto error = Reply<protocol::ErrorMessage>();
+  ASSERT_TRUE(error.has_value()) << "a client would not learn that the daemon has restarted";
+  EXPECT_EQ(error->code, protocol::ErrorCode::kUnprovenAddress);
+}
+
+TEST_F(ReceptionTest, AFragmentIsAnsweredAsItsMessage) {
+  std::vector<std::uint8_t> message;
+  protocol::SkeletonOffer offer;
+  offer.subject = "ann";
+  for (int i = 0; i < 500; ++i) offer.blend_shape_names.push_back("shape" + std::to_string(i));
+  encoder.Encode({.session = 77, .stream = 3}, offer, message);
+  std::vector<std::uint8_t> datagram(protocol::kMaxDatagramBytes);
+  ASSERT_GT(protocol::NumDatagrams(message.size()), 1u);
+  datagram.resize(protocol::WriteDatagram(message, 1, 1, datagram));
+  EXPECT_FALSE(reception.Admits(address, datagram, kNow));
+  EXPECT_EQ(Reply<protocol::ErrorMessage>()->code, protocol::ErrorCode::kUnprovenAddress);
+}
+
+TEST_F(ReceptionTest, ShortAndBrokenMessagesGetNothing) {
+  encoder.Encode({.session = 77}, protocol::Hello{"test", 0}, sent);
+  for (std::size_t size = protocol::kEnvelopeBytes; size < sent.size(); ++size) {
+    (void)reception.Admits(address, std::span(sent).first(size), kNow);
+    EXPECT_LE(reception.reply().size(), size);
+  }
+  std::vector<std::uint8_t> broken = sent;
+  for (std::size_t i = protocol::kEnvelopeBytes; i < 60; ++i) {
+    broken[i] ^= 0xFF;
+    EXPECT_FALSE(reception.Admits(address, broken, kNow)) << i;
+    EXPECT_LE(reception.reply().size(), broken.size());
+  }
+}
+
+}  // namespace
+}  // namespace furrow::server
