@@ -9,6 +9,7 @@
 
 #include <glm/mat4x4.hpp>
 
+#include "character/mesh/material_bind.h"
 #include "character/mesh/mesh.h"
 #include "character/pictures/picture.h"
 #include "wrinkle/rig/rig.h"
@@ -29,11 +30,12 @@ struct Character {
   // Model space in the rest pose to joint space; one per joint of the skeleton.
   std::vector<glm::mat4> inverse_bind_matrices;
   std::vector<Mesh> meshes;
-  // Names of the shapes that move the meshes, unique, at most kMaxShapes. Targets of equal names on
-  // different meshes (head, teeth, lashes) are one shape.
+  // Names of the shapes that move the meshes or change materials, unique, at most kMaxShapes.
+  // Targets of equal names on different meshes (head, teeth, lashes) are one shape.
   std::vector<std::string> shapes;
   std::vector<wrinkle::ShapeRule> shape_rules;  // at most one per shape
   std::vector<Material> materials;
+  std::vector<MaterialBind> material_binds;  // at most one per shape and material
   std::vector<Picture> pictures;
   wrinkle::Rig rig;
   std::filesystem::path folder;  // the folder that is searched first for the rig's files

@@ -90,6 +90,7 @@ Status ReadStroke(const schema::Stroke& from, const wrinkle::Rig& rig, const std
   to->depth_mm = from.depth_mm();
   to->ridge = from.ridge();
   to->taper = from.taper();
+  to->personal = from.personal();
   to->wavelength_mm = from.wavelength_mm();
   FURROW_RETURN_IF_ERROR(CheckNames(*to, rig, at));
   FURROW_RETURN_IF_ERROR(CheckStrokeNumbers(*to, at));

@@ -85,12 +85,17 @@ std::vector<float> ArkitFace::Weights(std::string_view name) const {
   return Weights(std::span(&one, 1));
 }
 
-bool HasShapeFace(const ArkitFace& face) {
+std::vector<std::string> MissingOfShapeFace(const ArkitFace& face) {
   constexpr const char* kNeeded[] = {"browInnerUp",    "browDownLeft",  "browDownRight",
                                      "eyeBlinkLeft",   "eyeBlinkRight", "mouthSmileLeft",
                                      "mouthSmileRight"};
-  return std::all_of(std::begin(kNeeded), std::end(kNeeded),
-                     [&](const char* name) { return face.Has(name); });
+  std::vector<std::string> missing;
+  for (const char* name : kNeeded) {
+    if (!face.Has(name)) missing.emplace_back(name);
+  }
+  return missing;
 }
+
+bool HasShapeFace(const ArkitFace& face) { return MissingOfShapeFace(face).empty(); }
 
 }  // namespace furrow::authoring

@@ -53,8 +53,10 @@ class ArkitFace {
   std::string description_;
 };
 
-// True if the character has the blend shapes without which a face is not recognised: browInnerUp,
-// and browDown, eyeBlink and mouthSmile of both sides.
+// The blend shapes that the character lacks and without which a face is not recognised:
+// browInnerUp, and browDown, eyeBlink and mouthSmile of both sides.
+[[nodiscard]] std::vector<std::string> MissingOfShapeFace(const ArkitFace& face);
+// True if it lacks none.
 [[nodiscard]] bool HasShapeFace(const ArkitFace& face);
 
 }  // namespace furrow::authoring

@@ -172,7 +172,31 @@ class MaskMaker {
     });
     Values mask =
         Largest({Sided("mouthSmile", left), Sided("mouthFrown", left), "mouthPucker"}, window);
+    const Values fold = NasolabialFold(), nose = Nose();
+    for (std::size_t v = 0; v < mask.size(); ++v) {
+      mask[v] = std::max(mask[v], fold[v] * (1.0f - nose[v]));
+    }
     Cut(left, &mask);
+    return mask;
+  }
+
+  // The fold of a smile begins beside the wing of the nose, where the smile hardly moves the skin.
+  Values NasolabialFold() const {
+    constexpr float kHighest = 0.2f;             // above the wing, in eye distances
+    constexpr float kAside = 0.2f;               // of the corner, likewise
+    constexpr float kFull = 0.1f, kEnd = 0.26f;  // from the fold, likewise
+    const float distance = face_.eye_distance;
+    const glm::vec2 top(face_.wing_x, face_.wing + kHighest * distance);
+    const glm::vec2 low(face_.corner_x + kAside * distance, face_.corner);
+    const glm::vec2 along = low - top;
+    Values mask;
+    for (const vec3& p : skin_.positions()) {
+      const glm::vec2 from = glm::vec2(std::abs(p.x - skin_.middle()), p.y) - top;
+      const float t = std::clamp(glm::dot(from, along) / glm::dot(along, along), 0.0f, 1.0f);
+      const float near = Fade(kEnd, kFull, glm::distance(from, t * along) / distance);
+      // The back of the head lies behind the cheeks.
+      mask.push_back(p.z > face_.corner_z - 0.7f * distance ? near : 0.0f);
+    }
     return mask;
   }
 

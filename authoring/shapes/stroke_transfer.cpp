@@ -161,6 +161,7 @@ TransferredStrokes TransferStrokes(std::span<const BakeStroke> strokes, const Fa
   const float lowest = from.chin - kBelowChin * from.eye_distance;
   TransferredStrokes moved;
   for (const BakeStroke& stroke : strokes) {
+    if (stroke.personal) continue;
     BakeStroke copy = stroke;
     std::erase_if(copy.maps, [&](const auto& map) { return !IsNameOf(rig.wrinkle_maps, map); });
     if (copy.maps.empty()) continue;

@@ -31,8 +31,8 @@ struct TransferredStrokes {
 // seen from an axis inside the head. Directions at the mouth follow the width of the mouth. The
 // point then lies on the outermost skin in this direction, so noses and cheeks may have any shape.
 // Widths and depths grow with the face. `rig`: the rig of the new face. Strokes for maps or regions
-// that it lacks are left out, and so are strokes below the chin, which the facial masks do not
-// reach.
+// that it lacks are left out, and so are personal ones (BakeStroke::personal) and strokes below the
+// chin, which the facial masks do not reach.
 [[nodiscard]] TransferredStrokes TransferStrokes(std::span<const BakeStroke> strokes,
                                                  const FaceMeasures& from, const FaceMeasures& to,
                                                  const FaceSkin& skin, const wrinkle::Rig& rig);

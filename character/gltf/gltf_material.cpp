@@ -119,6 +119,8 @@ std::vector<Material> MakeGltfMaterials(const std::vector<gltf::Material>& from)
     to.normal_texture = material.normal_image;
     to.roughness = material.roughness;
     to.roughness_texture = material.roughness_image;
+    to.emission = material.emission;
+    to.emission_texture = material.emission_image;
     to.thickness = material.thickness;
     to.thickness_texture = material.thickness_image;
     // The transform of any other material moves the UVs of its meshes (gltf_mesh.cpp).

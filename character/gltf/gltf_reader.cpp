@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "character/gltf/gltf_reader.h"
 
+#include <algorithm>
 #include <cstddef>
+#include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "character/gltf/gltf_material.h"
+#include "character/gltf/gltf_material_binds.h"
 #include "character/gltf/gltf_mesh.h"
 #include "character/gltf/gltf_shape_rules.h"
 #include "character/gltf/gltf_skeleton.h"
 #include "character/source_notes.h"
 #include "gltf/document/document.h"
+#include "gltf/scene/material_binds.h"
 #include "gltf/scene/materials.h"
 #include "gltf/scene/nodes.h"
 
@@ -28,11 +33,33 @@ void DropMissingPictures(Character* character) {
   }
   character->pictures = std::move(kept);
   for (Material& material : character->materials) {
-    for (int* picture : {&material.base_colour_texture, &material.normal_texture,
-                         &material.roughness_texture, &material.thickness_texture}) {
+    for (int* picture :
+         {&material.base_colour_texture, &material.normal_texture, &material.roughness_texture,
+          &material.emission_texture, &material.thickness_texture}) {
       if (*picture >= 0) *picture = index[static_cast<std::size_t>(*picture)];
     }
   }
+}
+
+// Reads the binds of materials, which may add shapes.
+Status ReadMaterialBinds(gltf::Document* document, std::span<const gltf::Material> materials,
+                         const ReadOptions& options, Character* character) {
+  const Result<std::vector<gltf::MaterialBind>> from = gltf::ReadMaterialBinds(document, materials);
+  FURROW_RETURN_IF_ERROR(from);
+  const std::vector<std::string> surplus =
+      MakeMaterialBinds(*from, &character->shapes, &character->material_binds);
+  if (!surplus.empty()) {
+    document->Warn("extensions.VRM", "the avatar has more than " + std::to_string(kMaxShapes) +
+                                         " shapes; left out, with what they change in materials: " +
+                                         std::to_string(surplus.size()));
+  }
+  if (options.notes != nullptr) {
+    // A shape that moves nothing may still change a colour.
+    std::erase_if(options.notes->idle_shapes, [&](const std::string& name) {
+      return std::ranges::find(character->shapes, name) != character->shapes.end();
+    });
+  }
+  return {};
 }
 
 }  // namespace
@@ -62,6 +89,7 @@ Status ReadGltfCharacter(std::string_view bytes, const std::filesystem::path& fo
   character->inverse_bind_matrices = std::move(skeleton->inverse_bind_matrices);
   character->meshes = std::move(meshes->meshes);
   character->shapes = std::move(meshes->shapes);
+  FURROW_RETURN_IF_ERROR(ReadMaterialBinds(&*document, *materials, options, character));
   character->shape_rules = MakeShapeRules(gltf::ReadExpressionRules(&*document), character->shapes);
   character->materials = MakeGltfMaterials(*materials);
   character->pictures = std::move(*pictures);

@@ -12,10 +12,12 @@
 
 #include "base/status.h"
 #include "character/gltf/gltf_material.h"
+#include "character/gltf/gltf_material_binds.h"
 #include "character/gltf/gltf_shape_rules.h"
 #include "character/pictures/picture_file.h"
 #include "gltf/scene/expression_rules.h"
 #include "gltf/scene/joints.h"
+#include "gltf/scene/material_binds.h"
 #include "gltf/scene/materials.h"
 #include "gltf/write/builder.h"
 #include "gltf/write/scene_json.h"
@@ -65,7 +67,7 @@ class CharacterWriter {
     const auto pictures = static_cast<int>(character_.pictures.size());
     for (const Material& m : character_.materials) {
       if (std::max({m.base_colour_texture, m.normal_texture, m.roughness_texture,
-                    m.thickness_texture}) >= pictures) {
+                    m.emission_texture, m.thickness_texture}) >= pictures) {
         return {StatusCode::kInvalidArgument,
                 "material '" + m.name + "' refers to a picture that does not exist", "materials"};
       }
@@ -143,6 +145,9 @@ class CharacterWriter {
     root_["scenes"] = Json::array({{{"name", character_.name}, {"nodes", std::move(roots)}}});
     if (!character_.shape_rules.empty()) {
       root_["scenes"][0]["extras"][gltf::kRulesExtra] = ShapeRulesJson(character_);
+    }
+    if (!character_.material_binds.empty()) {
+      root_["scenes"][0]["extras"][gltf::kMaterialBindsExtra] = MaterialBindsJson(character_);
     }
     root_["nodes"] = std::move(nodes);
   }
@@ -281,6 +286,7 @@ class CharacterWriter {
         material["alphaCutoff"] = m.alpha_cutoff;
       }
       if (m.double_sided) material["doubleSided"] = true;
+      AddEmission(m, &material);
       if (m.thickness > 0.0f) AddThickness(m, &material);
       material["extras"] = {{gltf::kKindExtra, MaterialKindName(m.kind)}};
       if (!m.wrinkles) material["extras"][gltf::kWrinklesExtra] = false;
@@ -307,6 +313,22 @@ class CharacterWriter {
   void UseExtension(const std::string& name) {
     Json& used = root_["extensionsUsed"];
     if (std::find(used.begin(), used.end(), name) == used.end()) used.push_back(name);
+  }
+
+  // glTF limits emissiveFactor to 1; an extension states the rest.
+  void AddEmission(const Material& m, Json* material) {
+    const float strength = std::max({m.emission.r, m.emission.g, m.emission.b, 1.0f});
+    if (m.emission != glm::vec3(0.0f)) {
+      (*material)["emissiveFactor"] = gltf::ToJson(m.emission / strength);
+    }
+    if (m.emission_texture >= 0) {
+      (*material)["emissiveTexture"] = TextureOf(m, m.emission_texture);
+    }
+    if (strength > 1.0f) {
+      (*material)["extensions"]["KHR_materials_emissive_strength"] = {
+          {"emissiveStrength", strength}};
+      UseExtension("KHR_materials_emissive_strength");
+    }
   }
 
   void AddThickness(const Material& m, Json* material) {

@@ -29,6 +29,10 @@ struct Material {
   int normal_texture = -1;       // tangent space; green points up in the image (glTF)
   float roughness = 0.6f;        // [0, 1]: 0 mirror-like, 1 matte; multiplies the texture
   int roughness_texture = -1;    // green channel
+  // Light that the surface sends out itself, linear, in units of white paper in the lamps' light.
+  // Multiplies the texture.
+  glm::vec3 emission{0.0f};
+  int emission_texture = -1;  // sRGB
   // Thickness of translucent flesh in metres (KHR_materials_volume); 0 if the file does not state
   // it. Multiplies the green channel of thickness_texture, if there is one.
   float thickness = 0.0f;

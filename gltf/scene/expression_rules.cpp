@@ -2,7 +2,6 @@
 #include "gltf/scene/expression_rules.h"
 
 #include <optional>
-#include <string_view>
 #include <utility>
 
 #include <tiny_gltf.h>
@@ -11,22 +10,19 @@
 #include "base/text.h"
 #include "gltf/document/json_value.h"
 #include "gltf/limits.h"
+#include "gltf/scene/expression_list.h"
 
 namespace furrow::gltf {
 namespace {
 
 using tinygltf::Value;
 
-std::string StringOf(const Value& value) {
-  return value.IsString() ? value.Get<std::string>() : std::string();
-}
-
 ExpressionRule RuleOf(const std::string& name, const Value& from) {
   ExpressionRule rule{.shape = CutText(name, kMaxNameBytes)};
   const Value& binary = Member(from, "isBinary");
   rule.is_binary = binary.IsBool() && binary.Get<bool>();
   for (std::size_t i = 0; i < kOverrideNames.size(); ++i) {
-    const std::string how = StringOf(Member(from, kOverrideNames[i]));
+    const std::string how = TextOf(Member(from, kOverrideNames[i]));
     if (how == "block") rule.overrides[i] = ExpressionRule::Override::kBlock;
     if (how == "blend") rule.overrides[i] = ExpressionRule::Override::kBlend;
   }
@@ -35,7 +31,7 @@ ExpressionRule RuleOf(const std::string& name, const Value& from) {
 
 // The members that only kRulesExtra has.
 void ReadOwnMembers(const Value& from, ExpressionRule* rule) {
-  rule->contains = CutText(StringOf(Member(from, "contains")), kMaxNameBytes);
+  rule->contains = CutText(TextOf(Member(from, "contains")), kMaxNameBytes);
   const Value& gaze = Member(from, "gaze");
   if (gaze.IsObject()) rule->gaze = ReadGazeRange(gaze);
 }
@@ -56,11 +52,9 @@ class RuleReader {
 
   std::vector<ExpressionRule> Run() {
     const tinygltf::Model& model = document_.model();
-    if (const auto found = model.extensions.find("VRMC_vrm"); found != model.extensions.end()) {
-      ReadVersion1(Member(found->second, "expressions"));
-    } else if (const auto old = model.extensions.find("VRM"); old != model.extensions.end()) {
-      ReadVersion0(Member(Member(old->second, "blendShapeMaster"), "blendShapeGroups"));
-    } else if (!model.scenes.empty()) {
+    const std::vector<ExpressionObject> expressions = ListExpressions(document_);
+    for (const ExpressionObject& expression : expressions) ReadExpression(expression);
+    if (expressions.empty() && !model.scenes.empty()) {
       ReadList(Member(model.scenes.front().extras, kRulesExtra));
     }
     if (surplus_ > 0) {
@@ -71,35 +65,17 @@ class RuleReader {
   }
 
  private:
-  void ReadVersion0(const Value& groups) {
-    if (!groups.IsArray()) return;
-    for (std::size_t i = 0; i < groups.ArrayLen(); ++i) {
-      const Value& group = groups.Get(static_cast<int>(i));
-      const std::string preset = StringOf(Member(group, "presetName"));
-      const bool is_custom = preset.empty() || preset == "unknown";
-      ExpressionRule rule = RuleOf(is_custom ? StringOf(Member(group, "name")) : preset, group);
-      if (look_at_ && !is_custom) rule.gaze = GazeOf(*look_at_, preset);
-      Add(std::move(rule));
-    }
-  }
-
-  void ReadVersion1(const Value& expressions) {
-    for (const char* kind : {"preset", "custom"}) {
-      const Value& named = Member(expressions, kind);
-      if (!named.IsObject()) continue;
-      for (const std::string& name : named.Keys()) {
-        ExpressionRule rule = RuleOf(name, named.Get(name));
-        if (look_at_ && kind == std::string_view("preset")) rule.gaze = GazeOf(*look_at_, name);
-        Add(std::move(rule));
-      }
-    }
+  void ReadExpression(const ExpressionObject& expression) {
+    ExpressionRule rule = RuleOf(expression.name, *expression.json);
+    if (look_at_ && expression.is_preset) rule.gaze = GazeOf(*look_at_, expression.name);
+    Add(std::move(rule));
   }
 
   void ReadList(const Value& list) {
     if (!list.IsArray()) return;
     for (std::size_t i = 0; i < list.ArrayLen(); ++i) {
       const Value& entry = list.Get(static_cast<int>(i));
-      ExpressionRule rule = RuleOf(StringOf(Member(entry, "shape")), entry);
+      ExpressionRule rule = RuleOf(TextOf(Member(entry, "shape")), entry);
       ReadOwnMembers(entry, &rule);
       Add(std::move(rule));
     }

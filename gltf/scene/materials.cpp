@@ -10,6 +10,7 @@
 
 #include "base/srgb.h"
 #include "gltf/container/uri.h"
+#include "gltf/document/json_value.h"
 #include "gltf/limits.h"
 
 namespace furrow::gltf {
@@ -17,7 +18,7 @@ namespace {
 
 constexpr int kMaxUvSets = 8;
 
-// Only what the renderer draws: metalness, emission and occlusion are ignored.
+// Only what the renderer draws: metalness and occlusion are ignored.
 class MaterialReader {
  public:
   // `vrm`: the material's properties in VRM 0.x; null if the file has none.
@@ -65,7 +66,9 @@ class MaterialReader {
     FURROW_RETURN_IF_ERROR(ReadTexture(pbr.metallicRoughnessTexture,
                                        in_pbr + "metallicRoughnessTexture", &to.roughness_image));
     FURROW_RETURN_IF_ERROR(ReadTexture(from_.normalTexture, ".normalTexture", &to.normal_image));
+    FURROW_RETURN_IF_ERROR(ReadEmission(&to));
     FURROW_RETURN_IF_ERROR(ReadThickness(&to));
+    to.shade_colour = ShadeColour();
     to.uv_transform = uv_transform_.value_or(UvTransform());
     to.uv_set = std::max(uv_set_, 0);
     if (transforms_differ_) {
@@ -91,6 +94,44 @@ class MaterialReader {
       const float limited = std::clamp(stated, 0.0f, 1.0f);
       to->base_colour[i] = i == 3 ? limited : LinearFromSrgb(limited);
     }
+  }
+
+  // The light that the surface sends out itself.
+  Status ReadEmission(Material* to) {
+    const auto strength = from_.extensions.find("KHR_materials_emissive_strength");
+    double factor = 1.0;
+    if (strength != from_.extensions.end()) {
+      const tinygltf::Value& stated = Member(strength->second, "emissiveStrength");
+      if (stated.IsNumber()) factor = stated.GetNumberAsDouble();
+    }
+    for (std::size_t i = 0; i < std::min<std::size_t>(from_.emissiveFactor.size(), 3); ++i) {
+      const auto light = static_cast<float>(factor * from_.emissiveFactor[i]);
+      if (!std::isfinite(light)) {
+        return {StatusCode::kNonFinite, "the emission is not finite", field_ + ".emissiveFactor"};
+      }
+      to->emission[static_cast<int>(i)] = std::clamp(light, 0.0f, kMaxEmission);
+    }
+    return ReadTexture(from_.emissiveTexture, ".emissiveTexture", &to->emission_image);
+  }
+
+  // Of MToon in VRM 1.0 and 0.x.
+  [[nodiscard]] std::optional<glm::vec3> ShadeColour() const {
+    const auto mtoon = from_.extensions.find("VRMC_materials_mtoon");
+    const bool is_vrm1 = mtoon != from_.extensions.end();
+    if (!is_vrm1 && vrm_ == nullptr) return std::nullopt;
+    const tinygltf::Value& stated = is_vrm1
+                                        ? Member(mtoon->second, "shadeColorFactor")
+                                        : Member(Member(*vrm_, "vectorProperties"), "_ShadeColor");
+    if (!stated.IsArray() || stated.ArrayLen() < 3) {
+      return is_vrm1 ? std::optional(glm::vec3(0.0f)) : std::nullopt;
+    }
+    glm::vec3 colour(0.0f);
+    for (int i = 0; i < 3; ++i) {
+      if (!stated.Get(i).IsNumber()) return std::nullopt;
+      colour[i] = std::clamp(static_cast<float>(stated.Get(i).GetNumberAsDouble()), 0.0f, 1.0f);
+      if (!is_vrm1) colour[i] = LinearFromSrgb(colour[i]);
+    }
+    return colour;
   }
 
   // The lit texture of MToon, in files whose glTF material states no texture of its own. VRM 1.0

@@ -4,11 +4,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
 #include "base/status.h"
@@ -26,6 +28,9 @@ inline constexpr char kWrinklesExtra[] = "furrow_wrinkles";
 // these UVs for wrinkle maps and masks, and KHR_texture_transform leads to the material's own
 // textures.
 inline constexpr char kAtlasTileExtra[] = "furrow_atlas_tile";
+
+// The strongest light that a material may state, in units of white paper in the sun.
+inline constexpr float kMaxEmission = 100.0f;
 
 // KHR_texture_transform: how UVs of the mesh become UVs of the image.
 struct UvTransform {
@@ -47,6 +52,12 @@ struct Material {
   int normal_image = kNone;
   float roughness = 1.0f;       // clamped to [0, 1]
   int roughness_image = kNone;  // green channel
+  // Light of its own, linear, in [0, kMaxEmission]: emissiveFactor times
+  // KHR_materials_emissive_strength. Multiplies the texture.
+  glm::vec3 emission{0.0f};
+  int emission_image = kNone;  // sRGB
+  // The colour of MToon where no light arrives, linear; nullopt for other materials.
+  std::optional<glm::vec3> shade_colour;
   float thickness = 0.0f;       // metres (KHR_materials_volume); 0: not stated
   int thickness_image = kNone;  // green channel, times `thickness`
   bool double_sided = false;

@@ -22,11 +22,10 @@ struct VrmExpression {
 
 // Reads the expressions of VRM 0.x (VRM.blendShapeMaster.blendShapeGroups) and 1.0
 // (VRMC_vrm.expressions) of a document with Contents::kCharacter. Expressions without morph targets
-// are left out. Binds add up (VRMC_vrm-1.0, "Expressions"). ReadExpressionRules() has what else
-// they do.
+// are left out. Binds add up (VRMC_vrm-1.0, "Expressions"). ReadExpressionRules() and
+// ReadMaterialBinds() have what else they do.
 //
-// Deviations from VRM give a warning: binds of meshes or targets that do not exist are ignored, and
-// so are binds of colours and textures.
+// Binds of meshes or targets that do not exist are ignored with a warning.
 // Error: kLimit (gltf/limits.h).
 [[nodiscard]] Result<std::vector<VrmExpression>> ReadVrmExpressions(Document* document);
 

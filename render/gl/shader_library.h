@@ -40,7 +40,9 @@ struct SceneShader {
   bool base_normal_map = false;
   bool roughness_map = false;
   bool alpha_test = false;
-  int active_maps = 0;  // active wrinkle maps on this surface
+  bool emits = false;         // the material sends out light
+  bool emission_map = false;  // times a texture
+  int active_maps = 0;        // active wrinkle maps on this surface
   int mask_layers = 1;
   std::uint32_t mask_bits = ~0u;  // mask layers with regions of this surface
   int map_slots = 1;              // MapSlots(): vec4s of dynamic masks per vertex
@@ -60,12 +62,13 @@ struct SceneShader {
   bool any_material = false;  // each pixel has its own material; `material` is ignored
   // Store only the surface's properties; skin/light.frag.glsl lights them later.
   bool unlit = false;
-  bool displaced = false;       // tessellated and moved by heights
-  bool shadow = false;          // displaced geometry for a shadow map: depth only
-  bool composed_looks = false;  // the base colour already includes the wrinkles' colour and cavity
-  bool shade = false;           // a shell that only darkens what lies behind it
-  bool stretch = false;         // the mesh is posed with PoseShader::gradients
-  bool crowd = false;           // several subjects, each with its own wrinkle weights
+  bool emission_target = false;  // `unlit` stores emission, too
+  bool displaced = false;        // tessellated and moved by heights
+  bool shadow = false;           // displaced geometry for a shadow map: depth only
+  bool composed_looks = false;   // the base colour already includes the wrinkles' colour and cavity
+  bool shade = false;            // a shell that only darkens what lies behind it
+  bool stretch = false;          // the mesh is posed with PoseShader::gradients
+  bool crowd = false;            // several subjects, each with its own wrinkle weights
 
   friend auto operator<=>(const SceneShader&, const SceneShader&) = default;
 };

@@ -9,6 +9,7 @@ namespace {
 // Uniform locations in common/view.glsl and skin/light.frag.glsl.
 enum LightUniform : GLint { kLightViewRotation = 0, kLightLens = 3, kLightRange = 4 };
 constexpr std::size_t kOpenUnit = 10;
+constexpr std::size_t kStoredEmissionUnit = 11;
 
 }  // namespace
 
@@ -19,13 +20,15 @@ SkinTargets AddLightPass(FrameGraph* graph, const FacetTargets& facets, FrameGra
   std::vector<std::string> defines = Defines(SceneDraw::LightShader(settings));
   defines.push_back(Define("OCCLUSION", open.target.version >= 0));
   defines.push_back(Define("SCALE", open.scale));
+  defines.push_back(Define("EMISSION", facets.emission.version >= 0));
   std::vector<FrameGraph::Handle> reads = {facets.colour, facets.normal, facets.geometric,
                                            facets.matter, facets.depth};
   // The index is the texture unit. Units without a handle stay free for the look-up tables of
   // SceneDraw.
-  reads.resize(kOpenUnit + 1);
+  reads.resize(kStoredEmissionUnit + 1);
   for (const GLuint unit : SceneDraw::kShadowUnits) reads[unit] = shadows;
   reads[kOpenUnit] = open.target;
+  reads[kStoredEmissionUnit] = facets.emission;
   const auto target = [&](std::string_view name, PixelFormat format) {
     return FullscreenPass::Target{name, {geometry.width, geometry.height, format, 1}};
   };

@@ -9,7 +9,8 @@
 namespace furrow::render {
 namespace {
 
-// Binding points of the shaders in scene/, skin/ and wrinkles/. See also scene_buffers.cpp.
+// Binding points of the shaders in scene/, skin/ and wrinkles/. See also scene_buffers.cpp, which
+// has texture unit 13.
 constexpr GLuint kMaterialBlock = 1;
 enum TextureUnit : GLuint {
   kBaseColourUnit = 0,
@@ -22,7 +23,8 @@ enum TextureUnit : GLuint {
   kPreintegratedUnit = 9,
   kWrinkleLooksUnit = 10,
   kThicknessUnit = 11,
-  kWrinkleHeightsUnit = 12
+  kWrinkleHeightsUnit = 12,
+  kEmissionUnit = 14
 };
 constexpr GLint kLightLocation = 0;        // of shadow.vert.glsl and displace.tese.glsl
 constexpr GLint kHeightTexelLocation = 1;  // of displace.tese.glsl
@@ -133,6 +135,7 @@ SceneDraw::SceneDraw(const wrinkle::Skeleton& skeleton,
       buffers_(inverse_bind_matrices, tables),
       cache_(gpu, tables, inverse_bind_matrices, is_software),
       morphs_(gpu),
+      materials_(gpu),
       posed_(gpu, &morphs_, shaders),
       shadow_compare_(MakeShadowSampler(true)),
       shadow_depth_(MakeShadowSampler(false)),
@@ -154,6 +157,7 @@ Status SceneDraw::Update(const FrameRequest& request) {
   FindVisible(subjects, settings);
   buffers_.Upload(MakeFrameBlock(setup_, settings), subjects, gpu_->layout());
   morphs_.BeginFrame(subjects);
+  materials_.BeginFrame(subjects);
   posed_.BeginFrame();
   PlanComposing(request);
   return {};
@@ -203,13 +207,13 @@ bool SceneDraw::NeedsComposing(const Settings& settings) const {
 
 void SceneDraw::BindMaterial(const GpuMaterial& material, const WrinkleCache::Composed& composed) {
   const ComposedMaterial::Textures& textures = composed.textures;
-  glBindBufferBase(GL_UNIFORM_BUFFER, kMaterialBlock, material.block.name());
   buffers_.BindWrinkles(material.group, composed.rest);
   glBindTextureUnit(kBaseColourUnit, textures.colour != 0 ? textures.colour : material.base_colour);
   glBindTextureUnit(kBaseDerivativesUnit,
                     textures.derivatives != 0 ? textures.derivatives : material.derivatives);
   glBindTextureUnit(kRoughnessUnit, material.roughness);
   glBindTextureUnit(kThicknessUnit, material.thickness);
+  glBindTextureUnit(kEmissionUnit, material.emission);
 }
 
 void SceneDraw::BindTables(GLuint shadows) {
@@ -250,17 +254,31 @@ Result<PosedMeshes::Vertices> SceneDraw::Pose(std::size_t index, PosedMeshes::Fo
   return posed_.Get(index, form, shader, part, draw_list_.subjects(index));
 }
 
-// The posed vertices of all subjects lie one after another in one buffer. Each subject is one entry
-// of a multi-draw with its own base vertex and its own level of detail.
 void SceneDraw::DrawSubjects(const PosedMeshes::Vertices& posed, std::size_t index,
                              PosedMeshes::Form form, int view) {
-  const auto seen = draw_list_.seen(view, index);
+  glBindVertexArray(posed.vertex_array);
+  if (form == PosedMeshes::Form::kPatches) {
+    glUniform1f(kHeightTexelLocation,
+                gpu_->Patches(index).metres_per_uv / static_cast<float>(gpu_->heights().side));
+    glPatchParameteri(GL_PATCH_VERTICES, DisplacementPatches::kCorners);
+  }
+  for (const MaterialBlocks::Group& group :
+       materials_.GroupsOf(gpu_->meshes()[index].material, draw_list_.subjects(index),
+                           draw_list_.seen(view, index))) {
+    glBindBufferBase(GL_UNIFORM_BUFFER, kMaterialBlock, group.block);
+    DrawAlike(posed, index, form, view, group.seen);
+  }
+}
+
+// The posed vertices of all subjects lie one after another in one buffer. Each subject is one entry
+// of a multi-draw with its own base vertex and its own level of detail.
+void SceneDraw::DrawAlike(const PosedMeshes::Vertices& posed, std::size_t index,
+                          PosedMeshes::Form form, int view, std::span<const std::uint32_t> seen) {
   const auto num_draws = static_cast<GLsizei>(seen.size());
   std::vector<GLint> first(seen.size());  // first vertex of each subject
   std::ranges::transform(seen, first.begin(), [&](std::uint32_t subject) {
     return static_cast<GLint>(subject) * posed.per_subject;
   });
-  glBindVertexArray(posed.vertex_array);
   if (form == PosedMeshes::Form::kUnindexed) {
     const std::vector<GLsizei> counts(seen.size(), gpu_->meshes()[index].num_indices);
     glMultiDrawArrays(GL_TRIANGLES, first.data(), counts.data(), num_draws);
@@ -272,11 +290,6 @@ void SceneDraw::DrawSubjects(const PosedMeshes::Vertices& posed, std::size_t ind
     const GpuMesh::Level level = LevelOf(index, form, draw_list_.levels(view, index)[subject]);
     counts.push_back(level.count);
     offsets.push_back(reinterpret_cast<const void*>(std::uintptr_t{4} * level.first));
-  }
-  if (form == PosedMeshes::Form::kPatches) {
-    glUniform1f(kHeightTexelLocation,
-                gpu_->Patches(index).metres_per_uv / static_cast<float>(gpu_->heights().side));
-    glPatchParameteri(GL_PATCH_VERTICES, DisplacementPatches::kCorners);
   }
   const GLenum kind = form == PosedMeshes::Form::kPatches ? GL_PATCHES : GL_TRIANGLES;
   glMultiDrawElementsBaseVertex(kind, counts.data(), GL_UNSIGNED_INT, offsets.data(), num_draws,
@@ -379,6 +392,8 @@ SceneShader SceneDraw::SurfaceShader(const GpuMaterial& material,
   shader.base_normal_map = material.derivatives != 0 || composed.textures.derivatives != 0;
   shader.roughness_map = material.roughness != 0;
   shader.alpha_test = material.alpha_test;
+  shader.emits = material.emits;
+  shader.emission_map = material.emits && material.emission != 0;
   shader.mask_bits = tables_->mask_bits(material.group);
   shader.mask_layers = gpu_->layout().num_mask_layers;
   shader.map_slots = MapSlots(tables_->num_maps());
@@ -395,6 +410,7 @@ SceneShader SceneDraw::ShaderFor(const GpuMaterial& material,
   shader.displaced =
       tables_->IsDisplaced(material.group, settings) && settings.view != View::kWireframe;
   shader.shade = material.kind == character::Material::Kind::kShade;
+  shader.emission_target = kind == SceneKind::kFacets && gpu_->emits();
   if (kind == SceneKind::kPlain) return shader;
   const bool skin = material.kind == character::Material::Kind::kSkin;
   shader.shading = Shading::kSkin;

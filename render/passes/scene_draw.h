@@ -10,6 +10,7 @@
 #include "render/scene/frame_block.h"
 #include "render/scene/gpu_character.h"
 #include "render/scene/lookup_tables.h"
+#include "render/scene/material_blocks.h"
 #include "render/scene/morph_sums.h"
 #include "render/scene/posed_meshes.h"
 #include "render/scene/scene_buffers.h"
@@ -23,7 +24,8 @@ namespace furrow::render {
 enum class SceneKind { kPlain, kSkin, kFacets };
 
 // Holds the posed subjects and the frame's lights on the GPU, and draws them for several passes.
-// Each mesh is one draw call, whatever the number of subjects.
+// Each mesh is one draw call, whatever the number of
+// subjects, unless their shapes change its material.
 class SceneDraw {
  public:
   // All arguments must outlive this object. `is_software`: the driver renders on the CPU, where
@@ -54,6 +56,8 @@ class SceneDraw {
   // Draws the depth of every mesh as lamp `light`, in [0, kNumLights), sees it, into the viewport
   // of the bound framebuffer. Errors: those of ShaderLibrary and PosedMeshes.
   [[nodiscard]] Status DrawShadow(const Settings& settings, int light);
+  // True if the character sends out light, so that kFacets has a sixth target.
+  [[nodiscard]] bool emits() const { return gpu_->emits(); }
   // Draws every mesh for settings.view into the bound framebuffer, which has one target for kPlain
   // and five for the other kinds. Errors: those of ShaderLibrary and PosedMeshes.
   [[nodiscard]] Status DrawScene(const Settings& settings, SceneKind kind);
@@ -68,9 +72,12 @@ class SceneDraw {
   [[nodiscard]] Result<PosedMeshes::Vertices> Pose(std::size_t index, PosedMeshes::Form form,
                                                    WrinklePart part);
   [[nodiscard]] GpuMesh::Level LevelOf(std::size_t index, PosedMeshes::Form form, int level);
-  // Draws all subjects that the view sees of the mesh, in one call.
+  // Draws all subjects that the view sees of the mesh: in one call, or in one per look of the
+  // material if shapes change it.
   void DrawSubjects(const PosedMeshes::Vertices& posed, std::size_t index, PosedMeshes::Form form,
                     int view);
+  void DrawAlike(const PosedMeshes::Vertices& posed, std::size_t index, PosedMeshes::Form form,
+                 int view, std::span<const std::uint32_t> seen);
   [[nodiscard]] Status DrawCaster(const Settings& settings, int light, std::size_t index);
   void BindLookUps();
   [[nodiscard]] Status DrawMesh(const Settings& settings, SceneKind kind, std::size_t index);
@@ -94,6 +101,7 @@ class SceneDraw {
   SceneBuffers buffers_;
   WrinkleCache cache_;
   MorphSums morphs_;
+  MaterialBlocks materials_;
   PosedMeshes posed_;
 
   LookupTables lookup_tables_;

@@ -2,6 +2,7 @@
 #include "render/passes/scene_pass.h"
 
 #include <array>
+#include <vector>
 
 namespace furrow::render {
 namespace {
@@ -137,12 +138,15 @@ FacetTargets ScenePass::AddFacets(FrameGraph* graph, const Settings& settings, i
                target("scene geometric", PixelFormat::kRgba8),
                target("scene matter", PixelFormat::kRgba8),
                target("scene depth", PixelFormat::kR32F),
-               target("scene z", PixelFormat::kDepth32F)};
+               target("scene z", PixelFormat::kDepth32F),
+               {}};
+        if (scene_->emits()) out.emission = target("scene emission", PixelFormat::kRgba16F);
       },
       [this, settings](const FrameGraph::Resources& resources, const FacetTargets& out) {
-        const std::array<TextureId, 5> colours = {
-            resources.Get(out.colour), resources.Get(out.normal), resources.Get(out.geometric),
-            resources.Get(out.matter), resources.Get(out.depth)};
+        std::vector<TextureId> colours = {resources.Get(out.colour), resources.Get(out.normal),
+                                          resources.Get(out.geometric), resources.Get(out.matter),
+                                          resources.Get(out.depth)};
+        if (out.emission.version >= 0) colours.push_back(resources.Get(out.emission));
         const GLuint framebuffer = device_->Framebuffer(colours, resources.Get(out.z));
         const TextureDesc& desc = resources.Desc(out.depth);
         BeginScene(framebuffer, desc.width, desc.height);

@@ -27,6 +27,7 @@ struct FacetTargets {
   FrameGraph::Handle matter;
   FrameGraph::Handle depth;  // metres along the camera's axis
   FrameGraph::Handle z;
+  FrameGraph::Handle emission;  // an empty handle if no material sends out light
 };
 
 // Depth behind the focus, in metres, that means "no skin". FAR_AWAY of the shaders. A half float
@@ -58,7 +59,8 @@ class ScenePass {
   // of ShadowPass::Add(), or an empty handle.
   [[nodiscard]] SkinTargets AddSkin(FrameGraph* graph, const Settings& settings,
                                     const Targets& targets, FrameGraph::Handle shadows);
-  // Draws the skin pipeline's scene without light into five targets, one sample per pixel.
+  // Draws the skin pipeline's scene without light into five targets, one sample per pixel, and the
+  // light that the surfaces send out into a sixth, if they do.
   [[nodiscard]] FacetTargets AddFacets(FrameGraph* graph, const Settings& settings, int width,
                                        int height);
 

@@ -14,20 +14,6 @@ using character::Material;
 using character::Picture;
 using character::Vertex;
 
-// Mirrors the Material block of shaders/scene/surface_frag.glsl (std140).
-struct MaterialBlock {
-  glm::vec4 base_colour;
-  float roughness;
-  float specular;
-  float alpha_cutoff;
-  float cavity_albedo;
-  float thickness;
-  float padding[3];
-  glm::vec2 texture_scale;
-  glm::vec2 texture_offset;
-};
-static_assert(sizeof(MaterialBlock) == 64);
-
 // Scale of the specular lobe. Skin reflects 2.8% at normal incidence, the tear film 2%. The tear
 // film is smooth, so its highlight is a small bright point.
 float SpecularOf(Material::Kind kind) {
@@ -194,6 +180,19 @@ Status CheckBlock(const WrinkleLayout& layout) {
 
 }  // namespace
 
+MaterialBlock MakeMaterialBlock(const Material& material, const character::MaterialLook& look) {
+  return {look.base_colour,
+          RoughnessOf(material),
+          SpecularOf(material.kind),
+          material.alpha_cutoff,
+          CavityAlbedoOf(material.kind),
+          material.thickness,
+          {},
+          look.texture_scale,
+          look.texture_offset,
+          glm::vec4(look.emission, 0.0f)};
+}
+
 Result<std::unique_ptr<GpuCharacter>> GpuCharacter::Create(const Character& character) {
   std::unique_ptr<GpuCharacter> gpu(new GpuCharacter());
   // Rows of pictures are not padded to four bytes.
@@ -211,8 +210,9 @@ Result<std::unique_ptr<GpuCharacter>> GpuCharacter::Create(const Character& char
 Status GpuCharacter::AddMaterials(const Character& character) {
   const int num_pictures = static_cast<int>(character.pictures.size());
   for (const Material& source : character.materials) {
-    for (const int picture : {source.base_colour_texture, source.normal_texture,
-                              source.roughness_texture, source.thickness_texture}) {
+    for (const int picture :
+         {source.base_colour_texture, source.normal_texture, source.roughness_texture,
+          source.emission_texture, source.thickness_texture}) {
       if (picture >= num_pictures) {
         return {StatusCode::kInvalidArgument,
                 "refers to picture " + std::to_string(picture) + " (the character has " +
@@ -220,21 +220,16 @@ Status GpuCharacter::AddMaterials(const Character& character) {
                 "material '" + source.name + "'"};
       }
     }
-    const MaterialBlock block{source.base_colour,
-                              RoughnessOf(source),
-                              SpecularOf(source.kind),
-                              source.alpha_cutoff,
-                              CavityAlbedoOf(source.kind),
-                              source.thickness,
-                              {},
-                              source.texture_scale,
-                              source.texture_offset};
+    const MaterialBlock block = MakeMaterialBlock(source, character::LookOf(source, {}, {}));
     GpuMaterial material;
+    material.source = source;
     material.block = gl::MakeStaticBuffer(&block, sizeof(block));
     material.base_colour = ColourTexture(character, source.base_colour_texture, true);
     material.roughness = ColourTexture(character, source.roughness_texture, false);
+    material.emission = ColourTexture(character, source.emission_texture, true);
     material.thickness = ColourTexture(character, source.thickness_texture, false);
     material.derivatives = DerivativeTexture(character, source.normal_texture);
+    material.emits = source.emission != glm::vec3(0.0f);
     material.kind = source.kind;
     material.group = GroupOf(character, source);
     // In units of the texture: the shader multiplies the texture by the material's base colour.
@@ -245,6 +240,17 @@ Status GpuCharacter::AddMaterials(const Character& character) {
         source.texture_scale != glm::vec2(1.0f) || source.texture_offset != glm::vec2(0.0f);
     materials_.push_back(std::move(material));
   }
+  for (const character::MaterialBind& bind : character.material_binds) {
+    if (bind.material >= materials_.size() || bind.shape >= character.shapes.size()) {
+      return {StatusCode::kInvalidArgument, "refers to a shape or material that does not exist",
+              "material binds"};
+    }
+    GpuMaterial& material = materials_[bind.material];
+    material.binds.push_back(bind);
+    material.emits = material.emits || bind.emission != glm::vec3(0.0f);
+    material.own_texture_uvs = material.own_texture_uvs || bind.moves_uvs();
+  }
+  emits_ = std::ranges::any_of(materials_, &GpuMaterial::emits);
   return {};
 }
 

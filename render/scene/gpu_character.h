@@ -5,6 +5,9 @@
 #include <memory>
 #include <vector>
 
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+
 #include "character/character.h"
 #include "render/gl/gl_objects.h"
 #include "render/mesh/gpu_mesh.h"
@@ -18,19 +21,42 @@ namespace furrow::render {
 // Limit of the summed morph targets of one mesh for one subject.
 inline constexpr std::size_t kMaxMorphBytes = std::size_t{1} << 26;
 
+// Mirrors the Material block of shaders/scene/surface_frag.glsl (std140).
+struct MaterialBlock {
+  glm::vec4 base_colour;
+  float roughness;
+  float specular;
+  float alpha_cutoff;
+  float cavity_albedo;
+  float thickness;
+  float padding[3];
+  glm::vec2 texture_scale;
+  glm::vec2 texture_offset;
+  glm::vec4 emission;  // a: not used
+};
+static_assert(sizeof(MaterialBlock) == 80);
+
+// The block of a material with the look of a pose; see character::LookOf().
+[[nodiscard]] MaterialBlock MakeMaterialBlock(const character::Material& material,
+                                              const character::MaterialLook& look);
+
 // A material on the GPU. The textures belong to the GpuCharacter.
 struct GpuMaterial {
-  gl::Buffer block;        // the Material block of shaders/scene/surface_frag.glsl
-  GLuint base_colour = 0;  // texture names; 0: none
-  GLuint derivatives = 0;  // slopes of the normal map
+  character::Material source;
+  std::vector<character::MaterialBind> binds;  // how shapes change it; see MaterialBlocks
+  gl::Buffer block;                            // MaterialBlock without binds
+  GLuint base_colour = 0;                      // texture names; 0: none
+  GLuint derivatives = 0;                      // slopes of the normal map
   GLuint roughness = 0;
+  GLuint emission = 0;
   GLuint thickness = 0;
   character::Material::Kind kind = character::Material::Kind::kOther;
   WrinkleGroup group = WrinkleGroup::kNone;
   float cavity_albedo = 0.0f;  // linear; base colours with less green are painted hollows
   bool alpha_test = false;
   bool double_sided = false;
-  bool own_texture_uvs = false;  // Material::texture_scale and texture_offset act
+  bool emits = false;            // sends out light, or a bind makes it do so
+  bool own_texture_uvs = false;  // its textures have other UVs than wrinkle maps, or may have
 };
 
 // A character's meshes, materials and textures on the GPU. Normal maps become derivative maps in
@@ -48,6 +74,8 @@ class GpuCharacter {
   [[nodiscard]] std::span<const GpuMesh> meshes() const { return meshes_; }
   [[nodiscard]] const GpuMaterial& material(int index) const { return materials_[index]; }
   [[nodiscard]] int num_materials() const { return static_cast<int>(materials_.size()); }
+  // True if some material sends out light.
+  [[nodiscard]] bool emits() const { return emits_; }
   // Texture array of the rig's masks, one layer per picture.
   [[nodiscard]] GLuint masks() const { return masks_.name(); }
   // The regions of the surface where the painted masks are above 0.
@@ -83,6 +111,7 @@ class GpuCharacter {
   std::map<std::size_t, GpuMesh> unindexed_;
   std::map<std::size_t, GpuPatches> patches_;
   std::vector<GpuMaterial> materials_;
+  bool emits_ = false;
   std::map<std::pair<int, bool>, gl::Texture> colour_textures_;  // (picture, is it sRGB)
   std::map<int, gl::Texture> derivative_textures_;
   gl::Texture masks_;

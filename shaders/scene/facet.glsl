@@ -14,4 +14,5 @@ struct Facet {
   float thickness;  // metres of flesh that light passes through, at least
   float open;       // share of light that enters painted hollows, [0, 1]
   float crease;     // share of light that enters the folds of wrinkle maps, [0, 1]
+  vec3 emission;    // light that the surface sends out, linear
 };

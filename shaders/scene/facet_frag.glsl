@@ -38,6 +38,7 @@ Facet facetHere() {
   facet.position = v_position;
   vec4 base = beginSurface(masks, dynamicMasks);
   facet.colour = base.rgb;
+  facet.emission = emission();
   facet.geometric = normalizeOrZero(facesCamera() ? v_normal : -v_normal);
   float variance;
   facet.normal = surfaceNormal(masks, dynamicMasks, variance);

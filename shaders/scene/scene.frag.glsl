@@ -67,6 +67,8 @@ void main() {
   radiance = mix(radiance, colour * (0.25 + 1.5 * grey), strength);
 #elif VIEW == VIEW_WIREFRAME
   radiance = mix(radiance * 0.35, vec3(0.75, 0.85, 1.0), edge());
+#elif VIEW == VIEW_FINAL && EMITS
+  radiance += emission();
 #endif
   f_colour = vec4(radiance, 1.0);
 #endif

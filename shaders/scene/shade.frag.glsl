@@ -15,6 +15,9 @@ layout(location = 2) out vec4 f_third;   // facets: a: share of specular light
 layout(location = 3) out vec4 f_fourth;
 layout(location = 4) out float f_fifth;
 #endif
+#if EMISSION_TARGET
+layout(location = 5) out vec4 f_sixth;   // facets: emission
+#endif
 
 void main() {
   vec3 passes = baseColour().rgb;
@@ -24,6 +27,9 @@ void main() {
   f_third = FACETS == 1 ? vec4(vec3(1.0), luminance(passes)) : vec4(1.0);
   f_fourth = vec4(1.0);
   f_fifth = 1.0;
+#if EMISSION_TARGET
+  f_sixth = vec4(passes, 1.0);
+#endif
 #else
   f_first = vec4(passes, 1.0);
 #endif

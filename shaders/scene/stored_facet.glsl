@@ -23,10 +23,10 @@ StoredFacet storeFacet(Facet facet) {
                           facet.curvature / MAX_CURVATURE, 0.0));
 }
 
-// Decodes a facet at `position` (model space).
+// Decodes a facet at `position` (model space), without its emission.
 Facet loadFacet(StoredFacet stored, vec3 position) {
   return Facet(int(stored.matter.r * 255.0 + 0.5), position, stored.colour.rgb * stored.colour.rgb,
                normalizeOrZero(stored.normal.xyz), normalizeOrZero(stored.geometric.xyz * 2.0 - 1.0),
                stored.normal.w, stored.matter.b * MAX_CURVATURE, stored.matter.g * MOST_THICKNESS,
-               stored.geometric.w, stored.colour.w);
+               stored.geometric.w, stored.colour.w, vec3(0.0));
 }

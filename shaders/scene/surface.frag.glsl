@@ -12,6 +12,9 @@ layout(location = 1) out vec4 f_normal;
 layout(location = 2) out vec4 f_geometric;
 layout(location = 3) out vec4 f_matter;
 layout(location = 4) out float f_depth;     // metres along the camera's axis
+#if EMISSION_TARGET
+layout(location = 5) out vec4 f_emission;   // rgb; see struct Facet
+#endif
 
 void main() {
   Facet facet = facetHere();
@@ -21,4 +24,7 @@ void main() {
   f_geometric = stored.geometric;
   f_matter = stored.matter;
   f_depth = depthOf(facet.position);
+#if EMISSION_TARGET
+  f_emission = vec4(facet.emission, 0.0);
+#endif
 }

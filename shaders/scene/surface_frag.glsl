@@ -18,7 +18,7 @@ layout(location = 5) flat in uint v_subject;
 layout(location = 6) in vec4 v_dynamic_masks[MAP_SLOTS];
 #endif
 
-// Mirrors MaterialBlock of render/scene/gpu_character.cpp.
+// Mirrors MaterialBlock of render/scene/gpu_character.h.
 layout(std140, binding = 1) uniform Material {
   vec4 u_base_colour;      // linear
   float u_roughness;       // [0, 1]
@@ -27,11 +27,15 @@ layout(std140, binding = 1) uniform Material {
   float u_cavity_albedo;   // see cavity(); 0: no painted hollows
   float u_thickness;       // metres of flesh that light passes through, at least
   vec4 u_texture_uv;       // scale and offset from v_uv to the UVs of the material's own textures
+  vec4 u_emission;         // rgb: light that the surface sends out, linear
 };
 
 layout(binding = 0) uniform sampler2D u_base_colour_map;        // sRGB
 layout(binding = 1) uniform sampler2D u_base_derivatives;       // n.xy / n.z, and their squares
 layout(binding = 4) uniform sampler2D u_roughness_map;          // green, as in glTF
+#if HAS_EMISSION
+layout(binding = 14) uniform sampler2D u_emission_map;          // sRGB
+#endif
 
 // UVs of the material's own textures. Masks and wrinkle maps use v_uv.
 vec2 textureUv() { return v_uv * u_texture_uv.xy + u_texture_uv.zw; }
@@ -42,6 +46,17 @@ vec4 baseColour() {
   return u_base_colour * texture(u_base_colour_map, textureUv());
 #else
   return u_base_colour;
+#endif
+}
+
+// Light that the surface sends out, linear.
+vec3 emission() {
+#if HAS_EMISSION
+  return u_emission.rgb * texture(u_emission_map, textureUv()).rgb;
+#elif EMITS
+  return u_emission.rgb;
+#else
+  return vec3(0.0);
 #endif
 }
 

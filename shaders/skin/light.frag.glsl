@@ -8,6 +8,7 @@
 // Ambient occlusion reduces the sky's light.
 //
 // OCCLUSION  1: u_open is bound
+// EMISSION   1: u_emission is bound
 
 layout(binding = 0) uniform sampler2D u_colour;     // see struct StoredFacet
 layout(binding = 1) uniform sampler2D u_normal;
@@ -16,6 +17,9 @@ layout(binding = 3) uniform sampler2D u_matter;
 layout(binding = 4) uniform sampler2D u_depth;      // metres along the camera's axis
 #if OCCLUSION
 layout(binding = 10) uniform sampler2D u_open;
+#endif
+#if EMISSION
+layout(binding = 11) uniform sampler2D u_emission;
 #endif
 layout(location = 4) uniform float u_range;         // largest depth difference that mixes, metres
 
@@ -36,6 +40,9 @@ void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   float metres = texelFetch(u_depth, pixel, 0).r;
   Facet facet = facetAt(pixel, metres);
+#if EMISSION
+  facet.emission = texelFetch(u_emission, pixel, 0).rgb;
+#endif
   Lit lit = lightFacet(facet);
 #if OCCLUSION
   float open = openAt(u_open, u_depth, pixel, metres, u_range);

@@ -155,7 +155,7 @@ Leaving leavingLight(Facet facet, Lit lit, float metres) {
   bool skin = facet.kind == MATERIAL_SKIN;
   leaving.irradiance = skin ? vec4(diffuse * before, metres - u_camera_forward.w)
                          : vec4(0.0, 0.0, 0.0, FAR_AWAY);
-  leaving.radiance = specular + (skin ? vec3(0.0) : facet.colour * diffuse);
+  leaving.radiance = specular + facet.emission + (skin ? vec3(0.0) : facet.colour * diffuse);
   leaving.albedo = skin ? albedo / before : facet.colour;
 #else
   leaving = Leaving(vec4(0.0, 0.0, 0.0, FAR_AWAY), vec3(0.0), vec3(0.0));

@@ -54,6 +54,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       if (!(std::abs(sum - 1.0f) < 1e-3f)) std::abort();
     }
   }
+  for (const MaterialBind& bind : character->material_binds) {
+    if (bind.shape >= character->shapes.size()) std::abort();
+    if (bind.material >= character->materials.size()) std::abort();
+    if (!(std::abs(bind.emission.x) <= 1e3f) || !(std::abs(bind.uv_scale.x) <= 1e5f)) std::abort();
+  }
   for (const Material& material : character->materials) {
     if (material.base_colour_texture >= static_cast<int>(character->pictures.size())) std::abort();
   }

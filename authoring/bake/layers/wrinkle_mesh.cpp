@@ -66,6 +66,16 @@ glm::mat3 RotationIn(const glm::mat3& m) {
   return {x, y / second, glm::cross(x, y / second)};
 }
 
+// The hyperbolic tangent within 1e-4, from Lambert's continued fraction, at a quarter of the time.
+float Tanh(float x) {
+  constexpr float kSaturated = 4.97f;  // where the fraction reaches 1
+  const float limited = std::clamp(x, -kSaturated, kSaturated);
+  const float square = limited * limited;
+  const float above = limited * (135135.0f + square * (17325.0f + square * (378.0f + square)));
+  const float below = 135135.0f + square * (62370.0f + square * (3150.0f + 28.0f * square));
+  return above / below;
+}
+
 vec3 UnitOr(const vec3& v, const vec3& otherwise) {
   const float length = glm::length(v);
   return length > 1e-12f ? v / length : otherwise;
@@ -234,41 +244,64 @@ void WrinkleMesh::SetLength(Link* link) const {
 
 void WrinkleMesh::Step(std::span<const PosedVertex> surface, int iterations) {
   Carry(surface);
+  Gather();
   for (int i = 0; i < iterations; ++i) {
-    for (Active& point : active_) {
-      if (point.room > 0.0f) point.cloth.y -= options_.weight;
+    for (std::size_t v = 0; v < cloth_.size(); ++v) {
+      if (held_[v].room > 0.0f) cloth_[v].y -= options_.weight;
     }
     KeepLengths();
     Bend();
     StayNear();
+  }
+  for (std::size_t v = 0; v < cloth_.size(); ++v) active_[v].cloth = cloth_[v];
+}
+
+// An iteration reads little of each vertex and link. Side by side, that fits the processor's cache.
+void WrinkleMesh::Gather() {
+  cloth_.resize(active_.size());
+  held_.resize(active_.size());
+  for (std::size_t v = 0; v < active_.size(); ++v) {
+    const Active& point = active_[v];
+    cloth_[v] = point.cloth;
+    held_[v] = {point.base,
+                point.normal,
+                point.room,
+                point.bending,
+                point.support,
+                point.pressed,
+                std::max(point.yield, 1e-9f)};
+  }
+  springs_.resize(links_.size());
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    const Link& link = links_[i];
+    springs_[i] = {link.a, link.b, link.length, link.share_a, link.share_b};
   }
 }
 
 // Gauss-Seidel over the edges. Pressed and pulled edges are corrected alike, so that cloth without
 // room in the surface leaves it.
 void WrinkleMesh::KeepLengths() {
-  for (const Link& link : links_) {
-    vec3& a = active_[link.a].cloth;
-    vec3& b = active_[link.b].cloth;
+  for (const Spring& spring : springs_) {
+    vec3& a = cloth_[spring.a];
+    vec3& b = cloth_[spring.b];
     vec3 step = b - a;
     const float length = glm::length(step);
     if (length < 1e-9f) continue;
-    step *= (length - link.length) / length;
-    a += link.share_a * step;
-    b -= link.share_b * step;
+    step *= (length - spring.length) / length;
+    a += spring.share_a * step;
+    b -= spring.share_b * step;
   }
 }
 
 // The mean of the values around each vertex, minus its own.
 template <class T>
 void WrinkleMesh::Laplacian(const std::vector<T>& values, std::vector<T>* result) const {
-  result->assign(active_.size(), T(0.0f));
-  for (std::size_t i = 0; i < active_.size(); ++i) {
-    const std::size_t count = ring_starts_[i + 1] - ring_starts_[i];
-    if (count == 0) continue;
+  result->resize(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::size_t first = ring_starts_[i], end = ring_starts_[i + 1];
     T sum(0.0f);
-    for (std::size_t k = ring_starts_[i]; k < ring_starts_[i + 1]; ++k) sum += values[rings_[k]];
-    (*result)[i] = sum / static_cast<float>(count) - values[i];
+    for (std::size_t k = first; k < end; ++k) sum += values[rings_[k]];
+    (*result)[i] = end == first ? T(0.0f) : sum / static_cast<float>(end - first) - values[i];
   }
 }
 
@@ -276,42 +309,42 @@ void WrinkleMesh::Laplacian(const std::vector<T>& values, std::vector<T>* result
 // neighbours slide together: otherwise compressed edges would give way by a zigzag in the surface
 // instead of a fold.
 void WrinkleMesh::Bend() {
-  heights_.resize(active_.size());
-  slides_.resize(active_.size());
-  for (std::size_t i = 0; i < active_.size(); ++i) {
-    const vec3 offset = active_[i].cloth - active_[i].base;
-    heights_[i] = glm::dot(offset, active_[i].normal);
-    slides_[i] = offset - heights_[i] * active_[i].normal;
+  heights_.resize(cloth_.size());
+  slides_.resize(cloth_.size());
+  for (std::size_t i = 0; i < cloth_.size(); ++i) {
+    const vec3 offset = cloth_[i] - held_[i].base;
+    heights_[i] = glm::dot(offset, held_[i].normal);
+    slides_[i] = offset - heights_[i] * held_[i].normal;
   }
   Laplacian(heights_, &bends_);
-  for (std::size_t i = 0; i < active_.size(); ++i) {
-    const float yield = std::max(active_[i].yield, 1e-9f);
-    bends_[i] = yield * std::tanh(bends_[i] / yield);
+  for (std::size_t i = 0; i < cloth_.size(); ++i) {
+    bends_[i] = held_[i].yield * Tanh(bends_[i] / held_[i].yield);
   }
   Laplacian(bends_, &changes_);
   Laplacian(slides_, &slide_changes_);
   const float free = kFree * options_.wavelength;
-  for (std::size_t i = 0; i < active_.size(); ++i) {
-    Active& point = active_[i];
-    if (point.room <= 0.0f) continue;
-    const float held = point.support * free * std::tanh(heights_[i] / free) +
-                       (point.pressed - point.support) * heights_[i];
-    point.cloth -= point.normal * (point.bending * changes_[i] + held);
-    point.cloth += kSlideTogether * slide_changes_[i];
+  for (std::size_t i = 0; i < cloth_.size(); ++i) {
+    const Held& held = held_[i];
+    if (held.room <= 0.0f) continue;
+    const float back = held.support * free * Tanh(heights_[i] / free) +
+                       (held.pressed - held.support) * heights_[i];
+    cloth_[i] -= held.normal * (held.bending * changes_[i] + back);
+    cloth_[i] += kSlideTogether * slide_changes_[i];
   }
 }
 
 void WrinkleMesh::StayNear() {
-  for (Active& point : active_) {
-    const vec3 offset = point.cloth - point.base;
-    const float height = glm::dot(offset, point.normal);
-    vec3 slide = offset - height * point.normal;
-    const float length = glm::length(slide),
-                limit = options_.slide * options_.wavelength * point.room;
+  const float most_slide = options_.slide * options_.wavelength;
+  const float most_rise = options_.rise * options_.wavelength;
+  for (std::size_t i = 0; i < cloth_.size(); ++i) {
+    const Held& held = held_[i];
+    const vec3 offset = cloth_[i] - held.base;
+    const float height = glm::dot(offset, held.normal);
+    vec3 slide = offset - height * held.normal;
+    const float length = glm::length(slide), limit = most_slide * held.room;
     if (length > limit) slide *= limit / length;
-    const float kept = std::clamp(height, -options_.sink * point.room,
-                                  options_.rise * options_.wavelength * point.room);
-    point.cloth = point.base + slide + kept * point.normal;
+    const float kept = std::clamp(height, -options_.sink * held.room, most_rise * held.room);
+    cloth_[i] = held.base + slide + kept * held.normal;
   }
 }
 

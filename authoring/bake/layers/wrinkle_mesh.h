@@ -89,6 +89,24 @@ class WrinkleMesh {
     glm::mat3 tension{0.0f};
   };
 
+  // What an iteration of Step() reads of an active vertex and of a link.
+  struct Held {
+    glm::vec3 base{0.0f};
+    glm::vec3 normal{0.0f};
+    float room = 0.0f;
+    float bending = 0.0f;
+    float support = 0.0f;
+    float pressed = 0.0f;
+    float yield = 0.0f;
+  };
+  struct Spring {
+    std::uint32_t a = 0;
+    std::uint32_t b = 0;
+    float length = 0.0f;
+    float share_a = 0.0f;
+    float share_b = 0.0f;
+  };
+
   void Activate(std::span<const float> room);
   void MakeLinks();
   void Cut();
@@ -96,6 +114,7 @@ class WrinkleMesh {
   [[nodiscard]] float NoiseAt(std::uint32_t vertex, int stream) const;
   void MeasureTension();
   void SetLength(Link* link) const;
+  void Gather();
   void KeepLengths();
   void Bend();
   void StayNear();
@@ -110,6 +129,10 @@ class WrinkleMesh {
   std::vector<Link> links_;
   std::vector<std::uint32_t> rings_;  // the active neighbours of the active vertices
   std::vector<std::size_t> ring_starts_;
+  // During a step, per active vertex and per link; see Gather().
+  std::vector<glm::vec3> cloth_;
+  std::vector<Held> held_;
+  std::vector<Spring> springs_;
   // Per active vertex, scratch.
   std::vector<float> heights_, bends_, changes_;
   std::vector<glm::vec3> slides_, slide_changes_;

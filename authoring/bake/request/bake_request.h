@@ -55,6 +55,7 @@ struct BakeStroke {
   float depth_mm = 0.5f;  // kFold: depth of the valley, [-50, 50]; negative: a bulge
   float ridge = 0.35f;    // kFold: height of the ridges as a fraction of the depth, [0, 1]
   float taper = 0.6f;     // fraction of the length over which the ends fade, (0, 1]
+  bool personal = false;  // a mark of this face alone: TransferStrokes() leaves it out
   // kDirection: wavelength of the folds near the line, [0.2, 200]; 0: unchanged.
   float wavelength_mm = 0.0f;
 };

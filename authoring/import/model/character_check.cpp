@@ -17,6 +17,7 @@
 #include "authoring/bake/surface/uv_check.h"
 #include "authoring/import/model/face_frame.h"
 #include "authoring/shapes/arkit_face.h"
+#include "base/joined.h"
 #include "character/package/rig_report.h"
 #include "character/source_notes.h"
 #include "wrinkle/rig/rig_blend_shapes.h"
@@ -116,6 +117,7 @@ class Checker {
                       {"materials", character_.materials.size()},
                       {"pictures", character_.pictures.size()},
                       {"shapes", character_.shapes.size()},
+                      {"material binds", character_.material_binds.size()},
                       {"regions", character_.rig.regions.size()},
                       {"wrinkle maps", character_.rig.wrinkle_maps.size()}};
   }
@@ -309,9 +311,19 @@ class Checker {
   }
 
   void FindShapeFace() {
-    if (!has_shape_face_) return;
+    if (!has_shape_face_) return FindFewShapes();
     Find(Severity::kNote, "shape-face", {}, "the face has ARKit's blend shapes",
          "the import gives it masks, a rig and wrinkle maps");
+  }
+
+  // Avatars often have a few shapes for speech, or none of the names that maps know.
+  void FindFewShapes() {
+    if (character_.shapes.empty()) return;
+    const std::vector<std::string> missing = MissingOfShapeFace(face_);
+    Find(Severity::kNote, "few-shapes", {},
+         "the shapes of the face do not fold it, because it lacks " + Joined(missing),
+         "export the avatar with ARKit's blend shapes; Ready Player Me adds them to an address "
+         "that ends with ?morphTargets=ARKit");
   }
 
   void CheckRig() {

@@ -55,7 +55,7 @@ struct CharacterReport {
 //             blend shapes move the face), rig, rig-picture, rig-poses (no pose folds a surface),
 //             rig-surface (maps that `furrow bake` leaves out)
 //   notes     degenerate-triangles, uv-outside, weights-truncated, tangents-missing, idle-shapes,
-//             roles-missing, shape-face, no-face-joints, no-rig
+//             roles-missing, shape-face, few-shapes, no-face-joints, no-rig
 [[nodiscard]] CharacterReport CheckCharacter(const character::Character& character,
                                              const character::SourceNotes& notes,
                                              const rig::SkeletonMaps& maps, bool rig_given,

@@ -185,6 +185,11 @@ int ImportFile(ImportArguments arguments) {
     vertices += mesh.vertices.size();
     triangles += mesh.indices.size() / 3;
   }
+  if (!character.material_binds.empty()) {
+    PrintNotes({Counted(character.material_binds.size(), "change") +
+                " of materials by shapes, such as '" +
+                character.shapes[character.material_binds.front().shape] + "'"});
+  }
   std::fprintf(stderr, "furrow: %s: %s, %s, %s, %s, %s, %s\n", arguments.out.c_str(),
                Counted(character.skeleton.num_joints(), "joint").c_str(),
                Counted(vertices, "vertex", "vertices").c_str(),

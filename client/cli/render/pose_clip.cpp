@@ -110,11 +110,17 @@ Status Unknown(const wrinkle::Rig& rig, std::string_view name) {
   return {StatusCode::kNotFound,
           "the rig has no reference pose '" + std::string(name) +
               "' and no wrinkle map of this name that poses feed; valid names: " + known +
-              ", and ARKit's blend shapes (browInnerUp, mouthSmile, ...)"};
+              ", ARKit's blend shapes (browInnerUp, mouthSmile, ...) and the character's shapes"};
 }
 
-Result<Mix> ParseMix(const wrinkle::Rig& rig, std::string_view text) {
-  const std::vector<std::string> known = rig::ArkitAndRigShapes(rig);
+Result<Mix> ParseMix(const character::Character& character, std::string_view text) {
+  const wrinkle::Rig& rig = character.rig;
+  std::vector<std::string> known = rig::ArkitAndRigShapes(rig);
+  for (const std::string& shape : character.shapes) {
+    const bool is_known = std::ranges::any_of(
+        known, [&](const std::string& name) { return EqualsIgnoreCase(name, shape); });
+    if (!is_known) known.push_back(shape);
+  }
   Mix mix;
   for (std::size_t at = 0; at <= text.size();) {
     const std::size_t comma = std::min(text.find(',', at), text.size());
@@ -186,7 +192,7 @@ void AddShapes(const Mix& mix, std::span<const wrinkle::ShapeValue> of_poses,
 }  // namespace
 
 Result<motion::Clip> PoseClip(const character::Character& character, const std::string& text) {
-  auto mix = ParseMix(character.rig, text);
+  auto mix = ParseMix(character, text);
   FURROW_RETURN_IF_ERROR(mix);
   LimitMouthClose(character.rig, &mix->poses);
   motion::Clip clip;

@@ -5,6 +5,7 @@ import {
   NoColorSpace, type Object3D, OneFactor, SkinnedMesh, type Texture, type WebGLRenderer, type WebGLRenderTarget, ZeroFactor,
 } from 'three';
 import { type CharacterFile, readCharacter } from './character_file.js';
+import { BoundMaterial } from './mesh/material_binds.js';
 import { addWeightGradients } from './mesh/weight_gradients.js';
 import { type Joint, JointPoser, type Pose, type PoseSkeleton } from './pose/joint_poser.js';
 import { SlopeMaker } from './wrinkles/slopes.js';
@@ -57,6 +58,7 @@ export class FurrowCharacter extends Group {
     private readonly poser: JointPoser,
     private readonly targets: readonly WebGLRenderTarget[],
     private readonly textures: readonly Texture[],
+    private readonly bound: readonly BoundMaterial[],
     /** The lamps of the view 'studio'. Call update() before each picture. */
     readonly studio: Studio,
     /** Regions that are not drawn, because their masks follow joints. */
@@ -97,12 +99,15 @@ export class FurrowCharacter extends Group {
         if (target !== undefined) influences[target] = pose.blendShapes[i]!;
       });
     }
+    const { blendShapeNames: names } = pose.skeleton;
+    for (const material of this.bound) material.apply((shape) => pose.blendShapes[names.indexOf(shape)] ?? 0);
   }
 
   /** Back to the rest pose, without wrinkles. */
   reset(): void {
     this.poser.toRest();
     for (const { mesh } of this.parts) mesh.morphTargetInfluences?.fill(0);
+    for (const material of this.bound) material.apply(() => 0);
     this.setWeights({ names: [], values: [] });
   }
 
@@ -154,6 +159,7 @@ class Builder {
   private readonly parts: Part[] = [];
   private readonly targets: WebGLRenderTarget[] = [];
   private readonly textures = new Set<Texture>();
+  private readonly bound: BoundMaterial[] = [];
   private readonly slopes: SlopeMaker;
   private readonly slopesOf = new Map<Texture, Texture>();
   private readonly sets: Record<'skin' | 'cloth', WrinkleSet>;
@@ -189,7 +195,7 @@ class Builder {
     for (const mesh of meshes) await this.addMesh(mesh);
     const joints = this.jointsOf(meshes[0]!);
     const character = new FurrowCharacter(this.parts, Object.values(this.sets), joints, new JointPoser(joints), this.targets,
-      [...this.textures], this.studio, this.file.rig.notDrawn);
+      [...this.textures], this.bound, this.studio, this.file.rig.notDrawn);
     character.add(scene);
     return character;
   }
@@ -236,6 +242,10 @@ class Builder {
       normalMap: source.normalMap, // for its UVs
       roughness: kind === 'eye' ? Math.min(source.roughness, ROUGHEST_EYE) : source.roughness,
       roughnessMap: source.roughnessMap,
+      opacity: source.opacity, // alphaTest compares it, times the map's alpha
+      emissive: source.emissive,
+      emissiveMap: source.emissiveMap,
+      emissiveIntensity: source.emissiveIntensity,
       metalness: 0,
       specularIntensity: REFLECTANCE[kind] / 0.04,
       specularColor: new Color(1, 1, 1),
@@ -257,10 +267,23 @@ class Builder {
         furrowCavityAlbedo: { value: kind === 'skin' ? CAVITY_ALBEDO : 0 },
       },
     };
-    for (const texture of [material.map, material.normalMap, material.roughnessMap]) if (texture) this.textures.add(texture);
+    this.bind(source, material);
+    for (const texture of [material.map, material.normalMap, material.roughnessMap, material.emissiveMap]) if (texture) this.textures.add(texture);
     addWrinkles(material, input, 'final');
     this.materials.set(key, { material, input });
     return { material, input };
+  }
+
+  /** Lets shapes change the material, if the file says so. Its textures become its own, because their UVs may move. */
+  private bind(source: MeshStandardMaterial, material: MeshPhysicalMaterial): void {
+    const index = this.file.gltf.parser.associations.get(source)?.materials;
+    const binds = this.file.binds.filter((bind) => bind.material === index);
+    if (binds.length === 0) return;
+    for (const name of ['map', 'normalMap', 'roughnessMap', 'emissiveMap'] as const) material[name] = material[name]?.clone() ?? null;
+    // Changes are in the units of the emission, which three keeps apart.
+    material.emissive.multiplyScalar(material.emissiveIntensity);
+    material.emissiveIntensity = 1;
+    this.bound.push(new BoundMaterial(material, binds));
   }
 
   private slopeOf(source: Texture, scale: number): Texture {
@@ -291,7 +314,7 @@ class Builder {
       return texture;
     };
     const masks = await Promise.all(set.masks.map((name) => load(name, 'mask')));
-    const own = [material.map, material.normalMap, material.roughnessMap].filter(Boolean).length;
+    const own = [material.map, material.normalMap, material.roughnessMap, material.emissiveMap].filter(Boolean).length;
     let free = this.renderer.capabilities.maxTextures - OTHER_TEXTURES - own - masks.length - set.maps.length;
     const maps: WrinkleTextures[] = [];
     for (const map of set.maps) {

@@ -5,11 +5,13 @@ import {
   TextureLoader,
 } from 'three';
 import { type GLTF, GLTFLoader, type GLTFLoaderPlugin, type GLTFParser } from 'three/addons/loaders/GLTFLoader.js';
+import { type MaterialBind, readMaterialBinds } from './mesh/material_binds.js';
 import { type DrawnRig, readRig } from './rig/rig_file.js';
 
 export interface CharacterFile {
   gltf: GLTF;
   rig: DrawnRig;
+  binds: MaterialBind[];
   /** A picture of the rig: embedded ones by name, others as files beside the rig. */
   picture(name: string, kind: 'mask' | 'data' | 'colour'): Promise<Texture>;
 }
@@ -19,7 +21,7 @@ interface GltfJson {
   images?: { name?: string; bufferView?: number; mimeType?: string }[];
   textures?: { source?: number; extensions?: Record<string, { source?: number }> }[];
   scene?: number;
-  scenes?: { extras?: { furrow_rig?: unknown } }[];
+  scenes?: { extras?: { furrow_rig?: unknown; furrow_material_binds?: unknown } }[];
 }
 
 async function fetchText(url: string): Promise<string> {
@@ -101,13 +103,15 @@ export async function readCharacter(url: string, rigUrl?: string): Promise<Chara
   }
   const gltf = await loader.parseAsync(bytes, url.replace(/[^/]*$/, ''));
   const json = gltf.parser.json as GltfJson;
-  const embedded = json.scenes?.[json.scene ?? 0]?.extras?.furrow_rig;
+  const extras = json.scenes?.[json.scene ?? 0]?.extras;
+  const embedded = extras?.furrow_rig;
   const beside = rigUrl ?? url.replace(/(\.glb)?(\?.*)?$/, '.rig.json');
   const rig = rigUrl === undefined && embedded !== undefined
     ? readRig(typeof embedded === 'string' ? embedded : JSON.stringify(embedded)) : readRig(await fetchText(beside));
   return {
     gltf,
     rig,
+    binds: readMaterialBinds(extras?.furrow_material_binds),
     picture: async (name, kind) => {
       const index = textureOf(json, name);
       if (index >= 0) return prepare((await gltf.parser.getDependency('texture', index)) as Texture, kind);

@@ -31,7 +31,7 @@ constexpr char kStrokes[] = R"({
      "width_mm": 3,
      "taper": 0.5},
     {"name": "glabella", "kind": "direction", "maps": ["squash", "stretch"], "wavelength_mm": 4,
-     "smooth": false, "points": [[0, 1.69, 0.1], [0, 1.72, 0.1], {"x": 0, "y": 1.73, "z": 0.1}]}
+     "smooth": false, "personal": true, "points": [[0, 1.69, 0.1], [0, 1.72, 0.1], {"x": 0, "y": 1.73, "z": 0.1}]}
   ]
 }
 )";
@@ -56,6 +56,8 @@ TEST(StrokesFile, ReadsEveryField) {
   const BakeStroke& direction = (*strokes)[2];
   EXPECT_EQ(direction.kind, BakeStroke::Kind::kDirection);
   EXPECT_FALSE(direction.smooth);
+  EXPECT_TRUE(direction.personal);
+  EXPECT_FALSE(furrow.personal);
   EXPECT_EQ(direction.points.size(), 3u);
   EXPECT_EQ(direction.wavelength_mm, 4.0f);
 }

@@ -144,12 +144,13 @@ TEST_F(StrokeTransferTest, LeavesOutWhatTheRigLacks) {
   const FaceMeasures measures = MeasuresOf(*skin);
   BakeStroke stroke{.name = "a", .maps = {"squash", "folds"}};
   stroke.points = {{-0.01f, measures.lid, 0.11f}, {0.01f, measures.lid, 0.11f}};
-  BakeStroke cloth = stroke, elsewhere = stroke, neck = stroke, far = stroke;
+  BakeStroke cloth = stroke, elsewhere = stroke, neck = stroke, far = stroke, dimple = stroke;
+  dimple.personal = true;
   cloth.maps = {"folds"};
   elsewhere.region = "knee_l_inner";
   for (glm::vec3& p : neck.points) p.y = measures.chin - 0.1f;
   for (glm::vec3& p : far.points) p.y = measures.brow + 1.0f;
-  const std::vector<BakeStroke> strokes = {stroke, cloth, elsewhere, neck, far};
+  const std::vector<BakeStroke> strokes = {stroke, cloth, elsewhere, neck, far, dimple};
   const auto moved = TransferStrokes(strokes, measures, measures, *skin, ArkitRig());
   ASSERT_EQ(moved.strokes.size(), 1u);
   EXPECT_EQ(moved.strokes[0].maps, std::vector<std::string>{"squash"});

@@ -100,7 +100,7 @@ TEST_P(ForeignVrm, ExpressionsAddUpTheirBinds) {
   EXPECT_NEAR(Moves(GetParam().mouth, 0, 0), 5.0f, 1e-3f);
   EXPECT_NEAR(Moves(GetParam().blink, 3, 0), 10.0f, 1e-3f);
   EXPECT_NEAR(Moves("smirk", 3, 3), 5.0f, 1e-3f);
-  EXPECT_EQ(avatar_.shapes.size(), 8u);  // those without binds do not count
+  EXPECT_EQ(avatar_.shapes.size(), 9u);  // those without binds do not count
 }
 
 TEST_P(ForeignVrm, ExpressionsKeepTheirRules) {
@@ -118,6 +118,23 @@ TEST_P(ForeignVrm, ExpressionsKeepTheirRules) {
   EXPECT_EQ(joy.limits[ShapeRule::kBlinks], vrm1 ? Limits::kBlock : Limits::kNothing);
   EXPECT_EQ(joy.limits[ShapeRule::kMouths], vrm1 ? Limits::kBlend : Limits::kNothing);
   EXPECT_EQ(joy.limits[ShapeRule::kLooks], Limits::kNothing);
+}
+
+TEST_P(ForeignVrm, ExpressionsChangeMaterials) {
+  ASSERT_EQ(avatar_.material_binds.size(), 1u);
+  const MaterialBind& bind = avatar_.material_binds[0];
+  EXPECT_EQ(bind.shape, static_cast<std::uint32_t>(ShapeNamed("blush")));
+  EXPECT_EQ(bind.material, static_cast<std::uint32_t>(avatar_.meshes[0].material));
+  // The colour of VRM 0.x is sRGB.
+  const bool vrm1 = GetParam().front > 0.0f;
+  const glm::vec3 target =
+      vrm1 ? glm::vec3(1.0f, 0.5f, 0.25f) : glm::vec3(1.0f, 0.21404f, 0.05088f);
+  EXPECT_LT(glm::distance(glm::vec3(bind.base_colour), target - 0.8f), 1e-4f);
+  EXPECT_EQ(bind.base_colour.a, 0.0f);
+  EXPECT_LT(glm::distance(bind.emission, glm::vec3(0.25f, 0.5f, 1.0f)), 1e-5f);
+  // From uv / 2 + (0.25, 0.5) to (uv.x / 4, uv.y / 2) + (0.5, 0.25).
+  EXPECT_LT(glm::distance(bind.uv_scale, glm::vec2(-0.5f, 0.0f)), 1e-5f);
+  EXPECT_LT(glm::distance(bind.uv_offset, glm::vec2(0.375f, -0.25f)), 1e-5f);
 }
 
 TEST_P(ForeignVrm, EyesFollowTheirRanges) {

@@ -219,5 +219,62 @@ TEST(Materials, SurviveFaultySpecularGlossiness) {
   }
 }
 
+TEST(Materials, EmitLight) {
+  HandMadeGltf gltf;
+  gltf.AddFloats({0}, "SCALAR");
+  gltf.json["images"] = {{{"uri", "a.png"}}};
+  gltf.json["textures"] = {{{"source", 0}}};
+  gltf.json["materials"] = {
+      {{"emissiveFactor", {0.5, 0.25, 1.0}}, {"emissiveTexture", {{"index", 0}}}},
+      {{"emissiveFactor", {1.0, 0.25, 0.0}},
+       {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 8.0}}}}}},
+      {{"emissiveFactor", {1.0, 0.0, 0.0}},
+       {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 1e9}}}}}},
+      {{"extensions", {{"KHR_materials_emissive_strength", 3}}}}};
+  const std::string glb = gltf.Glb();
+  Result<Document> document = Document::Open(glb, {});
+  ASSERT_TRUE(document.ok()) << document.status().ToString();
+  const auto materials = ReadMaterials(&*document);
+  ASSERT_TRUE(materials.ok()) << materials.status().ToString();
+  EXPECT_EQ((*materials)[0].emission, glm::vec3(0.5f, 0.25f, 1.0f));
+  EXPECT_EQ((*materials)[0].emission_image, 0);
+  EXPECT_EQ((*materials)[1].emission, glm::vec3(8.0f, 2.0f, 0.0f));
+  EXPECT_EQ((*materials)[1].emission_image, kNone);
+  EXPECT_EQ((*materials)[2].emission, glm::vec3(kMaxEmission, 0.0f, 0.0f));
+  EXPECT_EQ((*materials)[3].emission, glm::vec3(0.0f));
+  gltf.json["materials"] = {
+      {{"emissiveFactor", {1.0, 0.0, 0.0}},
+       {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 1e300}}}}}}};
+  const std::string infinite = gltf.Glb();
+  document = Document::Open(infinite, {});
+  ASSERT_TRUE(document.ok()) << document.status().ToString();
+  EXPECT_EQ(ReadMaterials(&*document).status().code(), StatusCode::kNonFinite);
+}
+
+TEST(Materials, OfMToonHaveAColourInShade) {
+  HandMadeGltf gltf;
+  gltf.AddFloats({0}, "SCALAR");
+  gltf.json["materials"] = {
+      {{"extensions", {{"VRMC_materials_mtoon", {{"shadeColorFactor", {0.5, 0.25, 0.0}}}}}}},
+      {{"extensions", {{"VRMC_materials_mtoon", json::object()}}}},
+      json::object()};
+  std::string glb = gltf.Glb();
+  Result<Document> document = Document::Open(glb, {});
+  auto materials = ReadMaterials(&*document);
+  ASSERT_TRUE(materials.ok()) << materials.status().ToString();
+  EXPECT_EQ((*materials)[0].shade_colour, glm::vec3(0.5f, 0.25f, 0.0f));
+  EXPECT_EQ((*materials)[1].shade_colour, glm::vec3(0.0f));
+  EXPECT_FALSE((*materials)[2].shade_colour.has_value());
+  gltf.json["extensions"]["VRM"]["materialProperties"] = {
+      {{"vectorProperties", {{"_ShadeColor", {0.5, 1.0, 0.0, 1.0}}}}}};
+  gltf.json["materials"] = {json::object(), json::object()};
+  glb = gltf.Glb();
+  document = Document::Open(glb, {});
+  materials = ReadMaterials(&*document);
+  ASSERT_TRUE(materials.ok()) << materials.status().ToString();
+  EXPECT_LT(glm::distance(*(*materials)[0].shade_colour, glm::vec3(0.21404f, 1.0f, 0.0f)), 1e-4f);
+  EXPECT_FALSE((*materials)[1].shade_colour.has_value());
+}
+
 }  // namespace
 }  // namespace furrow::gltf

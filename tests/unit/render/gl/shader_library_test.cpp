@@ -46,6 +46,25 @@ TEST_F(ShaderLibraryTest, EverySceneConfigurationCompiles) {
   }
 }
 
+TEST_F(ShaderLibraryTest, EmissionCompilesInEveryWayOfDrawing) {
+  for (const bool with_map : {false, true}) {
+    SceneShader shader;
+    shader.emits = true;
+    shader.emission_map = with_map;
+    EXPECT_TRUE(library_.Get(shader).ok()) << "plain";
+    shader.shading = Shading::kSkin;
+    EXPECT_TRUE(library_.Get(shader).ok()) << "skin";
+    shader.unlit = shader.emission_target = true;
+    EXPECT_TRUE(library_.Get(shader).ok()) << "facets";
+    shader.shade = true;
+    EXPECT_TRUE(library_.Get(shader).ok()) << "shade over facets";
+  }
+  SceneShader dark;
+  dark.shading = Shading::kSkin;
+  dark.unlit = dark.emission_target = true;
+  EXPECT_TRUE(library_.Get(dark).ok()) << "a dark material of a character that shines";
+}
+
 TEST_F(ShaderLibraryTest, AnyNumberOfMasksAndMapsCompiles) {
   for (const int mask_layers : {1, 3, 8}) {
     for (const int map_slots : {1, 2, 4}) {
@@ -129,9 +148,10 @@ TEST_F(ShaderLibraryTest, EveryFacetConfigurationCompiles) {
         "specular.mode=gems", "specular.conserve_energy=off"}) {
     Settings settings;
     ASSERT_TRUE(SetSetting(setting, &settings).ok());
-    for (const char* occlusion : {"OCCLUSION 0", "OCCLUSION 1"}) {
+    for (const int bits : {0, 1, 2, 3}) {
       std::vector<std::string> defines = Defines(SceneDraw::LightShader(settings));
-      defines.insert(defines.end(), {occlusion, "SCALE 2"});
+      defines.insert(defines.end(), {"OCCLUSION " + std::to_string(bits & 1),
+                                     "EMISSION " + std::to_string(bits >> 1), "SCALE 2"});
       const Result<GLuint> program = library_.GetFullscreen("skin/light.frag.glsl", defines);
       ASSERT_TRUE(program.ok()) << setting << "\n" << program.status().ToString();
     }

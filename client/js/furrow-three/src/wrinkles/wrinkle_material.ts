@@ -205,7 +205,7 @@ function patchFragment(shader: WebGLProgramParametersWithUniforms, input: Wrinkl
     'reflectedLight.indirectSpecular *= furrowFactors.a;');
   if (view === 'studio') {
     source = replace(source, '#include <opaque_fragment>',
-      'outgoingLight = furrowStudio(diffuseColor.rgb, inverseTransformDirection(normal, viewMatrix), roughnessFactor);\n#include <opaque_fragment>');
+      'outgoingLight = furrowStudio(diffuseColor.rgb, inverseTransformDirection(normal, viewMatrix), roughnessFactor) + totalEmissiveRadiance;\n#include <opaque_fragment>');
   }
   if (view === 'normal') {
     source = replace(source, '#include <dithering_fragment>',

@@ -155,6 +155,11 @@ INSTANTIATE_TEST_SUITE_P(
               }},
         Fault{"shape-face", Severity::kNote, "has ARKit's blend shapes",
               [](character::Character* c, character::SourceNotes*) { AddShapeFace(c); }},
+        Fault{"few-shapes", Severity::kNote, "it lacks browInnerUp, browDownLeft, browDownRight",
+              [](character::Character* c, character::SourceNotes*) {
+                AddShapeFace(c);
+                for (int brow = 0; brow < 3; ++brow) c->shapes[brow] = std::string(3, 'x');
+              }},
         Fault{"picture-missing", Severity::kWarning, "skin.png",
               [](character::Character*, character::SourceNotes* n) {
                 n->missing_pictures = {"skin.png: no such file"};

@@ -2,6 +2,7 @@
 #include "authoring/import/model/shape_face.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -115,6 +116,29 @@ void ExpectMasksInPlace(const character::Character& c) {
 }
 
 TEST_F(ShapeFaceTest, MasksLieWhereTheirNamesSay) { ExpectMasksInPlace(Proposed()); }
+
+// The smile hardly moves the skin beside the wing of the nose, where its fold begins.
+TEST_F(ShapeFaceTest, TheMouthsMaskReachesTheFoldBesideTheNose) {
+  const character::Character c = Proposed();
+  const auto region = std::ranges::find(c.rig.regions, "mouth_l", &wrinkle::Region::name);
+  ASSERT_NE(region, c.rig.regions.end());
+  const character::Picture& picture = c.pictures[c.FindRigPicture(region->mask.texture)];
+  const glm::vec3 beside(2.4f, -4.0f, 9.2f), temple(6.5f, 1.0f, 5.0f), back(2.4f, -4.0f, -9.0f);
+  std::array<float, 3> nearest{9.0f, 9.0f, 9.0f}, value{};
+  for (const SurfaceTexel& texel : RasterizeSurface(c.meshes[0], picture.width, picture.height)) {
+    const glm::vec3 place = ModelToHead(texel.position);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const float distance = glm::distance(place, std::array{beside, temple, back}[i]);
+      if (distance >= nearest[i]) continue;
+      nearest[i] = distance;
+      value[i] =
+          picture.pixels[4 * (texel.y * picture.width + texel.x) + region->mask.channel] / 255.0f;
+    }
+  }
+  EXPECT_GT(value[0], 0.4f);
+  EXPECT_EQ(value[1], 0.0f);
+  EXPECT_EQ(value[2], 0.0f);
+}
 
 TEST_F(ShapeFaceTest, MasksAddUpToAtMostOne) {
   const character::Character c = Proposed();

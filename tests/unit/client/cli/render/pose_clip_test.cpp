@@ -139,5 +139,23 @@ TEST(PoseClip, AnUnknownNameIsAnErrorThatListsTheValidNames) {
     EXPECT_EQ(PoseClip(Brows(), text).status().code(), StatusCode::kNotFound) << text;
 }
 
+TEST(PoseClip, TakesTheCharactersOwnShapes) {
+  character::Character character = Brows();
+  character.shapes = {"Blush", "browInnerUp", "MouthSmileLeft", "mouthSmileRight"};
+  const auto clip = PoseClip(character, "blush=0.5,browInnerUp,mouthSmile=0.25");
+  ASSERT_TRUE(clip.ok()) << clip.status().ToString();
+  ASSERT_EQ(clip->blend_shape_names.size(), clip->blend_shapes.size());
+  float blush = 0.0f, brow = 0.0f, smile = 0.0f;
+  for (std::size_t i = 0; i < clip->blend_shape_names.size(); ++i) {
+    if (clip->blend_shape_names[i] == "Blush") blush += clip->blend_shapes[i];
+    if (clip->blend_shape_names[i] == "browInnerUp") brow += clip->blend_shapes[i];
+    if (clip->blend_shape_names[i] == "mouthSmileLeft") smile += clip->blend_shapes[i];
+  }
+  EXPECT_EQ(blush, 0.5f);
+  EXPECT_EQ(brow, 1.0f) << "once, though ARKit and the character have it";
+  EXPECT_EQ(smile, 0.25f);
+  EXPECT_EQ(PoseClip(Brows(), "blush").status().code(), StatusCode::kNotFound);
+}
+
 }  // namespace
 }  // namespace furrow::cli
