@@ -49,7 +49,8 @@ TEST(Assets, BrowsersGetThePackageOfThisCharacterOnly) {
   config.character = folder / "ada.glb";
   character::Character ada;
   ada.skeleton = rig::BodyWithBrow();
-  ada.inverse_bind_matrices.resize(ada.skeleton.size(), glm::mat4(1.0f));
+  ada.inverse_bind_matrices.assign(static_cast<std::size_t>(ada.skeleton.num_joints()),
+                                   glm::mat4(1.0f));
   ada.meshes.push_back(
       {.name = "triangle", .vertices = std::vector<character::Vertex>(3), .indices = {0, 1, 2}});
   ada.materials.emplace_back();
