@@ -11,6 +11,7 @@
 #include "base/status.h"
 #include "character/mesh/moved_surface.h"
 #include "character/package/package.h"
+#include "character/package/web_package.h"
 #include "motion/pose_source.h"
 #include "render/settings/settings_file.h"
 #include "rig/poses_in_axes.h"
@@ -40,12 +41,15 @@ Status LoadRigAlone(const fs::path& path, const wrinkle::PoseSource& poses, Asse
   return rig.status();
 }
 
-// The file that client/js/furrow-three/tools/pack_character.mjs makes of a package; empty if there
-// is none.
+// The package for browsers; empty if there is none, or if it was made of another version.
 fs::path WebPackageOf(const fs::path& character) {
-  fs::path packed = character.parent_path() / (character.stem().string() + ".web.glb");
+  const fs::path packed = character::WebPackageBeside(character);
   std::error_code error;
-  return fs::exists(packed, error) ? packed : fs::path();
+  if (!fs::exists(packed, error)) return {};
+  const Status status = character::CheckWebPackage(packed, character);
+  if (status.ok()) return packed;
+  spdlog::warn("browsers do not draw the character: {}", status.ToString());
+  return {};
 }
 
 // Null without shapes, and if neither pictures nor the rig show them.
@@ -106,11 +110,11 @@ Result<Assets> LoadAssets(const Config& config) {
   }
   const fs::path rig = RigOf(glb, chosen_rig);
   const auto make_matcher = [maps = assets.skeletons, glb] {
-    rig::SkeletonMatcher matcher = maps;
+    rig::SkeletonMatcher with_roles = maps;
     // Loading the character reports faults.
     const auto roles = character::LoadCharacterRoles(glb);
-    if (roles.ok()) matcher.SetCharacterRoles(*roles);
-    return matcher;
+    if (roles.ok()) with_roles.SetCharacterRoles(*roles);
+    return with_roles;
   };
   const auto poses = rig::PosesInFurrowAxes(files, make_matcher, warn);
   // Weights need no mesh and no pictures, which are large, unless joints may move shapes.

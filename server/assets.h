@@ -30,7 +30,7 @@ struct Assets {
   std::shared_ptr<const wrinkle::Rig> rig;
   std::shared_ptr<const character::Character> character;  // null: weights only
   // The character for browsers, "<stem>.web.glb" beside it, with the rig in it. Empty: there is
-  // none, or the daemon uses another rig.
+  // none, it was made of another version of the character, or the daemon uses another rig.
   std::filesystem::path web_package;
   std::shared_ptr<const CharacterShapes> shapes;  // null: joints move no shapes
   // Finds the rig's joints by other names. It knows the roles that the character's package states.

@@ -54,14 +54,18 @@ std::uint64_t RandomNumber() {
   return number;
 }
 
+// The OSC targets of the configuration, each with its profile.
+using OscOutputs = std::vector<std::pair<OscTargetConfig, protocol::mocap::OscProfile>>;
+
 // The parts of one daemon. Members are declared in the order of their dependencies.
 class Daemon {
  public:
   // Keeps references to `config` and `options`, which outlive it.
-  Daemon(const Config& config, const RunOptions& options, Assets assets)
+  Daemon(const Config& config, const RunOptions& options, Assets assets, OscOutputs osc_outputs)
       : config_(config),
         options_(options),
         assets_(std::move(assets)),
+        osc_outputs_(std::move(osc_outputs)),
         metrics_(options.metrics != nullptr ? options.metrics : &own_metrics_),
         signals_(io_) {}
 
@@ -86,6 +90,7 @@ class Daemon {
   const Config& config_;
   const RunOptions& options_;
   Assets assets_;
+  OscOutputs osc_outputs_;
   Metrics own_metrics_;
   Metrics* const metrics_;
   std::uint64_t session_ = 0;
@@ -211,11 +216,9 @@ Status Daemon::StartOsc() {
                               : OnWeights());
   };
   osc_ = std::make_unique<OscTargets>(io_, std::move(parts));
-  std::vector<OscTargetConfig> targets = config_.osc.targets;
-  if (config_.osc_out)
-    targets.insert(targets.begin(), {.to = *config_.osc_out, .prefix = config_.osc_prefix});
-  for (const OscTargetConfig& target : targets) {
-    if (Status status = osc_->AddConfigured(target); !status.ok()) return status.Within("osc");
+  for (auto& [target, profile] : osc_outputs_) {
+    const Status status = osc_->AddConfigured(target, std::move(profile));
+    if (!status.ok()) return status.Within("osc");
   }
   return {};
 }
@@ -394,6 +397,20 @@ ExitCode Fail(ExitCode code, const Status& status) {
   return code;
 }
 
+Result<OscOutputs> LoadOscOutputs(const Config& config) {
+  std::vector<OscTargetConfig> targets = config.osc.targets;
+  if (config.osc_out) {
+    targets.insert(targets.begin(), {.to = *config.osc_out, .prefix = config.osc_prefix});
+  }
+  OscOutputs outputs;
+  for (OscTargetConfig& target : targets) {
+    auto profile = LoadOscProfile(target.profile);
+    if (!profile.ok()) return profile.status().Within("osc.target");
+    outputs.emplace_back(std::move(target), *std::move(profile));
+  }
+  return outputs;
+}
+
 ExitCode LoadAndServe(const Config& config, const RunOptions& options) {
   // Tests and embedders call Run() without ParseCommandLine(), which has validated already.
   if (Status status = ValidateConfig(config); !status.ok()) return Fail(ExitCode::kUsage, status);
@@ -418,12 +435,9 @@ ExitCode LoadAndServe(const Config& config, const RunOptions& options) {
                    name);
     }
   }
-  for (const OscTargetConfig& target : config.osc.targets) {
-    if (auto profile = LoadOscProfile(target.profile); !profile.ok()) {
-      return Fail(ExitCode::kBadInput, profile.status().Within("osc.target"));
-    }
-  }
-  Daemon daemon(config, options, *std::move(assets));
+  auto osc_outputs = LoadOscOutputs(config);
+  if (!osc_outputs.ok()) return Fail(ExitCode::kBadInput, osc_outputs.status());
+  Daemon daemon(config, options, *std::move(assets), *std::move(osc_outputs));
   if (Status status = daemon.StartRendering(); !status.ok()) {
     return Fail(ExitCode::kFailed, status);
   }

@@ -2,6 +2,7 @@
 #include "client/cpp/transport.h"
 
 #include <array>
+#include <cerrno>
 #include <optional>
 #include <vector>
 
@@ -11,6 +12,8 @@
 #include <asio/ip/tcp.hpp>
 #include <asio/ip/udp.hpp>
 #include <asio/write.hpp>
+#include <sys/socket.h>
+#include <sys/time.h>
 
 #include "protocol/framing/bundle.h"
 #include "protocol/framing/fragment.h"
@@ -32,23 +35,17 @@ std::int64_t Microseconds(Clock::time_point time) {
 // deadline passes, so a timeout never loses data.
 class ReadPump {
  public:
-  template <class Socket>
-  void Start(Socket& socket, std::span<std::uint8_t> buffer) {
+  void Start(tcp::socket& socket, std::span<std::uint8_t> buffer) {
     // Send() runs the context too, so a completed read may still wait to be taken.
     if (pending_ || done_) return;
     pending_ = true;
-    const auto on_read = [this](const asio::error_code& error, std::size_t bytes) {
-      pending_ = false;
-      done_ = true;
-      error_ = error;
-      bytes_ = bytes;
-    };
-    // A datagram is received whole; a stream gives what has arrived.
-    if constexpr (std::is_same_v<Socket, udp::socket>) {
-      socket.async_receive(asio::buffer(buffer.data(), buffer.size()), on_read);
-    } else {
-      socket.async_read_some(asio::buffer(buffer.data(), buffer.size()), on_read);
-    }
+    socket.async_read_some(asio::buffer(buffer.data(), buffer.size()),
+                           [this](const asio::error_code& error, std::size_t bytes) {
+                             pending_ = false;
+                             done_ = true;
+                             error_ = error;
+                             bytes_ = bytes;
+                           });
   }
 
   // Returns true when the read has completed; error() and bytes() then hold its result.
@@ -234,10 +231,10 @@ class UdpTransport : public Transport {
       // The kernel reports a closed port once. If Send() has taken the report, it is passed on
       // here.
       if (std::exchange(refused_, false)) return IoStatus::kNoConnection;
-      pump_.Start(socket_, buffer_);
-      if (!pump_.Wait(context_, deadline)) return IoStatus::kTimeout;
-      if (pump_.error()) return IoStatus::kNoConnection;
-      const auto datagram = std::span(buffer_).first(pump_.bytes());
+      std::size_t bytes = 0;
+      const IoStatus read = ReadDatagram(deadline, &bytes);
+      if (read != IoStatus::kOk) return read;
+      const auto datagram = std::span(buffer_).first(bytes);
       switch (reassembler_.Push(0, datagram, Microseconds(Clock::now()), message)) {
         case protocol::FragmentStatus::kWhole: (void)unbundler_.Open(datagram); break;
         case protocol::FragmentStatus::kComplete: return IoStatus::kOk;
@@ -250,9 +247,38 @@ class UdpTransport : public Transport {
   [[nodiscard]] bool takes_bundles() const override { return true; }
 
  private:
+  // Waits for a datagram and reads it into buffer_. Sleeps in recv() itself, one system call per
+  // datagram; asio's reactor takes several and wakes up later (docs/PERFORMANCE.md, "The same
+  // machine").
+  IoStatus ReadDatagram(Clock::time_point deadline, std::size_t* bytes) {
+    for (;;) {
+      const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
+      const bool waits = left.count() > 0 && SetWait(left);
+      const ssize_t size =
+          recv(socket_.native_handle(), buffer_.data(), buffer_.size(), waits ? 0 : MSG_DONTWAIT);
+      if (size >= 0) {
+        *bytes = static_cast<std::size_t>(size);
+        return IoStatus::kOk;
+      }
+      if (errno == EINTR) continue;
+      if (errno != EAGAIN && errno != EWOULDBLOCK) return IoStatus::kNoConnection;
+      if (!waits) return IoStatus::kTimeout;
+    }
+  }
+  // Limits how long recv() sleeps. Callers mostly wait for the same time again.
+  bool SetWait(std::chrono::milliseconds wait) {
+    if (wait == wait_) return true;
+    const timeval time{wait.count() / 1000, wait.count() % 1000 * 1000};
+    if (setsockopt(socket_.native_handle(), SOL_SOCKET, SO_RCVTIMEO, &time, sizeof(time)) != 0) {
+      return false;
+    }
+    wait_ = wait;
+    return true;
+  }
+
   asio::io_context context_{1};
   udp::socket socket_{context_};
-  ReadPump pump_;
+  std::chrono::milliseconds wait_{0};  // set by SetWait(); 0: none yet
   std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(64 * 1024);
   std::array<std::uint8_t, protocol::kMaxDatagramBytes> datagram_{};
   protocol::Unbundler unbundler_;  // splits the datagram in buffer_

@@ -17,21 +17,33 @@
 namespace furrow::rig {
 
 inline constexpr std::size_t kMaxMapBytes = 1 << 20;
+// Twice what the largest export profile has. ordered_json compares each new field with all others
+// of its object, so a file of 1 MiB with short fields would take a minute.
+inline constexpr std::size_t kMaxMapFields = 8192;
 
 // `text` with `side` in place of every '*', which stands for a side in names. Continues behind each
 // replacement, so a side that contains '*' cannot loop.
 [[nodiscard]] std::string WithSide(std::string text, const std::string& side);
 
 // Parses the text of a file; Json: nlohmann's json, or ordered_json. Errors, with the file as
-// `where`: kLimit (larger than kMaxMapBytes), kParse.
+// `where`: kLimit (above kMaxMapBytes, or more than kMaxMapFields in all objects together), kParse.
 template <class Json>
 [[nodiscard]] Status ParseMapText(std::string_view text, std::string_view source, Json* root) {
   if (text.size() > kMaxMapBytes) {
     return Status(StatusCode::kLimit, "larger than 1 MiB", std::string(source));
   }
+  struct TooManyFields {};
+  std::size_t num_fields = 0;
+  const auto count = [&](int, typename Json::parse_event_t event, Json&) {
+    if (event == Json::parse_event_t::key && ++num_fields > kMaxMapFields) throw TooManyFields();
+    return true;
+  };
   // The parser throws on malformed text, and nothing here lets an exception out.
   try {
-    *root = Json::parse(text.begin(), text.end(), nullptr, true, /*ignore_comments=*/true);
+    *root = Json::parse(text.begin(), text.end(), count, true, /*ignore_comments=*/true);
+  } catch (const TooManyFields&) {
+    return Status(StatusCode::kLimit, "has more than " + std::to_string(kMaxMapFields) + " fields",
+                  std::string(source));
   } catch (const typename Json::exception& error) {
     return Status(StatusCode::kParse, std::string("malformed JSON: ") + error.what(),
                   std::string(source));

@@ -200,7 +200,7 @@ class HttpSession {
 
   // JSON lines, by WebSocket or as an endless body. Returns whether the connection goes on.
   net::awaitable<bool> AnswerWeights(const Url& url) {
-    Result<std::vector<protocol::SubscribeWeights>> wanted = WeightsOf(url);
+    Result<WeightQuery> wanted = WeightsOf(url);
     if (!wanted.ok()) {
       co_return co_await WriteReply(stream_, request_, ErrorReply(wanted.status()));
     }

@@ -2,6 +2,7 @@
 #include "server/osc/osc_targets.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <asio/ip/address.hpp>
 #include <spdlog/spdlog.h>
@@ -17,8 +18,9 @@ constexpr std::size_t kMaxStreams = 2048;
 
 }  // namespace
 
-Status OscTargets::AddConfigured(const OscTargetConfig& config) {
-  return Open(config, /*configured=*/true).status();
+Status OscTargets::AddConfigured(const OscTargetConfig& config,
+                                 protocol::mocap::OscProfile profile) {
+  return Open(config, std::move(profile), /*configured=*/true).status();
 }
 
 Result<int> OscTargets::Add(const OscTargetConfig& config) {
@@ -37,7 +39,9 @@ Result<int> OscTargets::Add(const OscTargetConfig& config) {
     return Status(StatusCode::kLimit, "there are " + std::to_string(kMaxAdded) + " targets already",
                   "", "remove one with DELETE /api/osc?id=N");
   }
-  Result<int> id = Open(config, /*configured=*/false);
+  auto profile = LoadOscProfile(config.profile);
+  FURROW_RETURN_IF_ERROR(profile);
+  Result<int> id = Open(config, *std::move(profile), /*configured=*/false);
   if (id.ok()) spdlog::info("OSC target {} added: {}", *id, HostPortText(config.to));
   return id;
 }
@@ -72,13 +76,12 @@ bool OscTargets::IsOwn(const asio::ip::udp::endpoint& to,
   return to.address().is_loopback() || socket.local_endpoint(ignored).address() == to.address();
 }
 
-Result<int> OscTargets::Open(const OscTargetConfig& config, bool configured) {
-  auto profile = LoadOscProfile(config.profile);
-  FURROW_RETURN_IF_ERROR(profile);
+Result<int> OscTargets::Open(const OscTargetConfig& config, protocol::mocap::OscProfile profile,
+                             bool configured) {
   auto target = std::make_unique<Target>();
   target->configured = configured;
   target->config = config;
-  target->profile = *std::move(profile);
+  target->profile = std::move(profile);
   asio::error_code error;
   const asio::ip::udp::endpoint to(asio::ip::make_address(config.to.host, error), config.to.port);
   for (int shard = 0; shard < parts_.shards && !error; ++shard) {

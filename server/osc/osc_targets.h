@@ -40,9 +40,10 @@ class OscTargets : public OscControl {
   };
   OscTargets(asio::io_context& io, Parts parts) : io_(io), parts_(std::move(parts)) {}
 
-  // Adds a target of the operator: to any address, with any profile, never removed. Errors:
-  // kInvalidArgument, kUnavailable (no socket), those of LoadOscProfile().
-  [[nodiscard]] Status AddConfigured(const OscTargetConfig& config);
+  // Adds a target of the operator: to any address, with any profile, never removed. `profile`: that
+  // of config.profile. Errors: kUnavailable (no socket).
+  [[nodiscard]] Status AddConfigured(const OscTargetConfig& config,
+                                     protocol::mocap::OscProfile profile);
 
   [[nodiscard]] Result<int> Add(const OscTargetConfig& config) override;
   [[nodiscard]] Status Remove(int id) override;
@@ -86,7 +87,8 @@ class OscTargets : public OscControl {
   [[nodiscard]] Status CheckAddress(const HostPort& to) const;
   [[nodiscard]] bool IsOwn(const asio::ip::udp::endpoint& to,
                            const asio::ip::udp::socket& socket) const;
-  Result<int> Open(const OscTargetConfig& config, bool configured);
+  Result<int> Open(const OscTargetConfig& config, protocol::mocap::OscProfile profile,
+                   bool configured);
   Stream& StreamOf(const Target& target, Lane& lane, const Subject& subject) const;
   void SendOwed(const Target& target, Lane& lane, const SubjectRegistry& subjects, Time now);
   void Write(Lane& lane, Stream& stream, const Subject& subject);

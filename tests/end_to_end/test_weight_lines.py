@@ -16,6 +16,7 @@ from furrow_testing import GUARD, SHARE, Daemon, finish, furrow, spawn
 PERFORMANCE = SHARE / "recordings" / "performance.bvh"
 RATE = 240
 FRAMES = 120
+ALIVE = {"type": "alive"}
 
 
 def as_float(value):
@@ -31,9 +32,15 @@ class Lines:
         self.connection.request("GET", "/weights" + query)
         self.reply = self.connection.getresponse()
 
-    def next(self):
+    def next_of_all(self):
         line = self.reply.readline()
         return json.loads(line) if line else None
+
+    def next(self):
+        """The next object that says something; a slow machine may be silent for long."""
+        while (line := self.next_of_all()) == ALIVE:
+            pass
+        return line
 
     def close(self):
         self.reply.close()
@@ -64,7 +71,7 @@ class WebSocket:
             length = struct.unpack(">Q", self.file.read(8))[0]
         return first & 15, self.file.read(length)
 
-    def next(self):
+    def next_of_all(self):
         """The next JSON message; the close code if the daemon closes."""
         while True:
             opcode, payload = self.frame()
@@ -73,6 +80,8 @@ class WebSocket:
             if opcode == 8:
                 return struct.unpack(">H", payload[:2])[0]
             assert opcode in (9, 10), "only text, pings, pongs and close frames"
+
+    next = Lines.next
 
     def send(self, opcode, payload):
         self.socket.sendall(bytes([0x80 | opcode, 0x80 | len(payload)]) + bytes(4) + payload)
@@ -143,6 +152,16 @@ class WeightLinesTest(unittest.TestCase):
             client.send(8, struct.pack(">H", 1000))
             self.assertEqual(client.next(), 1000)
 
+    def test_silence_is_filled(self):
+        with Daemon("--no-render", "--http", 0) as daemon:
+            for kind in (Lines, WebSocket):
+                with self.subTest(kind.__name__):
+                    client = self.client(kind, daemon, "?alive=0.1&subject=" + kind.__name__)
+                    self.assertEqual([client.next_of_all() for _ in range(4)],
+                                     [{"type": "waiting", "subject": kind.__name__}, ALIVE, ALIVE, ALIVE])
+                    self.play(daemon, kind.__name__)
+                    self.assertEqual(client.next()["type"], "names")
+
     def test_errors(self):
         with Daemon("--no-render", "--http", 0) as daemon:
             self.play(daemon, "ada")
@@ -150,7 +169,7 @@ class WeightLinesTest(unittest.TestCase):
             line = self.client(Lines, daemon, "?pattern=xyz").next()
             self.assertEqual((line["type"], line["subject"]), ("error", ""))
             self.assertIn("matches no weight", line["message"])
-            for query, field in (("?rate=x", "rate"), ("?nonsense=1", "nonsense")):
+            for query, field in (("?rate=x", "rate"), ("?alive=0", "alive"), ("?nonsense=1", "nonsense")):
                 reply = self.client(Lines, daemon, query)
                 self.assertEqual(reply.reply.status, 400)
                 self.assertEqual(json.loads(reply.reply.read())["error"]["field"], field)

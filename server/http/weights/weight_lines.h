@@ -5,6 +5,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "protocol/messages/messages.h"
@@ -28,6 +29,9 @@ class WeightLines {
   // Translates one message. `line` is replaced, and has no line end. Messages that cannot be
   // decoded are kNone.
   [[nodiscard]] Line Translate(std::span<const std::uint8_t> message, std::string* line);
+
+  // The line that follows a silence, so that both ends know that the other is there.
+  static constexpr std::string_view kAlive = R"({"type":"alive"})";
 
  private:
   [[nodiscard]] const std::string& Requested(std::uint32_t sequence) const;

@@ -2,6 +2,7 @@
 #include "server/http/weights/weight_query.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "base/numbers.h"
@@ -22,9 +23,22 @@ Status CheckLength(const std::string& name, const std::string& value) {
                 "the value is longer than " + std::to_string(most) + " bytes", name);
 }
 
+Result<double> NumberIn(double least, double most, const std::string& name,
+                        const std::string& value) {
+  double number = 0.0;
+  // The comparison is written so that NaN fails.
+  if (TryParseNumber(value, &number) && number >= least && number <= most) return number;
+  std::string limits = "from ";
+  AppendShortest(static_cast<float>(least), &limits);
+  limits += " to ";
+  AppendShortest(static_cast<float>(most), &limits);
+  return Status(StatusCode::kInvalidArgument, "'" + value + "' is not a number " + limits, name);
+}
+
 }  // namespace
 
-Result<std::vector<protocol::SubscribeWeights>> WeightsOf(const Url& url) {
+Result<WeightQuery> WeightsOf(const Url& url) {
+  WeightQuery query;
   protocol::SubscribeWeights common;
   std::vector<std::string> subjects;
   for (const auto& [name, value] : url.values) {
@@ -42,13 +56,13 @@ Result<std::vector<protocol::SubscribeWeights>> WeightsOf(const Url& url) {
     } else if (name == "pattern") {
       if (!value.empty()) common.pattern = value;
     } else if (name == "rate") {
-      double rate = 0.0;
-      // The comparison is written so that NaN fails.
-      if (!TryParseNumber(value, &rate) || !(rate >= 0.0 && rate <= 1000.0)) {
-        return Status(StatusCode::kInvalidArgument,
-                      "'" + value + "' is not a number from 0 to 1000", name);
-      }
-      common.max_rate_hz = static_cast<float>(rate);
+      const auto rate = NumberIn(0.0, 1000.0, name, value);
+      FURROW_RETURN_IF_ERROR(rate);
+      common.max_rate_hz = static_cast<float>(*rate);
+    } else if (name == "alive") {
+      const auto seconds = NumberIn(0.1, 60.0, name, value);
+      FURROW_RETURN_IF_ERROR(seconds);
+      query.alive = std::chrono::milliseconds(std::lround(*seconds * 1000.0));
     } else if (name == "every") {
       if (value != "true" && value != "false") {
         return Status(StatusCode::kInvalidArgument, "'" + value + "' is not true or false", name);
@@ -56,17 +70,16 @@ Result<std::vector<protocol::SubscribeWeights>> WeightsOf(const Url& url) {
       common.every = value == "true";
     } else {
       return Status(StatusCode::kInvalidArgument, "unknown name", name,
-                    "use subject, pattern, rate or every");
+                    "use subject, pattern, rate, every or alive");
     }
   }
   if (subjects.empty()) subjects.emplace_back();
-  std::vector<protocol::SubscribeWeights> requests;
   for (std::string& subject : subjects) {
     common.subject = std::move(subject);
     common.wait = true;
-    requests.push_back(common);
+    query.requests.push_back(common);
   }
-  return requests;
+  return query;
 }
 
 }  // namespace furrow::server

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/http/weights/weight_stream.h"
 
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,6 +13,9 @@
 #include <boost/asio/write.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/websocket/stream.hpp>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
 
 #include "protocol/codec/codec.h"
 #include "server/http/socket/web_peer.h"
@@ -31,9 +35,8 @@ constexpr int kLineBufferBytes = 64 * 1024;
 // The subscriptions behind one response, and their lines. It is used on the web thread.
 class LineSource : public std::enable_shared_from_this<LineSource> {
  public:
-  LineSource(const net::any_io_executor& executor, WebContext* context,
-             std::vector<protocol::SubscribeWeights> requests)
-      : wake_(executor), context_(context), requests_(std::move(requests)), lines_(requests_) {
+  LineSource(const net::any_io_executor& executor, WebContext* context, WeightQuery query)
+      : wake_(executor), context_(context), query_(std::move(query)), lines_(query_.requests) {
     ++context_->viewers;
   }
   ~LineSource() { --context_->viewers; }
@@ -50,7 +53,7 @@ class LineSource : public std::enable_shared_from_this<LineSource> {
                   [post_to_web = context_->post_to_web, wake] { post_to_web(wake); });
     protocol::Encoder encoder;
     std::uint32_t sequence = 0;
-    for (const protocol::SubscribeWeights& request : requests_) {
+    for (const protocol::SubscribeWeights& request : query_.requests) {
       std::vector<std::uint8_t> bytes;
       encoder.Encode({.session = kWeightSession, .sequence = ++sequence}, request, bytes);
       if (!peer_->Send(std::move(bytes))) ended_ = true;
@@ -60,6 +63,7 @@ class LineSource : public std::enable_shared_from_this<LineSource> {
   // Waits for the next line. False: there is none, because End() was called or the client is slow.
   net::awaitable<bool> Next(std::string* line) {
     std::vector<std::uint8_t> message;
+    const auto silence = net::steady_timer::clock_type::now() + query_.alive;
     while (!ended_) {
       if (peer_->overrun()) {
         context_->metrics->Add(Counter::kConnectionsOverrun);
@@ -71,9 +75,12 @@ class LineSource : public std::enable_shared_from_this<LineSource> {
         if (kind != WeightLines::Line::kNone) co_return true;
         continue;
       }
-      wake_.expires_at(net::steady_timer::time_point::max());
-      beast::error_code ignored;
-      co_await wake_.async_wait(Redirect(ignored));
+      wake_.expires_at(silence);
+      beast::error_code woken;
+      co_await wake_.async_wait(Redirect(woken));
+      if (woken) continue;
+      *line = WeightLines::kAlive;
+      co_return true;
     }
     co_return false;
   }
@@ -87,7 +94,7 @@ class LineSource : public std::enable_shared_from_this<LineSource> {
  private:
   net::steady_timer wake_;
   WebContext* context_;
-  std::vector<protocol::SubscribeWeights> requests_;
+  WeightQuery query_;
   WeightLines lines_;
   std::optional<WebPeer> peer_;  // set by Open()
   bool ended_ = false;
@@ -97,6 +104,17 @@ std::string PeerName(const beast::tcp_stream& stream) {
   beast::error_code ignored;
   const auto remote = stream.socket().remote_endpoint(ignored);
   return "web " + remote.address().to_string() + " port " + std::to_string(remote.port());
+}
+
+void SetOptions(beast::tcp_stream& stream) {
+  beast::error_code ignored;
+  stream.socket().set_option(net::ip::tcp::no_delay(true), ignored);
+  stream.socket().set_option(net::socket_base::send_buffer_size(kLineBufferBytes), ignored);
+  // Lines fit into the buffer long after a client has vanished. The kernel would keep trying for
+  // about 15 minutes (tcp(7), TCP_USER_TIMEOUT).
+  const auto limit = static_cast<unsigned>(
+      std::chrono::duration_cast<std::chrono::milliseconds>(kWebDeadline).count());
+  setsockopt(stream.socket().native_handle(), IPPROTO_TCP, TCP_USER_TIMEOUT, &limit, sizeof(limit));
 }
 
 using Socket = websocket::stream<beast::tcp_stream>;
@@ -127,13 +145,11 @@ net::awaitable<void> ReadAndDrop(std::shared_ptr<Socket> socket,
 }  // namespace
 
 net::awaitable<void> ServeWeightSocket(beast::tcp_stream stream, WebContext* context,
-                                       WebRequest request,
-                                       std::vector<protocol::SubscribeWeights> requests) {
+                                       WebRequest request, WeightQuery query) {
   const std::string name = PeerName(stream);
   stream.expires_never();  // the WebSocket has its own timeouts
   beast::error_code error;
-  stream.socket().set_option(net::ip::tcp::no_delay(true), error);
-  stream.socket().set_option(net::socket_base::send_buffer_size(kLineBufferBytes), error);
+  SetOptions(stream);
   // Shared by the reader and this coroutine; the last one to end closes it.
   const auto socket = std::make_shared<Socket>(std::move(stream));
   // The client need not send anything: the daemon pings it, and closes if no answer comes.
@@ -147,7 +163,7 @@ net::awaitable<void> ServeWeightSocket(beast::tcp_stream stream, WebContext* con
   if (error) co_return;
   context->metrics->Add(Counter::kWebSocketsAccepted);
   const auto lines =
-      std::make_shared<LineSource>(socket->get_executor(), context, std::move(requests));
+      std::make_shared<LineSource>(socket->get_executor(), context, std::move(query));
   lines->Open(name);
   net::co_spawn(socket->get_executor(), ReadAndDrop(socket, lines), net::detached);
   const CloseOnExit close_on_exit{socket.get()};
@@ -173,13 +189,12 @@ net::awaitable<void> ServeWeightSocket(beast::tcp_stream stream, WebContext* con
 }
 
 net::awaitable<void> ServeWeightLines(beast::tcp_stream* stream, WebContext* context,
-                                      std::vector<protocol::SubscribeWeights> requests) {
+                                      WeightQuery query) {
   beast::error_code error;
-  stream->socket().set_option(net::ip::tcp::no_delay(true), error);
-  stream->socket().set_option(net::socket_base::send_buffer_size(kLineBufferBytes), error);
+  SetOptions(*stream);
   stream->expires_never();
   const auto lines =
-      std::make_shared<LineSource>(stream->get_executor(), context, std::move(requests));
+      std::make_shared<LineSource>(stream->get_executor(), context, std::move(query));
   lines->Open(PeerName(*stream));
   // The client sends nothing after its request, so readable data means that it has closed.
   stream->socket().async_wait(net::ip::tcp::socket::wait_read,

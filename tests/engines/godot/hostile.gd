@@ -53,7 +53,14 @@ func _init():
 	client._on_message('{"type": "weights", "subject": "ada", "sequence": 10, "values": [null, "x"]}')
 	for i in 1000:
 		client._on_message('{"type": "names", "subject": "s%d", "names": []}' % i)
+	# More subjects than the daemon accepts.
+	var many = PoolStringArray()
+	for i in 65:
+		many.append("s%d" % i)
+	client.subjects = many
+	client.open()
 	print("furrow-test: " + JSON.print({"event": "hostile", "before_names": before_names, "strange": strange, "good": good,
-			"subjects": client.get_subjects().size(), "missed": client.get_stream("ada").missed}))
+			"subjects": client.get_subjects().size(), "missed": client.get_stream("ada").missed,
+			"too_many": client.get_status()}))
 	client.free()
 	quit()

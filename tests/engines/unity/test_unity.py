@@ -9,7 +9,8 @@ import sys
 import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent))
+sys.path[:0] = [str(HERE.parent), str(HERE)]
+import meta_files  # pylint: disable=wrong-import-position
 from engine_testing import ENGINES, FRAMES, GUARD, LIBRARY, RATE, EngineTest, main, need  # pylint: disable=wrong-import-position
 
 PACKAGE = ENGINES / "unity"
@@ -48,6 +49,14 @@ class UnityTest(EngineTest):
         self.assertGreaterEqual(take["keys"], FRAMES)
         self.assertAlmostEqual(take["length"], (take["keys"] - 1) / RATE, delta=0.05)
         program.wait_for("end")
+
+    def test_every_asset_has_its_meta_file(self):
+        expected = {meta_files.meta_of(path): meta_files.text_of(path, PACKAGE) for path in meta_files.assets(PACKAGE)}
+        self.assertGreater(len(expected), 20)
+        found = {path: path.read_text() for path in PACKAGE.rglob("*.meta")}
+        self.assertEqual(found, expected, f"run {HERE / 'meta_files.py'} {PACKAGE}, and delete what is left over")
+        guids = [text.split("guid: ")[1][:32] for text in found.values()]
+        self.assertEqual(len(set(guids)), len(guids))
 
     def test_unity_finds_its_parts(self):
         package = json.loads((PACKAGE / "package.json").read_text())

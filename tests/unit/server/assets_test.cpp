@@ -6,6 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include "base/files.h"
+#include "character/package/package.h"
+#include "character/package/web_package.h"
 #include "motion/clip_file.h"
 #include "tests/temporary_folder.h"
 #include "tests/unit/rig/turned_face.h"
@@ -30,6 +33,45 @@ TEST(Assets, PosesOfARigAreInTheAxesOfStreams) {
     ASSERT_TRUE(clip.ok()) << clip.status().ToString();
     EXPECT_NEAR(rig::FirstValue(*assets->rig, assets->skeletons, *clip, 1), 1.0f, 1e-3f);
   }
+  unsetenv("FURROW_DATA_DIR");
+}
+
+std::string Stated(const std::filesystem::path& file) {
+  const std::string bytes = *ReadFile(file, 1 << 20);
+  return R"({"bytes":)" + std::to_string(bytes.size()) + R"(,"fnv1a":)" +
+         std::to_string(character::Checksum(bytes)) + "}";
+}
+
+TEST(Assets, BrowsersGetThePackageOfThisCharacterOnly) {
+  setenv("FURROW_DATA_DIR", FURROW_SOURCE_DIR "/rig", 1);
+  const TemporaryFolder folder;
+  Config config;
+  config.character = folder / "ada.glb";
+  character::Character ada;
+  ada.skeleton = rig::BodyWithBrow();
+  ada.inverse_bind_matrices.assign(static_cast<std::size_t>(ada.skeleton.num_joints()),
+                                   glm::mat4(1.0f));
+  ada.meshes.push_back(
+      {.name = "triangle", .vertices = std::vector<character::Vertex>(3), .indices = {0, 1, 2}});
+  ada.materials.emplace_back();
+  ASSERT_TRUE(character::SaveCharacterGlb(ada, config.character).ok());
+  ASSERT_TRUE(motion::SaveClip(rig::RaisedBrow({1, 0, 0, 0}), folder / "face.glb").ok());
+  std::ofstream(folder / "ada.rig.json") << rig::RaisedBrowRig("face.glb");
+  const auto web_package = [&] {
+    const auto assets = LoadAssets(config);
+    EXPECT_TRUE(assets.ok()) << assets.status().ToString();
+    return assets.ok() ? assets->web_package : std::filesystem::path("failed");
+  };
+  EXPECT_EQ(web_package(), "") << "there is none";
+  std::ofstream(folder / "ada.web.glb")
+      << R"({"scenes":[{"extras":{"furrow_source":{"character":)" << Stated(config.character)
+      << R"(,"rig":)" << Stated(folder / "ada.rig.json") << "}}}]}";
+  EXPECT_EQ(web_package(), folder / "ada.web.glb");
+  config.rig = folder / "ada.rig.json";
+  EXPECT_EQ(web_package(), "") << "another rig";
+  config.rig.clear();
+  std::ofstream(folder / "ada.rig.json", std::ios::app) << "\n";
+  EXPECT_EQ(web_package(), "") << "the rig has changed";
   unsetenv("FURROW_DATA_DIR");
 }
 

@@ -3,7 +3,8 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import test from 'node:test';
-import { readRig, withoutComments } from '../src/rig/rig_file.js';
+import { withoutComments } from '../src/rig/json_comments.js';
+import { readRig } from '../src/rig/rig_file.js';
 import { WrinkleSet } from '../src/wrinkles/wrinkle_set.js';
 
 const RIG = `{

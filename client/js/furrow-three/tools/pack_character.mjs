@@ -9,10 +9,13 @@
 // - Pictures: JPEG, at most 1,024 pixels per side, by oiiotool (Debian: openimageio-tools). Pictures with an alpha channel
 //   stay as they are: masks use it as a fourth mask. Pictures that three.js does not draw are left out.
 // - The rig, IN.rig.json, becomes the scene extra `furrow_rig`.
+// - The scene extra `furrow_source` holds sizes and checksums of both files, from which furrowd sees that the package is
+//   outdated (character/package/web_package.h).
 import { execFileSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
+import { withoutComments } from '../src/rig/json_comments.js';
 
 const LIMIT_BYTES = 4_000_000;
 const SIDES = [1024, 768, 512, 384, 256]; // pixels; the first with which the file is small enough
@@ -160,8 +163,11 @@ function shrink(bytes, side, folder, options) {
   return readFileSync(to);
 }
 
-function withoutComments(json) {
-  return json.replace(/("(?:[^"\\]|\\.)*")|\/\/[^\n]*|\/\*[\s\S]*?\*\//g, (_, quoted) => quoted ?? '');
+/** Size in bytes and 32-bit FNV-1a checksum. */
+function checksum(bytes) {
+  let value = 0x811c9dc5;
+  for (const byte of bytes) value = Math.imul(value ^ byte, 0x01000193);
+  return { bytes: bytes.length, fnv1a: value >>> 0 };
 }
 
 function pack(source, rig, side, folder) {
@@ -182,7 +188,7 @@ function pack(source, rig, side, folder) {
   // What drawing needs of the rig. The daemon has the rest.
   const { name, regions, wrinkle_maps: maps } = rig;
   const places = (regions ?? []).map(({ name: region, mask, feeds }) => ({ name: region, mask, feeds: (feeds ?? []).map(({ map }) => ({ map })) }));
-  json.scenes[json.scene ?? 0].extras = { ...json.scenes[json.scene ?? 0].extras, furrow_rig: { name, regions: places, wrinkle_maps: maps } };
+  json.scenes[json.scene ?? 0].extras = { ...json.scenes[json.scene ?? 0].extras, furrow_source: source.checksums, furrow_rig: { name, regions: places, wrinkle_maps: maps } };
   json.extensionsUsed = [...new Set([...(json.extensionsUsed ?? []).filter((each) => each !== 'KHR_materials_volume'), 'KHR_mesh_quantization'])];
   json.extensionsRequired = [...new Set([...(json.extensionsRequired ?? []), 'KHR_mesh_quantization'])];
   json.accessors = writer.accessors;
@@ -247,8 +253,9 @@ if (output === undefined) {
 }
 const folder = mkdtempSync(join(tmpdir(), 'furrow-pack-'));
 try {
-  const source = readGlb(input);
-  const rig = JSON.parse(withoutComments(readFileSync(input.replace(/\.glb$/, '.rig.json'), 'utf8')));
+  const rigFile = readFileSync(input.replace(/\.glb$/, '.rig.json'));
+  const source = { ...readGlb(input), checksums: { character: checksum(readFileSync(input)), rig: checksum(rigFile) } };
+  const rig = JSON.parse(withoutComments(rigFile.toString('utf8')));
   let bytes;
   let side;
   for (side of SIDES) {

@@ -228,6 +228,32 @@ TEST(UdpTransportTest, BundlesAreSplitAndMalformedOnesReturnedWhole) {
   EXPECT_EQ(transport->Receive(received, milliseconds(0)), IoStatus::kTimeout);
 }
 
+TEST(UdpTransportTest, EachReceiveWaitsForItsOwnTime) {
+  Socket peer(SOCK_DGRAM);
+  auto transport = Open(TransportKind::kUdp, peer.port());
+  ASSERT_NE(transport, nullptr);
+  std::vector<std::uint8_t> bytes;
+  protocol::Encoder().Encode({.session = 3}, protocol::Ping{}, bytes);
+  ASSERT_EQ(transport->Send(bytes), IoStatus::kOk);
+  std::span<const std::uint8_t> received;
+  for (const int wait : {0, 1, 2, 0}) {
+    EXPECT_EQ(transport->Receive(received, milliseconds(wait)), IoStatus::kTimeout);
+  }
+  std::vector<std::uint8_t> datagram(2000);
+  sockaddr_in from{};
+  socklen_t size = sizeof from;
+  ASSERT_GT(::recvfrom(peer.fd(), datagram.data(), datagram.size(), 0,
+                       reinterpret_cast<sockaddr*>(&from), &size),
+            0);
+  for (const auto wait : {milliseconds(0), milliseconds(kGuard)}) {
+    ::sendto(peer.fd(), bytes.data(), bytes.size(), 0, reinterpret_cast<sockaddr*>(&from),
+             sizeof from);
+    ASSERT_EQ(transport->Receive(received, wait), IoStatus::kOk);
+    EXPECT_EQ(received.size(), bytes.size());
+    EXPECT_EQ(transport->Receive(received, milliseconds(0)), IoStatus::kTimeout);
+  }
+}
+
 TEST(UdpTransportTest, AClosedPortIsReportedByReceive) {
   std::uint16_t port = 0;
   { port = Socket(SOCK_DGRAM).port(); }

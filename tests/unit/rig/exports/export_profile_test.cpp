@@ -120,6 +120,20 @@ TEST(ExportProfile, CoversWithTheWeightsThatTheRigHas) {
   EXPECT_THAT(text, HasSubstr("weights without a name:\n  chin.folds\n"));
 }
 
+// The parser's work grows with the square of the number of fields.
+TEST(ExportProfile, LimitsTheNumberOfFields) {
+  const auto with_names = [](std::size_t count) {
+    std::string text = R"({"version": 1, "name": "other", "names": {"n0": "a")";
+    for (std::size_t i = 1; i < count; ++i) text += ",\"n" + std::to_string(i) + "\":\"a\"";
+    return text + "}}";
+  };
+  EXPECT_TRUE(ParseExportProfile(with_names(4096), "other.json").ok());
+  const auto many = ParseExportProfile(with_names(80'000), "other.json");
+  ASSERT_FALSE(many.ok());
+  EXPECT_EQ(many.status().code(), StatusCode::kLimit);
+  EXPECT_THAT(many.status().ToString(), HasSubstr("other.json: has more than 8192 fields"));
+}
+
 TEST(ExportProfile, TheRigsOwnExportsComeFirst) {
   const auto profile = ParseExportProfile(kValid, "other.json");
   ASSERT_TRUE(profile.ok());

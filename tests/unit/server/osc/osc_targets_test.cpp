@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "protocol/mocap/osc.h"
+#include "server/config/osc_profile_file.h"
 #include "tests/unit/server/session/hub_fixture.h"
 
 namespace furrow::server {
@@ -67,6 +68,9 @@ class OscTargetsTest : public HubTest {
     config.to = {"127.0.0.1", port};
     return config;
   }
+  Status Configure(const OscTargetConfig& config) {
+    return targets_->AddConfigured(config, LoadOscProfile(config.profile).value());
+  }
   Status Refusal(const OscTargetConfig& config) { return targets_->Add(config).status(); }
 
   asio::io_context io_;
@@ -81,7 +85,7 @@ TEST_F(OscTargetsTest, SendsToEachTargetInItsProfile) {
   vmc.profile = "vmc";
   ASSERT_TRUE(targets_->Add(vmc).ok());
   Receiver other(io_);
-  ASSERT_TRUE(targets_->AddConfigured(To(other.port())).ok());
+  ASSERT_TRUE(Configure(To(other.port())).ok());
   EXPECT_EQ(active_, std::vector<bool>{true});
   targets_->Send(subject(), 0, Time{0});
   const auto blend = receiver_.Take();
@@ -113,7 +117,7 @@ TEST_F(OscTargetsTest, RemovedTargetsReceiveNothing) {
 }
 
 TEST_F(OscTargetsTest, TargetsOfTheOperatorStay) {
-  ASSERT_TRUE(targets_->AddConfigured(To(receiver_.port())).ok());
+  ASSERT_TRUE(Configure(To(receiver_.port())).ok());
   EXPECT_EQ(targets_->Remove(targets_->List().front().id).code(), StatusCode::kUnsupported);
   EXPECT_EQ(targets_->List().size(), 1u);
 }
@@ -211,7 +215,7 @@ TEST_F(OscTargetsTest, TargetsAreLimited) {
   }
   EXPECT_EQ(Refusal(To(30'000)).code(), StatusCode::kLimit);
   EXPECT_TRUE(targets_->Add(To(20'000)).ok()) << "a repeated request adds nothing";
-  ASSERT_TRUE(targets_->AddConfigured(To(30'000)).ok()) << "the operator is not limited";
+  ASSERT_TRUE(Configure(To(30'000)).ok()) << "the operator is not limited";
 }
 
 TEST_F(OscTargetsTest, ATargetThatNobodyReadsIsReported) {

@@ -17,6 +17,7 @@ enum State { CLOSED, CONNECTING, CONNECTED, LOST }
 const SETTINGS = preload("furrow_settings.gd")
 const MAX_WEIGHTS = 2048
 const MAX_SUBJECTS = 256
+const MAX_ASKED = 64  # subjects of one connection, the daemon's limit
 const MAX_SEQUENCE = 4294967296.0
 # Godot 3 reads JSON recursively without a limit, and some 16,000 levels overflow its stack. The daemon nests 2 deep, but
 # names may contain brackets.
@@ -24,7 +25,7 @@ const MAX_BRACKETS = 4096
 const FIRST_PAUSE_MSEC = 100
 const MAX_PAUSE_MSEC = 800
 const CONNECT_MSEC = 5000
-# The daemon pings every 15 s, but pings do not reach scripts. A connection that is dead without a word is replaced.
+# The daemon sends an object at least every 10 s. A silent connection is dead and is replaced.
 const SILENCE_MSEC = 30000
 
 # HOST:PORT of the daemon's HTTP server; empty: the setting of the project.
@@ -92,6 +93,7 @@ func open():
 # Ends the connection. Frames that have arrived stay readable. Receivers of signals may call it, too.
 func close():
 	_is_wanted = false
+	last_error = ""
 	if _socket != null and not _is_polling:
 		_socket.disconnect_from_host()
 		_socket = null
@@ -149,7 +151,7 @@ func get_age_msec(subject):
 func get_status():
 	match state:
 		State.CLOSED:
-			return "not connected"
+			return "not connected" if last_error == "" else "not connected: " + last_error
 		State.CONNECTED:
 			return "connected to " + get_address()
 		State.LOST:
@@ -168,6 +170,9 @@ func get_subject_status(subject):
 
 
 func _begin():
+	if subjects.size() > MAX_ASKED:
+		_give_up("%d subjects, but one FurrowClient follows at most %d; use another for more" % [subjects.size(), MAX_ASKED])
+		return
 	_set_state(State.CONNECTING if state != State.LOST else State.LOST)
 	_heard_msec = OS.get_ticks_msec()
 	_is_lost = false
@@ -185,7 +190,9 @@ func _begin():
 func _query():
 	var parts = PoolStringArray()
 	for subject in subjects:
-		parts.append("subject=" + subject.percent_encode())
+		var part = "subject=" + subject.percent_encode()
+		if not part in parts:  # the daemon refuses repeated names
+			parts.append(part)
 	if pattern != "":
 		parts.append("pattern=" + pattern.percent_encode())
 	parts.append("every=" + ("true" if every_frame else "false"))
@@ -212,6 +219,14 @@ func _lose(why):
 	_due_msec = OS.get_ticks_msec() + _pause_msec
 	_pause_msec = min(2 * _pause_msec, MAX_PAUSE_MSEC)
 	_set_state(State.LOST)
+
+
+# Ends the attempts: only the game can help.
+func _give_up(why):
+	_is_wanted = false
+	last_error = why
+	push_error("Furrow: " + why)
+	_set_state(State.CLOSED)
 
 
 func _set_state(to):

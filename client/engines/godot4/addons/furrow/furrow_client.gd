@@ -12,11 +12,12 @@ enum State { CLOSED, CONNECTING, CONNECTED, LOST }
 
 const MAX_WEIGHTS := 2048
 const MAX_SUBJECTS := 256
+const MAX_ASKED := 64  # subjects of one connection, the daemon's limit
 const MAX_SEQUENCE := 4294967296.0
 const FIRST_PAUSE_MSEC := 100
 const MAX_PAUSE_MSEC := 800
 const CONNECT_MSEC := 5000
-# Pings do not reach scripts. A connection that is dead without a word is replaced.
+# The daemon sends an object at least every 10 s. A silent connection is dead and is replaced.
 const SILENCE_MSEC := 30000
 
 # HOST:PORT of the daemon's HTTP server; empty: the setting of the project.
@@ -73,6 +74,7 @@ func open() -> void:
 
 
 func close() -> void:
+	last_error = ""
 	if _socket != null:
 		_socket.close()
 		_socket = null
@@ -119,7 +121,7 @@ func get_stream(subject: String) -> Stream:
 func get_status() -> String:
 	match state:
 		State.CLOSED:
-			return "not connected"
+			return "not connected" if last_error == "" else "not connected: " + last_error
 		State.CONNECTED:
 			return "connected to " + get_address()
 		State.LOST:
@@ -137,6 +139,9 @@ func get_subject_status(subject: String) -> String:
 
 
 func _begin() -> void:
+	if subjects.size() > MAX_ASKED:
+		_give_up("%d subjects, but one FurrowClient follows at most %d; use another for more" % [subjects.size(), MAX_ASKED])
+		return
 	_set_state(State.LOST if state == State.LOST else State.CONNECTING)
 	_heard_msec = Time.get_ticks_msec()
 	_socket = WebSocketPeer.new()
@@ -149,7 +154,9 @@ func _begin() -> void:
 func _query() -> String:
 	var parts := PackedStringArray()
 	for subject in subjects:
-		parts.append("subject=" + subject.uri_encode())
+		var part := "subject=" + subject.uri_encode()
+		if not part in parts:  # the daemon refuses repeated names
+			parts.append(part)
 	if pattern != "":
 		parts.append("pattern=" + pattern.uri_encode())
 	parts.append("every=" + ("true" if every_frame else "false"))
@@ -162,6 +169,13 @@ func _lose(why: String) -> void:
 	_due_msec = Time.get_ticks_msec() + _pause_msec
 	_pause_msec = mini(2 * _pause_msec, MAX_PAUSE_MSEC)
 	_set_state(State.LOST)
+
+
+# Ends the attempts: only the game can help.
+func _give_up(why: String) -> void:
+	last_error = why
+	push_error("Furrow: " + why)
+	_set_state(State.CLOSED)
 
 
 func _set_state(to: int) -> void:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The parts of a wrinkle rig that drawing needs: where each weight's wrinkles lie, and what they look like. The daemon
 // evaluates the rest (docs/RIG.md).
+import { withoutComments } from './json_comments.js';
 
 export type Surface = 'any' | 'skin' | 'cloth';
 
@@ -77,11 +78,6 @@ function readMap(json: Json, where: string): WrinkleMap {
     cavity: text(json, 'cavity', where),
     amplitude: number(json, 'amplitude', where, 1),
   };
-}
-
-/** Removes comments (`// ...` and slash-star) outside of texts. */
-export function withoutComments(json: string): string {
-  return json.replace(/("(?:[^"\\]|\\.)*")|\/\/[^\n]*|\/\*[\s\S]*?\*\//g, (_, quoted: string | undefined) => quoted ?? '');
 }
 
 /** Reads a rig file, JSON with comments. Throws an Error that names the field. */

@@ -9,36 +9,40 @@ namespace {
 
 using testing::HasSubstr;
 
-Result<std::vector<protocol::SubscribeWeights>> Parse(std::string_view target) {
-  return WeightsOf(*ParseUrl(target));
-}
+Result<WeightQuery> Parse(std::string_view target) { return WeightsOf(*ParseUrl(target)); }
 
 TEST(WeightQuery, FollowsTheOldestSubjectByDefault) {
-  const auto requests = Parse("/weights");
-  ASSERT_TRUE(requests.ok());
-  ASSERT_EQ(requests->size(), 1u);
-  EXPECT_EQ(requests->front().subject, "");
-  EXPECT_EQ(requests->front().pattern, "*");
-  EXPECT_TRUE(requests->front().wait);
-  EXPECT_EQ(Parse("/weights?pattern=")->front().pattern, "*");
+  const auto query = Parse("/weights");
+  ASSERT_TRUE(query.ok());
+  ASSERT_EQ(query->requests.size(), 1u);
+  EXPECT_EQ(query->requests.front().subject, "");
+  EXPECT_EQ(query->requests.front().pattern, "*");
+  EXPECT_TRUE(query->requests.front().wait);
+  EXPECT_EQ(Parse("/weights?pattern=")->requests.front().pattern, "*");
 }
 
 TEST(WeightQuery, ReadsSubjectsPatternAndRate) {
-  const auto requests = Parse("/weights?subject=ada&rate=29.97&subject=b%26b&pattern=brow_*,n*");
-  ASSERT_TRUE(requests.ok());
-  ASSERT_EQ(requests->size(), 2u);
-  EXPECT_EQ((*requests)[0].subject, "ada");
-  EXPECT_EQ((*requests)[1].subject, "b&b");
-  for (const auto& request : *requests) {
+  const auto query = Parse("/weights?subject=ada&rate=29.97&subject=b%26b&pattern=brow_*,n*");
+  ASSERT_TRUE(query.ok());
+  ASSERT_EQ(query->requests.size(), 2u);
+  EXPECT_EQ(query->requests[0].subject, "ada");
+  EXPECT_EQ(query->requests[1].subject, "b&b");
+  for (const auto& request : query->requests) {
     EXPECT_EQ(request.pattern, "brow_*,n*");
     EXPECT_FLOAT_EQ(request.max_rate_hz, 29.97f);
   }
 }
 
 TEST(WeightQuery, AsksForEveryFrameOnlyIfToldTo) {
-  EXPECT_FALSE(Parse("/weights")->front().every);
-  EXPECT_TRUE(Parse("/weights?every=true")->front().every);
-  EXPECT_FALSE(Parse("/weights?every=true&every=false")->front().every);
+  EXPECT_FALSE(Parse("/weights")->requests.front().every);
+  EXPECT_TRUE(Parse("/weights?every=true")->requests.front().every);
+  EXPECT_FALSE(Parse("/weights?every=true&every=false")->requests.front().every);
+}
+
+TEST(WeightQuery, ReadsTheLongestSilence) {
+  EXPECT_EQ(Parse("/weights")->alive, std::chrono::seconds(10));
+  EXPECT_EQ(Parse("/weights?alive=0.1")->alive, std::chrono::milliseconds(100));
+  EXPECT_EQ(Parse("/weights?alive=60")->alive, std::chrono::minutes(1));
 }
 
 TEST(WeightQuery, NamesTheInvalidField) {
@@ -46,11 +50,13 @@ TEST(WeightQuery, NamesTheInvalidField) {
        {std::pair("/weights?rate=fast", "rate"), std::pair("/weights?rate=-1", "rate"),
         std::pair("/weights?rate=nan", "rate"), std::pair("/weights?rate=1001", "rate"),
         std::pair("/weights?rate=", "rate"), std::pair("/weights?every=1", "every"),
+        std::pair("/weights?alive=0.09", "alive"), std::pair("/weights?alive=61", "alive"),
+        std::pair("/weights?alive=nan", "alive"),
         std::pair("/weights?subject=a&subject=a", "subject"),
         std::pair("/weights?names=a", "names")}) {
-    const auto requests = Parse(target);
-    ASSERT_FALSE(requests.ok()) << target;
-    EXPECT_EQ(requests.status().where(), field);
+    const auto query = Parse(target);
+    ASSERT_FALSE(query.ok()) << target;
+    EXPECT_EQ(query.status().where(), field);
   }
 }
 
@@ -64,7 +70,7 @@ TEST(WeightQuery, LimitsLengths) {
 TEST(WeightQuery, LimitsTheSubjects) {
   std::string target = "/weights?rate=0";
   for (int i = 0; i < 64; ++i) target += "&subject=s" + std::to_string(i);
-  EXPECT_EQ(Parse(target)->size(), 64u);
+  EXPECT_EQ(Parse(target)->requests.size(), 64u);
   EXPECT_EQ(Parse(target + "&subject=more").status().where(), "subject");
 }
 
