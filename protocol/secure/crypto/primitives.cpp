@@ -35,6 +35,12 @@ Nonce NonceOf(std::uint64_t counter) {
   return nonce;
 }
 
+// libsodium accepts no null pointer, not even to nothing.
+std::uint8_t* PointerTo(ByteSpan text) {
+  static std::uint8_t nothing = 0;
+  return text.data() != nullptr ? text.data() : &nothing;
+}
+
 // HMAC-SHA256 of the concatenation of `first` and `second`.
 void Hmac(const Key& key, ByteView first, ByteView second, Key& out) {
   crypto_auth_hmacsha256_state state;
@@ -43,6 +49,13 @@ void Hmac(const Key& key, ByteView first, ByteView second, Key& out) {
   crypto_auth_hmacsha256_update(&state, second.data(), second.size());
   crypto_auth_hmacsha256_final(&state, out.bytes().data());
   sodium_memzero(&state, sizeof state);
+}
+
+// The first two outputs of HKDF's second half.
+void Expand(const Key& secret, Key& first, Key& second) {
+  constexpr std::uint8_t kCounts[] = {1, 2};
+  Hmac(secret, {}, ByteView(kCounts, 1), first);
+  Hmac(secret, first.bytes(), ByteView(kCounts + 1, 1), second);
 }
 
 class System : public RandomSource {
@@ -65,27 +78,27 @@ bool EqualInConstantTime(ByteView a, ByteView b) {
 
 void Seal(const Key& key, std::uint64_t counter, ByteView associated, ByteSpan text, TagSpan tag) {
   crypto_aead_chacha20poly1305_ietf_encrypt_detached(
-      text.data(), tag.data(), nullptr, text.data(), text.size(), associated.data(),
+      PointerTo(text), tag.data(), nullptr, PointerTo(text), text.size(), associated.data(),
       associated.size(), nullptr, NonceOf(counter).data(), key.bytes().data());
 }
 
 bool Open(const Key& key, std::uint64_t counter, ByteView associated, ByteSpan text, TagView tag) {
   return crypto_aead_chacha20poly1305_ietf_decrypt_detached(
-             text.data(), nullptr, text.data(), text.size(), tag.data(), associated.data(),
+             PointerTo(text), nullptr, PointerTo(text), text.size(), tag.data(), associated.data(),
              associated.size(), NonceOf(counter).data(), key.bytes().data()) == 0;
 }
 
 void SealWithNonce(const Key& key, const TokenNonce& nonce, ByteView associated, ByteSpan text,
                    TagSpan tag) {
   crypto_aead_xchacha20poly1305_ietf_encrypt_detached(
-      text.data(), tag.data(), nullptr, text.data(), text.size(), associated.data(),
+      PointerTo(text), tag.data(), nullptr, PointerTo(text), text.size(), associated.data(),
       associated.size(), nullptr, nonce.data(), key.bytes().data());
 }
 
 bool OpenWithNonce(const Key& key, const TokenNonce& nonce, ByteView associated, ByteSpan text,
                    TagView tag) {
   return crypto_aead_xchacha20poly1305_ietf_decrypt_detached(
-             text.data(), nullptr, text.data(), text.size(), tag.data(), associated.data(),
+             PointerTo(text), nullptr, PointerTo(text), text.size(), tag.data(), associated.data(),
              associated.size(), nonce.data(), key.bytes().data()) == 0;
 }
 
@@ -100,19 +113,19 @@ Hash Sha256(ByteView first, ByteView second, ByteView third) {
   return hash;
 }
 
+// RFC 5869: extract, then expand.
 void Hkdf2(const Key& chaining_key, ByteView material, Key& first, Key& second) {
-  Key unused;
-  Hkdf3(chaining_key, material, first, second, unused);
+  Key secret;
+  Hmac(chaining_key, material, {}, secret);
+  Expand(secret, first, second);
 }
 
 void Hkdf3(const Key& chaining_key, ByteView material, Key& first, Key& second, Key& third) {
-  // RFC 5869: extract, then expand.
-  static constexpr std::uint8_t kCounts[] = {1, 2, 3};
-  Key temporary;
-  Hmac(chaining_key, material, {}, temporary);
-  Hmac(temporary, {}, ByteView(kCounts, 1), first);
-  Hmac(temporary, first.bytes(), ByteView(kCounts + 1, 1), second);
-  Hmac(temporary, second.bytes(), ByteView(kCounts + 2, 1), third);
+  Key secret;
+  Hmac(chaining_key, material, {}, secret);
+  Expand(secret, first, second);
+  constexpr std::uint8_t kThird = 3;
+  Hmac(secret, second.bytes(), {&kThird, 1}, third);
 }
 
 Mac Blake2b128(ByteView data) {

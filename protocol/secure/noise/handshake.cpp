@@ -56,8 +56,8 @@ HandshakeStatus Handshake::Read(ByteView message, ByteSpan payload) {
     if (!X25519(own_.secret, other, shared)) return HandshakeStatus::kBadPoint;
     next.MixKey(shared.bytes());
   }
-  std::copy_n(message.begin() + kPublicKeyBytes, payload.size(), payload.begin());
-  if (!next.DecryptAndHash(payload, message.last<kTagBytes>())) {
+  if (!next.DecryptAndHash(message.subspan(kPublicKeyBytes, payload.size()),
+                           message.last<kTagBytes>(), payload)) {
     return HandshakeStatus::kNotAuthentic;
   }
   other_ = other;

@@ -33,11 +33,10 @@ void SymmetricState::EncryptAndHash(ByteSpan text, TagSpan tag) {
   hash_ = Sha256(hash_, text, tag);
 }
 
-bool SymmetricState::DecryptAndHash(ByteSpan text, TagView tag) {
-  // The hash covers the encrypted text, which decryption replaces.
-  const Hash next = Sha256(hash_, text, tag);
-  if (!cipher_.Decrypt(hash_, text, tag)) return false;
-  hash_ = next;
+bool SymmetricState::DecryptAndHash(ByteView text, TagView tag, ByteSpan plain) {
+  std::copy(text.begin(), text.end(), plain.begin());
+  if (!cipher_.Decrypt(hash_, plain, tag)) return false;
+  hash_ = Sha256(hash_, text, tag);
   return true;
 }
 

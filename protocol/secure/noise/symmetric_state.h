@@ -17,9 +17,10 @@ class SymmetricState {
   void MixKey(ByteView material);
   void MixKeyAndHash(ByteView material);
 
-  // Precondition of both: a key was mixed in. In place.
+  // Precondition of both: a key was mixed in. The first works in place; the second writes as many
+  // bytes as `text` has to `plain`, and does not hash what is not authentic.
   void EncryptAndHash(ByteSpan text, TagSpan tag);
-  [[nodiscard]] bool DecryptAndHash(ByteSpan text, TagView tag);
+  [[nodiscard]] bool DecryptAndHash(ByteView text, TagView tag, ByteSpan plain);
 
   // The keys of both directions: first the initiator's, then the responder's.
   void Split(Key& initiator, Key& responder) const;

@@ -40,7 +40,7 @@ struct ServerEvent {
 };
 
 // All secure sessions of a server, without sockets and clocks. Look-ups take constant time. A
-// packet of an existing session costs no allocation.
+// packet of an existing session costs no allocation. One thread at a time may use an object.
 class SecureServer {
  public:
   // Keeps a reference to `random`.
