@@ -53,6 +53,7 @@ fuzz_one() {
   mkdir -p "$corpus"
   case "$name" in
     fuzz_datagram) seeds=(protocol/vectors) ;;
+    fuzz_token|fuzz_secure) seeds=("tests/fuzz/seeds/${name#fuzz_}" protocol/vectors/secure) ;;
     fuzz_rig) seeds=(rig/rigs) ;;
     fuzz_gltf) seeds=(tests/fuzz/seeds/gltf tests/unit/character/gltf/fixtures) ;;
     *) [[ ! -d tests/fuzz/seeds/${name#fuzz_} ]] || seeds=("tests/fuzz/seeds/${name#fuzz_}") ;;

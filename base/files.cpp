@@ -78,7 +78,7 @@ class PendingFile {
     const int descriptor = ::mkstemp(name.data());
     if (descriptor < 0) return SystemError("cannot create a file there", file.path, errno);
     temporary_ = std::move(name);
-    int error = ApplyUmask(descriptor);
+    int error = file.is_secret ? 0 : ApplyUmask(descriptor);
     // Keeps the first error. close() runs in any case, and reports late write errors (NFS, quotas).
     if (error == 0) error = WriteAll(descriptor, file.bytes);
     if (error == 0 && flush == Flush::kDisk && ::fsync(descriptor) != 0) error = errno;
@@ -153,6 +153,24 @@ Status WriteFilesAtomically(std::span<const FileToWrite> files, Flush flush) {
   }
   for (PendingFile& file : pending) FURROW_RETURN_IF_ERROR(file.Publish());
   return {};
+}
+
+Result<std::string> ReadSecretFile(const fs::path& path, std::uint64_t max_bytes) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  constexpr fs::perms kOthers = fs::perms::group_all | fs::perms::others_all;
+  if (!error && fs::is_regular_file(status) &&
+      (status.permissions() & kOthers) != fs::perms::none) {
+    return Status(StatusCode::kInvalidArgument,
+                  "other users have rights on this file, which holds a secret", path.string(),
+                  "run: chmod 600 " + path.string());
+  }
+  return ReadFile(path, max_bytes);
+}
+
+Status WriteSecretFile(const fs::path& path, std::string_view bytes) {
+  const FileToWrite file{path, bytes, /*is_secret=*/true};
+  return WriteFilesAtomically({&file, 1});
 }
 
 Status CheckWritable(const fs::path& path) {

@@ -34,16 +34,26 @@ enum class Flush { kDisk, kNone };
 [[nodiscard]] Status WriteFileAtomically(const std::filesystem::path& path, std::string_view bytes,
                                          Flush flush = Flush::kDisk);
 
-// An argument of WriteFilesAtomically(). The caller owns `bytes`.
+// An argument of WriteFilesAtomically(). The caller owns `bytes`. A new secret file can be read by
+// its owner alone (mode 0600); other files get the usual mode.
 struct FileToWrite {
   std::filesystem::path path;
   std::string_view bytes;
+  bool is_secret = false;
 };
 
 // Replaces several files as WriteFileAtomically() does one. All temporary files are complete before
 // the first rename, so a full disk replaces none of the files. Error: kIo.
 [[nodiscard]] Status WriteFilesAtomically(std::span<const FileToWrite> files,
                                           Flush flush = Flush::kDisk);
+
+// Reads a file that holds a key or a password. Errors: as ReadFile(), and kInvalidArgument if other
+// users than its owner have any rights on the file; the message says how to fix that.
+[[nodiscard]] Result<std::string> ReadSecretFile(const std::filesystem::path& path,
+                                                 std::uint64_t max_bytes);
+
+// Replaces a file as WriteFileAtomically() does, so that only its owner can read it.
+[[nodiscard]] Status WriteSecretFile(const std::filesystem::path& path, std::string_view bytes);
 
 // Checks that `path` can be written, before work that takes long. The file stays as it is. Error:
 // kIo, with the path as `where` and the reason.

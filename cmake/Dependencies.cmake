@@ -22,6 +22,7 @@ find_package(tomlplusplus REQUIRED)
 find_package(meshoptimizer REQUIRED)
 
 pkg_check_modules(EPOXY REQUIRED IMPORTED_TARGET epoxy)
+pkg_check_modules(SODIUM REQUIRED IMPORTED_TARGET libsodium)
 pkg_check_modules(EGL REQUIRED IMPORTED_TARGET egl)
 # Found with pkg-config, because the CMake package needs Imath's Python targets, which Debian packages
 # separately.

@@ -22,6 +22,7 @@ void AddCommands(CLI::App& app, Action& action) {
   AddShapeMapCommand(app, action);
   AddConvert(app, action);
   AddInfo(app, action);
+  AddToken(app, action);
   AddHelperEntry(app, "character");
   AddHelperEntry(app, "bake");
   AddHelperEntry(app, "export");

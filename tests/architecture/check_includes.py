@@ -67,6 +67,7 @@ CONFINED = [
     (r"nlohmann/", {"rig", "gltf", "motion", "character", "authoring", "server/http", "client"}),
     (r"(tiny_gltf\.h|third_party/tinygltf/)", {"gltf"}),
     (r"assimp/", {"authoring/assimp"}),
+    (r"sodium(\.h|/)", {"protocol/secure/crypto"}),
     (r"(zstd|lz4frame)\.h", {"motion/mcap"}),
 ]
 

@@ -26,6 +26,8 @@ COMPLETIONS = [
     ("furrow watch --format j", {"jsonl"}),
     ("furrow watch host --subject ", set()),
     ("furrow rig check --", {"--help"}),
+    ("furrow token key ", {"new", "list", "retire"}),
+    ("furrow token new --role w", {"watch"}),
     ("furrow play ", set()),
     ("furrowd --no-r", {"--no-render"}),
     ("furrowd ", set()),

@@ -16,6 +16,7 @@ void AddRender(CLI::App& app, Action& action);
 void AddRig(CLI::App& app, Action& action);
 void AddShapeMapCommand(CLI::App& app, Action& action);
 void AddSolve(CLI::App& app, Action& action);
+void AddToken(CLI::App& app, Action& action);
 void AddWatch(CLI::App& app, Action& action);
 
 }  // namespace furrow::cli

@@ -50,6 +50,25 @@ TEST_F(Files, WritesAllOrNothing) {
   EXPECT_EQ(NumEntries(), 2u);
 }
 
+TEST_F(Files, OnlyTheOwnerReadsASecretFile) {
+  const fs::path path = root_ / "secret";
+  ASSERT_TRUE(WriteSecretFile(path, "old").ok());
+  ASSERT_TRUE(WriteSecretFile(path, "key").ok());
+  EXPECT_EQ(fs::status(path).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+  EXPECT_EQ(*ReadSecretFile(path, 3), "key");
+  EXPECT_EQ(ReadSecretFile(path, 2).status().code(), StatusCode::kLimit);
+  EXPECT_EQ(ReadSecretFile(root_ / "absent", 3).status().code(), StatusCode::kNotFound);
+  for (const fs::perms right : {fs::perms::group_read, fs::perms::others_read,
+                                fs::perms::group_write, fs::perms::others_write}) {
+    fs::permissions(path, right, fs::perm_options::add);
+    const Status status = ReadSecretFile(path, 3).status();
+    EXPECT_EQ(status.code(), StatusCode::kInvalidArgument);
+    EXPECT_EQ(status.todo(), "run: chmod 600 " + path.string());
+    fs::permissions(path, right, fs::perm_options::remove);
+  }
+  EXPECT_TRUE(ReadSecretFile(path, 3).ok());
+}
+
 TEST_F(Files, OneFailureKeepsAllFilesOfAGroup) {
   fs::create_directory(root_ / "folder");
   ASSERT_TRUE(WriteFileAtomically(root_ / "f", "old").ok());
