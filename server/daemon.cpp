@@ -5,8 +5,10 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <functional>
+#include <future>
 #include <memory>
 #include <random>
 #include <string>
@@ -86,6 +88,7 @@ class Daemon {
   asio::awaitable<void> PlayLoop();
   asio::awaitable<void> Drain();
   void RequestDrain();
+  void StopRendering();
 
   const Config& config_;
   const RunOptions& options_;
@@ -313,7 +316,24 @@ void Daemon::Serve() {
   Announce();
   io_.run();
   http_.reset();  // both post to io_, so they end first
-  render_.reset();
+  StopRendering();
+}
+
+// The render thread may be in the middle of a large picture, which nothing can interrupt. A process
+// that was told to end waits `drain_seconds` for it, and then ends without it.
+void Daemon::StopRendering() {
+  if (render_ == nullptr) return;
+  const std::future<void> ended = std::async(std::launch::async, [this] { render_.reset(); });
+  // An embedding program goes on, so it must wait.
+  if (!options_.handle_signals) return;
+  if (ended.wait_for(FromSeconds(config_.limits.drain_seconds)) == std::future_status::ready) {
+    return;
+  }
+  spdlog::warn("ends before a picture is complete: it takes longer than limits.drain_seconds");
+  recorder_.reset();  // closes the file
+  spdlog::shutdown();
+  std::fflush(stdout);
+  std::_Exit(static_cast<int>(ExitCode::kOk));
 }
 
 asio::awaitable<void> Daemon::TickLoop() {

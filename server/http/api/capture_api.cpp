@@ -19,7 +19,9 @@ namespace {
 
 constexpr char kNeutral[] = "neutral";
 // Each entry may hold a whole rig, so the history is short; the oldest entry goes first.
-constexpr std::size_t kMaxUndo = 64;
+constexpr std::size_t kMaxUndo = 16;
+// Every solve of every subject evaluates the added poses, too.
+constexpr int kMaxAdded = 32;
 // The name becomes part of the rig file.
 constexpr std::size_t kMaxPoseName = 64;
 
@@ -192,7 +194,7 @@ ApiReply CaptureApi::CaptureNeutral(Hub& hub, Subject& subject, std::optional<Ne
     // Taken before SetNeutral() replaces it; Undo() puts it back.
     std::optional<wrinkle::LocalPose> former = pipeline.neutral_pose();
     hub.SetNeutral(subject, neutral, now);
-    Remember({kNeutral, subject.name, subject.skeleton_hash, std::move(former), nullptr});
+    Remember({kNeutral, subject.name, subject.skeleton_hash, std::move(former), nullptr, false});
   }
   return JsonReply(
       {{"pose", kNeutral},
@@ -208,6 +210,11 @@ ApiReply CaptureApi::CapturePose(Hub& hub, Subject& subject, const std::string& 
   bool added = false;
   Result<wrinkle::Rig> changed = WithReferencePose(hub.rig(), subject, pose, &added);
   if (!changed.ok()) return ErrorReply(changed.status());
+  if (added && num_added_ >= kMaxAdded) {
+    return ErrorReply(409, "limit", "pose",
+                      "the rig has " + std::to_string(kMaxAdded) +
+                          " poses that were captured since the start; capture one of them again");
+  }
   const SubjectPipeline& pipeline = *subject.pipeline;
   // Binding checks the changed rig before anything is replaced, and serves the preview.
   auto bound = wrinkle::RigBinding::Create(*changed, pipeline.stream().skeleton,
@@ -229,7 +236,8 @@ ApiReply CaptureApi::CapturePose(Hub& hub, Subject& subject, const std::string& 
       return ErrorReply(status);
     }
     spdlog::info("captured reference pose '{}' from '{}'", pose, subject.name);
-    Remember({pose, subject.name, subject.skeleton_hash, std::nullopt, std::move(former)});
+    num_added_ += added ? 1 : 0;
+    Remember({pose, subject.name, subject.skeleton_hash, std::nullopt, std::move(former), added});
   }
   return JsonReply({{"pose", pose},
                     {"preview", preview},
@@ -244,6 +252,7 @@ ApiReply CaptureApi::Undo(Hub& hub, Time now) {
   // Entries are undone in reverse order, so the rig before this capture is the right one.
   if (last.rig != nullptr) {
     if (Status status = hub.SetRig(last.rig, now); !status.ok()) return ErrorReply(status);
+    num_added_ -= last.added ? 1 : 0;
   } else if (Subject* subject = hub.RequireAllDrivers(last.subject);
              subject != nullptr && subject->skeleton_hash == last.skeleton_hash) {
     hub.SetNeutral(*subject, last.neutral, now);

@@ -37,6 +37,7 @@ class CaptureApi {
     std::uint64_t skeleton_hash = 0;            // its skeleton at the time
     std::optional<wrinkle::LocalPose> neutral;  // the neutral pose before
     std::shared_ptr<const wrinkle::Rig> rig;    // the rig before; null: a neutral was captured
+    bool added = false;                         // the rig had no such reference pose before
   };
 
   // `wanted`: empty for DefaultNeutralPart().
@@ -47,6 +48,7 @@ class CaptureApi {
   void Remember(Capture capture);
 
   std::vector<Capture> captures_;  // newest last
+  int num_added_ = 0;              // reference poses that captures have added to the rig
 };
 
 }  // namespace furrow::server

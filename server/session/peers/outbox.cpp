@@ -71,8 +71,9 @@ int Outbox::PushFrame(std::uint64_t key, std::span<const std::uint8_t> bytes, st
       found != num_of_key_.end() && found->second >= keep) {
     const auto oldest = std::ranges::find_if(frames_, is_same);
     if (keep == 1) {
+      frame_bytes_ += bytes.size() - oldest->bytes.size();
       oldest->bytes.assign(bytes.begin(), bytes.end());  // keeps its place in the queue
-      return 1;
+      return 1 + DropUntilFit(oldest);
     }
     DropFrame(oldest);
     dropped = 1;
@@ -82,12 +83,27 @@ int Outbox::PushFrame(std::uint64_t key, std::span<const std::uint8_t> bytes, st
     dropped = 1;
   }
   ++num_of_key_[key];
+  frame_bytes_ += bytes.size();
   Append(frames_, key, false, bytes);
+  return dropped + DropUntilFit(std::prev(frames_.end()));
+}
+
+int Outbox::DropUntilFit(Queue::iterator newest) {
+  int dropped = 0;
+  for (auto frame = frames_.begin(); frame_bytes_ > max_frame_bytes_ && frame != frames_.end();) {
+    const auto next = std::next(frame);
+    if (frame != newest) {
+      DropFrame(frame);
+      ++dropped;
+    }
+    frame = next;
+  }
   return dropped;
 }
 
 void Outbox::DropFrame(Queue::iterator frame) {
   --num_of_key_[frame->key];
+  frame_bytes_ -= frame->bytes.size();
   Recycle(frames_, frame);
 }
 
@@ -100,6 +116,7 @@ bool Outbox::Pop(std::vector<std::uint8_t>* out) {
     Uncount(ordered_.front());
   } else {
     --num_of_key_[frames_.front().key];
+    frame_bytes_ -= frames_.front().bytes.size();
   }
   // The caller's old buffer takes the place of the message and is recycled with the item.
   out->swap(queue.front().bytes);
@@ -113,7 +130,9 @@ void Outbox::DropReplaceableFrames() {
 
 void Outbox::DropFrames(std::uint64_t key) {
   for (auto item = frames_.begin(); item != frames_.end();) {
-    item = item->key == key ? Recycle(frames_, item) : std::next(item);
+    const auto next = std::next(item);
+    if (item->key == key) DropFrame(item);
+    item = next;
   }
   // Subscription uids never repeat, so counts of ended subscriptions would accumulate.
   num_of_key_.erase(key);

@@ -20,7 +20,8 @@ namespace furrow::server {
 // new frame
 //   then replaces the oldest. Pictures keep 1; weights keep a few, so that a burst of poses is not
 //   lost to a peer that keeps up.
-// - At most `max_frames` frames of all keys are queued; a new frame then replaces the oldest one.
+// - At most `max_frames` frames of all keys, and `max_frame_bytes` of them, are queued; a new frame
+//   then replaces the oldest ones. One frame always fits.
 // - Frames with kKeepAll queue behind the replies, in order. At most kMaxWaitingFrameBytes of them
 //   are queued; further frames are dropped.
 // - New messages reuse the memory of sent ones, so the outbox stops allocating after a while. Not
@@ -28,12 +29,16 @@ namespace furrow::server {
 class Outbox {
  public:
   Outbox(std::size_t max_replies, std::size_t max_frames,
-         std::size_t max_reply_bytes = std::size_t{4} << 20)
-      : max_replies_(max_replies), max_frames_(max_frames), max_reply_bytes_(max_reply_bytes) {}
+         std::size_t max_reply_bytes = std::size_t{4} << 20,
+         std::size_t max_frame_bytes = std::size_t{8} << 20)
+      : max_replies_(max_replies),
+        max_frames_(max_frames),
+        max_reply_bytes_(max_reply_bytes),
+        max_frame_bytes_(max_frame_bytes) {}
 
   // False: the queue is full; close the peer.
   [[nodiscard]] bool PushReply(std::span<const std::uint8_t> bytes);
-  // Returns the number of frames that this call dropped, the new frame included: 0 or 1.
+  // Returns the number of frames that this call dropped, the new frame included.
   int PushFrame(std::uint64_t key, std::span<const std::uint8_t> bytes, std::size_t keep = 1);
 
   // Swaps the next message into `out`: replies and kKeepAll frames first, in order, then the oldest
@@ -61,13 +66,17 @@ class Outbox {
   Queue::iterator Recycle(Queue& queue, Queue::iterator item);
   void Uncount(const Item& item);
   void DropFrame(Queue::iterator frame);
+  // Drops the oldest frames, but not `newest`, until the rest fits. Returns their number.
+  int DropUntilFit(Queue::iterator newest);
 
   std::size_t max_replies_;
   std::size_t max_frames_;
   std::size_t max_reply_bytes_;
+  std::size_t max_frame_bytes_;
   std::size_t num_replies_ = 0;  // queued in ordered_
   std::size_t reply_bytes_ = 0;
   std::size_t ordered_frame_bytes_ = 0;  // of kKeepAll frames
+  std::size_t frame_bytes_ = 0;          // in frames_
   Queue ordered_;                        // replies and kKeepAll frames
   Queue frames_;
   std::unordered_map<std::uint64_t, std::size_t> num_of_key_;  // in frames_

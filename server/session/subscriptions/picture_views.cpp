@@ -75,6 +75,13 @@ RenderJob& FindOrAddJob(const Subscription& subscription, const PictureSpec& spe
 
 Result<PictureRequest> PictureViews::MakeRequest(const protocol::SubscribePictures& request) {
   PictureRequest result;
+  if (const int pixels = request.width * request.height; pixels > kMaxPicturePixels) {
+    return Status(StatusCode::kLimit,
+                  "a picture of " + std::to_string(request.width) + "x" +
+                      std::to_string(request.height) + " has more than " +
+                      std::to_string(kMaxPicturePixels) + " pixels",
+                  "", "ask for a smaller one, or draw large stills by 'furrow render'");
+  }
   const Result<render::View> view = render::ParseView(request.view);
   FURROW_RETURN_IF_ERROR(view);
   Result<SharedSettings> settings = settings_.Get(request.settings);

@@ -25,6 +25,9 @@ namespace furrow::server {
 // require exclusive access to the hub.
 class PictureViews {
  public:
+  // The largest picture. Targets of all passes need about 60 bytes a pixel, and strangers may ask.
+  static constexpr int kMaxPicturePixels = 2048 * 2048;
+
   // `pictures` may be null: this daemon renders nothing. `settings`: the daemon's own.
   PictureViews(const SubscriptionTable* table, PictureSource* pictures,
                const render::Settings& settings, MessageSender* messages, Metrics* metrics)

@@ -121,6 +121,21 @@ TEST_F(ApiCaptureTest, APreviewChangesNothing) {
   EXPECT_LT(brow(), 0.99f) << "its filter has restarted";
 }
 
+TEST_F(ApiCaptureTest, TheNumberOfAddedPosesIsBounded) {
+  const auto capture = [&](int number, int status) {
+    return Ask("/api/capture",
+               {{"subject", "ann"}, {"pose", "pose" + std::to_string(number)}, {"preview", false}},
+               status);
+  };
+  for (int i = 0; i < 32; ++i) capture(i, 200);
+  EXPECT_EQ(capture(32, 409)["error"]["field"], "pose");
+  capture(31, 200);  // again, instead of another one
+  EXPECT_EQ(Undo()["captures"].size(), 15u);
+  capture(32, 409);
+  Undo();  // the one that added pose 31
+  capture(32, 200);
+}
+
 // Drivers that measure blend shapes against the reference pose "frown".
 class ApiShapeCaptureTest : public HubTest {
  protected:

@@ -30,6 +30,35 @@ TEST(Outbox, RepliesGoFirstAndInOrder) {
   EXPECT_TRUE(outbox.empty());
 }
 
+TEST(Outbox, FramesAreAlsoBoundedInBytes) {
+  Outbox outbox(4, 100, 1000, 1000);
+  const std::vector<std::uint8_t> half(500, 1);
+  const std::vector<std::uint8_t> small(10, 2);
+  const std::vector<std::uint8_t> large(5000, 3);
+  EXPECT_EQ(outbox.PushFrame(1, half), 0);
+  EXPECT_EQ(outbox.PushFrame(2, half), 0);
+  EXPECT_EQ(outbox.PushFrame(3, small), 1) << "the oldest makes room";
+  EXPECT_EQ(outbox.PushFrame(4, large), 2) << "one always fits";
+  EXPECT_EQ(outbox.num_frames(), 1u);
+  std::vector<std::uint8_t> out;
+  ASSERT_TRUE(outbox.Pop(&out));
+  EXPECT_EQ(out, large);
+  // A frame that grows in its place keeps it, and the others make room.
+  EXPECT_EQ(outbox.PushFrame(1, small), 0);
+  EXPECT_EQ(outbox.PushFrame(2, half), 0);
+  EXPECT_EQ(outbox.PushFrame(1, large), 2);
+  ASSERT_TRUE(outbox.Pop(&out));
+  EXPECT_EQ(out, large);
+  EXPECT_TRUE(outbox.empty());
+  // What has left counts no more.
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_EQ(outbox.PushFrame(7, half), 0);
+    outbox.DropFrames(7);
+  }
+  EXPECT_EQ(outbox.PushFrame(1, half), 0);
+  EXPECT_EQ(outbox.PushFrame(2, half), 0);
+}
+
 TEST(Outbox, RepliesAreAlsoBoundedInBytes) {
   Outbox outbox(100, 4, 1000);
   EXPECT_TRUE(outbox.PushReply(Bytes(2000))) << "one alone may always wait";

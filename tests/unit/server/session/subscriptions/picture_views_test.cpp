@@ -332,6 +332,16 @@ TEST_F(PictureViewsTest, InvalidPictureRequestsAreErrors) {
   ExpectError(udp, ErrorCode::kNeedsTcp);
 }
 
+TEST_F(PictureViewsTest, HugePicturesAreRefused) {
+  Send(viewer, protocol::SubscribePictures{.wait = true, .width = 4096, .height = 1024});
+  EXPECT_TRUE(viewer.Take<protocol::SubscribeReply>().has_value());
+  Send(viewer, protocol::SubscribePictures{.wait = true, .width = 4096, .height = 1025});
+  const auto error = viewer.Take<protocol::ErrorMessage>();
+  ASSERT_TRUE(error.has_value());
+  EXPECT_EQ(error->message.code, ErrorCode::kBadPicture);
+  EXPECT_NE(error->message.message.find("4096x1025"), std::string::npos);
+}
+
 TEST_F(PictureViewsTest, WithoutARendererPicturesAreRefused) {
   Hub::Parts parts;
   parts.rig = std::make_shared<const wrinkle::Rig>(MakeRig(false));
