@@ -19,6 +19,8 @@ constexpr std::int64_t kResendMicroseconds = 200'000;
 constexpr std::int64_t kRenewMicroseconds = protocol::kUdpLeaseMicroseconds / 5;
 // The interval for repeating messages to a daemon that has been silent for some seconds.
 constexpr std::int64_t kSlowResendMicroseconds = 800'000;
+// After this time without a challenge, subscriptions are requested again.
+constexpr std::int64_t kUnchallengedMicroseconds = protocol::kUdpLeaseMicroseconds / 2;
 // After this time without an answer the network or the daemon is considered gone.
 constexpr std::int64_t kSilenceMicroseconds = 3 * protocol::kUdpLeaseMicroseconds;
 
@@ -142,9 +144,10 @@ void Subscriber::NoticeRestart(std::uint64_t server_session) {
 
 void Subscriber::Maintain(std::int64_t now_us) {
   // The first call only learns the time: the constructor, which sent the Hello, has no clock.
+  now_us_ = now_us;
   if (!started_) {
     started_ = true;
-    last_sent_us_ = now_us;
+    last_sent_us_ = last_challenge_us_ = now_us;
     return;
   }
   const bool udp = transport_->kind() == TransportKind::kUdp;
@@ -154,6 +157,13 @@ void Subscriber::Maintain(std::int64_t now_us) {
   if (udp && slept && transport_->reconnects()) {
     last_sent_us_ = now_us;
     return ProveAgain();
+  }
+  // The daemon challenges an address with subscriptions several times per second. If it does not,
+  // the subscriptions have ended while the network was away, and the goodbye was lost. Repeating a
+  // request is harmless.
+  if (udp && introduction_.proven() && now_us - last_challenge_us_ > kUnchallengedMicroseconds) {
+    last_challenge_us_ = now_us;
+    for (Request& request : requests_) request.waiting = true;
   }
   // TCP does not lose requests, so only UDP repeats them.
   const bool asking = udp && std::ranges::any_of(requests_, &Request::waiting);
@@ -170,7 +180,7 @@ void Subscriber::Maintain(std::int64_t now_us) {
   } else if (asking) {
     SendWaiting();
   } else {
-    // A ping renews the lease of a UDP address, and its pong shows that the daemon is alive.
+    // The pong shows that the daemon is alive.
     encoder_.Encode({.session = session_}, protocol::Ping{.time_us = now_us}, bytes_);
     (void)transport_->Send(bytes_);
   }
@@ -294,6 +304,7 @@ bool Subscriber::HandleWelcome(const protocol::MessageView& view, Event& event) 
 void Subscriber::HandlePing(const protocol::MessageView& view) {
   protocol::Ping ping;
   if (protocol::Decode(view, ping) == DecodeStatus::kOk) {
+    last_challenge_us_ = now_us_;
     introduction_.OnPing(ping);
   } else {
     ++malformed_;
@@ -337,7 +348,7 @@ bool Subscriber::OnError(const protocol::Header& header) {
 // Returns false if the goodbye is handled here and not passed to the caller. A subscription with
 // `wait` outlives its subject. Every other reason ends the subscription.
 bool Subscriber::OnGoodbye(std::uint16_t subscription) {
-  // The daemon heard nothing from here for too long, but this program is still there.
+  // The daemon has had no answer to its challenges for too long, but this program is still there.
   if (goodbye_.reason == protocol::GoodbyeReason::kTimedOut) {
     for (Request& request : requests_) request.waiting |= request.subscription == subscription;
     return false;

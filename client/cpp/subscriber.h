@@ -42,7 +42,7 @@ struct Event {
 //   subscriber.Subscribe(protocol::SubscribeWeights{.subject = "ada"});
 //   for (;;) { const Event event = subscriber.Next(now_us, 16ms); ... }
 //
-// Over UDP it first proves its address, then renews its lease and repeats requests whose answers
+// Over UDP it first proves its address, then answers challenges and repeats requests whose answers
 // were lost. After a restart of the daemon it repeats all requests.
 //
 // With a transport that reconnects it outlives every loss: Next() then reports kNoConnection, later
@@ -137,6 +137,8 @@ class Subscriber {
   std::uint64_t server_session_ = 0;  // 0: unknown
   Introduction introduction_;
   std::int64_t last_sent_us_ = 0;
+  std::int64_t now_us_ = 0;             // of the last Next()
+  std::int64_t last_challenge_us_ = 0;  // or when requests were repeated for lack of one
   std::optional<std::int64_t> unanswered_since_us_;  // oldest send without any message since
   bool started_ = false;
   std::uint64_t malformed_ = 0;

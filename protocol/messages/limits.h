@@ -41,7 +41,7 @@ inline constexpr std::size_t kMaxWaitingFrameBytes = 8 * 1024 * 1024;
 inline constexpr int kMaxVerifierDepth = 8;  // FlatBuffers nesting
 inline constexpr int kMaxVerifierTables = 256;
 
-// A UDP subscription ends after this time without a datagram from its owner.
+// A UDP subscription ends after this time without an answer to a challenge.
 inline constexpr std::int64_t kUdpLeaseMicroseconds = 5'000'000;
 // Interval at which a publisher repeats its offer until the server replies.
 inline constexpr std::int64_t kOfferResendMicroseconds = 200'000;

@@ -42,7 +42,9 @@ std::string HostPortText(const HostPort& address) {
 
 std::string HostOf(const std::string& address) {
   in6_addr bytes;
-  if (inet_pton(AF_INET6, address.c_str(), &bytes) != 1) return address;
+  // "fe80::1%eth0" names an interface of this computer behind the address.
+  const std::string plain = address.substr(0, address.find('%'));
+  if (inet_pton(AF_INET6, plain.c_str(), &bytes) != 1) return address;
   char text[INET6_ADDRSTRLEN];
   if (IN6_IS_ADDR_V4MAPPED(&bytes)) {
     constexpr std::size_t kIpv4 = 12;  // the offset of the mapped address

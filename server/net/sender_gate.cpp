@@ -36,12 +36,10 @@ SenderGate::Candidate& SenderGate::Count(const asio::ip::address& sender, Time n
   std::erase_if(candidates_, [now](const Candidate& each) { return now - each.last > kRelease; });
   auto found = std::ranges::find(candidates_, sender, &Candidate::address);
   if (found == candidates_.end()) {
-    // Of those that have sent least, the last one makes room. A flood of forged addresses thus
-    // replaces itself.
+    // Of those that have sent least, the first one makes room. So a steady sender lasts until its
+    // next datagram, unless as many forged addresses as there are candidates come in between.
     if (candidates_.size() == kMaxCandidates) {
-      const auto least = std::ranges::min_element(candidates_.rbegin(), candidates_.rend(), {},
-                                                  &Candidate::datagrams);
-      candidates_.erase(std::next(least).base());
+      candidates_.erase(std::ranges::min_element(candidates_, {}, &Candidate::datagrams));
     }
     candidates_.push_back({sender});
     found = std::prev(candidates_.end());

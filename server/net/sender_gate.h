@@ -49,7 +49,7 @@ class SenderGate {
     int datagrams = 0;
     Time last{0};
   };
-  static constexpr std::size_t kMaxCandidates = 16;
+  static constexpr std::size_t kMaxCandidates = 1024;
 
   Candidate& Count(const asio::ip::address& sender, Time now);
   [[nodiscard]] bool IsHeld(Time now) const { return holder_ && now - heard_ <= kRelease; }

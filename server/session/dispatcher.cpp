@@ -110,6 +110,12 @@ void Dispatcher::DispatchExclusive(Shard& shard, Peer& peer, const protocol::Mes
     case MessageKind::kGoodbye:
       return Decode(shard, peer, view, in.goodbye,
                     [&] { parts_.publishers->OnGoodbye(peer, header, now); });
+    case MessageKind::kUnsubscribe:
+      return Decode(shard, peer, view, in.unsubscribe,
+                    [&] { parts_.subscribers->Unsubscribe(peer, header.stream); });
+    case MessageKind::kListSubjects:
+      return Decode(shard, peer, view, in.list_subjects,
+                    [&] { OnListSubjects(peer, header, in.list_subjects); });
     default:
       // A forged request must not make the daemon send much to an address. The sender repeats its
       // request, and by then it has answered the challenge of the next tick.
@@ -139,12 +145,6 @@ void Dispatcher::DispatchRequest(Shard& shard, Peer& peer, const protocol::Messa
     case MessageKind::kFrameAck:
       return Decode(shard, peer, view, in.frame_ack,
                     [&] { subscribers.Acknowledge(peer, header, in.frame_ack.number, now); });
-    case MessageKind::kUnsubscribe:
-      return Decode(shard, peer, view, in.unsubscribe,
-                    [&] { subscribers.Unsubscribe(peer, header.stream); });
-    case MessageKind::kListSubjects:
-      return Decode(shard, peer, view, in.list_subjects,
-                    [&] { OnListSubjects(peer, header, in.list_subjects); });
     default:
       parts_.messages->SendError(peer, header, ErrorCode::kUnsupported,
                                  "only a daemon sends " + std::string(MessageKindName(view.kind)));

@@ -83,6 +83,15 @@ void Hub::RemovePeer(PeerId id) {
   shard.peers.Remove(id);
 }
 
+std::optional<Consent> Hub::ConsentOf(PeerId id) {
+  const Peer* peer = shards_.Of(id).peers.Find(id);
+  return peer == nullptr ? std::nullopt : std::optional(peer->consent);
+}
+
+void Hub::SetConsent(PeerId id, const Consent& consent) {
+  if (Peer* peer = shards_.Of(id).peers.Find(id); peer != nullptr) peer->consent = consent;
+}
+
 void Hub::OnFragment(PeerId id, Time now) {
   if (Peer* peer = shards_.Of(id).peers.Find(id); peer != nullptr) peer->last_heard = now;
 }

@@ -95,6 +95,10 @@ class Hub {
   // ends, so that many poses are solved together; `bytes` must stay valid until then. The output
   // and its order are those of OnMessage(). Requires the shard's lock.
   void GatherMessage(PeerId id, std::span<const std::uint8_t> bytes, Time now);
+  // UDP: the consent of a peer, for the program that uses its address next. Require the shard's
+  // lock.
+  [[nodiscard]] std::optional<Consent> ConsentOf(PeerId id);
+  void SetConsent(PeerId id, const Consent& consent);
   // UDP: records that a part of a message arrived. Requires the shard's lock.
   void OnFragment(PeerId id, Time now);
   // True if the peer may be forgotten: no subscriptions, and silent for Limits::idle_seconds.

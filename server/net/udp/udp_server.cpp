@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cerrno>
 #include <new>
+#include <optional>
 #include <string>
 
 #include <asio/post.hpp>
@@ -230,7 +231,10 @@ UdpServer::UdpPeer* UdpServer::Find(const Address& address, std::uint64_t sessio
 UdpServer::UdpPeer* UdpServer::Receive(const Address& address, const udp::endpoint& sender,
                                        std::uint64_t session, std::span<const std::uint8_t> bytes,
                                        Time now) {
-  if (reception_.Admits(address, bytes, now)) return Add(address, sender, session, now);
+  if (reception_.Admits(address, peers_.contains(address), bytes, now)) {
+    if (UdpPeer* peer = Add(address, sender, session, now); peer != nullptr) return peer;
+    reception_.RefuseForLimit(bytes);
+  }
   if (const auto reply = reception_.reply(); !reply.empty()) {
     // Each stranger has a key of its own, which no peer has.
     constexpr std::uint64_t kStranger = std::uint64_t{1} << 63;
@@ -241,26 +245,37 @@ UdpServer::UdpPeer* UdpServer::Receive(const Address& address, const udp::endpoi
   return nullptr;
 }
 
+// Null: the host has its share of the peers.
 UdpServer::UdpPeer* UdpServer::Add(const Address& address, const udp::endpoint& sender,
                                    std::uint64_t session, Time now) {
-  // Another program has taken over the address, or the same one after a restart.
+  const std::string host = HostOf(sender.address().to_string());
+  std::optional<Consent> consent;
   if (const auto former = peers_.find(address); former != peers_.end()) {
+    // Another program has taken over the address, or the same one after a restart. It has the place
+    // of the former one, and its consent: two tokens in turn must not renew that without an answer.
+    consent = hub_->ConsentOf(former->second->id);
     Forget(*former->second);
     peers_.erase(former);
-  }
-  const std::string host = HostOf(sender.address().to_string());
-  if (!shares_.Enter(host)) {
+  } else if (!shares_.Enter(host)) {
     metrics_->Add(Counter::kConnectionsRefused);
     return nullptr;
   }
-  // On the heap, because the hub keeps its address while the map grows.
-  auto peer = std::make_unique<UdpPeer>(this, sender, session);
-  peer->id = hub_->AddPeer(
-      Transport::kUdp,
-      PeerLabel("udp " + sender.address().to_string() + " port " + std::to_string(sender.port()),
-                host),
-      peer.get(), now, shard_);
-  return peers_.emplace(address, std::move(peer)).first->second.get();
+  try {
+    // On the heap, because the hub keeps its address while the map grows.
+    UdpPeer& peer =
+        *peers_.emplace(address, std::make_unique<UdpPeer>(this, sender, session)).first->second;
+    peer.id = hub_->AddPeer(
+        Transport::kUdp,
+        PeerLabel("udp " + sender.address().to_string() + " port " + std::to_string(sender.port()),
+                  host),
+        &peer, now, shard_);
+    if (consent) hub_->SetConsent(peer.id, *consent);
+    return &peer;
+  } catch (...) {
+    peers_.erase(address);
+    shares_.Leave(host);
+    throw;
+  }
 }
 
 // The hub first: it may use the Link until then. Messages that the sender still holds have their
@@ -268,7 +283,6 @@ UdpServer::UdpPeer* UdpServer::Add(const Address& address, const udp::endpoint& 
 void UdpServer::Forget(const UdpPeer& peer) {
   hub_->RemovePeer(peer.id);
   reassembler_.ForgetPeer(peer.id);
-  shares_.Leave(peer.host());
 }
 
 void UdpServer::Expire(Time now) {
@@ -278,6 +292,7 @@ void UdpServer::Expire(Time now) {
   std::erase_if(peers_, [&](const auto& entry) {
     if (!hub_->IsIdle(entry.second->id, now)) return false;
     Forget(*entry.second);
+    shares_.Leave(entry.second->host());
     return true;
   });
 }

@@ -17,8 +17,10 @@ namespace furrow::server {
 // Pong (STANDARD.md section 9).
 class Consent {
  public:
-  // Between two challenges.
+  // Between two challenges, and between two when the last answer is older than kOverdue.
   static constexpr Time kInterval = std::chrono::milliseconds(400);
+  static constexpr Time kUrgentInterval = std::chrono::milliseconds(100);
+  static constexpr Time kOverdue = std::chrono::seconds(1);
   // Frames pause if the last challenge that was answered is older than this.
   static constexpr Time kPause = std::chrono::seconds(2);
   // The most bytes of replies between two answers. A forged request of 100 bytes may ask for a
@@ -40,7 +42,12 @@ class Consent {
   [[nodiscard]] bool wanted() const { return wanted_ || spent_ > kReplyBytes / 2; }
 
   // True if a challenge is due. Send one with the number that is passed to Sent().
-  [[nodiscard]] bool ChallengeDue(Time now) const { return now - newest().sent >= kInterval; }
+  [[nodiscard]] bool ChallengeDue(Time now) const {
+    // Lost challenges must not pause a viewer: with 10% loss each way, four of them are lost in a
+    // row every few minutes.
+    const Time interval = now - answered_ > kOverdue ? kUrgentInterval : kInterval;
+    return now - newest().sent >= interval;
+  }
   // Records a challenge: `number` must be unpredictable.
   void Sent(std::int64_t number, Time now) {
     next_ = (next_ + 1) % challenges_.size();
@@ -69,7 +76,7 @@ class Consent {
     Time sent{-kInterval};
   };
   // As many as can be answered before kPause is over.
-  static constexpr std::size_t kRemembered = kPause / kInterval;
+  static constexpr std::size_t kRemembered = kPause / kUrgentInterval;
 
   [[nodiscard]] const Challenge& newest() const { return challenges_[next_]; }
 

@@ -8,14 +8,40 @@ namespace furrow::server {
 
 using protocol::DecodeStatus;
 
-bool Reception::Admits(const UdpAddress& address, std::span<const std::uint8_t> datagram,
-                       Time now) {
+namespace {
+
+// True for what only a client sends. A daemon challenges by Ping, but only addresses that are
+// proven.
+bool IsRequest(protocol::MessageKind kind) {
+  using Kind = protocol::MessageKind;
+  switch (kind) {
+    case Kind::kPing:
+    case Kind::kSkeletonOffer:
+    case Kind::kPose:
+    case Kind::kSubscribeWeights:
+    case Kind::kSubscribePictures:
+    case Kind::kSubscribePoses:
+    case Kind::kUnsubscribe:
+    case Kind::kListSubjects: return true;
+    default: return false;
+  }
+}
+
+}  // namespace
+
+bool Reception::Admits(const UdpAddress& address, bool has_peer,
+                       std::span<const std::uint8_t> datagram, Time now) {
   reply_.clear();
   protocol::MessageView view;
-  const bool is_hello = protocol::OpenMessage(datagram, view) == DecodeStatus::kOk &&
-                        view.kind == protocol::MessageKind::kHello;
-  if (!is_hello) {
-    Refuse(datagram);
+  const bool is_message = protocol::OpenMessage(datagram, view) == DecodeStatus::kOk;
+  if (!is_message || view.kind != protocol::MessageKind::kHello) {
+    metrics_->Add(Counter::kDatagramsUnproven);
+    // An answer to an answer could be answered again, for ever.
+    const bool is_request = !is_message || IsRequest(view.kind);
+    if (is_request && !has_peer && refusals_.Take(now)) {
+      Refuse(datagram, protocol::ErrorCode::kUnprovenAddress,
+             "the address is not proven: send Hello first");
+    }
     return false;
   }
   if (protocol::Decode(view, hello_) != DecodeStatus::kOk) {
@@ -30,18 +56,22 @@ bool Reception::Admits(const UdpAddress& address, std::span<const std::uint8_t> 
   return false;
 }
 
-// Tells a sender that it has to prove its address, for example after a restart of the daemon. The
-// answer to a fragment is that to its message. A short message, such as a Ping, gets the code
+void Reception::RefuseForLimit(std::span<const std::uint8_t> datagram) {
+  Refuse(datagram, protocol::ErrorCode::kLimit,
+         "this address has its share of the peers; see limits.max_udp_peers");
+}
+
+// The answer to a fragment is that to its message. A short message, such as a Ping, gets the code
 // alone.
-void Reception::Refuse(std::span<const std::uint8_t> datagram) {
-  metrics_->Add(Counter::kDatagramsUnproven);
+void Reception::Refuse(std::span<const std::uint8_t> datagram, protocol::ErrorCode code,
+                       const char* text) {
   protocol::Envelope envelope;
   if (protocol::ReadEnvelope(datagram, envelope) != protocol::EnvelopeStatus::kOk) return;
-  for (const char* text : {"the address is not proven: send Hello first", ""}) {
+  for (const char* shown : {text, ""}) {
     encoder_.Encode({.session = session_,
                      .stream = envelope.header.stream,
                      .sequence = envelope.header.sequence},
-                    protocol::ErrorMessage{protocol::ErrorCode::kUnprovenAddress, text}, reply_);
+                    protocol::ErrorMessage{code, shown}, reply_);
     if (reply_.size() <= datagram.size()) return;
   }
   reply_.clear();

@@ -8,6 +8,7 @@
 #include "protocol/codec/codec.h"
 #include "server/core/metrics.h"
 #include "server/core/time.h"
+#include "server/core/token_bucket.h"
 #include "server/session/peers/address_proof.h"
 
 namespace furrow::server {
@@ -24,18 +25,22 @@ class Reception {
 
   // Handles one datagram with a valid envelope. True: it proves the address, so the caller adds a
   // peer and gives it the datagram. False: the sender stays a stranger, and reply() holds the
-  // answer.
-  [[nodiscard]] bool Admits(const UdpAddress& address, std::span<const std::uint8_t> datagram,
-                            Time now);
+  // answer. `has_peer`: the address belongs to a peer with another session, which must not be told
+  // that its address is not proven because somebody forged a datagram.
+  [[nodiscard]] bool Admits(const UdpAddress& address, bool has_peer,
+                            std::span<const std::uint8_t> datagram, Time now);
+  // Answers a datagram that Admits() has admitted, but for which the daemon has no place.
+  void RefuseForLimit(std::span<const std::uint8_t> datagram);
   // The answer to the last datagram, one message; empty: none.
   [[nodiscard]] std::span<const std::uint8_t> reply() const { return reply_; }
 
  private:
-  void Refuse(std::span<const std::uint8_t> datagram);
+  void Refuse(std::span<const std::uint8_t> datagram, protocol::ErrorCode code, const char* text);
 
   const std::uint64_t session_;
   const AddressProof* const proof_;
   Metrics* const metrics_;
+  TokenBucket refusals_{2000.0, 2000.0};  // of all strangers
   protocol::Encoder encoder_;
   protocol::Hello hello_;
   std::vector<std::uint8_t> reply_;

@@ -17,6 +17,9 @@ namespace {
 // is.
 constexpr Time kDecayInterval = FromSeconds(1.0 / 60.0);
 
+// The shortest silence after which another sender gets a subject.
+constexpr Time kTakeOver = FromSeconds(0.5);
+
 // True if the peer chose its session number at random. Foreign wires and recordings have none.
 bool HasSecretSession(const Peer& peer) {
   return peer.transport == Transport::kUdp || peer.transport == Transport::kTcp;
@@ -102,6 +105,9 @@ Subject* Publishers::Accept(Peer& peer, const StreamKey& key, const protocol::Sk
     subjects_->Release(*former);
   }
   Subject* subject = subjects_->Find(offer.subject);
+  // Before anything changes: what allocates may fail.
+  auto pipeline = std::make_unique<SubjectPipeline>(std::move(stream));
+  auto shared_offer = ShareOffer(offer);
   if (subject == nullptr) {
     subject = &subjects_->Add(offer.subject, peer.host, now);
     spdlog::info("subject '{}' from {}: {} joints, {} blend shapes", offer.subject, peer.name,
@@ -118,13 +124,12 @@ Subject* Publishers::Accept(Peer& peer, const StreamKey& key, const protocol::Sk
   subject->can_move = HasSecretSession(peer);
   const bool has_neutral =
       subject->pipeline != nullptr && subject->skeleton_hash == offer.skeleton_hash;
-  const auto former =
-      std::exchange(subject->pipeline, std::make_unique<SubjectPipeline>(std::move(stream)));
+  const auto former = std::exchange(subject->pipeline, std::move(pipeline));
   // The neutral pose belongs to the performer, so it survives a change of the sender.
   if (has_neutral) subject->pipeline->SetNeutral(former->neutral_pose());
   peer.publishes = true;
   subject->skeleton_hash = offer.skeleton_hash;
-  subject->offer = ShareOffer(offer);
+  subject->offer = std::move(shared_offer);
   // The time without poses counts from the offer, so that the subject is not lost before its first
   // pose.
   subject->last_pose = subject->last_update = now;
@@ -141,7 +146,8 @@ bool Publishers::IsContested(const Subject& subject, const Peer& peer, const Str
       subject.owner.session == key.session && subject.can_move && HasSecretSession(peer);
   if (has_moved || peer.id == subject.owner.peer) return false;
   const Time heard = std::max(subject.last_pose, subject.last_no_face);
-  return now - heard < FromSeconds(limits_.loss_seconds);
+  // Not sooner than kTakeOver: a quick decay must not give subjects away on a bad network.
+  return now - heard < std::max(FromSeconds(limits_.loss_seconds), kTakeOver);
 }
 
 // Subjects with equal skeletons share one copy of the offer, which has kilobytes of names. An equal

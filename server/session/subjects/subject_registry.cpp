@@ -30,8 +30,8 @@ Subject* SubjectRegistry::Find(SubjectId id) {
 Subject* SubjectRegistry::First() { return subjects_.empty() ? nullptr : subjects_.front().get(); }
 
 Subject& SubjectRegistry::Add(std::string name, std::string host, Time now) {
-  ++version_;
-  (void)shares_.Enter(host);
+  // Before anything changes: what allocates may fail. A subject has an entry in all three or none.
+  subjects_.reserve(subjects_.size() + 1);
   auto subject = std::make_unique<Subject>();
   subject->id = next_id_++;
   subject->name = std::move(name);
@@ -41,7 +41,9 @@ Subject& SubjectRegistry::Add(std::string name, std::string host, Time now) {
   // The subject is on the heap, so its address and its name are stable while the list grows.
   Subject& added = *subject;
   by_name_.emplace(added.name, &added);
+  (void)shares_.Enter(added.host);
   subjects_.push_back(std::move(subject));
+  ++version_;
   return added;
 }
 

@@ -20,6 +20,7 @@ TEST(NetworkAddress, AHostIsAnAddressOrAnIpv6Network) {
   EXPECT_EQ(HostOf("2001:db8:1:2:3:4:5:6"), "2001:db8:1:2::");
   EXPECT_EQ(HostOf("2001:db8:1:2::9"), HostOf("2001:db8:1:2:3:4:5:6"));
   EXPECT_NE(HostOf("2001:db8:1:3::9"), HostOf("2001:db8:1:2::9"));
+  EXPECT_EQ(HostOf("fe80::1:2:3:4%eth0"), "fe80::");
   EXPECT_EQ(HostOf("::1"), "::");
   EXPECT_EQ(HostOf("somewhere"), "somewhere");
 }

@@ -51,24 +51,31 @@ TEST(SenderGate, AFewForgedDatagramsLockNobodyOut) {
   EXPECT_FALSE(gate.Admits(kBen, kStart));
 }
 
+// 100 forged addresses between two datagrams of the tracker: 6,000 per second at 60 Hz.
 TEST(SenderGate, AFloodOfForgedAddressesLocksNobodyOut) {
-  SenderGate gate({}, Policy::kOne);
-  int rejected = 0;
-  int sent = 0;
-  for (bool holds = false; !holds; ++sent) {
-    ASSERT_LT(sent, 20);
-    if (gate.Admits(kAnn, kStart)) {
-      holds = gate.Hold(kAnn, kStart);
-    } else {
-      ++rejected;
+  for (const bool flood_comes_first : {false, true}) {
+    SenderGate gate({}, Policy::kOne);
+    unsigned next = 0x0A000000;
+    const auto flood = [&](int count) {
+      for (int i = 0; i < count; ++i) {
+        const asio::ip::address_v4 forged(next++);
+        if (gate.Admits(forged, kStart)) gate.Hold(forged, kStart);
+      }
+    };
+    if (flood_comes_first) flood(5000);
+    int rejected = 0;
+    bool holds = false;
+    for (int sent = 0; !holds; ++sent) {
+      ASSERT_LT(sent, 20);
+      if (gate.Admits(kAnn, kStart)) {
+        holds = gate.Hold(kAnn, kStart);
+      } else {
+        ++rejected;
+      }
+      flood(100);
     }
-    for (unsigned forged = 0; forged < 100; ++forged) {
-      const auto address =
-          asio::ip::address_v4(0x0A000000u + static_cast<unsigned>(sent) * 100 + forged);
-      if (gate.Admits(address, kStart)) gate.Hold(address, kStart);
-    }
+    EXPECT_LE(rejected, 2);
   }
-  EXPECT_LE(rejected, 2);
 }
 
 TEST(SenderGate, InvalidDatagramsDoNotCount) {

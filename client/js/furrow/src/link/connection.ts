@@ -415,7 +415,8 @@ export class Connection {
   private goodbye(message: Envelope): void {
     const reason = readGoodbye(message.payload);
     if (reason === TIMED_OUT) {
-      if (this.kind === 'udp') this.proveAgain();
+      // A goodbye that was delayed may concern a subscription that has been made again since.
+      if (this.kind === 'udp' && this.entryOf(message.stream) !== null) this.proveAgain();
     } else if (message.stream === 0) {
       if (reason === DRAINING) this.setState('draining');
     } else {

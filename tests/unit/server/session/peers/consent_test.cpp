@@ -42,9 +42,22 @@ TEST(Consent, AnswersMayComeLateAndOutOfOrder) {
   consent.Answered(1);
   EXPECT_EQ(consent.answered(), kStart + 3 * Consent::kInterval);
   // Forgotten: newer challenges have taken its place.
-  for (int i = 6; i <= 10; ++i) consent.Sent(i, kStart + i * Consent::kInterval);
+  for (int i = 6; i <= 25; ++i) consent.Sent(i, kStart + i * Consent::kInterval);
   consent.Answered(5);
   EXPECT_EQ(consent.answered(), kStart + 3 * Consent::kInterval);
+}
+
+TEST(Consent, ChallengesComeFasterWhenAnswersAreLost) {
+  Consent consent;
+  consent.Begin(kStart);
+  EXPECT_TRUE(consent.ChallengeDue(kStart));
+  consent.Sent(1, kStart);
+  EXPECT_FALSE(consent.ChallengeDue(kStart + Consent::kInterval - Time{1}));
+  EXPECT_TRUE(consent.ChallengeDue(kStart + Consent::kInterval));
+  const Time late = kStart + Consent::kOverdue + Time{1};
+  consent.Sent(2, late);
+  EXPECT_FALSE(consent.ChallengeDue(late + Consent::kUrgentInterval - Time{1}));
+  EXPECT_TRUE(consent.ChallengeDue(late + Consent::kUrgentInterval));
 }
 
 // The daemon's side, with a subscriber whose address answers or not.
@@ -125,10 +138,23 @@ TEST_F(HubConsentTest, ARequestWaitsForAnAnswer) {
   Steps(60);
   ASSERT_EQ(hub->num_subscriptions(), 0u);
   EXPECT_EQ(Watch(viewer, {.subject = "ann"}, 2), 0) << "a forged one would cost this address";
+  Send(viewer, protocol::Unsubscribe{}, 1);
+  Send(viewer, protocol::ListSubjects{});
+  EXPECT_EQ(viewer.Take<protocol::ErrorMessage>()->message.code, protocol::ErrorCode::kNeedsTcp)
+      << "small answers need no consent";
   EXPECT_EQ(hub->num_subscriptions(), 0u);
   answers = true;
   Steps(5);
   EXPECT_NE(Watch(viewer, {.subject = "ann"}, 2), 0);
+}
+
+TEST_F(HubConsentTest, TheNextProgramOfAnAddressInheritsItsConsent) {
+  answers = false;
+  Steps(30);
+  FakePeer next;
+  Connect(&next, Transport::kUdp);
+  hub->SetConsent(next.id, *hub->ConsentOf(viewer.id));
+  EXPECT_EQ(Watch(next, {.subject = "ann"}), 0);
 }
 
 TEST_F(HubConsentTest, ManyForgedRequestsGetFewBytes) {

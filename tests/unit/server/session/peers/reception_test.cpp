@@ -18,7 +18,7 @@ class ReceptionTest : public testing::Test {
   template <class Message>
   bool Say(const Message& message, std::uint64_t session = 77) {
     encoder.Encode({.session = session, .stream = 3, .sequence = 9}, message, sent);
-    const bool admitted = reception.Admits(address, sent, kNow);
+    const bool admitted = reception.Admits(address, has_peer, sent, kNow);
     EXPECT_LE(reception.reply().size(), sent.size()) << "an address that is not proven";
     return admitted;
   }
@@ -40,6 +40,7 @@ class ReceptionTest : public testing::Test {
   protocol::Encoder encoder;
   std::vector<std::uint8_t> sent;
   UdpAddress address{1, 2, 3};
+  bool has_peer = false;
   protocol::Header header;
 };
 
@@ -66,6 +67,53 @@ TEST_F(ReceptionTest, EverythingElseIsRefused) {
   EXPECT_EQ(metrics.Get(Counter::kDatagramsUnproven), 1u);
 }
 
+// Two daemons that answered each other's answers would never stop.
+TEST_F(ReceptionTest, WhatADaemonSendsIsNotAnswered) {
+  Reception other(4343, &proof, &metrics);
+  for (const bool hello : {true, false}) {
+    if (hello) {
+      (void)Say(protocol::Hello{"forged", 0});
+    } else {
+      (void)Say(protocol::Ping{1});
+    }
+    ASSERT_FALSE(reception.reply().empty());
+    EXPECT_FALSE(other.Admits(address, false, reception.reply(), kNow));
+    EXPECT_TRUE(other.reply().empty());
+  }
+  (void)Say(protocol::Pong{1, 0});
+  EXPECT_TRUE(reception.reply().empty());
+  (void)Say(protocol::Goodbye{});
+  EXPECT_TRUE(reception.reply().empty());
+}
+
+TEST_F(ReceptionTest, APeerIsNotToldOfForgedDatagrams) {
+  has_peer = true;
+  EXPECT_FALSE(Say(protocol::Ping{5}));
+  EXPECT_TRUE(reception.reply().empty()) << "it would start over, again and again";
+  EXPECT_FALSE(Say(protocol::Hello{"restarted", 0}));
+  EXPECT_TRUE(Reply<protocol::Welcome>().has_value());
+}
+
+TEST_F(ReceptionTest, RefusalsAreLimitedAndWelcomesAreNot) {
+  int refused = 0;
+  for (int i = 0; i < 5000; ++i) {
+    (void)Say(protocol::Ping{i});
+    refused += reception.reply().empty() ? 0 : 1;
+  }
+  EXPECT_EQ(refused, 2000);
+  EXPECT_FALSE(Say(protocol::Hello{"newcomer", 0}));
+  EXPECT_TRUE(Reply<protocol::Welcome>().has_value());
+}
+
+TEST_F(ReceptionTest, ALackOfPlacesIsSaid) {
+  (void)Say(protocol::Hello{"test", 0});
+  (void)Say(protocol::Hello{"test", Reply<protocol::Welcome>()->token});
+  reception.RefuseForLimit(sent);
+  const auto error = Reply<protocol::ErrorMessage>();
+  ASSERT_TRUE(error.has_value());
+  EXPECT_EQ(error->code, protocol::ErrorCode::kLimit);
+}
+
 TEST_F(ReceptionTest, APingIsLongEnoughForTheCodeOfTheError) {
   EXPECT_FALSE(Say(protocol::Ping{5}));
   const auto error = Reply<protocol::ErrorMessage>();
@@ -82,20 +130,20 @@ TEST_F(ReceptionTest, AFragmentIsAnsweredAsItsMessage) {
   std::vector<std::uint8_t> datagram(protocol::kMaxDatagramBytes);
   ASSERT_GT(protocol::NumDatagrams(message.size()), 1u);
   datagram.resize(protocol::WriteDatagram(message, 1, 1, datagram));
-  EXPECT_FALSE(reception.Admits(address, datagram, kNow));
+  EXPECT_FALSE(reception.Admits(address, false, datagram, kNow));
   EXPECT_EQ(Reply<protocol::ErrorMessage>()->code, protocol::ErrorCode::kUnprovenAddress);
 }
 
 TEST_F(ReceptionTest, ShortAndBrokenMessagesGetNothing) {
   encoder.Encode({.session = 77}, protocol::Hello{"test", 0}, sent);
   for (std::size_t size = protocol::kEnvelopeBytes; size < sent.size(); ++size) {
-    (void)reception.Admits(address, std::span(sent).first(size), kNow);
+    (void)reception.Admits(address, false, std::span(sent).first(size), kNow);
     EXPECT_LE(reception.reply().size(), size);
   }
   std::vector<std::uint8_t> broken = sent;
   for (std::size_t i = protocol::kEnvelopeBytes; i < 60; ++i) {
     broken[i] ^= 0xFF;
-    EXPECT_FALSE(reception.Admits(address, broken, kNow)) << i;
+    EXPECT_FALSE(reception.Admits(address, false, broken, kNow)) << i;
     EXPECT_LE(reception.reply().size(), broken.size());
   }
 }
