@@ -29,8 +29,8 @@ class Introduction {
   // Starts again, because the daemon has forgotten the address or the connection is another one.
   void Restart();
 
-  // Handles a Welcome and sends the second Hello if it is due. True: the address is proven now and
-  // was not before.
+  // Handles a Welcome, and sends the second Hello if one is needed. True: the address is proven now
+  // and was not before.
   bool OnWelcome(const protocol::Welcome& welcome);
   // Answers a challenge.
   void OnPing(const protocol::Ping& ping);

@@ -20,7 +20,7 @@ using protocol::ErrorCode;
 constexpr Time kUdpLease = std::chrono::microseconds(protocol::kUdpLeaseMicroseconds);
 
 AddressProof::Key MakeKey(const std::function<std::uint64_t()>& random) {
-  const std::array<std::uint64_t, 2> numbers = {random(), random()};
+  const std::array<std::uint64_t, 4> numbers = {random(), random(), random(), random()};
   return std::bit_cast<AddressProof::Key>(numbers);
 }
 

@@ -2,16 +2,12 @@
 #include "server/session/peers/address_proof.h"
 
 #include <algorithm>
-#include <bit>
 #include <cstring>
 
-#include <sodium.h>
+#include "protocol/secure/crypto/primitives.h"
 
 namespace furrow::server {
 namespace {
-
-static_assert(crypto_shorthash_KEYBYTES == std::tuple_size_v<AddressProof::Key>);
-static_assert(crypto_shorthash_BYTES == sizeof(std::uint64_t));
 
 std::int64_t SlotOf(Time now) { return now / AddressProof::kSlot; }
 
@@ -25,9 +21,10 @@ std::uint64_t AddressProof::Hash(const UdpAddress& address, std::uint64_t sessio
   std::ranges::copy(address, input.begin());
   std::memcpy(&input[sizeof(UdpAddress)], &session, sizeof(session));
   std::memcpy(&input[sizeof(UdpAddress) + sizeof(session)], &slot, sizeof(slot));
-  std::array<std::uint8_t, crypto_shorthash_BYTES> output;
-  crypto_shorthash(output.data(), input.data(), input.size(), key_.data());
-  return std::bit_cast<std::uint64_t>(output);
+  const protocol::secure::Mac mac = protocol::secure::Blake2b128(key_, input);
+  std::uint64_t token = 0;
+  std::memcpy(&token, mac.data(), sizeof(token));
+  return token;
 }
 
 std::uint64_t AddressProof::Token(const UdpAddress& address, std::uint64_t session,

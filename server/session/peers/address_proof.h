@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "protocol/secure/crypto/secret.h"
 #include "server/core/time.h"
 
 namespace furrow::server {
@@ -17,14 +18,14 @@ using UdpAddress = std::array<std::uint8_t, 18>;
 // remembered: a token is a keyed hash of the address, the sender's session and the time, so any
 // number of forged addresses costs no memory.
 //
-// The hash is SipHash-2-4 with a random key of 128 bits. Safe to use on several threads.
+// The hash is keyed BLAKE2b, of which a token holds 64 bits. Safe to use on several threads.
 class AddressProof {
  public:
   // How long a token is valid at least; at most twice as long.
   static constexpr Time kSlot = std::chrono::seconds(60);
 
   // `key`: unpredictable, and different at every start of the daemon.
-  using Key = std::array<std::uint8_t, 16>;
+  using Key = std::array<std::uint8_t, 32>;
   explicit AddressProof(const Key& key);
 
   // The token for a Welcome; never 0.
@@ -38,7 +39,7 @@ class AddressProof {
   [[nodiscard]] std::uint64_t Hash(const UdpAddress& address, std::uint64_t session,
                                    std::int64_t slot) const;
 
-  Key key_;
+  protocol::secure::Key key_;
 };
 
 }  // namespace furrow::server

@@ -333,9 +333,9 @@ TEST_F(PictureViewsTest, InvalidPictureRequestsAreErrors) {
 }
 
 TEST_F(PictureViewsTest, HugePicturesAreRefused) {
-  Send(viewer, protocol::SubscribePictures{.wait = true, .width = 4096, .height = 1024});
+  Send(viewer, protocol::SubscribePictures{.wait = true, .width = 4096, .height = 1024}, 0, 1);
   EXPECT_TRUE(viewer.Take<protocol::SubscribeReply>().has_value());
-  Send(viewer, protocol::SubscribePictures{.wait = true, .width = 4096, .height = 1025});
+  Send(viewer, protocol::SubscribePictures{.wait = true, .width = 4096, .height = 1025}, 0, 2);
   const auto error = viewer.Take<protocol::ErrorMessage>();
   ASSERT_TRUE(error.has_value());
   EXPECT_EQ(error->message.code, ErrorCode::kBadPicture);
