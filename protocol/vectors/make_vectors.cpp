@@ -4,12 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <iostream>
-#include <iterator>
-#include <map>
 #include <span>
 
 #include "protocol/codec/codec.h"
@@ -20,12 +15,12 @@
 #include "protocol/messages/hash.h"
 #include "protocol/vectors/fields.h"
 #include "protocol/vectors/json.h"
+#include "protocol/vectors/vector_files.h"
 
 namespace furrow::protocol::vectors {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
-using Files = std::map<std::string, std::string>;  // name, content
 
 constexpr Header kHeader{0x0123456789abcdefULL, 3, 41, 1'700'000'000'123'456};
 
@@ -382,38 +377,9 @@ void AddRefused(Files& files) {
   add("hash", bytes, "an offer whose hash is not that of its content");
 }
 
-int Check(const std::filesystem::path& folder, const Files& files) {
-  int wrong = 0;
-  for (const auto& [name, content] : files) {
-    std::ifstream in(folder / name, std::ios::binary);
-    const std::string found{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-    if (found == content) continue;
-    std::cerr << name << (in.is_open() ? ": differs from the encoder's output\n" : ": missing\n");
-    ++wrong;
-  }
-  std::cout << files.size() << " files compared, " << wrong << " faults\n";
-  return wrong == 0 ? 0 : 1;
-}
-
-int Write(const std::filesystem::path& folder, const Files& files) {
-  for (const auto& [name, content] : files) {
-    std::ofstream out(folder / name, std::ios::binary);
-    if (!(out << content << std::flush)) {
-      std::cerr << (folder / name).string() << ": cannot write the file\n";
-      return 1;
-    }
-  }
-  return 0;
-}
-
 }  // namespace
 
-int Run(std::span<char* const> arguments) {
-  const bool check = arguments.size() == 3 && std::strcmp(arguments[1], "--check") == 0;
-  if (!check && arguments.size() != 2) {
-    std::cerr << "usage: furrow-make-vectors [--check] FOLDER\n";
-    return 2;
-  }
+Files MakeFiles() {
   Files files;
   AddMeeting(files);
   AddPublishing(files);
@@ -423,11 +389,13 @@ int Run(std::span<char* const> arguments) {
   AddBundles(files);
   AddSession(files);
   AddRefused(files);
-  return check ? Check(arguments[2], files) : Write(arguments[1], files);
+  return files;
 }
 
 }  // namespace furrow::protocol::vectors
 
 int main(int argc, char** argv) {
-  return furrow::protocol::vectors::Run({argv, static_cast<std::size_t>(argc)});
+  return furrow::protocol::vectors::MakeOrCheck("furrow-make-vectors",
+                                                {argv, static_cast<std::size_t>(argc)},
+                                                furrow::protocol::vectors::MakeFiles);
 }

@@ -6,12 +6,6 @@
 // are fixed bytes, so the files never change by themselves.
 #include <algorithm>
 #include <array>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iostream>
-#include <iterator>
-#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,6 +16,7 @@
 #include "protocol/secure/token/connect_token.h"
 #include "protocol/secure/token/token_text.h"
 #include "protocol/vectors/json.h"
+#include "protocol/vectors/vector_files.h"
 
 namespace furrow::protocol::secure {
 namespace {
@@ -30,7 +25,7 @@ using vectors::Fields;
 using vectors::Json;
 using vectors::JsonHex;
 using Bytes = std::vector<std::uint8_t>;
-using Files = std::map<std::string, std::string>;  // name, content
+using vectors::Files;
 
 // Counts up from a first byte.
 class CountingRandom : public RandomSource {
@@ -200,38 +195,9 @@ std::string AddPackets(Files& files, const SessionKeys& keys, const ClientToken&
   return "[" + list + "]";
 }
 
-int Check(const std::filesystem::path& folder, const Files& files) {
-  int wrong = 0;
-  for (const auto& [name, content] : files) {
-    std::ifstream in(folder / name, std::ios::binary);
-    const std::string found{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-    if (found == content) continue;
-    std::cerr << name << (in.is_open() ? ": differs from the output\n" : ": missing\n");
-    ++wrong;
-  }
-  std::cout << files.size() << " files compared, " << wrong << " faults\n";
-  return wrong == 0 ? 0 : 1;
-}
-
-int Write(const std::filesystem::path& folder, const Files& files) {
-  for (const auto& [name, content] : files) {
-    std::ofstream out(folder / name, std::ios::binary);
-    if (!(out << content << std::flush)) {
-      std::cerr << (folder / name).string() << ": cannot write the file\n";
-      return 1;
-    }
-  }
-  return 0;
-}
-
 }  // namespace
 
-int Run(std::span<char* const> arguments) {
-  const bool check = arguments.size() == 3 && std::strcmp(arguments[1], "--check") == 0;
-  if (!check && arguments.size() != 2) {
-    std::cerr << "usage: furrow-make-secure-vectors [--check] FOLDER\n";
-    return 2;
-  }
+Files MakeFiles() {
   Files files;
   Fields token_json;
   Fields session_json;
@@ -244,12 +210,13 @@ int Run(std::span<char* const> arguments) {
                                      {"session", Json(session_json, "  ")},
                                      {"packets", packets}}) +
                          "\n";
-  const std::filesystem::path folder = arguments.back();
-  return check ? Check(folder, files) : Write(folder, files);
+  return files;
 }
 
 }  // namespace furrow::protocol::secure
 
 int main(int argc, char** argv) {
-  return furrow::protocol::secure::Run({argv, static_cast<std::size_t>(argc)});
+  return furrow::protocol::vectors::MakeOrCheck("furrow-make-secure-vectors",
+                                                {argv, static_cast<std::size_t>(argc)},
+                                                furrow::protocol::secure::MakeFiles);
 }
