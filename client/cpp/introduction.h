@@ -21,7 +21,7 @@ class Introduction {
   // kMaxProgramBytes. `session`: of all messages of this program on this transport.
   Introduction(Transport* transport, std::string program, std::uint64_t session);
 
-  // True if the daemon may be sent anything else than a Hello.
+  // True if the daemon may be sent anything but a Hello.
   [[nodiscard]] bool proven() const { return proven_; }
 
   // Sends the Hello that is due: call it at first, and again every 200 ms until proven().
