@@ -15,9 +15,9 @@
 #include <boost/beast/websocket/stream.hpp>
 
 #include "protocol/codec/codec.h"
-#include "server/core/network_address.h"
 #include "server/http/socket/web_message.h"
 #include "server/http/socket/web_peer.h"
+#include "server/session/peers/peer_label.h"
 
 namespace furrow::server {
 namespace {
@@ -74,8 +74,7 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
     beast::error_code ignored;
     auto& tcp = beast::get_lowest_layer(socket_);
     const auto remote = tcp.socket().remote_endpoint(ignored);
-    const std::string host = remote.address().to_string();
-    label_ = {"web " + host + " port " + std::to_string(remote.port()), HostOf(host)};
+    label_ = LabelOf("web", remote.address().to_string(), remote.port());
     // Weights are small messages that must not wait for an acknowledgement (Nagle's algorithm).
     tcp.socket().set_option(net::ip::tcp::no_delay(true), ignored);
     tcp.expires_never();  // the WebSocket has its own timeouts

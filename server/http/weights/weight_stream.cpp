@@ -20,6 +20,7 @@
 #include "protocol/codec/codec.h"
 #include "server/http/socket/web_peer.h"
 #include "server/http/weights/weight_lines.h"
+#include "server/session/peers/peer_label.h"
 
 namespace furrow::server {
 namespace {
@@ -43,13 +44,13 @@ class LineSource : public std::enable_shared_from_this<LineSource> {
   LineSource(const LineSource&) = delete;
   LineSource& operator=(const LineSource&) = delete;
 
-  void Open(std::string name) {
+  void Open(PeerLabel label) {
     // The hub's thread calls this, and the timer belongs to the web thread. Weak, because the
     // stream may have ended by then.
     auto wake = [weak = weak_from_this()] {
       if (const auto self = weak.lock()) self->wake_.cancel();
     };
-    peer_.emplace(context_->post_to_hub, std::move(name),
+    peer_.emplace(context_->post_to_hub, std::move(label),
                   [post_to_web = context_->post_to_web, wake] { post_to_web(wake); });
     protocol::Encoder encoder;
     std::uint32_t sequence = 0;
@@ -100,10 +101,10 @@ class LineSource : public std::enable_shared_from_this<LineSource> {
   bool ended_ = false;
 };
 
-std::string PeerName(const beast::tcp_stream& stream) {
+PeerLabel LabelOfClient(const beast::tcp_stream& stream) {
   beast::error_code ignored;
   const auto remote = stream.socket().remote_endpoint(ignored);
-  return "web " + remote.address().to_string() + " port " + std::to_string(remote.port());
+  return LabelOf("web", remote.address().to_string(), remote.port());
 }
 
 void SetOptions(beast::tcp_stream& stream) {
@@ -146,7 +147,7 @@ net::awaitable<void> ReadAndDrop(std::shared_ptr<Socket> socket,
 
 net::awaitable<void> ServeWeightSocket(beast::tcp_stream stream, WebContext* context,
                                        WebRequest request, WeightQuery query) {
-  const std::string name = PeerName(stream);
+  const PeerLabel label = LabelOfClient(stream);
   stream.expires_never();  // the WebSocket has its own timeouts
   beast::error_code error;
   SetOptions(stream);
@@ -164,7 +165,7 @@ net::awaitable<void> ServeWeightSocket(beast::tcp_stream stream, WebContext* con
   context->metrics->Add(Counter::kWebSocketsAccepted);
   const auto lines =
       std::make_shared<LineSource>(socket->get_executor(), context, std::move(query));
-  lines->Open(name);
+  lines->Open(label);
   net::co_spawn(socket->get_executor(), ReadAndDrop(socket, lines), net::detached);
   const CloseOnExit close_on_exit{socket.get()};
   // The WebSocket's own timeout does not end a client that sends and never reads.
@@ -195,7 +196,7 @@ net::awaitable<void> ServeWeightLines(beast::tcp_stream* stream, WebContext* con
   stream->expires_never();
   const auto lines =
       std::make_shared<LineSource>(stream->get_executor(), context, std::move(query));
-  lines->Open(PeerName(*stream));
+  lines->Open(LabelOfClient(*stream));
   // The client sends nothing after its request, so readable data means that it has closed.
   stream->socket().async_wait(net::ip::tcp::socket::wait_read,
                               [weak = std::weak_ptr<LineSource>(lines)](beast::error_code) {

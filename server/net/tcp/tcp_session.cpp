@@ -15,9 +15,9 @@
 
 #include "protocol/framing/tcp_framing.h"
 #include "protocol/messages/limits.h"
-#include "server/core/network_address.h"
 #include "server/net/await_tuple.h"
 #include "server/net/clock.h"
+#include "server/session/peers/peer_label.h"
 
 namespace furrow::server {
 namespace {
@@ -34,13 +34,11 @@ constexpr std::size_t kMaxReplies = 1024;
 constexpr Time kStuckAfter = std::chrono::milliseconds(100);
 constexpr auto kWatchInterval = std::chrono::milliseconds(500);
 
-// The text is "tcp 127.0.0.1 port 50112".
 PeerLabel NameOf(const asio::ip::tcp::socket& socket) {
   asio::error_code error;
   const auto endpoint = socket.remote_endpoint(error);
   if (error) return "tcp, disconnected";
-  const std::string host = endpoint.address().to_string();
-  return {"tcp " + host + " port " + std::to_string(endpoint.port()), HostOf(host)};
+  return LabelOf("tcp", endpoint.address().to_string(), endpoint.port());
 }
 
 }  // namespace

@@ -17,6 +17,7 @@
 #include "server/net/await_tuple.h"
 #include "server/net/clock.h"
 #include "server/net/critical_task.h"
+#include "server/session/peers/peer_label.h"
 
 namespace furrow::server {
 namespace {
@@ -88,7 +89,6 @@ UdpServer::UdpServer(asio::io_context& io, const Limits& limits, Hub* hub, Metri
                      RecordingTap* recording, int shard)
     : io_(io),
       socket_(io),
-      limits_(limits),
       hub_(hub),
       metrics_(metrics),
       recording_(recording),
@@ -264,11 +264,9 @@ UdpServer::UdpPeer* UdpServer::Add(const Address& address, const udp::endpoint& 
     // On the heap, because the hub keeps its address while the map grows.
     UdpPeer& peer =
         *peers_.emplace(address, std::make_unique<UdpPeer>(this, sender, session)).first->second;
-    peer.id = hub_->AddPeer(
-        Transport::kUdp,
-        PeerLabel("udp " + sender.address().to_string() + " port " + std::to_string(sender.port()),
-                  host),
-        &peer, now, shard_);
+    peer.id =
+        hub_->AddPeer(Transport::kUdp, LabelOf("udp", sender.address().to_string(), sender.port()),
+                      &peer, now, shard_);
     if (consent) hub_->SetConsent(peer.id, *consent);
     return &peer;
   } catch (...) {

@@ -89,7 +89,6 @@ class UdpServer : public BufferedSender {
 
   asio::io_context& io_;
   asio::ip::udp::socket socket_;
-  const Limits limits_;
   Hub* const hub_;
   Metrics* const metrics_;
   RecordingTap* const recording_;
