@@ -17,8 +17,9 @@ namespace {
 struct Candidate {
   std::string name;
   EGLenum platform = EGL_NONE;
-  void* native = nullptr;  // EGLDeviceEXT for the device platform
-  bool software = false;
+  void* native = nullptr;    // EGLDeviceEXT for the device platform
+  bool software = false;     // known before a context exists
+  bool only_if_gpu = false;  // skip it if its context draws on the CPU
 };
 
 // eglGetError() clears the error, so this must be the first EGL call after the failed one.
@@ -28,12 +29,26 @@ std::string EglError(std::string_view call) {
   return std::string(call) + " failed, EGL error 0x" + std::string(code.data(), end);
 }
 
+// Software renderers by GL_RENDERER. A device's extensions do not tell for platforms without one,
+// and a driver may run on top of a software renderer: "zink Vulkan 1.3 (llvmpipe ...)".
+bool DrawsOnCpu(std::string_view renderer) {
+  constexpr std::string_view kNames[] = {"llvmpipe", "softpipe", "swrast", "Software Rasterizer",
+                                         "SwiftShader"};
+  return std::ranges::any_of(kNames, [renderer](std::string_view name) {
+    return renderer.find(name) != std::string_view::npos;
+  });
+}
+
 // All devices in EGL's order; none if the driver cannot enumerate them. Client extensions are
 // queried without a display.
 std::vector<Candidate> EnumerateDevices() {
   std::vector<Candidate> candidates;
-  if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration") ||
-      !epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_device")) {
+  // EGL_EXT_device_base is the older extension that the other two were split from.
+  const bool can_enumerate =
+      epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_base") ||
+      (epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration") &&
+       epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_query"));
+  if (!can_enumerate || !epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_device")) {
     return candidates;
   }
   std::array<EGLDeviceEXT, 32> devices{};
@@ -50,20 +65,24 @@ std::vector<Candidate> EnumerateDevices() {
   return candidates;
 }
 
-// The devices to try, best first. A stable sort keeps EGL's order within hardware and software
-// devices.
+// The devices to try, best first; EGL's order within hardware and software devices. In a virtual
+// machine or a container, a GPU may be reachable without a device, but not through its device.
+std::vector<Candidate> InOrderOfPreference(std::vector<Candidate> devices, Candidate surfaceless) {
+  const auto software = std::stable_partition(devices.begin(), devices.end(),
+                                              [](const Candidate& c) { return !c.software; });
+  const Candidate last = surfaceless;
+  surfaceless.only_if_gpu = software != devices.end();
+  const bool twice = surfaceless.only_if_gpu;
+  devices.insert(software, std::move(surfaceless));
+  if (twice) devices.push_back(last);
+  return devices;
+}
+
 Result<std::vector<Candidate>> ChooseCandidates(std::string_view device) {
-  const Candidate surfaceless{"surfaceless", EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY,
-                              true};
+  const Candidate surfaceless{"surfaceless", EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY};
   if (device == "surfaceless") return std::vector<Candidate>{surfaceless};
   std::vector<Candidate> candidates = EnumerateDevices();
-  if (device.empty()) {
-    std::stable_sort(
-        candidates.begin(), candidates.end(),
-        [](const Candidate& a, const Candidate& b) { return a.software < b.software; });
-    candidates.push_back(surfaceless);
-    return candidates;
-  }
+  if (device.empty()) return InOrderOfPreference(std::move(candidates), surfaceless);
   std::size_t index = 0;
   const auto parsed = std::from_chars(device.data(), device.data() + device.size(), index);
   if (parsed.ec != std::errc() || parsed.ptr != device.data() + device.size() ||
@@ -132,12 +151,12 @@ Result<EGLContext> OpenContext(EGLDisplay display) {
   return context;
 }
 
+// Needs a current context.
+std::string Text(GLenum name) { return reinterpret_cast<const char*>(glGetString(name)); }
+
 std::string Describe(const Candidate& candidate) {
-  const auto text = [](GLenum name) {
-    return std::string(reinterpret_cast<const char*>(glGetString(name)));
-  };
-  return candidate.name + ": " + text(GL_VENDOR) + ", " + text(GL_RENDERER) + ", " +
-         text(GL_VERSION);
+  return candidate.name + ": " + Text(GL_VENDOR) + ", " + Text(GL_RENDERER) + ", " +
+         Text(GL_VERSION);
 }
 
 }  // namespace
@@ -154,8 +173,10 @@ Result<std::unique_ptr<EglContext>> EglContext::Create(std::string_view device) 
       failure = context.status();
     } else {
       std::unique_ptr<EglContext> result(new EglContext(*display, *context));
+      result->is_software_ = candidate.software || DrawsOnCpu(Text(GL_RENDERER));
+      if (candidate.only_if_gpu && result->is_software_) continue;
       result->description_ = Describe(candidate);
-      result->is_software_ = candidate.software;
+      if (!tried.empty()) result->description_ += "; not on " + tried;
       return result;
     }
     tried += (tried.empty() ? "" : "; ") + candidate.name + ": " + failure.what();

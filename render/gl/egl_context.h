@@ -16,7 +16,8 @@ namespace furrow::render {
 class EglContext {
  public:
   // `device` is an index into EGL's device list, "surfaceless" (Mesa's platform without a device),
-  // or empty. Empty tries every device in EGL's order, software devices last, and then surfaceless.
+  // or empty. Empty tries every GPU in EGL's order, a GPU without a device, software devices, and
+  // then surfaceless.
   // Errors: kInvalidArgument (no such device), kUnavailable (the message lists each candidate and
   // why it failed).
   [[nodiscard]] static Result<std::unique_ptr<EglContext>> Create(std::string_view device);
@@ -29,7 +30,8 @@ class EglContext {
   // context cannot be made current, no context is current afterwards.
   [[nodiscard]] Status MakeCurrent();
 
-  // "device 0: Mesa, llvmpipe (LLVM 15.0.6, 256 bits), 4.5 (Core Profile) Mesa 22.3.6".
+  // "device 0: Mesa, llvmpipe (LLVM 15.0.6, 256 bits), 4.5 (Core Profile) Mesa 22.3.6". Better
+  // devices that failed follow, with the reasons: "; not on device 0: eglInitialize failed, ...".
   [[nodiscard]] const std::string& description() const { return description_; }
   // True if the driver renders on the CPU.
   [[nodiscard]] bool is_software() const { return is_software_; }

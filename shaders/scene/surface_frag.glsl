@@ -89,7 +89,11 @@ int samplesLeft(float alpha) {
   if (gl_NumSamples == 1) return alpha < u_alpha_cutoff ? 0 : 1;
   float line = clamp((alpha - u_alpha_cutoff) / max(fwidth(alpha), 1e-4) + 0.5, 0.0, 1.0);
 #if HAS_BASE_COLOUR
-  float level = textureQueryLod(u_base_colour_map, textureUv()).y;
+  // Not textureQueryLod(), which returns 0 for every distance on some drivers.
+  vec2 texels = vec2(textureSize(u_base_colour_map, 0));
+  vec2 across = dFdx(textureUv()) * texels;
+  vec2 along = dFdy(textureUv()) * texels;
+  float level = 0.5 * log2(max(max(dot(across, across), dot(along, along)), 1e-8));
   line = mix(line, alpha, clamp(level, 0.0, 1.0));
 #endif
   int count = int(line * float(gl_NumSamples) + 0.5);

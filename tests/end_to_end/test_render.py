@@ -9,7 +9,7 @@ import unittest
 from furrow_testing import BIN, GUARD, SHARE, Daemon, Table, finish, furrow, solve, spawn_watch, worst_difference
 
 ANGER = SHARE / "recordings" / "anger.bvh"
-NO_DRIVER = {"__EGL_VENDOR_LIBRARY_DIRS": "/nonexistent"}
+NO_DRIVER = {"__EGL_VENDOR_LIBRARY_FILENAMES": "/nonexistent"}
 
 
 class RenderTest(unittest.TestCase):

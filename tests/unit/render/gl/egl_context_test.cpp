@@ -23,5 +23,15 @@ TEST(EglContext, SurvivesTheDestructionOfAnotherContext) {
   EXPECT_NE((*first)->description().find("device"), std::string::npos);
 }
 
+// Whatever EGL says of a device: the renderer decides what a fragment costs.
+TEST(EglContext, KnowsSoftwareByItsRenderer) {
+  for (const char* device : {"", "surfaceless"}) {
+    auto context = EglContext::Create(device);
+    if (!context.ok()) continue;  // no Mesa
+    const bool is_llvmpipe = (*context)->description().find("llvmpipe") != std::string::npos;
+    EXPECT_EQ((*context)->is_software(), is_llvmpipe) << (*context)->description();
+  }
+}
+
 }  // namespace
 }  // namespace furrow::render
