@@ -15,6 +15,7 @@
 #include "base/text.h"
 #include "gltf/scene/joints.h"
 #include "gltf/scene/skins.h"
+#include "gltf/scene/vrm_humanoid.h"
 
 namespace furrow::character {
 namespace {
@@ -51,6 +52,18 @@ struct ChosenJoints {
   gltf::JointList list;
 };
 
+// The human bones of a VRM avatar, unless Furrow has written roles. Names that VRM may add are no
+// roles.
+void TakeRolesOfVrm(gltf::Document* document, gltf::JointList* list) {
+  const auto has_role = [](const gltf::Joint& joint) { return !joint.role.empty(); };
+  if (std::ranges::any_of(list->joints, has_role)) return;
+  for (auto& [name, node] : gltf::ReadVrmHumanoid(document)) {
+    const int joint = list->joint_of_node[static_cast<std::size_t>(node)];
+    if (joint == gltf::kNone || !wrinkle::ParseJointRole(name)) continue;
+    list->joints[static_cast<std::size_t>(joint)].role = std::move(name);
+  }
+}
+
 // Without skins, every node is a joint that meshes may follow.
 Result<ChosenJoints> ChooseJoints(gltf::Document* document, const gltf::NodeForest& forest) {
   if (forest.nodes.empty()) return Status(StatusCode::kSchema, "the file has no nodes", "nodes");
@@ -65,6 +78,7 @@ Result<ChosenJoints> ChooseJoints(gltf::Document* document, const gltf::NodeFore
     chosen.of_skins.push_back(std::move(*joints));
   }
   chosen.list = gltf::ListJoints(forest, nodes, {}, document);
+  TakeRolesOfVrm(document, &chosen.list);
   return chosen;
 }
 

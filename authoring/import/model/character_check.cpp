@@ -215,10 +215,11 @@ class Checker {
     for (const auto& [where, uvs] : atlases) CheckAtlas(where, uvs, any_folds);
   }
 
-  // Parts without UVs stay flat, which only matters if nothing else folds.
+  // Parts without UVs move, but stay flat. Figures made of voxels are like that all over: their UVs
+  // only choose a colour.
   void FindMissingUvs(const std::string& where, const std::string& what, bool others_fold) {
-    Find(others_fold ? Severity::kWarning : Severity::kError, "uv-missing", where,
-         what + (others_fold ? "; it gets no wrinkles" : ""),
+    Find(Severity::kWarning, "uv-missing", where,
+         what + (others_fold ? "; it gets no wrinkles" : "; the character moves, but nothing folds"),
          "unwrap it without overlaps, and keep UVs without a picture (gltfpack -kv)");
   }
 

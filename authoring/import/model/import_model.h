@@ -50,7 +50,7 @@ struct ImportedModel {
 // joints their roles by name. Character::roles receives the roles of FindJoints().
 //
 // Errors: those of OpenModel(), and kUnsupported for the first error of CheckCharacter() (no skin,
-// no UVs, unskinned vertices).
+// unskinned vertices).
 [[nodiscard]] Result<ImportedModel> ImportModel(const std::filesystem::path& path,
                                                 const rig::SkeletonMaps& maps,
                                                 const ModelOptions& options = {});

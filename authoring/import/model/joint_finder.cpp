@@ -44,7 +44,7 @@ std::string Describe(const FoundJoints& joints) {
   if (joints.num_roles == 0) return "no known roles";
   std::string from = "by names of '" + joints.map + "'";
   if (joints.map.empty()) from = "guessed from the hierarchy";
-  if (joints.map == rig::kFromPackage) from = "stated by the package";
+  if (joints.map == rig::kFromPackage) from = "stated by the file";
   return std::to_string(joints.num_roles) + " roles " + from;
 }
 

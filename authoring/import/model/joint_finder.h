@@ -32,7 +32,7 @@ struct FoundJoints {
                                      const wrinkle::JointRoles& stated = {});
 
 // "22 roles by names of 'mixamo'", "19 roles guessed from the hierarchy", "22 roles stated by the
-// package" or "no known roles".
+// file" or "no known roles".
 [[nodiscard]] std::string Describe(const FoundJoints& joints);
 
 }  // namespace furrow::authoring

@@ -19,6 +19,7 @@ namespace {
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
+using ::testing::IsSupersetOf;
 using wrinkle::ShapeRule;
 
 // A version of VRM: VRM 0.x faces -Z.
@@ -83,6 +84,19 @@ class ForeignVrm : public ::testing::TestWithParam<Version> {
   Character avatar_;
   SourceNotes notes_;
 };
+
+TEST_P(ForeignVrm, HumanBonesGiveRoles) {
+  using wrinkle::JointRole;
+  ASSERT_EQ(avatar_.roles.size(), static_cast<std::size_t>(avatar_.skeleton.num_joints()));
+  EXPECT_THAT(avatar_.roles, IsSupersetOf({JointRole::kHips, JointRole::kHead,
+                                           JointRole::kLeftUpperArm, JointRole::kRightFoot}));
+  const auto joint = [&](JointRole role) {
+    return static_cast<std::size_t>(std::ranges::find(avatar_.roles, role) - avatar_.roles.begin());
+  };
+  const auto& rest = avatar_.skeleton.rest_model();
+  EXPECT_GT(rest[joint(JointRole::kLeftUpperArm)][3].x * GetParam().front, 0.0f) << "its own left";
+  EXPECT_GT(rest[joint(JointRole::kHead)][3].y, rest[joint(JointRole::kHips)][3].y);
+}
 
 TEST_P(ForeignVrm, HasItsShapeKeys) {
   EXPECT_THAT(avatar_.warnings, IsEmpty());

@@ -113,9 +113,9 @@ INSTANTIATE_TEST_SUITE_P(
             "no-skin", Severity::kError, "no mesh is skinned",
             [](character::Character*, character::SourceNotes* n) { n->meshes[0].skinned = false; }},
         Fault{
-            "uv-missing", Severity::kError, "no UVs",
+            "uv-missing", Severity::kWarning, "nothing folds",
             [](character::Character*, character::SourceNotes* n) { n->meshes[0].has_uvs = false; }},
-        Fault{"uv-missing", Severity::kError, "one point",
+        Fault{"uv-missing", Severity::kWarning, "one point",
               [](character::Character* c, character::SourceNotes*) {
                 for (character::Vertex& v : c->meshes[0].vertices) v.uv = {0.5f, 0.5f};
               }},

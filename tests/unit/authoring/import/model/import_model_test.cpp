@@ -346,7 +346,7 @@ TEST(ImportModel, KeepsTheRolesOfTheJoints) {
   const auto kept = ImportModel(again, rig::SkeletonMaps({one.begin(), one.end()}));
   ASSERT_TRUE(kept.ok()) << kept.status().ToString();
   EXPECT_EQ(kept->character.roles, odd.roles);
-  EXPECT_THAT(kept->remarks, Contains(HasSubstr("roles stated by the package")));
+  EXPECT_THAT(kept->remarks, Contains(HasSubstr("roles stated by the file")));
   const auto chosen = ImportModel(again, chosen_map);
   ASSERT_TRUE(chosen.ok()) << chosen.status().ToString();
   EXPECT_EQ(chosen->character.roles, imported->character.roles) << "the user's choice wins";
