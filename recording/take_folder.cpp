@@ -60,8 +60,15 @@ Status TakeFolder::Begin(std::uint64_t now_ns) {
   take_ = *std::move(take);
   begun_ns_ = now_ns;
   ++num_files_;
-  // Every file is complete in itself, so it repeats the declarations of live subjects, stamped with
-  // its own start.
+  FURROW_RETURN_IF_ERROR(WriteDeclarations(now_ns));
+  // Not counted towards rotate_bytes, or else large skeletons would rotate files forever.
+  begun_bytes_ = take_->bytes_written();
+  return {};
+}
+
+// Every file is complete in itself, so it repeats the declarations of live subjects, stamped with
+// its own start.
+Status TakeFolder::WriteDeclarations(std::uint64_t now_ns) {
   for (const auto& [subject, state] : subjects_) {
     for (const auto& [kind, declaration] : {std::pair(TakeKind::kSkeleton, &state.skeleton),
                                             std::pair(TakeKind::kNames, &state.names)}) {
@@ -71,8 +78,6 @@ Status TakeFolder::Begin(std::uint64_t now_ns) {
       FURROW_RETURN_IF_ERROR(take_->Write(kind, subject, stamp, declaration->payload));
     }
   }
-  // Not counted towards rotate_bytes, or else large skeletons would rotate files forever.
-  begun_bytes_ = take_->bytes_written();
   return {};
 }
 
@@ -105,10 +110,13 @@ bool TakeFolder::IsRepeated(TakeKind kind, std::string_view subject, const TakeS
 
 Status TakeFolder::Write(TakeKind kind, std::string_view subject, const TakeStamp& stamp,
                          std::span<const std::uint8_t> payload) {
-  if (!failure_.ok()) return failure_;
+  const bool declares = kind == TakeKind::kSkeleton || kind == TakeKind::kNames;
+  if (!failure_.ok()) {
+    if (declares) (void)IsRepeated(kind, subject, stamp, payload);  // for the file of Resume()
+    return failure_;
+  }
   // Rotate before remembering the declaration. Otherwise the new file would contain it twice.
   if (Status status = RotateIfDue(stamp.log_time_ns); !status.ok()) return Remember(status);
-  const bool declares = kind == TakeKind::kSkeleton || kind == TakeKind::kNames;
   if (declares && IsRepeated(kind, subject, stamp, payload)) return {};
   return Remember(take_->Write(kind, subject, stamp, payload));
 }
@@ -122,6 +130,27 @@ Status TakeFolder::WriteDatagram(const DatagramSender& sender, std::uint64_t log
 
 void TakeFolder::Forget(std::string_view subject) {
   if (const auto found = subjects_.find(subject); found != subjects_.end()) subjects_.erase(found);
+}
+
+Status TakeFolder::Resume(std::uint64_t now_ns) {
+  if (failure_.ok()) return {};
+  (void)take_->Close();  // its error is known
+  const std::filesystem::path failed = path_;
+  const int files = num_files_;
+  const std::uint64_t messages = num_messages();
+  Status status = Begin(now_ns);
+  if (status.ok()) status = take_->Flush();
+  if (status.ok()) {
+    failure_ = {};
+    return status;
+  }
+  // NextPath() chose a free name, so the file is this one's own.
+  std::error_code ignored;
+  if (path_ != failed) std::filesystem::remove(path_, ignored);
+  path_ = failed;
+  num_files_ = files;
+  earlier_messages_ = messages - take_->num_messages();
+  return status;
 }
 
 Status TakeFolder::Flush() {

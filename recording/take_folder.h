@@ -28,7 +28,9 @@ struct TakeFolderOptions {
 //   exists, "_2", "_3" and so on are appended. No file is ever overwritten.
 // - Every file begins with the skeletons and weight names of the current subjects.
 // - Senders repeat skeletons and names. Repetitions are written once per file and session.
-// - After an error (a full disk), all later calls return the same error. The file stays readable.
+// - After an error (a full disk), all later calls return the same error until Resume(). The file
+// stays
+//   readable. Declarations are remembered meanwhile.
 class TakeFolder {
  public:
   // Creates the folder and the first file. Errors: kIo (also if `options.name` exists).
@@ -43,6 +45,10 @@ class TakeFolder {
                                      std::span<const std::uint8_t> bytes);
   // Call it when a subject leaves: later files do not begin with its skeleton.
   void Forget(std::string_view subject);
+
+  // After an error: finishes the failed file as far as possible and begins the next one. Errors:
+  // kIo; then no new file is left behind, and the folder stays as it was.
+  [[nodiscard]] Status Resume(std::uint64_t now_ns);
 
   // Passes all messages to the operating system.
   [[nodiscard]] Status Flush();
@@ -69,6 +75,7 @@ class TakeFolder {
 
   explicit TakeFolder(TakeFolderOptions options) : options_(std::move(options)) {}
   [[nodiscard]] Status Begin(std::uint64_t now_ns);
+  [[nodiscard]] Status WriteDeclarations(std::uint64_t now_ns);
   [[nodiscard]] std::filesystem::path NextPath(std::uint64_t now_ns) const;
   [[nodiscard]] Status RotateIfDue(std::uint64_t now_ns);
   [[nodiscard]] Status Remember(Status status);

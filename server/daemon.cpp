@@ -248,6 +248,9 @@ Status Daemon::StartWeb() {
   // Called on the hub's thread while `http_` exists; the counters are atomic.
   parts.connections = [this] { return http_->connections(); };
   parts.viewers = [this] { return http_->viewers(); };
+  if (recorder_ != nullptr) {
+    parts.recording_is_paused = [this] { return recorder_->is_paused(); };
+  }
   api_ = std::make_unique<Api>(std::move(parts));
   auto started = HttpServer::Start(
       {.config = config_.http,

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include <spdlog/spdlog.h>
@@ -70,9 +72,15 @@ std::uint64_t Recorder::LogTime(Time now) const {
 
 void Recorder::PushEntry(const RecordingBatch::Entry& entry, std::string_view subject,
                          std::span<const std::uint8_t> payload) {
-  // A hint that saves copying. The recording thread checks it again.
-  if (failed_.load(std::memory_order_relaxed)) return;
-  if (!queue_.Push(entry, subject, payload)) metrics_->Add(Counter::kRecordingDropped);
+  // What a later file begins with is needed during a pause, too. A message that is not needed is
+  // dropped here, which saves copying; the recording thread drops those that are already queued.
+  const bool is_declaration =
+      entry.event == RecordingBatch::Event::kGone ||
+      (entry.event == RecordingBatch::Event::kMessage &&
+       (entry.kind == TakeKind::kSkeleton || entry.kind == TakeKind::kNames));
+  if ((is_paused() && !is_declaration) || !queue_.Push(entry, subject, payload)) {
+    metrics_->Add(Counter::kRecordingDropped);
+  }
 }
 
 // Queues a message of the subject, stamped with its publisher's session, sequence and capture time.
@@ -151,40 +159,74 @@ void Recorder::OnDatagram(const recording::DatagramSender& sender,
   PushEntry(entry, {reinterpret_cast<const char*>(sender.data()), sender.size()}, bytes);
 }
 
-// Writes the events in order until one fails. Returns that error.
+Status Recorder::WriteEntry(const RecordingBatch::Entry& entry, std::string_view subject,
+                            std::span<const std::uint8_t> payload) {
+  switch (entry.event) {
+    case RecordingBatch::Event::kGone: folder_->Forget(subject); break;
+    case RecordingBatch::Event::kDatagram: {
+      recording::DatagramSender sender{};
+      std::copy_n(subject.begin(), sender.size(), sender.begin());
+      return folder_->WriteDatagram(sender, entry.stamp.log_time_ns, payload);
+    }
+    case RecordingBatch::Event::kMessage:
+      return folder_->Write(entry.kind, subject, entry.stamp, payload);
+  }
+  return {};
+}
+
+// Writes the events in order. Returns the first error. The events after it are only passed on, so
+// that the folder knows the subjects when the recording goes on.
 Status Recorder::WriteBatch(const RecordingBatch& batch) {
-  Status status;
+  Status first;
+  std::uint64_t lost = 0;
   const int file = folder_->num_files();
   const std::uint64_t before = folder_->num_messages();
   batch.ForEach([&](const RecordingBatch::Entry& entry, std::string_view subject,
                     std::span<const std::uint8_t> payload) {
-    switch (entry.event) {
-      case RecordingBatch::Event::kGone: folder_->Forget(subject); return true;
-      case RecordingBatch::Event::kDatagram: {
-        recording::DatagramSender sender{};
-        std::copy_n(subject.begin(), sender.size(), sender.begin());
-        status = folder_->WriteDatagram(sender, entry.stamp.log_time_ns, payload);
-        break;
-      }
-      case RecordingBatch::Event::kMessage:
-        status = folder_->Write(entry.kind, subject, entry.stamp, payload);
-        break;
-    }
-    return status.ok();
+    Status status = WriteEntry(entry, subject, payload);
+    if (status.ok()) return true;
+    ++lost;
+    if (first.ok()) first = std::move(status);
+    return true;
   });
+  metrics_->Add(Counter::kRecordingDropped, lost);
   metrics_->Add(Counter::kRecordingMessages, folder_->num_messages() - before);
   // TakeFolder begins a new file by itself when the present one reaches its size or age.
-  if (status.ok() && folder_->num_files() != file)
+  if (first.ok() && folder_->num_files() != file)
     spdlog::info("recording continues in {}", folder_->path().string());
-  return status;
+  return first;
 }
 
-void Recorder::ReportDropped() {
+void Recorder::ReportDropped(std::string_view why) {
   const std::uint64_t dropped = metrics_->Get(Counter::kRecordingDropped);
   if (dropped == reported_dropped_) return;
-  spdlog::warn("the disk is too slow: {} messages are missing from the recording",
-               dropped - reported_dropped_);
+  spdlog::warn("{}: {} messages are missing from the recording", why, dropped - reported_dropped_);
   reported_dropped_ = dropped;
+}
+
+void Recorder::Pause(const Status& status) {
+  paused_ = true;
+  next_try_ = ReadClock() + options_.retry;
+  metrics_->Add(Counter::kRecordingFailures);
+  spdlog::error("recording paused: {}; it goes on in a new file when there is room",
+                status.ToString());
+}
+
+// An attempt on a full disk would take the space that others free.
+bool Recorder::HasRoom() const {
+  const std::filesystem::path folder = folder_->path().parent_path();
+  std::error_code error;
+  const auto space = std::filesystem::space(folder.empty() ? "." : folder, error);
+  return !error && space.available >= options_.least_space;
+}
+
+void Recorder::TryToGoOn(Time now) {
+  if (now < next_try_) return;
+  next_try_ = now + options_.retry;
+  if (!HasRoom() || !folder_->Resume(LogTime(now)).ok()) return;
+  paused_ = false;
+  ReportDropped("while the recording was paused");
+  spdlog::info("recording again, in {}", folder_->path().string());
 }
 
 void Recorder::Write() {
@@ -192,28 +234,27 @@ void Recorder::Write() {
   Time flushed = ReadClock();
   bool goes_on = true;
   while (goes_on) {
+    // The queue is emptied during a pause, too, or it would hold its bytes for as long.
     goes_on = queue_.Take(&batch, kWait);
-    // The queue must still be emptied until Stop(), or it would hold its bytes for the life of the
-    // daemon.
-    if (failed_) continue;  // drop what was queued before the error
     Status status = WriteBatch(batch);
     const Time now = ReadClock();
+    if (paused_) {
+      if (goes_on) TryToGoOn(now);
+      continue;
+    }
     // Flushing ends an MCAP chunk. Each batch as a chunk would compress badly; none for long would
     // lose more when the daemon is killed.
     if (status.ok() && now - flushed >= kFlushInterval) {
       status = folder_->Flush();
       flushed = now;
-      ReportDropped();
+      ReportDropped("the disk is too slow");
     }
     if (status.ok() && !goes_on) status = folder_->Close();
-    if (status.ok()) continue;
-    failed_ = true;
-    metrics_->Add(Counter::kRecordingFailures);
-    spdlog::error("recording stopped: {}", status.ToString());
-    (void)folder_->Close();  // best effort: the error is already logged
+    if (!status.ok()) Pause(status);
   }
-  ReportDropped();
-  if (!failed_) spdlog::info("finished recording to {}", folder_->path().string());
+  if (paused_) (void)folder_->Close();  // its error is known
+  ReportDropped(paused_ ? "the recording was paused" : "the disk is too slow");
+  if (!paused_) spdlog::info("finished recording to {}", folder_->path().string());
 }
 
 }  // namespace furrow::server

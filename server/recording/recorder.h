@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -21,9 +22,11 @@ namespace furrow::server {
 // The options of a recorder.
 struct RecorderOptions {
   recording::TakeFolderOptions folder;
-  bool datagrams = true;                            // also record the datagrams as received
-  Time wall_offset{0};                              // system clock minus steady clock
-  std::size_t queue_bytes = std::size_t{64} << 20;  // maximum of bytes that wait for the disk
+  bool datagrams = true;                                // also record the datagrams as received
+  Time wall_offset{0};                                  // system clock minus steady clock
+  std::size_t queue_bytes = std::size_t{64} << 20;      // maximum of bytes that wait for the disk
+  Time retry = std::chrono::seconds(5);                 // between attempts to go on after an error
+  std::uint64_t least_space = std::uint64_t{64} << 20;  // free bytes that an attempt needs
 };
 
 // Records skeletons, poses, weights and datagrams of a hub in MCAP files (docs/RECORDING.md). The
@@ -31,7 +34,9 @@ struct RecorderOptions {
 //
 // - Data is flushed as a whole chunk within a second, so a killed daemon loses at most that second.
 // - If the disk is too slow, messages are missing from the recording; they are counted and logged.
-//   Live poses are not affected. A write error ends the recording, and the daemon continues.
+//   Live poses are not affected.
+// - A write error, as on a full disk, pauses the recording. It goes on in a new file, complete in
+//   itself, as soon as the disk has room. What it misses is counted and logged.
 class Recorder : public RecordingTap {
  public:
   // Opens the folder and starts the thread. `metrics` must outlive the recorder. Errors: those of
@@ -41,6 +46,9 @@ class Recorder : public RecordingTap {
   ~Recorder() override;  // writes the queue and completes the file
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
+
+  // True after a write error, until the recording goes on. Thread-safe.
+  [[nodiscard]] bool is_paused() const { return paused_.load(std::memory_order_relaxed); }
 
   void OnOffer(const Subject& subject, const protocol::SkeletonOffer& offer, Time now) override;
   void OnPose(const Subject& subject, std::span<const std::uint8_t> payload, Time now) override;
@@ -64,13 +72,19 @@ class Recorder : public RecordingTap {
   // On the recording thread.
   void Write();
   [[nodiscard]] Status WriteBatch(const RecordingBatch& batch);
-  void ReportDropped();
+  [[nodiscard]] Status WriteEntry(const RecordingBatch::Entry& entry, std::string_view subject,
+                                  std::span<const std::uint8_t> payload);
+  void Pause(const Status& status);
+  void TryToGoOn(Time now);
+  [[nodiscard]] bool HasRoom() const;
+  void ReportDropped(std::string_view why);
 
   const RecorderOptions options_;
   Metrics* const metrics_;
   std::unique_ptr<recording::TakeFolder> folder_;  // used by the recording thread
   RecordingQueue queue_;
-  std::atomic<bool> failed_ = false;
+  std::atomic<bool> paused_ = false;
+  Time next_try_{0};  // while paused
   std::uint64_t reported_dropped_ = 0;
 
   // Subjects with recorded weights. Changes only under the hub's exclusive lock.

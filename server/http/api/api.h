@@ -29,16 +29,17 @@ class Api {
  public:
   // Pointers must outlive the Api.
   struct Parts {
-    std::uint64_t session = 0;          // the daemon's random session number
-    Time started{0};                    // when the daemon started
-    const Metrics* metrics = nullptr;   // not null
-    PictureSource* pictures = nullptr;  // null: the daemon renders nothing
-    bool wants_pictures = false;        // the configuration asks for pictures
-    std::string renderer;               // description of the renderer, for people
-    Player* player = nullptr;           // null: started without --play
-    OscControl* osc = nullptr;          // not null
-    std::function<int()> connections;   // number of HTTP connections
-    std::function<int()> viewers;       // number of WebSockets and picture streams
+    std::uint64_t session = 0;                  // the daemon's random session number
+    Time started{0};                            // when the daemon started
+    const Metrics* metrics = nullptr;           // not null
+    PictureSource* pictures = nullptr;          // null: the daemon renders nothing
+    bool wants_pictures = false;                // the configuration asks for pictures
+    std::string renderer;                       // description of the renderer, for people
+    Player* player = nullptr;                   // null: started without --play
+    OscControl* osc = nullptr;                  // not null
+    std::function<int()> connections;           // number of HTTP connections
+    std::function<int()> viewers;               // number of WebSockets and picture streams
+    std::function<bool()> recording_is_paused;  // by a full disk; empty: nothing is recorded
   };
   explicit Api(Parts parts);
   Api(const Api&) = delete;

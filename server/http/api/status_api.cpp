@@ -87,6 +87,10 @@ ApiReply StatusApi::Ready(const Hub& hub) const {
   if (parts_.wants_pictures && !parts_.renders) {
     return ErrorReply(503, "unavailable", "", "rendering is enabled but no renderer is available");
   }
+  if (parts_.recording_is_paused && parts_.recording_is_paused()) {
+    return ErrorReply(503, "unavailable", "",
+                      "the recording is paused until its disk has room; see the log");
+  }
   return JsonReply({{"ok", true}});
 }
 
@@ -109,6 +113,10 @@ ApiReply StatusApi::MetricsText(const Hub& hub) const {
             static_cast<double>(parts_.connections()));
   add_gauge("furrow_http_viewers", "Open WebSockets and picture streams.",
             static_cast<double>(parts_.viewers()));
+  if (parts_.recording_is_paused) {
+    add_gauge("furrow_recording_paused", "1 while the disk has no room for the recording.",
+              parts_.recording_is_paused() ? 1.0 : 0.0);
+  }
   return {.type = "text/plain; version=0.0.4; charset=utf-8",
           .body = prometheus::TextSerializer().Serialize(families)};
 }

@@ -20,12 +20,13 @@ class StatusApi {
     std::uint64_t session = 0;
     Time started{0};
     const Metrics* metrics = nullptr;
-    bool renders = false;              // a renderer is running
-    bool wants_pictures = false;       // the configuration asks for pictures
-    bool plays = false;                // started with --play
-    std::string renderer;              // description of the renderer, for people
-    std::function<int()> connections;  // HTTP connections
-    std::function<int()> viewers;      // WebSockets and picture streams
+    bool renders = false;                       // a renderer is running
+    bool wants_pictures = false;                // the configuration asks for pictures
+    bool plays = false;                         // started with --play
+    std::string renderer;                       // description of the renderer, for people
+    std::function<int()> connections;           // HTTP connections
+    std::function<int()> viewers;               // WebSockets and picture streams
+    std::function<bool()> recording_is_paused;  // by a full disk; empty: nothing is recorded
   };
   explicit StatusApi(Parts parts) : parts_(std::move(parts)) {}
 
@@ -36,7 +37,8 @@ class StatusApi {
   [[nodiscard]] ApiReply ShowStatus(const Hub& hub, Time now) const;
   // Always 200: a reply shows that the hub's event loop runs.
   [[nodiscard]] ApiReply Health() const;
-  // 200, or 503 while the daemon shuts down or lacks the renderer that its configuration asks for.
+  // 200, or 503 while the daemon shuts down, lacks the renderer that its configuration asks for, or
+  // cannot record.
   [[nodiscard]] ApiReply Ready(const Hub& hub) const;
   // All counters in Prometheus' text format.
   [[nodiscard]] ApiReply MetricsText(const Hub& hub) const;

@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/recording/recorder.h"
 
+#include <algorithm>
+#include <csignal>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <thread>
+#include <vector>
+
+#include <sys/resource.h>
 
 #include "recording/take_poses.h"
 #include "recording/take_summary.h"
@@ -21,9 +27,11 @@ using recording::TakeMessage;
 class RecorderTest : public HubTest {
  protected:
   void SetUp() override {
-    auto started = Recorder::Start(
-        {.folder = {.folder = folder_.path(), .rig_json = "{}"}, .wall_offset = FromSeconds(5000)},
-        now, &metrics);
+    auto started = Recorder::Start({.folder = {.folder = folder_.path(), .rig_json = "{}"},
+                                    .wall_offset = FromSeconds(5000),
+                                    .retry = Time(0),
+                                    .least_space = 0},
+                                   now, &metrics);
     ASSERT_TRUE(started.ok()) << started.status().ToString();
     recorder_ = *std::move(started);
     Hub::Parts parts;
@@ -90,6 +98,57 @@ TEST_F(RecorderTest, APartialPoseIsRecordedWhole) {
   poses->Get(1, &pose);
   EXPECT_FALSE(pose.partial);
   EXPECT_EQ(pose.blend_shapes, (std::vector<float>{0.5f, 1.0f}));
+}
+
+// A limit on the size of files stands for the full disk.
+class FullDisk {
+ public:
+  FullDisk() {
+    std::signal(SIGXFSZ, SIG_IGN);
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit none{0, before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &none);
+  }
+  ~FullDisk() { ::setrlimit(RLIMIT_FSIZE, &before_); }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+TEST_F(RecorderTest, GoesOnInANewFileWhenTheDiskHasRoom) {
+  Publish(sender_, "ada");
+  std::uint64_t sequence = 0;
+  const auto send_until = [&](bool is_paused) {
+    while (recorder_->is_paused() != is_paused) {
+      Send(sender_, Pose(0.25f, 1.0f), 1, sequence++, 7'000);
+      now += FromSeconds(1e-4);  // half of what a peer may send
+      std::this_thread::yield();
+    }
+  };
+  {
+    const FullDisk full;
+    send_until(true);
+    EXPECT_EQ(Count(Counter::kRecordingFailures), 1u);
+    // A subject that comes during the pause.
+    Publish(sender_, "bob", 2);
+  }
+  send_until(false);
+  Send(sender_, Pose(0.5f, 1.0f), 1, sequence++, 7'000);
+  Send(sender_, Pose(0.5f, 1.0f), 2, 0, 7'000);
+  recorder_.reset();
+  EXPECT_GT(Count(Counter::kRecordingDropped), 0u) << "nothing is lost silently";
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder_.path())) files.push_back(entry.path());
+  ASSERT_EQ(files.size(), 2u) << "failed attempts leave nothing behind";
+  std::sort(files.begin(), files.end());
+  const auto take = recording::TakeReader::Open(files.back());
+  ASSERT_TRUE(take.ok()) << take.status().ToString();
+  const auto summary = recording::Summarise(**take);
+  ASSERT_TRUE(summary.ok()) << summary.status().ToString();
+  EXPECT_GE(summary->subjects.at("ada").poses, 1u);
+  EXPECT_EQ(summary->subjects.at("bob").poses, 1u);
 }
 
 TEST_F(RecorderTest, DroppedPosesAreNotRecorded) {
