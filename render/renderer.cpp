@@ -90,6 +90,7 @@ class GlRenderer final : public Renderer {
   // Uploads the frame's data once, and then declares the passes of the picture and of each tile.
   // Nothing is drawn before the graph has been compiled.
   Status BuildFrame(const FrameRequest& request, FrameGraph* graph) {
+    shaders_.BeginFrame();
     FURROW_RETURN_IF_ERROR(scene_.Update(request));
     FrameGraph::Handle shadows;
     FrameGraph::Handle picture = pipeline_.Add(graph, request, request.settings.view,

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <utility>
 
 #include "render/gl/shader_loader.h"
 #include "render/gl/shader_program.h"
@@ -74,28 +75,59 @@ std::vector<std::string> Defines(const PoseShader& shader) {
           Define("MORPH_PARTS", shader.morph_parts), Define("GRADIENTS", shader.gradients)};
 }
 
-Result<GLuint> ShaderLibrary::Get(const SceneShader& shader) {
-  if (const auto found = scene_.find(shader); found != scene_.end()) return found->second.name();
-  ProgramFiles files{"scene/scene.vert.glsl", "scene/scene.frag.glsl"};
-  if (shader.shading == Shading::kSkin) files.fragment = "skin/skin.frag.glsl";
-  if (shader.unlit) files.fragment = "scene/surface.frag.glsl";
-  if (shader.shade) files.fragment = "scene/shade.frag.glsl";
-  if (shader.shadow) files.fragment = "shadow/shadow.frag.glsl";
-  if (shader.displaced) {
-    files.tess_control = "scene/displace.tesc.glsl";
-    files.tess_evaluation = "scene/displace.tese.glsl";
+void ShaderLibrary::BeginFrame() {
+  ++frame_;
+  if (num_programs() <= kMaxPrograms) return;
+  std::vector<std::uint64_t> ages;  // frames since the last use
+  const auto for_each_map = [this](const auto& visit) {
+    visit(&scene_);
+    visit(&pose_);
+    visit(&named_);
+  };
+  for_each_map([&](const auto* programs) {
+    for (const auto& [key, entry] : *programs) ages.push_back(frame_ - entry.used);
+  });
+  const auto limit = ages.begin() + kMaxPrograms;
+  std::nth_element(ages.begin(), limit, ages.end());
+  // Programs of one picture have one age and go together, so this may leave fewer than the limit.
+  const std::uint64_t too_old = std::max<std::uint64_t>(*limit, 2);
+  for_each_map([&](auto* programs) {
+    std::erase_if(*programs,
+                  [&](const auto& item) { return frame_ - item.second.used >= too_old; });
+  });
+}
+
+template <class Key, class Build>
+Result<GLuint> ShaderLibrary::Find(std::map<Key, Entry>* programs, Key key, Build build) {
+  auto found = programs->find(key);
+  if (found == programs->end()) {
+    Result<gl::Program> program = build();
+    FURROW_RETURN_IF_ERROR(program);
+    found = programs->emplace(std::move(key), Entry{*std::move(program)}).first;
   }
-  Result<gl::Program> program = BuildProgram(files, Defines(shader), EmbeddedShaders());
-  FURROW_RETURN_IF_ERROR(program);
-  return scene_.emplace(shader, std::move(*program)).first->second.name();
+  found->second.used = frame_;
+  return found->second.program.name();
+}
+
+Result<GLuint> ShaderLibrary::Get(const SceneShader& shader) {
+  return Find(&scene_, shader, [&] {
+    ProgramFiles files{"scene/scene.vert.glsl", "scene/scene.frag.glsl"};
+    if (shader.shading == Shading::kSkin) files.fragment = "skin/skin.frag.glsl";
+    if (shader.unlit) files.fragment = "scene/surface.frag.glsl";
+    if (shader.shade) files.fragment = "scene/shade.frag.glsl";
+    if (shader.shadow) files.fragment = "shadow/shadow.frag.glsl";
+    if (shader.displaced) {
+      files.tess_control = "scene/displace.tesc.glsl";
+      files.tess_evaluation = "scene/displace.tese.glsl";
+    }
+    return BuildProgram(files, Defines(shader), EmbeddedShaders());
+  });
 }
 
 Result<GLuint> ShaderLibrary::Get(const PoseShader& shader) {
-  if (const auto found = pose_.find(shader); found != pose_.end()) return found->second.name();
-  Result<gl::Program> program =
-      BuildProgram({"scene/pose.vert.glsl"}, Defines(shader), EmbeddedShaders());
-  FURROW_RETURN_IF_ERROR(program);
-  return pose_.emplace(shader, std::move(*program)).first->second.name();
+  return Find(&pose_, shader, [&] {
+    return BuildProgram({"scene/pose.vert.glsl"}, Defines(shader), EmbeddedShaders());
+  });
 }
 
 Result<GLuint> ShaderLibrary::GetShadow(bool alpha_test) {
@@ -114,10 +146,9 @@ Result<GLuint> ShaderLibrary::GetNamed(std::string_view vertex, std::string_view
   // the key.
   std::string key(fragment);
   for (const std::string& define : defines) key += ";" + define;
-  if (const auto found = named_.find(key); found != named_.end()) return found->second.name();
-  Result<gl::Program> program = BuildProgram({vertex, fragment}, defines, EmbeddedShaders());
-  FURROW_RETURN_IF_ERROR(program);
-  return named_.emplace(std::move(key), std::move(*program)).first->second.name();
+  return Find(&named_, std::move(key), [&] {
+    return BuildProgram({vertex, fragment}, defines, EmbeddedShaders());
+  });
 }
 
 }  // namespace furrow::render

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <compare>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -82,10 +83,18 @@ inline constexpr int kBeckmannTableSize = 512;
 inline constexpr int kAlbedoTableSize = 32;
 inline constexpr int kPreintegratedTableSize = 48;
 
-// Compiles programs on first use and keeps them. The library owns the programs; their names are
-// valid as long as it is. Needs a current context. Errors of all Get...(): those of BuildProgram().
+// Compiles programs on first use and keeps them. Viewers choose the settings of their pictures, and
+// each combination needs programs of its own, so the library keeps the kMaxPrograms that were used
+// last. It owns the programs; their names are valid until the next BeginFrame(). Needs a current
+// context. Errors of all Get...(): those of BuildProgram().
 class ShaderLibrary {
  public:
+  // A picture needs 10 to 20 programs; one takes about 3 MiB with Mesa's software renderer.
+  static constexpr std::size_t kMaxPrograms = 96;
+
+  // Call it before the first pass of a picture: removes what was used longest ago. What the last
+  // picture used stays, however much that is.
+  void BeginFrame();
   [[nodiscard]] Result<GLuint> Get(const SceneShader& shader);
   // Vertex stage only, for transform feedback.
   [[nodiscard]] Result<GLuint> Get(const PoseShader& shader);
@@ -96,17 +105,25 @@ class ShaderLibrary {
   // "skin/combine.frag.glsl". `defines`: "NAME VALUE".
   [[nodiscard]] Result<GLuint> GetFullscreen(std::string_view fragment,
                                              const std::vector<std::string>& defines);
-  [[nodiscard]] int num_programs() const {
-    return static_cast<int>(scene_.size() + pose_.size() + named_.size());
+  [[nodiscard]] std::size_t num_programs() const {
+    return scene_.size() + pose_.size() + named_.size();
   }
 
  private:
+  struct Entry {
+    gl::Program program;
+    std::uint64_t used = 0;  // the last frame
+  };
+  // The program of `key`, which `build` makes if it is missing.
+  template <class Key, class Build>
+  Result<GLuint> Find(std::map<Key, Entry>* programs, Key key, Build build);
   [[nodiscard]] Result<GLuint> GetNamed(std::string_view vertex, std::string_view fragment,
                                         const std::vector<std::string>& defines);
 
-  std::map<SceneShader, gl::Program> scene_;
-  std::map<PoseShader, gl::Program> pose_;
-  std::map<std::string, gl::Program> named_;  // by file and defines
+  std::uint64_t frame_ = 0;
+  std::map<SceneShader, Entry> scene_;
+  std::map<PoseShader, Entry> pose_;
+  std::map<std::string, Entry> named_;  // by file and defines
 };
 
 }  // namespace furrow::render

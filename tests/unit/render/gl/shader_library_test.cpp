@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/gl/shader_library.h"
 
+#include <string>
+
 #include <gtest/gtest.h>
 
 #include "render/gl/egl_context.h"
@@ -242,6 +244,35 @@ TEST_F(ShaderLibraryTest, EveryFullscreenConfigurationCompiles) {
 
 TEST_F(ShaderLibraryTest, AProgramIsCompiledOnce) {
   EXPECT_EQ(*library_.Get(SceneShader{}), *library_.Get(SceneShader{}));
+}
+
+// Every viewer may ask for settings of its own.
+TEST_F(ShaderLibraryTest, KeepsTheProgramsThatWereUsedLast) {
+  const auto get = [&](int variant) {
+    const Result<GLuint> program =
+        library_.GetFullscreen("skin/combine.frag.glsl", {"VARIANT " + std::to_string(variant)});
+    EXPECT_TRUE(program.ok()) << program.status().ToString();
+    return program.ok() ? *program : 0;
+  };
+  constexpr int kLimit = static_cast<int>(ShaderLibrary::kMaxPrograms);
+  GLuint always = 0;
+  for (int variant = 0; variant < 2 * kLimit; ++variant) {
+    library_.BeginFrame();
+    const GLuint kept = get(-1);
+    if (variant > 0) ASSERT_EQ(kept, always) << "used in every picture";
+    always = kept;
+    (void)get(variant);
+    ASSERT_LE(library_.num_programs(), ShaderLibrary::kMaxPrograms + 1)
+        << "one more until the next";
+  }
+  // A picture that needs more than all others together keeps what it needs.
+  library_.BeginFrame();
+  for (int variant = 0; variant < 2 * kLimit; ++variant) (void)get(variant);
+  library_.BeginFrame();
+  EXPECT_EQ(library_.num_programs(), std::size_t{2 * kLimit});
+  library_.BeginFrame();
+  library_.BeginFrame();
+  EXPECT_LE(library_.num_programs(), ShaderLibrary::kMaxPrograms);
 }
 
 }  // namespace
