@@ -49,7 +49,7 @@ struct RegionFabric {
 
 // How loose cloth is cut, relative to the ease of all clothes.
 struct ClothEase {
-  float looser = 1.0f;  // multiplier for the mean ease, [0, 4]
+  float looser = 1.0f;  // multiplier for the mean ease, [1, 4]
   float least = 0.0f;   // the least ease of any place, as a share of this mean, [0, 1]
 };
 

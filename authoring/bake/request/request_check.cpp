@@ -161,8 +161,8 @@ Status CheckOptions(const BakeOptions& options) {
   }
   for (const RegionEase& region : options.eases) {
     const std::string where = "options.eases, region '" + region.region + "'";
-    if (!In(region.ease.looser, 0.0f, 4.0f)) {
-      return Refuse("looser is " + Text(region.ease.looser) + "; it must be in [0, 4]", where);
+    if (!In(region.ease.looser, 1.0f, 4.0f)) {
+      return Refuse("looser is " + Text(region.ease.looser) + "; it must be in [1, 4]", where);
     }
     if (!In(region.ease.least, 0.0f, 1.0f)) {
       return Refuse("least is " + Text(region.ease.least) + "; it must be in [0, 1]", where);
