@@ -11,6 +11,7 @@
 
 #include "authoring/bake/layers/parallel_for.h"
 #include "authoring/bake/request/fabric.h"
+#include "authoring/bake/surface/cloth_slip.h"
 #include "authoring/bake/surface/posed_surface.h"
 #include "base/scalar.h"
 
@@ -33,6 +34,8 @@ constexpr int kFoldPasses = 48;
 // Mean strain of cloth that just hangs, and of cloth that a joint pulls.
 constexpr float kHangingStrain = 0.02f;
 constexpr float kBentStrain = 0.1f;
+// How far a bend pushes cloth along the body, metres: about as far as a limb is thick.
+constexpr float kSlipReach = 0.08f;
 // The square of a slope that nobody sees.
 constexpr float kFlat = 1e-3f;
 
@@ -48,7 +51,8 @@ std::vector<vec3> PlacesOn(const FineMesh& mesh, std::span<const PosedVertex> su
 
 }  // namespace
 
-void ClothFolds::Add(const BakePose& pose, std::span<const float> mask, float wavelength) {
+void ClothFolds::Add(const BakePose& pose, std::span<const float> mask, float wavelength,
+                     const ClothEase& ease) {
   std::vector<SkinMatrices> path = pose.path;
   // Without a path, the pose is reached from rest.
   if (path.empty()) {
@@ -66,6 +70,7 @@ void ClothFolds::Add(const BakePose& pose, std::span<const float> mask, float wa
                                   .room = std::vector<float>(mesh_.vertices().size(), 0.0f),
                                   .shares = std::vector<float>(mesh_.vertices().size(), 0.0f),
                                   .wavelength = wavelength,
+                                  .eases = std::vector<ClothEase>(mesh_.vertices().size()),
                                   .wider = {},
                                   .folds = {}});
   }
@@ -73,26 +78,35 @@ void ClothFolds::Add(const BakePose& pose, std::span<const float> mask, float wa
     const float inside = mesh_.vertices()[v].Interpolate(mask);
     found->room[v] = std::max(found->room[v], inside);
     found->shares[v] = std::max(found->shares[v], inside * pose.weight);
+    ClothEase& here = found->eases[v];
+    here.looser = std::max(here.looser, std::lerp(1.0f, ease.looser, inside));
+    here.least = std::max(here.least, inside * ease.least);
   }
 }
 
-// Per vertex of the mesh: how much wider than beside a bent joint folds are.
-std::vector<float> ClothFolds::WiderWhereHanging(const Pose& pose) const {
+// The vertices of the mesh at the end of the pose's path.
+std::vector<vec3> ClothFolds::LastPlaces(const Pose& pose) const {
   const Surface& surface = mesh_.surface();
   const std::vector<vec3> morphed =
       pose.shape_weights.empty() ? std::vector<vec3>() : surface.Morphed(pose.shape_weights);
-  const std::vector<vec3> cut =
-      PlacesOn(mesh_, PoseSurface(surface, pose.path.front(), surface.positions()));
-  const std::vector<vec3> bent =
-      PlacesOn(mesh_, PoseSurface(surface, pose.path.back(),
-                                  morphed.empty() ? surface.positions() : std::span(morphed)));
+  return PlacesOn(mesh_, PoseSurface(surface, pose.path.back(),
+                                     morphed.empty() ? surface.positions() : std::span(morphed)));
+}
+
+// Per vertex of the mesh: how much wider than beside a bent joint folds are. A bend also pulls and
+// presses the cloth that it pushes along the body.
+std::vector<float> ClothFolds::WiderWhereHanging(std::span<const vec3> cut,
+                                                 std::span<const vec3> bent,
+                                                 std::span<const glm::mat3> slipped) const {
   std::vector<float> strains(mesh_.vertices().size(), 0.0f);
   for (const auto& edge : mesh_.edges()) {
     const float before = std::max(glm::distance(cut[edge[0]], cut[edge[1]]), 1e-9f);
     const float after = glm::distance(bent[edge[0]], bent[edge[1]]);
     const float strain = std::min(std::abs(after / before - 1.0f), 1.0f);
     for (const std::uint32_t end : edge) {
-      strains[end] += strain / static_cast<float>(mesh_.Around(end).size());
+      const glm::mat3& gain = slipped[end];
+      strains[end] += (strain + gain[0][0] + gain[1][1] + gain[2][2]) /
+                      static_cast<float>(mesh_.Around(end).size());
     }
   }
   Smooth(&strains, kFoldPasses);
@@ -105,11 +119,19 @@ std::vector<float> ClothFolds::WiderWhereHanging(const Pose& pose) const {
 
 template <class Step>
 void ClothFolds::SolvePose(Pose* pose, const Step& step) const {
-  pose->wider = WiderWhereHanging(*pose);
-  WrinkleMesh cloth(
-      mesh_, pose->room,
-      {.wavelength = pose->wavelength, .ease = ease_, .seed = seed_, .wider = pose->wider});
   const Surface& surface = mesh_.surface();
+  const std::vector<vec3> cut =
+      PlacesOn(mesh_, PoseSurface(surface, pose->path.front(), surface.positions()));
+  const std::vector<vec3> bent = LastPlaces(*pose);
+  const std::vector<glm::mat3> slipped = SlippedLength(mesh_, cut, bent, pose->room, kSlipReach);
+  pose->wider = WiderWhereHanging(cut, bent, slipped);
+  WrinkleMesh cloth(mesh_, pose->room,
+                    {.wavelength = pose->wavelength,
+                     .ease = ease_,
+                     .seed = seed_,
+                     .wider = pose->wider,
+                     .eases = pose->eases,
+                     .slipped = slipped});
   const std::vector<SkinMatrices>& path = pose->path;
   std::vector<float> weights = pose->shape_weights;
   for (std::size_t k = 0; k < path.size(); ++k) {
@@ -121,7 +143,7 @@ void ClothFolds::SolvePose(Pose* pose, const Step& step) const {
         weights.empty() ? std::vector<vec3>() : surface.Morphed(weights);
     const std::span<const vec3> positions =
         weights.empty() ? surface.positions() : std::span<const vec3>(morphed);
-    cloth.Step(PoseSurface(surface, path[k], positions), last ? kLastIterations : kIterations);
+    cloth.Step(PoseSurface(surface, path[k], positions), last ? kLastIterations : kIterations, t);
     if (!step()) return;
   }
   pose->folds = cloth.Folds();

@@ -28,8 +28,10 @@ class ClothFolds {
   // Adds a pose (BakePose::path, shape_weights and weight count). `mask`: where it counts, one per
   // welded vertex, [0, 1]. `wavelength`: from fold to fold where the pose deforms cloth, metres, >
   // 0. Where cloth hangs, it is wider, by HangingWidth(). Masks of one pose with one wavelength
-  // are joined, so that its folds cross the borders of regions.
-  void Add(const BakePose& pose, std::span<const float> mask, float wavelength);
+  // are joined, so that its folds cross the borders of regions. `ease`: inside the mask; where
+  // masks of one pose overlap, the loosest counts.
+  void Add(const BakePose& pose, std::span<const float> mask, float wavelength,
+           const ClothEase& ease = {});
 
   // Simulates all poses. Where several poses meet, the deepest folds of them prevail, in
   // proportion to mask times weight: the mean of folds at different places would be flat. The
@@ -52,13 +54,17 @@ class ClothFolds {
     std::vector<float> room;    // per vertex of the mesh: the mask
     std::vector<float> shares;  // the same, times the weight
     float wavelength = 0.0f;
-    std::vector<float> wider;  // per vertex of the mesh: multiplier for the wavelength
+    std::vector<ClothEase> eases;  // per vertex of the mesh
+    std::vector<float> wider;      // per vertex of the mesh: multiplier for the wavelength
     std::vector<WrinkleMesh::Fold> folds;
   };
   // Calls `step` after every step of the path; it returns false to stop.
   template <class Step>
   void SolvePose(Pose* pose, const Step& step) const;
-  [[nodiscard]] std::vector<float> WiderWhereHanging(const Pose& pose) const;
+  [[nodiscard]] std::vector<glm::vec3> LastPlaces(const Pose& pose) const;
+  [[nodiscard]] std::vector<float> WiderWhereHanging(std::span<const glm::vec3> cut,
+                                                     std::span<const glm::vec3> bent,
+                                                     std::span<const glm::mat3> slipped) const;
   [[nodiscard]] std::vector<float> Prominence(const Pose& pose) const;
   void Mix();
   template <class T>

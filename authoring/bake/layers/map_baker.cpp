@@ -104,7 +104,8 @@ void MapBaker::AddPose(const BakePose& pose) {
   std::vector<float> weights = MaskOf(pose.region);
   if (weights.empty()) weights.assign(field.tensors.size(), 1.0f);
   if (cloth_folds_ != nullptr) {
-    cloth_folds_->Add(pose, ClothMask(pose.region, weights), ClothWavelength(pose.region));
+    cloth_folds_->Add(pose, ClothMask(pose.region, weights), ClothWavelength(pose.region),
+                      EaseOf(pose.region));
   }
   for (float& weight : weights) weight *= pose.weight;
   sum_.Add(field.tensors, weights);
@@ -155,6 +156,12 @@ float MapBaker::ClothWavelength(const std::string& region) const {
       static_cast<float>(sum / static_cast<double>(std::max<std::size_t>(sides.size(), 1)));
   return std::max({FoldWavelength(fabric), kEdgesPerFold * surface_.fine_mesh()->edge(),
                    kTexelsPerWave * texel});
+}
+
+ClothEase MapBaker::EaseOf(const std::string& region) const {
+  const auto entry = std::ranges::find_if(
+      options_.eases, [&](const RegionEase& one) { return one.Covers(region); });
+  return entry == options_.eases.end() ? ClothEase() : entry->ease;
 }
 
 // Metres per welded vertex. Regions mix by their masks in the logarithm, so 4 mm and 16 mm meet at

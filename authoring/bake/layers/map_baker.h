@@ -50,6 +50,7 @@ class MapBaker {
   [[nodiscard]] std::vector<float> ClothMask(const std::string& region,
                                              std::vector<float> painted) const;
   [[nodiscard]] float ClothWavelength(const std::string& region) const;
+  [[nodiscard]] ClothEase EaseOf(const std::string& region) const;
   [[nodiscard]] float Depth() const { return options_.depth * material_.depth; }
   [[nodiscard]] std::vector<float> Wavelengths() const;
   // The shortest wavelength that the map's texels can show, per welded vertex, metres.

@@ -33,7 +33,18 @@ constexpr float kYield = 10.0f;
 // a pull along the surface hold a crest down.
 constexpr float kFree = 0.3f;
 // How much more a pull presses cloth to the surface, per strain.
-constexpr float kPress = 16.0f;
+constexpr float kPress = 20.0f;
+// The radius over which the mean height counts, in wavelengths.
+constexpr float kLevelRadius = 0.7f;
+// How far the mean may be from the surface, in wavelengths: as high as half a fold that stands on
+// the body.
+constexpr float kLift = 0.2f;
+// The share of the rest that an iteration removes.
+constexpr float kLevel = 0.05f;
+// The share of the difference between neighbours that their means exchange per iteration.
+constexpr float kExchange = 0.8f;
+// The part of its weight that presses cloth flat to a body below it. Folds carry the rest.
+constexpr float kLying = 0.2f;
 // The strength of bending, at edges of a wavelength / pi.
 constexpr float kBending = 0.05f;
 // A share of the bending that an iteration removes. Larger values make the heights oscillate.
@@ -130,11 +141,10 @@ void WrinkleMesh::MakeLinks() {
     const float room_a = active_[a].room, room_b = active_[b].room;
     if (room_a <= 0.0f && room_b <= 0.0f) continue;
     const float mobile = (room_a > 0.0f ? 1.0f : 0.0f) + (room_b > 0.0f ? 1.0f : 0.0f);
-    const float loose = 2.0f * Smoothstep(kTightNoise, kLooseNoise, NoiseAt(edge[0], 2));
-    const float looser = std::lerp(1.0f, loose, options_.variation);
     links_.push_back({.a = a,
                       .b = b,
-                      .ease = options_.ease * looser * 0.5f * (room_a + room_b),
+                      .ease = EaseOf(edge) * 0.5f * (room_a + room_b),
+                      .gain = GainOf(edge) * 0.5f * (room_a + room_b),
                       .share_a = room_a > 0.0f ? 1.0f / mobile : 0.0f,
                       .share_b = room_b > 0.0f ? 1.0f / mobile : 0.0f});
   }
@@ -154,7 +164,26 @@ void WrinkleMesh::MakeLinks() {
     active_[i].support = std::min(active_[i].bending * square * square, kMostSupport);
     // The mean of the neighbours at the distance l is higher by l^2 / 4 times the curvature.
     active_[i].yield = kYield / wavelength * 0.25f * edge * edge;
+    // Means that exchange D and follow the height by f average over a radius of l sqrt(D / f) / 2.
+    const float radius = kLevelRadius * wavelength;
+    active_[i].follow = std::min(0.25f * kExchange * edge * edge / (radius * radius), 0.5f);
   }
+}
+
+// How much longer than the surface the cloth is along an edge, if it lies level.
+float WrinkleMesh::EaseOf(const FineMesh::Edge& edge) const {
+  const ClothEase ease = options_.eases.empty() ? ClothEase() : options_.eases[edge[0]];
+  const float loose = std::lerp(ease.least, 2.0f - ease.least,
+                                Smoothstep(kTightNoise, kLooseNoise, NoiseAt(edge[0], 2)));
+  return options_.ease * ease.looser * std::lerp(1.0f, loose, options_.variation);
+}
+
+// How much length an edge gains in the last pose, as a share of its cut length.
+float WrinkleMesh::GainOf(const FineMesh::Edge& edge) const {
+  if (options_.slipped.empty()) return 0.0f;
+  const vec3 along = UnitOr(mesh_.positions()[edge[1]] - mesh_.positions()[edge[0]], vec3(0.0f));
+  const glm::mat3 gain = 0.5f * (options_.slipped[edge[0]] + options_.slipped[edge[1]]);
+  return glm::dot(along, gain * along);
 }
 
 // Smooth noise over the surface at rest, [-variation, variation]. `stream` selects one of several.
@@ -167,7 +196,7 @@ float WrinkleMesh::NoiseAt(std::uint32_t vertex, int stream) const {
 }
 
 // Moves the surface; the cloth keeps its place relative to the surface.
-void WrinkleMesh::Carry(std::span<const PosedVertex> surface) {
+void WrinkleMesh::Carry(std::span<const PosedVertex> surface, float way) {
   for (Active& point : active_) {
     const FineMesh::Vertex& vertex = mesh_.vertices()[point.vertex];
     const vec3 offset = glm::transpose(point.turn) * (point.cloth - point.base);
@@ -186,7 +215,7 @@ void WrinkleMesh::Carry(std::span<const PosedVertex> surface) {
   }
   if (!started_) Cut();
   MeasureTension();
-  for (Link& link : links_) SetLength(&link);
+  for (Link& link : links_) SetLength(way, &link);
   started_ = true;
 }
 
@@ -226,7 +255,7 @@ void WrinkleMesh::MeasureTension() {
 
 // Cloth that is pulled gives way, because it slips along the body: a taut mesh could not rise. It
 // is then too wide across the pull (Cerda and Mahadevan 2003), and folds along it.
-void WrinkleMesh::SetLength(Link* link) const {
+void WrinkleMesh::SetLength(float way, Link* link) const {
   const Active& a = active_[link->a];
   const Active& b = active_[link->b];
   const vec3 edge = b.base - a.base;
@@ -239,15 +268,15 @@ void WrinkleMesh::SetLength(Link* link) const {
   const float narrowing = 1.0f + kNarrowing * std::clamp(pull, 0.0f, kLargestTension);
   const float pressed =
       link->cut * std::clamp(now / (kLeastStretch * std::max(link->cut, 1e-9f)), kShortest, 1.0f);
-  link->length = narrowing * std::max(pressed, now);
+  link->length = narrowing * std::max(pressed, now) + way * link->gain * link->cut;
 }
 
-void WrinkleMesh::Step(std::span<const PosedVertex> surface, int iterations) {
-  Carry(surface);
+void WrinkleMesh::Step(std::span<const PosedVertex> surface, int iterations, float way) {
+  Carry(surface, way);
   Gather();
   for (int i = 0; i < iterations; ++i) {
     for (std::size_t v = 0; v < cloth_.size(); ++v) {
-      if (held_[v].room > 0.0f) cloth_[v].y -= options_.weight;
+      if (held_[v].room > 0.0f) cloth_[v] += held_[v].weight;
     }
     KeepLengths();
     Bend();
@@ -260,16 +289,21 @@ void WrinkleMesh::Step(std::span<const PosedVertex> surface, int iterations) {
 void WrinkleMesh::Gather() {
   cloth_.resize(active_.size());
   held_.resize(active_.size());
+  levels_.resize(active_.size(), 0.0f);
   for (std::size_t v = 0; v < active_.size(); ++v) {
     const Active& point = active_[v];
     cloth_[v] = point.cloth;
+    const vec3 down(0.0f, -options_.weight, 0.0f);
+    const float into = std::min(glm::dot(down, point.normal), 0.0f);
     held_[v] = {point.base,
                 point.normal,
                 point.room,
                 point.bending,
                 point.support,
                 point.pressed,
-                std::max(point.yield, 1e-9f)};
+                std::max(point.yield, 1e-9f),
+                point.follow,
+                down - (1.0f - kLying) * into * point.normal};
   }
   springs_.resize(links_.size());
   for (std::size_t i = 0; i < links_.size(); ++i) {
@@ -322,14 +356,25 @@ void WrinkleMesh::Bend() {
   }
   Laplacian(bends_, &changes_);
   Laplacian(slides_, &slide_changes_);
+  FollowLevels();
+  const float lift = kLift * options_.wavelength;
   const float free = kFree * options_.wavelength;
   for (std::size_t i = 0; i < cloth_.size(); ++i) {
     const Held& held = held_[i];
     if (held.room <= 0.0f) continue;
     const float back = held.support * free * Tanh(heights_[i] / free) +
-                       (held.pressed - held.support) * heights_[i];
+                       (held.pressed - held.support) * heights_[i] +
+                       kLevel * (levels_[i] - std::clamp(levels_[i], -lift, lift));
     cloth_[i] -= held.normal * (held.bending * changes_[i] + back);
     cloth_[i] += kSlideTogether * slide_changes_[i];
+  }
+}
+
+// The levels relax towards the solution of a screened diffusion: a mean of the heights.
+void WrinkleMesh::FollowLevels() {
+  Laplacian(levels_, &level_changes_);
+  for (std::size_t i = 0; i < levels_.size(); ++i) {
+    levels_[i] += kExchange * level_changes_[i] + held_[i].follow * (heights_[i] - levels_[i]);
   }
 }
 

@@ -8,6 +8,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
+#include "authoring/bake/request/fabric.h"
 #include "authoring/bake/surface/fine_mesh.h"
 #include "authoring/bake/surface/posed_surface.h"
 
@@ -22,11 +23,14 @@ namespace furrow::authoring {
 //   The body limits how far it sinks, and friction how far it slides.
 // - Bending stiffness B and a weak pull K towards the surface decide how wide folds are: the
 //   buckling sheet on a foundation, lambda = 2 pi (B / K)^(1/4).
+// - The surface is where the cloth lies on average. So a stronger pull holds the mean over a few
+//   folds near the surface. Otherwise a sleeve or a leg would spend its ease on growing rounder or
+//   on hanging off the limb as a whole, and stay as smooth as a pipe.
 // - Hanging cloth is pulled straight by its weight, so most of its ease lies across gravity.
 // - Sharply bent cloth creases: beyond a curvature, its resistance stops growing.
 // - Seams, wear and the body below make cloth uneven: over about three wavelengths, its ease varies
-//   between none and twice the mean, and its wavelength by up to half. Otherwise folds would be
-//   rings.
+//   between the least and as much beyond the mean, and its wavelength by up to half. Otherwise
+//   folds would be rings.
 // - Step() moves the surface a little and lets the cloth settle. Folds keep their identity from
 //   step to step: they deepen, travel and merge.
 class WrinkleMesh {
@@ -44,6 +48,11 @@ class WrinkleMesh {
     std::uint32_t seed = 1;    // of the dents and the variation
     // Per vertex of the mesh: a multiplier for the wavelength, > 0. Empty: 1.
     std::span<const float> wider;
+    // Per vertex of the mesh. Empty: as `ease` says, with tight places.
+    std::span<const ClothEase> eases;
+    // Per vertex of the mesh: the length that cloth gains in the last pose, because a bend pushes
+    // it there; see SlippedLength(). Empty: none.
+    std::span<const glm::mat3> slipped;
   };
 
   // `room`: per vertex of the mesh, a multiplier for the lengths by which it may leave its place,
@@ -51,8 +60,9 @@ class WrinkleMesh {
   WrinkleMesh(const FineMesh& mesh, std::span<const float> room, const Options& options);
 
   // Moves the surface to a pose, one entry per welded vertex, and lets the cloth settle. The cloth
-  // is cut for the first pose: its lengths are measured there.
-  void Step(std::span<const PosedVertex> surface, int iterations);
+  // is cut for the first pose: its lengths are measured there. `way`: the part of
+  // Options::slipped that has arrived, [0, 1].
+  void Step(std::span<const PosedVertex> surface, int iterations, float way = 1.0f);
 
   // The cloth at a vertex in the last pose, as seen from the surface.
   struct Fold {
@@ -69,6 +79,7 @@ class WrinkleMesh {
     std::uint32_t b = 0;
     float ease = 0.0f;     // how much longer the cloth is than the surface, if it lies level
     float cut = 0.0f;      // the cloth's length, metres
+    float gain = 0.0f;     // the length that it gains in the last pose, as a share of `cut`
     float length = 0.0f;   // length that it keeps in this pose, metres
     float share_a = 0.0f;  // part of a correction that each end takes; 0 for a fixed end
     float share_b = 0.0f;
@@ -80,7 +91,8 @@ class WrinkleMesh {
     float bending = 0.0f;  // share of the second Laplacian that it loses per iteration
     float support = 0.0f;  // share of its height that it loses per iteration, without a pull
     float yield = 0.0f;    // the Laplacian of the height where cloth creases, metres
-    float pressed = 0.0f;  // the same with the pull of this pose
+    float pressed = 0.0f;  // `support` with the pull of this pose
+    float follow = 0.0f;   // share of its height's difference that its level takes over
     glm::vec3 rest_normal{0.0f};
     glm::vec3 base{0.0f};    // its place on the surface
     glm::mat3 turn{1.0f};    // rotates from the rest pose to the pose
@@ -98,6 +110,8 @@ class WrinkleMesh {
     float support = 0.0f;
     float pressed = 0.0f;
     float yield = 0.0f;
+    float follow = 0.0f;
+    glm::vec3 weight{0.0f};  // how far gravity moves it per iteration, metres
   };
   struct Spring {
     std::uint32_t a = 0;
@@ -110,13 +124,16 @@ class WrinkleMesh {
   void Activate(std::span<const float> room);
   void MakeLinks();
   void Cut();
-  void Carry(std::span<const PosedVertex> surface);
+  void Carry(std::span<const PosedVertex> surface, float way);
+  [[nodiscard]] float EaseOf(const FineMesh::Edge& edge) const;
+  [[nodiscard]] float GainOf(const FineMesh::Edge& edge) const;
   [[nodiscard]] float NoiseAt(std::uint32_t vertex, int stream) const;
   void MeasureTension();
-  void SetLength(Link* link) const;
+  void SetLength(float way, Link* link) const;
   void Gather();
   void KeepLengths();
   void Bend();
+  void FollowLevels();
   void StayNear();
   template <class T>
   void Laplacian(const std::vector<T>& values, std::vector<T>* result) const;
@@ -133,8 +150,9 @@ class WrinkleMesh {
   std::vector<glm::vec3> cloth_;
   std::vector<Held> held_;
   std::vector<Spring> springs_;
+  std::vector<float> levels_;  // per active vertex: the mean height over a few folds
   // Per active vertex, scratch.
-  std::vector<float> heights_, bends_, changes_;
+  std::vector<float> heights_, bends_, changes_, level_changes_;
   std::vector<glm::vec3> slides_, slide_changes_;
   bool started_ = false;
 };

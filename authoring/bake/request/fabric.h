@@ -34,15 +34,31 @@ inline constexpr Fabric kFabrics[] = {
 // the weight of 80 cm of 250 g/m^2: 1.495, for all fabrics.
 [[nodiscard]] float HangingWidth();
 
+// True for a region itself and for its parts: "knee" covers knee_l_inner, and not kneecap.
+[[nodiscard]] inline bool CoversRegion(const std::string& region, std::string_view name) {
+  return name == region || name.starts_with(region + "_");
+}
+
 // The fabric of a region's cloth.
 struct RegionFabric {
   std::string region;
   Fabric fabric;
 
-  // True for the region itself and for its parts: "knee" covers knee_l_inner, and not kneecap.
-  [[nodiscard]] bool Covers(std::string_view name) const {
-    return name == region || name.starts_with(region + "_");
-  }
+  [[nodiscard]] bool Covers(std::string_view name) const { return CoversRegion(region, name); }
+};
+
+// How loose cloth is cut, relative to the ease of all clothes.
+struct ClothEase {
+  float looser = 1.0f;  // multiplier for the mean ease, [1, 4]
+  float least = 0.0f;   // the least ease of any place, as a share of this mean, [0, 1]
+};
+
+// The ease of a region's cloth.
+struct RegionEase {
+  std::string region;
+  ClothEase ease;
+
+  [[nodiscard]] bool Covers(std::string_view name) const { return CoversRegion(region, name); }
 };
 
 }  // namespace furrow::authoring

@@ -159,6 +159,15 @@ Status CheckOptions(const BakeOptions& options) {
   if (!In(options.ease, 0.0f, 0.3f)) {
     return Refuse("the ease is " + Text(options.ease) + "; it must be in [0, 0.3]", "options.ease");
   }
+  for (const RegionEase& region : options.eases) {
+    const std::string where = "options.eases, region '" + region.region + "'";
+    if (!In(region.ease.looser, 1.0f, 4.0f)) {
+      return Refuse("looser is " + Text(region.ease.looser) + "; it must be in [1, 4]", where);
+    }
+    if (!In(region.ease.least, 0.0f, 1.0f)) {
+      return Refuse("least is " + Text(region.ease.least) + "; it must be in [0, 1]", where);
+    }
+  }
   return CheckMaterial(options.cloth, "options.cloth");
 }
 

@@ -29,7 +29,10 @@ vec4 BySide(const vec3& p, float a, float b, float soft) {
 
 // Arms lie along X at rest. They fold in front, toward the forearm.
 vec4 Elbows(const vec3& p) {
-  const float near = Smoothstep(0.215f, 0.06f, std::abs(std::abs(p.x) - 0.455f));
+  // Folds fade before the gathers of the cuff, and below the armpit.
+  const float along = std::abs(p.x) - 0.455f;
+  const float near =
+      along > 0.0f ? Smoothstep(0.19f, 0.13f, along) : Smoothstep(-0.215f, -0.10f, along);
   const float inner = Side(p.z + 0.018f, 0.038f);
   return BySide(p, near * inner, near * (1.0f - inner), 0.01f);
 }

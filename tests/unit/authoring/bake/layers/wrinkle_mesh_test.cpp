@@ -11,6 +11,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
+#include "base/scalar.h"
 #include "tests/unit/authoring/bake/toys.h"
 
 namespace furrow::authoring {
@@ -222,6 +223,129 @@ TEST(WrinkleMesh, GivesTheSameFoldsAgainAndOthersForAnotherSeed) {
     differs = differs || first[v].height != other[v].height;
   }
   EXPECT_TRUE(differs);
+}
+
+// A sleeve with its axis along x: a tube of 29 cm round and 30 cm long, fixed at both ends.
+class Tube {
+ public:
+  Tube()
+      : mesh_(toys::Grid(20, 20, [](float u, float v) {
+          const float angle = 2.0f * kPi * (u < 1.0f ? u : 0.0f);  // the seam closes exactly
+          return toys::Point{
+              .position = {kLength * v, kRadius * std::sin(angle), -kRadius * std::cos(angle)},
+              .uv = {u, v}};
+        })) {
+    const character::Mesh* const meshes[] = {&mesh_};
+    surface_ = std::make_unique<Surface>(meshes);
+    fine_ = std::make_unique<FineMesh>(*surface_, kEdge);
+  }
+
+  // Hangs the cloth on the tube. Means are over its middle third.
+  struct Hung {
+    double height = 0.0;  // mean, metres
+    double drop = 0.0;    // how much further the lower half is from the surface than the upper
+    double slope = 0.0;   // root of the mean square
+  };
+  [[nodiscard]] Hung Hang(const WrinkleMesh::Options& options) const {
+    std::vector<float> room;
+    for (const vec3& p : fine_->positions()) {
+      room.push_back(p.x > 0.001f && p.x < kLength - 0.001f ? 1.0f : 0.0f);
+    }
+    WrinkleMesh cloth(*fine_, room, options);
+    const std::vector<glm::mat4> still(2, glm::mat4(1.0f));
+    cloth.Step(PoseSurface(*surface_, still, surface_->positions()), 400);
+    const std::vector<WrinkleMesh::Fold> folds = cloth.Folds();
+    Hung hung;
+    double count = 0.0, below = 0.0;
+    for (std::size_t v = 0; v < folds.size(); ++v) {
+      const vec3 p = fine_->positions()[v];
+      if (std::abs(p.x - 0.5f * kLength) > kLength / 6.0f) continue;
+      const auto height = static_cast<double>(folds[v].height);
+      hung.height += height;
+      hung.drop += p.y < 0.0f ? height : 0.0;
+      hung.slope += static_cast<double>(glm::dot(folds[v].gradient, folds[v].gradient));
+      below += p.y < 0.0f ? 1.0 : 0.0;
+      count += 1.0;
+    }
+    hung.drop = hung.drop / below - (hung.height - hung.drop) / (count - below);
+    hung.height /= count;
+    hung.slope = std::sqrt(hung.slope / count);
+    return hung;
+  }
+
+ private:
+  static constexpr float kRadius = 0.046f, kLength = 0.3f;  // metres
+  character::Mesh mesh_;
+  std::unique_ptr<Surface> surface_;
+  std::unique_ptr<FineMesh> fine_;
+};
+
+// A tube that is 15% wider than its surface could be 7 mm further out, and smooth.
+TEST(WrinkleMesh, SleevesFoldInsteadOfGrowingRounder) {
+  WrinkleMesh::Options options;
+  options.variation = 0.0f;
+  options.weight = 0.0f;
+  const Tube::Hung hung = Tube().Hang(options);
+  EXPECT_LT(std::abs(hung.height), 0.005);
+  EXPECT_GT(hung.slope, 0.2);
+}
+
+// Nor does its weight draw it down as a whole.
+TEST(WrinkleMesh, SleevesFoldInsteadOfHangingOffTheArm) {
+  const std::vector<ClothEase> loose(1 << 16, ClothEase{.looser = 1.6f, .least = 0.6f});
+  WrinkleMesh::Options options;
+  options.eases = loose;
+  const Tube::Hung hung = Tube().Hang(options);
+  EXPECT_LT(hung.drop, 0.008);
+  EXPECT_GT(hung.slope, 0.2);
+}
+
+TEST(WrinkleMesh, FoldsWhereABendPushesIt) {
+  const Sheet sheet;
+  WrinkleMesh::Options options = Weightless();
+  std::vector<glm::mat3> slipped;
+  for (const vec3& p : sheet.fine().positions()) {
+    const bool beside = p.x > 0.5f * kWidth;
+    slipped.push_back(glm::mat3(0.0f));
+    slipped.back()[0][0] = beside ? 0.25f : 0.0f;
+  }
+  options.slipped = slipped;
+  const auto steepness = [&](float way) {
+    WrinkleMesh cloth(sheet.fine(), sheet.Room(), options);
+    for (float part = 0.0f; part < 1.0f; part += 0.1f) {
+      cloth.Step(sheet.Posed(glm::mat4(1.0f)), 30, part * way);
+    }
+    const std::vector<WrinkleMesh::Fold> folds = cloth.Folds();
+    double sums[2] = {};
+    for (std::size_t v = 0; v < folds.size(); ++v) {
+      const float x = sheet.fine().positions()[v].x;
+      if (std::abs(x - 0.5f * kWidth) < 0.04f) continue;
+      sums[x > 0.5f * kWidth ? 1 : 0] += static_cast<double>(std::abs(folds[v].gradient.x));
+    }
+    return std::pair(sums[0], sums[1]);
+  };
+  const auto [calm, folded] = steepness(1.0f);
+  EXPECT_GT(folded, 3.0 * calm);
+  EXPECT_GT(folded, 2.0 * steepness(0.0f).second);
+}
+
+TEST(WrinkleMesh, HasNoTightPlacesWhereEaseHasALeast) {
+  const Sheet sheet;
+  const auto calm_share = [&](const ClothEase& ease) {
+    const std::vector<ClothEase> eases(sheet.fine().vertices().size(), ease);
+    WrinkleMesh::Options options;
+    options.weight = 0.0f;
+    options.eases = eases;
+    WrinkleMesh cloth(sheet.fine(), sheet.Room(), options);
+    cloth.Step(sheet.Posed(glm::mat4(1.0f)), 300);
+    double calm = 0.0, count = 0.0;
+    for (const WrinkleMesh::Fold& fold : cloth.Folds()) {
+      calm += glm::length(fold.gradient) < 0.05f ? 1.0 : 0.0;
+      count += 1.0;
+    }
+    return calm / count;
+  };
+  EXPECT_LT(calm_share({.least = 0.8f}), 0.6 * calm_share({.least = 0.0f}));
 }
 
 // A surface that collapses to a point, or turns inside out, gives finite folds.
