@@ -20,6 +20,7 @@ namespace {
 using character::Picture;
 
 constexpr float kLeastHeight = 1e-3f;  // millimetres
+constexpr float kLeastDerivative = 1e-3f;
 
 // Reserves the list that `bits` selects. A normal map of 4096 x 4096 texels and 16 bits has 100 MB,
 // and twice as much while it grows.
@@ -78,6 +79,27 @@ Picture NormalMapPicture(const render::DerivativeMap& slopes, const NormalFormat
     for (int c = 0; c < 3; ++c) Append(0.5f * normal[c] + 0.5f, format.bits, &picture);
   }
   return picture;
+}
+
+DerivativePicture DerivativeMapPicture(const render::DerivativeMap& slopes,
+                                       const NormalFormat& format) {
+  DerivativePicture map{{.name = {},
+                         .width = slopes.width,
+                         .height = slopes.height,
+                         .channels = 3,
+                         .pixels = {},
+                         .pixels16 = {},
+                         .pixels_float = {}},
+                        kLeastDerivative};
+  for (const float slope : slopes.texels) map.scale = std::max(map.scale, std::abs(slope));
+  Reserve(format.bits, &map.picture);
+  const float up = format.green_down ? -1.0f : 1.0f;
+  for (std::size_t i = 0; i + 1 < slopes.texels.size(); i += 2) {
+    Append(0.5f - 0.5f * slopes.texels[i] / map.scale, format.bits, &map.picture);
+    Append(0.5f - 0.5f * up * slopes.texels[i + 1] / map.scale, format.bits, &map.picture);
+    Append(0.0f, format.bits, &map.picture);
+  }
+  return map;
 }
 
 render::DerivativeMap SlopesOf(const character::Character& character, const ExportPlan::Map& map) {
