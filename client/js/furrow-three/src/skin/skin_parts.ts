@@ -21,7 +21,7 @@ void main() {
   #include <skinning_vertex>
   vFurrowUv = (furrowUv * vec3(uv, 1.0)).xy;
   gl_Position = shadowPosition(u_lights[u_light], (modelMatrix * vec4(transformed, 1.0)).xyz);
-  // What is nearer to the lamp than the stage casts shadows, too. WebGL cannot clamp depths of fragments.
+  // Surfaces nearer to the lamp than the stage cast shadows, too. WebGL cannot clamp depths of fragments.
   gl_Position.z = max(gl_Position.z, -gl_Position.w);
 }`;
 
