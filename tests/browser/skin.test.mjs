@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Skin shading by furrow-three in Chromium, which draws in software here, beside `furrow render --shading skin`.
 import assert from 'node:assert/strict';
-import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { copyFileSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { PNG } from 'pngjs';
 import { changedShare, difference, launch, openPage } from './browser.mjs';
+import { SHARE } from './daemon.mjs';
 import { serveModules } from './module_server.mjs';
 import { beside, FRAMES, insideOf, posesOf, rendered, rmse, SIZE, solved } from './parity.mjs';
 
@@ -96,8 +97,11 @@ after(async () => {
   server.close();
 });
 
-async function open(query = '') {
-  const page = await openPage(browser, `${server.address}/skin.html${query}`);
+/** `files`: bytes that the page may load, by path. */
+async function open(query = '', files = {}) {
+  const page = await openPage(browser, 'about:blank');
+  for (const [path, body] of Object.entries(files)) await page.route((url) => url.pathname === path, (route) => route.fulfill({ body }));
+  await page.goto(`${server.address}/skin.html${query}`);
   await page.waitForFunction(() => window.page);
   return page;
 }
@@ -172,6 +176,40 @@ test('settings change the picture as they change the daemon\'s', async (context)
     assert(apart <= (change.view === 'shadow' ? 12 : 2 * MAX_RMSE), JSON.stringify(change));
     assert(changes > 1.5 * apart, JSON.stringify(change));
   }
+  await close(page);
+});
+
+/** A .glb file with a change of its JSON. */
+function changedGlb(path, change) {
+  const file = readFileSync(path);
+  const end = 20 + file.readUInt32LE(12);
+  const json = JSON.parse(file.toString('utf8', 20, end));
+  change(json);
+  const text = Buffer.from(JSON.stringify(json));
+  const padded = Buffer.concat([text, Buffer.alloc((4 - (text.length % 4)) % 4, ' ')]);
+  const head = Buffer.from(file.subarray(0, 20));
+  head.writeUInt32LE(20 + padded.length + file.length - end, 8);
+  head.writeUInt32LE(padded.length, 12);
+  return Buffer.concat([head, padded, file.subarray(end)]);
+}
+
+test('a face that glows does so here, too', async (context) => {
+  const glowing = changedGlb(join(SHARE, 'default.glb'), ({ materials }) => {
+    for (const material of materials) if (material.name === 'skin' || material.name === 'cloth') material.emissiveFactor = [0, 0.1, 0.3];
+  });
+  writeFileSync(join(folder, 'glowing.glb'), glowing);
+  copyFileSync(join(SHARE, 'default.rig.json'), join(folder, 'glowing.rig.json'));
+  const [{ frame, ...moment }] = moments;
+  const character = ['--character', join(folder, 'glowing.glb')];
+  const expected = await rendered(folder, frame, '--shading', 'skin', ...ONE_SAMPLE, ...character);
+  const inside = insideOf(await rendered(folder, frame, '--view', 'material'));
+  const page = await open('?character=/glowing.glb', { '/glowing.glb': glowing, '/glowing.rig.json': readFileSync(join(folder, 'glowing.rig.json')) });
+  const actual = await drawn(page, { ...moment, settings: { shading: 'skin' } });
+  const apart = rmse(expected, actual, inside);
+  const plain = rmse(expected, await rendered(folder, frame, '--shading', 'skin', ...ONE_SAMPLE), inside);
+  context.diagnostic(`RMSE ${apart.toFixed(2)} of 255; the light changes the picture by ${plain.toFixed(2)}`);
+  assert(apart <= MAX_RMSE, `${apart}`);
+  assert(plain > 10, `${plain}`);
   await close(page);
 });
 

@@ -320,7 +320,7 @@ class Builder {
         furrowSpecular: { value: REFLECTANCE[kind] },
         furrowCavityAlbedo: { value: kind === 'skin' ? CAVITY_ALBEDO : 0 },
       },
-      ...(this.skin ? { facets: { kind, emits: this.emits, uniforms: this.facetUniforms(this.skin, source, kind) } } : {}),
+      ...(this.skin ? { facets: { kind, uniforms: this.facetUniforms(this.skin, source, kind) } } : {}),
     };
     this.bind(source, material);
     for (const texture of [material.map, material.normalMap, material.roughnessMap, material.emissiveMap]) if (texture) this.textures.add(texture);

@@ -13,7 +13,7 @@ export interface FacetUniforms extends Record<string, IUniform> {
 }
 
 /** Declarations of the fragment shader. `kind`: of the material. `hasThicknessMap`: there is a `furrowThicknessMap`. */
-export function facetHead(kind: Kind, emits: boolean, hasThicknessMap: boolean): string {
+export function facetHead(kind: Kind, hasThicknessMap: boolean): string {
   return `
 varying vec3 vFurrowWorld;
 uniform vec3 furrowForward;         // the camera's direction, unit, world space
@@ -26,7 +26,7 @@ layout(location = 1) out highp vec4 furrowNormalOut;
 layout(location = 2) out highp vec4 furrowGeometricOut;
 layout(location = 3) out highp vec4 furrowMatterOut;
 layout(location = 4) out highp float furrowDepthOut;
-${emits ? 'layout(location = 5) out highp vec4 furrowEmissionOut;' : ''}
+layout(location = 5) out highp vec4 furrowEmissionOut;
 vec3 normalizeOrZero(vec3 v) { return furrowUnit(v); }
 ${glslOf('scene/stored_facet.glsl', { MAX_CURVATURE })}
 const int FURROW_KIND = ${KINDS.indexOf(kind)};
@@ -37,7 +37,7 @@ const int FURROW_KIND = ${KINDS.indexOf(kind)};
 export const FACET_OPEN = 'if (furrowCavityAlbedo > 0.0) furrowOpen = clamp(diffuseColor.g / furrowCavityAlbedo, 0.0, 1.0);\n';
 
 /** The last statements of the fragment shader. `oneNormal`: both sides have the same normals. */
-export function facetTail(oneNormal: boolean, emits: boolean, hasThicknessMap: boolean): string {
+export function facetTail(oneNormal: boolean, hasThicknessMap: boolean): string {
   return `
 {
   vec3 furrowSide = ${oneNormal ? 'vNormal' : 'gl_FrontFacing ? vNormal : -vNormal'};
@@ -52,29 +52,25 @@ export function facetTail(oneNormal: boolean, emits: boolean, hasThicknessMap: b
   furrowGeometricOut = furrowStored.geometric;
   furrowMatterOut = furrowStored.matter;
   furrowDepthOut = dot(vFurrowWorld - cameraPosition, furrowForward);
-  ${emits ? 'furrowEmissionOut = vec4(totalEmissiveRadiance, 0.0);' : ''}
+  furrowEmissionOut = vec4(totalEmissiveRadiance, 0.0);
 }
 `;
 }
 
 /** A shade darkens what the targets hold: every output is a factor (shaders/scene/shade.frag.glsl). */
-export function shadeHead(emits: boolean): string {
-  return `
+export const SHADE_HEAD = `
 layout(location = 1) out highp vec4 furrowNormalOut;
 layout(location = 2) out highp vec4 furrowGeometricOut;
 layout(location = 3) out highp vec4 furrowMatterOut;
 layout(location = 4) out highp float furrowDepthOut;
-${emits ? 'layout(location = 5) out highp vec4 furrowEmissionOut;' : ''}
+layout(location = 5) out highp vec4 furrowEmissionOut;
 `;
-}
 
-export function shadeTail(emits: boolean): string {
-  return `
+export const SHADE_TAIL = `
 gl_FragColor = vec4(sqrt(diffuseColor.rgb), 1.0);
 furrowNormalOut = vec4(1.0);
 furrowGeometricOut = vec4(vec3(1.0), dot(diffuseColor.rgb, vec3(0.2126, 0.7152, 0.0722)));
 furrowMatterOut = vec4(1.0);
 furrowDepthOut = 1.0;
-${emits ? 'furrowEmissionOut = vec4(diffuseColor.rgb, 1.0);' : ''}
+furrowEmissionOut = vec4(diffuseColor.rgb, 1.0);
 `;
-}

@@ -40,10 +40,9 @@ export class SkinTargets {
   readonly picture: WebGLRenderTarget;
 
   /** `occlusionScale`: scene pixels per occlusion pixel, along each axis. */
-  constructor(readonly width: number, readonly height: number, readonly emits: boolean, readonly occlusionScale: number) {
+  constructor(readonly width: number, readonly height: number, readonly occlusionScale: number) {
     const z = new DepthTexture(width, height, FloatType);
-    const facets = [RGBA8, RGBA16F, RGBA8, RGBA8, R32F];
-    this.facets = make(width, height, emits ? [...facets, RGBA16F] : facets, z);
+    this.facets = make(width, height, [RGBA8, RGBA16F, RGBA8, RGBA8, R32F, RGBA16F], z);
     this.lit = make(width, height, [RGBA16F, RGBA16F, RGBA8], z);
     this.across = make(width, height, [RGBA32F], z);
     this.scattered = make(width, height, [RGBA32F], z);
@@ -57,8 +56,8 @@ export class SkinTargets {
     this.picture = make(width, height, [RGBA8], null, true);
   }
 
-  fits(width: number, height: number, emits: boolean, occlusionScale: number): boolean {
-    return this.width === width && this.height === height && this.emits === emits && this.occlusionScale === occlusionScale;
+  fits(width: number, height: number, occlusionScale: number): boolean {
+    return this.width === width && this.height === height && this.occlusionScale === occlusionScale;
   }
 
   dispose(): void {

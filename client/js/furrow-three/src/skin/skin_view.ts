@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Skin shading as the daemon's renderer draws it with one sample per pixel (render/pipeline.h): shadow maps, facets,
 // ambient occlusion, light, separable scattering, bloom, tone map and FXAA, by the renderer's own shaders.
-import { DataTexture, FloatType, LinearFilter, type PerspectiveCamera, RGBAFormat, type Texture, type Vector3, Vector2, Vector3 as Vec3,
-  Vector4, type WebGLRenderer, type WebGLRenderTarget } from 'three';
+import {
+  DataTexture, FloatType, LinearFilter, type PerspectiveCamera, RGBAFormat, type Texture, Vector2, Vector3, Vector4, type WebGLRenderer,
+  type WebGLRenderTarget,
+} from 'three';
 import type { FurrowCharacter } from '../character.js';
 import { SKIN_VIEWS, type StudioSettings } from '../settings.js';
 import { FrameUniforms, type PictureFrame, pictureFrame } from './frame_uniforms.js';
@@ -51,26 +53,25 @@ export class SkinView {
     const size = output ? new Vector2(output.width, output.height) : renderer.getDrawingBufferSize(new Vector2());
     camera.updateMatrixWorld();
     const frame = pictureFrame(camera, target, settings, size.x, size.y);
-    const emits = characters.some(({ emits: sends }) => sends);
-    this.prepareTargets(frame, settings, emits);
+    this.prepareTargets(frame, settings);
     const uniforms = this.frameUniforms.of(frame, camera, settings);
     const { autoClear } = renderer;
     renderer.autoClear = false;
     try {
       this.drawShadows(characters, camera, frame, settings, uniforms);
       this.drawFacets(characters, camera, frame, settings);
-      this.finish(frame, settings, uniforms, output);
+      this.finish(frame, settings, uniforms, characters.some(({ emits }) => emits), output);
     } finally {
       renderer.autoClear = autoClear;
       renderer.setRenderTarget(null);
     }
   }
 
-  private prepareTargets({ width, height, shadowTexels }: PictureFrame, settings: StudioSettings, emits: boolean): void {
+  private prepareTargets({ width, height, shadowTexels }: PictureFrame, settings: StudioSettings): void {
     const scale = settings.occlusion.half_resolution ? 2 : 1;
-    if (!this.targets?.fits(width, height, emits, scale)) {
+    if (!this.targets?.fits(width, height, scale)) {
       this.targets?.dispose();
-      this.targets = new SkinTargets(width, height, emits, scale);
+      this.targets = new SkinTargets(width, height, scale);
     }
     if (this.shadows?.height !== shadowTexels) {
       this.shadows?.dispose();
@@ -115,9 +116,9 @@ export class SkinView {
   }
 
   private drawFacets(characters: readonly FurrowCharacter[], camera: PerspectiveCamera, frame: PictureFrame, settings: StudioSettings): void {
-    const { facets, emits } = this.targets!;
+    const { facets } = this.targets!;
     const none = [0, 0, 0, 0];
-    this.clear(facets, [none, none, none, none, [NO_SURFACE, 0, 0, 0], ...(emits ? [none] : [])], true);
+    this.clear(facets, [none, none, none, none, [NO_SURFACE, 0, 0, 0], none], true);
     const { specular, wrinkles, wrinkle_strength: strength, wrinkle_maps: maps } = settings;
     for (const character of characters) {
       const { skin } = character;
@@ -130,11 +131,12 @@ export class SkinView {
     }
   }
 
-  private finish(frame: PictureFrame, settings: StudioSettings, uniforms: Record<string, unknown>, output: WebGLRenderTarget | null): void {
+  private finish(frame: PictureFrame, settings: StudioSettings, uniforms: Record<string, unknown>, emits: boolean,
+    output: WebGLRenderTarget | null): void {
     const { lit } = this.targets!;
     const isWhole = settings.view === 'final';
     const open = isWhole ? this.occlude(frame, settings) : null;
-    this.light(frame, settings, uniforms, open);
+    this.light(frame, settings, uniforms, emits, open);
     if (!isWhole) return this.present(settings, lit.textures[1]!, null, output);
     const light = this.combine(settings, this.scatter(frame, settings));
     this.present(settings, light, this.bloom(settings, light), output);
@@ -168,8 +170,8 @@ export class SkinView {
     return 0.001 * radiusMm * OCCLUSION_RANGE;
   }
 
-  private light(frame: PictureFrame, settings: StudioSettings, uniforms: Record<string, unknown>, open: Texture | null): void {
-    const { facets, lit, emits, occlusionScale } = this.targets!;
+  private light(frame: PictureFrame, settings: StudioSettings, uniforms: Record<string, unknown>, emits: boolean, open: Texture | null): void {
+    const { facets, lit, occlusionScale } = this.targets!;
     const lamps = this.lampsWithShadows(settings);
     const isWhole = settings.view === 'final';
     const background = isWhole ? settings.background : [0, 0, 0];
@@ -187,7 +189,7 @@ export class SkinView {
       uniforms: {
         ...uniforms, ...this.lens(frame),
         u_colour: facets.textures[0], u_normal: facets.textures[1], u_geometric: facets.textures[2], u_matter: facets.textures[3],
-        u_depth: facets.textures[4], u_emission: facets.textures[5] ?? null, u_open: open,
+        u_depth: facets.textures[4], u_emission: facets.textures[5], u_open: open,
         u_shadow_compare: this.shadows!.depthTexture, u_shadow_depth: this.shadows!.texture, u_albedo_table: this.albedoTable,
         u_range: this.occlusionRange(settings.occlusion.radius_mm),
       },
@@ -223,7 +225,7 @@ export class SkinView {
         uniforms: {
           u_irradiance: from, u_unscattered: irradiance,
           u_axis: new Vector2(1 - axis, axis), u_num_taps: kernel.count - 1,
-          u_geometry: new Vec3(frame.focusDistance, 1000 / subsurface.depth_range_mm, subsurface.gradient),
+          u_geometry: new Vector3(frame.focusDistance, 1000 / subsurface.depth_range_mm, subsurface.gradient),
           u_strength: axis === 0 ? 1 : subsurface.strength,
           u_offset: axis === 0 ? kernel.offsets : turned, u_weight: kernel.weights,
         },

@@ -2,7 +2,7 @@
 // Adds wrinkles to a material of three.js: shaders/wrinkles/wrinkles.glsl and shaders/scene/skinning.glsl, as changes to
 // three's own shaders, so that lights, shadows and environment maps work as usual.
 import type { IUniform, MeshStandardMaterial, Texture, Vector4, WebGLProgramParametersWithUniforms } from 'three';
-import { FACET_OPEN, facetHead, facetTail, shadeHead, shadeTail } from '../skin/facet_material.js';
+import { FACET_OPEN, facetHead, facetTail, SHADE_HEAD, SHADE_TAIL } from '../skin/facet_material.js';
 import type { Kind } from '../skin/materials.js';
 import { STUDIO_GLSL } from '../view/studio.js';
 
@@ -39,8 +39,6 @@ export interface FacetInput {
   kind: Kind;
   /** Of all characters and of the material. */
   uniforms: Record<string, IUniform>;
-  /** Some material of the character sends out light. */
-  emits: boolean;
 }
 
 /**
@@ -244,7 +242,7 @@ function patchFragment(shader: WebGLProgramParametersWithUniforms, input: Wrinkl
   const hasThicknessMap = facets?.uniforms.furrowThicknessMap !== undefined;
   let head = fragmentHead(input, view);
   if (view === 'studio') head += STUDIO_GLSL;
-  if (view === 'facets' && facets) head += shade ? shadeHead(facets.emits) : facetHead(facets.kind, facets.emits, hasThicknessMap);
+  if (view === 'facets' && facets) head += shade ? SHADE_HEAD : facetHead(facets.kind, hasThicknessMap);
   let source = replace(shader.fragmentShader, '#include <common>', `#include <common>\n${head}`);
   // The daemon's shading "diffuse" has no colours and cavities of wrinkle maps.
   const open = view === 'facets' && !shade ? FACET_OPEN : '';
@@ -271,7 +269,7 @@ function patchFragment(shader: WebGLProgramParametersWithUniforms, input: Wrinkl
     source = replace(source, '#include <dithering_fragment>', `#include <dithering_fragment>\n${code}`);
   };
   if (view === 'normal') last('gl_FragColor = vec4(inverseTransformDirection(normal, viewMatrix) * 0.5 + 0.5, gl_FragColor.a);');
-  if (view === 'facets' && facets) last(shade ? shadeTail(facets.emits) : facetTail(input.oneNormal, facets.emits, hasThicknessMap));
+  if (view === 'facets' && facets) last(shade ? SHADE_TAIL : facetTail(input.oneNormal, hasThicknessMap));
   shader.fragmentShader = source;
 }
 
@@ -294,7 +292,7 @@ export function addWrinkles(material: MeshStandardMaterial, input: WrinkleInput,
     patchFragment(shader, input, view);
   };
   const key = JSON.stringify([view, input.masks.length, input.base !== null, input.oneNormal, input.gradients,
-    input.facets?.kind, input.facets?.emits, input.facets?.uniforms.furrowThicknessMap !== undefined,
+    input.facets?.kind, input.facets?.uniforms.furrowThicknessMap !== undefined,
     input.maps.map(({ slope, colour, cavity, amplitude, colourScale }) => [!slope, !colour, !cavity, amplitude, colourScale])]);
   material.customProgramCacheKey = () => `furrow ${key}`;
   material.needsUpdate = true;
