@@ -12,7 +12,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
-#include "authoring/export/skinned_mask.h"
+#include "authoring/export/painted_mask.h"
 
 namespace furrow::authoring {
 namespace {
@@ -154,16 +154,16 @@ Picture MaskPicture(const character::Character& character, const ExportPlan::Mas
     const Picture* picture = nullptr;
     int channel = 0;
   };
-  std::array<Picture, 4> painted;  // masks by skin weights
+  std::array<Picture, 4> painted;  // masks by skin weights, and sliding ones
   std::array<Source, 4> sources;
   for (std::size_t c = 0; c < 4; ++c) {
     if (mask.regions[c] < 0) continue;
     const wrinkle::Region& region =
         character.rig.regions[static_cast<std::size_t>(mask.regions[c])];
-    if (region.mask.kind == wrinkle::Mask::Kind::kSkinning) {
-      SkinnedMask skinned = PaintSkinnedMask(character, region, kSkinnedMaskSide);
-      if (skinned.is_shared) shared->push_back(region.name);
-      painted[c] = std::move(skinned.picture);
+    if (region.mask.kind != wrinkle::Mask::Kind::kTexture) {
+      PaintedMask from_surface = PaintMask(character, region, kPaintedMaskSide);
+      if (from_surface.is_shared) shared->push_back(region.name);
+      painted[c] = std::move(from_surface.picture);
       sources[c] = {&painted[c], 0};
     } else {
       const int index = character.FindRigPicture(region.mask.texture);

@@ -50,8 +50,8 @@ struct HeightMap {
 [[nodiscard]] HeightMap HeightMapOf(const character::Picture& source, float millimetres);
 
 // The masks of up to four regions in red, green, blue and alpha, 8 bits. Sources of other sizes are
-// resampled bilinearly; unused channels are 0. Appends to `shared` the regions whose skin weights
-// differ where the surface shares texels (SkinnedMask::is_shared).
+// resampled bilinearly; unused channels are 0. Appends to `shared` the regions whose masks
+// differ where the surface shares texels (PaintedMask::is_shared).
 [[nodiscard]] character::Picture MaskPicture(const character::Character& character,
                                              const ExportPlan::Mask& mask,
                                              std::vector<std::string>* shared);
