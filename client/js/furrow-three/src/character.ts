@@ -76,7 +76,7 @@ export class FurrowCharacter extends Group {
     readonly skin: SkinParts | null,
     /** Why there is no skin shading; empty: there is. */
     readonly whyNoSkin: string,
-    /** Some material sends out light. */
+    /** Some material sends out light, or may. */
     readonly emits: boolean,
   ) {
     super();
@@ -244,7 +244,8 @@ class Builder {
     });
     if (meshes.length === 0) throw new Error('furrow-three: the file has no skinned mesh');
     this.hasSkin = meshes.some(({ material }) => kindOf(material as Material) === 'skin');
-    this.emits = meshes.some(({ material }) => sendsLight(material as MeshStandardMaterial));
+    // Shapes may raise light that is 0 at rest.
+    this.emits = this.file.binds.length > 0 || meshes.some(({ material }) => sendsLight(material as MeshStandardMaterial));
     for (const mesh of meshes) await this.addMesh(mesh);
     const joints = this.jointsOf(meshes[0]!);
     const character = new FurrowCharacter(this.parts, Object.values(this.sets), joints, new JointPoser(joints), this.targets,
