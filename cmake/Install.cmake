@@ -28,7 +28,7 @@ install(FILES "${PROJECT_BINARY_DIR}/furrow.pc" DESTINATION "${CMAKE_INSTALL_LIB
   COMPONENT development)
 # The plug-ins as they are in the source tree; docs/engines/ says where each of them goes. Templates are for `furrow`.
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/client/engines/" DESTINATION share/furrow/engines COMPONENT development
-        PATTERN "__pycache__" EXCLUDE PATTERN "*.in" EXCLUDE PATTERN ".clang-format" EXCLUDE)
+        PATTERN "__pycache__" EXCLUDE PATTERN "*.in" EXCLUDE PATTERN "*.in.meta" EXCLUDE PATTERN ".clang-format" EXCLUDE)
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION share/doc/furrow COMPONENT runtime)
 if(NOT FURROW_BUILD_PROGRAMS)
   return()

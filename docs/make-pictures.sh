@@ -260,6 +260,22 @@ engine_normals() {
   sheet engine_normals 4x2 1000 "${names[@]}"
 }
 
+# Skin shading by furrow render and by Chromium, and eight times their difference, from the test that compares them. Needs
+# Chromium and the packages of tests/browser/package-lock.json.
+browser_skin() {
+  local names=() frame way
+  FURROW_BIN=$(realpath "$build/bin") FURROW_SHARE=$(realpath "$share") FURROW_JS=$(realpath "$build/client/js") \
+    FURROW_ARTEFACTS=$work node --test --test-name-pattern 'the skin of the face' tests/browser/skin.test.mjs
+  for frame in 60 195 270; do
+    oiiotool "$work/skin-$frame.png" --ch R,G,B --cut 300x380+75+25 -o "$work/skin_${frame}_furrow.png"
+    oiiotool "$work/skin-$frame.png" --ch R,G,B --cut 300x380+523+25 -o "$work/skin_${frame}_browser.png"
+    oiiotool "$work/skin_${frame}_furrow.png" "$work/skin_${frame}_browser.png" --absdiff --mulc 8 \
+      -o "$work/skin_${frame}_difference.png"
+  done
+  for way in furrow browser difference; do names+=("skin_60_$way" "skin_195_$way" "skin_270_$way"); done
+  sheet browser_skin 3x3 900 "${names[@]}"
+}
+
 if (($# > 1)); then
   for name in "${@:2}"; do "$name"; done
   exit
@@ -284,6 +300,11 @@ if command -v blender godot3-runner xvfb-run >/dev/null; then
   engine_normals
 else
   echo "make-pictures: Blender, Godot or xvfb-run is missing; the picture of engines stays as it is" >&2
+fi
+if [[ -x /usr/bin/chromium && -d tests/browser/node_modules ]]; then
+  browser_skin
+else
+  echo "make-pictures: Chromium or its packages are missing; the picture of browsers stays as it is" >&2
 fi
 if [[ -d $shared/makehuman && -f $shared/performances/emotions.bvh ]]; then
   makehuman

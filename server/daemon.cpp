@@ -22,6 +22,7 @@
 #include <spdlog/spdlog.h>
 
 #include "base/status.h"
+#include "motion/find_recording.h"
 #include "rig/rig_file.h"
 #include "server/assets.h"
 #include "server/config/osc_profile_file.h"
@@ -228,7 +229,9 @@ Status Daemon::StartOsc() {
 
 Status Daemon::LoadPlayer() {
   if (config_.play.empty()) return {};
-  auto player = Player::Load(config_.play, PlayOptions(config_));
+  const auto file = motion::FindRecording(config_.play.string());
+  FURROW_RETURN_IF_ERROR(file);
+  auto player = Player::Load(*file, PlayOptions(config_));
   FURROW_RETURN_IF_ERROR(player);
   player_ = *std::move(player);
   return {};

@@ -15,7 +15,9 @@ export default defineConfig({
   resolve: {
     alias: {
       '@wire': `${setting('FURROW_JS_BUILD')}/wire/furrow/protocol/wire`,
+      '@shaders': `${setting('FURROW_JS_BUILD')}/shaders.ts`,
       'furrow/protocol': `${setting('FURROW_JS_SOURCE')}/furrow/src/protocol.ts`,
+      'furrow-three/settings': `${setting('FURROW_JS_SOURCE')}/furrow-three/src/settings.ts`,
       'furrow-three': `${setting('FURROW_JS_SOURCE')}/furrow-three/src/index.ts`,
       'three/addons': `${setting('FURROW_JS_SOURCE')}/node_modules/three/examples/jsm`,
       three: `${setting('FURROW_JS_SOURCE')}/node_modules/three/build/three.module.js`,

@@ -28,6 +28,7 @@ class Exporter {
       : character_(character), options_(options), write_(write) {
     const EngineTraits& traits = TraitsOf(options.engine);
     normals_ = {options.bits.value_or(traits.bits), traits.green_down};
+    derivatives_ = {options.bits.value_or(16), traits.green_down};
   }
 
   Result<ExportedFiles> Run() {
@@ -84,6 +85,18 @@ class Exporter {
     return WritePicture(key, stem, IntegerPicture(PictureAt(index)));
   }
 
+  // The normal map of a relief, and its derivative map if the options ask for it.
+  Status WriteRelief(const std::string& kind, const std::string& name, const std::string& stem,
+                     const render::DerivativeMap& slopes) {
+    FURROW_RETURN_IF_ERROR(WritePicture(PictureKey(kind, name, "normal"), stem + "_normal",
+                                        NormalMapPicture(slopes, normals_)));
+    if (!options_.derivatives) return {};
+    const DerivativePicture map = DerivativeMapPicture(slopes, derivatives_);
+    const std::string key = PictureKey(kind, name, "derivative");
+    derivative_scales_[key] = map.scale;
+    return WritePicture(key, stem + "_derivative", map.picture);
+  }
+
   Status WriteMaps() {
     for (std::size_t i = 0; i < plan_.maps.size(); ++i) {
       const ExportPlan::Map& map = plan_.maps[i];
@@ -91,8 +104,7 @@ class Exporter {
           character_.rig.wrinkle_maps[static_cast<std::size_t>(map.map)];
       const auto key = [&](const char* part) { return PictureKey("map", map.name, part); };
       if (map.has_relief()) {
-        FURROW_RETURN_IF_ERROR(WritePicture(key("normal"), map.name + "_normal",
-                                            NormalMapPicture(SlopesOf(character_, map), normals_)));
+        FURROW_RETURN_IF_ERROR(WriteRelief("map", map.name, map.name, SlopesOf(character_, map)));
       }
       if (map.height >= 0) {
         const HeightMap height = HeightMapOf(PictureAt(map.height), of.height_mm);
@@ -129,14 +141,16 @@ class Exporter {
     FURROW_RETURN_IF_ERROR(
         WriteCopy(key("roughness"), stem + "_roughness", material.roughness_texture));
     if (material.normal_texture < 0) return {};
-    const render::DerivativeMap slopes =
-        render::DerivativesFromNormalMap(PictureAt(material.normal_texture));
-    return WritePicture(key("normal"), stem + "_normal", NormalMapPicture(slopes, normals_));
+    return WriteRelief("material", entry.name, stem,
+                       render::DerivativesFromNormalMap(PictureAt(material.normal_texture)));
   }
 
   // After the pictures, whose files the texts name.
   Status WriteTexts() {
-    const TemplateData data = ShaderData(character_, plan_, options_.engine, files_);
+    TemplateData data = ShaderData(character_, plan_, options_.engine, files_);
+    if (options_.derivatives) {
+      data.texts["derivatives"] = normals_.green_down ? "down" : "up";
+    }
     const auto shaders = ShaderFiles(options_.engine, data);
     FURROW_RETURN_IF_ERROR(shaders);
     for (const TextFile& shader : *shaders) {
@@ -153,7 +167,9 @@ class Exporter {
                             .generator = options_.generator,
                             .names = names,
                             .files = &files_,
-                            .height_mm = &height_mm_};
+                            .height_mm = &height_mm_,
+                            .derivative_scales = &derivative_scales_,
+                            .derivative_bits = options_.derivatives ? derivatives_.bits : 0};
     FURROW_RETURN_IF_ERROR(Write("wrinkles.json", WrinklesJson(character_, plan_, file)));
     const auto readme = ReadmeFile(options_.engine, data);
     FURROW_RETURN_IF_ERROR(readme);
@@ -179,10 +195,12 @@ class Exporter {
   const ExportOptions& options_;
   const FileSink& write_;
   NormalFormat normals_;
+  NormalFormat derivatives_;
   ExportPlan plan_;
   ExportedFiles done_;
   std::map<std::string, std::string> files_;
   std::map<int, float> height_mm_;
+  std::map<std::string, float> derivative_scales_;
 };
 
 }  // namespace

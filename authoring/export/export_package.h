@@ -17,7 +17,9 @@ namespace furrow::authoring {
 struct ExportOptions {
   Engine engine = Engine::kGeneric;
   std::optional<int> bits;  // of normal maps, 8 or 16; nothing: the engine's default
-  std::string generator;    // what wrote the export: "furrow 0.1.0"
+  // Derivative maps beside the normal maps, with 16 bits unless `bits` says otherwise.
+  bool derivatives = false;
+  std::string generator;  // what wrote the export: "furrow 0.1.0"
   // Profiles whose names wrinkles.json lists. The rig's own exports are listed in any case.
   std::span<const rig::ExportProfile> profiles;
 };

@@ -12,7 +12,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
-#include "authoring/export/skinned_mask.h"
+#include "authoring/export/painted_mask.h"
 
 namespace furrow::authoring {
 namespace {
@@ -20,6 +20,7 @@ namespace {
 using character::Picture;
 
 constexpr float kLeastHeight = 1e-3f;  // millimetres
+constexpr float kLeastDerivative = 1e-3f;
 
 // Reserves the list that `bits` selects. A normal map of 4096 x 4096 texels and 16 bits has 100 MB,
 // and twice as much while it grows.
@@ -80,6 +81,27 @@ Picture NormalMapPicture(const render::DerivativeMap& slopes, const NormalFormat
   return picture;
 }
 
+DerivativePicture DerivativeMapPicture(const render::DerivativeMap& slopes,
+                                       const NormalFormat& format) {
+  DerivativePicture map{{.name = {},
+                         .width = slopes.width,
+                         .height = slopes.height,
+                         .channels = 3,
+                         .pixels = {},
+                         .pixels16 = {},
+                         .pixels_float = {}},
+                        kLeastDerivative};
+  for (const float slope : slopes.texels) map.scale = std::max(map.scale, std::abs(slope));
+  Reserve(format.bits, &map.picture);
+  const float up = format.green_down ? -1.0f : 1.0f;
+  for (std::size_t i = 0; i + 1 < slopes.texels.size(); i += 2) {
+    Append(0.5f - 0.5f * slopes.texels[i] / map.scale, format.bits, &map.picture);
+    Append(0.5f - 0.5f * up * slopes.texels[i + 1] / map.scale, format.bits, &map.picture);
+    Append(0.0f, format.bits, &map.picture);
+  }
+  return map;
+}
+
 render::DerivativeMap SlopesOf(const character::Character& character, const ExportPlan::Map& map) {
   const auto picture = [&](int index) -> const Picture& {
     return character.pictures[static_cast<std::size_t>(index)];
@@ -132,16 +154,16 @@ Picture MaskPicture(const character::Character& character, const ExportPlan::Mas
     const Picture* picture = nullptr;
     int channel = 0;
   };
-  std::array<Picture, 4> painted;  // masks by skin weights
+  std::array<Picture, 4> painted;  // masks by skin weights, and sliding ones
   std::array<Source, 4> sources;
   for (std::size_t c = 0; c < 4; ++c) {
     if (mask.regions[c] < 0) continue;
     const wrinkle::Region& region =
         character.rig.regions[static_cast<std::size_t>(mask.regions[c])];
-    if (region.mask.kind == wrinkle::Mask::Kind::kSkinning) {
-      SkinnedMask skinned = PaintSkinnedMask(character, region, kSkinnedMaskSide);
-      if (skinned.is_shared) shared->push_back(region.name);
-      painted[c] = std::move(skinned.picture);
+    if (region.mask.kind != wrinkle::Mask::Kind::kTexture) {
+      PaintedMask from_surface = PaintMask(character, region, kPaintedMaskSide);
+      if (from_surface.is_shared) shared->push_back(region.name);
+      painted[c] = std::move(from_surface.picture);
       sources[c] = {&painted[c], 0};
     } else {
       const int index = character.FindRigPicture(region.mask.texture);

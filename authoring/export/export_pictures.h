@@ -23,6 +23,19 @@ struct NormalFormat {
 [[nodiscard]] character::Picture NormalMapPicture(const render::DerivativeMap& slopes,
                                                   const NormalFormat& format);
 
+// A derivative map: dh/dx in red and dh/dy in green, where h are the heights of the relief; blue is
+// 0. x runs along u; y points up in the picture, or down with NormalFormat::green_down. A texel t
+// in [0, 1] means (2 t - 1) * `scale`; the scale is the largest derivative, at least 0.001. These
+// are the derivatives of surface gradients (Mikkelsen 2010, "Bump Mapping Unparametrized Surfaces
+// on the GPU"; 2020, "Surface Gradient-Based Bump Mapping Framework"): -n.xy / n.z of the normal
+// map.
+struct DerivativePicture {
+  character::Picture picture;
+  float scale = 1.0f;
+};
+[[nodiscard]] DerivativePicture DerivativeMapPicture(const render::DerivativeMap& slopes,
+                                                     const NormalFormat& format);
+
 // The slopes of a wrinkle map at full weight, before its amplitude. Precondition: has_relief().
 [[nodiscard]] render::DerivativeMap SlopesOf(const character::Character& character,
                                              const ExportPlan::Map& map);
@@ -37,8 +50,8 @@ struct HeightMap {
 [[nodiscard]] HeightMap HeightMapOf(const character::Picture& source, float millimetres);
 
 // The masks of up to four regions in red, green, blue and alpha, 8 bits. Sources of other sizes are
-// resampled bilinearly; unused channels are 0. Appends to `shared` the regions whose skin weights
-// differ where the surface shares texels (SkinnedMask::is_shared).
+// resampled bilinearly; unused channels are 0. Appends to `shared` the regions whose masks
+// differ where the surface shares texels (PaintedMask::is_shared).
 [[nodiscard]] character::Picture MaskPicture(const character::Character& character,
                                              const ExportPlan::Mask& mask,
                                              std::vector<std::string>* shared);

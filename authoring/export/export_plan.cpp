@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "authoring/export/engine.h"
-#include "authoring/export/skinned_mask.h"
+#include "authoring/export/painted_mask.h"
 #include "base/joined.h"
 #include "base/text.h"
 #include "render/wrinkles/wrinkle_table.h"
@@ -162,8 +162,8 @@ class Planner {
         return {picture.width, picture.height};
       }
       case Mask::Kind::kSkinning:
-        return glm::ivec2(MaskJoints(character_, region).empty() ? 0 : kSkinnedMaskSide);
-      case Mask::Kind::kSliding: break;
+      case Mask::Kind::kSliding:
+        return glm::ivec2(CanPaintMask(character_, region) ? kPaintedMaskSide : 0);
     }
     return glm::ivec2(0);
   }
@@ -188,7 +188,7 @@ class Planner {
         if (map != map_of_.end() && place != place_of_.end()) {
           weight.map = map->second;
           std::tie(weight.mask, weight.channel) = place->second;
-          weight.is_skinned = region.mask.kind == Mask::Kind::kSkinning;
+          weight.is_skinned = region.mask.kind != Mask::Kind::kTexture;
         }
         plan_.weights.push_back(std::move(weight));
       }

@@ -39,8 +39,8 @@ struct ExportPlan {
     int map = -1;      // index into `maps`; -1: the weight is not drawn
     int mask = -1;     // index into `masks`; -1: the weight is not drawn
     int channel = 0;   // 0..3 = r, g, b, a
-    // The mask follows skin weights. As in the renderer, the sum of these weights times their masks
-    // is limited to 1, and of weights of one map in one channel, the largest counts.
+    // The mask follows skin weights, or slides. As in the renderer, the sum of these weights times
+    // their masks is limited to 1, and of weights of one map in one channel, the largest counts.
     bool is_skinned = false;
     [[nodiscard]] bool is_drawn() const { return map >= 0 && mask >= 0; }
   };
@@ -66,10 +66,12 @@ struct ExportPlan {
 //
 // - Masks are packed four to a picture, in the order of the rig's regions. Skin and cloth have
 //   pictures of their own, so that a material reads as few as possible.
-// - Masks by skin weights become pictures (skinned_mask.h). Regions of the same joints, such as the
+// - Masks by skin weights become pictures (painted_mask.h). Regions of the same joints, such as the
 //   inner and the outer side of a knee, share a channel.
-// - A region has no picture if its mask slides, because it then follows the pose, or if the rig's
-//   picture is missing. Its weights are listed, so that indices match the stream, but not drawn.
+// - Sliding masks that stay in place become pictures, too.
+// - A region has no picture if its mask slides around a ball, because it then follows the pose, or
+//   if the rig's picture is missing. Its weights are listed, so that indices match the stream, but
+//   not drawn.
 //
 // Errors: kNotFound (no rig), kUnsupported (no weight can be drawn; the text lists the reasons).
 [[nodiscard]] Result<ExportPlan> PlanExport(const character::Character& character);

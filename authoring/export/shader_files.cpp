@@ -253,7 +253,8 @@ TemplateData ShaderData(const character::Character& character, const ExportPlan&
   const MaterialData data(character, plan, engine, files);
   TemplateData all;
   all.texts = {{"weight_count", std::to_string(plan.weights.size())},
-               {"engine", std::string(TraitsOf(engine).title)}};
+               {"engine", std::string(TraitsOf(engine).title)},
+               {"derivatives", ""}};
   for (const ExportPlan::Material& material : plan.materials) {
     all.lists["materials"].push_back(data.Run(material));
   }

@@ -45,19 +45,23 @@ class Writer {
       : character_(character), plan_(plan), file_(file) {}
 
   Json Run() const {
-    return {{"format", "furrow-wrinkles"},
-            {"version", kWrinklesVersion},
-            {"generator", file_.generator},
-            {"character", character_.name},
-            {"engine", TraitsOf(file_.engine).name},
-            {"normals",
-             {{"green", file_.normals.green_down ? "down" : "up"}, {"bits", file_.normals.bits}}},
-            {"maps", Maps()},
-            {"masks", Masks()},
-            {"weights", Weights()},
-            {"materials", Materials()},
-            {"cameras", Cameras()},
-            {"notes", plan_.notes}};
+    const char* green = file_.normals.green_down ? "down" : "up";
+    Json json = {{"format", "furrow-wrinkles"},
+                 {"version", kWrinklesVersion},
+                 {"generator", file_.generator},
+                 {"character", character_.name},
+                 {"engine", TraitsOf(file_.engine).name},
+                 {"normals", {{"green", green}, {"bits", file_.normals.bits}}}};
+    if (file_.derivative_bits > 0) {
+      json["derivatives"] = {{"green", green}, {"bits", file_.derivative_bits}};
+    }
+    json["maps"] = Maps();
+    json["masks"] = Masks();
+    json["weights"] = Weights();
+    json["materials"] = Materials();
+    json["cameras"] = Cameras();
+    json["notes"] = plan_.notes;
+    return json;
   }
 
  private:
@@ -66,6 +70,15 @@ class Writer {
   [[nodiscard]] Json File(const std::string& key) const {
     const auto found = file_.files->find(key);
     return found == file_.files->end() ? Json(nullptr) : Json(found->second);
+  }
+
+  // Adds the derivative map of `key` and its scale, if there is one: "derivative" and
+  // "derivative_scale" after `prefix`.
+  void AddDerivative(const std::string& key, const std::string& prefix, Json* json) const {
+    const auto scale = file_.derivative_scales->find(key);
+    if (scale == file_.derivative_scales->end()) return;
+    (*json)[prefix + "derivative"] = File(key);
+    (*json)[prefix + "derivative_scale"] = Number(scale->second);
   }
 
   [[nodiscard]] Json Maps() const {
@@ -83,6 +96,7 @@ class Writer {
           mm != file_.height_mm->end()) {
         json["height_mm"] = Number(mm->second);
       }
+      AddDerivative(PictureKey("map", entry.name, "derivative"), "", &json);
       json["colour"] = File(PictureKey("map", entry.name, "colour"));
       if (entry.colour >= 0) json["colour_scale"] = Number(map.colour_scale);
       json["cavity"] = File(PictureKey("map", entry.name, "cavity"));
@@ -185,19 +199,21 @@ class Writer {
     for (const ExportPlan::Material& entry : plan_.materials) {
       const character::Material& material =
           character_.materials[static_cast<std::size_t>(entry.material)];
-      list.push_back({{"name", material.name},
-                      {"surface", entry.cloth ? "cloth" : "skin"},
-                      {"base_colour", File(PictureKey("material", entry.name, "colour"))},
-                      {"base_colour_factor", Numbers(material.base_colour)},
-                      {"base_normal", File(PictureKey("material", entry.name, "normal"))},
-                      {"roughness", File(PictureKey("material", entry.name, "roughness"))},
-                      {"roughness_factor", Number(material.roughness)},
-                      {"texture_scale", Numbers(material.texture_scale)},
-                      {"texture_offset", Numbers(material.texture_offset)},
-                      {"maps", entry.maps},
-                      {"masks", entry.masks},
-                      {"weights", entry.weights},
-                      {"shader", File("shader." + entry.name)}});
+      Json json = {{"name", material.name},
+                   {"surface", entry.cloth ? "cloth" : "skin"},
+                   {"base_colour", File(PictureKey("material", entry.name, "colour"))},
+                   {"base_colour_factor", Numbers(material.base_colour)},
+                   {"base_normal", File(PictureKey("material", entry.name, "normal"))},
+                   {"roughness", File(PictureKey("material", entry.name, "roughness"))},
+                   {"roughness_factor", Number(material.roughness)},
+                   {"texture_scale", Numbers(material.texture_scale)},
+                   {"texture_offset", Numbers(material.texture_offset)},
+                   {"maps", entry.maps},
+                   {"masks", entry.masks},
+                   {"weights", entry.weights},
+                   {"shader", File("shader." + entry.name)}};
+      AddDerivative(PictureKey("material", entry.name, "derivative"), "base_", &json);
+      list.push_back(std::move(json));
     }
     return list;
   }

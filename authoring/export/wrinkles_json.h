@@ -25,6 +25,9 @@ struct WrinklesFile {
   const std::map<std::string, std::string>* files = nullptr;
   // Millimetres of a full texel by the index of the map, for maps with a height file.
   const std::map<int, float>* height_mm = nullptr;
+  // Scales of derivative maps by the key of their file, and their bits; 0: there are none.
+  const std::map<std::string, float>* derivative_scales = nullptr;
+  int derivative_bits = 0;
 };
 
 // The key of a file in WrinklesFile::files: "map.squash.normal", "mask.0", "material.skin.colour".

@@ -60,7 +60,8 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
                   "Port of the web page (default: 7480, or any free port if it is in use)");
   app->add_flag("--no-http", flags->no_http, "Disable the web page, WebSocket and HTTP API");
   app->add_option("--play", config->play,
-                  "Play this recording as a subject, with a timeline on the web page");
+                  "Play this recording as a subject, with a timeline on the web page: a file, or\n"
+                  "the name of a shipped recording (performance, walk, ...)");
   app->add_option("--bvh-positions", config->bvh_positions,
                   "Position channels of BVH joints: auto, channels, offsets or add\n"
                   "(default: auto; 'furrow convert --help' explains them)");

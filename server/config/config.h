@@ -57,7 +57,8 @@ struct Config {
   OscConfig osc;                               // further targets
   RecordConfig record;
   HttpConfig http;
-  std::filesystem::path play;          // recording to play inside the daemon; empty: none
+  std::filesystem::path play;          // recording to play inside the daemon, a file or the
+                                       // name of a shipped one; empty: none
   std::string bvh_positions = "auto";  // motion::ParseBvhPositions()
   std::string up_axis = "auto";        // motion::ParseUpAxis()
   int rest_frame = -1;                 // frame of `play` that is its rest pose; -1: the file's own

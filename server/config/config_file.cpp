@@ -44,6 +44,19 @@ Key Destination(std::string_view name, Target* target) {
           }};
 }
 
+// A recording: the name of a shipped one, or a file relative to `folder`, which has a dot or a
+// slash.
+Key Recording(std::string_view name, std::filesystem::path* target,
+              const std::filesystem::path& folder) {
+  return {name, [target, folder](const toml::node& node) -> std::string {
+            const auto value = node.value_exact<std::string>();
+            if (!value) return "must be a string";
+            *target = value->find_first_of("./") == value->npos ? std::filesystem::path(*value)
+                                                                : folder / *value;
+            return {};
+          }};
+}
+
 // [[osc.target]]
 Key OscTargets(std::string_view name, std::vector<OscTargetConfig>* targets,
                const std::filesystem::path& folder) {
@@ -73,9 +86,9 @@ Key OscTargets(std::string_view name, std::vector<OscTargetConfig>* targets,
 Tables InputTables(Config* config, const std::filesystem::path& folder) {
   return {{"",
            {Path("character", &config->character, folder),
-            NameOrFile("rig", ".json", &config->rig, folder), Path("play", &config->play, folder),
-            Text("bvh_positions", &config->bvh_positions), Text("up_axis", &config->up_axis),
-            Count("rest_frame", &config->rest_frame),
+            NameOrFile("rig", ".json", &config->rig, folder),
+            Recording("play", &config->play, folder), Text("bvh_positions", &config->bvh_positions),
+            Text("up_axis", &config->up_axis), Count("rest_frame", &config->rest_frame),
             NameOrFile("skeleton_map", ".json", &config->skeleton_map, folder),
             NameOrFile("shape_map", ".json", &config->shape_map, folder)}},
           {"listen",

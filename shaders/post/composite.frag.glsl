@@ -8,6 +8,7 @@
 //           exposure, tone map and the sRGB curve
 // BLOOM     1: add bloom
 // TONE_MAP  0: Khronos PBR Neutral, 1: clip at 1
+// BOTTOM_UP 1: the picture's rows start at the bottom, as on a screen; 0: at the top
 
 #if SAMPLES > 1
 layout(binding = 0) uniform sampler2DMS u_shown;   // linear
@@ -15,7 +16,9 @@ layout(binding = 0) uniform sampler2DMS u_shown;   // linear
 layout(binding = 0) uniform sampler2D u_shown;
 #endif
 layout(location = 0) uniform float u_exposure;     // > 0
+#if !BOTTOM_UP
 layout(location = 1) uniform int u_height;         // pixels
+#endif
 
 #if BLOOM
 layout(binding = 1) uniform sampler2D u_bloom;     // linear, exposed, smaller than the picture
@@ -43,8 +46,12 @@ vec3 displayColour(vec3 colour, vec2 place) {
 }
 
 void main() {
+#if BOTTOM_UP
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+#else
   // Flips the picture: its rows start at the top, but a read-back starts at the bottom.
   ivec2 pixel = ivec2(gl_FragCoord.x, u_height - 1 - int(gl_FragCoord.y));
+#endif
   vec3 sum = vec3(0.0);
   for (int i = 0; i < SAMPLES; ++i) sum += texelFetch(u_shown, pixel, i).rgb;
 #if SAMPLES > 1

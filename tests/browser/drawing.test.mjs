@@ -51,12 +51,7 @@ test('the browser draws the daemon\'s picture, and it moves', async (context) =>
   assert((await rendered()) - drawn <= 2, 'the daemon draws nothing for this page');
 
   await daemon.hold(FROWN_S);
-  let here = await screen(page);
-  await eventually('a picture at rest', async () => {
-    const former = here;
-    here = await screen(page);
-    return difference(former, here) === 0;
-  });
+  const here = await resting(page);
   writeFileSync(join(process.env.FURROW_ARTEFACTS, 'drawn-by-browser.png'), PNG.sync.write(here));
   await page.selectOption('select[aria-label="Drawn by"]', 'daemon');
   await drawnBy(page, 'daemon');
@@ -66,6 +61,62 @@ test('the browser draws the daemon\'s picture, and it moves', async (context) =>
   context.diagnostic(`mean difference from the daemon's picture: ${difference(here, there).toFixed(2)} of 255`);
   assert(difference(here, there) < 4, `${difference(here, there)} of 255`);
   assert(difference(here, there) > 0, 'two pictures, not one');
+  assert.deepEqual(page.errors, []);
+  await page.context().close();
+});
+
+/** The picture on the screen, once it stays. */
+async function resting(page) {
+  let here = await screen(page);
+  await eventually('a picture at rest', async () => {
+    const former = here;
+    here = await screen(page);
+    return difference(former, here) === 0;
+  });
+  return here;
+}
+
+test('the browser draws skin shading by the page\'s settings', async (context) => {
+  await daemon.hold(FROWN_S);
+  const page = await openPage(browser, `${daemon.address}#drawn=browser&panel=&shading=skin`, SMALL);
+  await page.keyboard.press('g'); // without the curves, the picture is larger
+  await drawnBy(page, 'browser');
+  assert.equal(await whyOf(page), 'This browser draws the picture');
+  const here = await resting(page);
+  writeFileSync(join(process.env.FURROW_ARTEFACTS, 'skin-by-browser.png'), PNG.sync.write(here));
+  await page.selectOption('select[aria-label="Drawn by"]', 'daemon');
+  await drawnBy(page, 'daemon');
+  await still(page);
+  const there = await screen(page);
+  writeFileSync(join(process.env.FURROW_ARTEFACTS, 'skin-by-daemon.png'), PNG.sync.write(there));
+  context.diagnostic(`mean difference from the daemon's picture: ${difference(here, there).toFixed(2)} of 255`);
+  assert(difference(here, there) < 4, `${difference(here, there)} of 255`);
+  await page.context().close();
+});
+
+test('a change of the settings changes the picture that the browser draws', async () => {
+  await daemon.hold(FROWN_S);
+  const page = await openPage(browser, `${daemon.address}#drawn=browser&shading=skin`, { viewport: { width: 900, height: 480 } });
+  await page.keyboard.press('g');
+  await drawnBy(page, 'browser');
+  const usual = await resting(page);
+  const choose = async (setting, word) => {
+    await page.fill('#settings-search', setting);
+    await page.locator(`[data-setting="${setting}"] select`).selectOption({ label: word });
+  };
+  // Shadows off: another picture, still the browser's. Another method of scattering: the daemon's.
+  await choose('shadow.filter', 'Off');
+  await eventually('a picture without shadows', async () => changedShare(usual, await screen(page)) > 0.005);
+  await drawnBy(page, 'browser');
+  await choose('subsurface.method', 'Burley');
+  await drawnBy(page, 'daemon');
+  assert.match(await whyOf(page), /only the daemon draws/);
+  await choose('subsurface.method', 'Separable');
+  await drawnBy(page, 'browser');
+  // Another shading: both are measured again.
+  await choose('shading', 'Diffuse');
+  await eventually('a plain picture', async () => changedShare(usual, await screen(page)) > 0.02);
+  await drawnBy(page, 'browser');
   assert.deepEqual(page.errors, []);
   await page.context().close();
 });

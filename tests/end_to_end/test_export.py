@@ -43,6 +43,17 @@ class Export(unittest.TestCase):
         self.assertEqual(wrinkles["weights"][1]["names"]["metahuman"],
                          ["head_wm2_normal_head_wm2_browsDown_L", "head_cm2_color_head_wm2_browsDown_L"])
 
+    def test_derivative_maps_come_beside_the_normal_maps(self):
+        out = self.root / "face"
+        furrow("export", "--derivatives", "--out", out, check=DONE)
+        wrinkles = json.loads((out / "wrinkles.json").read_text())
+        self.assertEqual(wrinkles["derivatives"], {"green": "up", "bits": 16})
+        for of, normal, derivative in [(m, "normal", "derivative") for m in wrinkles["maps"]] + [
+                (m, "base_normal", "base_derivative") for m in wrinkles["materials"]]:
+            self.assertEqual(png_size((out / of[normal]).read_bytes()), png_size((out / of[derivative]).read_bytes()))
+            self.assertGreater(of[derivative + "_scale"], 0.1)
+        self.assertIn("## Derivative maps", (out / "README.md").read_text())
+
     def test_wrong_use_says_what_is_valid(self):
         self.assertIn("'maya' is not one of", self.error(WRONG_USAGE, "--for", "maya", "--out", self.root / "a"))
         self.assertIn("--out is required", self.error(WRONG_USAGE, "--for", "unity"))

@@ -5,7 +5,7 @@ import { decide, type DrawSituation, isSoftware } from '../src/view/draw_choice'
 
 /** A fast GPU, and everything is there. */
 const READY: DrawSituation = {
-  choice: 'auto', isConnected: true, gpu: 'GeForce', isSpecial: false, hasNeutral: false, character: 'ready', fits: true, browserHz: 60, daemonHz: 7,
+  choice: 'auto', isConnected: true, gpu: 'GeForce', isSpecial: false, whyNoSkin: '', hasNeutral: false, character: 'ready', fits: true, browserHz: 60, daemonHz: 7,
 };
 const step = (change: Partial<DrawSituation>): string => decide({ ...READY, ...change }).step;
 
@@ -23,10 +23,14 @@ test('the daemon draws first', () => {
   assert.equal(step({ character: 'loading', fits: null, browserHz: null }), 'daemon');
   assert.equal(step({ fits: null, browserHz: null }), 'daemon');
   assert.equal(step({ browserHz: null }), 'measure');
+  // After a change of shading, neither rate is known, and the daemon's comes first.
+  assert.equal(step({ browserHz: null, daemonHz: 0 }), 'daemon');
+  assert.equal(step({ choice: 'browser', browserHz: null, daemonHz: 0 }), 'measure');
 });
 
 test('the daemon draws what the browser cannot', () => {
-  for (const change of [{ isConnected: false }, { gpu: '' }, { gpu: 'ANGLE (Google, Vulkan (SwiftShader))' }, { isSpecial: true }, { hasNeutral: true },
+  for (const change of [{ isConnected: false }, { gpu: '' }, { gpu: 'ANGLE (Google, Vulkan (SwiftShader))' }, { isSpecial: true },
+    { whyNoSkin: 'this GPU is old' }, { hasNeutral: true },
     { character: 'none' as const }, { character: 'failed' as const }, { fits: false }]) {
     const decision = decide({ ...READY, ...change });
     assert.equal(decision.step, 'daemon', JSON.stringify(change));

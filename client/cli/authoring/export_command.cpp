@@ -28,6 +28,7 @@ struct ExportArguments {
   std::string out;
   Engine engine = Engine::kGeneric;
   int bits = 0;  // 0: the engine's default
+  bool derivatives = false;
   motion::LoadOptions read;
 };
 
@@ -59,6 +60,7 @@ int Export(const ExportArguments& arguments) {
   authoring::ExportOptions options;
   options.engine = arguments.engine;
   if (arguments.bits != 0) options.bits = arguments.bits;
+  options.derivatives = arguments.derivatives;
   options.generator = std::string("furrow ") + FURROW_VERSION;
   if (profiles.ok()) options.profiles = *profiles;
   const auto done = authoring::ExportCharacter(
@@ -99,6 +101,9 @@ void AddExport(CLI::App& app, Action& action) {
                    "blender, otherwise 8)")
       ->check(CLI::Validator(CheckBits, ""))
       ->type_name("8|16");
+  command->add_flag("--derivatives", arguments->derivatives,
+                    "Also write derivative maps: slopes dh/dx and dh/dy, which blend by adding "
+                    "(16 bits per channel unless --bits says otherwise)");
   AddSkeletonMap(*command, arguments->skeleton_map);
   AddBvhOptions(*command, arguments->read);
   command->callback([arguments, &action] { action = [arguments] { return Export(*arguments); }; });

@@ -146,7 +146,8 @@ void AddPlay(CLI::App& app, Action& action) {
       ->add_option("FILE", options->file,
                    "Recording: BVH, glTF/GLB, VRMA, FBX, Collada, Live Link Face CSV or a take "
                    "(FILE.mcap plays all "
-                   "subjects, FILE.mcap#SUBJECT one)")
+                   "subjects, FILE.mcap#SUBJECT one); or the name of a shipped recording "
+                   "(performance, walk, ...)")
       ->required();
   command->add_option("--to", options->host, kHostHelp)->required();
   auto* udp = command->add_flag("--udp", options->udp, "Send over UDP, port 7401 (default)");

@@ -274,7 +274,8 @@ void AddRender(CLI::App& app, Action& action) {
       "render", "Render pictures of a recording or a pose, offline: DIR/000123.png for frame 123");
   CLI::Option* file = command->add_option("FILE", options->files,
                                           "Recordings: BVH, glTF/GLB, VRMA, FBX, Collada, Live "
-                                          "Link Face CSV or a take (.mcap); several "
+                                          "Link Face CSV or a take (.mcap), or names of shipped "
+                                          "recordings (performance, walk, ...); several "
                                           "files are drawn as several subjects in one picture");
   CLI::Option* pose = command->add_option(
       "--pose", options->pose,

@@ -86,9 +86,10 @@ void AddSolve(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand(
       "solve", "Compute the weights of a recording offline, as the daemon would send them");
   command
-      ->add_option(
-          "FILE", options->file,
-          "Recording: BVH, glTF/GLB, VRMA, FBX, Collada, Live Link Face CSV or a take (.mcap)")
+      ->add_option("FILE", options->file,
+                   "Recording: BVH, glTF/GLB, VRMA, FBX, Collada, Live Link Face CSV or a take "
+                   "(.mcap); or the "
+                   "name of a shipped recording (performance, walk, ...)")
       ->required();
   command
       ->add_option("--rig", options->rig,

@@ -14,6 +14,7 @@
 #include "character/package/package.h"
 #include "client/cli/common/progress.h"
 #include "motion/clip_file.h"
+#include "motion/find_recording.h"
 #include "motion/pose_source.h"
 #include "recording/take_clip.h"
 #include "rig/poses_in_axes.h"
@@ -58,10 +59,12 @@ Result<std::unique_ptr<recording::TakeReader>> OpenTakeArgument(const std::strin
 
 Result<motion::Clip> LoadClipArgument(const std::string& path, const motion::LoadOptions& options,
                                       motion::ClipReport* result) {
+  const auto file = motion::FindRecording(path);
+  FURROW_RETURN_IF_ERROR(file);
   motion::ClipReport report;
   auto clip = recording::IsTakePath(path)
                   ? recording::LoadTakeClip(path, options.scale, &report, ReadingBar())
-                  : motion::LoadClip(path, options, &report);
+                  : motion::LoadClip(*file, options, &report);
   PrintWarnings(report.warnings);
   if (result != nullptr) *result = std::move(report);
   return clip;

@@ -19,9 +19,10 @@
 
 namespace furrow::cli {
 
-// Loads the recording in file `path`. "take.mcap#NAME" selects a subject of a take with several
-// subjects, "walk.fbx#NAME" an animation of a file with several. Prints the reader's warnings to
-// standard error. Sets `report`, unless it is null. Errors: those of motion::LoadClip().
+// Loads a recording: the file `path`, or the shipped one of that name (motion::FindRecording()).
+// "take.mcap#NAME" selects a subject of a take with several subjects, "walk.fbx#NAME" an animation
+// of a file with several. Prints the reader's warnings to standard error. Sets `report`, unless it
+// is null. Errors: those of motion::FindRecording() and motion::LoadClip().
 [[nodiscard]] Result<motion::Clip> LoadClipArgument(const std::string& path,
                                                     const motion::LoadOptions& options = {},
                                                     motion::ClipReport* report = nullptr);

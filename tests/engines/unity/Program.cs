@@ -85,6 +85,7 @@ public static class Program
     public static int Main(string[] arguments)
     {
         RunTestsOfThePackage();
+        CheckTextures();
         int needed = int.Parse(arguments[1]);
         var sample = new TwoFaces { first = MeshWithShape("Ada's face"), second = MeshWithShape("bob") };
         sample.Send("Start");
@@ -175,6 +176,35 @@ public static class Program
         Check(UnityEditor.AssetDatabase.Assets.Count == 0 && Targets[0].take == null, "cleared");
     }
 
+    /// <summary>Only the materials of the mesh get textures, and a missing file is named.</summary>
+    private static void CheckTextures()
+    {
+        var assets = UnityEditor.AssetDatabase.Assets;
+        var skin = new Material { name = "skin" };
+        var target = new FurrowTarget { mesh = new SkinnedMeshRenderer() };
+        Check(Furrow.Editor.RecordingAssetsTest.SetTextures(target).Contains("Wrinkles"), "no file yet");
+        target.wrinkles = new TextAsset
+        {
+            text = "{\"format\": \"furrow-wrinkles\", \"version\": 1, \"maps\": [{\"normal\": \"textures/a.png\", \"colour\": null}, " +
+                   "{\"normal\": \"textures/b.png\", \"cavity\": \"textures/c.png\"}], \"masks\": [{\"file\": \"textures/m.png\"}], " +
+                   "\"materials\": [{\"name\": \"skin\", \"base_normal\": \"textures/s.png\", \"maps\": [1], \"masks\": [0]}, " +
+                   "{\"name\": \"cloth\", \"maps\": [0], \"masks\": [0]}]}",
+        };
+        assets["Assets/Face/wrinkles.json"] = target.wrinkles;
+        Check(Furrow.Editor.RecordingAssetsTest.SetTextures(target).Contains("skin, cloth"), "no material of the mesh");
+        target.mesh.sharedMaterials = new[] { null, skin };
+        foreach (string name in new[] { "b", "c", "m" })
+        {
+            assets["Assets/Face/textures/" + name + ".png"] = new Texture { name = name };
+        }
+        Check(Furrow.Editor.RecordingAssetsTest.SetTextures(target).StartsWith("Assets/Face/textures/s.png is missing"), "a file is missing");
+        assets["Assets/Face/textures/s.png"] = new Texture { name = "s" };
+        Check(Furrow.Editor.RecordingAssetsTest.SetTextures(target) == "4 textures set", "all are set");
+        string set = string.Join(" ", skin.textures.OrderBy(each => each.Key).Select(each => each.Key + "=" + each.Value.name));
+        Check(set == "_FurrowBaseNormal=s _FurrowCavity1=c _FurrowMask0=m _FurrowNormal1=b", set);
+        assets.Clear();
+    }
+
     private static void CheckOldestSubject()
     {
         Subject oldest = receiver.Follow("");
@@ -189,7 +219,7 @@ public static class Program
 
 namespace Furrow.Editor
 {
-    /// <summary>Reaches the internal class.</summary>
+    /// <summary>Reaches the internal classes.</summary>
     public static class RecordingAssetsTest
     {
         public static void Save(FurrowTarget target, Take take)
@@ -200,6 +230,11 @@ namespace Furrow.Editor
         public static void Delete(FurrowTarget target)
         {
             RecordingAssets.Delete(target);
+        }
+
+        public static string SetTextures(FurrowTarget target)
+        {
+            return WrinkleTextures.Set(target);
         }
     }
 }

@@ -4,6 +4,7 @@
 using System;
 using System.Collections.Generic;
 using System.Globalization;
+using System.Linq;
 using System.Reflection;
 using System.Text;
 
@@ -88,9 +89,24 @@ namespace UnityEngine
         }
     }
 
+    public class Texture : Object
+    {
+    }
+
+    public class Material : Object
+    {
+        public readonly Dictionary<string, Texture> textures = new Dictionary<string, Texture>();
+
+        public void SetTexture(string property, Texture texture)
+        {
+            textures[property] = texture;
+        }
+    }
+
     public class SkinnedMeshRenderer : Component
     {
         public Mesh sharedMesh = null;
+        public Material[] sharedMaterials = new Material[0];
         public readonly Dictionary<int, float> shapes = new Dictionary<int, float>();
         public MaterialPropertyBlock block = null;
 
@@ -383,6 +399,17 @@ namespace UnityEditor
 
         public static void SaveAssets()
         {
+        }
+
+        public static string GetAssetPath(UnityEngine.Object asset)
+        {
+            return Assets.FirstOrDefault(entry => ReferenceEquals(entry.Value, asset)).Key ?? "";
+        }
+
+        public static T LoadAssetAtPath<T>(string path) where T : UnityEngine.Object
+        {
+            UnityEngine.Object asset;
+            return Assets.TryGetValue(path, out asset) ? asset as T : null;
         }
     }
 }

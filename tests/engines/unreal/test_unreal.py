@@ -14,6 +14,8 @@ sys.path.insert(0, str(HERE.parent))
 from engine_testing import ENGINES, FRAMES, GUARD, LIBRARY, SOURCE, EngineTest, main  # pylint: disable=wrong-import-position
 
 MODULE = ENGINES / "unreal" / "Source" / "FurrowLiveLink"
+SHADERS_MODULE = ENGINES / "unreal" / "Source" / "FurrowShaders"
+COMPILER = [os.environ.get("CXX", "c++"), "-std=c++17", "-Wall", "-Wextra", "-Werror", "-I", HERE / "stand_ins"]
 
 
 class UnrealTest(EngineTest):
@@ -22,14 +24,25 @@ class UnrealTest(EngineTest):
         self.addCleanup(shutil.rmtree, folder)
         program = folder / "program"
         done = subprocess.run(
-            [os.environ.get("CXX", "c++"), "-std=c++17", "-Wall", "-Wextra", "-Werror", "-I", HERE / "stand_ins",
-             "-I", MODULE / "Public", "-I", SOURCE / "client" / "c" / "include", HERE / "program.cpp",
+            [*COMPILER, "-I", MODULE / "Public", "-I", SOURCE / "client" / "c" / "include", HERE / "program.cpp",
              *sorted(MODULE.glob("Private/*.cpp")), "-o", program, "-L", LIBRARY, "-lfurrow", "-pthread"],
             capture_output=True, text=True, timeout=GUARD, check=False)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.check_plugin(
             lambda daemon: [program, f"furrow://127.0.0.1:{daemon.ports['udp']}?subject=ada&subject=bob", FRAMES],
             env={"LD_LIBRARY_PATH": str(LIBRARY)}).wait_for("end")
+
+    def test_exported_shaders_are_found(self):
+        """Custom nodes include /Plugin/Furrow/..., which Unreal knows only if a module maps it before the engine starts."""
+        folder = pathlib.Path(tempfile.mkdtemp(prefix="furrow-unreal-"))
+        self.addCleanup(shutil.rmtree, folder)
+        program = folder / "program"
+        done = subprocess.run([*COMPILER, HERE / "shaders_program.cpp", *sorted(SHADERS_MODULE.glob("Private/*.cpp")), "-o", program],
+                              capture_output=True, text=True, timeout=GUARD, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        out = subprocess.run([program], capture_output=True, text=True, timeout=GUARD, check=True).stdout
+        self.assertEqual(out, "/Plugin/Furrow = ../../../Project/Plugins/Furrow/Shaders\n")
+        self.assertTrue((ENGINES / "unreal" / "Shaders" / "FurrowWrinkles.ush").exists())
 
     def test_the_source_stays_small(self):
         lines = sum(len(path.read_text().splitlines()) for path in MODULE.rglob("FurrowLiveLinkSource.*"))
@@ -38,9 +51,10 @@ class UnrealTest(EngineTest):
     def test_the_description(self):
         plugin = json.loads((ENGINES / "unreal" / "Furrow.uplugin").read_text())
         self.assertEqual(plugin["FileVersion"], 3)
-        self.assertEqual([(m["Name"], m["Type"]) for m in plugin["Modules"]], [("FurrowLiveLink", "Runtime")])
+        self.assertEqual([(m["Name"], m["Type"], m["LoadingPhase"]) for m in plugin["Modules"]],
+                         [("FurrowLiveLink", "Runtime", "Default"), ("FurrowShaders", "Runtime", "PostConfigInit")])
         self.assertIn({"Name": "LiveLink", "Enabled": True}, plugin["Plugins"])
-        for path in MODULE.rglob("*.[ch]*"):
+        for path in MODULE.parent.rglob("*.[ch]*"):
             self.assertTrue(path.read_text().startswith("// SPDX-License-Identifier"), path)
 
 

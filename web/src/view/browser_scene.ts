@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The character as this browser draws it. Loaded only when it is needed, because three.js is larger than the page.
-import { PerspectiveCamera, Scene, WebGLRenderer } from 'three';
-import { Follower, type FurrowCharacter, loadCharacter, type Pose, STUDIO_BACKGROUND, type Weights } from 'furrow-three';
+import { PerspectiveCamera, WebGLRenderer } from 'three';
+import { Follower, type FurrowCharacter, loadCharacter, type Pose, StudioView, type Weights } from 'furrow-three';
+import type { StudioSettings } from 'furrow-three/settings';
 import type { PoseFrame, WeightFrame } from 'furrow/protocol';
 import type { Camera } from './camera';
 
@@ -12,7 +13,7 @@ function release(renderer: WebGLRenderer): void {
 }
 
 export class BrowserScene {
-  private readonly scene = new Scene();
+  private readonly view: StudioView;
   private readonly camera = new PerspectiveCamera();
   private readonly follower: Follower;
   private readonly weightNames: ReadonlySet<string>;
@@ -22,9 +23,7 @@ export class BrowserScene {
   private constructor(private readonly renderer: WebGLRenderer, private readonly character: FurrowCharacter) {
     // three.js would only report it, and draw nothing.
     renderer.debug.onShaderError = () => (this.hasShaders = false);
-    character.setView('studio');
-    this.scene.background = STUDIO_BACKGROUND;
-    this.scene.add(character);
+    this.view = new StudioView(renderer);
     this.follower = new Follower(character);
     this.weightNames = new Set(character.weightNames);
   }
@@ -38,6 +37,11 @@ export class BrowserScene {
       release(renderer);
       throw error;
     }
+  }
+
+  /** Why this browser cannot draw skin shading; empty: it can. */
+  get whyNoSkin(): string {
+    return this.view.whyNoSkin([this.character]);
   }
 
   /** True if the pose needs no retargeting, and every weight can be drawn: this picture will be the daemon's. */
@@ -55,14 +59,14 @@ export class BrowserScene {
    * `wait`: returns when the GPU has drawn the picture, so that its time can be measured. Throws an Error if the GPU's
    * driver rejects the shaders.
    */
-  draw(pose: Pose, weights: Weights, camera: Camera, width: number, height: number, wait: boolean): void {
-    const { renderer, character } = this;
+  draw(pose: Pose, weights: Weights, settings: StudioSettings, camera: Camera, width: number, height: number, wait: boolean): void {
+    const { renderer, character, view } = this;
     const { canvas } = renderer.getContext();
     if (canvas.width !== width || canvas.height !== height) renderer.setSize(width, height, false);
     character.setPose(pose);
     character.setWeights(weights);
-    character.studio.update(this.camera, this.follower.place(this.camera, camera, width / height));
-    renderer.render(this.scene, this.camera);
+    view.settings = settings;
+    view.render([character], this.camera, this.follower.place(this.camera, camera, width / height));
     if (!this.hasShaders) throw new Error("the GPU's driver rejects the shaders");
     if (!wait) return;
     const gl = renderer.getContext();
@@ -70,6 +74,7 @@ export class BrowserScene {
   }
 
   dispose(): void {
+    this.view.dispose();
     this.character.dispose();
     release(this.renderer);
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Draws the picture in this browser while that is faster and gives the same picture as the daemon. Otherwise the daemon
 // draws.
+import { type ReadSettings, readSettings } from 'furrow-three/settings';
 import { PoseFeed, WeightFeed } from 'furrow/protocol';
 import type { SubjectInfo } from '../api';
 import type { AppState } from '../state/app_state';
@@ -18,6 +19,8 @@ const MEASURED = 8;
 const RATE_WINDOW_S = 2;
 /** Slow seconds after which the measurement counts as wrong. */
 const SLOW_S = 3;
+/** Seconds after a change of shading in which the daemon's rate still counts pictures from before. */
+const SETTLE_S = 3;
 /** Rates are counted, and screens have rates of their own, so this share of a rate counts as the whole. */
 const ENOUGH = 0.8;
 
@@ -45,6 +48,8 @@ export class BrowserView {
   private character: 'unknown' | 'loading' | 'ready' | 'none' | 'failed' = 'unknown';
   private hasNeutral = false;
   private daemonHz = 0;
+  private settleS = 0;
+  private read: { at: number; settings: ReadSettings; hasSkin: boolean } | null = null;
   private browserHz: number | null = null;
   private measured: number[] = [];
   private shownAtS: number[] = [];
@@ -74,6 +79,7 @@ export class BrowserView {
   observe(subject: SubjectInfo | undefined, daemonHz: number): void {
     this.hasNeutral = subject?.neutral ?? false;
     if (this.active.value) this.checkRate(subject?.rate_hz ?? 0);
+    else if (this.settleS > 0) --this.settleS;
     else this.daemonHz = Math.max(this.daemonHz, daemonHz);
     this.update();
   }
@@ -84,6 +90,24 @@ export class BrowserView {
     const isSlow = document.visibilityState === 'visible' && hz < ENOUGH * Math.min(this.daemonHz, posesHz);
     this.slowS = isSlow ? this.slowS + 1 : 0;
     if (this.slowS >= SLOW_S) this.browserHz = hz;
+  }
+
+  /** The settings of the picture. Another shading takes another time, here and there, so it is measured again. */
+  private settings(): ReadSettings & { hasSkin: boolean } {
+    const { settings } = this.state;
+    const at = settings.changed.value;
+    if (this.read?.at !== at) {
+      const read = readSettings(settings.infos.map(({ name }) => [name, settings.value(name)] as const));
+      const hasSkin = read.settings.shading === 'skin' || read.settings.view !== 'final';
+      if (this.read !== null && this.read.hasSkin !== hasSkin) {
+        this.browserHz = null;
+        this.measured = [];
+        this.daemonHz = 0;
+        this.settleS = SETTLE_S;
+      }
+      this.read = { at, settings: read, hasSkin };
+    }
+    return { ...this.read.settings, hasSkin: this.read.hasSkin };
   }
 
   private decide(): DrawDecision {
@@ -97,6 +121,7 @@ export class BrowserView {
       isConnected: this.connection.state === 'open',
       gpu: this.gpu ?? '',
       isSpecial: this.isSpecial(),
+      whyNoSkin: this.settings().hasSkin ? (this.scene?.whyNoSkin ?? '') : '',
       hasNeutral: this.hasNeutral,
       character: this.character,
       fits: this.scene === null || !isOne ? null : this.scene.fits(pose, weights),
@@ -105,11 +130,10 @@ export class BrowserView {
     });
   }
 
-  /** The browser draws the daemon's default picture only. */
+  /** The picture is not one that furrow-three draws as the daemon does. */
   private isSpecial(): boolean {
     const { settings, wipe, comparing } = this.state;
-    return settings.infos.length === 0 || wipe.value !== 'none' || comparing.value || settings.overrides.size > 0 ||
-      settings.infos.some(({ value, default: usual }) => value !== usual);
+    return settings.infos.length === 0 || wipe.value !== 'none' || comparing.value || this.settings().unsupported.length > 0;
   }
 
   private update(): void {
@@ -214,7 +238,7 @@ export class BrowserView {
     if (this.scene === null || pose === null || weights === null || camera === null || surface === null) return;
     if (step !== 'measure' && step !== 'browser') return;
     const { width, height } = pictureSize(surface.clientWidth, surface.clientHeight, devicePixelRatio, 1);
-    const drawn = JSON.stringify([pose.number, weights.number, camera, width, height]);
+    const drawn = JSON.stringify([pose.number, weights.number, camera, width, height, this.state.settings.changed.value]);
     if (step === 'browser' && drawn === this.lastDrawn) {
       this.schedule(); // nothing has changed
       return;
@@ -222,7 +246,7 @@ export class BrowserView {
     this.lastDrawn = drawn;
     const beganMs = performance.now();
     try {
-      this.scene.draw(pose, weights, camera, width, height, step === 'measure');
+      this.scene.draw(pose, weights, this.settings().settings, camera, width, height, step === 'measure');
     } catch (error) {
       this.fail(error);
       return;

@@ -9,8 +9,10 @@ export interface DrawSituation {
   isConnected: boolean;
   /** The name of the GPU; empty: this browser has no WebGL 2. */
   gpu: string;
-  /** Something in the picture's settings, view or wipe differs from the daemon's default picture. */
+  /** The settings, the view or a wipe ask for a picture that only the daemon draws. */
   isSpecial: boolean;
+  /** Why this browser cannot draw the skin shading that the settings ask for; empty: it can, or they do not. */
+  whyNoSkin: string;
   /** A neutral pose was captured for the subject. */
   hasNeutral: boolean;
   /** 'none': the daemon has no character for browsers. 'failed': it does not load or draw, or the GPU is lost. */
@@ -55,6 +57,8 @@ export function decide(at: DrawSituation): DrawDecision {
   if (at.character === 'loading') return byDaemon('the character is loading');
   if (at.fits === null) return byDaemon('no pose has arrived yet');
   if (!at.fits) return byDaemon("the subject's skeleton or weights are not those of the character");
+  if (at.whyNoSkin !== '') return byDaemon(`no skin shading here: ${at.whyNoSkin}`);
+  if (isAuto && at.daemonHz === 0) return byDaemon("the daemon's rate is not known yet");
   if (at.browserHz === null) return { step: 'measure', why: 'measuring this browser' };
   if (isAuto && at.browserHz < Math.max(LEAST_HZ, ADVANTAGE * at.daemonHz)) {
     return byDaemon(`the daemon is faster: ${at.daemonHz.toFixed(0)} pictures per second, and ${at.browserHz.toFixed(0)} here`);

@@ -4,10 +4,13 @@ using UnityEngine;
 
 namespace Furrow.Editor
 {
-    /// <summary>Shows the status of a target, records it with one button, and removes the recording with another.</summary>
+    /// <summary>Shows the status of a target, records it with one button, and removes the recording with another. A third sets
+    /// the textures of exported wrinkle shaders.</summary>
     [CustomEditor(typeof(FurrowTarget))]
     public sealed class FurrowTargetEditor : UnityEditor.Editor
     {
+        private string textures = "";
+
         public override void OnInspectorGUI()
         {
             DrawDefaultInspector();
@@ -31,6 +34,14 @@ namespace Furrow.Editor
             if (GUILayout.Button("Clear Recording"))
             {
                 RecordingAssets.Delete(one);
+            }
+            if (GUILayout.Button("Set Wrinkle Textures"))
+            {
+                textures = WrinkleTextures.Set(one);
+            }
+            if (textures != "")
+            {
+                EditorGUILayout.LabelField("Textures", textures);
             }
         }
 

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // A character of Furrow in a scene of three.js.
 import {
-  Color, CustomBlending, DoubleSide, FrontSide, Group, type Material, type MeshStandardMaterial, MeshPhysicalMaterial,
-  NoColorSpace, type Object3D, OneFactor, SkinnedMesh, type Texture, type WebGLRenderer, type WebGLRenderTarget, ZeroFactor,
+  Color, CustomBlending, DoubleSide, FrontSide, Group, type IUniform, type Material, type MeshStandardMaterial, MeshPhysicalMaterial,
+  NoBlending, NoColorSpace, NormalBlending, type Object3D, OneFactor, SkinnedMesh, SrcAlphaFactor, SrcColorFactor, type Texture,
+  type WebGLRenderer, type WebGLRenderTarget, ZeroFactor,
 } from 'three';
 import { type CharacterFile, readCharacter } from './character_file.js';
 import { BoundMaterial } from './mesh/material_binds.js';
 import { addWeightGradients } from './mesh/weight_gradients.js';
 import { type Joint, JointPoser, type Pose, type PoseSkeleton } from './pose/joint_poser.js';
+import { type Kind, KINDS } from './skin/materials.js';
+import { SkinParts } from './skin/skin_parts.js';
+import { whyNoSkin } from './skin/support.js';
 import { SlopeMaker } from './wrinkles/slopes.js';
 import { Studio } from './view/studio.js';
 import { addWrinkles, type View, type WrinkleInput, type WrinkleTextures } from './wrinkles/wrinkle_material.js';
@@ -27,12 +31,15 @@ export interface CharacterOptions {
    * with `antialias`). Set it to true if you draw into a multisampled target, and to false if you draw into another.
    */
   softEdges?: boolean;
+  /**
+   * Prepares skin shading, which StudioView draws (default: true). It takes twice the memory for normal maps. False, or a
+   * GPU that cannot draw it: `character.skin` is null, and `character.whyNoSkin` says why.
+   */
+  skin?: boolean;
 }
 
-type Kind = 'skin' | 'cloth' | 'eye' | 'hair' | 'other';
-
 /** Reflectance at normal incidence by kind of surface (render/scene/gpu_character.cpp). Three's materials have 0.04. */
-const REFLECTANCE: Record<Kind, number> = { skin: 0.028, eye: 0.04, hair: 0.03, cloth: 0.012, other: 0.03 };
+const REFLECTANCE: Record<Kind, number> = { skin: 0.028, eye: 0.04, hair: 0.03, cloth: 0.012, other: 0.03, shade: 0 };
 /** An eye's surface is the smooth tear film, whatever its texture says. */
 const ROUGHEST_EYE = 0.3;
 /** Base colour below which skin counts as a painted hollow, which has no gloss. */
@@ -44,6 +51,7 @@ interface Part {
   mesh: SkinnedMesh;
   material: MeshPhysicalMaterial;
   input: WrinkleInput;
+  kind: Kind;
 }
 
 /** Make one with loadCharacter(). Add it to a scene, and call setPose() and setWeights() when new ones arrive. */
@@ -59,10 +67,17 @@ export class FurrowCharacter extends Group {
     private readonly targets: readonly WebGLRenderTarget[],
     private readonly textures: readonly Texture[],
     private readonly bound: readonly BoundMaterial[],
+    private readonly softEdges: boolean,
     /** The lamps of the view 'studio'. Call update() before each picture. */
     readonly studio: Studio,
     /** Regions that are not drawn, because their masks follow joints. */
     readonly notDrawn: readonly string[],
+    /** For StudioView; null: the character cannot be drawn with skin shading. */
+    readonly skin: SkinParts | null,
+    /** Why there is no skin shading; empty: there is. */
+    readonly whyNoSkin: string,
+    /** Some material sends out light, or may. */
+    readonly emits: boolean,
   ) {
     super();
   }
@@ -118,13 +133,21 @@ export class FurrowCharacter extends Group {
 
   /**
    * 'final': lit by the scene. 'studio': as the daemon's default picture. 'normal': the normals as seen, as
-   * `furrow render --view normal` shows them.
+   * `furrow render --view normal` shows them. 'facets': for StudioView.
    */
   setView(view: View): void {
     if (view === this.view) return;
     this.view = view;
-    for (const { material, input } of this.parts) {
+    for (const { mesh, material, input, kind } of this.parts) {
       material.toneMapped = view === 'final';
+      if (kind === 'shade') {
+        mesh.visible = view !== 'normal' && (view !== 'facets' || this.skin?.hasShades === true);
+        // The alpha of facets is a factor, too. That of a picture stays.
+        material.blendSrcAlpha = ZeroFactor;
+        material.blendDstAlpha = view === 'facets' ? SrcAlphaFactor : OneFactor;
+      } else {
+        setCutOut(material, view !== 'facets' && this.softEdges, view === 'facets');
+      }
       addWrinkles(material, input, view);
     }
   }
@@ -138,12 +161,36 @@ export class FurrowCharacter extends Group {
     }
     for (const target of this.targets) target.dispose();
     for (const texture of this.textures) texture.dispose();
+    this.skin?.dispose();
   }
 }
 
 function kindOf(material: Material): Kind {
   const kind = (material.userData as { furrow_kind?: unknown }).furrow_kind;
-  return kind === 'skin' || kind === 'cloth' || kind === 'eye' || kind === 'hair' ? kind : 'other';
+  return KINDS.find((each) => each === kind) ?? 'other';
+}
+
+/** Edges of cut-outs, such as hair: soft by coverage, or single samples. `isData`: the targets hold data. */
+function setCutOut(material: MeshPhysicalMaterial, soft: boolean, isData: boolean): void {
+  material.alphaToCoverage = material.alphaTest > 0 && soft;
+  if (material.alphaToCoverage) keepOpaque(material);
+  else material.blending = isData ? NoBlending : NormalBlending;
+}
+
+function sendsLight(material: MeshStandardMaterial): boolean {
+  return material.emissiveMap !== null || (material.emissive.getHex() !== 0 && material.emissiveIntensity > 0);
+}
+
+/** Multiplies the picture behind by the material's colour. */
+function darken(material: MeshPhysicalMaterial): void {
+  material.transparent = true; // after everything else
+  material.forceSinglePass = true;
+  material.depthWrite = false;
+  material.blending = CustomBlending;
+  material.blendSrc = ZeroFactor;
+  material.blendDst = SrcColorFactor;
+  material.blendSrcAlpha = ZeroFactor;
+  material.blendDstAlpha = OneFactor;
 }
 
 /** The alpha of a fragment says how many samples it covers. The picture itself must stay opaque. */
@@ -166,10 +213,14 @@ class Builder {
   private readonly inputs = new Map<WrinkleSet, Promise<Pick<WrinkleInput, 'masks' | 'maps'>>>();
   private readonly materials = new Map<string, { material: MeshPhysicalMaterial; input: WrinkleInput }>();
   private readonly studio = new Studio();
+  private readonly skin: SkinParts | null;
   private hasSkin = false;
+  private emits = false;
 
-  constructor(private readonly file: CharacterFile, private readonly renderer: WebGLRenderer, private readonly softEdges: boolean) {
-    this.slopes = new SlopeMaker(renderer);
+  constructor(private readonly file: CharacterFile, private readonly renderer: WebGLRenderer, private readonly softEdges: boolean,
+    private readonly whyNot: string) {
+    this.skin = whyNot === '' ? new SkinParts(renderer) : null;
+    this.slopes = new SlopeMaker(renderer, this.skin !== null);
     this.sets = { skin: new WrinkleSet(file.rig, 'skin'), cloth: new WrinkleSet(file.rig, 'cloth') };
   }
 
@@ -178,6 +229,7 @@ class Builder {
       return await this.assemble();
     } catch (error) {
       for (const made of [...this.targets, ...this.textures]) made.dispose();
+      this.skin?.dispose();
       throw error;
     } finally {
       this.slopes.dispose();
@@ -192,10 +244,12 @@ class Builder {
     });
     if (meshes.length === 0) throw new Error('furrow-three: the file has no skinned mesh');
     this.hasSkin = meshes.some(({ material }) => kindOf(material as Material) === 'skin');
+    // Shapes may raise light that is 0 at rest.
+    this.emits = this.file.binds.length > 0 || meshes.some(({ material }) => sendsLight(material as MeshStandardMaterial));
     for (const mesh of meshes) await this.addMesh(mesh);
     const joints = this.jointsOf(meshes[0]!);
     const character = new FurrowCharacter(this.parts, Object.values(this.sets), joints, new JointPoser(joints), this.targets,
-      [...this.textures], this.bound, this.studio, this.file.rig.notDrawn);
+      [...this.textures], this.bound, this.softEdges, this.studio, this.file.rig.notDrawn, this.skin, this.whyNot, this.emits);
     character.add(scene);
     return character;
   }
@@ -228,7 +282,8 @@ class Builder {
     const made = await this.materialOf(source, kind, gradients);
     mesh.material = made.material;
     mesh.frustumCulled = false; // three would use the bounds of the rest pose
-    this.parts.push({ mesh, ...made });
+    this.parts.push({ mesh, ...made, kind });
+    this.skin?.add(mesh, made.material, kind);
   }
 
   private async materialOf(source: MeshStandardMaterial, kind: Kind, gradients: boolean): Promise<Pick<Part, 'material' | 'input'>> {
@@ -250,10 +305,10 @@ class Builder {
       specularIntensity: REFLECTANCE[kind] / 0.04,
       specularColor: new Color(1, 1, 1),
       alphaTest: source.alphaTest,
-      alphaToCoverage: source.alphaTest > 0 && this.softEdges,
       side: source.side === DoubleSide ? DoubleSide : FrontSide,
     });
-    if (material.alphaToCoverage) keepOpaque(material);
+    if (kind === 'shade') darken(material);
+    else setCutOut(material, this.softEdges, false);
     const set = this.setOf(kind, source);
     const input: WrinkleInput = {
       base: source.normalMap ? this.slopeOf(source.normalMap, 0) : null,
@@ -266,12 +321,25 @@ class Builder {
         furrowSpecular: { value: REFLECTANCE[kind] },
         furrowCavityAlbedo: { value: kind === 'skin' ? CAVITY_ALBEDO : 0 },
       },
+      ...(this.skin ? { facets: { kind, uniforms: this.facetUniforms(this.skin, source, kind) } } : {}),
     };
     this.bind(source, material);
     for (const texture of [material.map, material.normalMap, material.roughnessMap, material.emissiveMap]) if (texture) this.textures.add(texture);
     addWrinkles(material, input, 'final');
     this.materials.set(key, { material, input });
     return { material, input };
+  }
+
+  private facetUniforms(skin: SkinParts, source: MeshStandardMaterial, kind: Kind): Record<string, IUniform> {
+    const { thickness = 0, thicknessMap = null } = source as Partial<MeshPhysicalMaterial>;
+    if (thicknessMap) this.textures.add(thicknessMap);
+    return {
+      ...skin.uniforms,
+      furrowCavityAlbedo: { value: kind === 'skin' ? CAVITY_ALBEDO : 0 },
+      furrowThickness: { value: thickness },
+      // The same UVs as the base colour, as glTF of Furrow has them.
+      ...(thicknessMap && source.map ? { furrowThicknessMap: { value: thicknessMap } } : {}),
+    };
   }
 
   /** Lets shapes change the material, if the file says so. Its textures become its own, because their UVs may move. */
@@ -339,5 +407,6 @@ class Builder {
  */
 export async function loadCharacter(url: string, renderer: WebGLRenderer, options: CharacterOptions = {}): Promise<FurrowCharacter> {
   const softEdges = options.softEdges ?? renderer.getContextAttributes().antialias ?? false;
-  return new Builder(await readCharacter(url, options.rigUrl), renderer, softEdges).build();
+  const whyNot = options.skin === false ? 'the character was loaded without skin shading' : whyNoSkin(renderer);
+  return new Builder(await readCharacter(url, options.rigUrl), renderer, softEdges, whyNot).build();
 }

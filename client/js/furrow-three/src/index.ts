@@ -6,3 +6,7 @@ export { SlopeMaker } from './wrinkles/slopes.js';
 export { type DrawnRig, readRig } from './rig/rig_file.js';
 export { type CameraPlace, Follower } from './view/follow.js';
 export { Studio, STUDIO_BACKGROUND } from './view/studio.js';
+export {
+  defaultSettings, type LightSettings, type ReadSettings, readSettings, type ShadowSettings, type SkinViewName, type StudioSettings,
+} from './settings.js';
+export { StudioView, type StudioViewOptions } from './view/studio_view.js';

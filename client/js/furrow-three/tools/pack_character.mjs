@@ -189,7 +189,7 @@ function pack(source, rig, side, folder) {
   const { name, regions, wrinkle_maps: maps } = rig;
   const places = (regions ?? []).map(({ name: region, mask, feeds }) => ({ name: region, mask, feeds: (feeds ?? []).map(({ map }) => ({ map })) }));
   json.scenes[json.scene ?? 0].extras = { ...json.scenes[json.scene ?? 0].extras, furrow_source: source.checksums, furrow_rig: { name, regions: places, wrinkle_maps: maps } };
-  json.extensionsUsed = [...new Set([...(json.extensionsUsed ?? []).filter((each) => each !== 'KHR_materials_volume'), 'KHR_mesh_quantization'])];
+  json.extensionsUsed = [...new Set([...(json.extensionsUsed ?? []), 'KHR_mesh_quantization'])];
   json.extensionsRequired = [...new Set([...(json.extensionsRequired ?? []), 'KHR_mesh_quantization'])];
   json.accessors = writer.accessors;
   json.bufferViews = writer.views;
@@ -218,7 +218,8 @@ function addPictures(json, reader, writer, rig, side, folder) {
     if (pbr.baseColorTexture) pbr.baseColorTexture.index = add(pbr.baseColorTexture.index, []);
     if (pbr.metallicRoughnessTexture) pbr.metallicRoughnessTexture.index = add(pbr.metallicRoughnessTexture.index, []);
     if (material.normalTexture) material.normalTexture.index = add(material.normalTexture.index, exact);
-    if (material.extensions) delete material.extensions.KHR_materials_volume; // thickness, which three.js does not draw
+    const thickness = material.extensions?.KHR_materials_volume?.thicknessTexture;
+    if (thickness) thickness.index = add(thickness.index, []);
   }
   for (const name of rigPictures(rig)) {
     const image = reader.json.images.findIndex((each) => each.name === name);

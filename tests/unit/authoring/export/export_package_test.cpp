@@ -4,11 +4,14 @@
 #include <map>
 #include <string>
 
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "character/pictures/picture_file.h"
+#include "render/wrinkles/derivative_map.h"
 #include "tests/unit/authoring/export/small_face.h"
 
 namespace furrow::authoring {
@@ -69,13 +72,69 @@ TEST_P(EveryEngine, WrinklesJsonNamesFilesThatExist) {
 }
 
 TEST_P(EveryEngine, NothingOfATemplateIsLeft) {
-  for (const auto& [name, text] : ExportFor(GetParam())) {
-    if (name.ends_with(".png")) continue;
-    EXPECT_THAT(text, Not(HasSubstr("@{"))) << name;
-    EXPECT_THAT(text, Not(HasSubstr("@each"))) << name;
-    EXPECT_THAT(text, Not(HasSubstr("@end"))) << name;
-    EXPECT_FALSE(text.empty()) << name;
+  ExportOptions options;
+  options.engine = GetParam();
+  for (const bool derivatives : {false, true}) {
+    options.derivatives = derivatives;
+    for (const auto& [name, text] : Export(test::SmallFace(), options)) {
+      if (name.ends_with(".png")) continue;
+      EXPECT_THAT(text, Not(HasSubstr("@{"))) << name;
+      EXPECT_THAT(text, Not(HasSubstr("@each"))) << name;
+      EXPECT_THAT(text, Not(HasSubstr("@end"))) << name;
+      EXPECT_THAT(text, Not(HasSubstr("@if"))) << name;
+      EXPECT_FALSE(text.empty()) << name;
+    }
   }
+}
+
+// Rebuilds the normals of a map as README.md says, and compares them with the normal map.
+void ExpectSameRelief(const Files& files, const Json& normal, const Json& derivative, float scale) {
+  const character::Picture normals = Decoded(files, normal.get<std::string>());
+  const character::Picture slopes = Decoded(files, derivative.get<std::string>());
+  ASSERT_EQ(normals.width, slopes.width);
+  ASSERT_EQ(normals.height, slopes.height);
+  for (int y = 0; y < normals.height; ++y) {
+    for (int x = 0; x < normals.width; ++x) {
+      const auto unpack = [&](const character::Picture& picture, int c) {
+        return 2.0f * render::Texel(picture, x, y, c) - 1.0f;
+      };
+      const glm::vec3 rebuilt =
+          glm::normalize(glm::vec3(-scale * unpack(slopes, 0), -scale * unpack(slopes, 1), 1.0f));
+      for (int c = 0; c < 3; ++c) {
+        EXPECT_NEAR(rebuilt[c], unpack(normals, c), 2.0f / 255.0f) << derivative << " " << x << y;
+      }
+    }
+  }
+}
+
+TEST_P(EveryEngine, DerivativesGiveTheNormals) {
+  ExportOptions options;
+  options.engine = GetParam();
+  options.derivatives = true;
+  character::Character face = test::SmallFace();
+  // Slopes of many sizes and directions, as a base.
+  face.materials[0].normal_texture = static_cast<int>(face.pictures.size());
+  face.pictures.push_back(test::MakePicture("pores", 16, 16, 3, [](int x, int y, int c) {
+    return c == 0 ? 20 + 14 * x : c == 1 ? 20 + 14 * y : 190;
+  }));
+  const Files files = Export(face, options);
+  const Json json = Json::parse(files.at("wrinkles.json"));
+  EXPECT_EQ(json["derivatives"]["bits"], 16);
+  EXPECT_EQ(json["derivatives"]["green"], json["normals"]["green"]);
+  for (const Json& map : json["maps"]) {
+    ExpectSameRelief(files, map["normal"], map["derivative"], map["derivative_scale"]);
+  }
+  const Json& skin = json["materials"][0];
+  ExpectSameRelief(files, skin["base_normal"], skin["base_derivative"],
+                   skin["base_derivative_scale"]);
+  EXPECT_THAT(files.at("README.md"), HasSubstr("normalize(-d.x, -d.y, 1)"));
+}
+
+TEST_P(EveryEngine, DerivativesAreOnlyWrittenOnRequest) {
+  const Files files = ExportFor(GetParam());
+  for (const auto& [name, text] : files) EXPECT_THAT(name, Not(HasSubstr("derivative")));
+  EXPECT_THAT(files.at("wrinkles.json"), Not(HasSubstr("derivative")));
+  EXPECT_THAT(files.at("README.md"), Not(HasSubstr("erivative")));
 }
 
 TEST_P(EveryEngine, ReadmeNamesTheWeights) {

@@ -28,6 +28,19 @@ TEST(ExportPictures, NormalsAreUnitVectorsInTheEnginesConvention) {
   EXPECT_THAT(fine.pixels16, ElementsAre(32768, 32768, 65535));
 }
 
+TEST(ExportPictures, DerivativesAreThoseOfHeights) {
+  // Slopes are -grad h. The scale is the largest: 2.
+  const auto up = DerivativeMapPicture(OneSlope(1.0f, -2.0f), {8, false});
+  EXPECT_FLOAT_EQ(up.scale, 2.0f);
+  EXPECT_EQ(up.picture.channels, 3);
+  EXPECT_THAT(up.picture.pixels, ElementsAre(64, 255, 0));
+  const auto down = DerivativeMapPicture(OneSlope(1.0f, -2.0f), {8, true});
+  EXPECT_THAT(down.picture.pixels, ElementsAre(64, 0, 0));
+  const auto flat = DerivativeMapPicture(OneSlope(0.0f, 0.0f), {16, false});
+  EXPECT_GT(flat.scale, 0.0f);
+  EXPECT_THAT(flat.picture.pixels16, ElementsAre(32768, 32768, 0));
+}
+
 TEST(ExportPictures, SixteenBitsKeepSlopes) {
   for (const float slope : {-12.0f, -1.0f, -0.01f, 0.0f, 0.3f, 5.0f}) {
     const auto picture = NormalMapPicture(OneSlope(slope, -slope / 3.0f), {16, false});

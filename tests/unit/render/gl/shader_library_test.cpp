@@ -209,10 +209,10 @@ TEST_F(ShaderLibraryTest, EveryPoseConfigurationCompiles) {
 
 TEST_F(ShaderLibraryTest, EveryFullscreenConfigurationCompiles) {
   const std::pair<const char*, std::vector<std::string>> shaders[] = {
-      {"post/composite.frag.glsl", {"SAMPLES 4", "SHOW 0", "TONE_MAP 0", "BLOOM 0"}},
-      {"post/composite.frag.glsl", {"SAMPLES 1", "SHOW 1", "TONE_MAP 0", "BLOOM 0"}},
-      {"post/composite.frag.glsl", {"SAMPLES 1", "SHOW 2", "TONE_MAP 0", "BLOOM 1"}},
-      {"post/composite.frag.glsl", {"SAMPLES 4", "SHOW 2", "TONE_MAP 1", "BLOOM 0"}},
+      {"post/composite.frag.glsl", {"SAMPLES 4", "SHOW 0", "TONE_MAP 0", "BLOOM 0", "BOTTOM_UP 0"}},
+      {"post/composite.frag.glsl", {"SAMPLES 1", "SHOW 1", "TONE_MAP 0", "BLOOM 0", "BOTTOM_UP 0"}},
+      {"post/composite.frag.glsl", {"SAMPLES 1", "SHOW 2", "TONE_MAP 0", "BLOOM 1", "BOTTOM_UP 1"}},
+      {"post/composite.frag.glsl", {"SAMPLES 4", "SHOW 2", "TONE_MAP 1", "BLOOM 0", "BOTTOM_UP 0"}},
       {"scene/resolve.frag.glsl", {"SAMPLES 2"}},
       {"skin/separable.frag.glsl", {}},
       {"skin/combine.frag.glsl", {}},

@@ -247,6 +247,10 @@ TEST(ParseConfig, RelativeFilesAreRelativeToTheConfig) {
   Config config;
   ASSERT_TRUE(ParseConfig("rig = 'rig.json'", "/etc/furrow/furrow.toml", &config).ok());
   EXPECT_EQ(config.rig, "/etc/furrow/rig.json");
+  ASSERT_TRUE(ParseConfig("play = 'walk'", "/etc/furrow/furrow.toml", &config).ok());
+  EXPECT_EQ(config.play, "walk");  // a shipped recording
+  ASSERT_TRUE(ParseConfig("play = 'walk.bvh'", "/etc/furrow/furrow.toml", &config).ok());
+  EXPECT_EQ(config.play, "/etc/furrow/walk.bvh");
   ASSERT_TRUE(ParseConfig("skeleton_map = 'my.json'", "/etc/furrow/furrow.toml", &config).ok());
   EXPECT_EQ(config.skeleton_map, "/etc/furrow/my.json");
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Normal maps as slopes n.xy / n.z in half floats, with mip levels of the slopes: sums of slopes are exact where heights
-// add up, and the base map's pores survive (docs/ALGORITHM.md).
+// add up, and the base map's pores survive (docs/ALGORITHM.md). Squares of the slopes beside them are for skin.
 import {
   GLSL3, HalfFloatType, LinearFilter, LinearMipmapLinearFilter, Mesh, NoBlending, NoColorSpace, OrthographicCamera,
-  PlaneGeometry, RepeatWrapping, RGFormat, Scene, ShaderMaterial, type Texture, type WebGLRenderer, WebGLRenderTarget,
+  PlaneGeometry, RepeatWrapping, RGBAFormat, RGFormat, Scene, ShaderMaterial, type Texture, type WebGLRenderer, WebGLRenderTarget,
 } from 'three';
 
 const VERTEX = 'void main() { gl_Position = vec4(position.xy, 0.0, 1.0); }';
@@ -13,11 +13,12 @@ const FRAGMENT = `
 precision highp float;
 uniform highp sampler2D source;
 uniform float scale;  // 0: the source holds normals; else the derivative of a full texel
-out vec2 slope;
+out vec4 slope;       // zw: squares; their mip levels give the variance of the slopes
 void main() {
   vec3 texel = texelFetch(source, ivec2(gl_FragCoord.xy), 0).xyz * 2.0 - 1.0;
   vec2 value = scale > 0.0 ? texel.xy * scale : texel.xy / max(texel.z, 1e-3);
-  slope = clamp(value, vec2(-16.0), vec2(16.0));
+  value = clamp(value, vec2(-16.0), vec2(16.0));
+  slope = vec4(value, value * value);
 }`;
 
 interface Picture {
@@ -35,7 +36,8 @@ export class SlopeMaker {
   });
   private readonly plane = new PlaneGeometry(2, 2);
 
-  constructor(private readonly renderer: WebGLRenderer) {
+  /** `moments`: also store the squares of the slopes. */
+  constructor(private readonly renderer: WebGLRenderer, private readonly moments = false) {
     if (!renderer.extensions.has('EXT_color_buffer_float') && !renderer.extensions.has('EXT_color_buffer_half_float')) {
       throw new Error('furrow-three: this GPU cannot draw into half floats (EXT_color_buffer_float)');
     }
@@ -48,7 +50,7 @@ export class SlopeMaker {
   make(source: Texture, scale = 0): WebGLRenderTarget {
     const { width, height } = source.image as Picture;
     const target = new WebGLRenderTarget(width, height, {
-      format: RGFormat, type: HalfFloatType, colorSpace: NoColorSpace, depthBuffer: false, generateMipmaps: true,
+      format: this.moments ? RGBAFormat : RGFormat, type: HalfFloatType, colorSpace: NoColorSpace, depthBuffer: false, generateMipmaps: true,
       minFilter: LinearMipmapLinearFilter, magFilter: LinearFilter, wrapS: RepeatWrapping, wrapT: RepeatWrapping,
     });
     const { renderer } = this;

@@ -2,6 +2,8 @@
 // Adds wrinkles to a material of three.js: shaders/wrinkles/wrinkles.glsl and shaders/scene/skinning.glsl, as changes to
 // three's own shaders, so that lights, shadows and environment maps work as usual.
 import type { IUniform, MeshStandardMaterial, Texture, Vector4, WebGLProgramParametersWithUniforms } from 'three';
+import { FACET_OPEN, facetHead, facetTail, SHADE_HEAD, SHADE_TAIL } from '../skin/facet_material.js';
+import type { Kind } from '../skin/materials.js';
 import { STUDIO_GLSL } from '../view/studio.js';
 
 /** Textures of one wrinkle map; null: it has none. */
@@ -27,23 +29,33 @@ export interface WrinkleInput {
   gradients: boolean;
   /** Uniforms of the view 'studio': those of Studio, `furrowSpecular` and `furrowCavityAlbedo`. */
   studio?: Record<string, IUniform>;
+  /** What the view 'facets' needs besides. */
+  facets?: FacetInput;
   /** Both sides of the surface have the same normals, as hair has. */
   oneNormal: boolean;
+}
+
+export interface FacetInput {
+  kind: Kind;
+  /** Of all characters and of the material. */
+  uniforms: Record<string, IUniform>;
 }
 
 /**
  * 'studio': the light of the daemon's default picture, without the scene's lights (Studio).
  * 'normal': 0.5 n + 0.5 of the shading normal in world space, as `furrow render --view normal`.
+ * 'facets': the surface without light in several targets, which StudioView lights.
  */
-export type View = 'final' | 'studio' | 'normal';
+export type View = 'final' | 'studio' | 'normal' | 'facets';
 
 const VERTEX_HEAD = `
 varying vec2 vFurrowUv;
 varying vec4 vFurrowTangent;
-#ifdef FURROW_STUDIO
+#ifdef FURROW_WORLD
 varying vec3 vFurrowWorld;
 #endif
 #ifdef FURROW_GRADIENTS
+varying vec2 vFurrowStretch;
 attribute vec4 furrowAlong;
 attribute vec4 furrowAcross;
 vec3 furrowUnit(vec3 v) { return v * inversesqrt(max(dot(v, v), 1e-24)); }
@@ -80,6 +92,8 @@ const VERTEX_GRADIENTS = `
   vec3 restAcross = furrowUnit(cross(furrowNormal, furrowTangent));
   vec3 y = (furrowSkin * vec4(restAcross, 0.0)).xyz;
   vec3 x = (furrowSkin * vec4(furrowUnit(cross(restAcross, furrowNormal)), 0.0)).xyz;
+  vec3 turnedX = x;
+  vec3 turnedY = y;
   furrowAddChange(boneMatX, furrowRest, furrowPosed, furrowAlong.x, furrowAcross.x, x, y);
   furrowAddChange(boneMatY, furrowRest, furrowPosed, furrowAlong.y, furrowAcross.y, x, y);
   furrowAddChange(boneMatZ, furrowRest, furrowPosed, furrowAlong.z, furrowAcross.z, x, y);
@@ -88,6 +102,10 @@ const VERTEX_GRADIENTS = `
   vec3 furrowSurface = furrowUnit(cross(x, y));
   objectNormal = furrowUnit(mix(furrowTurned, furrowSurface, smoothstep(0.0, 0.3, dot(furrowSurface, furrowTurned))));
   objectTangent = x;
+  // How far the surface is stretched along and across its tangent (stretchOf() of shaders/scene/skinning.glsl).
+  float along = length(x) / max(length(turnedX), 1e-6);
+  float area = length(cross(x, y)) / max(length(cross(turnedX, turnedY)), 1e-9);
+  vFurrowStretch = clamp(vec2(along, area / max(along, 1e-6)), vec2(0.4), vec2(2.5));
 }
 #endif
 `;
@@ -113,9 +131,44 @@ const ALPHA_TEST = `
 #endif
 `;
 
-function fragmentHead(input: WrinkleInput): string {
+/** Pores and folds flatten along a stretch and steepen along a compression (stretchedSlope() of shaders/common/normals.glsl). */
+const STRETCHED = 'p /= vec2(vFurrowStretch.x + clamp(1.0 - vFurrowStretch.x, 0.0, 0.04), vFurrowStretch.y);';
+
+/** `moments`: slope textures hold squares, too, which give the variance of the slopes within a pixel. */
+function tangentNormal({ base, maps, gradients }: WrinkleInput, moments: boolean): string[] {
+  const stretched = gradients ? [`  ${STRETCHED}`] : [];
+  if (!moments) {
+    // Partial derivatives: p = p_base + sum w_i p_i. Heights add up, so the sum is exact.
+    const lines = ['vec3 furrowTangentNormal(vec2 baseUv) {', `  vec2 p = ${base ? 'texture2D(furrowBase, baseUv).xy' : 'vec2(0.0)'};`];
+    maps.forEach(({ slope, amplitude }, i) => {
+      if (slope) lines.push(`  p += furrowCoefficient[${i}] * ${amplitude.toFixed(6)} * texture2D(furrowSlope${i}, vFurrowUv).xy;`);
+    });
+    return [...lines, ...stretched, '  return normalize(vec3(p, 1.0));', '}'];
+  }
+  const lines = [
+    'float furrowVariance = 0.0;',
+    // shaders/wrinkles/wrinkles_frag.glsl: the maps are assumed to be independent, so variances add up.
+    'void furrowAddSlope(vec4 moments, float w, inout vec2 p) {',
+    '  vec2 variance = max(moments.ba - moments.rg * moments.rg, vec2(0.0));',
+    '  p += w * moments.rg;',
+    '  furrowVariance += w * w * 0.5 * (variance.x + variance.y);',
+    '}',
+    'vec3 furrowTangentNormal(vec2 baseUv) {', '  vec2 p = vec2(0.0);',
+    ...(base ? ['  furrowAddSlope(texture2D(furrowBase, baseUv), 1.0, p);'] : []),
+  ];
+  maps.forEach(({ slope, amplitude }, i) => {
+    if (slope) lines.push(`  furrowAddSlope(texture2D(furrowSlope${i}, vFurrowUv), furrowCoefficient[${i}] * furrowShown.y * ${amplitude.toFixed(6)}, p);`);
+  });
+  return [...lines, ...stretched, '  return normalize(vec3(p, 1.0));', '}'];
+}
+
+function fragmentHead(input: WrinkleInput, view: View): string {
   const { masks, maps } = input;
   const lines = ['varying vec2 vFurrowUv;', 'varying vec4 vFurrowTangent;', 'vec3 furrowWorldNormal;'];
+  if (input.gradients) lines.push('varying vec2 vFurrowStretch;');
+  // Strength of all wrinkles (x), their slopes (y), colours (z) and cavities (w).
+  if (view === 'facets') lines.push('uniform vec4 furrowShown;');
+  const strength = view === 'facets' ? { all: 'furrowShown.x * ', colour: ' * furrowShown.z', cavity: ' * furrowShown.w' } : { all: '', colour: '', cavity: '' };
   if (input.base) lines.push('uniform sampler2D furrowBase;');
   masks.forEach((_, i) => lines.push(`uniform sampler2D furrowMask${i};`));
   maps.forEach(({ slope, colour, cavity }, i) => {
@@ -130,23 +183,18 @@ function fragmentHead(input: WrinkleInput): string {
   lines.push('void furrowReadMasks() {');
   if (maps.length > 0) {
     masks.forEach((_, i) => lines.push(`  vec4 mask${i} = texture2D(furrowMask${i}, vFurrowUv);`));
-    maps.forEach((_, map) => lines.push(`  furrowCoefficient[${map}] = ${masks.map((__, i) =>
-      `dot(furrowWeights[${map * masks.length + i}], mask${i})`).join(' + ')};`));
+    maps.forEach((_, map) => lines.push(`  furrowCoefficient[${map}] = ${strength.all}(${masks.map((__, i) =>
+      `dot(furrowWeights[${map * masks.length + i}], mask${i})`).join(' + ')});`));
   }
   lines.push('}');
-  // Partial derivatives: p = p_base + sum w_i p_i. Heights add up, so the sum is exact.
-  lines.push('vec3 furrowTangentNormal(vec2 baseUv) {', `  vec2 p = ${input.base ? 'texture2D(furrowBase, baseUv).xy' : 'vec2(0.0)'};`);
-  maps.forEach(({ slope, amplitude }, i) => {
-    if (slope) lines.push(`  p += furrowCoefficient[${i}] * ${amplitude.toFixed(6)} * texture2D(furrowSlope${i}, vFurrowUv).xy;`);
-  });
-  lines.push('  return normalize(vec3(p, 1.0));', '}');
+  lines.push(...tangentNormal(input, view === 'facets'));
   // Factors of the base colour (rgb) and of the incoming light (a).
   lines.push('vec4 furrowLook() {', '  vec4 look = vec4(1.0);');
   maps.forEach(({ colour, colourScale, cavity }, i) => {
     if (colour) {
-      lines.push(`  look.rgb *= max(mix(vec3(1.0), texture2D(furrowColour${i}, vFurrowUv).rgb * ${colourScale.toFixed(6)}, furrowCoefficient[${i}]), vec3(0.0));`);
+      lines.push(`  look.rgb *= max(mix(vec3(1.0), texture2D(furrowColour${i}, vFurrowUv).rgb * ${colourScale.toFixed(6)}, furrowCoefficient[${i}]${strength.colour}), vec3(0.0));`);
     }
-    if (cavity) lines.push(`  look.a *= max(mix(1.0, texture2D(furrowCavity${i}, vFurrowUv).r, furrowCoefficient[${i}]), 0.0);`);
+    if (cavity) lines.push(`  look.a *= max(mix(1.0, texture2D(furrowCavity${i}, vFurrowUv).r, furrowCoefficient[${i}]${strength.cavity}), 0.0);`);
   });
   lines.push('  return look;', '}');
   lines.push(`
@@ -184,16 +232,24 @@ function patchVertex(shader: WebGLProgramParametersWithUniforms): void {
   source = replace(source, '#include <begin_vertex>',
     'vFurrowUv = uv;\nvFurrowTangent = vec4(transformedTangent, tangent.w);\n#include <begin_vertex>');
   source = replace(source, '#include <project_vertex>',
-    '#include <project_vertex>\n#ifdef FURROW_STUDIO\nvFurrowWorld = (modelMatrix * vec4(transformed, 1.0)).xyz;\n#endif\n');
+    '#include <project_vertex>\n#ifdef FURROW_WORLD\nvFurrowWorld = (modelMatrix * vec4(transformed, 1.0)).xyz;\n#endif\n');
   shader.vertexShader = source;
 }
 
 function patchFragment(shader: WebGLProgramParametersWithUniforms, input: WrinkleInput, view: View): void {
-  let source = replace(shader.fragmentShader, '#include <common>', `#include <common>\n${fragmentHead(input)}${view === 'studio' ? STUDIO_GLSL : ''}`);
+  const { facets } = input;
+  const shade = facets?.kind === 'shade';
+  const hasThicknessMap = facets?.uniforms.furrowThicknessMap !== undefined;
+  let head = fragmentHead(input, view);
+  if (view === 'studio') head += STUDIO_GLSL;
+  if (view === 'facets' && facets) head += shade ? SHADE_HEAD : facetHead(facets.kind, hasThicknessMap);
+  let source = replace(shader.fragmentShader, '#include <common>', `#include <common>\n${head}`);
   // The daemon's shading "diffuse" has no colours and cavities of wrinkle maps.
-  source = replace(source, '#include <map_fragment>', '#include <map_fragment>\nfurrowReadMasks();\n' +
+  const open = view === 'facets' && !shade ? FACET_OPEN : '';
+  source = replace(source, '#include <map_fragment>', '#include <map_fragment>\nfurrowReadMasks();\n' + open +
     (view === 'studio' ? 'vec4 furrowFactors = vec4(1.0);\n' : 'vec4 furrowFactors = furrowLook();\ndiffuseColor.rgb *= furrowFactors.rgb;\n'));
-  source = replace(source, '#include <alphatest_fragment>', ALPHA_TEST);
+  // The facets have one sample per pixel, so the edge of a cut-out is where its alpha is too low.
+  if (view !== 'facets') source = replace(source, '#include <alphatest_fragment>', ALPHA_TEST);
   const baseUv = input.base ? 'vNormalMapUv' : 'vec2(0.0)';
   // Three turns `normal` for double-sided materials before this point; the tangent frame here starts from the surface's side.
   const facing = input.oneNormal ? '' : '#ifdef DOUBLE_SIDED\nnormal *= faceDirection;\n#endif\n';
@@ -203,14 +259,17 @@ function patchFragment(shader: WebGLProgramParametersWithUniforms, input: Wrinkl
   source = replace(source, '#include <aomap_fragment>',
     '#include <aomap_fragment>\nreflectedLight.indirectDiffuse *= furrowFactors.a;\nreflectedLight.directSpecular *= furrowFactors.a;\n' +
     'reflectedLight.indirectSpecular *= furrowFactors.a;');
-  if (view === 'studio') {
+  // A shade is what three multiplies the picture by, whatever the light.
+  if (shade && view !== 'facets') source = replace(source, '#include <opaque_fragment>', 'gl_FragColor = vec4(diffuseColor.rgb, 1.0);');
+  else if (view === 'studio') {
     source = replace(source, '#include <opaque_fragment>',
       'outgoingLight = furrowStudio(diffuseColor.rgb, inverseTransformDirection(normal, viewMatrix), roughnessFactor) + totalEmissiveRadiance;\n#include <opaque_fragment>');
   }
-  if (view === 'normal') {
-    source = replace(source, '#include <dithering_fragment>',
-      '#include <dithering_fragment>\ngl_FragColor = vec4(inverseTransformDirection(normal, viewMatrix) * 0.5 + 0.5, gl_FragColor.a);');
-  }
+  const last = (code: string): void => {
+    source = replace(source, '#include <dithering_fragment>', `#include <dithering_fragment>\n${code}`);
+  };
+  if (view === 'normal') last('gl_FragColor = vec4(inverseTransformDirection(normal, viewMatrix) * 0.5 + 0.5, gl_FragColor.a);');
+  if (view === 'facets' && facets) last(shade ? SHADE_TAIL : facetTail(input.oneNormal, hasThicknessMap));
   shader.fragmentShader = source;
 }
 
@@ -220,17 +279,20 @@ function patchFragment(shader: WebGLProgramParametersWithUniforms, input: Wrinkl
  */
 export function addWrinkles(material: MeshStandardMaterial, input: WrinkleInput, view: View): void {
   const defined = material as { defines?: Record<string, unknown> };
-  const { FURROW_STUDIO: _, ...others } = defined.defines ?? {};
+  const { FURROW_WORLD: _, ...others } = defined.defines ?? {};
+  const world = view === 'studio' || view === 'facets';
   defined.defines = {
-    ...others, USE_TANGENT: '', ...(input.gradients ? { FURROW_GRADIENTS: '' } : {}), ...(view === 'studio' ? { FURROW_STUDIO: '' } : {}),
+    ...others, USE_TANGENT: '', ...(input.gradients ? { FURROW_GRADIENTS: '' } : {}), ...(world ? { FURROW_WORLD: '' } : {}),
   };
   material.onBeforeCompile = (shader) => {
     addUniforms(shader.uniforms, input);
     if (view === 'studio') Object.assign(shader.uniforms, input.studio);
+    if (view === 'facets') Object.assign(shader.uniforms, input.facets?.uniforms);
     patchVertex(shader);
     patchFragment(shader, input, view);
   };
   const key = JSON.stringify([view, input.masks.length, input.base !== null, input.oneNormal, input.gradients,
+    input.facets?.kind, input.facets?.uniforms.furrowThicknessMap !== undefined,
     input.maps.map(({ slope, colour, cavity, amplitude, colourScale }) => [!slope, !colour, !cavity, amplitude, colourScale])]);
   material.customProgramCacheKey = () => `furrow ${key}`;
   material.needsUpdate = true;

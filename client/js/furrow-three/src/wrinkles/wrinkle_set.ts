@@ -23,7 +23,7 @@ export class WrinkleSet {
     const places = rig.places.filter(({ map }) => drawn.includes(rig.maps[map]!));
     this.maps = drawn.filter((map) => places.some((place) => rig.maps[place.map] === map));
     this.masks = [...new Set(places.map(({ mask }) => mask))];
-    this.weights = Array.from({ length: this.maps.length * this.masks.length }, () => new Vector4());
+    this.weights = Array.from({ length: this.maps.length * this.masks.length }, () => new Vector4(0, 0, 0, 0)); // three starts with w = 1
     for (const { weight, map, mask, channel } of places) {
       const row = this.maps.indexOf(rig.maps[map]!) * this.masks.length + this.masks.indexOf(mask);
       this.slots.set(weight, [...(this.slots.get(weight) ?? []), { row, channel }]);
