@@ -4,6 +4,8 @@
 # What the client library needs.
 find_package(Threads REQUIRED)
 find_package(FlatBuffers REQUIRED)
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(SODIUM REQUIRED IMPORTED_TARGET libsodium)
 find_program(FURROW_FLATC flatc REQUIRED)
 add_library(furrow_asio INTERFACE)
 find_path(FURROW_ASIO_INCLUDE asio.hpp REQUIRED)
@@ -15,14 +17,12 @@ if(NOT FURROW_BUILD_PROGRAMS)
 endif()
 
 # What the programs need.
-find_package(PkgConfig REQUIRED)
 find_package(spdlog REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(tomlplusplus REQUIRED)
 find_package(meshoptimizer REQUIRED)
 
 pkg_check_modules(EPOXY REQUIRED IMPORTED_TARGET epoxy)
-pkg_check_modules(SODIUM REQUIRED IMPORTED_TARGET libsodium)
 pkg_check_modules(EGL REQUIRED IMPORTED_TARGET egl)
 # Found with pkg-config, because the CMake package needs Imath's Python targets, which Debian packages
 # separately.

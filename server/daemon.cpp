@@ -22,10 +22,13 @@
 #include <spdlog/spdlog.h>
 
 #include "base/status.h"
+#include "base/text.h"
 #include "motion/find_recording.h"
+#include "protocol/secure/token/key_ring.h"
 #include "rig/rig_file.h"
 #include "server/assets.h"
 #include "server/config/osc_profile_file.h"
+#include "server/core/file_watch.h"
 #include "server/core/status_line.h"
 #include "server/http/api/api.h"
 #include "server/http/http_server.h"
@@ -34,11 +37,13 @@
 #include "server/net/critical_task.h"
 #include "server/net/mocap_inputs.h"
 #include "server/net/tcp/tcp_server.h"
+#include "server/net/udp/secure_sessions.h"
 #include "server/net/udp/udp_port.h"
 #include "server/osc/osc_targets.h"
 #include "server/pipeline/render_thread.h"
 #include "server/playback/player.h"
 #include "server/recording/recorder.h"
+#include "server/session/access/token_gate.h"
 #include "server/session/hub.h"
 
 namespace furrow::server {
@@ -57,6 +62,11 @@ std::uint64_t RandomNumber() {
   return number;
 }
 
+std::uint64_t UnixSeconds() {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::seconds>(now).count());
+}
+
 // The OSC targets of the configuration, each with its profile.
 using OscOutputs = std::vector<std::pair<OscTargetConfig, protocol::mocap::OscProfile>>;
 
@@ -70,17 +80,27 @@ class Daemon {
         assets_(std::move(assets)),
         osc_outputs_(std::move(osc_outputs)),
         metrics_(options.metrics != nullptr ? options.metrics : &own_metrics_),
-        signals_(io_) {}
+        signals_(io_),
+        gate_({.security = config.security.mode,
+               .name = config.security.name,
+               .tokens_in_clear = config.security.tokens_in_clear},
+              &UnixSeconds, metrics_),
+        secure_(&gate_, &UnixSeconds, std::min(config.limits.max_udp_peers, 0xFFFF), config.threads,
+                metrics_),
+        keys_file_(config.security.keys) {}
 
   // Call these in this order. Each leaves out what the configuration does not ask for.
   Status StartRendering();
   Status StartRecording();
   Status LoadPlayer();
+  Status LoadKeys();
   Status Listen();
   void Serve();
 
  private:
   void MakeHub();
+  void SetKeys(protocol::secure::KeyRing keys);
+  void ReadKeysIfChanged();
   Status StartOsc();
   Status StartWeb();
   void Announce() const;
@@ -104,6 +124,9 @@ class Daemon {
   std::unique_ptr<RenderThread> render_;
   std::unique_ptr<Player> player_;   // a peer of the hub, so it outlives the hub
   std::unique_ptr<OscTargets> osc_;  // called by the hub, so it outlives the hub
+  TokenGate gate_;
+  SecureSessions secure_;
+  FileWatch keys_file_;
   std::unique_ptr<Hub> hub_;
   std::unique_ptr<TcpServer> tcp_;
   std::unique_ptr<UdpPort> udp_;
@@ -182,6 +205,7 @@ void Daemon::MakeHub() {
   // The recorder is declared before the hub and therefore outlives it.
   parts.recording = recorder_.get();
   parts.shards = config_.threads;
+  parts.gate = &gate_;
   hub_ = std::make_unique<Hub>(std::move(parts));
 }
 
@@ -192,7 +216,7 @@ Status Daemon::Listen() {
   tcp_ = std::make_unique<TcpServer>(io_, config_.limits, hub_.get(), metrics_);
   FURROW_RETURN_IF_ERROR(tcp_->Open({address, config_.tcp}));
   udp_ = std::make_unique<UdpPort>(io_, config_.threads, config_.limits, hub_.get(), metrics_,
-                                   recorder_.get());
+                                   recorder_.get(), &secure_, gate_.required());
   FURROW_RETURN_IF_ERROR(udp_->Open({address, config_.udp}));
   FURROW_RETURN_IF_ERROR(mocap_.Open({.bind = config_.bind,
                                       .vmc = config_.vmc,
@@ -201,6 +225,33 @@ Status Daemon::Listen() {
                                      io_, hub_.get(), metrics_));
   FURROW_RETURN_IF_ERROR(StartOsc());
   return StartWeb();
+}
+
+Status Daemon::LoadKeys() {
+  if (config_.security.keys.empty()) return {};
+  (void)keys_file_.Changed();  // before it is read, so that no change is missed
+  auto keys = protocol::secure::LoadKeyRing(config_.security.keys);
+  FURROW_RETURN_IF_ERROR(keys);
+  if (keys->keys().empty()) spdlog::warn("the key file has no key, so no token is valid");
+  SetKeys(*std::move(keys));
+  return {};
+}
+
+void Daemon::SetKeys(protocol::secure::KeyRing keys) {
+  secure_.SetKeys(keys);
+  gate_.SetKeys(std::move(keys));
+}
+
+// A file that cannot be read changes nothing: an editor may be writing it.
+void Daemon::ReadKeysIfChanged() {
+  if (!keys_file_.Changed()) return;
+  auto keys = protocol::secure::LoadKeyRing(config_.security.keys);
+  if (!keys.ok()) {
+    return spdlog::error("the keys stay as they were: {}", keys.status().ToString());
+  }
+  spdlog::info("read {} from {}", Counted(keys->keys().size(), "key"),
+               config_.security.keys.string());
+  SetKeys(*std::move(keys));
 }
 
 // No thread has started yet, so the hub needs no lock.
@@ -254,6 +305,7 @@ Status Daemon::StartWeb() {
   if (recorder_ != nullptr) {
     parts.recording_is_paused = [this] { return recorder_->is_paused(); };
   }
+  parts.open_to_network = ListensToNetwork(config_) && !gate_.required();
   api_ = std::make_unique<Api>(std::move(parts));
   auto started = HttpServer::Start(
       {.config = config_.http,
@@ -271,7 +323,8 @@ Status Daemon::StartWeb() {
              const Hub::ExclusiveLock lock(hub, 0);
              return api_->Answer(request, hub, now);
            },
-       .metrics = metrics_});
+       .metrics = metrics_,
+       .gate = &gate_});
   FURROW_RETURN_IF_ERROR(started);
   http_ = *std::move(started);
   return {};
@@ -368,6 +421,7 @@ asio::awaitable<void> Daemon::SecondLoop() {
     timer.expires_after(kSecond);
     co_await timer.async_wait(kAwaitTuple);
     const Time now = ReadClock();
+    ReadKeysIfChanged();
     if (config_.verbose) {
       const Hub::ExclusiveLock lock(*hub_, 0);
       spdlog::info("{}", status_line.Next(hub_->num_subjects(), hub_->num_subscriptions(), now));
@@ -437,6 +491,20 @@ Result<OscOutputs> LoadOscOutputs(const Config& config) {
   return outputs;
 }
 
+void WarnAboutSecurity(const Config& config) {
+  if (!ListensToNetwork(config)) return;
+  if (config.security.mode == Security::kOpen) {
+    spdlog::warn(
+        "open to the network: everybody who reaches {} may publish, watch and change settings",
+        config.bind);
+  } else if (config.security.tokens_in_clear) {
+    spdlog::warn(
+        "tokens over TCP and HTTP are not encrypted: everybody on the way can read and use them");
+  } else {
+    spdlog::info("other computers are served over UDP only: TCP and HTTP are not encrypted");
+  }
+}
+
 ExitCode LoadAndServe(const Config& config, const RunOptions& options) {
   // Tests and embedders call Run() without ParseCommandLine(), which has validated already.
   if (Status status = ValidateConfig(config); !status.ok()) return Fail(ExitCode::kUsage, status);
@@ -447,11 +515,7 @@ ExitCode LoadAndServe(const Config& config, const RunOptions& options) {
         "the character has no wrinkle rig, so there are no weights and no wrinkles: put "
         "NAME.rig.json beside NAME.glb, or choose a rig by --rig");
   }
-  if (ListensToNetwork(config)) {
-    spdlog::warn(
-        "open to the network: everybody who reaches {} may publish, watch and change settings",
-        config.bind);
-  }
+  WarnAboutSecurity(config);
   if (config.render && assets->character != nullptr) {
     for (const std::string& warning : assets->character->warnings) {
       spdlog::warn("character: {}", warning);
@@ -472,6 +536,9 @@ ExitCode LoadAndServe(const Config& config, const RunOptions& options) {
   }
   if (Status status = daemon.LoadPlayer(); !status.ok()) {
     return Fail(ExitCode::kBadInput, status.At("--play"));
+  }
+  if (Status status = daemon.LoadKeys(); !status.ok()) {
+    return Fail(ExitCode::kBadInput, status.Within("--keys"));
   }
   if (Status status = daemon.Listen(); !status.ok()) return Fail(ExitCode::kFailed, status);
   daemon.Serve();

@@ -17,7 +17,7 @@
 #include <unistd.h>
 
 #include "bench/same_machine/ring.h"
-#include "client/cpp/transport.h"
+#include "client/cpp/transports.h"
 #include "server/net/udp/udp_sender.h"
 
 namespace furrow::bench {
@@ -43,7 +43,7 @@ class Udp : public Way {
       if (send(bare_socket_, "here", 4, 0) != 4) Fail("send");
       return;
     }
-    auto opened = client::Transport::Open(client::TransportKind::kUdp, "127.0.0.1", port,
+    auto opened = client::OpenTransport(client::TransportKind::kUdp, "127.0.0.1", port,
                                           std::chrono::seconds(1));
     if (!opened.ok()) Fail("open");
     transport_ = std::move(opened).value();

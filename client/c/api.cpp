@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <new>
+#include <optional>
 #include <string>
 
 #include "base/text.h"
@@ -77,13 +78,28 @@ const Feed* NamedFeed(Connection& connection, const char* subject, furrow_status
   return nullptr;
 }
 
-// Refuses what is reserved. A token that is silently ignored would pretend to protect.
+// Takes over the token of the options, which the address may state instead.
+Status TakeToken(const furrow_options& options, furrow::client::Address* address) {
+  if (options.token == nullptr) return {};
+  if (!address->token.empty()) {
+    return {StatusCode::kInvalidArgument, "the address states a token, too", "options.token",
+            "use one of both"};
+  }
+  constexpr int kMostBytes = 4096;
+  if (furrow::capi::ReadText(options.token, kMostBytes, &address->token) &&
+      !address->token.empty()) {
+    return {};
+  }
+  return {StatusCode::kInvalidArgument, "use the name of a file, or the text of a token",
+          "options.token"};
+}
+
+// Refuses what is reserved. A key that is silently ignored would pretend to protect.
 Status CheckOptions(const furrow_options& options, std::string* program) {
   const auto reserved = [](const char* field) {
     return Status(StatusCode::kUnsupported, "it is reserved for a later version",
                   std::string("options.") + field, "leave it empty");
   };
-  if (options.token != nullptr) return reserved("token");
   if (options.server_key != nullptr) return reserved("server_key");
   if (options.tls_authority != nullptr) return reserved("tls_authority");
   if (options.tls != 0) return reserved("tls");
@@ -111,8 +127,19 @@ furrow_status Open(const char* address, const furrow_options& options,
     const bool unsupported = parsed.status().code() == StatusCode::kUnsupported;
     return unsupported ? FURROW_UNSUPPORTED : FURROW_INVALID_ADDRESS;
   }
+  Status fault = TakeToken(options, &*parsed);
+  std::optional<furrow::client::Token> token;
+  if (fault.ok()) {
+    auto loaded = furrow::client::LoadTokenOf(*parsed);
+    if (loaded.ok()) token = *std::move(loaded);
+    fault = loaded.ok() ? Status() : loaded.status().Within("token");
+  }
+  if (!fault.ok()) {
+    *error = fault.ToString();
+    return FURROW_INVALID_ARGUMENT;
+  }
   auto opened = std::unique_ptr<furrow_connection>(
-      new furrow_connection{{*std::move(parsed), std::move(program)}});
+      new furrow_connection{{*std::move(parsed), std::move(program), std::move(token)}});
   if ((options.flags & FURROW_OPEN_WITHOUT_SUBSCRIPTION) == 0) {
     const furrow_status status = opened->connection.SubscribeToAddress();
     *error = opened->connection.last_error();

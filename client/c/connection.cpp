@@ -51,8 +51,9 @@ class Mark {
 
 }  // namespace
 
-Connection::Connection(client::Address address, std::string program)
-    : address_(std::move(address)), program_(std::move(program)) {}
+Connection::Connection(client::Address address, std::string program,
+                       std::optional<client::Token> token)
+    : address_(std::move(address)), program_(std::move(program)), token_(std::move(token)) {}
 
 Connection::~Connection() {
   // Without these, the daemon would notice after some seconds.
@@ -74,7 +75,7 @@ furrow_status Connection::Fail(const Status& status) {
 std::unique_ptr<client::Transport> Connection::OpenTransport() const {
   const auto kind = address_.transport.value_or(client::TransportKind::kUdp);
   return client::ReconnectingTransport::Create(kind, address_.host, address_.PortFor(kind),
-                                               kSendTimeout);
+                                               kSendTimeout, nullptr, token_);
 }
 
 furrow_status Connection::SubscribeToAddress() {
@@ -275,6 +276,7 @@ bool Connection::Step(std::int64_t now_us, milliseconds wait, bool* idle) {
     case Receiver::Step::kNoConnection:
       *idle = true;
       NoteNetworkFailure();
+      NoteRefusal();
       if (state_ != FURROW_CONNECTED) break;
       SetState(FURROW_DISCONNECTED);
       return true;
@@ -286,6 +288,7 @@ bool Connection::Step(std::int64_t now_us, milliseconds wait, bool* idle) {
     case Receiver::Step::kNews: news = true; break;
   }
   if (!error.empty()) last_error_ = error;
+  NoteRefusal();
   return news;
 }
 
@@ -309,6 +312,12 @@ void Connection::NoteNetworkFailure() {
                 " (is furrowd running there?)";
 }
 
+void Connection::NoteRefusal() {
+  const std::string why = client::RefusedTokenText(receiving_->refusal());
+  if (!why.empty()) last_error_ = why;
+  receiver_->SetRefused(!why.empty() || receiver_->needs_token());
+}
+
 void Connection::SetState(furrow_state state) {
   if (state == state_) return;
   state_ = state;
@@ -320,7 +329,11 @@ furrow_status Connection::Offer(const furrow_skeleton* skeleton, std::uint32_t* 
   if (const furrow_status status = CopyIn(skeleton, &wanted); status != FURROW_OK) {
     return Fail(status, "skeleton: struct_size is wrong, or an unknown field is set");
   }
-  if (!sender_) sender_.emplace(OpenTransport());
+  if (!sender_) {
+    auto transport = OpenTransport();
+    sending_ = transport.get();
+    sender_.emplace(std::move(transport));
+  }
   const Status status = sender_->Offer(wanted, SteadyMicroseconds(), stream);
   return status.ok() ? FURROW_OK : Fail(status.Within("skeleton"));
 }
@@ -332,7 +345,12 @@ furrow_status Connection::StreamStatus(std::uint32_t stream) {
   if (const std::string& why = sender_->rejection(stream); !why.empty()) {
     return Fail(FURROW_REJECTED, why);
   }
-  return sender_->accepted(stream) ? FURROW_OK : FURROW_NO_DATA;
+  if (sender_->accepted(stream)) return FURROW_OK;
+  if (std::string why = client::RefusedTokenText(sending_->refusal()); !why.empty()) {
+    return Fail(FURROW_UNAUTHENTICATED, std::move(why));
+  }
+  if (sender_->needs_token()) return Fail(FURROW_UNAUTHENTICATED, sender_->last_error());
+  return FURROW_NO_DATA;
 }
 
 furrow_status Connection::SendPose(std::uint32_t stream, const furrow_pose* pose) {

@@ -17,8 +17,8 @@ namespace furrow::capi {
 // their arguments are checked for null pointers by the caller.
 class Connection {
  public:
-  // `program`: for the daemon's log.
-  Connection(client::Address address, std::string program);
+  // `program`: for the daemon's log. `token`: that the address names, if any.
+  Connection(client::Address address, std::string program, std::optional<client::Token> token);
   ~Connection();
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
@@ -64,11 +64,14 @@ class Connection {
   void PollSender(std::int64_t now_us, std::chrono::milliseconds wait, bool* news);
   void SetState(furrow_state state);
   void NoteNetworkFailure();
+  void NoteRefusal();
 
   client::Address address_;
   std::string program_;
+  const std::optional<client::Token> token_;
   Listener listener_;
   client::Transport* receiving_ = nullptr;  // owned by receiver_
+  client::Transport* sending_ = nullptr;    // owned by sender_
   std::optional<Receiver> receiver_;        // none without subscriptions
   std::optional<Sender> sender_;            // none without published subjects
   furrow_state state_ = FURROW_CONNECTING;

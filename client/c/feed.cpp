@@ -64,7 +64,8 @@ void Feed::OnError(furrow_status status, std::int64_t retry_us) {
 
 furrow_status Feed::status() const {
   if (error_ != FURROW_OK) return error_;
-  return values_.empty() ? FURROW_NO_DATA : FURROW_OK;
+  if (!values_.empty()) return FURROW_OK;
+  return refused_ ? FURROW_UNAUTHENTICATED : FURROW_NO_DATA;
 }
 
 furrow_frame Feed::Frame(std::int64_t now_us) const {

@@ -37,6 +37,9 @@ class Feed {
   }
   // The daemon rejected the request, which is to be repeated at `retry_us`.
   void OnError(furrow_status status, std::int64_t retry_us);
+  // Whether the daemon refuses the token of the connection: status() says so while there are no
+  // weights.
+  void SetRefused(bool refused) { refused_ = refused; }
   // The number of the request that was sent last.
   void SetRequest(std::uint32_t number) { request_number_ = number; }
 
@@ -70,6 +73,7 @@ class Feed {
   std::uint32_t request_number_ = 0;
   std::uint16_t subscription_ = 0;
   furrow_status error_ = FURROW_OK;
+  bool refused_ = false;
   Retry retry_;
 
   std::string subject_;

@@ -15,6 +15,8 @@ furrow_status StatusOf(protocol::ErrorCode code) {
   switch (code) {
     case protocol::ErrorCode::kNoMatch: return FURROW_NO_MATCH;
     case protocol::ErrorCode::kLimit: return FURROW_LIMIT;
+    case protocol::ErrorCode::kNeedsToken: return FURROW_UNAUTHENTICATED;
+    case protocol::ErrorCode::kNotPermitted: return FURROW_FORBIDDEN;
     case protocol::ErrorCode::kUnsupported:
     case protocol::ErrorCode::kUnsupportedVersion: return FURROW_UNSUPPORTED;
     default: return FURROW_REJECTED;
@@ -112,7 +114,12 @@ Receiver::Step Receiver::Next(std::int64_t now_us, std::chrono::milliseconds wai
   }
 }
 
+void Receiver::SetRefused(bool refused) {
+  for (const auto& feed : feeds_) feed->SetRefused(refused);
+}
+
 Receiver::Step Receiver::OnReply(const Event& event, const Listener& listener) {
+  needs_token_ = false;
   if (PoseFeed* const poses = FindPoses(event.header.sequence, 0)) {
     poses->SetSubscription(event.header.stream);
     return Step::kOther;
@@ -151,6 +158,11 @@ Receiver::Step Receiver::OnPoses(const Event& event, std::int64_t now_us) {
 
 Receiver::Step Receiver::OnError(const Event& event, std::int64_t now_us, std::string* error) {
   *error = subscriber_.error().message;
+  if (subscriber_.error().code == protocol::ErrorCode::kNeedsToken) {
+    needs_token_ = true;
+    if (error->empty()) *error = "the daemon requires a token";
+    return Step::kNews;
+  }
   if (PoseFeed* const poses = FindPoses(event.header.sequence, 0)) {
     poses->OnError(StatusOf(subscriber_.error().code), now_us + kRetryUs);
     return Step::kNews;

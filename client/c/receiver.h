@@ -40,6 +40,11 @@ class Receiver {
   Step Next(std::int64_t now_us, std::chrono::milliseconds wait, const Listener& listener,
             std::string* error);
 
+  // True if the daemon wants a token, or another one.
+  [[nodiscard]] bool needs_token() const { return needs_token_; }
+  // Tells all feeds whether the daemon refuses the token of this connection.
+  void SetRefused(bool refused);
+
   // The feed of a subject: by the requested name, or by the daemon's name. Null: the first one.
   // Returns null if there is none.
   [[nodiscard]] const Feed* Find(const char* subject) const;
@@ -60,6 +65,7 @@ class Receiver {
   Step OnGoodbye(const client::Event& event, std::int64_t now_us, const Listener& listener);
 
   client::Subscriber subscriber_;
+  bool needs_token_ = false;
   // On the heap, because callbacks hold references while the program changes nothing else.
   std::vector<std::unique_ptr<Feed>> feeds_;
 };

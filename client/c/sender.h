@@ -42,6 +42,8 @@ class Sender {
   // False while there is no connection.
   [[nodiscard]] bool connected() const { return connected_; }
   [[nodiscard]] const std::string& last_error() const { return publisher_.last_error(); }
+  // True if the daemon wants a token, or another one.
+  [[nodiscard]] bool needs_token() const { return publisher_.needs_token(); }
 
  private:
   struct Stream {

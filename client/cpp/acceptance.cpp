@@ -21,6 +21,7 @@ Acceptance WaitUntilAccepted(Publisher& publisher, std::uint16_t stream,
     // which does not cancel the last report.
     if (status != IoStatus::kTimeout) refused = status == IoStatus::kNoConnection;
     if (publisher.accepted(stream)) return {Kind::kAccepted, {}};
+    if (publisher.needs_token()) return {Kind::kError, publisher.last_error()};
     if (!publisher.rejection(stream).empty()) return {Kind::kRefused, publisher.rejection(stream)};
     if (status == IoStatus::kClosed || status == IoStatus::kMalformed || now_us() >= deadline) {
       if (!publisher.last_error().empty()) return {Kind::kError, publisher.last_error()};

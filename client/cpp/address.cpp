@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "protocol/messages/limits.h"
 #include "protocol/messages/text.h"
+#include "protocol/secure/token/token_text.h"
 
 namespace furrow::client {
 namespace {
@@ -17,9 +18,11 @@ constexpr std::string_view kScheme = "furrow://";
 constexpr std::size_t kMaxAddressBytes = 64 * 1024;
 constexpr std::size_t kMaxHostBytes = 255;
 constexpr std::size_t kMaxSubjects = 256;
-constexpr std::array<std::string_view, 4> kKeys = {"subject", "pattern", "rate", "transport"};
-// Access control and encryption will use these keys. Ignoring them would pretend to protect.
-constexpr std::array<std::string_view, 3> kReservedKeys = {"token", "key", "tls"};
+constexpr std::array<std::string_view, 5> kKeys = {"subject", "pattern", "rate", "transport",
+                                                   "token"};
+// Encryption of TCP will use these keys. Ignoring them would pretend to protect.
+constexpr std::array<std::string_view, 2> kReservedKeys = {"key", "tls"};
+constexpr std::size_t kMaxTokenBytes = 4096;  // of a path
 
 Status Invalid(std::string what, std::string todo = {}) {
   return {StatusCode::kInvalidArgument, std::move(what), "address", std::move(todo)};
@@ -99,6 +102,16 @@ Status SetRate(const std::string& value, Address* address) {
   return {};
 }
 
+Status SetToken(const std::string& value, Address* address) {
+  if (value.empty() || value.size() > kMaxTokenBytes || !protocol::IsPlainText(value)) {
+    return Invalid("the token is not a file name and not a token",
+                   "write token=FILE, with a file that 'furrow token new' made");
+  }
+  if (!address->token.empty()) return Invalid("token is stated twice");
+  address->token = value;
+  return {};
+}
+
 Status SetText(std::string_view key, const std::string& value, Address* address) {
   const bool subject = key == "subject";
   const auto most =
@@ -127,17 +140,19 @@ Status SetValue(std::string_view item, Address* address) {
   const std::string_view key = item.substr(0, equals);
   if (std::ranges::find(kReservedKeys, key) != kReservedKeys.end()) {
     return {StatusCode::kUnsupported, std::string(key) + " is reserved for a later version",
-            "address", "leave it out: this version has no access control and no encryption"};
+            "address", "leave it out: this version encrypts UDP alone, with the key token"};
   }
   if (std::ranges::find(kKeys, key) == kKeys.end()) {
-    return Invalid("unknown key " + Quoted(key), "use subject, pattern, rate or transport");
+    return Invalid("unknown key " + Quoted(key), "use subject, pattern, rate, transport or token");
   }
   std::optional<std::string> value;
   if (equals != std::string_view::npos) value = DecodePercent(item.substr(equals + 1));
   if (!value) {
-    return Invalid(Quoted(item) + " is not a value",
+    // A token must not end up in a log.
+    return Invalid(Quoted(key == "token" ? key : item) + " is not a value",
                    "write " + std::string(key) + "=VALUE, and a percent sign as %25");
   }
+  if (key == "token") return SetToken(*value, address);
   if (key == "transport") return SetTransport(*value, address);
   if (key == "rate") return SetRate(*value, address);
   return SetText(key, *value, address);
@@ -179,6 +194,15 @@ Result<Address> ParseAddress(std::string_view text) {
     FURROW_RETURN_IF_ERROR(ParseQuery(text.substr(question + 1), &address));
   }
   return address;
+}
+
+Result<std::optional<Token>> LoadTokenOf(const Address& address) {
+  if (address.token.empty()) return std::optional<Token>();
+  const bool is_text = address.token.starts_with(protocol::secure::kTokenPrefix);
+  auto token = is_text ? protocol::secure::ParseToken(address.token)
+                       : protocol::secure::LoadToken(address.token);
+  FURROW_RETURN_IF_ERROR(token);
+  return std::optional<Token>(*std::move(token));
 }
 
 }  // namespace furrow::client

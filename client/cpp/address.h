@@ -22,6 +22,7 @@ namespace furrow::client {
 //   pattern    names of values, as comma-separated globs
 //   rate       most frames per second, in (0, 1000]
 //   transport  udp or tcp
+//   token      a file with a connect token, or the token itself (docs/TOKENS.md)
 // `%2A` stands for the byte with this hexadecimal number, in values.
 struct Address {
   std::string host;                        // a name or a numeric address, without brackets
@@ -30,6 +31,7 @@ struct Address {
   std::vector<std::string> subjects;
   std::string pattern;       // empty: not stated
   float max_rate_hz = 0.0f;  // 0: not stated
+  std::string token;         // a file, or the text of a token; empty: not stated
 
   // The stated port, or the protocol's port for `kind`.
   [[nodiscard]] std::uint16_t PortFor(TransportKind kind) const;
@@ -38,7 +40,12 @@ struct Address {
 // Parses an address. The result is checked as the daemon would check it.
 //
 // Errors: kInvalidArgument (not an address, an unknown key, or a value outside its range);
-// kUnsupported (the keys token, key and tls, and transport=shm: reserved for later versions).
+// kUnsupported (the keys key and tls, and transport=shm: reserved for later versions). Messages
+// never repeat a token.
 [[nodiscard]] Result<Address> ParseAddress(std::string_view text);
+
+// Reads what Address::token names; nothing if it is empty. Errors: those of
+// protocol::secure::LoadToken() and ParseToken().
+[[nodiscard]] Result<std::optional<Token>> LoadTokenOf(const Address& address);
 
 }  // namespace furrow::client

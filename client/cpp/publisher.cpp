@@ -120,7 +120,10 @@ void Publisher::OnReply(const protocol::Header& header, std::int64_t now_us) {
   // A late answer to an earlier offer of this stream number.
   if (reply_.skeleton_hash != stream.skeleton_hash) return;
   switch (reply_.status) {
-    case protocol::SkeletonStatus::kAccepted: stream.accepted = true; break;
+    case protocol::SkeletonStatus::kAccepted:
+      stream.accepted = true;
+      needs_token_ = false;
+      break;
     case protocol::SkeletonStatus::kRejected:
       stream.rejection = reply_.message.empty() ? "the daemon gave no reason" : reply_.message;
       break;
@@ -144,6 +147,10 @@ void Publisher::OfferAll(std::int64_t now_us) {
 void Publisher::OnError(std::int64_t now_us) {
   if (error_.code != protocol::ErrorCode::kUnprovenAddress) {
     last_error_ = error_.message;
+    if (error_.code == protocol::ErrorCode::kNeedsToken) {
+      needs_token_ = true;
+      if (last_error_.empty()) last_error_ = "the daemon requires a token";
+    }
   } else if (introduction_.proven() && transport_->kind() == TransportKind::kUdp) {
     introduction_.Restart();
     Introduce(now_us);

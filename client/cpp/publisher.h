@@ -59,6 +59,9 @@ class Publisher {
   [[nodiscard]] const std::string& rejection(std::uint16_t stream) const;
   // True if the offer was not sent because it is larger than the transport carries.
   [[nodiscard]] bool oversized(std::uint16_t stream) const;
+  // True if the daemon wants a token, or another one. The transport, which shows it, goes on
+  // trying.
+  [[nodiscard]] bool needs_token() const { return needs_token_; }
   // The last error message of the daemon; empty if there was none.
   [[nodiscard]] const std::string& last_error() const { return last_error_; }
   // The random session number in every message of this publisher.
@@ -98,6 +101,7 @@ class Publisher {
   protocol::Ping ping_;
   protocol::ErrorMessage error_;
   std::string last_error_;
+  bool needs_token_ = false;
 };
 
 // Returns a random session number, never 0. A new number at each start lets the daemon tell a

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "client/cpp/clock.h"
+#include "client/cpp/transports.h"
 #include "protocol/messages/limits.h"
 
 namespace furrow::client {
@@ -33,13 +34,17 @@ ReconnectingTransport::ReconnectingTransport(TransportKind kind, Opener open, Cl
   if (inner_ == nullptr) return;
   up_ = true;
   generation_ = 1;
+  inner_generation_ = inner_->generation();
   opened_us_ = now_us_();
 }
 
 std::unique_ptr<ReconnectingTransport> ReconnectingTransport::Create(
     TransportKind kind, const std::string& host, std::uint16_t port,
-    std::chrono::milliseconds send_timeout, std::unique_ptr<Transport> first) {
-  const auto open = [=] { return Transport::Begin(kind, host, port, send_timeout); };
+    std::chrono::milliseconds send_timeout, std::unique_ptr<Transport> first,
+    std::optional<Token> token) {
+  const auto open = [=] {
+    return BeginTransport(kind, host, port, send_timeout, token ? &*token : nullptr);
+  };
   return std::make_unique<ReconnectingTransport>(
       kind, open, &SteadyMicroseconds, Backoff(std::random_device()(), {}), std::move(first));
 }
@@ -97,8 +102,11 @@ IoStatus ReconnectingTransport::Receive(std::span<const std::uint8_t>& message,
     return Rest(now_us, timeout);
   }
   const IoStatus status = inner_->Receive(message, timeout);
-  if (!up_ && inner_->connected()) {
+  // A secure session may begin again in the same socket.
+  if (inner_->connected() && (!up_ || inner_->generation() != inner_generation_)) {
     up_ = true;
+    inner_generation_ = inner_->generation();
+    refusal_ = protocol::secure::Refusal::kNone;
     ++generation_;
   }
   switch (status) {
@@ -116,6 +124,8 @@ IoStatus ReconnectingTransport::Receive(std::span<const std::uint8_t>& message,
 
 IoStatus ReconnectingTransport::OnFailure(std::int64_t now_us) {
   if (!failing_since_us_) failing_since_us_ = now_us;
+  if (const std::string why = inner_->failure(); !why.empty()) failure_ = why;
+  refusal_ = inner_->refusal();
   const bool keep = kind() == TransportKind::kUdp && up_ && now_us - *failing_since_us_ < kReopenUs;
   if (!keep) Lose(now_us);
   return IoStatus::kNoConnection;

@@ -22,7 +22,7 @@ namespace furrow::client {
 // closed, and opened again after 5 seconds without a message, because the network may have changed.
 class ReconnectingTransport : public Transport {
  public:
-  // Starts one attempt, without waiting for its end (Transport::Begin()).
+  // Starts one attempt, without waiting for its end (BeginTransport()).
   using Opener = std::function<Result<std::unique_ptr<Transport>>()>;
   // The time of a monotonic clock, microseconds.
   using Clock = std::function<std::int64_t()>;
@@ -32,10 +32,11 @@ class ReconnectingTransport : public Transport {
                         std::unique_ptr<Transport> first = nullptr);
 
   // The usual one: the steady clock, and the default limits of Backoff. Does not connect yet.
-  // `send_timeout`: as for Transport::Begin().
+  // `send_timeout`, `token`: as for BeginTransport().
   [[nodiscard]] static std::unique_ptr<ReconnectingTransport> Create(
       TransportKind kind, const std::string& host, std::uint16_t port,
-      std::chrono::milliseconds send_timeout, std::unique_ptr<Transport> first = nullptr);
+      std::chrono::milliseconds send_timeout, std::unique_ptr<Transport> first = nullptr,
+      std::optional<Token> token = {});
 
   [[nodiscard]] IoStatus Send(std::span<const std::uint8_t> message) override;
   [[nodiscard]] IoStatus Receive(std::span<const std::uint8_t>& message,
@@ -46,6 +47,7 @@ class ReconnectingTransport : public Transport {
   [[nodiscard]] std::uint64_t generation() const override { return generation_; }
   void Abandon() override { abandoned_ = true; }
   [[nodiscard]] std::string failure() const override { return failure_; }
+  [[nodiscard]] protocol::secure::Refusal refusal() const override { return refusal_; }
 
  private:
   bool Open(std::int64_t now_us);
@@ -60,6 +62,8 @@ class ReconnectingTransport : public Transport {
   bool up_ = false;                   // inner_ is connected
   bool abandoned_ = false;            // close inner_ at the next Receive()
   std::uint64_t generation_ = 0;
+  std::uint64_t inner_generation_ = 0;  // of inner_, that generation_ has counted
+  protocol::secure::Refusal refusal_ = protocol::secure::Refusal::kNone;
   std::int64_t opened_us_ = 0;                    // when inner_ was opened
   std::optional<std::int64_t> failing_since_us_;  // UDP: first failure without a message since
   std::string failure_;

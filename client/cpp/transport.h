@@ -7,10 +7,15 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/status.h"
+#include "protocol/secure/handshake/handshake_packets.h"
+#include "protocol/secure/token/connect_token.h"
 
 namespace furrow::client {
+
+using Token = protocol::secure::ClientToken;
 
 // The network protocol below a transport.
 enum class TransportKind { kUdp, kTcp };
@@ -34,22 +39,6 @@ enum class IoStatus {
 // except that the system's name resolver takes its own time.
 class Transport {
  public:
-  // Connects to `host`, a name or a numeric address. `timeout` limits the connect, and over TCP
-  // each later Send() to a slow peer. UDP has no handshake: Receive() reports a missing server.
-  //
-  // Errors: kUnavailable (the name does not resolve, or the peer does not accept the connection).
-  [[nodiscard]] static Result<std::unique_ptr<Transport>> Open(TransportKind kind,
-                                                               const std::string& host,
-                                                               std::uint16_t port,
-                                                               std::chrono::milliseconds timeout);
-  // Begins to connect and returns at once, except for the time of the name resolver. Over TCP
-  // the connection is complete once connected() is true; until then Receive() waits for that, and
-  // Send() returns kNoConnection. `send_timeout` limits each Send() to a slow TCP peer.
-  //
-  // Errors: kUnavailable (the name does not resolve, or there is no route).
-  [[nodiscard]] static Result<std::unique_ptr<Transport>> Begin(
-      TransportKind kind, const std::string& host, std::uint16_t port,
-      std::chrono::milliseconds send_timeout);
   virtual ~Transport() = default;
 
   // Sends `message`, as protocol::Encoder writes it. Over TCP kClosed also means that the peer took
@@ -70,6 +59,11 @@ class Transport {
   // The system's reason of the last failed attempt to connect; empty if none failed.
   [[nodiscard]] virtual std::string failure() const { return {}; }
 
+  // Why the daemon refuses the token, kNone if it does not. Nothing proves it.
+  [[nodiscard]] virtual protocol::secure::Refusal refusal() const {
+    return protocol::secure::Refusal::kNone;
+  }
+
   // True for transports that connect again after a loss (client/cpp/reconnecting_transport.h).
   [[nodiscard]] virtual bool reconnects() const { return false; }
   // Number of connections so far. A peer knows nothing of an earlier connection.
@@ -88,6 +82,13 @@ class Transport {
 
 // "host:port", with brackets around an IPv6 address.
 [[nodiscard]] std::string AddressText(const std::string& host, std::uint16_t port);
+
+// The first message over TCP of a client with a token: a Hello that shows it.
+[[nodiscard]] std::vector<std::uint8_t> TokenGreeting(const Token& token);
+
+// "the daemon refuses the token: it has expired"; empty unless the refusal is one that time alone
+// does not end.
+[[nodiscard]] std::string RefusedTokenText(protocol::secure::Refusal refusal);
 
 // The kUnavailable status of a failed connect: "no connection to host:port over TCP: reason".
 [[nodiscard]] Status ConnectionFailed(TransportKind kind, const std::string& host,

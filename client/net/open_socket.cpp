@@ -70,12 +70,21 @@ Result<Descriptor> OpenDescriptor(TransportKind kind, const std::string& host, s
 }
 
 Result<std::unique_ptr<Socket>> OpenSocket(TransportKind kind, const std::string& host,
-                                           std::uint16_t port) {
+                                           std::uint16_t port, const client::Token* token) {
   auto descriptor = OpenDescriptor(kind, host, port);
   FURROW_RETURN_IF_ERROR(descriptor);
-  if (kind == TransportKind::kTcp)
-    return std::unique_ptr<Socket>(std::make_unique<TcpSocket>(*std::move(descriptor)));
-  return std::unique_ptr<Socket>(std::make_unique<UdpSocket>(*std::move(descriptor)));
+  if (kind == TransportKind::kTcp) {
+    auto socket = std::make_unique<TcpSocket>(*std::move(descriptor));
+    if (token != nullptr) (void)socket->Send(client::TokenGreeting(*token));
+    return std::unique_ptr<Socket>(std::move(socket));
+  }
+  auto socket = std::make_unique<UdpSocket>(*std::move(descriptor), token);
+  const std::string why = socket->AwaitSession(kConnectTimeout);
+  if (why.empty()) return std::unique_ptr<Socket>(std::move(socket));
+  if (socket->refusal() == protocol::secure::Refusal::kNone) {
+    return client::ConnectionFailed(kind, host, port, why);
+  }
+  return Status(StatusCode::kInvalidArgument, why, client::AddressText(host, port));
 }
 
 }  // namespace furrow::net

@@ -19,9 +19,12 @@ namespace furrow::net {
 [[nodiscard]] Result<Descriptor> OpenDescriptor(client::TransportKind kind, const std::string& host,
                                                 std::uint16_t port);
 
-// Connects a TcpSocket or a UdpSocket. Errors: those of OpenDescriptor().
+// Connects a TcpSocket or a UdpSocket. `token`: shown to the daemon, or null; over UDP the session
+// begins within 3 seconds. Errors: those of OpenDescriptor(); kInvalidArgument (the daemon refuses
+// the token).
 [[nodiscard]] Result<std::unique_ptr<Socket>> OpenSocket(client::TransportKind kind,
                                                          const std::string& host,
-                                                         std::uint16_t port);
+                                                         std::uint16_t port,
+                                                         const client::Token* token = nullptr);
 
 }  // namespace furrow::net

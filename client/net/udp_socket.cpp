@@ -14,7 +14,7 @@ namespace furrow::net {
 
 using client::IoStatus;
 
-UdpSocket::UdpSocket(Descriptor descriptor)
+UdpSocket::UdpSocket(Descriptor descriptor, const client::Token* token)
     : Socket(client::TransportKind::kUdp),
       descriptor_(std::move(descriptor)),
       buffer_(kBatch * kBufferBytes) {
@@ -32,17 +32,61 @@ UdpSocket::UdpSocket(Descriptor descriptor)
     headers_[i].msg_hdr.msg_iovlen = 1;
     headers_[i].msg_hdr.msg_control = &controls_[i];
   }
+  if (token != nullptr) secure_.emplace(*token, std::span<const std::uint8_t>());
+}
+
+std::string UdpSocket::AwaitSession(std::chrono::milliseconds timeout) {
+  if (!secure_) return {};
+  constexpr std::chrono::milliseconds kStep(20);
+  const std::int64_t end = SteadyNanoseconds() + timeout.count() * 1'000'000;
+  while (!connected()) {
+    if (std::string why = client::RefusedTokenText(refusal_); !why.empty()) return why;
+    if (SteadyNanoseconds() >= end) return "no answer";
+    std::span<const std::uint8_t> message;
+    (void)Receive(message, kStep);
+  }
+  Maintain();  // the first packet begins the session at the daemon
+  return {};
+}
+
+void UdpSocket::Maintain() {
+  maintained_us_ = SteadyNanoseconds() / 1000;
+  while (const std::size_t size = secure_->Poll({.us = maintained_us_, .unix_s = 0}, packet_)) {
+    (void)SendDatagram(std::span<const std::uint8_t>(packet_).first(size));
+  }
+}
+
+std::span<std::uint8_t> UdpSocket::Open(std::span<std::uint8_t> datagram) {
+  const auto event = secure_->OnDatagram(datagram, {.us = SteadyNanoseconds() / 1000, .unix_s = 0});
+  if (event.refusal != protocol::secure::Refusal::kNone) refusal_ = event.refusal;
+  // The session of AwaitSession() is the first connection, which counts already.
+  if (event.connected && std::exchange(began_, true)) ++generation_;
+  if (event.inner.empty()) Maintain();
+  return event.inner;
+}
+
+IoStatus UdpSocket::SendSealed(std::size_t inner_bytes) {
+  using protocol::secure::SealStatus;
+  const auto packet =
+      std::span(packet_).first(inner_bytes + protocol::secure::kPacketOverheadBytes);
+  if (secure_->Seal(packet, {.us = SteadyNanoseconds() / 1000, .unix_s = 0}) != SealStatus::kOk) {
+    return IoStatus::kNoConnection;
+  }
+  return SendDatagram(packet);
 }
 
 IoStatus UdpSocket::Send(std::span<const std::uint8_t> message) {
   if (message.size() > protocol::kMaxUdpMessageBytes) return IoStatus::kTooLarge;
   // The usual case: a whole message needs neither a fragment header nor a copy.
-  if (message.size() <= protocol::kMaxDatagramBytes) return SendDatagram(message);
+  const bool fits = message.size() <= protocol::kMaxDatagramBytes;
+  if (fits && !secure_) return SendDatagram(message);
   const std::size_t count = protocol::NumDatagrams(message.size());
   const std::uint32_t id = next_message_id_++;
   for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t bytes = protocol::WriteDatagram(message, id, i, datagram_);
-    const IoStatus status = SendDatagram(std::span<const std::uint8_t>(datagram_).first(bytes));
+    const auto datagram = std::span(packet_).subspan(protocol::secure::kPacketHeaderBytes,
+                                                     protocol::kMaxDatagramBytes);
+    const std::size_t bytes = protocol::WriteDatagram(message, id, i, datagram);
+    const IoStatus status = secure_ ? SendSealed(bytes) : SendDatagram(datagram.first(bytes));
     if (status != IoStatus::kOk) return status;
   }
   return IoStatus::kOk;
@@ -59,6 +103,8 @@ IoStatus UdpSocket::SendDatagram(std::span<const std::uint8_t> datagram) {
 
 IoStatus UdpSocket::Receive(std::span<const std::uint8_t>& message,
                             std::chrono::milliseconds timeout) {
+  constexpr std::int64_t kMaintainUs = 50'000;
+  if (secure_ && SteadyNanoseconds() / 1000 - maintained_us_ >= kMaintainUs) Maintain();
   while (!unbundler_.Next(message)) {
     if (taken_ == filled_) {
       if (std::exchange(drained_, false)) return IoStatus::kTimeout;
@@ -69,7 +115,11 @@ IoStatus UdpSocket::Receive(std::span<const std::uint8_t>& message,
     const std::size_t i = taken_++;
     // The time at which the kernel received the datagram, however long it waited for this thread.
     arrived_ns_ = clock_.Arrival(&headers_[i].msg_hdr);
-    const std::span datagram(buffer_.data() + i * kBufferBytes, headers_[i].msg_len);
+    std::span datagram(buffer_.data() + i * kBufferBytes, headers_[i].msg_len);
+    if (secure_) {
+      datagram = Open(datagram);
+      if (datagram.empty()) continue;
+    }
     switch (reassembler_.Push(0, datagram, SteadyNanoseconds() / 1000, message)) {
       case protocol::FragmentStatus::kWhole: (void)unbundler_.Open(datagram); break;
       case protocol::FragmentStatus::kComplete: return IoStatus::kOk;

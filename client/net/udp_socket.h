@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdint>
 #include <ctime>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include <sys/socket.h>
@@ -14,13 +16,22 @@
 #include "protocol/framing/bundle.h"
 #include "protocol/framing/fragment.h"
 #include "protocol/messages/limits.h"
+#include "protocol/secure/session/secure_client.h"
 
 namespace furrow::net {
 
 // A connected UDP socket. Send() never blocks: it returns kTimeout if the send buffer is full.
 class UdpSocket : public Socket {
  public:
-  explicit UdpSocket(Descriptor descriptor);
+  // `token`: null, or that of the secure session that carries all messages.
+  explicit UdpSocket(Descriptor descriptor, const client::Token* token = nullptr);
+
+  // Waits for the secure session, if there is to be one. Returns why there is none; empty: all is
+  // well.
+  [[nodiscard]] std::string AwaitSession(std::chrono::milliseconds timeout);
+  [[nodiscard]] bool connected() const override { return !secure_ || secure_->connected(); }
+  [[nodiscard]] std::uint64_t generation() const override { return generation_; }
+  [[nodiscard]] protocol::secure::Refusal refusal() const override { return refusal_; }
 
   [[nodiscard]] client::IoStatus Send(std::span<const std::uint8_t> message) override;
   [[nodiscard]] client::IoStatus Receive(std::span<const std::uint8_t>& message,
@@ -35,6 +46,11 @@ class UdpSocket : public Socket {
   static constexpr std::size_t kBatch = 32;
   static constexpr std::size_t kBufferBytes = 2048;  // larger than any datagram of the protocol
 
+  // Sends what the secure session has to send.
+  void Maintain();
+  // The datagram inside of a sealed one; empty if there is none.
+  [[nodiscard]] std::span<std::uint8_t> Open(std::span<std::uint8_t> datagram);
+  [[nodiscard]] client::IoStatus SendSealed(std::size_t inner_bytes);
   [[nodiscard]] client::IoStatus SendDatagram(std::span<const std::uint8_t> datagram);
   // Reads one batch of waiting datagrams. kTimeout: none is waiting. kNoConnection: the peer's port
   // is closed.
@@ -58,7 +74,13 @@ class UdpSocket : public Socket {
   bool drained_ = false;            // the last batch was not full, so no datagram is left for now
   std::uint32_t overrun_ever_ = 0;  // the kernel's counter, which wraps
   std::uint64_t overrun_ = 0;
-  std::array<std::uint8_t, protocol::kMaxDatagramBytes> datagram_{};
+  // Room for a datagram, and around it for the header and tag of a sealed one.
+  std::array<std::uint8_t, protocol::secure::kMaxPacketBytes> packet_{};
+  std::optional<protocol::secure::SecureClient> secure_;
+  bool began_ = false;  // there was a session
+  std::uint64_t generation_ = 1;
+  std::int64_t maintained_us_ = 0;
+  protocol::secure::Refusal refusal_ = protocol::secure::Refusal::kNone;
   protocol::Unbundler unbundler_;  // splits the datagram taken last
   protocol::Reassembler reassembler_;
   std::uint32_t next_message_id_ = 0;

@@ -6,16 +6,19 @@ namespace furrow::protocol::internal {
 DecodeStatus ReadTable(const wire::Hello& table, Hello& message) {
   message.token = table.token();
   message.bundles = table.bundles();
+  const DecodeStatus status = ReadText(table.access(), kMaxAccessBytes, message.access);
+  if (status != DecodeStatus::kOk) return status;
   return ReadText(table.client(), kMaxProgramBytes, message.client);
 }
 
 flatbuffers::Offset<wire::Hello> WriteTable(PayloadBuilder& payload, const Hello& message,
                                             std::size_t padding) {
   const auto client = WriteText(payload, message.client);
+  const auto access = WriteText(payload, message.access);
   // Reuses the scratch bytes for the padding.
   payload.mask.assign(padding, 0);
   const auto zeros = padding > 0 ? payload.builder.CreateVector(payload.mask) : 0;
-  return wire::CreateHello(payload.builder, client, message.token, zeros, message.bundles);
+  return wire::CreateHello(payload.builder, client, message.token, zeros, message.bundles, access);
 }
 
 DecodeStatus ReadTable(const wire::Welcome& table, Welcome& message) {
@@ -60,7 +63,7 @@ flatbuffers::Offset<wire::Goodbye> WriteTable(PayloadBuilder& payload, const Goo
 
 DecodeStatus ReadTable(const wire::Error& table, ErrorMessage& message) {
   const auto code = static_cast<ErrorCode>(table.code());
-  if (code < ErrorCode::kMalformed || code > ErrorCode::kSubjectTaken)
+  if (code < ErrorCode::kMalformed || code > ErrorCode::kNotPermitted)
     return DecodeStatus::kBadValue;
   message.code = code;
   return ReadText(table.message(), kMaxTextBytes, message.message);

@@ -21,6 +21,7 @@ inline constexpr int kMaxBlendShapes = 512;
 inline constexpr int kMaxWeights = 2048;       // names per subscription
 inline constexpr int kMaxNameBytes = 255;      // joint, blend shape, subject, weight, view, camera
 inline constexpr int kMaxProgramBytes = 64;    // Hello's client, Welcome's server
+inline constexpr int kMaxAccessBytes = 512;    // Hello's access: a connect token as text
 inline constexpr int kMaxPatternBytes = 4096;  // comma-separated globs
 inline constexpr int kMaxListedSubjects = 16384;
 inline constexpr int kMaxPictureSettings = 128;

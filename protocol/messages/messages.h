@@ -49,6 +49,7 @@ struct Hello {
   std::string client;  // program and version, for logs
   std::uint64_t token = 0;
   bool bundles = false;  // UDP: accepts several messages per datagram (bundle.h)
+  std::string access;    // TCP: a connect token in text form (STANDARD.md section 14); may be empty
 };
 
 // Server to client: the reply to Hello.
@@ -96,6 +97,8 @@ enum class ErrorCode : std::uint16_t {
   kDraining = 12,
   kInternal = 13,
   kSubjectTaken = 14,  // another publisher is sending the subject
+  kNeedsToken = 15,    // the server requires a connect token, or refuses the one that it was shown
+  kNotPermitted = 16,  // the token does not allow this
 };
 
 // Reports that a request failed. header.sequence and header.stream are those of the request.

@@ -158,6 +158,7 @@ void AddMeeting(Files& files) {
   Add(files, "hello", Hello{"example/1.0", 0});
   Add(files, "hello_token", Hello{"example/1.0", 0xfedcba9876543210ULL});
   Add(files, "hello_bundles", Hello{"example/1.0", 0xfedcba9876543210ULL, true});
+  Add(files, "hello_access", Hello{"example/1.0", 0, false, "frw1_an_example_that_is_no_token"});
   Add(files, "welcome", Welcome{"furrowd/0.1.0", 0xfedcba9876543210ULL});
   Add(files, "ping", Ping{-5});
   Add(files, "pong", Pong{-5, 1'234'567'890'123});

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <sstream>
+#include <string>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 
@@ -29,6 +31,17 @@ struct Flags {
   bool no_http = false;
 };
 
+// Replaces the word of --security by its number, for CLI11. Returns what is wrong with it.
+std::string NumberOfMode(std::string& text) {
+  for (const auto& [word, mode] :
+       {std::pair("open", Security::kOpen), {"required", Security::kRequired}}) {
+    if (text != word) continue;
+    text = std::to_string(static_cast<int>(mode));
+    return {};
+  }
+  return "'" + text + "' is not one of open|required";
+}
+
 // Declares every flag on `config`. Parsing writes only the flags that are present.
 void Declare(CLI::App* app, Config* config, Flags* flags) {
   app->add_option("--config", flags->config_file,
@@ -45,10 +58,24 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
                   "Map blend-shape names of streams with this map, by name or file\n"
                   "(default: the best match of the shipped maps)");
   app->add_option("--bind", config->bind,
-                  "Listen on this address (default: 127.0.0.1); others need --open");
+                  "Listen on this address (default: 127.0.0.1); others need --security required\n"
+                  "or --open");
   app->add_flag("--open", config->open,
                 "Let everybody in who can reach the address of --bind: they may publish,\n"
                 "watch and change settings (see docs/SECURITY.md)");
+  app->add_option("--security", config->security.mode,
+                  "open: clients need no token; required: everybody shows a token that\n"
+                  "'furrow token new' made with a key of --keys (default: open)")
+      ->transform(CLI::Validator(NumberOfMode, ""))
+      ->type_name("open|required");
+  app->add_option("--keys", config->security.keys,
+                  "File with the keys of tokens, as 'furrow token key new' makes it; changes take\n"
+                  "effect within a second");
+  app->add_option("--name", config->security.name,
+                  "Name of this daemon: tokens for another --audience are refused");
+  app->add_flag("--tokens-in-clear", config->security.tokens_in_clear,
+                "Accept tokens over TCP and HTTP from other computers. Everybody on the way can\n"
+                "read them (default: from this computer only; over UDP from anywhere, sealed)");
   app->add_option("--tcp", config->tcp, "TCP port for poses, weights and pictures (default: 7400)");
   app->add_option("--udp", config->udp, "UDP port for poses and weights (default: 7401)");
   app->add_option(

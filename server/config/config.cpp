@@ -9,6 +9,7 @@
 #include <asio/ip/address.hpp>
 
 #include "base/status.h"
+#include "protocol/secure/token/connect_token.h"
 
 namespace furrow::server {
 namespace {
@@ -73,6 +74,38 @@ Status ValidatePorts(const Config& config) {
   return {};
 }
 
+Status ValidateSecurity(const Config& config) {
+  const SecurityConfig& security = config.security;
+  const bool required = security.mode == Security::kRequired;
+  if (ListensToNetwork(config) && !config.open && !required) {
+    return Status(StatusCode::kInvalidArgument,
+                  "--bind " + config.bind +
+                      " lets everybody on the network publish, watch and change settings",
+                  "",
+                  "use --security required with --keys FILE, add --open (listen.open = true) if "
+                  "that is intended, or use --bind 127.0.0.1");
+  }
+  if (required && config.open) {
+    return Invalid("--open and --security required cannot be combined");
+  }
+  if (required && security.keys.empty()) {
+    return Status(StatusCode::kInvalidArgument, "--security required needs --keys FILE", "",
+                  "make one with 'furrow token key new --key FILE'");
+  }
+  if (security.name.size() > protocol::secure::kMaxAudienceBytes) {
+    return Invalid("--name has " + std::to_string(security.name.size()) + " bytes; the limit is " +
+                   std::to_string(protocol::secure::kMaxAudienceBytes));
+  }
+  const bool has_wires = config.vmc || config.livelink_face;
+  if (required && has_wires && ListensToNetwork(config) && config.mocap_allow.empty()) {
+    return Status(StatusCode::kInvalidArgument,
+                  "--vmc and --livelink-face cannot show a token, so with --security required "
+                  "everybody on the network could publish there",
+                  "", "name the senders with --mocap-allow ADDRESS");
+  }
+  return {};
+}
+
 }  // namespace
 
 motion::LoadOptions ReadOptions(const Config& config) {
@@ -101,13 +134,7 @@ Status ValidateConfig(const Config& config) {
                   "--bind: '" + config.bind + "' is not a numeric address", "",
                   "for example 127.0.0.1, 0.0.0.0 or ::1");
   }
-  if (ListensToNetwork(config) && !config.open) {
-    return Status(StatusCode::kInvalidArgument,
-                  "--bind " + config.bind +
-                      " lets everybody on the network publish, watch and change settings",
-                  "",
-                  "add --open (listen.open = true) if that is intended, or use --bind 127.0.0.1");
-  }
+  FURROW_RETURN_IF_ERROR(ValidateSecurity(config));
   for (const std::string& address : config.mocap_allow) {
     if (!IsNumericAddress(address)) {
       return Status(StatusCode::kInvalidArgument,

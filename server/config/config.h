@@ -13,6 +13,7 @@
 #include "motion/clip/clip.h"
 #include "server/config/http_config.h"
 #include "server/config/osc_config.h"
+#include "server/config/security_config.h"
 #include "server/core/exit_code.h"
 #include "server/core/limits.h"
 #include "server/core/network_address.h"
@@ -42,7 +43,8 @@ struct Config {
   std::filesystem::path rig;
   std::string bind = "127.0.0.1";  // numeric, IPv4 or IPv6
   bool open = false;               // lets everybody in who reaches an address beyond this computer
-  std::uint16_t tcp = 7400;        // 0: any free port; the ready line shows it
+  SecurityConfig security;
+  std::uint16_t tcp = 7400;  // 0: any free port; the ready line shows it
   std::uint16_t udp = 7401;
   int threads = 1;  // threads that receive UDP, [1, kMaxThreads]; see docs/CAPACITY.md
   bool render = true;

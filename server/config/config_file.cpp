@@ -57,6 +57,16 @@ Key Recording(std::string_view name, std::filesystem::path* target,
           }};
 }
 
+// "open" or "required".
+Key Mode(std::string_view name, Security* mode) {
+  return {name, [mode](const toml::node& node) -> std::string {
+            const auto value = node.value_exact<std::string>();
+            if (value != "open" && value != "required") return "must be \"open\" or \"required\"";
+            *mode = value == "required" ? Security::kRequired : Security::kOpen;
+            return {};
+          }};
+}
+
 // [[osc.target]]
 Key OscTargets(std::string_view name, std::vector<OscTargetConfig>* targets,
                const std::filesystem::path& folder) {
@@ -94,6 +104,10 @@ Tables InputTables(Config* config, const std::filesystem::path& folder) {
           {"listen",
            {Text("bind", &config->bind), Flag("open", &config->open), Port("tcp", &config->tcp),
             Port("udp", &config->udp), Count("threads", &config->threads)}},
+          {"security",
+           {Mode("mode", &config->security.mode), Path("keys", &config->security.keys, folder),
+            Text("name", &config->security.name),
+            Flag("tokens_in_clear", &config->security.tokens_in_clear)}},
           {"mocap",
            {Port("vmc", &config->vmc), Port("livelink_face", &config->livelink_face),
             Texts("allow", &config->mocap_allow)}}};

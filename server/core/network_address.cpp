@@ -54,6 +54,17 @@ std::string HostOf(const std::string& address) {
   return inet_ntop(AF_INET6, &bytes, text, sizeof(text));
 }
 
+bool IsLoopback(const std::string& address) {
+  in6_addr bytes;
+  if (inet_pton(AF_INET6, address.c_str(), &bytes) != 1) {
+    in_addr v4;
+    return inet_pton(AF_INET, address.c_str(), &v4) == 1 && (ntohl(v4.s_addr) >> 24) == 127;
+  }
+  constexpr std::size_t kIpv4 = 12;  // the offset of the mapped address
+  return IN6_IS_ADDR_LOOPBACK(&bytes) ||
+         (IN6_IS_ADDR_V4MAPPED(&bytes) && bytes.s6_addr[kIpv4] == 127);
+}
+
 bool IsNumericAddress(const std::string& address) {
   in6_addr buffer;  // large enough for both families
   return inet_pton(AF_INET, address.c_str(), &buffer) == 1 ||

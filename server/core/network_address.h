@@ -27,6 +27,10 @@ struct HostPort {
 // its network of 64 bits, because one customer has all of that. Other text is returned unchanged.
 [[nodiscard]] std::string HostOf(const std::string& address);
 
+// True for the addresses by which programs of this computer reach it: 127.0.0.0/8 and ::1, also
+// mapped into IPv6.
+[[nodiscard]] bool IsLoopback(const std::string& address);
+
 // True for "127.0.0.1" and "::1"; false for host names and for addresses in brackets.
 [[nodiscard]] bool IsNumericAddress(const std::string& address);
 

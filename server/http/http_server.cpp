@@ -52,7 +52,7 @@ PageFiles PageOrNone(const HttpServer::Parts& parts) {
     return {};
   }
   if (!parts.character.empty()) {
-    const Status status = page->Add("/character.glb", parts.character, kMaxCharacterBytes);
+    const Status status = page->Add(kCharacterPath, parts.character, kMaxCharacterBytes);
     if (!status.ok()) spdlog::warn("browsers cannot draw the character: {}", status.ToString());
   }
   return *std::move(page);
@@ -67,7 +67,8 @@ struct HttpServer::Impl {
                 .page = PageOrNone(parts),
                 .post_to_hub = std::move(parts.post_to_hub),
                 .answer = std::move(parts.answer),
-                .metrics = parts.metrics} {
+                .metrics = parts.metrics,
+                .gate = parts.gate} {
     // Weak: tasks in the hub's queue may hold this function after the web server has gone.
     context.post_to_web = [weak = std::weak_ptr(loop)](std::function<void()> task) {
       if (const auto alive = weak.lock()) net::post(*alive, std::move(task));

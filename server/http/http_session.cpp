@@ -14,8 +14,10 @@
 #include <boost/beast/http/span_body.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
 
+#include "server/core/network_address.h"
 #include "server/http/pictures/picture_stream.h"
 #include "server/http/request/reply_writer.h"
+#include "server/http/request/request_access.h"
 #include "server/http/socket/web_socket.h"
 #include "server/http/weights/weight_query.h"
 #include "server/http/weights/weight_stream.h"
@@ -169,6 +171,7 @@ class HttpSession {
   // False: the connection must close.
   net::awaitable<bool> Answer() {
     // First of all checks: a foreign web page must not reach any route, not even a WebSocket.
+    access_ = Access();
     const std::string why = context_->guard.Check(ToView(request_[http::field::host]),
                                                   ToView(request_[http::field::origin]));
     if (!why.empty()) {
@@ -181,10 +184,18 @@ class HttpSession {
           stream_, request_,
           ErrorReply(400, "parse", "", "the request target is not a valid path"));
     }
+    Result<Access> access = AccessOf(request_, context_->gate, IsLocal(), &*url);
+    const bool admitted = access.ok() && access->admitted();
+    if (!admitted && !IsForAll(url->path)) {
+      if (access.ok()) context_->metrics->Add(Counter::kRefusedNoToken);
+      ApiReply reply = NeedsToken(access.ok() ? kNeedsTokenText : access.status().what());
+      co_return co_await WriteReply(stream_, request_, std::move(reply));
+    }
+    if (admitted) access_ = *std::move(access);
     if (url->path == "/ws") {
       if (beast::websocket::is_upgrade(request_)) {
         // The session gives its socket away and ends with the WebSocket.
-        co_await ServeWebSocket(std::move(stream_), context_, std::move(request_));
+        co_await ServeWebSocket(std::move(stream_), context_, std::move(request_), access_);
         co_return false;
       }
       co_return co_await WriteReply(
@@ -192,10 +203,22 @@ class HttpSession {
           ErrorReply(400, "upgrade", "", "/ws accepts WebSocket connections only"));
     }
     if (IsPicture(url->path) && IsRead(request_)) {
-      co_return co_await ServePictures(&stream_, context_, request_, *url);
+      co_return co_await ServePictures(&stream_, context_, request_, *url, access_);
     }
     if (url->path == "/weights" && IsRead(request_)) co_return co_await AnswerWeights(*url);
     co_return co_await AnswerPlainRequest(*std::move(url));
+  }
+
+  // Without a token everybody gets the page, which asks for one, and the probes of supervisors.
+  [[nodiscard]] bool IsForAll(const std::string& path) const {
+    const bool is_page = path != kCharacterPath && context_->page.Find(path) != nullptr;
+    return is_page || path == "/healthz" || path == "/readyz";
+  }
+
+  [[nodiscard]] bool IsLocal() {
+    beast::error_code error;
+    const auto remote = stream_.socket().remote_endpoint(error);
+    return !error && IsLoopback(remote.address().to_string());
   }
 
   // JSON lines, by WebSocket or as an endless body. Returns whether the connection goes on.
@@ -206,14 +229,14 @@ class HttpSession {
     }
     if (beast::websocket::is_upgrade(request_)) {
       co_await ServeWeightSocket(std::move(stream_), context_, std::move(request_),
-                                 *std::move(wanted));
+                                 *std::move(wanted), access_);
       co_return false;
     }
     if (request_.method() == http::verb::head) {  // the query is valid; subscribe to nothing
       ApiReply reply{.type = "application/jsonl"};
       co_return co_await WriteReply(stream_, request_, std::move(reply));
     }
-    co_await ServeWeightLines(&stream_, context_, *std::move(wanted));
+    co_await ServeWeightLines(&stream_, context_, *std::move(wanted), access_);
     co_return false;
   }
 
@@ -232,7 +255,7 @@ class HttpSession {
       co_return co_await WriteReply(stream_, request_, NotFound(request_, url.path));
     }
     ApiRequest request{std::string(ToView(request_.method_string())), std::move(url),
-                       std::move(request_.body())};
+                       std::move(request_.body()), access_};
     // The routes know GET only; WriteResponse() leaves the body out.
     if (request.method == "HEAD") request.method = "GET";
     // Subjects, settings and rig belong to the hub's thread. The page's files do not, and are sent
@@ -243,6 +266,7 @@ class HttpSession {
 
   beast::tcp_stream stream_;
   WebContext* context_;
+  Access access_;  // of the present request
   beast::flat_buffer buffer_;
   WebRequest request_;
 };

@@ -63,7 +63,7 @@ Player::Player(motion::Clip clip, std::string file)
 void Player::Start(Hub* hub, Time now) {
   hub_ = hub;
   // kWeb: a peer without a socket of its own, whose messages come on the hub's thread.
-  peer_ = hub->AddPeer(Transport::kWeb, "--play " + file_, this, now);
+  peer_ = hub->AddPeer(Transport::kWeb, "--play " + file_, this, now, 0, Access::Everything());
   Offer(now);
   MoveTo(0.0, now);
 }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "protocol/messages/limits.h"
+#include "server/session/peers/peer_access.h"
 #include "server/session/peers/server_name.h"
 
 namespace furrow::server {
@@ -16,13 +17,18 @@ using protocol::MessageKind;
 }  // namespace
 
 void Dispatcher::Dispatch(Shard& shard, Peer& peer, std::span<const std::uint8_t> bytes, Time now) {
+  if (peer.token_ended) return;
   protocol::MessageView view;
   const DecodeStatus status = protocol::OpenMessage(bytes, view);
   // Anything but a pose may observe or change the session, so the poses before it come first.
   if (status != DecodeStatus::kOk || view.kind != MessageKind::kPose) {
     parts_.router->PublishGathered(shard);
   }
-  if (status == DecodeStatus::kOk) {
+  // Malformed messages of strangers get the same answer, so strangers learn nothing else.
+  const bool is_hello = status == DecodeStatus::kOk && view.kind == MessageKind::kHello;
+  if (!peer.access.admitted() && !is_hello) {
+    RefuseStranger(shard, peer, view.header, kNeedsTokenText);
+  } else if (status == DecodeStatus::kOk) {
     DispatchVerified(shard, peer, view, now);
   } else {
     RejectEnvelope(shard, peer, view, status);
@@ -61,6 +67,7 @@ void Dispatcher::Decode(Shard& shard, Peer& peer, const protocol::MessageView& v
   shard.context.messages.SendError(peer, view.header, ErrorCode::kMalformed,
                                    "invalid " + std::string(MessageKindName(view.kind)) +
                                        " message: " + std::string(DecodeStatusName(status)));
+  if (!peer.access.admitted()) CutOff(peer);
 }
 
 // Decodes into the shard's reused structs (Shard::Incoming), which only this thread uses, so poses
@@ -106,7 +113,7 @@ void Dispatcher::DispatchExclusive(Shard& shard, Peer& peer, const protocol::Mes
       return Decode(shard, peer, view, in.offer,
                     [&] { (void)parts_.router->OnOffer(peer, header, in.offer, now); });
     case MessageKind::kHello:
-      return Decode(shard, peer, view, in.hello, [&] { OnHello(peer, header, in.hello); });
+      return Decode(shard, peer, view, in.hello, [&] { OnHello(peer, header, in.hello, now); });
     case MessageKind::kGoodbye:
       return Decode(shard, peer, view, in.goodbye,
                     [&] { parts_.publishers->OnGoodbye(peer, header, now); });
@@ -167,10 +174,50 @@ void Dispatcher::Subscribe(Shard& shard, Peer& peer, const protocol::MessageView
 
 // A UDP peer has proved its address with this Hello or an earlier one (Reception), so the answer
 // has no token.
-void Dispatcher::OnHello(Peer& peer, const protocol::Header& header, const protocol::Hello& hello) {
+void Dispatcher::OnHello(Peer& peer, const protocol::Header& header, const protocol::Hello& hello,
+                         Time now) {
+  if (!OnToken(peer, header, hello.access, now)) return;
   if (peer.transport == Transport::kUdp) peer.link->SetTakesBundles(hello.bundles);
   parts_.messages->SendReply(peer, MessageSender::ReplyHeader(header),
                              protocol::Welcome{kServerName, 0});
+}
+
+// Over UDP, a token is not shown but used (protocol/secure). False: the peer has been refused.
+bool Dispatcher::OnToken(Peer& peer, const protocol::Header& header, const std::string& token,
+                         Time now) {
+  Shard& shard = parts_.shards->Of(peer.id);
+  const bool shown = !token.empty() && parts_.gate != nullptr && peer.transport != Transport::kUdp;
+  if (shown) {
+    auto access = parts_.gate->Admit(token, peer.local, now);
+    if (!access.ok()) {
+      RefuseStranger(shard, peer, header, access.status().what());
+      return false;
+    }
+    Permit(peer, *std::move(access), parts_.limits);
+    parts_.subscribers->EndForbidden(peer);
+    parts_.publishers->EndForbidden(peer, now);
+    return true;
+  }
+  if (!peer.access.admitted()) RefuseStranger(shard, peer, header, kNeedsTokenText);
+  return peer.access.admitted();
+}
+
+// One clear error, then the connection ends.
+void Dispatcher::RefuseStranger(Shard& shard, Peer& peer, const protocol::Header& header,
+                                std::string why) {
+  parts_.metrics->Add(Counter::kRefusedNoToken);
+  shard.context.messages.SendError(peer, header, ErrorCode::kNeedsToken, std::move(why));
+  CutOff(peer);
+}
+
+void Dispatcher::CutOff(Peer& peer) {
+  peer.token_ended = true;
+  // A WebSocket closes after a goodbye to stream 0.
+  if (peer.transport == Transport::kWeb) {
+    parts_.shards->Of(peer.id).context.messages.SendReply(
+        peer, {}, protocol::Goodbye{protocol::GoodbyeReason::kTimedOut});
+  }
+  peer.link->Finish();
 }
 
 void Dispatcher::OnListSubjects(Peer& peer, const protocol::Header& header,
@@ -191,11 +238,11 @@ void Dispatcher::UpdateSubjectList(Peer& peer) {
 
 void Dispatcher::SendSubjectList(Peer& peer, const protocol::Header& request) {
   protocol::Subjects list;
-  list.total = static_cast<std::uint32_t>(parts_.subjects->size());
   for (const auto& subject : parts_.subjects->all()) {
+    if (!peer.access.MayWatch(subject->name)) continue;
     // `total` tells the client that the list is cut.
-    if (list.names.size() == protocol::kMaxListedSubjects) break;
-    list.names.push_back(subject->name);
+    ++list.total;
+    if (list.names.size() < protocol::kMaxListedSubjects) list.names.push_back(subject->name);
   }
   // The version counts additions and removals, so following a list costs one comparison per tick.
   peer.listed_version = parts_.subjects->version();

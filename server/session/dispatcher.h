@@ -7,8 +7,10 @@
 
 #include "protocol/codec/codec.h"
 #include "protocol/messages/messages.h"
+#include "server/core/limits.h"
 #include "server/core/metrics.h"
 #include "server/core/time.h"
+#include "server/session/access/token_gate.h"
 #include "server/session/delivery/message_sender.h"
 #include "server/session/peers/peer.h"
 #include "server/session/shards.h"
@@ -21,7 +23,9 @@ namespace furrow::server {
 
 // Verifies and decodes messages and passes each on by its kind: poses to the StreamRouter, offers
 // to Publishers, requests to Subscribers. Answers messages about the connection itself (Hello,
-// Ping, ListSubjects). Invalid messages are counted and, except over UDP, answered with an error.
+// Ping, ListSubjects). A peer that has shown no token where one is required gets one error and is
+// cut off (STANDARD.md section 4). Invalid messages are counted and, except over UDP, answered with
+// an error.
 class Dispatcher {
  public:
   // All pointers are not null and outlive the dispatcher.
@@ -33,6 +37,8 @@ class Dispatcher {
     const SubjectRegistry* subjects = nullptr;
     MessageSender* messages = nullptr;  // used under the exclusive lock
     Metrics* metrics = nullptr;
+    const TokenGate* gate = nullptr;  // null: everybody may do everything
+    Limits limits;
   };
   explicit Dispatcher(Parts parts) : parts_(std::move(parts)) {}
 
@@ -44,6 +50,9 @@ class Dispatcher {
   // Sends the list of subjects to a peer that follows it, if the list has changed since the last
   // one. Requires the exclusive lock.
   void UpdateSubjectList(Peer& peer);
+  // Ends a peer whose token is missing, refused or has ended: its connection closes after what is
+  // queued, and further messages have no effect. Requires the lock of its shard.
+  void CutOff(Peer& peer);
   // Makes the dispatcher refuse all further subscriptions, because the daemon shuts down. Requires
   // the exclusive lock.
   void RefuseSubscriptions() { refuses_subscriptions_ = true; }
@@ -59,7 +68,9 @@ class Dispatcher {
               const Handler& handler);
   void RejectEnvelope(Shard& shard, Peer& peer, const protocol::MessageView& view,
                       protocol::DecodeStatus status);
-  void OnHello(Peer& peer, const protocol::Header& header, const protocol::Hello& hello);
+  void OnHello(Peer& peer, const protocol::Header& header, const protocol::Hello& hello, Time now);
+  bool OnToken(Peer& peer, const protocol::Header& header, const std::string& token, Time now);
+  void RefuseStranger(Shard& shard, Peer& peer, const protocol::Header& header, std::string why);
   void OnListSubjects(Peer& peer, const protocol::Header& header,
                       const protocol::ListSubjects& request);
   void SendSubjectList(Peer& peer, const protocol::Header& request);

@@ -11,6 +11,7 @@
 #include <spdlog/spdlog.h>
 
 #include "protocol/messages/limits.h"
+#include "server/session/peers/peer_access.h"
 
 namespace furrow::server {
 namespace {
@@ -36,6 +37,7 @@ Hub::Hub(Parts parts)
       random_(std::move(parts.random)),
       address_proof_(MakeKey(random_)),
       recording_(parts.recording),
+      gate_(parts.gate),
       exclusive_context_(parts.session, metrics_, Link::kExclusive),
       definitions_(std::move(parts.rig), parts.character,
                    static_cast<std::size_t>(parts.limits.max_skeletons), std::move(parts.skeletons),
@@ -56,15 +58,47 @@ Hub::Hub(Parts parts)
                    .subscribers = &subscribers_,
                    .subjects = &subjects_,
                    .messages = &exclusive_context_.messages,
-                   .metrics = metrics_}),
+                   .metrics = metrics_,
+                   .gate = gate_,
+                   .limits = limits_}),
       mocap_(limits_.idle_seconds, &shards_, &router_, metrics_) {}
 
-PeerId Hub::AddPeer(Transport transport, PeerLabel name, Link* link, Time now, int shard) {
+PeerId Hub::AddPeer(Transport transport, PeerLabel name, Link* link, Time now, int shard,
+                    std::optional<Access> access) {
   // An address book of one shard changes under its shard lock alone, so a new peer stops nobody
   // else.
   const ShardLock lock(*this, shard);
   const TokenBucket bucket(limits_.packets_per_second, limits_.packet_burst);
-  return shards_.at(shard).peers.Add(transport, std::move(name), link, bucket, now).id;
+  Peer& peer = shards_.at(shard).peers.Add(transport, std::move(name), link, bucket, now);
+  const bool trusted = gate_ == nullptr || transport == Transport::kMocap;
+  Permit(peer, access ? *access : trusted ? Access::Everything() : gate_->Stranger(), limits_);
+  return peer.id;
+}
+
+void Hub::SetAccess(PeerId id, const Access& access) {
+  Shard& shard = shards_.Of(id);
+  Peer* const peer = shard.peers.Find(id);
+  if (peer == nullptr) return;
+  const ExclusiveLock exclusive(*this, shard.index);
+  Permit(*peer, access, limits_);
+  subscribers_.EndForbidden(*peer);
+  publishers_.EndForbidden(*peer, peer->last_heard);
+}
+
+// Over UDP the secure session ends by itself, and nothing can be sent in it afterwards.
+void Hub::EndIfTokenEnded(Peer& peer, Time now) {
+  if (!peer.access.by_token() || peer.transport == Transport::kUdp || peer.token_ended) return;
+  const bool expired = now >= peer.access.expires();
+  if (!expired && gate_->HasKey(peer.access.key_id())) return;
+  metrics_->Add(Counter::kTokensEnded);
+  spdlog::info("the token of {} has {}", peer.name, expired ? "expired" : "been retired");
+  exclusive_context_.messages.SendError(
+      peer, {}, ErrorCode::kNeedsToken,
+      expired ? "the token has expired" : "the key of the token was retired");
+  Permit(peer, Access(), limits_);
+  subscribers_.RemovePeer(peer);
+  subjects_.ForgetPeer(peer.id);
+  dispatcher_.CutOff(peer);
 }
 
 void Hub::RemovePeer(PeerId id) {
@@ -149,8 +183,9 @@ bool Hub::IsIdle(PeerId id, Time now) {
   Shard& shard = shards_.Of(id);
   const ShardLock lock(*this, shard.index);
   const Peer* peer = shard.peers.Find(id);
-  return peer == nullptr || (peer->num_subscriptions == 0 &&
-                             now - peer->last_heard > FromSeconds(limits_.idle_seconds));
+  return peer == nullptr || peer->token_ended ||
+         (peer->num_subscriptions == 0 &&
+          now - peer->last_heard > FromSeconds(limits_.idle_seconds));
 }
 
 void Hub::OnPicture(const FinishedPicture& picture) {
@@ -166,6 +201,7 @@ void Hub::Tick(Time now) {
   AgeSubjects(now);
   mocap_.ForgetRejected(now);
   shards_.ForEachPeer([&](Peer& peer) {
+    EndIfTokenEnded(peer, now);
     if (peer.transport == Transport::kUdp) RenewConsent(peer, now);
     peer.stuck =
         peer.link->IsStuck(now) || (peer.transport == Transport::kUdp && !peer.consent.Holds(now));
@@ -229,9 +265,9 @@ void Hub::Drain() {
   });
 }
 
-Subject* Hub::RequireAllDrivers(std::string_view name) {
-  Subject* subject = name.empty() ? subjects_.First() : subjects_.Find(name);
-  if (subject == nullptr) return nullptr;
+Subject* Hub::RequireAllDrivers(std::string_view name, const Access& access) {
+  Subject* subject = name.empty() ? subjects_.First(access) : subjects_.Find(name);
+  if (subject == nullptr || !access.Concerns(subject->name)) return nullptr;
   // Stays set, since clients of the API poll: a driver that is switched off and on again starts
   // without the history of its filter.
   subject->needs_all_drivers = true;

@@ -19,6 +19,7 @@
 #include "server/core/time.h"
 #include "server/pipeline/picture_source.h"
 #include "server/pipeline/stream_definition.h"
+#include "server/session/access/token_gate.h"
 #include "server/session/delivery/publish_context.h"
 #include "server/session/dispatcher.h"
 #include "server/session/mocap_streams.h"
@@ -55,6 +56,7 @@ class Hub {
     Metrics* metrics = nullptr;
     std::function<std::uint64_t()> random;  // returns unpredictable numbers, never 0
     RecordingTap* recording = nullptr;      // optional; outlives the hub
+    const TokenGate* gate = nullptr;        // outlives the hub; null: everybody may do everything
     int shards = 1;                         // one per network thread
   };
   explicit Hub(Parts parts);
@@ -82,8 +84,14 @@ class Hub {
   }
 
   // Called by the shard's thread, like all functions with a PeerId. `link` outlives the peer.
-  // A UDP peer must have proved its address (Reception).
-  PeerId AddPeer(Transport transport, PeerLabel name, Link* link, Time now, int shard = 0);
+  // A UDP peer must have proved its address (Reception), or its token by a secure session.
+  // `access`: what the peer may do; none: what those may do who have shown nothing
+  // (TokenGate::Stranger()), or everything for parts of the daemon itself (Transport::kMocap).
+  PeerId AddPeer(Transport transport, PeerLabel name, Link* link, Time now, int shard = 0,
+                 std::optional<Access> access = {});
+  // The peer has shown a newer token. Subscriptions that it does not allow end, and so do subjects.
+  // Requires the shard's lock.
+  void SetAccess(PeerId id, const Access& access);
   // Ends the peer's subscriptions and forgets the peer. Subjects that it publishes are not removed
   // at once: without poses they decay, then leave.
   void RemovePeer(PeerId id);
@@ -101,7 +109,8 @@ class Hub {
   void SetConsent(PeerId id, const Consent& consent);
   // UDP: records that a part of a message arrived. Requires the shard's lock.
   void OnFragment(PeerId id, Time now);
-  // True if the peer may be forgotten: no subscriptions, and silent for Limits::idle_seconds.
+  // True if the peer may be forgotten: no subscriptions, and silent for Limits::idle_seconds; or
+  // its token has ended.
   [[nodiscard]] bool IsIdle(PeerId id, Time now);
   // TCP: answers a frame with an invalid length. The caller closes the connection afterwards.
   void OnBadFrame(PeerId id);
@@ -125,9 +134,10 @@ class Hub {
   // return.
 
   [[nodiscard]] const SubjectRegistry& subjects() const { return subjects_; }
-  // Finds a subject by name (empty: the oldest) and evaluates all of its drivers from now on. Null:
-  // no such subject.
-  [[nodiscard]] Subject* RequireAllDrivers(std::string_view name);
+  // Finds a subject by name (empty: the oldest) that `access` is for, and evaluates all of
+  // its drivers from now on. Null: no such subject.
+  [[nodiscard]] Subject* RequireAllDrivers(std::string_view name,
+                                           const Access& access = Access::Everything());
   // The name of the peer that publishes the subject, for people; empty if the peer has left.
   [[nodiscard]] std::string_view SourceOf(const Subject& subject);
   [[nodiscard]] const render::Settings& own_settings() const { return subscribers_.own_settings(); }
@@ -155,6 +165,7 @@ class Hub {
   void AgeSubjects(Time now);
   void RemoveSubject(Subject& subject);
   void RenewConsent(Peer& peer, Time now);
+  void EndIfTokenEnded(Peer& peer, Time now);
   void RepublishWeights(Subject& subject, Time now);
 
   const Limits limits_;
@@ -163,6 +174,7 @@ class Hub {
   const std::function<std::uint64_t()> random_;
   const AddressProof address_proof_;
   RecordingTap* const recording_;
+  const TokenGate* const gate_;
   PublishContext exclusive_context_;
   StreamDefinitions definitions_;
   SubjectRegistry subjects_;

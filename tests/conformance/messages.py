@@ -75,7 +75,7 @@ def one_of(value, count):
 
 def hello(t):
     return {"client": t.text(0, limit=64), "token": hexadecimal(t.scalar(1, "Q")),
-            "bundles": t.flag(3)}
+            "bundles": t.flag(3), "access": t.text(4, limit=512)}
 
 
 def welcome(t):
@@ -96,7 +96,7 @@ def goodbye(t):
 
 def error(t):
     code = t.scalar(0, "H")
-    require(1 <= code <= 14, "unknown error code")
+    require(1 <= code <= 16, "unknown error code")
     return {"code": code, "message": t.text(1, limit=1024)}
 
 

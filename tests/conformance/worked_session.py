@@ -22,7 +22,8 @@ from messages import unpack_rotation
 # The slots of the session's messages: sections 4 and 6 to 9. A number is its struct format.
 STRING, STRINGS = "string", "[string]"
 SLOTS = {
-    b"FHEL": [("client", STRING), ("token", "Q"), ("padding", "[B]"), ("bundles", "?")],
+    b"FHEL": [("client", STRING), ("token", "Q"), ("padding", "[B]"), ("bundles", "?"),
+              ("access", STRING)],
     b"FWEL": [("server", STRING), ("token", "Q")],
     b"FBYE": [("reason", "B")],
     b"FSKO": [("subject", STRING), ("skeleton_hash", "Q"), ("metres_per_unit", "f"), ("names", STRINGS),

@@ -212,9 +212,10 @@ class AddressTest(unittest.TestCase):
 
     def test_wrong_addresses_are_wrong_usage(self):
         for command, address, message in (
-                ("watch", "furrow://a?nonsense=1", "use subject, pattern, rate or transport"),
+                ("watch", "furrow://a?nonsense=1", "use subject, pattern, rate, transport or token"),
                 ("watch", "http://a", "use furrow://HOST"),
-                ("watch", "furrow://a?token=x", "reserved"),
+                ("watch", "furrow://a?key=x", "reserved"),
+                ("watch", "furrow://a?token=x&token=x", "token is stated twice"),
                 ("watch", "furrow://a?subject=b&subject=c", "a second subject"),
                 ("record", "furrow://a?rate=5", "no use for rate"),
                 ("frames", "furrow://a?transport=udp", "no use for transport=udp")):

@@ -14,7 +14,9 @@ namespace {
 
 constexpr int kGuardMilliseconds = 60'000;
 
-int Connect(int type, std::uint16_t port, const char* from = "127.0.0.1") {
+}  // namespace
+
+int ConnectSocket(int type, std::uint16_t port, const char* from) {
   const int socket = ::socket(AF_INET, type, 0);
   sockaddr_in own{};
   own.sin_family = AF_INET;
@@ -30,8 +32,6 @@ int Connect(int type, std::uint16_t port, const char* from = "127.0.0.1") {
   }
   return socket;
 }
-
-}  // namespace
 
 RawClient::~RawClient() {
   if (socket_ >= 0) ::close(socket_);
@@ -86,7 +86,7 @@ std::uint16_t RawClient::local_port() const {
   return ntohs(address.sin_port);
 }
 
-TcpClient::TcpClient(std::uint16_t port) : RawClient(Connect(SOCK_STREAM, port)) {}
+TcpClient::TcpClient(std::uint16_t port) : RawClient(ConnectSocket(SOCK_STREAM, port)) {}
 
 void TcpClient::SendBytes(std::span<const std::uint8_t> message) {
   // In one piece: two would wait for each other's acknowledgement (Nagle).
@@ -111,7 +111,7 @@ bool TcpClient::Fill() {
 }
 
 UdpClient::UdpClient(std::uint16_t port, const char* from)
-    : RawClient(Connect(SOCK_DGRAM, port, from)) {}
+    : RawClient(ConnectSocket(SOCK_DGRAM, port, from)) {}
 
 void UdpClient::SendBytes(std::span<const std::uint8_t> message) {
   const std::size_t count = protocol::NumDatagrams(message.size());

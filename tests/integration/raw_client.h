@@ -83,6 +83,10 @@ class RawClient {
   std::vector<std::uint8_t> out_;
 };
 
+// A socket of this type (SOCK_DGRAM, SOCK_STREAM) that is connected to the daemon. `from`: a
+// loopback address. -1: there is none.
+[[nodiscard]] int ConnectSocket(int type, std::uint16_t port, const char* from = "127.0.0.1");
+
 class TcpClient : public RawClient {
  public:
   explicit TcpClient(std::uint16_t port);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Typed access to the daemon's JSON (docs/HTTP-API.md). Rejected requests throw an ApiError.
+import { currentToken, withToken } from './state/token';
 import type { CameraPreset } from './view/camera';
 
 export interface SettingInfo {
@@ -45,6 +46,8 @@ export interface DaemonStatus {
   pictures_dropped: number;
   playback: boolean;
   draining: boolean;
+  /** Everybody on the network may connect, without a token. */
+  open: boolean;
 }
 
 export interface RigInfo {
@@ -141,9 +144,11 @@ async function call<T>(path: string, method = 'GET', body?: unknown): Promise<T>
     response = await fetch(path, {
       method,
       cache: 'no-store',
-      ...(body === undefined
-        ? {}
-        : { headers: { 'Content-Type': 'application/json' }, body: JSON.stringify(body) }),
+      headers: {
+        ...(currentToken() === '' ? {} : { Authorization: `Bearer ${currentToken()}` }),
+        ...(body === undefined ? {} : { 'Content-Type': 'application/json' }),
+      },
+      ...(body === undefined ? {} : { body: JSON.stringify(body) }),
     });
   } catch {
     throw new ApiError(0, '', 'The daemon does not answer');
@@ -174,7 +179,7 @@ export const api = {
   patchPlayback: (values: Partial<Pick<Playback, 'playing' | 'loop' | 'speed' | 'position_s'>>) =>
     call<Playback>('api/playback', 'PATCH', values),
   /** The address from which the current rig can be downloaded. */
-  rigFile: 'api/rig.json',
+  rigFile: () => withToken('api/rig.json'),
 };
 
 /** The sentence to show for any thrown value. */

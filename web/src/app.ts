@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Assembles the page and feeds it with the state of the daemon.
-import { api, type DaemonStatus, type SubjectInfo, wordsOf } from './api';
+import { api, ApiError, type DaemonStatus, type SubjectInfo, wordsOf } from './api';
 import { CapturePanel } from './panels/capture';
 import { assess } from './panels/condition';
 import { CurvesPanel } from './panels/curves';
@@ -14,11 +14,13 @@ import { DebugStrip } from './panels/strip';
 import { Timeline } from './panels/timeline';
 import { ViewBar } from './panels/view_bar';
 import { AppState } from './state/app_state';
+import { setToken } from './state/token';
 import { WeightHistory } from './state/weight_history';
 import { h } from './ui/dom';
 import { type Command, helpDialog, installKeys } from './ui/keys';
 import { Tabs } from './ui/tabs';
 import { Toasts } from './ui/toast';
+import { TokenDialog } from './ui/token_dialog';
 import { CameraInput } from './view/camera_input';
 import { Viewer } from './view/viewer';
 import { Connection } from './wire/connection';
@@ -46,6 +48,7 @@ export class App {
   private readonly menu: SettingsMenu;
   private readonly timeline: Timeline;
   private readonly tabs: Tabs;
+  private readonly token = new TokenDialog(setToken);
   private readonly help: HTMLDialogElement;
   private readonly root = h('div', { class: 'app' });
   private subjects: SubjectInfo[] | null = null;
@@ -95,7 +98,7 @@ export class App {
       h('main', { 'aria-label': 'Picture' }, this.viewer.stage.element, this.viewBar.element),
       h('footer', { class: 'dock', 'aria-label': 'Curves and recording' }, this.curves.element, this.timeline.element),
       h('aside', { class: 'side', 'aria-label': 'Panels' }, this.tabs.list, this.tabs.panels),
-      dialog, this.help, this.toasts.element);
+      dialog, this.help, this.token.element, this.toasts.element);
     parent.replaceChildren(this.root);
     if (this.state.panel.value !== '') this.tabs.choose(this.state.panel.value);
     this.state.panel.bind((panel) => this.root.classList.toggle('no-panel', panel === ''));
@@ -202,6 +205,7 @@ export class App {
   private async poll(): Promise<void> {
     const nowS = performance.now() / 1000;
     if (!document.hidden) await this.askDaemon();
+    if (!document.hidden && this.connection.link.value === 'lost') await this.askForToken();
     const shown = this.subjects?.find(({ name }) => name === this.weights.subject.value);
     this.viewer.observeRate(shown?.rate_hz ?? 0, nowS);
     this.viewer.drawing.observe(shown, this.viewer.stats.rateHz(nowS));
@@ -221,11 +225,21 @@ export class App {
     }
   }
 
+  /** A WebSocket that is refused says nothing; a request does. */
+  private async askForToken(): Promise<void> {
+    try {
+      await api.status();
+    } catch (error) {
+      if (error instanceof ApiError && error.status === 401) this.token.ask(error.message);
+    }
+  }
+
   private showDaemon(): void {
     const status = this.status!;
     this.timeline.setAvailable(status.playback);
     const subjects = this.subjects!;
     this.session.show(subjects, status, this.weights.subject.value);
+    this.header.showOpen(status.open);
     this.header.showSubjects(subjects.map(({ name }) => name));
     if (this.daemonSession !== '' && status.session !== this.daemonSession) {
       this.toasts.say('The daemon was restarted; this page keeps its settings');

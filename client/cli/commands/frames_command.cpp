@@ -64,7 +64,8 @@ class PictureFiles {
 };
 
 int Frames(const FramesOptions& options) {
-  const auto address = ParseHost(options.listen.host, {.rate = true});
+  const auto address =
+      ParseHost(options.listen.host, {.rate = true, .token = options.listen.token});
   if (!address) return kUsage;
   if (options.out != "-") {
     std::error_code error;

@@ -30,6 +30,7 @@ struct RecordOptions {
   std::string host;
   std::filesystem::path out;
   std::vector<std::string> subjects;
+  std::string token;  // argument of --token
   bool wait = false;
   bool once = false;      // do not connect again after a loss
   double duration = 0.0;  // seconds; 0: until an interrupt
@@ -146,7 +147,7 @@ int RecordInto(TakeRecorder& take, client::Subscriber& subscriber, const RecordO
 }
 
 int Record(RecordOptions options) {
-  const auto address = ParseHost(options.host, {.several_subjects = true});
+  const auto address = ParseHost(options.host, {.several_subjects = true, .token = options.token});
   if (!address) return kUsage;
   if (options.subjects.empty()) options.subjects = address->subjects;
   if (!recording::IsTakePath(options.out.string())) {
@@ -199,6 +200,7 @@ void AddRecord(CLI::App& app, Action& action) {
       "--wait", options->wait,
       "Wait for subjects that are not connected yet, and continue when all have left");
   command->add_flag("--once", options->once, kOnceHelp);
+  AddTokenFile(*command, options->token);
   command
       ->add_option("--duration", options->duration,
                    "Length of the recording, in seconds (default: until Ctrl-C)")

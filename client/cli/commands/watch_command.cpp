@@ -73,14 +73,22 @@ class WeightRows {
   int failure_ = kDone;
 };
 
+// The transport that the options choose, or else the address. A token is safe over UDP alone.
+TransportKind KindOf(const WatchOptions& options, const client::Address& address) {
+  if (options.udp) return TransportKind::kUdp;
+  if (options.tcp) return TransportKind::kTcp;
+  return address.transport.value_or(address.token.empty() ? TransportKind::kTcp
+                                                          : TransportKind::kUdp);
+}
+
 int Watch(const WatchOptions& options) {
-  const auto address =
-      ParseHost(options.listen.host, {.pattern = true, .rate = true, .udp = !options.tcp});
+  const auto address = ParseHost(
+      options.listen.host,
+      {.pattern = true, .rate = true, .udp = !options.tcp, .token = options.listen.token});
   if (!address) return kUsage;
   int exit_code = kDone;
-  const TransportKind stated = address->transport.value_or(TransportKind::kTcp);
-  auto transport = OpenTransport(*address, options.udp ? TransportKind::kUdp : stated,
-                                 options.listen.once, &exit_code);
+  auto transport =
+      OpenTransport(*address, KindOf(options, *address), options.listen.once, &exit_code);
   if (!transport) return exit_code;
   client::Subscriber subscriber(std::move(transport), "furrow watch " FURROW_VERSION);
   protocol::SubscribeWeights request = options.request;
@@ -108,8 +116,10 @@ void AddWatch(CLI::App& app, Action& action) {
   const std::map<std::string, TableFormat> formats{
       {"table", TableFormat::kTable}, {"csv", TableFormat::kCsv}, {"jsonl", TableFormat::kJsonl}};
   AddChoice(*command, "--format", options->format, formats, "Output format");
-  auto* tcp = command->add_flag("--tcp", options->tcp, "Receive over TCP, port 7400 (default)");
-  command->add_flag("--udp", options->udp, "Receive over UDP, port 7401")->excludes(tcp);
+  auto* tcp = command->add_flag("--tcp", options->tcp,
+                                "Receive over TCP, port 7400 (default without a token)");
+  command->add_flag("--udp", options->udp, "Receive over UDP, port 7401 (default with a token)")
+      ->excludes(tcp);
   command->add_flag("--u8", options->u8, "Receive 8-bit weights (error up to 1/510)");
   command->add_flag("--drivers", options->drivers,
                     "Receive driver values, before modulation and filter, instead of weights");

@@ -91,4 +91,10 @@ CLI::Validator Within(double least, double most) {
           range};
 }
 
+void AddTokenFile(CLI::App& command, std::string& value) {
+  command.add_option("--token", value,
+                     "File with a connect token, as 'furrow token new' makes it (default: none).\n"
+                     "Over UDP it encrypts; over TCP everybody on the way can read it");
+}
+
 }  // namespace furrow::cli

@@ -65,6 +65,9 @@ void AddReadOptions(CLI::App& command, motion::LoadOptions& options);
 inline constexpr char kHostHelp[] =
     "Address of furrowd: HOST, HOST:PORT, [IPV6]:PORT or furrow://HOST:PORT?subject=NAME";
 
+// Adds --token. `value` receives its argument, for HostKeys::token.
+void AddTokenFile(CLI::App& command, std::string& value);
+
 // The help text of --once.
 inline constexpr char kOnceHelp[] =
     "End with exit code 4 if the connection is lost (default: connect again)";

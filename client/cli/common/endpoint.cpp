@@ -7,15 +7,17 @@
 
 #include "client/cli/common/exit_code.h"
 #include "client/cpp/reconnecting_transport.h"
+#include "client/cpp/transports.h"
 
 namespace furrow::cli {
 bool ParseEndpoint(const std::string& text, client::TransportKind kind, Endpoint* endpoint) {
   const auto address = client::ParseAddress(text);
   if (!address.ok()) return false;
   const bool more = !address->subjects.empty() || !address->pattern.empty() ||
-                    address->max_rate_hz != 0.0f || address->transport.value_or(kind) != kind;
+                    address->max_rate_hz != 0.0f ||
+                    address->transport.value_or(kind) != kind;
   if (more) return false;
-  *endpoint = {address->host, address->PortFor(kind)};
+  *endpoint = {address->host, address->PortFor(kind), address->token};
   return true;
 }
 
@@ -24,6 +26,13 @@ std::optional<client::Address> ParseHost(const std::string& text, const HostKeys
   if (!address.ok()) {
     std::fprintf(stderr, "furrow: %s\n", address.status().ToString().c_str());
     return std::nullopt;
+  }
+  if (!keys.token.empty()) {
+    if (!address->token.empty()) {
+      std::fprintf(stderr, "furrow: --token: the address states a token, too (use one of both)\n");
+      return std::nullopt;
+    }
+    address->token = keys.token;
   }
   const char* unused = nullptr;
   if (!address->pattern.empty() && !keys.pattern) unused = "pattern";
@@ -40,16 +49,23 @@ std::unique_ptr<client::Transport> OpenTransport(const client::Address& address,
                                                  int* exit_code) {
   const std::uint16_t port = address.PortFor(kind);
   constexpr std::chrono::milliseconds kTimeout(3000);
-  auto transport = client::Transport::Open(kind, address.host, port, kTimeout);
+  const auto token = client::LoadTokenOf(address);
+  if (!token.ok()) {
+    *exit_code = Fail(token.status().Within("token"));
+    return nullptr;
+  }
+  const client::Token* const shown = *token ? &**token : nullptr;
+  auto transport = client::OpenTransport(kind, address.host, port, kTimeout, shown);
   if (!transport.ok()) {
-    std::fprintf(stderr, "furrow: %s (is furrowd running there?)\n",
-                 transport.status().ToString().c_str());
-    *exit_code = kNoConnection;
+    const bool absent = transport.status().code() == StatusCode::kUnavailable;
+    std::fprintf(stderr, "furrow: %s%s\n", transport.status().ToString().c_str(),
+                 absent ? " (is furrowd running there?)" : "");
+    *exit_code = absent ? kNoConnection : kFailed;
     return nullptr;
   }
   if (once) return *std::move(transport);
   return client::ReconnectingTransport::Create(kind, address.host, port, kTimeout,
-                                               *std::move(transport));
+                                               *std::move(transport), *token);
 }
 
 std::int64_t SystemMicroseconds() {

@@ -16,19 +16,21 @@ namespace furrow::cli {
 struct Endpoint {
   std::string host;
   std::uint16_t port = 0;
+  std::string token;  // as in client::Address
 };
 
 // Parses an address (client/cpp/address.h) that states a host, a port and perhaps the transport
-// `kind`. Without a port, uses the protocol's port for `kind`. Returns false for every other text.
+// `kind` and a token. Without a port, uses the protocol's port for `kind`. Returns false for every other text.
 [[nodiscard]] bool ParseEndpoint(const std::string& text, client::TransportKind kind,
                                  Endpoint* endpoint);
 
-// The keys of an address that a command can use, besides one subject and transport=tcp.
+// The keys of an address that a command can use, besides token, one subject and transport=tcp.
 struct HostKeys {
   bool several_subjects = false;
   bool pattern = false;
   bool rate = false;
   bool udp = false;
+  std::string token = {};  // of --token, which states what the key token does; may be empty
 };
 
 // Parses a HOST argument. Prints the error and returns nothing if the text is invalid, or if it
@@ -36,9 +38,9 @@ struct HostKeys {
 [[nodiscard]] std::optional<client::Address> ParseHost(const std::string& text,
                                                        const HostKeys& keys);
 
-// Connects to a daemon within 3 seconds. Later losses are repaired by the transport, unless `once`.
-// On failure prints the error, sets `exit_code` and returns null; on success leaves `exit_code`
-// unchanged.
+// Connects to a daemon within 3 seconds, with the token of the address. Later losses are repaired
+// by the transport, unless `once`. On failure prints the error, sets `exit_code` and returns null;
+// on success leaves `exit_code` unchanged.
 [[nodiscard]] std::unique_ptr<client::Transport> OpenTransport(const client::Address& address,
                                                                client::TransportKind kind,
                                                                bool once, int* exit_code);

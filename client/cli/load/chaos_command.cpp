@@ -31,6 +31,10 @@ int RunChaos(const ChaosCommand& command) {
                  command.to.c_str());
     return kUsage;
   }
+  if (!endpoint.token.empty()) {
+    std::fprintf(stderr, "furrow: --to: the proxy needs no token (give it to the clients)\n");
+    return kUsage;
+  }
   options.to_host = endpoint.host;
   options.to_udp = endpoint.port;
   options.to_tcp = command.to_tcp;

@@ -41,8 +41,9 @@ int FailLoad(const Status& status) {
   return status.code() == StatusCode::kUnavailable ? kNoConnection : code;
 }
 
-// HOST:PORT names the port of the chosen transport; --other-port names the other one.
-bool MakeTarget(const LoadFlags& flags, Target* target) {
+// HOST:PORT names the port of the chosen transport; --other-port names the other one. `token`: only
+// its token is set.
+bool MakeTarget(const LoadFlags& flags, Target* target, client::Address* token) {
   const bool tcp = flags.run.path == Path::kTcp;
   Endpoint named;
   Endpoint other;
@@ -51,6 +52,7 @@ bool MakeTarget(const LoadFlags& flags, Target* target) {
   if (!ParseEndpoint(flags.host, kind, &named)) return false;
   (void)ParseEndpoint("localhost", other_kind, &other);  // for the default port
   if (flags.other_port != 0) other.port = flags.other_port;
+  token->token = named.token;
   target->host = named.host;
   target->udp = tcp ? other.port : named.port;
   target->tcp = tcp ? named.port : other.port;
@@ -203,11 +205,16 @@ int RunLoad(LoadFlags flags) {
   flags.run.plan.subjects = flags.subjects != 0 ? flags.subjects : flags.find_max ? 256 : 1;
   flags.run.plan.phases = 16;
   Target target;
-  if (!MakeTarget(flags, &target)) {
+  client::Address stated;
+  if (!MakeTarget(flags, &target, &stated)) {
     std::fprintf(stderr, "furrow: '%s' is not HOST, HOST:PORT, [IPV6]:PORT or furrow://HOST:PORT\n",
                  flags.host.c_str());
     return kUsage;
   }
+  if (!flags.token.empty()) stated.token = flags.token;
+  const auto token = client::LoadTokenOf(stated);
+  if (!token.ok()) return Fail(token.status().Within("token"));
+  target.token = *token;
   if (const int code = CheckFlags(flags); code != kDone) return code;
   const auto workload = LoadWorkload(flags.input);
   if (!workload.ok()) return Fail(workload.status());

@@ -38,6 +38,7 @@ void AddTrafficOptions(CLI::App& command, LoadFlags& options) {
   command.add_flag("--both", options.both, "Use UDP for half of the connections and TCP for half")
       ->excludes(udp)
       ->excludes(tcp);
+  AddTokenFile(command, options.token);
   command.add_option(
       "--other-port", options.other_port,
       "furrowd's port for the other transport, which PORT does not give (default: 7400 for "

@@ -16,6 +16,7 @@ namespace furrow::cli {
 // The parsed options of `furrow load`.
 struct LoadFlags {
   std::string host;
+  std::string token;  // argument of --token
   LoadInput input;
   load::RunOptions run;
   int subjects = 0;  // 0: 1, or 256 with --find-max

@@ -15,6 +15,7 @@ namespace furrow::cli {
 // The options of all commands that subscribe.
 struct SubscriptionOptions {
   std::string host;         // argument of ParseHost()
+  std::string token;        // argument of --token
   bool once = false;        // do not connect again after a loss
   std::int64_t frames = 0;  // stop after this number of frames; 0: when the subject leaves
 };
@@ -38,6 +39,7 @@ void AddSubscriptionOptions(CLI::App& command, SubscriptionOptions& options, Req
                   "Number of " + unit + " to receive (default: until the subject leaves)")
       ->check(CLI::PositiveNumber);
   command.add_flag("--once", options.once, kOnceHelp);
+  AddTokenFile(command, options.token);
 }
 
 // Takes over what the address states and the options do not. `Request`: as above.

@@ -33,7 +33,7 @@ SocketOpener Opener(const Target& target, Path path) {
   return [target, path](int i) -> Result<std::unique_ptr<net::Socket>> {
     const bool tcp = path == Path::kTcp || (path == Path::kBoth && i % 2 == 1);
     return net::OpenSocket(tcp ? TransportKind::kTcp : TransportKind::kUdp, target.host,
-                           tcp ? target.tcp : target.udp);
+                           tcp ? target.tcp : target.udp, target.token ? &*target.token : nullptr);
   };
 }
 

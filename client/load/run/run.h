@@ -25,9 +25,10 @@ struct Target {
   std::string host;
   std::uint16_t udp = 0;
   std::uint16_t tcp = 0;
-  bool echo = false;       // a raw echo, which returns the poses themselves
-  bool loopback = true;    // `host` is a loopback address
-  std::optional<int> pid;  // process of the server, if it is known and on this machine
+  bool echo = false;                   // a raw echo, which returns the poses themselves
+  bool loopback = true;                // `host` is a loopback address
+  std::optional<client::Token> token;  // shown by every socket
+  std::optional<int> pid;              // process of the server, if it is known and on this machine
 };
 
 // The options of a run.

@@ -21,7 +21,9 @@ Admission::Admission(AdmissionSettings settings, RandomSource& random)
     : settings_(std::move(settings)),
       random_(random),
       cookies_(random),
-      handshakes_(settings_.handshakes_per_second) {}
+      handshakes_(settings_.handshakes_per_second),
+      attempts_(settings_.attempts_per_second),
+      attempts_of_hosts_(settings_.attempts_per_second_of_a_host, random) {}
 
 AdmissionResult Admission::OnInitiation(ByteView datagram, const PeerAddress& from, Now now,
                                         std::uint32_t server_index, AcceptedHandshake& accepted) {
@@ -98,6 +100,8 @@ Refusal Admission::Shake(const InitiationView& view, const KnownToken& known,
   if (const Refusal refusal = CheckUse(known.head.nonce, from, now); refusal != Refusal::kNone) {
     return refusal;
   }
+  // The host first: a host that has used up its own budget takes nothing from the others.
+  if (!attempts_of_hosts_.Take(from, now.us) || !attempts_.Take(now.us)) return Refusal::kBusy;
   OpenedToken opened;
   if (const Refusal refusal = CheckContent(view.token, known, opened); refusal != Refusal::kNone) {
     return refusal;

@@ -11,6 +11,7 @@
 #include "protocol/messages/bytes.h"
 #include "protocol/secure/handshake/cookie.h"
 #include "protocol/secure/handshake/handshake_packets.h"
+#include "protocol/secure/session/host_budgets.h"
 #include "protocol/secure/session/now.h"
 #include "protocol/secure/session/rate_budget.h"
 #include "protocol/secure/token/connect_token.h"
@@ -22,6 +23,10 @@ struct AdmissionSettings {
   std::string audience;  // name of this server; tokens for another name are refused
   std::uint32_t handshakes_per_second = 500;
   std::uint32_t handshakes_per_second_of_a_token = 10;
+  // First messages that are examined: each costs 14 us, also if the client does not know the key of
+  // the token that it shows. One host may use a small part, so that others find some left.
+  std::uint32_t attempts_per_second = 2000;
+  std::uint32_t attempts_per_second_of_a_host = 100;
 };
 
 // A token with sessions. It may not be used from another host meanwhile.
@@ -63,8 +68,9 @@ struct AdmissionResult {
 
 // Decides who gets a session. Checks run in the order of their cost, so that an attacker who knows
 // less costs less: size, magic, key id, expiry, cookie, use from another host, seal of the token,
-// proof of the token's key, budgets, and only then X25519. Before the cookie is right, nothing is
-// allocated and no state is kept. Afterwards the state is bounded by the number of sessions.
+// proof of the token's key, budgets, and only then X25519. Opening a token and checking the proof
+// have budgets of their own, for each host and for all of them. Before the cookie is right, nothing
+// is allocated and no state is kept. Afterwards the state is bounded by the number of sessions.
 //
 // The caller owns the sessions. It must Release() every accepted handshake when its session ends.
 class Admission {
@@ -134,6 +140,8 @@ class Admission {
   KeyRing keys_;
   CookieMaker cookies_;
   RateBudget handshakes_;
+  RateBudget attempts_;
+  HostBudgets attempts_of_hosts_;
   std::unordered_map<TokenNonce, TokenUse, FirstBytes> uses_;
   std::unordered_map<PublicKey, ResponseBytes, FirstBytes> responses_;
   std::array<std::uint64_t, kNumRefusals> refused_{};

@@ -238,6 +238,12 @@ SealStatus SecureServer::Seal(std::uint32_t index, ByteSpan packet, Now now, Pee
   return session->channel.sealer.Seal(PacketKind::kData, packet, now.us);
 }
 
+SecureServer::Info SecureServer::InfoOf(std::uint32_t index) const {
+  const Session* const session = Find(index);
+  if (session == nullptr) return {};
+  return {&session->grant, session->use->key_id, session->expires};
+}
+
 const Grant* SecureServer::GrantOf(std::uint32_t index) const {
   const Session* const session = Find(index);
   return session == nullptr ? nullptr : &session->grant;

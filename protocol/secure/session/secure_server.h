@@ -65,6 +65,14 @@ class SecureServer {
   // kNotConnected: no such session, or its client has not continued the handshake.
   [[nodiscard]] SealStatus Seal(std::uint32_t session, ByteSpan packet, Now now, PeerAddress& to);
 
+  // The permissions of a session, the id of the key that sealed its token, and when they end (Unix
+  // time in seconds). `grant` is null if there is no such session.
+  struct Info {
+    const Grant* grant = nullptr;
+    std::uint32_t key_id = 0;
+    std::uint64_t expires = 0;
+  };
+  [[nodiscard]] Info InfoOf(std::uint32_t session) const;
   // The permissions of a session; null if there is no such session.
   [[nodiscard]] const Grant* GrantOf(std::uint32_t session) const;
   [[nodiscard]] const PeerAddress* AddressOf(std::uint32_t session) const;

@@ -6,7 +6,8 @@
 namespace furrow::server {
 
 Api::Api(Parts parts)
-    : status_({.session = parts.session,
+    : metrics_(parts.metrics),
+      status_({.session = parts.session,
                .started = parts.started,
                .metrics = parts.metrics,
                .renders = parts.pictures != nullptr,
@@ -15,56 +16,85 @@ Api::Api(Parts parts)
                .renderer = std::move(parts.renderer),
                .connections = std::move(parts.connections),
                .viewers = std::move(parts.viewers),
-               .recording_is_paused = std::move(parts.recording_is_paused)}),
+               .recording_is_paused = std::move(parts.recording_is_paused),
+               .open_to_network = parts.open_to_network}),
       settings_(parts.pictures),
       rig_(&captures_),
       playback_(parts.player),
       osc_(parts.osc),
-      routes_{
-          {"GET", "/api/subjects",
-           [this](const ApiRequest&, Hub& hub, Time now) { return status_.Subjects(hub, now); }},
-          {"GET", "/api/status",
-           [this](const ApiRequest&, Hub& hub, Time now) { return status_.ShowStatus(hub, now); }},
-          {"GET", "/api/settings",
-           [this](const ApiRequest&, Hub& hub, Time) { return settings_.Settings(hub); }},
-          {"PATCH", "/api/settings",
-           [this](const ApiRequest& request, Hub& hub, Time now) {
-             return settings_.PatchSettings(request, hub, now);
-           }},
-          {"GET", "/api/settings.toml",
-           [this](const ApiRequest&, Hub& hub, Time) { return settings_.SettingsFile(hub); }},
-          {"GET", "/api/cameras",
-           [this](const ApiRequest&, Hub&, Time) { return settings_.Cameras(); }},
-          {"GET", "/api/rig",
-           [this](const ApiRequest&, Hub& hub, Time) { return rig_.ShowRig(hub); }},
-          {"GET", "/api/rig.json",
-           [this](const ApiRequest&, Hub& hub, Time) { return rig_.RigFile(hub); }},
-          {"GET", "/api/explain",
-           [this](const ApiRequest& request, Hub& hub, Time) {
-             return rig_.Explain(request, hub);
-           }},
-          {"POST", "/api/capture",
-           [this](const ApiRequest& request, Hub& hub, Time now) {
-             return captures_.PostCapture(request, hub, now);
-           }},
-          {"POST", "/api/capture/undo",
-           [this](const ApiRequest&, Hub& hub, Time now) { return captures_.Undo(hub, now); }},
-          {"GET", "/api/playback",
-           [this](const ApiRequest&, Hub&, Time now) { return playback_.Show(now); }},
-          {"PATCH", "/api/playback",
-           [this](const ApiRequest& request, Hub&, Time now) {
-             return playback_.Patch(request, now);
-           }},
-          {"GET", "/api/osc", [this](const ApiRequest&, Hub&, Time) { return osc_.List(); }},
-          {"POST", "/api/osc",
-           [this](const ApiRequest& request, Hub&, Time) { return osc_.Add(request); }},
-          {"DELETE", "/api/osc",
-           [this](const ApiRequest& request, Hub&, Time) { return osc_.Remove(request); }},
-          {"GET", "/healthz", [this](const ApiRequest&, Hub&, Time) { return status_.Health(); }},
-          {"GET", "/readyz",
-           [this](const ApiRequest&, Hub& hub, Time) { return status_.Ready(hub); }},
-          {"GET", "/metrics",
-           [this](const ApiRequest&, Hub& hub, Time) { return status_.MetricsText(hub); }}} {}
+      routes_{{"GET", "/api/subjects", Need::kToken,
+               [this](const ApiRequest& request, Hub& hub, Time now) {
+                 return status_.Subjects(request, hub, now);
+               }},
+              {"GET", "/api/status", Need::kToken,
+               [this](const ApiRequest& request, Hub& hub, Time now) {
+                 return status_.ShowStatus(request, hub, now);
+               }},
+              {"GET", "/api/settings", Need::kToken,
+               [this](const ApiRequest&, Hub& hub, Time) { return settings_.Settings(hub); }},
+              {"PATCH", "/api/settings", Need::kDirect,
+               [this](const ApiRequest& request, Hub& hub, Time now) {
+                 return settings_.PatchSettings(request, hub, now);
+               }},
+              {"GET", "/api/settings.toml", Need::kToken,
+               [this](const ApiRequest&, Hub& hub, Time) { return settings_.SettingsFile(hub); }},
+              {"GET", "/api/cameras", Need::kToken,
+               [this](const ApiRequest&, Hub&, Time) { return settings_.Cameras(); }},
+              {"GET", "/api/rig", Need::kToken,
+               [this](const ApiRequest&, Hub& hub, Time) { return rig_.ShowRig(hub); }},
+              {"GET", "/api/rig.json", Need::kToken,
+               [this](const ApiRequest&, Hub& hub, Time) { return rig_.RigFile(hub); }},
+              {"GET", "/api/explain", Need::kWatch,
+               [this](const ApiRequest& request, Hub& hub, Time) {
+                 return rig_.Explain(request, hub);
+               }},
+              {"POST", "/api/capture", Need::kDirect,
+               [this](const ApiRequest& request, Hub& hub, Time now) {
+                 return captures_.PostCapture(request, hub, now);
+               }},
+              {"POST", "/api/capture/undo", Need::kDirect,
+               [this](const ApiRequest&, Hub& hub, Time now) { return captures_.Undo(hub, now); }},
+              {"GET", "/api/playback", Need::kToken,
+               [this](const ApiRequest&, Hub&, Time now) { return playback_.Show(now); }},
+              {"PATCH", "/api/playback", Need::kDirect,
+               [this](const ApiRequest& request, Hub&, Time now) {
+                 return playback_.Patch(request, now);
+               }},
+              {"GET", "/api/osc", Need::kToken,
+               [this](const ApiRequest&, Hub&, Time) { return osc_.List(); }},
+              {"POST", "/api/osc", Need::kOperate,
+               [this](const ApiRequest& request, Hub&, Time) { return osc_.Add(request); }},
+              {"DELETE", "/api/osc", Need::kOperate,
+               [this](const ApiRequest& request, Hub&, Time) { return osc_.Remove(request); }},
+              {"GET", "/healthz", Need::kNothing,
+               [this](const ApiRequest&, Hub&, Time) { return status_.Health(); }},
+              {"GET", "/readyz", Need::kNothing,
+               [this](const ApiRequest&, Hub& hub, Time) { return status_.Ready(hub); }},
+              {"GET", "/metrics", Need::kOperate,
+               [this](const ApiRequest&, Hub& hub, Time) { return status_.MetricsText(hub); }}} {}
+
+bool Api::Permits(Need need, const Access& access) {
+  switch (need) {
+    case Need::kNothing: return true;
+    case Need::kToken: return access.admitted();
+    case Need::kWatch: return access.Has(Role::kWatch);
+    case Need::kDirect: return access.Has(Role::kDirect);
+    case Need::kOperate: return access.Has(Role::kOperate);
+  }
+  return false;
+}
+
+ApiReply Api::Forbid(Need need, const ApiRequest& request) {
+  const bool directs = need == Need::kDirect;
+  const Counter counter = directs                ? Counter::kRefusedDirect
+                          : need == Need::kWatch ? Counter::kRefusedWatch
+                                                 : Counter::kRefusedOperate;
+  metrics_->Add(counter);
+  const std::string role = directs ? "direct" : need == Need::kWatch ? "watch" : "operate";
+  return ErrorReply(403, "forbidden", "",
+                    request.url.path + " needs the role " + role + "; " + request.access.Text(),
+                    "use a token with this role");
+}
 
 ApiReply Api::Answer(const ApiRequest& request, Hub& hub, Time now) {
   // Collects the methods of a path while it looks for the right one: RFC 9110 requires Allow with
@@ -73,7 +103,10 @@ ApiReply Api::Answer(const ApiRequest& request, Hub& hub, Time now) {
   // Few routes, so a search is fast enough.
   for (const Route& route : routes_) {
     if (route.path != request.url.path) continue;
-    if (route.method == request.method) return route.answer(request, hub, now);
+    if (route.method == request.method) {
+      if (Permits(route.need, request.access)) return route.answer(request, hub, now);
+      return Forbid(route.need, request);
+    }
     allowed += (allowed.empty() ? "" : ", ") + std::string(route.method);
     if (route.method == "GET") allowed += ", HEAD";
   }

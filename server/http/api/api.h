@@ -31,7 +31,7 @@ class Api {
   struct Parts {
     std::uint64_t session = 0;                  // the daemon's random session number
     Time started{0};                            // when the daemon started
-    const Metrics* metrics = nullptr;           // not null
+    Metrics* metrics = nullptr;                 // not null
     PictureSource* pictures = nullptr;          // null: the daemon renders nothing
     bool wants_pictures = false;                // the configuration asks for pictures
     std::string renderer;                       // description of the renderer, for people
@@ -40,6 +40,7 @@ class Api {
     std::function<int()> connections;           // number of HTTP connections
     std::function<int()> viewers;               // number of WebSockets and picture streams
     std::function<bool()> recording_is_paused;  // by a full disk; empty: nothing is recorded
+    bool open_to_network = false;               // other computers need no token
   };
   explicit Api(Parts parts);
   Api(const Api&) = delete;
@@ -50,12 +51,19 @@ class Api {
   [[nodiscard]] ApiReply Answer(const ApiRequest& request, Hub& hub, Time now);
 
  private:
+  // What a request needs to be answered.
+  enum class Need : std::uint8_t { kNothing, kToken, kWatch, kDirect, kOperate };
   struct Route {
     std::string_view method;
     std::string_view path;
+    Need need;
     std::function<ApiReply(const ApiRequest&, Hub&, Time)> answer;
   };
 
+  [[nodiscard]] static bool Permits(Need need, const Access& access);
+  [[nodiscard]] ApiReply Forbid(Need need, const ApiRequest& request);
+
+  Metrics* const metrics_;
   StatusApi status_;
   SettingsApi settings_;
   CaptureApi captures_;

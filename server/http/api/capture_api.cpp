@@ -169,8 +169,9 @@ ApiReply CaptureApi::PostCapture(const ApiRequest& request, Hub& hub, Time now) 
     }
   }
   // The reply shows all weights, not only those that somebody subscribes to.
-  Subject* subject = hub.RequireAllDrivers(subject_name.get<std::string>());
-  if (subject == nullptr) return NoSuchSubject(hub, subject_name.get<std::string>());
+  const auto name = subject_name.get<std::string>();
+  Subject* subject = hub.RequireAllDrivers(name, request.access);
+  if (subject == nullptr) return NoSuchSubject(hub, name, request.access);
   if (!subject->pipeline->has_pose()) {
     return ErrorReply(409, "conflict", "subject", "the subject has sent no pose yet");
   }

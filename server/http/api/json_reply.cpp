@@ -34,8 +34,8 @@ Result<Json> ParseObject(const ApiRequest& request) {
   return json;
 }
 
-ApiReply NoSuchSubject(const Hub& hub, std::string_view name) {
-  const std::string known = hub.subjects().Names();
+ApiReply NoSuchSubject(const Hub& hub, std::string_view name, const Access& access) {
+  const std::string known = hub.subjects().Names(access);
   return ErrorReply(404, "not_found", "subject",
                     name.empty() ? "there is no subject" : "no subject '" + std::string(name) + "'",
                     known.empty() ? "no subject is connected" : "connected subjects: " + known);

@@ -20,8 +20,8 @@ using Json = nlohmann::ordered_json;
 // Parses the JSON object in the body of a request. Errors: kParse, kSchema; `where` is "body".
 [[nodiscard]] Result<Json> ParseObject(const ApiRequest& request);
 
-// Returns a reply with status 404 and a hint that lists the connected subjects. `name`: the
-// requested subject; empty: any. Requires the hub's exclusive lock.
-[[nodiscard]] ApiReply NoSuchSubject(const Hub& hub, std::string_view name);
+// Returns a reply with status 404 and a hint that lists the connected subjects that `access` is
+// for. `name`: the requested subject; empty: any. Requires the hub's exclusive lock.
+[[nodiscard]] ApiReply NoSuchSubject(const Hub& hub, std::string_view name, const Access& access);
 
 }  // namespace furrow::server

@@ -204,8 +204,8 @@ ApiReply RigApi::RigFile(const Hub& hub) const {
 
 ApiReply RigApi::Explain(const ApiRequest& request, Hub& hub) const {
   const std::string_view name = request.url.Value("subject");
-  const Subject* subject = hub.RequireAllDrivers(name);
-  if (subject == nullptr) return NoSuchSubject(hub, name);
+  const Subject* subject = hub.RequireAllDrivers(name, request.access);
+  if (subject == nullptr) return NoSuchSubject(hub, name, request.access);
   const SubjectPipeline& pipeline = *subject->pipeline;
   const wrinkle::RigBinding& binding = *pipeline.stream().binding;
   const std::string_view wanted = request.url.Value("weight");

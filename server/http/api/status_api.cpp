@@ -41,9 +41,10 @@ prometheus::MetricFamily Family(std::string_view name, std::string_view help, Me
 
 }  // namespace
 
-ApiReply StatusApi::Subjects(Hub& hub, Time now) const {
+ApiReply StatusApi::Subjects(const ApiRequest& request, Hub& hub, Time now) const {
   Json list = Json::array();
   for (const auto& subject : hub.subjects().all()) {
+    if (!request.access.Concerns(subject->name)) continue;
     const SubjectPipeline& pipeline = *subject->pipeline;
     const SubjectStats& stats = subject->stats;
     list.push_back({{"name", subject->name},
@@ -64,7 +65,8 @@ ApiReply StatusApi::Subjects(Hub& hub, Time now) const {
   return JsonReply({{"subjects", std::move(list)}});
 }
 
-ApiReply StatusApi::ShowStatus(const Hub& hub, Time now) const {
+ApiReply StatusApi::ShowStatus(const ApiRequest& request, const Hub& hub, Time now) const {
+  const auto may = [&request](Role role) { return request.access.Has(role); };
   return JsonReply({{"version", FURROW_VERSION},
                     {"session", fmt::format("{:016x}", parts_.session)},
                     {"uptime_s", ToSeconds(now - parts_.started)},
@@ -77,7 +79,13 @@ ApiReply StatusApi::ShowStatus(const Hub& hub, Time now) const {
                     {"pictures_encoded", parts_.metrics->Get(Counter::kPicturesEncoded)},
                     {"pictures_dropped", parts_.metrics->Get(Counter::kPicturesDroppedSlow)},
                     {"playback", parts_.plays},
-                    {"draining", hub.draining()}});
+                    {"draining", hub.draining()},
+                    {"open", parts_.open_to_network},
+                    {"may",
+                     {{"publish", may(Role::kPublish)},
+                      {"watch", may(Role::kWatch)},
+                      {"direct", may(Role::kDirect)},
+                      {"operate", may(Role::kOperate)}}}});
 }
 
 ApiReply StatusApi::Health() const { return JsonReply({{"ok", true}}); }

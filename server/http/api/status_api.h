@@ -27,14 +27,15 @@ class StatusApi {
     std::function<int()> connections;           // HTTP connections
     std::function<int()> viewers;               // WebSockets and picture streams
     std::function<bool()> recording_is_paused;  // by a full disk; empty: nothing is recorded
+    bool open_to_network = false;               // other computers need no token
   };
   explicit StatusApi(Parts parts) : parts_(std::move(parts)) {}
 
   // All functions with a Hub require its exclusive lock.
-  // The connected subjects with the statistics of their streams.
-  [[nodiscard]] ApiReply Subjects(Hub& hub, Time now) const;
-  // The version, uptime, counts and renderer of the daemon.
-  [[nodiscard]] ApiReply ShowStatus(const Hub& hub, Time now) const;
+  // The connected subjects that the request may know of, with the statistics of their streams.
+  [[nodiscard]] ApiReply Subjects(const ApiRequest& request, Hub& hub, Time now) const;
+  // The version, uptime, counts and renderer of the daemon, and what the request may do.
+  [[nodiscard]] ApiReply ShowStatus(const ApiRequest& request, const Hub& hub, Time now) const;
   // Always 200: a reply shows that the hub's event loop runs.
   [[nodiscard]] ApiReply Health() const;
   // 200, or 503 while the daemon shuts down, lacks the renderer that its configuration asks for, or

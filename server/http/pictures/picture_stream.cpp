@@ -14,6 +14,7 @@
 #include "protocol/codec/codec.h"
 #include "server/http/pictures/picture_query.h"
 #include "server/http/request/reply_writer.h"
+#include "server/http/request/request_access.h"
 #include "server/http/socket/web_peer.h"
 
 namespace furrow::server {
@@ -36,14 +37,14 @@ class PictureStream : public std::enable_shared_from_this<PictureStream> {
   }
   ~PictureStream() { --context_->viewers; }
 
-  void Open(const protocol::SubscribePictures& pictures) {
+  void Open(const protocol::SubscribePictures& pictures, const Access& access) {
     waits_ = pictures.wait;
     // The peer calls this on the hub's thread, and the timer belongs to the web thread, so it is
     // posted. Weak, because the stream may have ended by then.
     auto wake = [weak = weak_from_this()] {
       if (const auto self = weak.lock()) self->wake_.cancel();
     };
-    peer_.emplace(context_->post_to_hub, "web pictures",
+    peer_.emplace(context_->post_to_hub, "web pictures", access,
                   [post_to_web = context_->post_to_web, wake] { post_to_web(wake); });
     Send(0, pictures);
   }
@@ -125,6 +126,8 @@ class PictureStream : public std::enable_shared_from_this<PictureStream> {
     switch (error.code) {
       case ErrorCode::kUnknownSubject:
         return ErrorReply(404, "not_found", "subject", error.message);
+      case ErrorCode::kNeedsToken: return NeedsToken(error.message);
+      case ErrorCode::kNotPermitted: return ErrorReply(403, "forbidden", "subject", error.message);
       case ErrorCode::kNotRendering:
       case ErrorCode::kDraining: return ErrorReply(503, "unavailable", "", error.message);
       default: return ErrorReply(400, "invalid_argument", "", error.message);
@@ -205,7 +208,8 @@ net::awaitable<bool> ServeSnapshot(beast::tcp_stream* stream, PictureStream* pic
 }  // namespace
 
 net::awaitable<bool> ServePictures(beast::tcp_stream* stream, WebContext* context,
-                                   const WebRequest& request, const Url& url) {
+                                   const WebRequest& request, const Url& url,
+                                   const Access& access) {
   Result<protocol::SubscribePictures> wanted = PicturesOf(url);
   if (!wanted.ok()) co_return co_await WriteReply(*stream, request, ErrorReply(wanted.status()));
   const bool once = url.path == "/snapshot.png";
@@ -220,7 +224,7 @@ net::awaitable<bool> ServePictures(beast::tcp_stream* stream, WebContext* contex
   stream->expires_never();
   // Shared only so that callbacks can hold it weakly. It ends with this coroutine.
   auto pictures = std::make_shared<PictureStream>(stream, context);
-  pictures->Open(*wanted);
+  pictures->Open(*wanted, access);
   if (once) co_return co_await ServeSnapshot(stream, pictures.get(), request);
   co_return co_await ServeMjpeg(stream, pictures.get(), request);
 }

@@ -9,8 +9,10 @@ namespace furrow::server {
 
 // Serves /mjpeg and /snapshot.png to clients that only speak HTTP: acts as a peer of the hub that
 // subscribes to pictures, and acknowledges each picture after its bytes were sent. Arguments must
-// outlive the coroutine, which runs on the web thread. False: the connection must close.
+// outlive the coroutine, which runs on the web thread. `access`: what the client may do. False: the
+// connection must close.
 [[nodiscard]] net::awaitable<bool> ServePictures(beast::tcp_stream* stream, WebContext* context,
-                                                 const WebRequest& request, const Url& url);
+                                                 const WebRequest& request, const Url& url,
+                                                 const Access& access);
 
 }  // namespace furrow::server

@@ -6,6 +6,7 @@
 
 #include "base/status.h"
 #include "server/http/request/url.h"
+#include "server/session/access/access.h"
 
 namespace furrow::server {
 
@@ -14,6 +15,7 @@ struct ApiRequest {
   std::string method;  // "GET", "PATCH"
   Url url;
   std::string body;
+  Access access = Access::Everything();
 };
 
 // The reply to a request.

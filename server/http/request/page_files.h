@@ -19,6 +19,9 @@ struct PageFile {
   bool immutable = false;  // the name contains a hash of the content
 };
 
+// The character for browsers that draw it themselves.
+inline constexpr char kCharacterPath[] = "/character.glb";
+
 // The files of the web page, read and compressed once. Requests never access the file system.
 class PageFiles {
  public:

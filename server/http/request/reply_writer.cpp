@@ -36,6 +36,7 @@ net::awaitable<bool> WriteReply(beast::tcp_stream& stream, const WebRequest& req
     response.set(http::field::content_disposition,
                  "attachment; filename=\"" + reply.file_name + "\"");
   }
+  if (reply.status == 401) response.set(http::field::www_authenticate, "Bearer");
   if (!reply.allow.empty()) response.set(http::field::allow, reply.allow);
   // A HEAD request for a picture renders none, so the length of the body is unknown.
   const bool has_no_length = request.method() == http::verb::head && reply.body.empty();

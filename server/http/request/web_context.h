@@ -11,6 +11,7 @@
 #include "server/http/request/page_files.h"
 #include "server/http/request/request_guard.h"
 #include "server/http/request/thread_handoff.h"
+#include "server/session/access/token_gate.h"
 
 namespace furrow::server {
 
@@ -27,9 +28,14 @@ struct WebContext {
   PostToWeb post_to_web;
   AnswerApi answer;
   Metrics* metrics = nullptr;
+  const TokenGate* gate = nullptr;  // null: everybody may do everything
   std::atomic<int> connections = 0;
   std::atomic<int> viewers = 0;  // WebSockets and picture streams
 };
+
+// The protocol of WebSockets. A browser closes a connection if the server does not confirm one of
+// the protocols that it offered; a token is offered beside this one and never confirmed.
+inline constexpr char kWebProtocol[] = "furrow.1";
 
 // Largest request body and largest WebSocket message from a client.
 inline constexpr std::size_t kMaxWebMessageBytes = 64 * 1024;

@@ -73,13 +73,14 @@ bool WebPeer::Connection::Pop(std::vector<std::uint8_t>* out) {
   return outbox_.Pop(out);
 }
 
-WebPeer::WebPeer(PostToHub post_to_hub, PeerLabel label, std::function<void()> wake)
+WebPeer::WebPeer(PostToHub post_to_hub, PeerLabel label, Access access, std::function<void()> wake)
     : post_to_hub_(std::move(post_to_hub)),
       connection_(std::make_shared<Connection>(std::move(wake))) {
-  post_to_hub_([connection = connection_, label = std::move(label)](Hub& hub, Time now) {
+  post_to_hub_([connection = connection_, label = std::move(label), access = std::move(access)](
+                   Hub& hub, Time now) {
     // The id is set before any message of the peer is handled, because tasks run in the order of
     // posting.
-    connection->id = hub.AddPeer(Transport::kWeb, label, connection.get(), now);
+    connection->id = hub.AddPeer(Transport::kWeb, label, connection.get(), now, 0, access);
   });
 }
 

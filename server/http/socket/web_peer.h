@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "server/http/request/thread_handoff.h"
+#include "server/session/peers/peer.h"
 
 namespace furrow::server {
 
@@ -22,7 +23,8 @@ class WebPeer {
 
   // Adds the peer to the hub. `wake` is called on the hub's thread when the outbox is no longer
   // empty or the peer is overrun; it must post to the web thread.
-  WebPeer(PostToHub post_to_hub, PeerLabel label, std::function<void()> wake);
+  // `access`: what the client may do.
+  WebPeer(PostToHub post_to_hub, PeerLabel label, Access access, std::function<void()> wake);
   ~WebPeer();  // removes the peer from the hub
   WebPeer(const WebPeer&) = delete;
   WebPeer& operator=(const WebPeer&) = delete;

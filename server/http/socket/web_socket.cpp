@@ -24,17 +24,16 @@ namespace {
 
 namespace websocket = beast::websocket;
 
-constexpr char kProtocol[] = "furrow.1";
-
 // One WebSocket: a reader and a writer coroutine on the web thread. Beast allows one read and one
 // write at a time, and each coroutine does only one of them.
 class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
  public:
-  WebSocketSession(beast::tcp_stream stream, WebContext* context)
+  WebSocketSession(beast::tcp_stream stream, WebContext* context, Access access)
       : socket_(std::move(stream)),
         wake_(socket_.get_executor()),
         write_watch_(socket_.get_executor()),
-        context_(context) {
+        context_(context),
+        access_(std::move(access)) {
     ++context_->viewers;
   }
   ~WebSocketSession() { --context_->viewers; }
@@ -48,7 +47,7 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
     // Made before the peer, so that the writer ends and the hub forgets the peer whatever happens
     // below.
     const AbortOnExit abort_on_exit{this};  // also after an exception
-    peer_.emplace(context_->post_to_hub, label_,
+    peer_.emplace(context_->post_to_hub, label_, access_,
                   [post_to_web = context_->post_to_web, wake] { post_to_web(wake); });
     // The writer holds the session, which therefore outlives this function until the writer has
     // seen closed_.
@@ -82,10 +81,8 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
     socket_.set_option(websocket::stream_base::decorator([&](websocket::response_type& response) {
       response.set(http::field::server, "furrowd");
       const beast::string_view offered = request[http::field::sec_websocket_protocol];
-      // A browser closes a connection if the server does not confirm one of the protocols that it
-      // offered.
-      if (offered.find(kProtocol) != beast::string_view::npos) {
-        response.set(http::field::sec_websocket_protocol, kProtocol);
+      if (offered.find(kWebProtocol) != beast::string_view::npos) {
+        response.set(http::field::sec_websocket_protocol, kWebProtocol);
       }
     }));
     // Beast fails the read of a longer message instead of buffering it.
@@ -203,6 +200,7 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
   net::steady_timer wake_;
   net::steady_timer write_watch_;
   WebContext* context_;
+  const Access access_;
   PeerLabel label_ = "web";
   std::optional<WebPeer> peer_;  // while the connection is open
   bool closed_ = false;
@@ -212,8 +210,8 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
 }  // namespace
 
 net::awaitable<void> ServeWebSocket(beast::tcp_stream stream, WebContext* context,
-                                    WebRequest request) {
-  auto session = std::make_shared<WebSocketSession>(std::move(stream), context);
+                                    WebRequest request, Access access) {
+  auto session = std::make_shared<WebSocketSession>(std::move(stream), context, std::move(access));
   co_await session->Run(std::move(request));
 }
 

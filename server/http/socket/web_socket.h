@@ -8,8 +8,8 @@ namespace furrow::server {
 
 // Accepts the WebSocket upgrade in `request` and carries messages between the client and the hub
 // until one of them closes, or the client violates the protocol. `context` must outlive the
-// coroutine, which runs on the web thread.
+// coroutine, which runs on the web thread. `access`: what the client may do.
 [[nodiscard]] net::awaitable<void> ServeWebSocket(beast::tcp_stream stream, WebContext* context,
-                                                  WebRequest request);
+                                                  WebRequest request, Access access);
 
 }  // namespace furrow::server

@@ -44,13 +44,13 @@ class LineSource : public std::enable_shared_from_this<LineSource> {
   LineSource(const LineSource&) = delete;
   LineSource& operator=(const LineSource&) = delete;
 
-  void Open(PeerLabel label) {
+  void Open(PeerLabel label, Access access) {
     // The hub's thread calls this, and the timer belongs to the web thread. Weak, because the
     // stream may have ended by then.
     auto wake = [weak = weak_from_this()] {
       if (const auto self = weak.lock()) self->wake_.cancel();
     };
-    peer_.emplace(context_->post_to_hub, std::move(label),
+    peer_.emplace(context_->post_to_hub, std::move(label), std::move(access),
                   [post_to_web = context_->post_to_web, wake] { post_to_web(wake); });
     protocol::Encoder encoder;
     std::uint32_t sequence = 0;
@@ -146,7 +146,7 @@ net::awaitable<void> ReadAndDrop(std::shared_ptr<Socket> socket,
 }  // namespace
 
 net::awaitable<void> ServeWeightSocket(beast::tcp_stream stream, WebContext* context,
-                                       WebRequest request, WeightQuery query) {
+                                       WebRequest request, WeightQuery query, Access access) {
   const PeerLabel label = LabelOfClient(stream);
   stream.expires_never();  // the WebSocket has its own timeouts
   beast::error_code error;
@@ -155,8 +155,13 @@ net::awaitable<void> ServeWeightSocket(beast::tcp_stream stream, WebContext* con
   const auto socket = std::make_shared<Socket>(std::move(stream));
   // The client need not send anything: the daemon pings it, and closes if no answer comes.
   socket->set_option(websocket::stream_base::timeout{kWebDeadline, kWebIdle, true});
-  socket->set_option(websocket::stream_base::decorator(
-      [](websocket::response_type& response) { response.set(http::field::server, "furrowd"); }));
+  const bool offers =
+      request[http::field::sec_websocket_protocol].find(kWebProtocol) != beast::string_view::npos;
+  socket->set_option(
+      websocket::stream_base::decorator([offers](websocket::response_type& response) {
+        response.set(http::field::server, "furrowd");
+        if (offers) response.set(http::field::sec_websocket_protocol, kWebProtocol);
+      }));
   socket->read_message_max(kMaxClientMessage);
   socket->auto_fragment(false);
   socket->text(true);
@@ -165,7 +170,7 @@ net::awaitable<void> ServeWeightSocket(beast::tcp_stream stream, WebContext* con
   context->metrics->Add(Counter::kWebSocketsAccepted);
   const auto lines =
       std::make_shared<LineSource>(socket->get_executor(), context, std::move(query));
-  lines->Open(label);
+  lines->Open(label, std::move(access));
   net::co_spawn(socket->get_executor(), ReadAndDrop(socket, lines), net::detached);
   const CloseOnExit close_on_exit{socket.get()};
   // The WebSocket's own timeout does not end a client that sends and never reads.
@@ -190,13 +195,13 @@ net::awaitable<void> ServeWeightSocket(beast::tcp_stream stream, WebContext* con
 }
 
 net::awaitable<void> ServeWeightLines(beast::tcp_stream* stream, WebContext* context,
-                                      WeightQuery query) {
+                                      WeightQuery query, Access access) {
   beast::error_code error;
   SetOptions(*stream);
   stream->expires_never();
   const auto lines =
       std::make_shared<LineSource>(stream->get_executor(), context, std::move(query));
-  lines->Open(LabelOfClient(*stream));
+  lines->Open(LabelOfClient(*stream), std::move(access));
   // The client sends nothing after its request, so readable data means that it has closed.
   stream->socket().async_wait(net::ip::tcp::socket::wait_read,
                               [weak = std::weak_ptr<LineSource>(lines)](beast::error_code) {

@@ -11,16 +11,17 @@ namespace furrow::server {
 // the hub that subscribe as `query` says. After `query.alive` without a line, the client receives
 // WeightLines::kAlive. A client that has vanished without closing, and so confirms nothing, is
 // disconnected after kWebDeadline. `context` must outlive the coroutines, which run on the web
-// thread.
+// thread. `access`: what the client may do.
 
 // Accepts the WebSocket upgrade in `request` and sends each object as a text message. Messages from
 // the client are ignored.
 [[nodiscard]] net::awaitable<void> ServeWeightSocket(beast::tcp_stream stream, WebContext* context,
-                                                     WebRequest request, WeightQuery query);
+                                                     WebRequest request, WeightQuery query,
+                                                     Access access);
 
 // Answers a plain GET with one object per line, for clients without WebSockets. The arguments must
 // outlive the coroutine.
 [[nodiscard]] net::awaitable<void> ServeWeightLines(beast::tcp_stream* stream, WebContext* context,
-                                                    WeightQuery query);
+                                                    WeightQuery query, Access access);
 
 }  // namespace furrow::server

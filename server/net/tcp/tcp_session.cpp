@@ -232,6 +232,12 @@ int TcpSession::SendFrame(std::uint64_t key, std::span<const std::uint8_t> messa
   return dropped;
 }
 
+// Later, because the hub is using this peer right now.
+void TcpSession::Finish() {
+  asio::post(socket_.get_executor(),
+             [self = shared_from_this()] { self->CloseAfterFlush(/*linger=*/true); });
+}
+
 void TcpSession::SetWriting(bool writing) {
   const std::lock_guard lock(mutex_);
   writing_ = writing;

@@ -53,8 +53,8 @@ void UdpBatch::ReadDropped(msghdr* header) {
   }
 }
 
-std::span<const std::uint8_t> UdpBatch::bytes(std::size_t i) const {
-  return {static_cast<const std::uint8_t*>(slices_[i].iov_base), headers_[i].msg_len};
+std::span<std::uint8_t> UdpBatch::bytes(std::size_t i) {
+  return {static_cast<std::uint8_t*>(slices_[i].iov_base), headers_[i].msg_len};
 }
 
 asio::ip::udp::endpoint UdpBatch::sender(std::size_t i) const {

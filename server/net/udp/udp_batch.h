@@ -11,7 +11,7 @@
 #include <asio/ip/udp.hpp>
 #include <sys/socket.h>
 
-#include "protocol/messages/limits.h"
+#include "protocol/secure/packet/packet.h"
 
 namespace furrow::server {
 
@@ -33,14 +33,14 @@ class UdpBatch {
   // The number of datagrams that the kernel lost since the last call, for lack of buffer space.
   std::uint64_t TakeDropped() { return std::exchange(dropped_, 0); }
 
-  // Datagram `i` of the last Receive(). A datagram above the limit of the wire is cut to
-  // kMaxDatagramBytes + 1 bytes.
-  [[nodiscard]] std::span<const std::uint8_t> bytes(std::size_t i) const;
+  // Datagram `i` of the last Receive(), which sealed ones are opened in. A datagram above the limit
+  // of sealed datagrams is cut to one byte more than that.
+  [[nodiscard]] std::span<std::uint8_t> bytes(std::size_t i);
   // The address that sent datagram `i`.
   [[nodiscard]] asio::ip::udp::endpoint sender(std::size_t i) const;
 
  private:
-  static constexpr std::size_t kBufferBytes = protocol::kMaxDatagramBytes + 1;
+  static constexpr std::size_t kBufferBytes = protocol::secure::kMaxPacketBytes + 1;
   struct alignas(cmsghdr) Control {
     std::array<std::uint8_t, CMSG_SPACE(sizeof(std::uint32_t))> bytes;
   };

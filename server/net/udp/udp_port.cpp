@@ -26,7 +26,7 @@ Limits LimitsOfShard(Limits limits, int shards) {
 }  // namespace
 
 UdpPort::UdpPort(asio::io_context& io, int shards, const Limits& limits, Hub* hub, Metrics* metrics,
-                 RecordingTap* recording)
+                 RecordingTap* recording, SecureSessions* secure, bool requires_token)
     : io_(io) {
   std::vector<UdpServer*> by_shard;
   for (int shard = 0; shard < shards; ++shard) {
@@ -34,7 +34,7 @@ UdpPort::UdpPort(asio::io_context& io, int shards, const Limits& limits, Hub* hu
     if (shard > 0) loops_.push_back(std::make_unique<asio::io_context>(1));
     servers_.push_back(std::make_unique<UdpServer>(LoopOf(static_cast<std::size_t>(shard)),
                                                    LimitsOfShard(limits, shards), hub, metrics,
-                                                   recording, shard));
+                                                   recording, shard, secure, requires_token));
     by_shard.push_back(servers_.back().get());
   }
   // After all servers exist: each may send through any other's buffer.

@@ -26,9 +26,10 @@ class UdpPort {
  public:
   // `shards`: the number of shards of the hub; each may have an equal part of
   // Limits::max_udp_peers. `recording`: optional; receives every datagram with a valid envelope.
-  // All pointers must outlive the port.
+  // `secure`: null, or sessions for the same number of shards. `requires_token`: plain datagrams
+  // are refused. All pointers must outlive the port.
   UdpPort(asio::io_context& io, int shards, const Limits& limits, Hub* hub, Metrics* metrics,
-          RecordingTap* recording);
+          RecordingTap* recording, SecureSessions* secure = nullptr, bool requires_token = false);
   ~UdpPort();
   UdpPort(const UdpPort&) = delete;
   UdpPort& operator=(const UdpPort&) = delete;

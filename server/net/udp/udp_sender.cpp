@@ -9,6 +9,7 @@
 #include <netinet/udp.h>
 
 #include "protocol/framing/bundle.h"
+#include "protocol/secure/packet/packet.h"
 
 namespace furrow::server {
 
@@ -37,34 +38,36 @@ std::span<std::uint8_t> UdpSender::Prepare() {
 }
 
 void UdpSender::Commit(std::uint64_t key, const asio::ip::udp::endpoint& to, std::size_t size,
-                       Packing packing) {
+                       Packing packing, std::uint32_t session) {
   // Items of one address form a linked list in order. Sorting by address happens in Flush() by
   // walking the lists, without moving a byte.
   const auto index = static_cast<std::uint16_t>(num_items_++);
   items_[index] = {static_cast<std::uint32_t>(used_), static_cast<std::uint16_t>(size), kNone,
                    packing};
   used_ += size;
-  Address& address = FindOrAdd(key, to);
+  Address& address = FindOrAdd(key, to, session);
   (address.last == kNone ? address.first : items_[address.last].next) = index;
   address.last = index;
 }
 
 // An open-addressed hash table. Keys are consecutive peer ids, so collisions are rare.
-UdpSender::Address& UdpSender::FindOrAdd(std::uint64_t key, const asio::ip::udp::endpoint& to) {
+UdpSender::Address& UdpSender::FindOrAdd(std::uint64_t key, const asio::ip::udp::endpoint& to,
+                                         std::uint32_t session) {
   std::size_t slot = key % kSlots;
   // Ends, because at most half of the slots are used.
   for (; slots_[slot] != 0; slot = (slot + 1) % kSlots) {
     Address& address = addresses_[slots_[slot] - 1u];
     if (address.key == key) return address;
   }
-  addresses_[num_addresses_] = {key, slot, kNone, kNone, to};
+  addresses_[num_addresses_] = {key, slot, kNone, kNone, session, to};
   slots_[slot] = static_cast<std::uint16_t>(num_addresses_ + 1);
   return addresses_[num_addresses_++];
 }
 
-// Packs the items for one address into datagrams.
+// Packs the items for one address into datagrams, and seals those of a secure session.
 void UdpSender::Pack(std::size_t address) {
   const Item* before = nullptr;
+  const bool is_secure = addresses_[address].session != 0;
   for (std::uint16_t i = addresses_[address].first; i != kNone; i = items_[i].next) {
     const Item& item = items_[i];
     const bool joins =
@@ -76,11 +79,39 @@ void UdpSender::Pack(std::size_t address) {
       // follows.
       protocol::MarkFollowed(std::span(buffer_).subspan(before->offset, before->size));
     } else {
+      if (is_secure && before != nullptr) SealLast(addresses_[address]);
       datagrams_[num_datagrams_++] = {address, num_slices_, num_slices_, 0, 0};
     }
     Append(datagrams_[num_datagrams_ - 1], item);
     before = &item;
   }
+  if (is_secure && before != nullptr) SealLast(addresses_[address]);
+}
+
+// Replaces the last datagram by its sealed form. Without a session it is lost.
+void UdpSender::SealLast(Address& address) {
+  Datagram& datagram = datagrams_[num_datagrams_ - 1];
+  // Each sealed datagram has at least one item, so this is the most that one flush needs.
+  if (sealed_.empty()) {
+    sealed_.resize(kBufferBytes + kMaxItems * protocol::secure::kPacketOverheadBytes);
+  }
+  const std::size_t size = datagram.size + protocol::secure::kPacketOverheadBytes;
+  const auto packet = std::span(sealed_).subspan(num_sealed_, size);
+  std::size_t at = protocol::secure::kPacketHeaderBytes;
+  for (std::size_t i = datagram.first; i < datagram.last; ++i) {
+    std::memcpy(packet.data() + at, slices_[i].iov_base, slices_[i].iov_len);
+    at += slices_[i].iov_len;
+  }
+  num_slices_ = datagram.first;
+  if (sealer_ == nullptr || !sealer_->Seal(address.session, packet, address.to)) {
+    --num_datagrams_;
+    ++counts_.lost;
+    return;
+  }
+  num_sealed_ += size;
+  slices_[num_slices_++] = {packet.data(), size};
+  datagram.last = num_slices_;
+  datagram.size = size;
 }
 
 // Adds an item to the last datagram. Items that lie side by side in the buffer share a slice.
@@ -157,7 +188,7 @@ void UdpSender::Flush() {
     }
     Send(count);
   }
-  num_items_ = num_addresses_ = num_slices_ = num_datagrams_ = used_ = 0;
+  num_items_ = num_addresses_ = num_slices_ = num_datagrams_ = used_ = num_sealed_ = 0;
 }
 
 void UdpSender::Send(std::size_t num_messages) {

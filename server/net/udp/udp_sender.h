@@ -11,6 +11,7 @@
 #include <sys/socket.h>
 
 #include "protocol/messages/limits.h"
+#include "server/net/udp/datagram_sealer.h"
 
 namespace furrow::server {
 
@@ -36,6 +37,9 @@ class UdpSender {
   // Sets the non-blocking socket to send from and checks whether it supports UDP_SEGMENT.
   void Open(int socket);
 
+  // Seals what goes to secure sessions; outlives this object. Without it they get nothing.
+  void SetSealer(DatagramSealer* sealer) { sealer_ = sealer; }
+
   // Messages committed from now on are lost.
   void Close() { socket_ = -1; }
 
@@ -43,8 +47,9 @@ class UdpSender {
   // buffer is full.
   [[nodiscard]] std::span<std::uint8_t> Prepare();
   // Adds the `size` bytes written to the space from Prepare(). Equal keys mean equal addresses.
+  // `session`: 0, or the secure session whose client gets the datagram, sealed, where it is then.
   void Commit(std::uint64_t key, const asio::ip::udp::endpoint& to, std::size_t size,
-              Packing packing = Packing::kSeparate);
+              Packing packing = Packing::kSeparate, std::uint32_t session = 0);
   // Sends everything that was committed.
   void Flush();
 
@@ -82,6 +87,7 @@ class UdpSender {
     std::size_t slot = 0;
     std::uint16_t first = kNone;  // first item
     std::uint16_t last = kNone;
+    std::uint32_t session = 0;
     asio::ip::udp::endpoint to;
   };
   // Slices [first, last), which hold `items` items.
@@ -101,8 +107,10 @@ class UdpSender {
     std::array<std::uint8_t, CMSG_SPACE(sizeof(std::uint16_t))> bytes;
   };
 
-  [[nodiscard]] Address& FindOrAdd(std::uint64_t key, const asio::ip::udp::endpoint& to);
+  [[nodiscard]] Address& FindOrAdd(std::uint64_t key, const asio::ip::udp::endpoint& to,
+                                   std::uint32_t session);
   void Pack(std::size_t address);
+  void SealLast(Address& address);
   void Append(Datagram& datagram, const Item& item);
   [[nodiscard]] std::size_t EndOfRun(std::size_t first) const;
   void Write(std::size_t message);
@@ -111,6 +119,7 @@ class UdpSender {
   void CountSent(const Datagram& datagram);
 
   int socket_ = -1;
+  DatagramSealer* sealer_ = nullptr;
   bool can_segment_ = false;
   std::vector<std::uint8_t> buffer_;
   std::size_t used_ = 0;
@@ -118,6 +127,8 @@ class UdpSender {
   std::size_t num_addresses_ = 0;
   std::size_t num_slices_ = 0;
   std::size_t num_datagrams_ = 0;
+  std::vector<std::uint8_t> sealed_;  // sealed datagrams; empty until the first
+  std::size_t num_sealed_ = 0;        // bytes
   std::vector<Item> items_;
   std::vector<Address> addresses_;
   std::vector<std::uint16_t> slots_;  // 1 + index in addresses_, hashed by key; 0: free

@@ -17,6 +17,7 @@
 #include "server/net/await_tuple.h"
 #include "server/net/clock.h"
 #include "server/net/critical_task.h"
+#include "server/net/udp/udp_address.h"
 #include "server/session/peers/peer_label.h"
 
 namespace furrow::server {
@@ -42,8 +43,13 @@ asio::error_code AllowSharing(int socket) {
 // them. Sending never blocks; if the socket buffer is full, datagrams are lost.
 class UdpServer::UdpPeer : public Link {
  public:
-  UdpPeer(UdpServer* server, udp::endpoint endpoint, std::uint64_t peer_session)
-      : session(peer_session), server_(server), endpoint_(endpoint) {}
+  UdpPeer(UdpServer* server, udp::endpoint endpoint, std::uint64_t peer_session,
+          std::uint32_t secure_session = 0)
+      : session(peer_session),
+        address(AddressOf(endpoint)),
+        server_(server),
+        endpoint_(endpoint),
+        secure_session_(secure_session) {}
 
   void SendReply(std::span<const std::uint8_t> message) override {
     Send(message, server_->sender_);
@@ -65,7 +71,9 @@ class UdpServer::UdpPeer : public Link {
   [[nodiscard]] std::string host() const { return HostOf(endpoint_.address().to_string()); }
 
   PeerId id = 0;
-  const std::uint64_t session;  // in all messages of the peer
+  const std::uint64_t
+      session;            // in all messages of the peer; 0 for secure ones, which may have any
+  const Address address;  // of a secure peer: the first one
 
  private:
   void Send(std::span<const std::uint8_t> message, UdpSender& sender) {
@@ -75,18 +83,20 @@ class UdpServer::UdpPeer : public Link {
     for (std::size_t index = 0; index < count; ++index) {
       const auto datagram = sender.Prepare();
       sender.Commit(id, endpoint_, protocol::WriteDatagram(message, message_id, index, datagram),
-                    packing);
+                    packing, secure_session_);
     }
   }
 
   UdpServer* server_;
   udp::endpoint endpoint_;
+  const std::uint32_t secure_session_;              // 0: plain
   std::atomic<std::uint32_t> next_message_id_ = 0;  // several shards may send
   bool takes_bundles_ = false;
 };
 
 UdpServer::UdpServer(asio::io_context& io, const Limits& limits, Hub* hub, Metrics* metrics,
-                     RecordingTap* recording, int shard)
+                     RecordingTap* recording, int shard, SecureSessions* secure,
+                     bool requires_token)
     : io_(io),
       socket_(io),
       hub_(hub),
@@ -95,9 +105,11 @@ UdpServer::UdpServer(asio::io_context& io, const Limits& limits, Hub* hub, Metri
       shard_(shard),
       // Enough for a server without Join(), as in tests.
       by_shard_(static_cast<std::size_t>(shard) + 1, this),
-      reception_(hub->session(), &hub->address_proof(), metrics),
+      secure_(secure),
+      reception_(hub->session(), &hub->address_proof(), metrics, requires_token),
       shares_(static_cast<std::size_t>(limits.max_udp_peers)) {
   hub_->SetBufferedSender(shard_, this);
+  sender_.SetSealer(secure);
 }
 
 UdpServer::~UdpServer() { hub_->SetBufferedSender(shard_, nullptr); }
@@ -168,6 +180,7 @@ asio::awaitable<void> UdpServer::Read() {
           metrics_->Add(Counter::kAllocationsFailed);  // it costs one datagram, not the daemon
         }
       }
+      ForgetClosed();
       is_drained = count < UdpBatch::kSize;
     }
     // Lets timers and TCP run while datagrams keep arriving.
@@ -183,8 +196,16 @@ void UdpServer::Flush() {
   metrics_->Add(Counter::kMessagesBundled, counts.bundled);
 }
 
-void UdpServer::OnDatagram(std::span<const std::uint8_t> bytes, const udp::endpoint& sender,
-                           Time now) {
+void UdpServer::OnDatagram(std::span<std::uint8_t> bytes, const udp::endpoint& sender, Time now) {
+  if (secure_ != nullptr && protocol::secure::IsSecure(bytes)) {
+    OnSealed(bytes, sender, now);
+  } else {
+    OnPlain(bytes, sender, now);
+  }
+}
+
+void UdpServer::OnPlain(std::span<const std::uint8_t> bytes, const udp::endpoint& sender,
+                        Time now) {
   protocol::Envelope envelope;
   // Receive() cuts larger datagrams to one byte more than the limit, so they show here.
   if (bytes.size() > protocol::kMaxDatagramBytes ||
@@ -197,28 +218,124 @@ void UdpServer::OnDatagram(std::span<const std::uint8_t> bytes, const udp::endpo
   UdpPeer* peer = Find(address, session);
   if (peer == nullptr) peer = Receive(address, sender, session, bytes, now);
   if (peer == nullptr) return;
-  if (recording_ != nullptr) recording_->OnDatagram(address, bytes, now);
+  Deliver(*peer, bytes, Lifetime::kBatch, now);
+}
+
+void UdpServer::Deliver(const UdpPeer& peer, std::span<const std::uint8_t> bytes, Lifetime lifetime,
+                        Time now) {
+  if (recording_ != nullptr) recording_->OnDatagram(peer.address, bytes, now);
   std::span<const std::uint8_t> message;
-  switch (reassembler_.Push(peer->id, bytes, ToMicroseconds(now), message)) {
+  switch (reassembler_.Push(peer.id, bytes, ToMicroseconds(now), message)) {
     // The batch keeps whole datagrams until the lock ends, so poses may wait. The reassembler
     // reuses its buffer, so a reassembled message is handled at once.
-    case protocol::FragmentStatus::kWhole: hub_->GatherMessage(peer->id, message, now); break;
-    case protocol::FragmentStatus::kComplete: hub_->OnMessage(peer->id, message, now); break;
+    case protocol::FragmentStatus::kWhole:
+      if (lifetime == Lifetime::kBatch) return hub_->GatherMessage(peer.id, message, now);
+      return hub_->OnMessage(peer.id, message, now);
+    case protocol::FragmentStatus::kComplete: return hub_->OnMessage(peer.id, message, now);
     case protocol::FragmentStatus::kPending:
-    case protocol::FragmentStatus::kDuplicate: hub_->OnFragment(peer->id, now); break;
-    case protocol::FragmentStatus::kMalformed: metrics_->Add(Counter::kFragmentsMalformed); break;
-    case protocol::FragmentStatus::kOverLimit: metrics_->Add(Counter::kFragmentsRefused); break;
+    case protocol::FragmentStatus::kDuplicate: return hub_->OnFragment(peer.id, now);
+    case protocol::FragmentStatus::kMalformed: return metrics_->Add(Counter::kFragmentsMalformed);
+    case protocol::FragmentStatus::kOverLimit: return metrics_->Add(Counter::kFragmentsRefused);
   }
 }
 
+// The shard of a session reads all its packets, so that its peer stays on one thread. A client that
+// has changed its address may reach the socket of another shard.
+void UdpServer::OnSealed(std::span<std::uint8_t> bytes, const udp::endpoint& sender, Time now) {
+  const SecureSessions::Outcome outcome = secure_->OnDatagram(bytes, sender, shard_, now);
+  const protocol::secure::ServerEvent& event = outcome.event;
+  if (event.reply_size > 0) SendToStranger(event.reply(), sender);
+  if (event.session == 0) return;
+  if (outcome.shard != shard_) {
+    return PassOn(
+        outcome.shard,
+        {event.session, event.closed, outcome.access, {event.inner.begin(), event.inner.end()}});
+  }
+  // A client may also close with its first packet.
+  if (event.opened && !event.closed) {
+    AddSealed(event.session, *outcome.access, sender, now);
+    OnSessionPacket({event.session, false, {}, event.hello}, now);
+  }
+  const auto found = sealed_.find(event.session);
+  if (event.closed || (outcome.access && !event.opened)) {
+    OnSessionPacket({event.session, event.closed, outcome.access, {}}, now);
+  } else if (found != sealed_.end() && !event.inner.empty()) {
+    DeliverOpened(*found->second, event.inner, Lifetime::kBatch, now);
+  }
+}
+
+void UdpServer::OnSessionPacket(const SessionPacket& packet, Time now) {
+  const auto found = sealed_.find(packet.session);
+  if (found == sealed_.end()) return;
+  if (packet.closed) return ForgetSealed(packet.session);
+  if (packet.access) hub_->SetAccess(found->second->id, *packet.access);
+  if (!packet.datagram.empty()) {
+    DeliverOpened(*found->second, packet.datagram, Lifetime::kCall, now);
+  }
+}
+
+void UdpServer::DeliverOpened(const UdpPeer& peer, std::span<const std::uint8_t> bytes,
+                              Lifetime lifetime, Time now) {
+  protocol::Envelope envelope;
+  if (protocol::ReadEnvelope(bytes, envelope) != protocol::EnvelopeStatus::kOk) {
+    return metrics_->Add(Counter::kDatagramsMalformed);
+  }
+  Deliver(peer, bytes, lifetime, now);
+}
+
+void UdpServer::PassOn(int shard, SessionPacket packet) {
+  constexpr int kMaxPassed = 1024;  // a thread that is behind loses datagrams, as a socket does
+  UdpServer* const owner = by_shard_[static_cast<std::size_t>(shard)];
+  const bool may_wait = owner->num_passed_.fetch_add(1, std::memory_order_relaxed) < kMaxPassed;
+  // The end is reported once, and rights must not outlive their token, so neither may be lost.
+  if (!may_wait && packet.access) {
+    secure_->Close(packet.session);
+    packet.closed = true;
+  }
+  if (!may_wait && !packet.closed) {
+    owner->num_passed_.fetch_sub(1, std::memory_order_relaxed);
+    return metrics_->Add(Counter::kDatagramsOverrun);
+  }
+  asio::post(owner->io_, [owner, packet = std::move(packet)] {
+    owner->num_passed_.fetch_sub(1, std::memory_order_relaxed);
+    const Hub::ShardLock lock(*owner->hub_, owner->shard_);
+    owner->OnSessionPacket(packet, ReadClock());
+  });
+}
+
+void UdpServer::AddSealed(std::uint32_t session, const Access& access, const udp::endpoint& sender,
+                          Time now) {
+  try {
+    UdpPeer& peer = *sealed_.emplace(session, std::make_unique<UdpPeer>(this, sender, 0, session))
+                         .first->second;
+    peer.id = hub_->AddPeer(Transport::kUdp,
+                            LabelOf("secure udp", sender.address().to_string(), sender.port()),
+                            &peer, now, shard_, access);
+  } catch (...) {
+    sealed_.erase(session);
+    secure_->Close(session);
+    throw;
+  }
+}
+
+void UdpServer::ForgetSealed(std::uint32_t session) {
+  const auto found = sealed_.find(session);
+  if (found == sealed_.end()) return;
+  Forget(*found->second);
+  sealed_.erase(found);
+}
+
+void UdpServer::ForgetClosed() {
+  if (secure_ == nullptr || !secure_->HasClosed(shard_)) return;
+  for (const std::uint32_t session : secure_->TakeClosed(shard_)) ForgetSealed(session);
+}
+
 UdpServer::Address UdpServer::AddressOf(const udp::endpoint& sender) {
+  const protocol::secure::PeerAddress peer = ToPeerAddress(sender);
   Address address{};
-  const auto ip = sender.address().is_v4()
-                      ? asio::ip::make_address_v6(asio::ip::v4_mapped, sender.address().to_v4())
-                      : sender.address().to_v6();
-  std::ranges::copy(ip.to_bytes(), address.begin());
-  address[16] = static_cast<std::uint8_t>(sender.port() >> 8);
-  address[17] = static_cast<std::uint8_t>(sender.port() & 0xFF);
+  std::ranges::copy(peer.host, address.begin());
+  address[16] = static_cast<std::uint8_t>(peer.port >> 8);
+  address[17] = static_cast<std::uint8_t>(peer.port & 0xFF);
   return address;
 }
 
@@ -235,14 +352,16 @@ UdpServer::UdpPeer* UdpServer::Receive(const Address& address, const udp::endpoi
     if (UdpPeer* peer = Add(address, sender, session, now); peer != nullptr) return peer;
     reception_.RefuseForLimit(bytes);
   }
-  if (const auto reply = reception_.reply(); !reply.empty()) {
-    // Each stranger has a key of its own, which no peer has.
-    constexpr std::uint64_t kStranger = std::uint64_t{1} << 63;
-    const auto datagram = sender_.Prepare();
-    sender_.Commit(kStranger | num_strangers_++, sender,
-                   protocol::WriteDatagram(reply, 0, 0, datagram));
-  }
+  if (const auto reply = reception_.reply(); !reply.empty()) SendToStranger(reply, sender);
   return nullptr;
+}
+
+void UdpServer::SendToStranger(std::span<const std::uint8_t> bytes, const udp::endpoint& to) {
+  // Each stranger has a key of its own, which no peer has.
+  constexpr std::uint64_t kStranger = std::uint64_t{1} << 63;
+  const auto datagram = sender_.Prepare();
+  std::ranges::copy(bytes, datagram.begin());
+  sender_.Commit(kStranger | num_strangers_++, to, bytes.size());
 }
 
 // Null: the host has its share of the peers.
@@ -287,6 +406,8 @@ void UdpServer::Expire(Time now) {
   // Shard locks nest, so the mutex is taken once and not once per peer.
   const Hub::ShardLock lock(*hub_, shard_);
   metrics_->Add(Counter::kFragmentsExpired, reassembler_.Expire(ToMicroseconds(now)));
+  if (secure_ != nullptr && shard_ == 0) secure_->Expire(now);
+  ForgetClosed();
   std::erase_if(peers_, [&](const auto& entry) {
     if (!hub_->IsIdle(entry.second->id, now)) return false;
     Forget(*entry.second);

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <unordered_map>
@@ -19,6 +21,7 @@
 #include "server/core/fair_share.h"
 #include "server/core/limits.h"
 #include "server/core/metrics.h"
+#include "server/net/udp/secure_sessions.h"
 #include "server/net/udp/udp_batch.h"
 #include "server/net/udp/udp_sender.h"
 #include "server/session/hub.h"
@@ -32,11 +35,15 @@ namespace furrow::server {
 // An address becomes a peer when it has proved that it receives what is sent to it (Reception). A
 // peer has one session number, which it alone knows: datagrams with another one are a stranger's.
 // At most Limits::max_udp_peers peers are remembered, shared fairly between hosts.
+//
+// Sealed datagrams belong to secure sessions, each of which is a peer, wherever its client is.
 class UdpServer : public BufferedSender {
  public:
-  // `recording`: optional; receives every datagram of a peer.
+  // `recording`: optional; receives every datagram of a peer, opened. `secure`: the sessions of all
+  // shards; null: sealed datagrams are malformed. `requires_token`: plain datagrams are refused.
   UdpServer(asio::io_context& io, const Limits& limits, Hub* hub, Metrics* metrics,
-            RecordingTap* recording = nullptr, int shard = 0);
+            RecordingTap* recording = nullptr, int shard = 0, SecureSessions* secure = nullptr,
+            bool requires_token = false);
   ~UdpServer() override;
   UdpServer(const UdpServer&) = delete;
   UdpServer& operator=(const UdpServer&) = delete;
@@ -76,9 +83,32 @@ class UdpServer : public BufferedSender {
     }
   };
 
+  // A packet of a secure session that proved to be its client's.
+  struct SessionPacket {
+    std::uint32_t session = 0;
+    bool closed = false;
+    std::optional<Access> access;        // the token was renewed
+    std::vector<std::uint8_t> datagram;  // opened; may be empty
+  };
+  // What a datagram's bytes may be used for: a batch keeps them until the shard's lock ends.
+  enum class Lifetime : std::uint8_t { kBatch, kCall };
+
   asio::awaitable<void> Read();
-  void OnDatagram(std::span<const std::uint8_t> bytes, const asio::ip::udp::endpoint& sender,
-                  Time now);
+  void OnDatagram(std::span<std::uint8_t> bytes, const asio::ip::udp::endpoint& sender, Time now);
+  void OnPlain(std::span<const std::uint8_t> bytes, const asio::ip::udp::endpoint& sender,
+               Time now);
+  void OnSealed(std::span<std::uint8_t> bytes, const asio::ip::udp::endpoint& sender, Time now);
+  void OnSessionPacket(const SessionPacket& packet, Time now);
+  void PassOn(int shard, SessionPacket packet);
+  void Deliver(const UdpPeer& peer, std::span<const std::uint8_t> bytes, Lifetime lifetime,
+               Time now);
+  void DeliverOpened(const UdpPeer& peer, std::span<const std::uint8_t> bytes, Lifetime lifetime,
+                     Time now);
+  void AddSealed(std::uint32_t session, const Access& access, const asio::ip::udp::endpoint& sender,
+                 Time now);
+  void ForgetSealed(std::uint32_t session);
+  void ForgetClosed();
+  void SendToStranger(std::span<const std::uint8_t> datagram, const asio::ip::udp::endpoint& to);
   static Address AddressOf(const asio::ip::udp::endpoint& sender);
   UdpPeer* Find(const Address& address, std::uint64_t session);
   UdpPeer* Receive(const Address& address, const asio::ip::udp::endpoint& sender,
@@ -96,11 +126,15 @@ class UdpServer : public BufferedSender {
   std::vector<UdpServer*> by_shard_;
   UdpBatch batch_;
   UdpSender sender_;
+  SecureSessions* const secure_;
   Reception reception_;
   FairShare shares_;                 // of the peers
   std::uint64_t num_strangers_ = 0;  // that were answered
   protocol::Reassembler reassembler_;
   std::unordered_map<Address, std::unique_ptr<UdpPeer>, AddressHash> peers_;
+  std::unordered_map<std::uint32_t, std::unique_ptr<UdpPeer>> sealed_;  // by secure session
+  // Packets that other shards have passed on and that wait for this shard's thread.
+  std::atomic<int> num_passed_ = 0;
 };
 
 }  // namespace furrow::server

@@ -12,6 +12,7 @@
 #include "protocol/messages/messages.h"
 #include "server/core/time.h"
 #include "server/core/token_bucket.h"
+#include "server/session/access/access.h"
 #include "server/session/peers/consent.h"
 #include "server/session/peers/skeleton_request_limiter.h"
 
@@ -47,6 +48,9 @@ class Link {
   virtual void SetTakesBundles(bool /*takes_bundles*/) {}
   // Drops the queued frames of a key.
   virtual void DropFrames(std::uint64_t key) = 0;
+  // Ends the connection after the replies that are queued. Only TCP has one: WebSockets end with a
+  // goodbye to stream 0, and UDP peers are forgotten.
+  virtual void Finish() {}
   // True if the peer has stopped reading, so that new frames would only replace queued ones.
   [[nodiscard]] virtual bool IsStuck(Time /*now*/) const { return false; }
 };
@@ -54,11 +58,12 @@ class Link {
 // The name of a peer in the log, and the host that it counts to in fair shares.
 struct PeerLabel {
   PeerLabel(const char* name) : text(name) {}  // NOLINT: implicit, for peers without a host
-  PeerLabel(std::string name, std::string address = {})  // NOLINT: implicit
-      : text(std::move(name)), host(std::move(address)) {}
+  PeerLabel(std::string name, std::string address = {}, bool is_local = true)  // NOLINT: implicit
+      : text(std::move(name)), host(std::move(address)), local(is_local) {}
 
-  std::string text;  // for the log: "udp 127.0.0.1 port 50112"
-  std::string host;  // the address without the port; empty: this program itself
+  std::string text;   // for the log: "udp 127.0.0.1 port 50112"
+  std::string host;   // the address without the port; empty: this program itself
+  bool local = true;  // the peer is on this computer
 };
 
 // The other end of a connection, or a proven UDP address.
@@ -69,12 +74,16 @@ struct Peer {
   Link* link = nullptr;          // not null; outlives the peer
   TokenBucket bucket{1.0, 1.0};  // limits incoming messages
   std::string host;              // PeerLabel::host
+  bool local = true;             // PeerLabel::local
+  Access access;                 // what it may do; change it by Permit()
+  double rate_share = 1.0;       // part of Limits::packets_per_second that its token leaves
   Consent consent;               // UDP: whether the address still wants what it is sent
   Time last_heard{0};
   SkeletonRequestLimiter skeleton_requests;
   int num_subscriptions = 0;
   // At the last tick: the peer has stopped reading (Link::IsStuck()), or its consent has expired.
   bool stuck = false;
+  bool token_ended = false;                      // nothing is accepted from it any more
   bool publishes = false;                        // the hub has accepted an offer of this peer
   std::uint16_t last_subscription = 0;           // the newest subscription id
   std::optional<protocol::Header> list_request;  // set while the peer follows the subject list

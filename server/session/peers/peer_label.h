@@ -13,7 +13,8 @@ namespace furrow::server {
 // address counts to. `address`: numeric.
 inline PeerLabel LabelOf(const std::string& transport, const std::string& address,
                          std::uint16_t port) {
-  return {transport + " " + address + " port " + std::to_string(port), HostOf(address)};
+  return {transport + " " + address + " port " + std::to_string(port), HostOf(address),
+          IsLoopback(address)};
 }
 
 }  // namespace furrow::server

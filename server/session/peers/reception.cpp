@@ -2,6 +2,7 @@
 #include "server/session/peers/reception.h"
 
 #include "protocol/framing/envelope.h"
+#include "server/session/access/token_gate.h"
 #include "server/session/peers/server_name.h"
 
 namespace furrow::server {
@@ -34,7 +35,16 @@ bool Reception::Admits(const UdpAddress& address, bool has_peer,
   reply_.clear();
   protocol::MessageView view;
   const bool is_message = protocol::OpenMessage(datagram, view) == DecodeStatus::kOk;
-  if (!is_message || view.kind != protocol::MessageKind::kHello) {
+  const bool is_hello = is_message && view.kind == protocol::MessageKind::kHello;
+  if (requires_token_) {
+    metrics_->Add(Counter::kRefusedNoToken);
+    const bool is_request = !is_message || is_hello || IsRequest(view.kind);
+    if (is_request && refusals_.Take(now)) {
+      Refuse(datagram, protocol::ErrorCode::kNeedsToken, kNeedsTokenText);
+    }
+    return false;
+  }
+  if (!is_hello) {
     metrics_->Add(Counter::kDatagramsUnproven);
     // An answer to an answer could be answered again, for ever.
     const bool is_request = !is_message || IsRequest(view.kind);

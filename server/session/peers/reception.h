@@ -19,9 +19,11 @@ namespace furrow::server {
 // received.
 class Reception {
  public:
-  // `proof`, `metrics`: not null; outlive this object. `session`: of the daemon.
-  Reception(std::uint64_t session, const AddressProof* proof, Metrics* metrics)
-      : session_(session), proof_(proof), metrics_(metrics) {}
+  // `proof`, `metrics`: not null; outlive this object. `session`: of the daemon. `requires_token`:
+  // nobody is admitted, because clients with a token seal their datagrams.
+  Reception(std::uint64_t session, const AddressProof* proof, Metrics* metrics,
+            bool requires_token = false)
+      : session_(session), proof_(proof), metrics_(metrics), requires_token_(requires_token) {}
 
   // Handles one datagram with a valid envelope. True: it proves the address, so the caller adds a
   // peer and gives it the datagram. False: the sender stays a stranger, and reply() holds the
@@ -40,6 +42,7 @@ class Reception {
   const std::uint64_t session_;
   const AddressProof* const proof_;
   Metrics* const metrics_;
+  const bool requires_token_;
   TokenBucket refusals_{2000.0, 2000.0};  // of all strangers
   protocol::Encoder encoder_;
   protocol::Hello hello_;

@@ -42,6 +42,12 @@ Publishers::Publishers(const Limits& limits, StreamDefinitions* definitions,
 Subject* Publishers::OnOffer(Peer& peer, const protocol::Header& header,
                              const protocol::SkeletonOffer& offer, Time now) {
   metrics_->Add(Counter::kSkeletonsOffered);
+  if (!peer.access.MayPublish(offer.subject)) {
+    metrics_->Add(Counter::kRefusedPublish);
+    Reject(peer, header, offer.skeleton_hash,
+           "not permitted to publish '" + offer.subject + "'; " + peer.access.Text(), now);
+    return nullptr;
+  }
   const StreamKey key{peer.id, header.session, header.stream};
   Subject* subject = subjects_->Find(offer.subject);
   const bool is_owner = subject != nullptr && subject->owner == key;
@@ -247,6 +253,17 @@ void Publishers::OnGoodbye(const Peer& peer, const protocol::Header& header, Tim
   subject->ended = true;
   // Decay() gets the time since the last update, which counts from the goodbye.
   subject->last_update = now;
+}
+
+void Publishers::EndForbidden(const Peer& peer, Time now) {
+  for (const auto& subject : subjects_->all()) {
+    if (subject->owner.peer != peer.id || peer.access.MayPublish(subject->name)) continue;
+    metrics_->Add(Counter::kRefusedPublish);
+    spdlog::info("subject '{}' ends: {}", subject->name, peer.access.Text());
+    subject->ended = true;
+    subject->last_update = now;
+    subjects_->Release(*subject);
+  }
 }
 
 Publishers::Change Publishers::AgeSubject(Subject& subject, Time now) {

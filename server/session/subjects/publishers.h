@@ -60,6 +60,9 @@ class Publishers {
   // Lets the stream's subject, if it has one, decay and leave.
   void OnGoodbye(const Peer& peer, const protocol::Header& header, Time now);
 
+  // Ends the peer's subjects that its access does not allow (any more).
+  void EndForbidden(const Peer& peer, Time now);
+
   enum class Change { kNone, kDecayed, kGone };
   // Decays a subject without poses. kDecayed: its weights have changed. kGone: its publisher
   // has left and it is neutral, or it has been idle for Limits::idle_seconds; the caller notifies

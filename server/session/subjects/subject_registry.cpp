@@ -27,7 +27,11 @@ Subject* SubjectRegistry::Find(SubjectId id) {
   return found == subjects_.end() ? nullptr : found->get();
 }
 
-Subject* SubjectRegistry::First() { return subjects_.empty() ? nullptr : subjects_.front().get(); }
+Subject* SubjectRegistry::First(const Access& access) const {
+  const auto found = std::ranges::find_if(
+      subjects_, [&](const auto& subject) { return access.Concerns(subject->name); });
+  return found == subjects_.end() ? nullptr : found->get();
+}
 
 Subject& SubjectRegistry::Add(std::string name, std::string host, Time now) {
   // Before anything changes: what allocates may fail. A subject has an entry in all three or none.
@@ -74,12 +78,15 @@ void SubjectRegistry::ForgetPeer(PeerId peer) {
   }
 }
 
-std::string SubjectRegistry::Names() const {
+std::string SubjectRegistry::Names(const Access& access) const {
   std::string names;
-  for (std::size_t i = 0; i < subjects_.size() && i < kMaxNamesShown; ++i) {
-    names += (i == 0 ? "" : ", ") + subjects_[i]->name;
+  std::size_t shown = 0;
+  for (const auto& subject : subjects_) {
+    if (!access.Concerns(subject->name)) continue;
+    if (shown++ == kMaxNamesShown) return names + ", ...";
+    names += (names.empty() ? "" : ", ") + subject->name;
   }
-  return names + (subjects_.size() > kMaxNamesShown ? ", ..." : "");
+  return names;
 }
 
 }  // namespace furrow::server

@@ -77,8 +77,8 @@ class SubjectRegistry {
   [[nodiscard]] Subject* Find(std::string_view name);
   [[nodiscard]] Subject* Find(SubjectId id);
   [[nodiscard]] Subject* Find(const StreamKey& key);
-  // The oldest subject; null if there is none.
-  [[nodiscard]] Subject* First();
+  // The oldest subject that `access` is for; null if there is none.
+  [[nodiscard]] Subject* First(const Access& access) const;
 
   // True if Add() may be called for the host (FairShare).
   [[nodiscard]] bool HasRoomFor(const std::string& host) const { return shares_.HasRoomFor(host); }
@@ -97,7 +97,8 @@ class SubjectRegistry {
   // Changes whenever a subject is added or removed; never 0.
   [[nodiscard]] std::uint64_t version() const { return version_; }
   [[nodiscard]] const std::vector<std::unique_ptr<Subject>>& all() const { return subjects_; }
-  [[nodiscard]] std::string Names() const;  // the first few, for messages: "ann, bob"
+  // The first few that `access` is for, for messages: "ann, bob".
+  [[nodiscard]] std::string Names(const Access& access) const;
 
  private:
   FairShare shares_;

@@ -33,6 +33,19 @@ std::string WhyTooLarge(const std::vector<std::string>& names, Transport transpo
          " bytes of names, more than a UDP message holds; use several subscriptions or TCP";
 }
 
+// Whether a subscription is allowed: by the name that it is bound to, that it asks for, or any.
+bool MayWatch(const Subscription& subscription, const Access& access) {
+  if (subscription.subject != nullptr) return access.MayWatch(subscription.subject->name);
+  if (!subscription.subject_name.empty()) return access.MayWatch(subscription.subject_name);
+  return access.Has(Role::kWatch);
+}
+
+std::string WhyForbidden(const Subscription& subscription, const Access& access) {
+  const std::string& name = subscription.subject_name;
+  return (name.empty() ? "not permitted to watch" : "not permitted to watch '" + name + "'") +
+         ("; " + access.Text());
+}
+
 }  // namespace
 
 Subscribers::Subscribers(const Limits& limits, SubjectRegistry* subjects, PictureSource* pictures,
@@ -138,9 +151,14 @@ void Subscribers::ReplyAgain(Subscription& subscription) {
 void Subscribers::Add(Peer& peer, const protocol::Header& header,
                       std::unique_ptr<Subscription> subscription) {
   const std::string& name = subscription->subject_name;
-  Subject* subject = name.empty() ? subjects_->First() : subjects_->Find(name);
+  if (!MayWatch(*subscription, peer.access)) {
+    metrics_->Add(Counter::kRefusedWatch);
+    return RefuseRequest(peer, header, ErrorCode::kNotPermitted,
+                         WhyForbidden(*subscription, peer.access));
+  }
+  Subject* subject = name.empty() ? subjects_->First(peer.access) : subjects_->Find(name);
   if (subject == nullptr && !subscription->wait) {
-    const std::string known = subjects_->Names();
+    const std::string known = subjects_->Names(peer.access);
     return RefuseRequest(
         peer, header, ErrorCode::kUnknownSubject,
         (name.empty() ? "there is no subject" : "no subject '" + name + "'") +
@@ -306,6 +324,18 @@ bool Subscribers::Unsubscribe(Peer& peer, std::uint16_t id) {
   return true;
 }
 
+void Subscribers::EndForbidden(Peer& peer) {
+  const auto is_forbidden = [&peer](const Subscription& each) {
+    return each.peer == &peer && !MayWatch(each, peer.access);
+  };
+  for (Subscription* subscription : table_.Select(is_forbidden)) {
+    metrics_->Add(Counter::kRefusedWatch);
+    RefuseAndErase(*subscription, ErrorCode::kNotPermitted,
+                   WhyForbidden(*subscription, peer.access));
+  }
+  peer.listed_version = 0;  // a peer that follows the list gets the one that it may see now
+}
+
 void Subscribers::RemovePeer(Peer& peer) {
   // Peers without subscriptions are the usual case: a flood of forged addresses must stay cheap.
   if (peer.num_subscriptions == 0) return;
@@ -328,7 +358,8 @@ void Subscribers::OnSubjectReady(Subject& subject) {
   const auto needs_reply = [&subject](Subscription& subscription) {
     // A waiting subscription: it accepts this subject by name, or any.
     if (subscription.subject == nullptr) {
-      return subscription.subject_name.empty() || subscription.subject_name == subject.name;
+      return (subscription.subject_name.empty() || subscription.subject_name == subject.name) &&
+             subscription.peer->access.MayWatch(subject.name);
     }
     if (subscription.subject != &subject) return false;
     if (const auto* poses = std::get_if<PoseRequest>(&subscription.request)) {
@@ -360,12 +391,13 @@ void Subscribers::OnSubjectGone(Subject& subject) {
 }
 
 void Subscribers::BindWaiting() {
-  Subject* oldest = subjects_->First();
-  if (oldest == nullptr) return;
   const auto waits_for_any = [](const Subscription& each) {
     return each.subject == nullptr && each.subject_name.empty();
   };
-  for (Subscription* subscription : table_.Select(waits_for_any)) Bind(*subscription, *oldest);
+  for (Subscription* subscription : table_.Select(waits_for_any)) {
+    Subject* const oldest = subjects_->First(subscription->peer->access);
+    if (oldest != nullptr) Bind(*subscription, *oldest);
+  }
 }
 
 }  // namespace furrow::server

@@ -54,6 +54,8 @@ class Subscribers {
   // False: the peer has no such subscription.
   bool Unsubscribe(Peer& peer, std::uint16_t id);
 
+  // Ends the subscriptions that the peer's access does not allow (any more), each with an error.
+  void EndForbidden(Peer& peer);
   // Ends all subscriptions of a peer; the second form sends the peer a goodbye for each.
   void RemovePeer(Peer& peer);
   void RemovePeer(Peer& peer, protocol::GoodbyeReason goodbye);

@@ -27,7 +27,9 @@ export class CapturePanel {
     });
     this.part = select('Part of the performer', [[AUTO, 'face if there is one'], ['face', 'face only'], ['body', 'body only'], ['both', 'face and body']], () => undefined);
     this.undo = button('Undo', () => void this.undoCapture(), { disabled: true });
-    this.save = h('a', { href: api.rigFile, download: 'rig.json', class: 'button' }, 'Download rig');
+    this.save = h('a', { href: api.rigFile(), download: 'rig.json', class: 'button' }, 'Download rig');
+    // The token may have come since.
+    this.save.addEventListener('click', () => this.save.setAttribute('href', api.rigFile()));
     this.element = h('div', { class: 'capture' },
       h('p', {}, 'Hold the expression, then click Capture. The pose becomes the neutral pose of this performer, from which all poses are measured, or a reference pose of the wrinkle rig, which its drivers use.'),
       h('div', { class: 'row' }, this.pose, this.newName, this.part),

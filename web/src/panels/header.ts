@@ -11,12 +11,14 @@ export class Header {
   readonly element: HTMLElement;
   private readonly subject: HTMLSelectElement;
   private readonly status = h('p', { class: 'condition wait', role: 'status' });
+  private readonly open = h('p', { class: 'open', hidden: true,
+    title: 'Everybody on the network may connect, publish and change settings (docs/SECURITY.md)' }, 'Open');
   private readonly numbers = new Map<string, HTMLOutputElement>();
 
   constructor(private readonly state: AppState, commands: { help: () => void; panel: () => void; dock: () => void }) {
     this.subject = select('Subject', [['', 'Any subject']], (name) => state.subject.set(name));
     this.element = h('header', {},
-      h('h1', {}, 'Furrow'), this.subject, this.status, h('span', { class: 'space' }),
+      h('h1', {}, 'Furrow'), this.subject, this.status, this.open, h('span', { class: 'space' }),
       h('div', { class: 'numbers', 'aria-label': 'Picture', role: 'group' },
         this.number('rate', 'Pictures', 'Pictures per second'),
         this.number('latency', 'Latency', 'Median time from the arrival of a pose at the daemon to this screen'),
@@ -38,6 +40,11 @@ export class Header {
     const known = wanted === '' || names.includes(wanted) ? names : [...names, wanted];
     setOptions(this.subject, [['', 'Any subject'], ...known.map((name) => [name, name] as const)]);
     this.subject.value = wanted;
+  }
+
+  /** Whether everybody on the network is let in. */
+  showOpen(open: boolean): void {
+    this.open.hidden = !open;
   }
 
   showCondition({ level, text, advice }: Condition): void {

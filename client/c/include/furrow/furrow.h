@@ -83,9 +83,10 @@ typedef enum furrow_status {
   FURROW_OUT_OF_MEMORY = -11,
   FURROW_INTERNAL = -12, /* a bug in the library, or a callback that threw an exception */
 
+  FURROW_UNAUTHENTICATED = -20, /* the daemon asks for a token, or rejects the given one */
+  FURROW_FORBIDDEN = -21,       /* the token does not permit this */
+
   /* Reserved: this version never returns them, later versions will. Treat them as errors. */
-  FURROW_UNAUTHENTICATED = -20,  /* the daemon asks for a token, or rejects the given one */
-  FURROW_FORBIDDEN = -21,        /* the token does not permit this */
   FURROW_WRONG_SERVER_KEY = -22, /* the daemon does not own the expected key */
   FURROW_TLS_FAILED = -23,
   FURROW_REDIRECTED = -24, /* the subject lives on another daemon, which cannot be reached */
@@ -121,7 +122,7 @@ typedef struct furrow_options {
   char* error;            /* receives the reason if furrow_open() fails; may be NULL */
   uint32_t error_size;    /* bytes of `error` */
   uint32_t tls;           /* reserved: must be 0 */
-  const char* token;      /* reserved for access control: must be NULL */
+  const char* token;      /* file with a connect token, or its text; NULL: that of the address */
   const char* server_key; /* reserved for encryption: must be NULL */
   const char* tls_authority; /* reserved for TLS: must be NULL */
 } furrow_options;
@@ -134,13 +135,15 @@ typedef struct furrow_options {
  *               pattern    names of the weights, as comma-separated globs (default: all)
  *               rate       most frames per second, in (0, 1000] (default: every pose)
  *               transport  udp (default, port 7401) or tcp (port 7400)
- *             Write %26 for '&' and %25 for '%' in values. The keys token, key, tls and
- *             transport=shm are reserved and lead to FURROW_UNSUPPORTED.
+ *               token      file with a connect token, or its text. Over UDP everything is encrypted;
+ *                          over TCP everybody on the way can read the token
+ *             Write %26 for '&' and %25 for '%' in values. The keys key, tls and transport=shm are
+ *             reserved and lead to FURROW_UNSUPPORTED.
  * options     NULL for the defaults.
  * connection  receives the connection; NULL after an error.
  *
- * Errors: FURROW_INVALID_ADDRESS, FURROW_INVALID_ARGUMENT, FURROW_UNSUPPORTED (a reserved field or
- * key is set), FURROW_OUT_OF_MEMORY. `options->error` receives the reason.
+ * Errors: FURROW_INVALID_ADDRESS, FURROW_INVALID_ARGUMENT (also a token that cannot be read),
+ * FURROW_UNSUPPORTED (a reserved field or key is set), FURROW_OUT_OF_MEMORY. `options->error` receives the reason.
  */
 FURROW_API furrow_status furrow_open(const char* address, const furrow_options* options,
                                      furrow_connection** connection);

@@ -16,6 +16,7 @@ interface Case {
   subjects: string[];
   pattern: string;
   rate: number;
+  token?: string;
 }
 
 test('addresses and messages are those of every Furrow client', () => {
@@ -28,14 +29,17 @@ test('addresses and messages are those of every Furrow client', () => {
         error.message === expected.error && error.code === expected.code, expected.text);
       continue;
     }
-    const { host, port, transport, subjects, pattern, maxRateHz }: Address = parseAddress(expected.text);
-    assert.deepEqual([host, port, transport ?? '', subjects, pattern, maxRateHz],
-      [expected.host, expected.port, expected.transport, expected.subjects, expected.pattern, expected.rate], expected.text);
+    const { host, port, transport, subjects, pattern, maxRateHz, token }: Address = parseAddress(expected.text);
+    assert.deepEqual([host, port, transport ?? '', subjects, pattern, maxRateHz, token],
+      [expected.host, expected.port, expected.transport, expected.subjects, expected.pattern, expected.rate,
+        expected.token ?? ''], expected.text);
   }
 });
 
 test('a token does not end up in a message', () => {
-  assert.throws(() => parseAddress('furrow://a?token=secret'), (error: Error) => !error.message.includes('secret'));
+  for (const text of ['furrow://a?token=secret%', 'furrow://a?token=secret&token=secret', 'furrow://a?token=secret%0A']) {
+    assert.throws(() => parseAddress(text), (error: Error) => !error.message.includes('secret'));
+  }
 });
 
 test('sizes are bounded', () => {

@@ -97,7 +97,9 @@ TEST(CApi, AddressesAreChecked) {
   EXPECT_EQ(furrow_open("furrow://a?subject=x&subject=x", &options, &connection),
             FURROW_INVALID_ADDRESS);
   EXPECT_THAT(error, HasSubstr("subscribed already"));
-  EXPECT_EQ(furrow_open("furrow://a?token=1", &options, &connection), FURROW_UNSUPPORTED);
+  EXPECT_EQ(furrow_open("furrow://a?token=/nowhere/a.token", &options, &connection),
+            FURROW_INVALID_ARGUMENT);
+  EXPECT_THAT(error, HasSubstr("/nowhere/a.token"));
   EXPECT_EQ(furrow_open("furrow://a?transport=shm", &options, &connection), FURROW_UNSUPPORTED);
   options.error_size = 4;
   EXPECT_EQ(furrow_open("http://a", &options, &connection), FURROW_INVALID_ADDRESS);
@@ -115,7 +117,8 @@ TEST(CApi, ReservedOptionsAreRefusedRatherThanIgnored) {
     return status;
   };
   EXPECT_EQ(status_with([](furrow_options&) {}), FURROW_OK);
-  EXPECT_EQ(status_with([](furrow_options& o) { o.token = "x"; }), FURROW_UNSUPPORTED);
+  EXPECT_EQ(status_with([](furrow_options& o) { o.token = "frw1_x"; }), FURROW_INVALID_ARGUMENT);
+  EXPECT_EQ(status_with([](furrow_options& o) { o.token = ""; }), FURROW_INVALID_ARGUMENT);
   EXPECT_EQ(status_with([](furrow_options& o) { o.server_key = ""; }), FURROW_UNSUPPORTED);
   EXPECT_EQ(status_with([](furrow_options& o) { o.tls_authority = "x"; }), FURROW_UNSUPPORTED);
   EXPECT_EQ(status_with([](furrow_options& o) { o.tls = 1; }), FURROW_UNSUPPORTED);

@@ -48,6 +48,7 @@ TEST(Address, TextsOfAllClientsAreReadAlike) {
                                   : address->transport == TransportKind::kTcp ? "tcp"
                                                                               : "udp";
     EXPECT_EQ(transport, expected["transport"]) << text;
+    EXPECT_EQ(address->token, expected.value("token", "")) << text;
   }
 }
 
@@ -58,9 +59,18 @@ TEST(Address, ThePortDependsOnTheTransport) {
 }
 
 TEST(Address, ATokenDoesNotEndUpInALog) {
-  const auto address = ParseAddress("furrow://a?token=secret");
-  ASSERT_FALSE(address.ok());
-  EXPECT_THAT(address.status().ToString(), Not(HasSubstr("secret")));
+  for (const char* text : {"furrow://a?token=secret%", "furrow://a?token=secret&token=secret",
+                           "furrow://a?token=secret%0A"}) {
+    const auto address = ParseAddress(text);
+    ASSERT_FALSE(address.ok()) << text;
+    EXPECT_THAT(address.status().ToString(), Not(HasSubstr("secret")));
+  }
+  Address address = Parsed("furrow://a?token=frw1_secret");
+  EXPECT_THAT(LoadTokenOf(address).status().ToString(), Not(HasSubstr("secret")));
+  address.token = "/nowhere/secret.token";
+  EXPECT_THAT(LoadTokenOf(address).status().ToString(), HasSubstr("/nowhere"));
+  address.token.clear();
+  EXPECT_FALSE(LoadTokenOf(address)->has_value());
 }
 
 TEST(Address, SizesAreBounded) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "client/cpp/transport.h"
+#include "client/cpp/transports.h"
 
 #include <algorithm>
 #include <cstring>
@@ -63,7 +63,7 @@ std::vector<std::uint8_t> BigMessage() {
 
 std::unique_ptr<Transport> Open(TransportKind kind, std::uint16_t port,
                                 milliseconds timeout = kGuard) {
-  auto transport = Transport::Open(kind, "localhost", port, timeout);
+  auto transport = OpenTransport(kind, "localhost", port, timeout);
   EXPECT_TRUE(transport.ok()) << transport.status().ToString();
   return transport.ok() ? *std::move(transport) : nullptr;
 }
@@ -155,7 +155,7 @@ TEST_F(TcpTransportTest, APeerThatDoesNotReadBlocksASendOnlyUntilTheTimeout) {
 TEST(TcpAddressTest, AClosedPortIsAnErrorThatNamesTheAddress) {
   std::uint16_t port = 0;
   { port = Socket(SOCK_STREAM).port(); }
-  const auto transport = Transport::Open(TransportKind::kTcp, "127.0.0.1", port, kGuard);
+  const auto transport = OpenTransport(TransportKind::kTcp, "127.0.0.1", port, kGuard);
   ASSERT_FALSE(transport.ok());
   EXPECT_EQ(transport.status().code(), StatusCode::kUnavailable);
   const std::string error = transport.status().what();

@@ -17,6 +17,13 @@ TEST(ConnectionMessages, RoundTrip) {
   EXPECT_FALSE(hello.bundles);
   ASSERT_EQ(OpenAndDecode(Encoded(Hello{"", 0, true}), hello), DecodeStatus::kOk);
   EXPECT_TRUE(hello.bundles);
+  EXPECT_EQ(hello.access, "");
+  ASSERT_EQ(OpenAndDecode(Encoded(Hello{"", 0, false, "frw1_token"}), hello), DecodeStatus::kOk);
+  EXPECT_EQ(hello.access, "frw1_token");
+  const std::string longest(kMaxAccessBytes, 'x');
+  ASSERT_EQ(OpenAndDecode(Encoded(Hello{"", 0, false, longest}), hello), DecodeStatus::kOk);
+  EXPECT_EQ(OpenAndDecode(Encoded(Hello{"", 0, false, longest + "x"}), hello),
+            DecodeStatus::kLimit);
   Welcome welcome;
   ASSERT_EQ(OpenAndDecode(Encoded(Welcome{"furrowd/9", 78}), welcome), DecodeStatus::kOk);
   EXPECT_EQ(welcome.server, "furrowd/9");
@@ -33,6 +40,8 @@ TEST(ConnectionMessages, RoundTrip) {
             DecodeStatus::kOk);
   EXPECT_EQ(error.code, ErrorCode::kNeedsTcp);
   EXPECT_EQ(error.message, "use TCP");
+  ASSERT_EQ(OpenAndDecode(Encoded(ErrorMessage{ErrorCode::kNotPermitted, ""}), error),
+            DecodeStatus::kOk);
 }
 
 TEST(ConnectionMessages, WelcomeIsNeverLargerThanHello) {
@@ -50,7 +59,7 @@ TEST(ConnectionMessages, RejectsUnknownValuesAndBadText) {
   EXPECT_EQ(OpenAndDecode(Encoded(Goodbye{static_cast<GoodbyeReason>(4)}), goodbye),
             DecodeStatus::kBadValue);
   ErrorMessage error;
-  EXPECT_EQ(OpenAndDecode(Encoded(ErrorMessage{static_cast<ErrorCode>(15), ""}), error),
+  EXPECT_EQ(OpenAndDecode(Encoded(ErrorMessage{static_cast<ErrorCode>(17), ""}), error),
             DecodeStatus::kBadValue);
   EXPECT_EQ(OpenAndDecode(Encoded(ErrorMessage{static_cast<ErrorCode>(0), ""}), error),
             DecodeStatus::kBadValue);

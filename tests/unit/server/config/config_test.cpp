@@ -158,6 +158,30 @@ TEST(CommandLine, OnlyOpenListensBeyondThisComputer) {
   }
 }
 
+TEST(CommandLine, TokensLetOthersInWithoutOpen) {
+  const CommandLine line =
+      Parse({"--bind", "0.0.0.0", "--security", "required", "--keys", "a.keys", "--name", "stage"});
+  ASSERT_TRUE(line.config.has_value()) << line.text;
+  EXPECT_EQ(line.config->security, (SecurityConfig{Security::kRequired, "a.keys", "stage", false}));
+  EXPECT_FALSE(line.config->open);
+}
+
+TEST(CommandLine, SecurityMustNotContradictItself) {
+  const auto why = [](const std::vector<std::string>& args) { return Parse(args).text; };
+  EXPECT_THAT(why({"--security", "required"}), HasSubstr("--keys"));
+  EXPECT_THAT(why({"--security", "closed"}), HasSubstr("closed"));
+  EXPECT_THAT(why({"--security", "required", "--keys", "k", "--open"}),
+              HasSubstr("cannot be combined"));
+  EXPECT_THAT(why({"--name", std::string(48, 'n')}), HasSubstr("--name"));
+  // Phones can show no token.
+  const std::vector<std::string> phones = {"--bind", "0.0.0.0", "--security", "required",
+                                           "--keys", "k",       "--vmc",      "39539"};
+  EXPECT_THAT(why(phones), HasSubstr("--mocap-allow"));
+  std::vector<std::string> named = phones;
+  named.insert(named.end(), {"--mocap-allow", "10.0.0.7"});
+  EXPECT_TRUE(Parse(named).config.has_value());
+}
+
 TEST(CommandLine, FlagsOverrideTheFileAndTheFileTheDefaults) {
   const ConfigFile file(
       "[listen]\ntcp = 100\nudp = 200\n[mocap]\nvmc = 300\n"
@@ -193,6 +217,7 @@ TEST(ParseConfig, ReadsEveryTable) {
       "character = 'face.glb'\nrig = '/abs/rig.json'\nskeleton_map = 'cmu'\nshape_map = 'cc4'\n"
       "rest_frame = 7\nup_axis = 'y'\n"
       "[listen]\nbind = '0.0.0.0'\nopen = true\ntcp = 0\nudp = 1\nthreads = 3\n"
+      "[security]\nmode = 'required'\nkeys = '/abs/a.keys'\nname = 'n'\ntokens_in_clear = true\n"
       "[render]\nenabled = true\nrequired = true\ndevice = '1'\n"
       "[mocap]\nvmc = 39539\nlivelink_face = 11111\n"
       "[osc]\nout = '[::1]:9000'\nprefix = 'x'\nallow = ['10.0.0.7']\n"
@@ -206,6 +231,7 @@ TEST(ParseConfig, ReadsEveryTable) {
   ASSERT_TRUE(status.ok()) << status.ToString();
   EXPECT_EQ(config.character, "face.glb");
   EXPECT_EQ(config.threads, 3);
+  EXPECT_EQ(config.security, (SecurityConfig{Security::kRequired, "/abs/a.keys", "n", true}));
   EXPECT_EQ(config.rig, "/abs/rig.json");
   EXPECT_EQ(config.skeleton_map, "cmu");
   EXPECT_EQ(config.shape_map, "cc4");

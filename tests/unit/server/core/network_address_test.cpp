@@ -33,5 +33,15 @@ TEST(NetworkAddress, TextReadsBack) {
   }
 }
 
+TEST(NetworkAddress, KnowsTheAddressesOfThisComputer) {
+  for (const char* local : {"127.0.0.1", "127.8.9.10", "::1", "::ffff:127.0.0.1"}) {
+    EXPECT_TRUE(IsLoopback(local)) << local;
+  }
+  for (const char* other :
+       {"128.0.0.1", "10.0.0.1", "::", "::2", "::ffff:10.0.0.1", "", "localhost"}) {
+    EXPECT_FALSE(IsLoopback(other)) << other;
+  }
+}
+
 }  // namespace
 }  // namespace furrow::server

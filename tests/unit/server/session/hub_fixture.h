@@ -26,6 +26,7 @@ class FakePeer : public Link {
     return 0;
   }
   void DropFrames(std::uint64_t key) override { dropped_keys.push_back(key); }
+  void Finish() override { finished = true; }
   bool IsStuck(Time) const override { return stuck; }
 
   template <class Message>
@@ -55,6 +56,7 @@ class FakePeer : public Link {
   std::vector<std::uint64_t> dropped_keys;
   std::uint64_t bytes_received = 0;
   bool stuck = false;
+  bool finished = false;  // the hub has ended the connection
   PeerId id = 0;
   std::uint64_t session = 77;
 
@@ -115,6 +117,7 @@ class HubTest : public testing::Test {
     parts.rig = std::make_shared<const wrinkle::Rig>(std::move(rig));
     parts.pictures = &pictures;
     parts.metrics = &metrics;
+    parts.gate = gate;
     parts.random = [this] { return ++last_token; };
     hub = std::make_unique<Hub>(std::move(parts));
   }
@@ -164,6 +167,7 @@ class HubTest : public testing::Test {
   std::uint64_t Count(Counter counter) const { return metrics.Get(counter); }
 
   Metrics metrics;
+  const TokenGate* gate = nullptr;  // of hubs that are made from now on
   FakePictures pictures;
   std::unique_ptr<Hub> hub;
   protocol::Encoder encoder;

@@ -34,6 +34,8 @@ export var address = ""
 export(PoolStringArray) var subjects = PoolStringArray()
 # Names of the weights, as comma-separated globs; empty: all.
 export var pattern = ""
+# The text of a connect token, for daemons that require one (docs/TOKENS.md). It is not encrypted on its way.
+export var token = ""
 # Late frames queue at the daemon; false: newer frames replace them, which is better on slow networks.
 export var every_frame = true
 export var open_on_ready = true
@@ -199,6 +201,8 @@ func _query():
 	var rate = float(SETTINGS.read(SETTINGS.RATE))
 	if rate > 0.0:
 		parts.append("rate=" + str(rate))
+	if token != "":
+		parts.append("token=" + token.percent_encode())
 	return parts.join("&")
 
 

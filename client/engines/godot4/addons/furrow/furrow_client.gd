@@ -26,6 +26,8 @@ const SILENCE_MSEC := 30000
 @export var subjects := PackedStringArray()
 # Names of the weights, as comma-separated globs; empty: all.
 @export var pattern := ""
+# The text of a connect token, for daemons that require one (docs/TOKENS.md). It is not encrypted on its way.
+@export var token := ""
 # Late frames queue at the daemon; false: newer frames replace them, which is better on slow networks.
 @export var every_frame := true
 @export var open_on_ready := true
@@ -160,6 +162,8 @@ func _query() -> String:
 	if pattern != "":
 		parts.append("pattern=" + pattern.uri_encode())
 	parts.append("every=" + ("true" if every_frame else "false"))
+	if token != "":
+		parts.append("token=" + token.uri_encode())
 	return "&".join(parts)
 
 

@@ -32,7 +32,12 @@ export interface WeightFrame {
 }
 
 /** Why there are no weights: nothing has arrived yet, or the daemon rejected the request. */
-export type FeedProblem = 'no-data' | 'no-match' | 'limit' | 'rejected';
+export type FeedProblem = 'no-data' | 'no-match' | 'limit' | 'needs-token' | 'not-permitted' | 'rejected';
+
+const PROBLEMS = new Map<number, FeedProblem>([
+  [ERROR.noMatch, 'no-match'], [ERROR.limit, 'limit'], [ERROR.needsToken, 'needs-token'],
+  [ERROR.notPermitted, 'not-permitted'],
+]);
 
 export interface WeightFeedEvents {
   /** The names have changed. */
@@ -170,7 +175,7 @@ export class WeightFeed implements Subscriber {
   }
 
   onRefused(code: number, message: string): void {
-    this.failed = code === ERROR.noMatch ? 'no-match' : code === ERROR.limit ? 'limit' : 'rejected';
+    this.failed = PROBLEMS.get(code) ?? 'rejected';
     this.cancelRetry();
     this.cancelRetry = this.connection.after(RETRY_MS, () => this.subscription.askAgain());
     this.events.onProblem(this.failed, message);

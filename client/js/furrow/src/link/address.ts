@@ -22,7 +22,12 @@ export interface Address {
   pattern: string;
   /** 0: not stated. */
   maxRateHz: number;
+  /** The text of a connect token (docs/TOKENS.md), or in Node a file that holds one; empty: not stated. */
+  token: string;
 }
+
+/** The text of a connect token begins with it. */
+export const TOKEN_PREFIX = 'frw1_';
 
 const SCHEME = 'furrow://';
 const MAX_ADDRESS_BYTES = 64 * 1024;
@@ -31,9 +36,10 @@ const MAX_SUBJECTS = 256;
 const MAX_NAME_BYTES = 255;
 const MAX_PATTERN_BYTES = 4096;
 const MAX_RATE_HZ = 1000;
-const KEYS = ['subject', 'pattern', 'rate', 'transport'];
-/** Access control and encryption will use these keys. Ignoring them would pretend to protect. */
-const RESERVED_KEYS = ['token', 'key', 'tls'];
+const MAX_TOKEN_BYTES = 4096;
+const KEYS = ['subject', 'pattern', 'rate', 'transport', 'token'];
+/** Encryption of TCP will use these keys. Ignoring them would pretend to protect. */
+const RESERVED_KEYS = ['key', 'tls'];
 const FORMS = 'use HOST, HOST:PORT or [IPV6]:PORT, alone or after furrow://';
 const NUMBER = /^[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$/;
 
@@ -136,6 +142,15 @@ function setRate(value: ByteText, address: Address): void {
   address.maxRateHz = rate;
 }
 
+function setToken(value: ByteText, address: Address): void {
+  const text = value.length > MAX_TOKEN_BYTES ? null : plainText(value);
+  if (value === '' || text === null) {
+    throw invalid('the token is not a file name and not a token', "write token=FILE, with a file that 'furrow token new' made");
+  }
+  if (address.token !== '') throw invalid('token is stated twice');
+  address.token = text;
+}
+
 function setText(key: 'subject' | 'pattern', value: ByteText, address: Address): void {
   const most = key === 'subject' ? MAX_NAME_BYTES : MAX_PATTERN_BYTES;
   const text = value.length > most ? null : plainText(value);
@@ -157,14 +172,16 @@ function setValue(item: string, address: Address): void {
   const key = equals < 0 ? item : item.slice(0, equals);
   if (RESERVED_KEYS.includes(key)) {
     throw unsupported(`${key} is reserved for a later version`,
-      'leave it out: this version has no access control and no encryption');
+      'leave it out: this version encrypts UDP alone, with the key token');
   }
-  if (!KEYS.includes(key)) throw invalid(`unknown key ${quoted(key)}`, 'use subject, pattern, rate or transport');
+  if (!KEYS.includes(key)) throw invalid(`unknown key ${quoted(key)}`, 'use subject, pattern, rate, transport or token');
   const value = equals < 0 ? null : decodePercent(item.slice(equals + 1));
   if (value === null) {
-    throw invalid(`${quoted(item)} is not a value`, `write ${key}=VALUE, and a percent sign as %25`);
+    // A token must not end up in a log.
+    throw invalid(`${quoted(key === 'token' ? key : item)} is not a value`, `write ${key}=VALUE, and a percent sign as %25`);
   }
-  if (key === 'transport') setTransport(value, address);
+  if (key === 'token') setToken(value, address);
+  else if (key === 'transport') setTransport(value, address);
   else if (key === 'rate') setRate(value, address);
   else setText(key as 'subject' | 'pattern', value, address);
 }
@@ -172,7 +189,7 @@ function setValue(item: string, address: Address): void {
 /** Parses an address. Throws FurrowError: 'invalid-address', or 'unsupported' for what later versions reserve. */
 export function parseAddress(text: string): Address {
   if (numBytes(text) > MAX_ADDRESS_BYTES) throw invalid('longer than 65536 bytes');
-  const address: Address = { host: '', port: 0, transport: null, subjects: [], pattern: '', maxRateHz: 0 };
+  const address: Address = { host: '', port: 0, transport: null, subjects: [], pattern: '', maxRateHz: 0, token: '' };
   if (!text.startsWith(SCHEME)) {
     const end = text.indexOf('://');
     if (end >= 0) throw invalid(`unknown scheme ${quoted(text.slice(0, end))}`, 'use furrow://HOST');

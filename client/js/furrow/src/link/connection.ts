@@ -24,7 +24,8 @@ const CONNECT_MS = 3000;
 const MAX_CLIENT_BYTES = 64;
 
 /** Codes of STANDARD.md section 10. */
-export const ERROR = { unsupported: 3, noMatch: 5, limit: 6, notRendering: 8, badPicture: 9, unproven: 11, draining: 12 } as const;
+export const ERROR = { unsupported: 3, noMatch: 5, limit: 6, notRendering: 8, badPicture: 9, unproven: 11, draining: 12,
+  needsToken: 15, notPermitted: 16 } as const;
 /** Reasons of a Goodbye. */
 const DONE = 0;
 const SUBJECT_GONE = 1;
@@ -227,6 +228,7 @@ export class Connection {
 
   private reached(): void {
     ++this.numConnects;
+    this.failure = '';
     this.setState('open');
   }
 
@@ -239,7 +241,7 @@ export class Connection {
   }
 
   private sayHello(): void {
-    this.send(0, hello(this.program, this.token, this.kind === 'udp'));
+    this.send(0, hello(this.program, this.token, this.kind === 'udp', this.opener.access ?? ''));
   }
 
   private lost(why: string): void {
@@ -248,7 +250,7 @@ export class Connection {
     this.transport = null;
     this.isUp = this.isProven = false;
     this.serverSession = 0n;
-    this.failure = why;
+    if (why !== '') this.failure = why; // a daemon that wants a token has said so before it closed
     for (const entry of this.entries) forget(entry);
     this.cancelTimer();
     this.cancelTimer = this.environment.after(this.backoff.failed(), () => this.connect());
@@ -404,6 +406,11 @@ export class Connection {
       return;
     }
     if (code === ERROR.draining) return; // the next daemon will be asked again
+    if (code === ERROR.needsToken) {
+      this.failure = text === '' ? 'the daemon requires a token' : text;
+      for (const entry of this.entries) entry.subscriber.onRefused(code, this.failure, entry.sequence);
+      return;
+    }
     for (const entry of this.entries) {
       if (!entry.requests.delete(message.sequence)) continue;
       if (message.sequence === entry.sequence) entry.waiting = false;

@@ -32,5 +32,7 @@ export interface TransportOpener {
    * this client from forged ones (protocol/STANDARD.md section 4).
    */
   makeSession?(): bigint;
+  /** The text of the connect token that each Hello shows; absent or empty: none. */
+  access?: string;
   open(events: TransportEvents): Transport;
 }

@@ -4,12 +4,18 @@ import { MAX_UNSENT_BYTES, type Transport, type TransportEvents, type TransportO
 
 export const WEB_SOCKET_PROTOCOL = 'furrow.1';
 
-export function browserSocket(url: string): TransportOpener {
-  return { kind: 'ws', open: (events) => openSocket(url, events) };
+/** What a client offers. A browser can set no header, so a connect token travels as a protocol that nobody chooses. */
+export function offeredProtocols(token: string): string[] {
+  return token === '' ? [WEB_SOCKET_PROTOCOL] : [WEB_SOCKET_PROTOCOL, token];
 }
 
-function openSocket(url: string, events: TransportEvents): Transport {
-  const socket = new WebSocket(url, WEB_SOCKET_PROTOCOL);
+/** `token`: returns the text of a connect token, or an empty text; asked at each attempt. */
+export function browserSocket(url: string, token: () => string = () => ''): TransportOpener {
+  return { kind: 'ws', open: (events) => openSocket(url, token(), events) };
+}
+
+function openSocket(url: string, token: string, events: TransportEvents): Transport {
+  const socket = new WebSocket(url, offeredProtocols(token));
   socket.binaryType = 'arraybuffer';
   socket.onopen = () => events.onOpen();
   socket.onmessage = ({ data }: MessageEvent<unknown>) => {

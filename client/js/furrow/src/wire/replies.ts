@@ -7,7 +7,7 @@ import { namesHash } from './hash.js';
 export const MAX_NAMES = 2048;
 const MAX_ERROR_BYTES = 1024;
 const MAX_SERVER_BYTES = 64;
-const NUM_ERROR_CODES = 14;
+const NUM_ERROR_CODES = 16;
 
 export interface PictureMessage {
   width: number;

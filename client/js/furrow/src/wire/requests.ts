@@ -57,16 +57,18 @@ export interface PosesRequest {
 
 const HELLO_PADDING_BYTES = 224; // a Hello without a token has at least 256 bytes (section 4)
 
-/** `token` 0n: the first step. `bundles`: UDP only. */
-export function hello(client: string, token: bigint, bundles: boolean): Uint8Array {
-  const builder = new Builder(512);
+/** `token` 0n: the first step. `bundles`: UDP only. `access`: a connect token as text, TCP only. */
+export function hello(client: string, token: bigint, bundles: boolean, access = ''): Uint8Array {
+  const builder = new Builder(1024);
   const name = builder.createString(client);
+  const shown = access === '' ? 0 : builder.createString(access);
   const padding = token === 0n ? Hello.createPaddingVector(builder, new Uint8Array(HELLO_PADDING_BYTES)) : 0;
   Hello.startHello(builder);
   Hello.addClient(builder, name);
   Hello.addToken(builder, token);
   if (padding !== 0) Hello.addPadding(builder, padding);
   Hello.addBundles(builder, bundles);
+  if (shown !== 0) Hello.addAccess(builder, shown);
   Hello.finishHelloBuffer(builder, Hello.endHello(builder));
   return builder.asUint8Array();
 }

@@ -66,8 +66,38 @@ class AdmissionTest : public ::testing::Test {
   test::RepeatableRandom random_;
   KeyRing ring_ = test::MakeRing(random_);
   ClientToken token_;
-  Admission admission_{{.audience = "stage-a"}, random_};
+  // Time stands still in most tests, and all clients are one host.
+  Admission admission_{{.audience = "stage-a",
+                        .attempts_per_second = 100'000,
+                        .attempts_per_second_of_a_host = 100'000},
+                       random_};
   AcceptedHandshake accepted_;
+};
+
+// With the limits of a server.
+class AttemptsTest : public AdmissionTest {
+ protected:
+  AttemptsTest() {
+    limited_.SetKeys(ring_);
+    stolen_.key = random_.MakeKey();
+  }
+  // How many of `count` attempts with a wrong key are examined.
+  int Examined(const PeerAddress& from, int count) {
+    int examined = 0;
+    for (int i = 0; i < count; ++i) examined += Try(stolen_, from) == Refusal::kForgedHandshake;
+    return examined;
+  }
+  Refusal Try(const ClientToken& token, const PeerAddress& from) {
+    Cookie cookie{};
+    AdmissionResult result =
+        limited_.OnInitiation(Initiation(token, cookie), from, kNow, 1, accepted_);
+    std::uint32_t index = 0;
+    EXPECT_TRUE(ReadRetry(ByteView(result.reply_bytes).first(result.reply_size), index, cookie));
+    return limited_.OnInitiation(Initiation(token, cookie), from, kNow, 1, accepted_).refusal;
+  }
+
+  Admission limited_{{}, random_};
+  ClientToken stolen_ = token_;
 };
 
 TEST_F(AdmissionTest, AsksForTheCookieFirst) {
@@ -195,6 +225,21 @@ TEST_F(AdmissionTest, ATokenInUseIsForOneHost) {
   const Now later = test::Later(kNow, Admission::kTokenHoldMicroseconds);
   EXPECT_EQ(RefusalOf(token_, kAway, later), Refusal::kNone);
   EXPECT_EQ(RefusalOf(token_, kHome, later), Refusal::kTokenInUse);
+}
+
+// Each attempt costs an opened token and a checked proof, also with a wrong key.
+TEST_F(AttemptsTest, OneHostCannotUseUpTheAttemptsOfAll) {
+  EXPECT_EQ(Examined(kAway, 300), 100);
+  EXPECT_EQ(limited_.num_refused(Refusal::kBusy), 200u);
+  EXPECT_EQ(Try(token_, kHome), Refusal::kNone) << "another host";
+}
+
+TEST_F(AttemptsTest, TheAttemptsOfAllHostsAreLimited) {
+  int examined = 0;
+  for (std::uint8_t host = 1; host <= 40; ++host) {
+    examined += Examined(FromIpv4({10, 0, host, 1}, 5000), 100);
+  }
+  EXPECT_EQ(examined, 2000);
 }
 
 TEST_F(AdmissionTest, OneTokenCannotUseUpTheHandshakesOfAll) {

@@ -40,7 +40,7 @@ TEST_F(UdpBatchTest, ReturnsBytesAndSendersAndMarksOversizedDatagrams) {
   EXPECT_EQ(batch.bytes(0).size(), 3u);
   EXPECT_EQ(batch.bytes(0)[2], 7);
   EXPECT_EQ(batch.bytes(1).size(), protocol::kMaxDatagramBytes);
-  EXPECT_EQ(batch.bytes(2).size(), protocol::kMaxDatagramBytes + 1);
+  EXPECT_EQ(batch.bytes(2).size(), protocol::secure::kMaxPacketBytes + 1);
   EXPECT_EQ(batch.sender(2), sender.local_endpoint());
   EXPECT_EQ(batch.Receive(receiver.native_handle()), 0u);
   EXPECT_EQ(batch.TakeDropped(), 0u);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/net/udp/udp_sender.h"
 
+#include <algorithm>
 #include <deque>
 #include <utility>
 #include <vector>
@@ -8,6 +9,8 @@
 #include <asio/io_context.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "protocol/secure/packet/packet.h"
 
 namespace furrow::server {
 namespace {
@@ -121,6 +124,46 @@ TEST_F(UdpSenderTest, UnsendableDatagramsAreCountedAndOthersLeave) {
   const UdpSender::Counts counts = sender.TakeCounts();
   EXPECT_EQ(counts.sent, 2u);
   EXPECT_EQ(counts.lost, 2u);
+}
+
+// "Seals" by the number of the session in the first byte, and knows where its client is now.
+class FakeSealer : public DatagramSealer {
+ public:
+  bool Seal(std::uint32_t session, std::span<std::uint8_t> packet, udp::endpoint& to) override {
+    if (session == 9) return false;
+    packet[0] = static_cast<std::uint8_t>(session);
+    inner.emplace_back(packet.begin() + protocol::secure::kPacketHeaderBytes,
+                       packet.end() - protocol::secure::kTagBytes);
+    to = where;
+    return true;
+  }
+  udp::endpoint where;
+  std::vector<std::vector<std::uint8_t>> inner;
+};
+
+TEST_F(UdpSenderTest, SealsWholeDatagramsAndSendsThemWhereTheClientIs) {
+  FakeSealer sealer;
+  sealer.where = b.socket.local_endpoint();
+  sender.SetSealer(&sealer);
+  const auto push = [&](std::uint64_t key, std::uint32_t session, std::size_t size, int first) {
+    const auto bytes = sender.Prepare();
+    std::fill_n(bytes.begin(), size, static_cast<std::uint8_t>(first));
+    sender.Commit(key, a.socket.local_endpoint(), size, Packing::kSeparate, session);
+  };
+  push(1, 5, 100, 1);
+  push(1, 5, 100, 2);
+  push(1, 5, 40, 3);
+  push(2, 9, 100, 4);  // its session has ended
+  push(3, 0, 100, 5);
+  sender.Flush();
+  using P = std::pair<std::size_t, int>;
+  EXPECT_THAT(b.TakeAll(), ElementsAre(P(132, 5), P(132, 5), P(72, 5)));
+  EXPECT_THAT(a.TakeAll(), ElementsAre(P(100, 5))) << "plain, at its own address";
+  ASSERT_EQ(sealer.inner.size(), 3u);
+  EXPECT_EQ(sealer.inner[1], std::vector<std::uint8_t>(100, 2));
+  const UdpSender::Counts counts = sender.TakeCounts();
+  EXPECT_EQ(counts.sent, 4u);
+  EXPECT_EQ(counts.lost, 1u);
 }
 
 }  // namespace

@@ -15,6 +15,9 @@ constexpr Time kNow = FromSeconds(1000);
 
 class ReceptionTest : public testing::Test {
  protected:
+  explicit ReceptionTest(bool requires_token = false)
+      : reception(4242, &proof, &metrics, requires_token) {}
+
   template <class Message>
   bool Say(const Message& message, std::uint64_t session = 77) {
     encoder.Encode({.session = session, .stream = 3, .sequence = 9}, message, sent);
@@ -36,7 +39,7 @@ class ReceptionTest : public testing::Test {
 
   Metrics metrics;
   AddressProof proof{AddressProof::Key{9}};
-  Reception reception{4242, &proof, &metrics};
+  Reception reception;
   protocol::Encoder encoder;
   std::vector<std::uint8_t> sent;
   UdpAddress address{1, 2, 3};
@@ -146,6 +149,27 @@ TEST_F(ReceptionTest, ShortAndBrokenMessagesGetNothing) {
     EXPECT_FALSE(reception.Admits(address, false, broken, kNow)) << i;
     EXPECT_LE(reception.reply().size(), broken.size());
   }
+}
+
+class StrictReceptionTest : public ReceptionTest {
+ protected:
+  StrictReceptionTest() : ReceptionTest(/*requires_token=*/true) {}
+};
+
+TEST_F(StrictReceptionTest, NobodyComesInWithoutAToken) {
+  EXPECT_FALSE(Say(protocol::Hello{"test", 0}));
+  const auto error = Reply<protocol::ErrorMessage>();
+  ASSERT_TRUE(error.has_value());
+  EXPECT_EQ(error->code, protocol::ErrorCode::kNeedsToken);
+  EXPECT_FALSE(error->message.empty());
+  EXPECT_FALSE(Say(protocol::Hello{"test", proof.Token(address, 77, kNow)})) << "proves nothing";
+  EXPECT_FALSE(Say(protocol::Ping{1}));
+  EXPECT_EQ(Reply<protocol::ErrorMessage>()->code, protocol::ErrorCode::kNeedsToken);
+  EXPECT_FALSE(Say(protocol::Welcome{"a daemon", 0}));
+  EXPECT_TRUE(reception.reply().empty()) << "answers are never answered";
+  for (int i = 0; i < 5000; ++i) Say(protocol::Ping{1});
+  EXPECT_TRUE(reception.reply().empty()) << "not to a flood";
+  EXPECT_EQ(metrics.Get(Counter::kRefusedNoToken), 5004u);
 }
 
 }  // namespace

@@ -5,8 +5,9 @@ import { ENVELOPE_BYTES, MAX_REPLY_BYTES } from '../../wire/envelope.js';
 import { MAX_UNSENT_BYTES, type Transport, type TransportEvents, type TransportOpener } from '../transport.js';
 import { ByteQueue } from './byte_queue.js';
 
-export function tcpSocket(host: string, port: number): TransportOpener {
-  return { kind: 'tcp', open: (events) => openTcp(host, port, events) };
+/** `token`: the text of a connect token, or empty. Everybody on the way can read it. */
+export function tcpSocket(host: string, port: number, token = ''): TransportOpener {
+  return { kind: 'tcp', access: token, open: (events) => openTcp(host, port, events) };
 }
 
 function openTcp(host: string, port: number, events: TransportEvents): Transport {

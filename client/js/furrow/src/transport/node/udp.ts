@@ -6,16 +6,22 @@ import { lookup } from 'node:dns';
 import { Datagrams, splitMessage } from '../../wire/datagrams.js';
 import { Malformed } from '../../wire/flat_table.js';
 import type { Transport, TransportEvents, TransportOpener } from '../transport.js';
+import { SecureSession } from './secure/session.js';
+import { parseToken, type Token } from './secure/token.js';
 
 const RECEIVE_BYTES = 1 << 20;
 
-export function udpSocket(host: string, port: number): TransportOpener {
+/** `token`: the text of a connect token, with which everything is sealed; empty: plain. */
+export function udpSocket(host: string, port: number, token = ''): TransportOpener {
+  const parsed = token === '' ? null : parseToken(token);
   return {
     kind: 'udp',
     makeSession: () => randomBytes(8).readBigUInt64LE(),
-    open: (events) => new UdpSocket(host, port, events),
+    open: (events) => new UdpSocket(host, port, parsed, events),
   };
 }
+
+const TICK_MS = 50;
 
 class UdpSocket implements Transport {
   private socket: ReturnType<typeof createSocket> | null = null;
@@ -23,8 +29,16 @@ class UdpSocket implements Transport {
   private messageId = 0;
   private isConnected = false;
   private isClosed = false;
+  private readonly secure: SecureSession | null;
+  private timer: ReturnType<typeof setInterval> | null = null;
 
-  constructor(host: string, port: number, private readonly events: TransportEvents) {
+  constructor(host: string, port: number, token: Token | null, private readonly events: TransportEvents) {
+    this.secure = token && new SecureSession(token, {
+      send: (packet) => this.write(packet),
+      onBegin: () => events.onOpen(),
+      onDatagram: (datagram) => this.accept(datagram),
+      onEnd: (why) => this.fail(why),
+    });
     lookup(host, (error, address, family) => {
       if (this.isClosed) return;
       if (error) this.fail(error.message);
@@ -40,12 +54,19 @@ class UdpSocket implements Transport {
     socket.on('error', (error) => this.fail(error.message));
     socket.on('connect', () => {
       this.isConnected = true;
-      this.events.onOpen();
+      if (this.secure === null) return this.events.onOpen();
+      this.timer = setInterval(() => this.secure!.tick(performance.now()), TICK_MS);
+      this.secure.tick(performance.now());
     });
     socket.connect(port, address); // so that the system drops datagrams from other addresses
   }
 
   private received(datagram: Uint8Array): void {
+    if (this.secure === null) this.accept(datagram);
+    else if (!this.isClosed) this.secure.received(datagram, performance.now()); // nothing proves a plain answer
+  }
+
+  private accept(datagram: Uint8Array): void {
     let messages: Uint8Array[];
     try {
       messages = this.datagrams.accept(datagram, performance.now());
@@ -68,13 +89,20 @@ class UdpSocket implements Transport {
   send(message: Uint8Array<ArrayBuffer>): void {
     if (!this.isConnected || this.isClosed) return;
     for (const datagram of splitMessage(message, this.messageId++ >>> 0)) {
-      // A refused send is reported here, not as an event of the socket.
-      this.socket!.send(datagram, (error) => error && this.fail(error.message));
+      if (this.secure === null) this.write(datagram);
+      else this.secure.send(datagram, performance.now());
     }
+  }
+
+  private write(datagram: Uint8Array): void {
+    // A refused send is reported here, not as an event of the socket.
+    this.socket!.send(datagram, (error) => error && this.fail(error.message));
   }
 
   close(): void {
     if (this.isClosed) return;
+    if (this.isConnected) this.secure?.close(performance.now());
+    if (this.timer !== null) clearInterval(this.timer);
     this.isClosed = true;
     const { socket } = this;
     // The last datagrams are still to be sent; close() would drop them.

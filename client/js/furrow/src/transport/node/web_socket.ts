@@ -5,7 +5,7 @@ import { createHash, randomBytes } from 'node:crypto';
 import { createConnection, type Socket } from 'node:net';
 import { MAX_REPLY_BYTES } from '../../wire/envelope.js';
 import { MAX_UNSENT_BYTES, type Transport, type TransportEvents, type TransportOpener } from '../transport.js';
-import { WEB_SOCKET_PROTOCOL } from '../web_socket.js';
+import { offeredProtocols } from '../web_socket.js';
 import { ByteQueue } from './byte_queue.js';
 
 const GUID = '258EAFA5-E914-47DA-95CA-C5AB0DC85B11';
@@ -15,8 +15,9 @@ const MAX_CONTROL_BYTES = 125;
 /** Frames of one message. Empty ones would otherwise take memory without end. */
 const MAX_PARTS = 4096;
 
-export function nodeWebSocket(host: string, port: number, path = '/ws'): TransportOpener {
-  return { kind: 'ws', open: (events) => new NodeWebSocket(host, port, path, events) };
+/** `token`: the text of a connect token, or empty. */
+export function nodeWebSocket(host: string, port: number, token = '', path = '/ws'): TransportOpener {
+  return { kind: 'ws', open: (events) => new NodeWebSocket(host, port, token, path, events) };
 }
 
 class NodeWebSocket implements Transport {
@@ -30,12 +31,12 @@ class NodeWebSocket implements Transport {
   private isStopped = false;
   private isClosed = false;
 
-  constructor(host: string, port: number, path: string, private readonly events: TransportEvents) {
+  constructor(host: string, port: number, token: string, path: string, private readonly events: TransportEvents) {
     this.socket = createConnection({ host, port, noDelay: true });
     const name = host.includes(':') ? `[${host}]` : host;
     this.socket.on('connect', () => this.socket.write(
       `GET ${path} HTTP/1.1\r\nHost: ${name}:${port}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n` +
-      `Sec-WebSocket-Key: ${this.key}\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Protocol: ${WEB_SOCKET_PROTOCOL}\r\n\r\n`));
+      `Sec-WebSocket-Key: ${this.key}\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Protocol: ${offeredProtocols(token).join(', ')}\r\n\r\n`));
     this.socket.on('data', (chunk) => this.received(chunk));
     this.socket.on('error', (error) => {
       this.why = error.message;
@@ -74,6 +75,10 @@ class NodeWebSocket implements Transport {
     const accept = lines.map((line) => /^sec-websocket-accept:\s*(\S+)\s*$/i.exec(line)?.[1]).find(Boolean);
     const expected = createHash('sha1').update(this.key + GUID).digest('base64');
     if (/^HTTP\/1\.1 101\b/.test(status) && accept === expected) return true;
+    if (/^HTTP\/1\.1 401\b/.test(status)) {
+      this.giveUp('the daemon requires a token, or refuses the one that it was shown');
+      return false;
+    }
     this.giveUp(`no WebSocket: ${status.slice(0, 80).replace(/[^ -~]/g, '?')}`);
     return false;
   }

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Asks for the connect token when the daemon requires one.
+import { button, h } from './dom';
+
+export class TokenDialog {
+  readonly element: HTMLDialogElement;
+  private readonly input = h('input', {
+    type: 'password', id: 'token', autocomplete: 'off', spellcheck: 'false', placeholder: 'frw1_…',
+  });
+  private readonly reason = h('p', { class: 'fine', role: 'status' });
+
+  constructor(onToken: (token: string) => void) {
+    const form = h('form', { method: 'dialog' },
+      h('label', { for: 'token' }, 'Token'), this.input,
+      h('div', { class: 'row end' },
+        button('Cancel', () => this.element.close()),
+        h('button', { class: 'primary', type: 'submit' }, 'Connect')));
+    form.addEventListener('submit', () => {
+      if (this.input.value.trim() !== '') onToken(this.input.value);
+      this.input.value = '';
+    });
+    this.element = h('dialog', { class: 'token', 'aria-labelledby': 'token-title' },
+      h('h2', { id: 'token-title' }, 'This daemon requires a token'), this.reason, form,
+      h('p', { class: 'fine' }, 'An operator makes one with “furrow token new”. It is kept until this tab is closed.'));
+  }
+
+  ask(reason: string): void {
+    this.reason.textContent = reason;
+    if (!this.element.open) this.element.showModal();
+  }
+}
