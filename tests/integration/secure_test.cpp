@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // A daemon that requires tokens, over real sockets: who gets in, what a token allows, and what
 // forged, repeated and late datagrams do.
+#include <chrono>
 #include <csignal>
+#include <filesystem>
 #include <fstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -231,6 +234,26 @@ TEST_F(Secure, SessionsEndWithTheirKey) {
   }
   EXPECT_EQ(client.refusal(), Refusal::kUnknownKey);
   SealedClient newer = Client(Role::kWatch);
+  EXPECT_TRUE(newer.Introduce());
+}
+
+// A copied key file often has rights for others, which a change of its rights alone removes.
+TEST_F(Secure, AKeyFileIsReadWhenItsRightsBecomeRight) {
+  namespace fs = std::filesystem;
+  SealedClient client = Client(Role::kWatch);
+  ASSERT_TRUE(client.Introduce());
+  const TestKeys others;
+  fs::permissions(others.file(), fs::perms::group_read, fs::perm_options::add);
+  fs::rename(others.file(), keys.file());
+  std::this_thread::sleep_for(std::chrono::milliseconds(2500));  // the daemon looks every second
+  SealedClient before = Client(Role::kWatch);
+  EXPECT_TRUE(before.Introduce()) << "the keys stay as they were";
+  fs::permissions(keys.file(), fs::perms::group_read, fs::perm_options::remove);
+  while (client.refusal() == Refusal::kNone || client.refusal() == Refusal::kUnknownSession) {
+    (void)client.TryNext();
+  }
+  EXPECT_EQ(client.refusal(), Refusal::kUnknownKey);
+  SealedClient newer(daemon.ready().udp, others.Token(Role::kWatch));
   EXPECT_TRUE(newer.Introduce());
 }
 
