@@ -194,12 +194,18 @@ bool Dispatcher::OnToken(Peer& peer, const protocol::Header& header, const std::
       return false;
     }
     Permit(peer, *std::move(access), parts_.limits);
+    peer.link->OnAdmitted();
     parts_.subscribers->EndForbidden(peer);
     parts_.publishers->EndForbidden(peer, now);
     return true;
   }
   if (!peer.access.admitted()) RefuseStranger(shard, peer, header, kNeedsTokenText);
   return peer.access.admitted();
+}
+
+void Dispatcher::RefuseStranger(Peer& peer) {
+  if (peer.token_ended) return;
+  RefuseStranger(parts_.shards->Of(peer.id), peer, {}, kNeedsTokenText);
 }
 
 // One clear error, then the connection ends.

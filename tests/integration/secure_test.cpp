@@ -15,6 +15,7 @@
 
 #include "daemon_fixture.h"
 #include "process.h"
+#include "protocol/framing/tcp_framing.h"
 #include "protocol/secure/token/token_text.h"
 #include "sealed_client.h"
 #include "server/session/access/token_gate.h"
@@ -294,6 +295,22 @@ TEST_F(Secure, TcpNeedsATokenInItsFirstMessage) {
   client.Send(protocol::Hello{"test", 0, false, ToText(keys.Token(Role::kPublish, "ann"))});
   ASSERT_TRUE(client.Await<protocol::Welcome>().has_value());
   Offer(client, offer);
+}
+
+TEST_F(Secure, TcpTakesLittleFromAStranger) {
+  TcpClient stranger(daemon.ready().tcp);
+  const auto prefix = protocol::FramePrefix(100'000);  // only the length, and no byte of the message
+  stranger.SendRaw(prefix);
+  EXPECT_EQ(stranger.Await<protocol::ErrorMessage>()->code, ErrorCode::kNeedsToken);
+  EXPECT_TRUE(stranger.AwaitClose());
+  TcpClient client(daemon.ready().tcp);
+  client.Send(protocol::Hello{"test", 0, false, ToText(keys.Token(Role::kWatch))});
+  ASSERT_TRUE(client.Await<protocol::Welcome>().has_value());
+  client.SendRaw(prefix);
+  client.SendRaw(std::vector<std::uint8_t>(100'000, 7));
+  const auto error = client.Await<protocol::ErrorMessage>();
+  ASSERT_TRUE(error.has_value());
+  EXPECT_THAT(error->message, HasSubstr("not a message")) << "it was read";
 }
 
 TEST_F(Secure, EveryWebDoorIsClosedWithoutAToken) {
