@@ -334,6 +334,11 @@ TEST_F(Secure, EveryWebDoorIsClosedWithoutAToken) {
   const std::string operates = ToText(keys.Token(Role::kOperate));
   EXPECT_EQ(status("/api/status", watch), 200);
   EXPECT_EQ(status(("/api/status?token=" + watch).c_str()), 200);
+  // Errors are copied into logs and messages.
+  const auto absent =
+      WebClient(*daemon.ready().http).Ask("GET", "/nothing?token=" + watch, "", "Host: localhost\r\n");
+  EXPECT_EQ(absent.status, 404);
+  EXPECT_EQ(absent.body.find(watch), std::string::npos);
   EXPECT_EQ(status("/metrics", watch), 403);
   EXPECT_EQ(status("/metrics", operates), 200);
   EXPECT_EQ(status("/api/settings", watch, "PATCH"), 403);
