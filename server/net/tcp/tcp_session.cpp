@@ -39,7 +39,8 @@ constexpr auto kWatchInterval = std::chrono::milliseconds(500);
 PeerLabel NameOf(const asio::ip::tcp::socket& socket) {
   asio::error_code error;
   const auto endpoint = socket.remote_endpoint(error);
-  if (error) return "tcp, disconnected";
+  // It has reset the connection, and what it sent before is still read. It may be anywhere.
+  if (error) return {"tcp, disconnected", {}, /*is_local=*/false};
   return LabelOf("tcp", endpoint.address().to_string(), endpoint.port());
 }
 
