@@ -72,6 +72,7 @@ class Dispatcher {
                       protocol::DecodeStatus status);
   void OnHello(Peer& peer, const protocol::Header& header, const protocol::Hello& hello, Time now);
   bool OnToken(Peer& peer, const protocol::Header& header, const std::string& token, Time now);
+  [[nodiscard]] const char* WhyNeeded(const Peer& peer) const;
   void RefuseStranger(Shard& shard, Peer& peer, const protocol::Header& header, std::string why);
   void OnListSubjects(Peer& peer, const protocol::Header& header,
                       const protocol::ListSubjects& request);
