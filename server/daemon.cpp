@@ -127,6 +127,7 @@ class Daemon {
   TokenGate gate_;
   SecureSessions secure_;
   FileWatch keys_file_;
+  bool keys_failed_ = false;  // the changed file could not be read yet
   std::unique_ptr<Hub> hub_;
   std::unique_ptr<TcpServer> tcp_;
   std::unique_ptr<UdpPort> udp_;
@@ -242,12 +243,18 @@ void Daemon::SetKeys(protocol::secure::KeyRing keys) {
   gate_.SetKeys(std::move(keys));
 }
 
-// A file that cannot be read changes nothing: an editor may be writing it.
+// A file that cannot be read changes nothing: an editor may be writing it. It is tried again until
+// it can be read, because what was wrong may end without a change of the file: its rights, or a lack
+// of descriptors. Otherwise a key that was retired would stay.
 void Daemon::ReadKeysIfChanged() {
-  if (!keys_file_.Changed()) return;
+  const bool changed = keys_file_.Changed();
+  if (!changed && !keys_failed_) return;
   auto keys = protocol::secure::LoadKeyRing(config_.security.keys);
-  if (!keys.ok()) {
-    return spdlog::error("the keys stay as they were: {}", keys.status().ToString());
+  keys_failed_ = !keys.ok();
+  if (keys_failed_) {
+    // Once for each change: this runs every second.
+    if (changed) spdlog::error("the keys stay as they were: {}", keys.status().ToString());
+    return;
   }
   spdlog::info("read {} from {}", Counted(keys->keys().size(), "key"),
                config_.security.keys.string());
@@ -318,8 +325,10 @@ Status Daemon::StartWeb() {
            },
        .answer =
            [this](const ApiRequest& request, Hub& hub, Time now) {
-             // Runs on shard 0's thread. The other shards wait until the reply is complete, so
-             // replies are quick.
+             // Runs on shard 0's thread. Strangers may ask the probes, and as often as they like, so
+             // these stop no other shard.
+             if (Api::IsProbe(request)) return api_->Answer(request, hub, now);
+             // The other shards wait until the reply is complete, so replies are quick.
              const Hub::ExclusiveLock lock(hub, 0);
              return api_->Answer(request, hub, now);
            },

@@ -30,6 +30,9 @@ class FrameReader {
  public:
   explicit FrameReader(std::size_t max_frame_bytes);
 
+  // Changes the limit, for frames whose length has not been read yet.
+  void SetMaxFrameBytes(std::size_t bytes) { max_frame_bytes_ = bytes; }
+
   // Removes bytes from the front of `bytes` until a frame is complete or no bytes are left. On
   // kFrame, `frame` is the message without its length: 8-byte aligned, valid until the next call.
   // Otherwise `frame` is unchanged. After kBadLength all calls return kBadLength.

@@ -90,7 +90,8 @@ bool IsRead(const WebRequest& request) {
 }
 
 // The reply for an unknown path. If even "/" is unknown, the page has not been built.
-ApiReply NotFound(const WebRequest& request, const std::string& path) {
+// Without the query, which may hold a token.
+ApiReply NotFound(const std::string& path) {
   if (path == "/") {
     return {
         .status = 503,
@@ -99,8 +100,7 @@ ApiReply NotFound(const WebRequest& request, const std::string& path) {
             "furrowd is running, but its web page is not installed. Build the target furrow-web.\n"
             "/mjpeg shows pictures without the page.\n"};
   }
-  return ErrorReply(404, "not_found", "",
-                    std::string(ToView(request.target())) + " does not exist");
+  return ErrorReply(404, "not_found", "", path + " does not exist");
 }
 
 // One connection. All functions run on the web thread, in one coroutine.
@@ -188,7 +188,11 @@ class HttpSession {
     const bool admitted = access.ok() && access->admitted();
     if (!admitted && !IsForAll(url->path)) {
       if (access.ok()) context_->metrics->Add(Counter::kRefusedNoToken);
-      ApiReply reply = NeedsToken(access.ok() ? kNeedsTokenText : access.status().what());
+      // 401 asks for a token, and the page then asks its user. Not where it would be disclosed.
+      ApiReply reply =
+          access.ok() && !context_->gate->TakesTokensFrom(IsLocal())
+              ? ErrorReply(403, "forbidden", "", kNoTokenHereText)
+              : NeedsToken(access.ok() ? kNeedsTokenText : access.status().what());
       co_return co_await WriteReply(stream_, request_, std::move(reply));
     }
     if (admitted) access_ = *std::move(access);
@@ -252,7 +256,7 @@ class HttpSession {
     const bool is_api = url.path.starts_with("/api/") || url.path == "/metrics" ||
                         url.path == "/healthz" || url.path == "/readyz";
     if (!is_api) {
-      co_return co_await WriteReply(stream_, request_, NotFound(request_, url.path));
+      co_return co_await WriteReply(stream_, request_, NotFound(url.path));
     }
     ApiRequest request{std::string(ToView(request_.method_string())), std::move(url),
                        std::move(request_.body()), access_};

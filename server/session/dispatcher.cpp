@@ -27,7 +27,7 @@ void Dispatcher::Dispatch(Shard& shard, Peer& peer, std::span<const std::uint8_t
   // Malformed messages of strangers get the same answer, so strangers learn nothing else.
   const bool is_hello = status == DecodeStatus::kOk && view.kind == MessageKind::kHello;
   if (!peer.access.admitted() && !is_hello) {
-    RefuseStranger(shard, peer, view.header, kNeedsTokenText);
+    RefuseStranger(shard, peer, view.header, WhyNeeded(peer));
   } else if (status == DecodeStatus::kOk) {
     DispatchVerified(shard, peer, view, now);
   } else {
@@ -194,12 +194,22 @@ bool Dispatcher::OnToken(Peer& peer, const protocol::Header& header, const std::
       return false;
     }
     Permit(peer, *std::move(access), parts_.limits);
+    peer.link->OnAdmitted();
     parts_.subscribers->EndForbidden(peer);
     parts_.publishers->EndForbidden(peer, now);
     return true;
   }
-  if (!peer.access.admitted()) RefuseStranger(shard, peer, header, kNeedsTokenText);
+  if (!peer.access.admitted()) RefuseStranger(shard, peer, header, WhyNeeded(peer));
   return peer.access.admitted();
+}
+
+const char* Dispatcher::WhyNeeded(const Peer& peer) const {
+  return parts_.gate == nullptr ? kNeedsTokenText : parts_.gate->WhyNeeded(peer.local);
+}
+
+void Dispatcher::RefuseStranger(Peer& peer) {
+  if (peer.token_ended) return;
+  RefuseStranger(parts_.shards->Of(peer.id), peer, {}, WhyNeeded(peer));
 }
 
 // One clear error, then the connection ends.

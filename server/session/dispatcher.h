@@ -50,6 +50,8 @@ class Dispatcher {
   // Sends the list of subjects to a peer that follows it, if the list has changed since the last
   // one. Requires the exclusive lock.
   void UpdateSubjectList(Peer& peer);
+  // Tells a peer that it must show a token, and cuts it off. Requires the lock of its shard.
+  void RefuseStranger(Peer& peer);
   // Ends a peer whose token is missing, refused or has ended: its connection closes after what is
   // queued, and further messages have no effect. Requires the lock of its shard.
   void CutOff(Peer& peer);
@@ -70,6 +72,7 @@ class Dispatcher {
                       protocol::DecodeStatus status);
   void OnHello(Peer& peer, const protocol::Header& header, const protocol::Hello& hello, Time now);
   bool OnToken(Peer& peer, const protocol::Header& header, const std::string& token, Time now);
+  [[nodiscard]] const char* WhyNeeded(const Peer& peer) const;
   void RefuseStranger(Shard& shard, Peer& peer, const protocol::Header& header, std::string why);
   void OnListSubjects(Peer& peer, const protocol::Header& header,
                       const protocol::ListSubjects& request);

@@ -156,6 +156,8 @@ void Hub::OnBadFrame(PeerId id) {
   Shard& shard = shards_.Of(id);
   const ShardLock lock(*this, shard.index);
   if (Peer* peer = shard.peers.Find(id); peer != nullptr) {
+    // The limit of strangers is lower, and they learn nothing else.
+    if (!peer->access.admitted()) return dispatcher_.RefuseStranger(*peer);
     shard.context.messages.SendError(*peer, {}, ErrorCode::kMalformed,
                                      "invalid frame length; a frame has 32 to " +
                                          std::to_string(protocol::kMaxRequestBytes) +
@@ -183,9 +185,10 @@ bool Hub::IsIdle(PeerId id, Time now) {
   Shard& shard = shards_.Of(id);
   const ShardLock lock(*this, shard.index);
   const Peer* peer = shard.peers.Find(id);
-  return peer == nullptr || peer->token_ended ||
-         (peer->num_subscriptions == 0 &&
-          now - peer->last_heard > FromSeconds(limits_.idle_seconds));
+  if (peer == nullptr || peer->token_ended) return true;
+  Time patience = FromSeconds(limits_.idle_seconds);
+  if (!peer->access.admitted()) patience = std::min(patience, kStrangerPatience);
+  return peer->num_subscriptions == 0 && now - peer->last_heard > patience;
 }
 
 void Hub::OnPicture(const FinishedPicture& picture) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -109,9 +110,12 @@ class Hub {
   void SetConsent(PeerId id, const Consent& consent);
   // UDP: records that a part of a message arrived. Requires the shard's lock.
   void OnFragment(PeerId id, Time now);
-  // True if the peer may be forgotten: no subscriptions, and silent for Limits::idle_seconds; or
-  // its token has ended.
+  // True if the peer may be forgotten: no subscriptions, and silent for Limits::idle_seconds, or for
+  // kStrangerPatience if it must show a token and has not; or its token has ended.
   [[nodiscard]] bool IsIdle(PeerId id, Time now);
+  static constexpr Time kStrangerPatience = std::chrono::seconds(5);
+  // True if peers may do nothing before they have shown a token.
+  [[nodiscard]] bool RequiresToken() const { return gate_ != nullptr && gate_->required(); }
   // TCP: answers a frame with an invalid length. The caller closes the connection afterwards.
   void OnBadFrame(PeerId id);
   // TCP: answers a connection beyond Limits::max_connections, which never becomes a peer.

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // A daemon that requires tokens, over real sockets: who gets in, what a token allows, and what
 // forged, repeated and late datagrams do.
+#include <chrono>
 #include <csignal>
+#include <filesystem>
 #include <fstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -12,6 +15,7 @@
 
 #include "daemon_fixture.h"
 #include "process.h"
+#include "protocol/framing/tcp_framing.h"
 #include "protocol/secure/token/token_text.h"
 #include "sealed_client.h"
 #include "server/session/access/token_gate.h"
@@ -234,6 +238,26 @@ TEST_F(Secure, SessionsEndWithTheirKey) {
   EXPECT_TRUE(newer.Introduce());
 }
 
+// A copied key file often has rights for others, which a change of its rights alone removes.
+TEST_F(Secure, AKeyFileIsReadWhenItsRightsBecomeRight) {
+  namespace fs = std::filesystem;
+  SealedClient client = Client(Role::kWatch);
+  ASSERT_TRUE(client.Introduce());
+  const TestKeys others;
+  fs::permissions(others.file(), fs::perms::group_read, fs::perm_options::add);
+  fs::rename(others.file(), keys.file());
+  std::this_thread::sleep_for(std::chrono::milliseconds(2500));  // the daemon looks every second
+  SealedClient before = Client(Role::kWatch);
+  EXPECT_TRUE(before.Introduce()) << "the keys stay as they were";
+  fs::permissions(keys.file(), fs::perms::group_read, fs::perm_options::remove);
+  while (client.refusal() == Refusal::kNone || client.refusal() == Refusal::kUnknownSession) {
+    (void)client.TryNext();
+  }
+  EXPECT_EQ(client.refusal(), Refusal::kUnknownKey);
+  SealedClient newer(daemon.ready().udp, others.Token(Role::kWatch));
+  EXPECT_TRUE(newer.Introduce());
+}
+
 TEST_F(Secure, SessionsEndWithTheirToken) {
   SealedClient client(daemon.ready().udp, keys.Token(Role::kWatch, "*", 2));
   TcpClient tcp(daemon.ready().tcp);
@@ -273,6 +297,22 @@ TEST_F(Secure, TcpNeedsATokenInItsFirstMessage) {
   Offer(client, offer);
 }
 
+TEST_F(Secure, TcpTakesLittleFromAStranger) {
+  TcpClient stranger(daemon.ready().tcp);
+  const auto prefix = protocol::FramePrefix(100'000);  // only the length, and no byte of the message
+  stranger.SendRaw(prefix);
+  EXPECT_EQ(stranger.Await<protocol::ErrorMessage>()->code, ErrorCode::kNeedsToken);
+  EXPECT_TRUE(stranger.AwaitClose());
+  TcpClient client(daemon.ready().tcp);
+  client.Send(protocol::Hello{"test", 0, false, ToText(keys.Token(Role::kWatch))});
+  ASSERT_TRUE(client.Await<protocol::Welcome>().has_value());
+  client.SendRaw(prefix);
+  client.SendRaw(std::vector<std::uint8_t>(100'000, 7));
+  const auto error = client.Await<protocol::ErrorMessage>();
+  ASSERT_TRUE(error.has_value());
+  EXPECT_THAT(error->message, HasSubstr("not a message")) << "it was read";
+}
+
 TEST_F(Secure, EveryWebDoorIsClosedWithoutAToken) {
   const auto status = [&](const char* path, const std::string& token = {},
                           const char* method = "GET") {
@@ -294,6 +334,11 @@ TEST_F(Secure, EveryWebDoorIsClosedWithoutAToken) {
   const std::string operates = ToText(keys.Token(Role::kOperate));
   EXPECT_EQ(status("/api/status", watch), 200);
   EXPECT_EQ(status(("/api/status?token=" + watch).c_str()), 200);
+  // Errors are copied into logs and messages.
+  const auto absent =
+      WebClient(*daemon.ready().http).Ask("GET", "/nothing?token=" + watch, "", "Host: localhost\r\n");
+  EXPECT_EQ(absent.status, 404);
+  EXPECT_EQ(absent.body.find(watch), std::string::npos);
   EXPECT_EQ(status("/metrics", watch), 403);
   EXPECT_EQ(status("/metrics", operates), 200);
   EXPECT_EQ(status("/api/settings", watch, "PATCH"), 403);

@@ -49,6 +49,7 @@ export class App {
   private readonly timeline: Timeline;
   private readonly tabs: Tabs;
   private readonly token = new TokenDialog(setToken);
+  private toldWhy = '';
   private readonly help: HTMLDialogElement;
   private readonly root = h('div', { class: 'app' });
   private subjects: SubjectInfo[] | null = null;
@@ -230,7 +231,13 @@ export class App {
     try {
       await api.status();
     } catch (error) {
-      if (error instanceof ApiError && error.status === 401) this.token.ask(error.message);
+      if (!(error instanceof ApiError)) return;
+      if (error.status === 401) this.token.ask(error.message);
+      // The daemon takes no token from this computer, where it would travel in clear text.
+      if (error.status === 403 && error.message !== this.toldWhy) {
+        this.toldWhy = error.message;
+        this.toasts.say(error.message, 'error');
+      }
     }
   }
 

@@ -100,11 +100,15 @@ Refusal Admission::Shake(const InitiationView& view, const KnownToken& known,
   if (const Refusal refusal = CheckUse(known.head.nonce, from, now); refusal != Refusal::kNone) {
     return refusal;
   }
-  // The host first: a host that has used up its own budget takes nothing from the others.
-  if (!attempts_of_hosts_.Take(from, now.us) || !attempts_.Take(now.us)) return Refusal::kBusy;
+  // The seal costs about as much as the cookie. Before the budgets, because otherwise somebody who
+  // has no token at all could use them up with invented ones.
   OpenedToken opened;
   if (const Refusal refusal = CheckContent(view.token, known, opened); refusal != Refusal::kNone) {
     return refusal;
+  }
+  // The host first: a host that has used up its own budget takes nothing from the others.
+  if (!attempts_of_hosts_.Take(from, known.head.nonce, now.us) || !attempts_.Take(now.us)) {
+    return Refusal::kBusy;
   }
   Handshake handshake(Handshake::Side::kResponder, opened.key, PrologueOf(view.before_message),
                       random_);

@@ -24,7 +24,8 @@ struct AdmissionSettings {
   std::uint32_t handshakes_per_second = 500;
   std::uint32_t handshakes_per_second_of_a_token = 10;
   // First messages that are examined: each costs 14 us, also if the client does not know the key of
-  // the token that it shows. One host may use a small part, so that others find some left.
+  // the token that it shows. One token at one host may use a small part, so that others find some
+  // left.
   std::uint32_t attempts_per_second = 2000;
   std::uint32_t attempts_per_second_of_a_host = 100;
 };
@@ -68,8 +69,8 @@ struct AdmissionResult {
 
 // Decides who gets a session. Checks run in the order of their cost, so that an attacker who knows
 // less costs less: size, magic, key id, expiry, cookie, use from another host, seal of the token,
-// proof of the token's key, budgets, and only then X25519. Opening a token and checking the proof
-// have budgets of their own, for each host and for all of them. Before the cookie is right, nothing
+// proof of the token's key, budgets, and only then X25519. Checking the proof has budgets of its
+// own, for each token at each host and for all of them. Before the cookie is right, nothing
 // is allocated and no state is kept. Afterwards the state is bounded by the number of sessions.
 //
 // The caller owns the sessions. It must Release() every accepted handshake when its session ends.

@@ -171,6 +171,8 @@ void SecureServer::Renew(Session& session, ByteView renewal, Now now, ServerEven
   const Refusal refusal = admission_.Renew(renewal, session.channel.handshake_hash, session.index,
                                            now, session.grant, session.expires, session.use);
   event.renewed = refusal == Refusal::kNone;
+  // Otherwise two tokens in turn could open sessions without end and move them all to one token.
+  if (event.renewed) LimitConfirmed(session, /*replaces=*/false);
   std::array<std::uint8_t, kRenewedBytes> content;
   StoreLittle(session.expires, content.data());
   content.back() = static_cast<std::uint8_t>(refusal);
@@ -198,6 +200,12 @@ void SecureServer::Confirm(Session& session, ServerEvent& event) {
   event.opened = true;
   event.hello = std::move(session.hello);
   session.hello = {};
+  LimitConfirmed(session, /*replaces=*/true);
+}
+
+// Ends the other sessions of the session's token that are too many, first those that were silent for
+// longest. `replaces`: also one from the same address and port.
+void SecureServer::LimitConfirmed(const Session& session, bool replaces) {
   std::vector<Session*> others;
   for (const std::uint32_t index : session.use->sessions) {
     Session* const other = Find(index);
@@ -206,7 +214,7 @@ void SecureServer::Confirm(Session& session, ServerEvent& event) {
   std::sort(others.begin(), others.end(),
             [](const Session* a, const Session* b) { return a->last_heard_us > b->last_heard_us; });
   for (std::size_t i = 0; i < others.size(); ++i) {
-    const bool is_replaced = others[i]->address == session.address;
+    const bool is_replaced = replaces && others[i]->address == session.address;
     if (is_replaced || i + 1 >= settings_.max_sessions_of_a_token) End(*others[i], true);
   }
 }

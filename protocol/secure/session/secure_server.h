@@ -15,7 +15,7 @@ namespace furrow::protocol::secure {
 struct SecureServerSettings {
   AdmissionSettings admission;
   std::size_t max_sessions = 4096;  // at most 65,535
-  // More sessions of one token close the one that has been silent for longest.
+  // More sessions of one token, also by a renewal, close the one that was silent for longest.
   std::size_t max_sessions_of_a_token = 16;
 };
 
@@ -104,6 +104,7 @@ class SecureServer {
   void Challenge(Session& session, std::size_t received, const PeerAddress& from, Now now,
                  ServerEvent& event);
   void Confirm(Session& session, ServerEvent& event);
+  void LimitConfirmed(const Session& session, bool replaces);
   void LimitUnconfirmed(const TokenUse& use);
   void Reply(Session& session, ControlType type, ByteView content, Now now, ServerEvent& event);
   void End(Session& session, bool report);

@@ -23,6 +23,8 @@ namespace furrow::server {
 namespace {
 
 constexpr std::size_t kReadBytes = 64 * 1024;
+// The largest message of a client that must show a token first. A Hello with one has 1 KiB at most.
+constexpr std::size_t kStrangerBytes = 4 * 1024;
 // Bytes per write call; small messages leave together.
 constexpr std::size_t kWriteBytes = 16 * 1024;
 // Unsent bytes that the kernel may queue (TCP_NOTSENT_LOWAT). By default it queues megabytes, so a
@@ -37,7 +39,8 @@ constexpr auto kWatchInterval = std::chrono::milliseconds(500);
 PeerLabel NameOf(const asio::ip::tcp::socket& socket) {
   asio::error_code error;
   const auto endpoint = socket.remote_endpoint(error);
-  if (error) return "tcp, disconnected";
+  // It has reset the connection, and what it sent before is still read. It may be anywhere.
+  if (error) return {"tcp, disconnected", {}, /*is_local=*/false};
   return LabelOf("tcp", endpoint.address().to_string(), endpoint.port());
 }
 
@@ -56,7 +59,7 @@ TcpSession::TcpSession(asio::ip::tcp::socket socket, const Limits& limits, Hub* 
       outbox_(kMaxReplies, static_cast<std::size_t>(limits.outbox_messages)),
       // The reader checks a length before it allocates, so a client can make it hold this much at
       // most.
-      frames_(protocol::kMaxRequestBytes),
+      frames_(hub->RequiresToken() ? kStrangerBytes : protocol::kMaxRequestBytes),
       in_(kReadBytes) {}
 
 void TcpSession::Start() {
@@ -231,6 +234,9 @@ int TcpSession::SendFrame(std::uint64_t key, std::span<const std::uint8_t> messa
   if (!writing_) Wake();
   return dropped;
 }
+
+// Called while this session reads a message.
+void TcpSession::OnAdmitted() { frames_.SetMaxFrameBytes(protocol::kMaxRequestBytes); }
 
 // Later, because the hub is using this peer right now.
 void TcpSession::Finish() {

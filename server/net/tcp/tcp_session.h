@@ -43,6 +43,7 @@ class TcpSession : public Link, public std::enable_shared_from_this<TcpSession> 
   int SendFrame(std::uint64_t key, std::span<const std::uint8_t> message, std::size_t keep,
                 int shard) override;
   void DropFrames(std::uint64_t key) override;
+  void OnAdmitted() override;
   void Finish() override;
   [[nodiscard]] bool IsStuck(Time now) const override;
 

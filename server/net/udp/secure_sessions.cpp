@@ -22,6 +22,7 @@ SecureSessions::SecureSessions(const TokenGate* gate, std::function<std::uint64_
                .max_sessions = static_cast<std::size_t>(max_sessions)}),
       shard_of_(kPlaces),
       is_v4_(kPlaces),
+      scope_of_(kPlaces),
       closed_(static_cast<std::size_t>(shards)),
       has_closed_(static_cast<std::size_t>(shards)) {}
 
@@ -46,6 +47,9 @@ SecureSessions::Outcome SecureSessions::OnDatagram(std::span<std::uint8_t> bytes
     is_v4_[place] = from.address().is_v4();
   }
   outcome.shard = shard_of_[place];
+  // Of the address that the session sends to, not of one that has yet to prove itself.
+  const secure::PeerAddress* const address = server_.AddressOf(event.session);
+  if (address != nullptr && *address == ToPeerAddress(from)) scope_of_[place] = ScopeOf(from);
   if (!event.closed && (event.opened || event.renewed)) {
     const auto info = server_.InfoOf(event.session);
     outcome.access = Access::Of(*info.grant, info.key_id, gate_->ExpiryOf(info.expires, now));
@@ -77,7 +81,7 @@ bool SecureSessions::Seal(std::uint32_t session, std::span<std::uint8_t> packet,
   if (server_.Seal(session, packet, At(ReadClock()), address) != secure::SealStatus::kOk) {
     return false;
   }
-  to = ToEndpoint(address, is_v4_[PlaceOf(session)]);
+  to = ToEndpoint(address, is_v4_[PlaceOf(session)], scope_of_[PlaceOf(session)]);
   return true;
 }
 

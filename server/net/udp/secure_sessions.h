@@ -68,6 +68,7 @@ class SecureSessions : public DatagramSealer {
   std::uint64_t retries_ = 0;                       // of server_, that were counted
   std::vector<std::uint8_t> shard_of_;              // by the place of the session
   std::vector<bool> is_v4_;                         // by the place of the session
+  std::vector<std::uint32_t> scope_of_;             // by the place of the session; see ScopeOf()
   std::vector<std::vector<std::uint32_t>> closed_;  // by shard
   std::vector<std::atomic<bool>> has_closed_;       // by shard; read without the lock
 };

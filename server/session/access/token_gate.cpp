@@ -50,7 +50,7 @@ Result<Access> TokenGate::Refuse(Refusal refusal) const {
 
 // The public part of a token can be seen on the network, so the client key must be shown, too.
 Result<Access> TokenGate::Admit(std::string_view text, bool local, Time now) const {
-  if (!local && !settings_.tokens_in_clear) {
+  if (!TakesTokensFrom(local)) {
     metrics_->Add(Counter::kRefusedInClear);
     return Status(StatusCode::kInvalidArgument,
                   "the daemon takes tokens over TCP and HTTP from its own computer only, because "

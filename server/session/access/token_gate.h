@@ -19,6 +19,15 @@
 
 namespace furrow::server {
 
+// The message for a client without a token, where it may show one.
+inline constexpr char kNeedsTokenText[] =
+    "the daemon requires a token: make one with 'furrow token new', connect with --token FILE";
+// The same where it may not. A client that is asked for a token would send it in clear text, and a
+// refusal comes too late.
+inline constexpr char kNoTokenHereText[] =
+    "the daemon requires a token, and takes none over TCP and HTTP from other computers, because "
+    "they are not encrypted: use UDP, or a tunnel such as ssh -L";
+
 struct GateSettings {
   Security security = Security::kOpen;
   std::string name;  // of this daemon: the audience of tokens; may be empty
@@ -43,6 +52,16 @@ class TokenGate {
   // What a peer may do that has shown nothing yet.
   [[nodiscard]] Access Stranger() const { return required() ? Access() : Access::Everything(); }
 
+  // False: a client must not even be asked for its token, which would be sent in clear text.
+  // `local`: as for Admit().
+  [[nodiscard]] bool TakesTokensFrom(bool local) const {
+    return local || settings_.tokens_in_clear;
+  }
+  // What a client is told over TCP and HTTP that has shown no token.
+  [[nodiscard]] const char* WhyNeeded(bool local) const {
+    return TakesTokensFrom(local) ? kNeedsTokenText : kNoTokenHereText;
+  }
+
   // Opens a token that a client has shown. `local`: the client is on this computer. Errors
   // (kInvalidArgument): a sentence for the client. Refusals are counted by reason.
   [[nodiscard]] Result<Access> Admit(std::string_view token, bool local, Time now) const;
@@ -64,9 +83,5 @@ class TokenGate {
 
 // The counter of a reason.
 [[nodiscard]] Counter RefusalCounter(protocol::secure::Refusal refusal);
-
-// The message for a client without a token, on every transport.
-inline constexpr char kNeedsTokenText[] =
-    "the daemon requires a token: make one with 'furrow token new', connect with --token FILE";
 
 }  // namespace furrow::server

@@ -51,6 +51,8 @@ class Link {
   // Ends the connection after the replies that are queued. Only TCP has one: WebSockets end with a
   // goodbye to stream 0, and UDP peers are forgotten.
   virtual void Finish() {}
+  // The peer has shown a valid token.
+  virtual void OnAdmitted() {}
   // True if the peer has stopped reading, so that new frames would only replace queued ones.
   [[nodiscard]] virtual bool IsStuck(Time /*now*/) const { return false; }
 };

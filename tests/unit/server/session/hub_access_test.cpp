@@ -103,6 +103,27 @@ TEST_F(HubAccessTest, BytesThatAreNoMessageAreAStrangers) {
   EXPECT_TRUE(other.finished);
 }
 
+TEST_F(HubAccessTest, AStrangerWhoShowsNothingMayNotStay) {
+  FakePeer known;
+  Connect(&known);
+  Show(known, Token(kBoth, "*"));
+  const Time began = now;
+  EXPECT_FALSE(hub->IsIdle(peer.id, began + Hub::kStrangerPatience));
+  EXPECT_TRUE(hub->IsIdle(peer.id, began + Hub::kStrangerPatience + FromSeconds(0.001)));
+  EXPECT_FALSE(hub->IsIdle(known.id, began + Hub::kStrangerPatience + FromSeconds(0.001)));
+}
+
+TEST_F(HubAccessTest, AFrameThatIsTooLongIsAStrangers) {
+  hub->OnBadFrame(peer.id);
+  EXPECT_EQ(Refused(peer), ErrorCode::kNeedsToken);
+  EXPECT_TRUE(peer.finished);
+  FakePeer known;
+  Connect(&known);
+  Show(known, Token(kBoth, "*"));
+  hub->OnBadFrame(known.id);
+  EXPECT_EQ(Refused(known), ErrorCode::kMalformed);
+}
+
 TEST_F(HubAccessTest, ATokenEndsInTime) {
   Show(peer, Token(kBoth, "*", 60));
   Send(peer, Offer("ann"), 1);

@@ -234,6 +234,20 @@ TEST_F(AttemptsTest, OneHostCannotUseUpTheAttemptsOfAll) {
   EXPECT_EQ(Try(token_, kHome), Refusal::kNone) << "another host";
 }
 
+// All addresses of an IPv6 network of 64 bits are one host.
+TEST_F(AttemptsTest, AStrangerDoesNotLockOutItsNeighbours) {
+  PeerAddress stranger;
+  stranger.host = {0xfd, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+  PeerAddress neighbour = stranger;
+  neighbour.host[15] = 16;
+  ClientToken invented = token_;
+  invented.bytes[100] ^= 1;
+  for (int i = 0; i < 300; ++i) ASSERT_EQ(Try(invented, stranger), Refusal::kForgedToken);
+  // Who has seen a token uses up the budget of that token alone.
+  EXPECT_EQ(Examined(stranger, 300), 100);
+  EXPECT_EQ(Try(test::MakeTestToken(ring_, random_), neighbour), Refusal::kNone);
+}
+
 TEST_F(AttemptsTest, TheAttemptsOfAllHostsAreLimited) {
   int examined = 0;
   for (std::uint8_t host = 1; host <= 40; ++host) {

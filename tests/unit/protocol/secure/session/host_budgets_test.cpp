@@ -10,9 +10,10 @@ namespace {
 
 constexpr std::int64_t kSecond = 1'000'000;
 
-int Taken(HostBudgets& budgets, const PeerAddress& from, std::int64_t now_us) {
+int Taken(HostBudgets& budgets, const PeerAddress& from, std::int64_t now_us,
+          const TokenNonce& token = {}) {
   int taken = 0;
-  while (taken < 1000 && budgets.Take(from, now_us)) ++taken;
+  while (taken < 1000 && budgets.Take(from, token, now_us)) ++taken;
   return taken;
 }
 
@@ -23,6 +24,14 @@ TEST(HostBudgets, EachHostHasItsOwn) {
   EXPECT_EQ(Taken(budgets, test::kSameHost, kSecond), 0) << "another port of the host";
   EXPECT_EQ(Taken(budgets, test::kAway, kSecond), 20);
   EXPECT_EQ(Taken(budgets, test::kHome, kSecond + kSecond / 2), 10);
+}
+
+TEST(HostBudgets, EachTokenOfAHostHasItsOwn) {
+  test::RepeatableRandom random(1);
+  HostBudgets budgets(20, random);
+  EXPECT_EQ(Taken(budgets, test::kHome, kSecond, {1}), 20);
+  EXPECT_EQ(Taken(budgets, test::kHome, kSecond, {2}), 20);
+  EXPECT_EQ(Taken(budgets, test::kHome, kSecond, {1}), 0);
 }
 
 TEST(HostBudgets, AnIpv6NetworkIsOneHost) {

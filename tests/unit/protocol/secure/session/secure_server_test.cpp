@@ -298,6 +298,31 @@ TEST(SecureServer, LimitsTheSessionsOfAToken) {
   EXPECT_EQ(m.server.TakeClosed(), (std::vector<std::uint32_t>{sessions[0], sessions[1]}));
 }
 
+// Neither does the holder of two tokens, who moves each session to the other token.
+TEST(SecureServer, LimitsTheSessionsOfATokenAfterRenewals) {
+  SecureServerSettings settings;
+  settings.max_sessions_of_a_token = 2;
+  Meeting m(settings);
+  const ClientToken next = test::MakeTestToken(m.ring, m.random);
+  std::vector<std::uint32_t> sessions;
+  for (std::uint16_t i = 0; i < 5; ++i) {
+    m.now = test::Later(m.now, 1'000'000);
+    SecureClient client(m.token, Text("hello"), m.random);
+    const PeerAddress from = FromIpv4({192, 0, 2, 1}, static_cast<std::uint16_t>(6'000 + i));
+    for (int step = 0; step < 3; ++step) {
+      const ServerEvent event = m.ToServer(m.Poll(client), from);
+      if (event.opened) sessions.push_back(event.session);
+      (void)m.ToClient(client, event.reply());
+    }
+    client.Renew(next);
+    EXPECT_TRUE(m.ToServer(m.Poll(client), from).renewed);
+  }
+  ASSERT_EQ(sessions.size(), 5u);
+  EXPECT_EQ(m.server.num_sessions(), 2u);
+  EXPECT_EQ(m.server.TakeClosed(),
+            (std::vector<std::uint32_t>{sessions[0], sessions[1], sessions[2]}));
+}
+
 TEST(SecureServer, LimitsHandshakesThatAreNotContinued) {
   Meeting m;
   for (std::uint16_t i = 0; i < 30; ++i) {

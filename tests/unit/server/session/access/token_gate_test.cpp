@@ -83,6 +83,10 @@ TEST_F(TokenGateTest, OtherComputersShowNothingInClearText) {
       [this] { return unix_now; }, &metrics);
   lenient.SetKeys(ring);
   EXPECT_TRUE(lenient.Admit(ToText(token), /*local=*/false, Time(0)).ok());
+  // Nobody is asked for a token that would be refused after it was sent.
+  EXPECT_STREQ(gate.WhyNeeded(/*local=*/true), kNeedsTokenText);
+  EXPECT_STREQ(gate.WhyNeeded(/*local=*/false), kNoTokenHereText);
+  EXPECT_STREQ(lenient.WhyNeeded(/*local=*/false), kNeedsTokenText);
 }
 
 TEST_F(TokenGateTest, ARetiredKeyIsGone) {
