@@ -244,8 +244,8 @@ void Daemon::SetKeys(protocol::secure::KeyRing keys) {
 }
 
 // A file that cannot be read changes nothing: an editor may be writing it. It is tried again until
-// it can be read, because what was wrong may end without a change of the file: its rights, or a lack
-// of descriptors. Otherwise a key that was retired would stay.
+// it can be read, because what was wrong may end without a change of the file: its rights, or a
+// lack of descriptors. Otherwise a key that was retired would stay.
 void Daemon::ReadKeysIfChanged() {
   const bool changed = keys_file_.Changed();
   if (!changed && !keys_failed_) return;
@@ -325,8 +325,8 @@ Status Daemon::StartWeb() {
            },
        .answer =
            [this](const ApiRequest& request, Hub& hub, Time now) {
-             // Runs on shard 0's thread. Strangers may ask the probes, and as often as they like, so
-             // these stop no other shard.
+             // Runs on shard 0's thread. Strangers may ask the probes, and as often as they like,
+             // so these stop no other shard.
              if (Api::IsProbe(request)) return api_->Answer(request, hub, now);
              // The other shards wait until the reply is complete, so replies are quick.
              const Hub::ExclusiveLock lock(hub, 0);

@@ -189,10 +189,9 @@ class HttpSession {
     if (!admitted && !IsForAll(url->path)) {
       if (access.ok()) context_->metrics->Add(Counter::kRefusedNoToken);
       // 401 asks for a token, and the page then asks its user. Not where it would be disclosed.
-      ApiReply reply =
-          access.ok() && !context_->gate->TakesTokensFrom(IsLocal())
-              ? ErrorReply(403, "forbidden", "", kNoTokenHereText)
-              : NeedsToken(access.ok() ? kNeedsTokenText : access.status().what());
+      ApiReply reply = access.ok() && !context_->gate->TakesTokensFrom(IsLocal())
+                           ? ErrorReply(403, "forbidden", "", kNoTokenHereText)
+                           : NeedsToken(access.ok() ? kNeedsTokenText : access.status().what());
       co_return co_await WriteReply(stream_, request_, std::move(reply));
     }
     if (admitted) access_ = *std::move(access);

@@ -110,8 +110,8 @@ class Hub {
   void SetConsent(PeerId id, const Consent& consent);
   // UDP: records that a part of a message arrived. Requires the shard's lock.
   void OnFragment(PeerId id, Time now);
-  // True if the peer may be forgotten: no subscriptions, and silent for Limits::idle_seconds, or for
-  // kStrangerPatience if it must show a token and has not; or its token has ended.
+  // True if the peer may be forgotten: no subscriptions, and silent for Limits::idle_seconds, or
+  // for kStrangerPatience if it must show a token and has not; or its token has ended.
   [[nodiscard]] bool IsIdle(PeerId id, Time now);
   static constexpr Time kStrangerPatience = std::chrono::seconds(5);
   // True if peers may do nothing before they have shown a token.

@@ -299,7 +299,8 @@ TEST_F(Secure, TcpNeedsATokenInItsFirstMessage) {
 
 TEST_F(Secure, TcpTakesLittleFromAStranger) {
   TcpClient stranger(daemon.ready().tcp);
-  const auto prefix = protocol::FramePrefix(100'000);  // only the length, and no byte of the message
+  const auto prefix =
+      protocol::FramePrefix(100'000);  // only the length, and no byte of the message
   stranger.SendRaw(prefix);
   EXPECT_EQ(stranger.Await<protocol::ErrorMessage>()->code, ErrorCode::kNeedsToken);
   EXPECT_TRUE(stranger.AwaitClose());
@@ -335,8 +336,8 @@ TEST_F(Secure, EveryWebDoorIsClosedWithoutAToken) {
   EXPECT_EQ(status("/api/status", watch), 200);
   EXPECT_EQ(status(("/api/status?token=" + watch).c_str()), 200);
   // Errors are copied into logs and messages.
-  const auto absent =
-      WebClient(*daemon.ready().http).Ask("GET", "/nothing?token=" + watch, "", "Host: localhost\r\n");
+  const auto absent = WebClient(*daemon.ready().http)
+                          .Ask("GET", "/nothing?token=" + watch, "", "Host: localhost\r\n");
   EXPECT_EQ(absent.status, 404);
   EXPECT_EQ(absent.body.find(watch), std::string::npos);
   EXPECT_EQ(status("/metrics", watch), 403);

@@ -13,8 +13,8 @@ class RateBudget {
       : per_second_(per_second), level_(std::int64_t{per_second} * kUnit) {}
 
   // Takes one event from the budget. False, without effect, if it is used up. Threads that share a
-  // budget read the clock before they wait for each other, so a time may be older than the last one;
-  // it gives nothing, and no time counts twice.
+  // budget read the clock before they wait for each other, so a time may be older than the last
+  // one; it gives nothing, and no time counts twice.
   [[nodiscard]] bool Take(std::int64_t now_us) {
     const std::int64_t passed = std::clamp<std::int64_t>(now_us - last_us_, 0, kUnit);
     level_ = std::min(per_second_ * kUnit, level_ + passed * per_second_);

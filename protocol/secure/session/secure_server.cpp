@@ -203,8 +203,8 @@ void SecureServer::Confirm(Session& session, ServerEvent& event) {
   LimitConfirmed(session, /*replaces=*/true);
 }
 
-// Ends the other sessions of the session's token that are too many, first those that were silent for
-// longest. `replaces`: also one from the same address and port.
+// Ends the other sessions of the session's token that are too many, first those that were silent
+// for longest. `replaces`: also one from the same address and port.
 void SecureServer::LimitConfirmed(const Session& session, bool replaces) {
   std::vector<Session*> others;
   for (const std::uint32_t index : session.use->sessions) {
