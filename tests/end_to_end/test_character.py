@@ -211,13 +211,15 @@ class CharacterTest(unittest.TestCase):
             for node in root["nodes"]:
                 node.pop("skin", None)
 
-        for change, words in ((no_uvs, "no UVs"), (unskinned, "1 vertex follows no joint"),
-                              (no_skin, "skinned")):
+        for change, words in ((unskinned, "1 vertex follows no joint"), (no_skin, "skinned")):
             with self.subTest(change.__name__):
                 path = self.changed(change)
                 self.refused(path, words)
                 furrow("character", "check", path, check=3)
         furrow("character", "import", self.changed(flat), "--out", self.root / "flat.glb", check=0)
+        moves = furrow("character", "import", self.changed(no_uvs), "--out", self.root / "no_uvs.glb", check=0)
+        self.assertEqual(moves.stderr.decode().count("there are no UVs"), 1)
+        self.assertIn("nothing folds", moves.stderr.decode())
         for change in (unskinned,):
             with self.subTest(change.__name__ + " repaired"):
                 furrow("character", "import", self.changed(change), "--repair", "--out",

@@ -114,7 +114,7 @@ class RecordTest(FolderTest):
                 rows[frame] = row
         self.assertEqual(rows.keys(), solved.rows.keys())
 
-    def test_a_full_disk_ends_the_recording_but_not_the_daemon(self):
+    def test_a_full_disk_pauses_the_recording_but_not_the_daemon(self):
         def small_files():
             signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
             resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
@@ -130,10 +130,11 @@ class RecordTest(FolderTest):
         process.send_signal(signal.SIGTERM)
         _, stderr = process.communicate(timeout=GUARD)
         self.assertEqual(process.returncode, 0)
-        self.assertEqual(stderr.decode().count("recording stopped"), 1, stderr.decode())
-        take, = folder.glob("*.mcap")
-        self.assertLessEqual(take.stat().st_size, 100_000)
-        self.assertGreater(self.count(take, "poses"), 0)
+        self.assertIn("recording paused", stderr.decode())
+        takes = sorted(folder.glob("*.mcap"))  # a second one if the daemon has found room meanwhile
+        for take in takes:
+            self.assertLessEqual(take.stat().st_size, 100_000)
+        self.assertGreater(self.count(takes[0], "poses"), 0)
 
     def test_a_folder_that_cannot_be_created_is_reported_at_the_start(self):
         (self.root / "file").write_text("")

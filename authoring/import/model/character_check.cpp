@@ -135,6 +135,10 @@ class Checker {
     for (std::size_t m = 0; m < notes_.meshes.size(); ++m) {
       CheckMesh(character_.meshes[m], notes_.meshes[m]);
     }
+    // One line, and not one per mesh.
+    if (!notes_.meshes.empty() && !HasUvs()) {
+      FindMissingUvs({}, "there are no UVs, which wrinkle maps require", false);
+    }
     if (!notes_.idle_shapes.empty()) CheckIdleShapes();
   }
 
@@ -154,9 +158,8 @@ class Checker {
 
   void CheckMesh(const character::Mesh& mesh, const character::MeshNotes& notes) {
     const std::string where = "mesh '" + mesh.name + "'";
-    if (!notes.has_uvs) {
-      const bool others_have = std::ranges::any_of(notes_.meshes, &character::MeshNotes::has_uvs);
-      FindMissingUvs(where, "there are no UVs, which wrinkle maps require", others_have);
+    if (!notes.has_uvs && HasUvs()) {
+      FindMissingUvs(where, "there are no UVs, which wrinkle maps require", true);
     }
     if (notes.unskinned_vertices > 0) {
       Find(Severity::kError, "unskinned-vertices", where,
@@ -190,6 +193,10 @@ class Checker {
     }
   }
 
+  [[nodiscard]] bool HasUvs() const {
+    return std::ranges::any_of(notes_.meshes, &character::MeshNotes::has_uvs);
+  }
+
   // Meshes with the same material share pictures and therefore UV space. Only those count that maps
   // can be baked for.
   void CheckAtlases() {
@@ -218,9 +225,10 @@ class Checker {
   // Parts without UVs move, but stay flat. Figures made of voxels are like that all over: their UVs
   // only choose a colour.
   void FindMissingUvs(const std::string& where, const std::string& what, bool others_fold) {
-    Find(Severity::kWarning, "uv-missing", where,
-         what + (others_fold ? "; it gets no wrinkles" : "; the character moves, but nothing folds"),
-         "unwrap it without overlaps, and keep UVs without a picture (gltfpack -kv)");
+    Find(
+        Severity::kWarning, "uv-missing", where,
+        what + (others_fold ? "; it gets no wrinkles" : "; the character moves, but nothing folds"),
+        "unwrap it without overlaps, and keep UVs without a picture (gltfpack -kv)");
   }
 
   void CheckAtlas(const std::string& where, const UvReport& uvs, bool others_fold) {
