@@ -28,7 +28,7 @@ int RunChaos(const ChaosCommand& command) {
   if (!ParseEndpoint(command.to, client::TransportKind::kUdp, &endpoint)) {
     std::fprintf(stderr,
                  "furrow: --to: '%s' is not HOST, HOST:PORT, [IPV6]:PORT or furrow://HOST:PORT\n",
-                 command.to.c_str());
+                 command.to.substr(0, command.to.find('?')).c_str());
     return kUsage;
   }
   if (!endpoint.token.empty()) {

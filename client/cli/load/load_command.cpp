@@ -207,8 +207,9 @@ int RunLoad(LoadFlags flags) {
   Target target;
   client::Address stated;
   if (!MakeTarget(flags, &target, &stated)) {
+    // Without the part that may hold a token.
     std::fprintf(stderr, "furrow: '%s' is not HOST, HOST:PORT, [IPV6]:PORT or furrow://HOST:PORT\n",
-                 flags.host.c_str());
+                 flags.host.substr(0, flags.host.find('?')).c_str());
     return kUsage;
   }
   if (!flags.token.empty()) stated.token = flags.token;

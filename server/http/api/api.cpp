@@ -60,7 +60,7 @@ Api::Api(Parts parts)
                [this](const ApiRequest& request, Hub&, Time now) {
                  return playback_.Patch(request, now);
                }},
-              {"GET", "/api/osc", Need::kToken,
+              {"GET", "/api/osc", Need::kOperate,
                [this](const ApiRequest&, Hub&, Time) { return osc_.List(); }},
               {"POST", "/api/osc", Need::kOperate,
                [this](const ApiRequest& request, Hub&, Time) { return osc_.Add(request); }},
