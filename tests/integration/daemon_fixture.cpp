@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon_fixture.h"
 
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <thread>
 #include <utility>
 
 #include "motion/pose_source.h"
@@ -13,6 +15,13 @@
 #include "wrinkle/solver/solver.h"
 
 namespace furrow::testing_net {
+
+void DaemonThread::AwaitCount(server::Counter counter, std::uint64_t least) const {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (Count(counter) < least && std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::yield();
+  }
+}
 
 DaemonThread::DaemonThread(server::Config config) : config_(std::move(config)) {
   const char* const threads = std::getenv("FURROW_TEST_THREADS");

@@ -195,7 +195,7 @@ TEST(ForeignWires, VrmPresetsOverVmcRaiseTheRightWeights) {
   EXPECT_GT(weights["brow_l.stretch"], 0.5f);  // browInnerUp
   EXPECT_EQ(weights["brow_l.stretch"], weights["brow_r.stretch"]);
   EXPECT_GT(weights["mouth_l.stretch"], 0.3f);  // mouthFrownLeft
-  EXPECT_GT(weights["nose.stretch"], 0.1f);    // jawOpen
+  EXPECT_GT(weights["nose.stretch"], 0.1f);     // jawOpen
   EXPECT_LT(weights["brow_l.squash"], 0.05f);
 }
 

@@ -57,7 +57,7 @@ class TokenGate {
   [[nodiscard]] bool TakesTokensFrom(bool local) const {
     return local || settings_.tokens_in_clear;
   }
-  // What a client is told over TCP and HTTP that has shown no token.
+  // The reply over TCP and HTTP to a client without a token.
   [[nodiscard]] const char* WhyNeeded(bool local) const {
     return TakesTokensFrom(local) ? kNeedsTokenText : kNoTokenHereText;
   }

@@ -243,7 +243,7 @@ TEST_F(AttemptsTest, AStrangerDoesNotLockOutItsNeighbours) {
   ClientToken invented = token_;
   invented.bytes[100] ^= 1;
   for (int i = 0; i < 300; ++i) ASSERT_EQ(Try(invented, stranger), Refusal::kForgedToken);
-  // Who has seen a token uses up the budget of that token alone.
+  // Somebody with a copy of a token uses up the budget of that token alone.
   EXPECT_EQ(Examined(stranger, 300), 100);
   EXPECT_EQ(Try(test::MakeTestToken(ring_, random_), neighbour), Refusal::kNone);
 }
