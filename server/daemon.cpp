@@ -22,13 +22,11 @@
 #include <spdlog/spdlog.h>
 
 #include "base/status.h"
-#include "base/text.h"
 #include "motion/find_recording.h"
 #include "protocol/secure/token/key_ring.h"
 #include "rig/rig_file.h"
 #include "server/assets.h"
 #include "server/config/osc_profile_file.h"
-#include "server/core/file_watch.h"
 #include "server/core/status_line.h"
 #include "server/http/api/api.h"
 #include "server/http/http_server.h"
@@ -43,6 +41,7 @@
 #include "server/pipeline/render_thread.h"
 #include "server/playback/player.h"
 #include "server/recording/recorder.h"
+#include "server/session/access/key_file.h"
 #include "server/session/access/token_gate.h"
 #include "server/session/hub.h"
 
@@ -60,11 +59,6 @@ std::uint64_t RandomNumber() {
   std::uint64_t number = 0;
   while (number == 0) number = (static_cast<std::uint64_t>(source()) << 32) | source();
   return number;
-}
-
-std::uint64_t UnixSeconds() {
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::seconds>(now).count());
 }
 
 // The OSC targets of the configuration, each with its profile.
@@ -100,7 +94,6 @@ class Daemon {
  private:
   void MakeHub();
   void SetKeys(protocol::secure::KeyRing keys);
-  void ReadKeysIfChanged();
   Status StartOsc();
   Status StartWeb();
   void Announce() const;
@@ -126,8 +119,7 @@ class Daemon {
   std::unique_ptr<OscTargets> osc_;  // called by the hub, so it outlives the hub
   TokenGate gate_;
   SecureSessions secure_;
-  FileWatch keys_file_;
-  bool keys_failed_ = false;  // the changed file could not be read yet
+  KeyFile keys_file_;
   std::unique_ptr<Hub> hub_;
   std::unique_ptr<TcpServer> tcp_;
   std::unique_ptr<UdpPort> udp_;
@@ -229,11 +221,8 @@ Status Daemon::Listen() {
 }
 
 Status Daemon::LoadKeys() {
-  if (config_.security.keys.empty()) return {};
-  (void)keys_file_.Changed();  // before it is read, so that no change is missed
-  auto keys = protocol::secure::LoadKeyRing(config_.security.keys);
+  auto keys = keys_file_.Load();
   FURROW_RETURN_IF_ERROR(keys);
-  if (keys->keys().empty()) spdlog::warn("the key file has no key, so no token is valid");
   SetKeys(*std::move(keys));
   return {};
 }
@@ -241,24 +230,6 @@ Status Daemon::LoadKeys() {
 void Daemon::SetKeys(protocol::secure::KeyRing keys) {
   secure_.SetKeys(keys);
   gate_.SetKeys(std::move(keys));
-}
-
-// A file that cannot be read changes nothing: an editor may be writing it. It is tried again until
-// it can be read, because what was wrong may end without a change of the file: its rights, or a
-// lack of descriptors. Otherwise a key that was retired would stay.
-void Daemon::ReadKeysIfChanged() {
-  const bool changed = keys_file_.Changed();
-  if (!changed && !keys_failed_) return;
-  auto keys = protocol::secure::LoadKeyRing(config_.security.keys);
-  keys_failed_ = !keys.ok();
-  if (keys_failed_) {
-    // Once for each change: this runs every second.
-    if (changed) spdlog::error("the keys stay as they were: {}", keys.status().ToString());
-    return;
-  }
-  spdlog::info("read {} from {}", Counted(keys->keys().size(), "key"),
-               config_.security.keys.string());
-  SetKeys(*std::move(keys));
 }
 
 // No thread has started yet, so the hub needs no lock.
@@ -430,7 +401,7 @@ asio::awaitable<void> Daemon::SecondLoop() {
     timer.expires_after(kSecond);
     co_await timer.async_wait(kAwaitTuple);
     const Time now = ReadClock();
-    ReadKeysIfChanged();
+    if (auto keys = keys_file_.ReadIfChanged()) SetKeys(*std::move(keys));
     if (config_.verbose) {
       const Hub::ExclusiveLock lock(*hub_, 0);
       spdlog::info("{}", status_line.Next(hub_->num_subjects(), hub_->num_subscriptions(), now));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 
 #include "server/core/time.h"
 
@@ -11,6 +12,12 @@ namespace furrow::server {
 // threads call it, once per batch of packets; all other code receives the time as `now`.
 [[nodiscard]] inline Time ReadClock() {
   return std::chrono::duration_cast<Time>(std::chrono::steady_clock::now().time_since_epoch());
+}
+
+// Returns the time of the system clock, seconds since 1970, which the expiry of tokens counts in.
+[[nodiscard]] inline std::uint64_t UnixSeconds() {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::seconds>(now).count());
 }
 
 }  // namespace furrow::server

@@ -6,18 +6,16 @@
 #include <filesystem>
 #include <future>
 #include <memory>
-#include <sstream>
 #include <string>
 #include <utility>
 
 #include <epoxy/egl.h>
 #include <gtest/gtest.h>
-#include <spdlog/sinks/ostream_sink.h>
-#include <spdlog/spdlog.h>
 
 #include "character/package/package.h"
 #include "motion/pose_source.h"
 #include "server/pipeline/render_thread.h"
+#include "tests/log_capture.h"
 
 namespace furrow::testing_net {
 namespace {
@@ -43,21 +41,6 @@ class ShortLived : public render::Renderer {
  private:
   std::unique_ptr<render::Renderer> real_;
   int submitted_ = 0;
-};
-
-// Captures the lines of spdlog's default logger.
-class LogCapture {
- public:
-  LogCapture() : before_(spdlog::default_logger()) {
-    spdlog::set_default_logger(std::make_shared<spdlog::logger>(
-        "test", std::make_shared<spdlog::sinks::ostream_sink_mt>(text_)));
-  }
-  ~LogCapture() { spdlog::set_default_logger(before_); }
-  [[nodiscard]] std::string text() const { return text_.str(); }
-
- private:
-  std::ostringstream text_;
-  std::shared_ptr<spdlog::logger> before_;
 };
 
 class LostContext : public testing::Test {

@@ -14,6 +14,7 @@
 #include "base/files.h"
 #include "daemon_fixture.h"
 #include "protocol/secure/token/token_text.h"
+#include "server/net/clock.h"
 
 namespace furrow::testing_net {
 namespace {
@@ -30,29 +31,15 @@ secure::Now ReadNow() {
   return {.us = us.count(), .unix_s = 0};
 }
 
-std::uint64_t UnixNow() {
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::seconds>(now).count());
-}
-
 }  // namespace
 
-TestKeys::TestKeys() {
-  std::string name = (std::filesystem::temp_directory_path() / "furrow_keys_XXXXXX").string();
-  EXPECT_NE(::mkdtemp(name.data()), nullptr);
-  folder_ = name;
-  file_ = folder_ / "furrow.keys";
-  Replace();
-}
-
-TestKeys::~TestKeys() {
-  std::error_code ignored;
-  std::filesystem::remove_all(folder_, ignored);
-}
+TestKeys::TestKeys() { Replace(); }
 
 void TestKeys::Replace() {
   ring_ = {};
-  EXPECT_TRUE(ring_.AddNew(UnixNow(), UnixNow() + 86'400, secure::SystemRandom()).ok());
+  EXPECT_TRUE(
+      ring_.AddNew(server::UnixSeconds(), server::UnixSeconds() + 86'400, secure::SystemRandom())
+          .ok());
   EXPECT_TRUE(secure::SaveKeyRing(ring_, file_).ok());
 }
 
@@ -64,7 +51,8 @@ secure::ClientToken TestKeys::Token(secure::Roles roles, const std::string& subj
   grant.subjects = subjects;
   grant.audience = audience;
   const secure::TokenKey& key = ring_.keys().front();
-  return *secure::MakeToken(key.id, key.key, UnixNow() + static_cast<std::uint64_t>(seconds), grant,
+  return *secure::MakeToken(key.id, key.key,
+                            server::UnixSeconds() + static_cast<std::uint64_t>(seconds), grant,
                             secure::SystemRandom());
 }
 

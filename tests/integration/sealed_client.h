@@ -11,6 +11,7 @@
 #include "protocol/secure/token/key_ring.h"
 #include "raw_client.h"
 #include "server/config/config.h"
+#include "tests/temporary_folder.h"
 
 namespace furrow::testing_net {
 
@@ -18,12 +19,9 @@ namespace furrow::testing_net {
 class TestKeys {
  public:
   TestKeys();
-  ~TestKeys();
-  TestKeys(const TestKeys&) = delete;
-  TestKeys& operator=(const TestKeys&) = delete;
 
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }
-  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_.path(); }
   [[nodiscard]] std::uint32_t key_id() const { return ring_.keys().front().id; }
   [[nodiscard]] protocol::secure::ClientToken Token(protocol::secure::Roles roles,
                                                     const std::string& subjects = "*",
@@ -39,8 +37,8 @@ class TestKeys {
  private:
   void Save() const;
 
-  std::filesystem::path folder_;
-  std::filesystem::path file_;
+  TemporaryFolder folder_;
+  std::filesystem::path file_ = folder_ / "furrow.keys";
   protocol::secure::KeyRing ring_;
   mutable int num_files_ = 0;
 };

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // A daemon that requires tokens, over real sockets: who gets in, what a token allows, and what
 // forged, repeated and late datagrams do.
-#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -19,6 +17,7 @@
 #include "protocol/secure/token/token_text.h"
 #include "sealed_client.h"
 #include "server/session/access/token_gate.h"
+#include "tests/log_capture.h"
 #include "web_client.h"
 
 namespace furrow::testing_net {
@@ -33,6 +32,15 @@ using testing::HasSubstr;
 
 const secure::Roles kBoth = secure::Roles(Role::kPublish) | Role::kWatch;
 
+// The daemon notices within a second that a key is no longer in its file, and the client begins
+// again with the token that is void.
+void AwaitUnknownKey(SealedClient& client) {
+  while (client.refusal() == Refusal::kNone || client.refusal() == Refusal::kUnknownSession) {
+    (void)client.TryNext();
+  }
+  EXPECT_EQ(client.refusal(), Refusal::kUnknownKey);
+}
+
 class Secure : public testing::Test {
  protected:
   void SetUp() override { ASSERT_TRUE(daemon.serves()); }
@@ -42,6 +50,12 @@ class Secure : public testing::Test {
   }
   void SendPose(RawClient& sender, std::uint32_t number) {
     sender.Send(PoseOf(clip, static_cast<int>(number), offer), 1, number, 16'667 * number);
+  }
+  // `sender` publishes ann, and `viewer` watches.
+  void Begin(RawClient& sender, RawClient& viewer) {
+    Offer(sender, offer);
+    ASSERT_TRUE(viewer.Introduce());
+    ASSERT_TRUE(Watch(viewer, {.subject = "ann"}).has_value());
   }
   // The stream is alive: the next pose of the sender reaches the viewer.
   void ExpectWeights(RawClient& sender, RawClient& viewer) {
@@ -62,9 +76,7 @@ class Secure : public testing::Test {
 TEST_F(Secure, PublishesAndWatchesWithTokens) {
   SealedClient sender = Client(Role::kPublish, "ann");
   SealedClient viewer = Client(Role::kWatch, "a*");
-  Offer(sender, offer);
-  ASSERT_TRUE(viewer.Introduce());
-  ASSERT_TRUE(Watch(viewer, {.subject = "ann"}).has_value());
+  Begin(sender, viewer);
   for (int i = 0; i < 20; ++i) ExpectWeights(sender, viewer);
   EXPECT_EQ(daemon.Count(Counter::kHandshakes), 2u);
   EXPECT_EQ(daemon.Count(Counter::kSealedForged), 0u);
@@ -147,9 +159,7 @@ TEST_F(Secure, ATokenIsForItsSubjectsAndRoles) {
 TEST_F(Secure, ForgedRepeatedAndLateDatagramsHaveNoEffect) {
   SealedClient sender = Client(Role::kPublish);
   SealedClient viewer = Client(Role::kWatch);
-  Offer(sender, offer);
-  ASSERT_TRUE(viewer.Introduce());
-  ASSERT_TRUE(Watch(viewer, {.subject = "ann"}).has_value());
+  Begin(sender, viewer);
   for (int i = 0; i < 3; ++i) ExpectWeights(sender, viewer);
   // Everything again, from the address of the sender and from another one.
   UdpClient other(daemon.ready().udp, "127.0.0.2");
@@ -191,9 +201,7 @@ TEST_F(Secure, ForgedRepeatedAndLateDatagramsHaveNoEffect) {
 TEST_F(Secure, ASessionSurvivesANewAddress) {
   SealedClient sender = Client(Role::kPublish);
   SealedClient viewer = Client(Role::kWatch);
-  Offer(sender, offer);
-  ASSERT_TRUE(viewer.Introduce());
-  ASSERT_TRUE(Watch(viewer, {.subject = "ann"}).has_value());
+  Begin(sender, viewer);
   ExpectWeights(sender, viewer);
   sender.MoveTo("127.0.0.2");
   ExpectWeights(sender, viewer);
@@ -232,32 +240,30 @@ TEST_F(Secure, SessionsEndWithTheirKey) {
   SealedClient client = Client(Role::kWatch);
   ASSERT_TRUE(client.Introduce());
   const_cast<TestKeys&>(keys).Replace();
-  // The daemon notices within a second, and the client begins again with the token that is void.
-  while (client.refusal() == Refusal::kNone || client.refusal() == Refusal::kUnknownSession) {
-    (void)client.TryNext();
-  }
-  EXPECT_EQ(client.refusal(), Refusal::kUnknownKey);
+  AwaitUnknownKey(client);
   SealedClient newer = Client(Role::kWatch);
   EXPECT_TRUE(newer.Introduce());
 }
 
 // A copied key file often has rights for others, which a change of its rights alone removes.
-TEST_F(Secure, AKeyFileIsReadWhenItsRightsBecomeRight) {
+TEST(SecureKeys, AFileIsReadWhenItsRightsBecomeRight) {
   namespace fs = std::filesystem;
-  SealedClient client = Client(Role::kWatch);
+  const LogCapture log;
+  const TestKeys keys;
+  DaemonThread daemon(SecureConfig(keys));
+  ASSERT_TRUE(daemon.serves());
+  const std::uint16_t udp = daemon.ready().udp;
+  SealedClient client(udp, keys.Token(Role::kWatch));
   ASSERT_TRUE(client.Introduce());
   const TestKeys others;
   fs::permissions(others.file(), fs::perms::group_read, fs::perm_options::add);
   fs::rename(others.file(), keys.file());
-  std::this_thread::sleep_for(std::chrono::milliseconds(2500));  // the daemon looks every second
-  SealedClient before = Client(Role::kWatch);
-  EXPECT_TRUE(before.Introduce()) << "the keys stay as they were";
+  ASSERT_TRUE(log.Await("the keys stay as they were"));
+  SealedClient before(udp, keys.Token(Role::kWatch));
+  EXPECT_TRUE(before.Introduce());
   fs::permissions(keys.file(), fs::perms::group_read, fs::perm_options::remove);
-  while (client.refusal() == Refusal::kNone || client.refusal() == Refusal::kUnknownSession) {
-    (void)client.TryNext();
-  }
-  EXPECT_EQ(client.refusal(), Refusal::kUnknownKey);
-  SealedClient newer(daemon.ready().udp, others.Token(Role::kWatch));
+  AwaitUnknownKey(client);
+  SealedClient newer(udp, others.Token(Role::kWatch));
   EXPECT_TRUE(newer.Introduce());
 }
 
@@ -382,9 +388,7 @@ TEST_F(Secure, OtherComputersMayNotShowTokensInClear) {
 TEST_F(Secure, AFloodOfHandshakesWithAWrongKeyDoesNotStarveWeights) {
   SealedClient sender = Client(Role::kPublish);
   SealedClient viewer = Client(Role::kWatch);
-  Offer(sender, offer);
-  ASSERT_TRUE(viewer.Introduce());
-  ASSERT_TRUE(Watch(viewer, {.subject = "ann"}).has_value());
+  Begin(sender, viewer);
   // From proven addresses of one host: each of them costs the daemon an attempt.
   secure::ClientToken stolen = keys.Token(Role::kWatch);
   stolen.key = keys.Token(Role::kWatch).key;

@@ -2,19 +2,17 @@
 // From wire structs to a solved subject: adapter, shared definitions, pipeline.
 #include <cmath>
 #include <memory>
-#include <sstream>
 #include <string>
 #include <tuple>
 #include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <spdlog/sinks/ostream_sink.h>
-#include <spdlog/spdlog.h>
 
 #include "server/pipeline/stream_definition.h"
 #include "server/pipeline/subject_pipeline.h"
 #include "server/pipeline/wire_adapter.h"
+#include "tests/log_capture.h"
 #include "tests/unit/rig/shapes/shipped_shape_maps.h"
 #include "tests/unit/rig/shipped_matcher.h"
 
@@ -167,21 +165,6 @@ TEST(StreamDefinitions, ASkeletonThatIsNotATreeIsRejected) {
   const auto result = definitions.Get(std::move(offer));
   EXPECT_EQ(result.status().code(), StatusCode::kCyclic);
 }
-
-// Captures the log during its lifetime.
-class LogCapture {
- public:
-  LogCapture() : before_(spdlog::default_logger()) {
-    spdlog::set_default_logger(std::make_shared<spdlog::logger>(
-        "capture", std::make_shared<spdlog::sinks::ostream_sink_st>(text_)));
-  }
-  ~LogCapture() { spdlog::set_default_logger(before_); }
-  std::string text() const { return text_.str(); }
-
- private:
-  std::shared_ptr<spdlog::logger> before_;
-  std::ostringstream text_;
-};
 
 wrinkle::Skeleton Head(const char* joint) {
   return wrinkle::Skeleton::Create({{.name = joint, .parent = wrinkle::kNoJoint}}).value();
