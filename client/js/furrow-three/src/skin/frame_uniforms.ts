@@ -2,7 +2,7 @@
 // The values that are constant within a picture: the uniform block of shaders/common/frame.glsl, as
 // render/scene/frame_block.h fills it.
 import { Matrix3, type Matrix4, type PerspectiveCamera, Vector3, Vector4 } from 'three';
-import { type Lighting, makeLighting, skyPolynomial, stageRadius } from '../view/lighting.js';
+import { lampVectors, type Lighting, makeLighting, SkyLight, stageRadius } from '../view/lighting.js';
 import type { StudioSettings } from '../settings.js';
 import { fitShadow, shadedRadius, shadowResolution, type ShadowView } from './shadow_fit.js';
 
@@ -49,30 +49,22 @@ export function pictureFrame(camera: PerspectiveCamera, target: Vector3, setting
 const PER_MM = 0.001;
 
 export class FrameUniforms {
-  private sky = '';
-  private ambient: Vector4[] = [];
+  private readonly skyLight = new SkyLight();
 
   /** Uniforms by name. */
   of(frame: PictureFrame, camera: PerspectiveCamera, settings: StudioSettings): Record<string, unknown> {
     const { lighting: { lamps, sky }, shadows } = frame;
     const { shadow, specular, subsurface, translucency, wrinkle_maps: maps } = settings;
     const u_lights = lamps.map((lamp, i): LightUniform => ({
-      position: new Vector4(...lamp.position.toArray(), lamp.kind === 'directional' ? 0 : 1),
-      direction: new Vector4(...lamp.direction.toArray(), lamp.kind === 'spot' ? Math.cos((lamp.coneDegrees * Math.PI) / 180) : -1),
-      radiance: new Vector4(...lamp.radiance.toArray(), lamp.reach ** 2),
+      ...lampVectors(lamp),
       shadow_view: shadows[i]!.view,
       shadow: new Vector4(shadows[i]!.scale, shadows[i]!.nearPlane, 1 / shadows[i]!.range, shadows[i]!.perspective ? 1 : 0),
     }));
-    const key = JSON.stringify(sky);
-    if (key !== this.sky) {
-      this.sky = key;
-      this.ambient = skyPolynomial(sky).map(({ x, y, z }) => new Vector4(x, y, z, 0));
-    }
     return {
       u_lights,
       u_camera_position: new Vector4(...camera.position.toArray(), 1),
       u_camera_forward: new Vector4(...frame.forward.toArray(), frame.focusDistance),
-      u_ambient: this.ambient,
+      u_ambient: this.skyLight.of(sky).map(({ x, y, z }) => new Vector4(x, y, z, 0)),
       u_sky_zenith: new Vector4(...sky.zenith, 0),
       u_sky_horizon: new Vector4(...sky.horizon, 0),
       u_sky_ground: new Vector4(...sky.ground, 0),

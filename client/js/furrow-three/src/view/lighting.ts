@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The lamps and the sky of the daemon's pictures: render/scene/lighting.h and render/scene/sky_light.h, in world space.
-import { MathUtils, Matrix4, type PerspectiveCamera, Vector2, Vector3 } from 'three';
+import { MathUtils, Matrix4, type PerspectiveCamera, Vector2, Vector3, Vector4 } from 'three';
 import type { LightSettings, Rgb } from '../settings.js';
 
 export interface Lamp {
@@ -94,7 +94,7 @@ export function makeLighting(settings: LightSettings, camera: PerspectiveCamera,
 const basis = ([x, y, z]: Rgb): number[] => [1, y, z, x, x * y, y * z, 3 * z * z - 1, x * z, x * x - y * y];
 
 /** Diffuse light of the sky as nine coefficients of a polynomial of the normal (Ramamoorthi and Hanrahan 2001). */
-export function skyPolynomial(sky: Sky): Vector3[] {
+function skyPolynomial(sky: Sky): Vector3[] {
   const band2 = 0.5 * Math.sqrt(15 / Math.PI);
   const band1 = Math.sqrt(3 / (4 * Math.PI));
   const constants = [0.5 * Math.sqrt(1 / Math.PI), band1, band1, band1, band2, band2, 0.25 * Math.sqrt(5 / Math.PI), band2, 0.5 * band2];
@@ -116,4 +116,28 @@ export function skyPolynomial(sky: Sky): Vector3[] {
     const cosine = k === 0 ? 1 : k < 4 ? 2 / 3 : 0.25; // bands of the clamped cosine, divided by pi
     return new Vector3(...(sum as Rgb)).multiplyScalar(constants[k]! ** 2 * area * cosine);
   });
+}
+
+/** A lamp as the shaders take it (struct Light of shaders/common/frame.glsl). */
+export function lampVectors({ kind, position, direction, radiance, reach, coneDegrees }: Lamp): { position: Vector4; direction: Vector4; radiance: Vector4 } {
+  return {
+    position: new Vector4(...position.toArray(), kind === 'directional' ? 0 : 1),
+    direction: new Vector4(...direction.toArray(), kind === 'spot' ? Math.cos(MathUtils.degToRad(coneDegrees)) : -1),
+    radiance: new Vector4(...radiance.toArray(), reach * reach),
+  };
+}
+
+/** skyPolynomial() of the last sky, which seldom changes between pictures. */
+export class SkyLight {
+  private key = '';
+  private polynomial: readonly Vector3[] = [];
+
+  of(sky: Sky): readonly Vector3[] {
+    const key = JSON.stringify(sky);
+    if (key !== this.key) {
+      this.key = key;
+      this.polynomial = skyPolynomial(sky);
+    }
+    return this.polynomial;
+  }
 }

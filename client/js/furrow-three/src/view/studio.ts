@@ -3,7 +3,7 @@
 // a sky. No shadows and no subsurface scattering, as the daemon's
 // shading "diffuse".
 import { Color, type PerspectiveCamera, Vector3, Vector4 } from 'three';
-import { makeLighting, type Sky, skyPolynomial } from './lighting.js';
+import { lampVectors, makeLighting, SkyLight } from './lighting.js';
 import { defaultSettings, type LightSettings } from '../settings.js';
 
 /** The daemon's default background, linear. */
@@ -65,24 +65,16 @@ export class Studio {
     furrowLampRadiances: { value: [0, 1, 2].map(() => new Vector4()) },
     furrowSky: { value: Array.from({ length: 9 }, () => new Vector3()) },
   };
-  private sky = '';
+  private readonly skyLight = new SkyLight();
 
   /** The lamps turn with the camera, so that every view is lit alike. `target`: what the camera looks at. */
   update(camera: PerspectiveCamera, target: Vector3, settings: LightSettings = defaultSettings().lights): void {
     const { lamps, sky } = makeLighting(settings, camera, target);
-    lamps.forEach(({ kind, position, direction, radiance, reach, coneDegrees }, i) => {
-      this.uniforms.furrowLampPositions.value[i]!.set(position.x, position.y, position.z, kind === 'directional' ? 0 : 1);
-      this.uniforms.furrowLampDirections.value[i]!.set(direction.x, direction.y, direction.z,
-        kind === 'spot' ? Math.cos((coneDegrees * Math.PI) / 180) : -1);
-      this.uniforms.furrowLampRadiances.value[i]!.set(radiance.x, radiance.y, radiance.z, reach * reach);
+    lamps.map(lampVectors).forEach(({ position, direction, radiance }, i) => {
+      this.uniforms.furrowLampPositions.value[i]!.copy(position);
+      this.uniforms.furrowLampDirections.value[i]!.copy(direction);
+      this.uniforms.furrowLampRadiances.value[i]!.copy(radiance);
     });
-    this.setSky(sky);
-  }
-
-  private setSky(sky: Sky): void {
-    const key = JSON.stringify(sky);
-    if (key === this.sky) return;
-    this.sky = key;
-    skyPolynomial(sky).forEach((each, i) => this.uniforms.furrowSky.value[i]!.copy(each));
+    this.skyLight.of(sky).forEach((each, i) => this.uniforms.furrowSky.value[i]!.copy(each));
   }
 }
