@@ -22,17 +22,24 @@ using character::Picture;
 constexpr float kLeastHeight = 1e-3f;  // millimetres
 constexpr float kLeastDerivative = 1e-3f;
 
-// Reserves the list that `bits` selects. A normal map of 4096 x 4096 texels and 16 bits has 100 MB,
-// and twice as much while it grows.
-void Reserve(int bits, Picture* picture) {
-  const std::size_t count = static_cast<std::size_t>(picture->width) *
-                            static_cast<std::size_t>(picture->height) *
-                            static_cast<std::size_t>(picture->channels);
+// A picture without texels yet, with room for all of them in the list that `bits` selects. A normal
+// map of 4096 x 4096 texels and 16 bits has 100 MB, and would take twice as much while it grows.
+Picture EmptyPicture(int width, int height, int channels, int bits) {
+  Picture picture{.name = {},
+                  .width = width,
+                  .height = height,
+                  .channels = channels,
+                  .pixels = {},
+                  .pixels16 = {},
+                  .pixels_float = {}};
+  const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height) *
+                            static_cast<std::size_t>(channels);
   if (bits == 16) {
-    picture->pixels16.reserve(count);
+    picture.pixels16.reserve(count);
   } else {
-    picture->pixels.reserve(count);
+    picture.pixels.reserve(count);
   }
+  return picture;
 }
 
 // Appends a value in [0, 1] to the list that `bits` selects.
@@ -64,14 +71,7 @@ float Sample(const Picture& picture, int channel, float u, float v) {
 }  // namespace
 
 Picture NormalMapPicture(const render::DerivativeMap& slopes, const NormalFormat& format) {
-  Picture picture{.name = {},
-                  .width = slopes.width,
-                  .height = slopes.height,
-                  .channels = 3,
-                  .pixels = {},
-                  .pixels16 = {},
-                  .pixels_float = {}};
-  Reserve(format.bits, &picture);
+  Picture picture = EmptyPicture(slopes.width, slopes.height, 3, format.bits);
   const float up = format.green_down ? -1.0f : 1.0f;
   for (std::size_t i = 0; i + 1 < slopes.texels.size(); i += 2) {
     const glm::vec3 normal =
@@ -83,16 +83,9 @@ Picture NormalMapPicture(const render::DerivativeMap& slopes, const NormalFormat
 
 DerivativePicture DerivativeMapPicture(const render::DerivativeMap& slopes,
                                        const NormalFormat& format) {
-  DerivativePicture map{{.name = {},
-                         .width = slopes.width,
-                         .height = slopes.height,
-                         .channels = 3,
-                         .pixels = {},
-                         .pixels16 = {},
-                         .pixels_float = {}},
+  DerivativePicture map{EmptyPicture(slopes.width, slopes.height, 3, format.bits),
                         kLeastDerivative};
   for (const float slope : slopes.texels) map.scale = std::max(map.scale, std::abs(slope));
-  Reserve(format.bits, &map.picture);
   const float up = format.green_down ? -1.0f : 1.0f;
   for (std::size_t i = 0; i + 1 < slopes.texels.size(); i += 2) {
     Append(0.5f - 0.5f * slopes.texels[i] / map.scale, format.bits, &map.picture);
@@ -114,14 +107,7 @@ render::DerivativeMap SlopesOf(const character::Character& character, const Expo
 
 HeightMap HeightMapOf(const Picture& source, float millimetres) {
   const bool floats = !source.pixels_float.empty();
-  HeightMap map{{.name = {},
-                 .width = source.width,
-                 .height = source.height,
-                 .channels = 1,
-                 .pixels = {},
-                 .pixels16 = {},
-                 .pixels_float = {}},
-                millimetres};
+  HeightMap map{EmptyPicture(source.width, source.height, 1, 16), millimetres};
   if (floats) {
     map.millimetres = kLeastHeight;
     for (int y = 0; y < source.height; ++y) {
@@ -130,7 +116,6 @@ HeightMap HeightMapOf(const Picture& source, float millimetres) {
       }
     }
   }
-  Reserve(16, &map.picture);
   for (int y = 0; y < source.height; ++y) {
     for (int x = 0; x < source.width; ++x) {
       const float texel = render::Texel(source, x, y, 0);
@@ -142,14 +127,7 @@ HeightMap HeightMapOf(const Picture& source, float millimetres) {
 
 Picture MaskPicture(const character::Character& character, const ExportPlan::Mask& mask,
                     std::vector<std::string>* shared) {
-  Picture picture{.name = {},
-                  .width = mask.width,
-                  .height = mask.height,
-                  .channels = 4,
-                  .pixels = {},
-                  .pixels16 = {},
-                  .pixels_float = {}};
-  Reserve(8, &picture);
+  Picture picture = EmptyPicture(mask.width, mask.height, 4, 8);
   struct Source {
     const Picture* picture = nullptr;
     int channel = 0;
