@@ -33,13 +33,10 @@ struct Flags {
 
 // Replaces the word of --security by its number, for CLI11. Returns what is wrong with it.
 std::string NumberOfMode(std::string& text) {
-  for (const auto& [word, mode] :
-       {std::pair("open", Security::kOpen), {"required", Security::kRequired}}) {
-    if (text != word) continue;
-    text = std::to_string(static_cast<int>(mode));
-    return {};
-  }
-  return "'" + text + "' is not one of open|required";
+  const auto mode = ParseSecurity(text);
+  if (!mode) return "'" + text + "' is not one of open|required";
+  text = std::to_string(static_cast<int>(*mode));
+  return {};
 }
 
 // Declares every flag on `config`. Parsing writes only the flags that are present.

@@ -60,9 +60,9 @@ Key Recording(std::string_view name, std::filesystem::path* target,
 // "open" or "required".
 Key Mode(std::string_view name, Security* mode) {
   return {name, [mode](const toml::node& node) -> std::string {
-            const auto value = node.value_exact<std::string>();
-            if (value != "open" && value != "required") return "must be \"open\" or \"required\"";
-            *mode = value == "required" ? Security::kRequired : Security::kOpen;
+            const auto value = ParseSecurity(node.value_exact<std::string>().value_or(""));
+            if (!value) return "must be \"open\" or \"required\"";
+            *mode = *value;
             return {};
           }};
 }
