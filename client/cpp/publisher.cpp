@@ -149,7 +149,7 @@ void Publisher::OnError(std::int64_t now_us) {
     last_error_ = error_.message;
     if (error_.code == protocol::ErrorCode::kNeedsToken) {
       needs_token_ = true;
-      if (last_error_.empty()) last_error_ = "the daemon requires a token";
+      last_error_ = NeedsTokenText(error_.message);
     }
   } else if (introduction_.proven() && transport_->kind() == TransportKind::kUdp) {
     introduction_.Restart();

@@ -21,6 +21,10 @@ std::vector<std::uint8_t> TokenGreeting(const Token& token) {
   return bytes;
 }
 
+std::string NeedsTokenText(const std::string& said) {
+  return said.empty() ? "the daemon requires a token" : said;
+}
+
 std::string RefusedTokenText(protocol::secure::Refusal refusal) {
   using protocol::secure::Refusal;
   const bool passes =
