@@ -51,16 +51,7 @@ test('the browser draws the daemon\'s picture, and it moves', async (context) =>
   assert((await rendered()) - drawn <= 2, 'the daemon draws nothing for this page');
 
   await daemon.hold(FROWN_S);
-  const here = await resting(page);
-  writeFileSync(join(process.env.FURROW_ARTEFACTS, 'drawn-by-browser.png'), PNG.sync.write(here));
-  await page.selectOption('select[aria-label="Drawn by"]', 'daemon');
-  await drawnBy(page, 'daemon');
-  await still(page);
-  const there = await screen(page);
-  writeFileSync(join(process.env.FURROW_ARTEFACTS, 'drawn-by-daemon.png'), PNG.sync.write(there));
-  context.diagnostic(`mean difference from the daemon's picture: ${difference(here, there).toFixed(2)} of 255`);
-  assert(difference(here, there) < 4, `${difference(here, there)} of 255`);
-  assert(difference(here, there) > 0, 'two pictures, not one');
+  assert((await fromDaemons(page, 'drawn', context)) > 0, 'two pictures, not one');
   assert.deepEqual(page.errors, []);
   await page.context().close();
 });
@@ -76,21 +67,29 @@ async function resting(page) {
   return here;
 }
 
+/** The mean difference of the browser's picture from the daemon's, which draws from then on. Keeps both as NAME-by-....png. */
+async function fromDaemons(page, name, context) {
+  const keep = (by, picture) => writeFileSync(join(process.env.FURROW_ARTEFACTS, `${name}-by-${by}.png`), PNG.sync.write(picture));
+  const here = await resting(page);
+  keep('browser', here);
+  await page.selectOption('select[aria-label="Drawn by"]', 'daemon');
+  await drawnBy(page, 'daemon');
+  await still(page);
+  const there = await screen(page);
+  keep('daemon', there);
+  const mean = difference(here, there);
+  context.diagnostic(`mean difference from the daemon's picture: ${mean.toFixed(2)} of 255`);
+  assert(mean < 4, `${mean} of 255`);
+  return mean;
+}
+
 test('the browser draws skin shading by the page\'s settings', async (context) => {
   await daemon.hold(FROWN_S);
   const page = await openPage(browser, `${daemon.address}#drawn=browser&panel=&shading=skin`, SMALL);
   await page.keyboard.press('g'); // without the curves, the picture is larger
   await drawnBy(page, 'browser');
   assert.equal(await whyOf(page), 'This browser draws the picture');
-  const here = await resting(page);
-  writeFileSync(join(process.env.FURROW_ARTEFACTS, 'skin-by-browser.png'), PNG.sync.write(here));
-  await page.selectOption('select[aria-label="Drawn by"]', 'daemon');
-  await drawnBy(page, 'daemon');
-  await still(page);
-  const there = await screen(page);
-  writeFileSync(join(process.env.FURROW_ARTEFACTS, 'skin-by-daemon.png'), PNG.sync.write(there));
-  context.diagnostic(`mean difference from the daemon's picture: ${difference(here, there).toFixed(2)} of 255`);
-  assert(difference(here, there) < 4, `${difference(here, there)} of 255`);
+  await fromDaemons(page, 'skin', context);
   await page.context().close();
 });
 

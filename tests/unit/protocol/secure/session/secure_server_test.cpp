@@ -276,6 +276,22 @@ TEST_F(Renewal, ChecksTheTokenAsAHandshakeDoes) {
   EXPECT_EQ(answer_.refusal, Refusal::kWrongAudience);
 }
 
+// The session that the client opens, one second later.
+std::uint32_t OpenAfterASecond(Meeting& m, SecureClient& client, const PeerAddress& from) {
+  std::uint32_t session = 0;
+  m.now = test::Later(m.now, 1'000'000);
+  for (int step = 0; step < 3; ++step) {
+    const ServerEvent event = m.ToServer(m.Poll(client), from);
+    if (event.opened) {
+      EXPECT_EQ(session, 0u) << "one session";
+      session = event.session;
+    }
+    (void)m.ToClient(client, event.reply());
+  }
+  EXPECT_NE(session, 0u);
+  return session;
+}
+
 // The holder of one token neither fills the table with sessions nor with handshakes.
 TEST(SecureServer, LimitsTheSessionsOfAToken) {
   SecureServerSettings settings;
@@ -283,16 +299,10 @@ TEST(SecureServer, LimitsTheSessionsOfAToken) {
   Meeting m(settings);
   std::vector<std::uint32_t> sessions;
   for (std::uint16_t i = 0; i < 5; ++i) {
-    m.now = test::Later(m.now, 1'000'000);
     SecureClient client(m.token, Text("hello"), m.random);
     const PeerAddress from = FromIpv4({192, 0, 2, 1}, static_cast<std::uint16_t>(6'000 + i));
-    for (int step = 0; step < 3; ++step) {
-      const ServerEvent event = m.ToServer(m.Poll(client), from);
-      if (event.opened) sessions.push_back(event.session);
-      (void)m.ToClient(client, event.reply());
-    }
+    sessions.push_back(OpenAfterASecond(m, client, from));
   }
-  ASSERT_EQ(sessions.size(), 5u);
   EXPECT_EQ(m.server.num_sessions(), 3u);
   // The two that were silent for longest.
   EXPECT_EQ(m.server.TakeClosed(), (std::vector<std::uint32_t>{sessions[0], sessions[1]}));
@@ -306,18 +316,12 @@ TEST(SecureServer, LimitsTheSessionsOfATokenAfterRenewals) {
   const ClientToken next = test::MakeTestToken(m.ring, m.random);
   std::vector<std::uint32_t> sessions;
   for (std::uint16_t i = 0; i < 5; ++i) {
-    m.now = test::Later(m.now, 1'000'000);
     SecureClient client(m.token, Text("hello"), m.random);
     const PeerAddress from = FromIpv4({192, 0, 2, 1}, static_cast<std::uint16_t>(6'000 + i));
-    for (int step = 0; step < 3; ++step) {
-      const ServerEvent event = m.ToServer(m.Poll(client), from);
-      if (event.opened) sessions.push_back(event.session);
-      (void)m.ToClient(client, event.reply());
-    }
+    sessions.push_back(OpenAfterASecond(m, client, from));
     client.Renew(next);
     EXPECT_TRUE(m.ToServer(m.Poll(client), from).renewed);
   }
-  ASSERT_EQ(sessions.size(), 5u);
   EXPECT_EQ(m.server.num_sessions(), 2u);
   EXPECT_EQ(m.server.TakeClosed(),
             (std::vector<std::uint32_t>{sessions[0], sessions[1], sessions[2]}));
