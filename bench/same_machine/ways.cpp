@@ -44,7 +44,7 @@ class Udp : public Way {
       return;
     }
     auto opened = client::OpenTransport(client::TransportKind::kUdp, "127.0.0.1", port,
-                                          std::chrono::seconds(1));
+                                        std::chrono::seconds(1));
     if (!opened.ok()) Fail("open");
     transport_ = std::move(opened).value();
     (void)transport_->Send(std::array<std::uint8_t, 4>{});

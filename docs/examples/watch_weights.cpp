@@ -17,7 +17,7 @@ using namespace std::chrono_literals;
 int main(int argc, char** argv) {
   if (argc != 4) return 2;
   auto transport = client::OpenTransport(client::TransportKind::kUdp, argv[1],
-                                           static_cast<std::uint16_t>(std::atoi(argv[2])), 3s);
+                                         static_cast<std::uint16_t>(std::atoi(argv[2])), 3s);
   if (!transport.ok()) {
     std::fprintf(stderr, "%s\n", transport.status().ToString().c_str());
     return 4;

@@ -356,13 +356,10 @@ class RawReader {
   // Of VRM's extensions, characters need the human bones, the expressions, look-at and MToon's
   // textures.
   static void KeepVrm(const Json& extensions, Json* reduced) {
-    constexpr std::pair<const char*, const char*> kParts[] = {{"VRM", "blendShapeMaster"},
-                                                              {"VRM", "materialProperties"},
-                                                              {"VRM", "firstPerson"},
-                                                              {"VRM", "humanoid"},
-                                                              {"VRMC_vrm", "expressions"},
-                                                              {"VRMC_vrm", "humanoid"},
-                                                              {"VRMC_vrm", "lookAt"}};
+    constexpr std::pair<const char*, const char*> kParts[] = {
+        {"VRM", "blendShapeMaster"}, {"VRM", "materialProperties"}, {"VRM", "firstPerson"},
+        {"VRM", "humanoid"},         {"VRMC_vrm", "expressions"},   {"VRMC_vrm", "humanoid"},
+        {"VRMC_vrm", "lookAt"}};
     for (const auto& [name, part] : kParts) {
       const Json* vrm = Find(extensions, name);
       const Json* kept = vrm != nullptr ? Find(*vrm, part) : nullptr;

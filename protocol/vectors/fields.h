@@ -12,7 +12,9 @@
 namespace furrow::protocol::vectors {
 
 inline Fields FieldsOf(const Hello& m) {
-  return {{"client", Json(m.client)}, {"token", JsonHex(m.token)}, {"bundles", Json(m.bundles)},
+  return {{"client", Json(m.client)},
+          {"token", JsonHex(m.token)},
+          {"bundles", Json(m.bundles)},
           {"access", Json(m.access)}};
 }
 inline Fields FieldsOf(const Welcome& m) {

@@ -14,8 +14,7 @@ bool ParseEndpoint(const std::string& text, client::TransportKind kind, Endpoint
   const auto address = client::ParseAddress(text);
   if (!address.ok()) return false;
   const bool more = !address->subjects.empty() || !address->pattern.empty() ||
-                    address->max_rate_hz != 0.0f ||
-                    address->transport.value_or(kind) != kind;
+                    address->max_rate_hz != 0.0f || address->transport.value_or(kind) != kind;
   if (more) return false;
   *endpoint = {address->host, address->PortFor(kind), address->token};
   return true;

@@ -20,7 +20,8 @@ struct Endpoint {
 };
 
 // Parses an address (client/cpp/address.h) that states a host, a port and perhaps the transport
-// `kind` and a token. Without a port, uses the protocol's port for `kind`. Returns false for every other text.
+// `kind` and a token. Without a port, uses the protocol's port for `kind`. Returns false for every
+// other text.
 [[nodiscard]] bool ParseEndpoint(const std::string& text, client::TransportKind kind,
                                  Endpoint* endpoint);
 

@@ -135,7 +135,7 @@ typedef struct furrow_options {
  *               pattern    names of the weights, as comma-separated globs (default: all)
  *               rate       most frames per second, in (0, 1000] (default: every pose)
  *               transport  udp (default, port 7401) or tcp (port 7400)
- *               token      file with a connect token, or its text. Over UDP everything is encrypted;
+ *               token      file with a connect token, or its text. Over UDP all is encrypted;
  *                          over TCP everybody on the way can read the token
  *             Write %26 for '&' and %25 for '%' in values. The keys key, tls and transport=shm are
  *             reserved and lead to FURROW_UNSUPPORTED.
@@ -143,7 +143,8 @@ typedef struct furrow_options {
  * connection  receives the connection; NULL after an error.
  *
  * Errors: FURROW_INVALID_ADDRESS, FURROW_INVALID_ARGUMENT (also a token that cannot be read),
- * FURROW_UNSUPPORTED (a reserved field or key is set), FURROW_OUT_OF_MEMORY. `options->error` receives the reason.
+ * FURROW_UNSUPPORTED (a reserved field or key is set), FURROW_OUT_OF_MEMORY. `options->error`
+ * receives the reason.
  */
 FURROW_API furrow_status furrow_open(const char* address, const furrow_options* options,
                                      furrow_connection** connection);

@@ -61,8 +61,12 @@ TEST(Bake, RejectsInvalidRequests) {
       [](Request* r) { r->options.size = 63; },
       [](Request* r) { r->options.size = 4097; },
       [](Request* r) { r->options.threads = 0; },
-      [](Request* r) { r->options.eases = {{"elbow", {.looser = 0.9f}}}; },
-      [](Request* r) { r->options.eases = {{"elbow", {.least = 1.1f}}}; },
+      [](Request* r) {
+        r->options.eases = {{"elbow", {.looser = 0.9f}}};
+      },
+      [](Request* r) {
+        r->options.eases = {{"elbow", {.least = 1.1f}}};
+      },
       [](Request* r) { r->options.depth = -1.0f; },
       [](Request* r) { r->options.skin.wavelength_mm = 0.0f; },
       [](Request* r) { r->options.skin.share = 1.1f; },

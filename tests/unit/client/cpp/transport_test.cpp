@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "client/cpp/transports.h"
-
 #include <algorithm>
 #include <cstring>
 #include <utility>
@@ -11,6 +9,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "client/cpp/transports.h"
 #include "protocol/codec/codec.h"
 #include "protocol/framing/bundle.h"
 #include "protocol/framing/fragment.h"

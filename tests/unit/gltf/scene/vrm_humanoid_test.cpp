@@ -39,8 +39,8 @@ TEST(VrmHumanoid, OfVrm1) {
   gltf.json["extensions"]["VRMC_vrm"]["humanoid"]["humanBones"] = {
       {"hips", {{"node", 0}}}, {"leftThumbProximal", {{"node", 1}}}, {"tail", {{"node", 1}}}};
   const Read read = BonesOf(gltf);
-  EXPECT_THAT(read.bones, UnorderedElementsAre(Pair("hips", 0), Pair("leftThumbProximal", 1),
-                                               Pair("tail", 1)));
+  EXPECT_THAT(read.bones,
+              UnorderedElementsAre(Pair("hips", 0), Pair("leftThumbProximal", 1), Pair("tail", 1)));
   EXPECT_THAT(read.warnings, IsEmpty());
 }
 
@@ -54,20 +54,18 @@ TEST(VrmHumanoid, OfVrm0) {
       {{"bone", "rightThumbDistal"}, {"node", 1}},
       {{"bone", "leftEye"}, {"node", -1}}};
   const Read read = BonesOf(gltf);
-  EXPECT_THAT(read.bones,
-              ElementsAre(Pair("hips", 0), Pair("rightThumbMetacarpal", 1),
-                          Pair("rightThumbProximal", 1), Pair("rightThumbDistal", 1)));
+  EXPECT_THAT(read.bones, ElementsAre(Pair("hips", 0), Pair("rightThumbMetacarpal", 1),
+                                      Pair("rightThumbProximal", 1), Pair("rightThumbDistal", 1)));
   EXPECT_THAT(read.warnings, IsEmpty());
 }
 
 TEST(VrmHumanoid, LeavesOutWhatIsWrong) {
   HandMadeGltf gltf = TwoJoints();
-  gltf.json["extensions"]["VRM"]["humanoid"]["humanBones"] = {
-      {{"bone", "hips"}, {"node", 7000}},
-      {{"bone", "spine"}, {"node", "0"}},
-      {{"bone", "head"}, {"node", 0}},
-      {{"bone", "head"}, {"node", 1}},
-      9};
+  gltf.json["extensions"]["VRM"]["humanoid"]["humanBones"] = {{{"bone", "hips"}, {"node", 7000}},
+                                                              {{"bone", "spine"}, {"node", "0"}},
+                                                              {{"bone", "head"}, {"node", 0}},
+                                                              {{"bone", "head"}, {"node", 1}},
+                                                              9};
   const Read read = BonesOf(gltf);
   EXPECT_THAT(read.bones, ElementsAre(Pair("head", 0)));
   EXPECT_EQ(read.warnings.size(), 4u);
