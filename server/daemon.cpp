@@ -298,7 +298,7 @@ Status Daemon::StartWeb() {
            [this](const ApiRequest& request, Hub& hub, Time now) {
              // Runs on shard 0's thread. Strangers may ask the probes, and as often as they like,
              // so these stop no other shard.
-             if (Api::IsProbe(request)) return api_->Answer(request, hub, now);
+             if (IsProbe(request.url.path)) return api_->Answer(request, hub, now);
              // The other shards wait until the reply is complete, so replies are quick.
              const Hub::ExclusiveLock lock(hub, 0);
              return api_->Answer(request, hub, now);

@@ -215,7 +215,7 @@ class HttpSession {
   // Without a token everybody gets the page, which asks for one, and the probes of supervisors.
   [[nodiscard]] bool IsForAll(const std::string& path) const {
     const bool is_page = path != kCharacterPath && context_->page.Find(path) != nullptr;
-    return is_page || path == "/healthz" || path == "/readyz";
+    return is_page || IsProbe(path);
   }
 
   [[nodiscard]] bool IsLocal() {
@@ -252,8 +252,8 @@ class HttpSession {
       ApiReply reply = MethodReply(ToView(request_.method_string()), url.path, "GET, HEAD");
       co_return co_await WriteReply(stream_, request_, std::move(reply));
     }
-    const bool is_api = url.path.starts_with("/api/") || url.path == "/metrics" ||
-                        url.path == "/healthz" || url.path == "/readyz";
+    const bool is_api =
+        url.path.starts_with("/api/") || url.path == "/metrics" || IsProbe(url.path);
     if (!is_api) {
       co_return co_await WriteReply(stream_, request_, NotFound(url.path));
     }

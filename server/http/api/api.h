@@ -46,12 +46,8 @@ class Api {
   Api(const Api&) = delete;
   Api& operator=(const Api&) = delete;
 
-  // True for /healthz and /readyz, which read only what the hub's thread writes.
-  [[nodiscard]] static bool IsProbe(const ApiRequest& request) {
-    return request.url.path == "/healthz" || request.url.path == "/readyz";
-  }
   // Answers one request; an unknown path or method gives an error reply (404, 405). Requires the
-  // hub's exclusive lock, except for a probe.
+  // hub's exclusive lock, except for a probe (IsProbe()).
   [[nodiscard]] ApiReply Answer(const ApiRequest& request, Hub& hub, Time now);
 
  private:

@@ -18,6 +18,12 @@ struct ApiRequest {
   Access access = Access::Everything();
 };
 
+// True for the probes of supervisors, which everybody may ask. They read only what the hub's thread
+// writes.
+[[nodiscard]] inline bool IsProbe(std::string_view path) {
+  return path == "/healthz" || path == "/readyz";
+}
+
 // The reply to a request.
 struct ApiReply {
   int status = 200;
