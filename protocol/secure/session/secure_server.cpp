@@ -252,11 +252,6 @@ SecureServer::Info SecureServer::InfoOf(std::uint32_t index) const {
   return {&session->grant, session->use->key_id, session->expires};
 }
 
-const Grant* SecureServer::GrantOf(std::uint32_t index) const {
-  const Session* const session = Find(index);
-  return session == nullptr ? nullptr : &session->grant;
-}
-
 const PeerAddress* SecureServer::AddressOf(std::uint32_t index) const {
   const Session* const session = Find(index);
   return session == nullptr ? nullptr : &session->address;

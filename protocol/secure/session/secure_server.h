@@ -73,8 +73,6 @@ class SecureServer {
     std::uint64_t expires = 0;
   };
   [[nodiscard]] Info InfoOf(std::uint32_t session) const;
-  // The permissions of a session; null if there is no such session.
-  [[nodiscard]] const Grant* GrantOf(std::uint32_t session) const;
   [[nodiscard]] const PeerAddress* AddressOf(std::uint32_t session) const;
 
   // Ends a session at once. Packets of its client are answered as those of an unknown session.

@@ -33,7 +33,7 @@ TEST(SecureServer, OpensASessionWithTheFirstPacketOfTheClient) {
   ASSERT_TRUE(event.opened);
   EXPECT_EQ(event.hello, Text("hello"));
   EXPECT_EQ(Bytes(event.inner.begin(), event.inner.end()), Text("pose"));
-  EXPECT_EQ(m.server.GrantOf(event.session)->subjects, "stage-*");
+  EXPECT_EQ(m.server.InfoOf(event.session).grant->subjects, "stage-*");
   EXPECT_EQ(*m.server.AddressOf(event.session), kHome);
   // The hello opens a session once.
   EXPECT_TRUE(m.ToServer(m.FromClient("pose")).hello.empty());
@@ -153,7 +153,7 @@ TEST(SecureServer, ANewHandshakeReplacesTheSessionOfTheSameAddress) {
     const ServerEvent event = m.ToServer(m.Poll(restarted));
     // Until the new session begins, the old one lives.
     if (!event.opened) {
-      EXPECT_NE(m.server.GrantOf(first), nullptr);
+      EXPECT_NE(m.server.InfoOf(first).grant, nullptr);
     }
     (void)m.ToClient(restarted, event.reply());
   }
@@ -169,7 +169,7 @@ TEST(SecureServer, EndsSilentAndExpiredSessions) {
   m.server.Expire(test::Later(m.now, SecureServer::kSilenceMicroseconds));
   EXPECT_EQ(m.server.TakeClosed(), std::vector<std::uint32_t>{session});
   EXPECT_TRUE(m.server.TakeClosed().empty());
-  EXPECT_EQ(m.server.GrantOf(session), nullptr);
+  EXPECT_EQ(m.server.InfoOf(session).grant, nullptr);
 
   Meeting n;
   const std::uint32_t other = n.Connect();
@@ -239,7 +239,7 @@ TEST_F(Renewal, GivesNewRightsAndTime) {
   EXPECT_TRUE(Show(token).renewed);
   EXPECT_TRUE(answer_.renewed);
   EXPECT_TRUE(m_.Poll().size() < ControlPacketBytes(kRenewBytes));  // no more renewals
-  EXPECT_EQ(m_.server.GrantOf(session_)->roles, Roles(Role::kPublish));
+  EXPECT_EQ(m_.server.InfoOf(session_).grant->roles, Roles(Role::kPublish));
   EXPECT_EQ(m_.server.admission().num_tokens_in_use(), 1u);
   Now later = m_.now;
   later.unix_s = test::kUnixNow + 7'199;
@@ -253,14 +253,14 @@ TEST_F(Renewal, NeedsTheKeyOfTheToken) {
   seen.key = m_.random.MakeKey();
   EXPECT_FALSE(Show(seen).renewed);
   EXPECT_EQ(answer_.refusal, Refusal::kForgedHandshake);
-  EXPECT_NE(m_.server.GrantOf(session_), nullptr);
+  EXPECT_NE(m_.server.InfoOf(session_).grant, nullptr);
 }
 
 TEST_F(Renewal, IsForTheSameClient) {
   Grant grant = test::WatchGrant();
   grant.client_id = 78;
   EXPECT_FALSE(Show(test::MakeTestToken(m_.ring, m_.random, grant)).renewed);
-  EXPECT_EQ(m_.server.GrantOf(session_)->client_id, 77u);
+  EXPECT_EQ(m_.server.InfoOf(session_).grant->client_id, 77u);
 }
 
 TEST_F(Renewal, ChecksTheTokenAsAHandshakeDoes) {
