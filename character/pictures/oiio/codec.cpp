@@ -9,6 +9,7 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include "character/pictures/oiio/file_claims.h"
 #include "character/pictures/picture_codec.h"
 
 namespace furrow::character {
@@ -97,6 +98,14 @@ StatusCode Decode(std::span<const std::uint8_t> bytes, Picture* picture, std::st
   if (format.empty()) {
     *why = "the picture is not a PNG, JPEG, WebP or OpenEXR file";
     return StatusCode::kUnsupported;
+  }
+  if (format == "openexr" && !ExrHeadersFit(bytes)) {
+    *why = "the picture is damaged: its header does not end";
+    return StatusCode::kParse;
+  }
+  if (format == "png" && !PngPixelsFit(bytes)) {
+    *why = "the picture is damaged: the file is too short for its pixels";
+    return StatusCode::kParse;
   }
   // The reader never writes; its interface lacks const.
   OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(bytes.data()), bytes.size());

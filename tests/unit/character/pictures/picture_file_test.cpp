@@ -106,6 +106,48 @@ TEST(Picture, RejectsEveryTruncationOfAnExr) {
   }
 }
 
+// OpenEXR would allocate what the attribute states.
+TEST(Picture, RejectsAnExrAttributeThatIsLongerThanTheFile) {
+  Picture picture;
+  picture.width = picture.height = 1;
+  picture.channels = 1;
+  picture.pixels_float = {0.5f};
+  std::string exr = *EncodeExr(picture);
+  const std::string name("compression\0compression\0", 24);
+  const std::size_t size_field = exr.find(name) + name.size();
+  ASSERT_LT(size_field, exr.size());
+  exr[size_field + 3] = '\x60';  // 1.5 GiB
+  const auto decoded = DecodePicture("p", Bytes(exr));
+  ASSERT_FALSE(decoded.ok());
+  EXPECT_EQ(decoded.status().code(), StatusCode::kParse);
+  EXPECT_NE(decoded.status().ToString().find("its header does not end"), std::string::npos);
+}
+
+// 64 Mi pixels would be allocated before the first of them is missed.
+TEST(Picture, RejectsAPngThatIsTooShortForItsPixels) {
+  Picture picture;
+  picture.width = picture.height = 1;
+  picture.pixels.assign(4, 0);
+  std::string png = *EncodePng(picture);
+  png.replace(16, 8, std::string("\0\0\x20\0\0\0\x20\0", 8));
+  const auto decoded = DecodePicture("p", Bytes(png));
+  ASSERT_FALSE(decoded.ok());
+  EXPECT_EQ(decoded.status().code(), StatusCode::kParse);
+  EXPECT_NE(decoded.status().ToString().find("too short for its pixels"), std::string::npos);
+}
+
+TEST(Picture, ReadsTheFlattestPng) {
+  Picture picture;
+  picture.width = picture.height = 2048;
+  picture.channels = 3;
+  picture.pixels.assign(std::size_t{2048} * 2048 * 3, 0);
+  const std::string png = *EncodePicture(picture, {.compression = 9});
+  EXPECT_LT(png.size(), picture.pixels.size() / 900) << "not flat";
+  const auto decoded = DecodePicture("p", Bytes(png));
+  ASSERT_TRUE(decoded.ok()) << decoded.status().ToString();
+  EXPECT_EQ(decoded->pixels, picture.pixels);
+}
+
 TEST(Picture, RejectsEveryTruncation) {
   Picture picture;
   picture.width = 4;
