@@ -15,10 +15,12 @@
 #include "protocol/codec/codec.h"
 #include "protocol/messages/hash.h"
 #include "server/session/hub.h"
+#include "tests/fuzz/fuzz_input.h"
 
 namespace furrow::server {
 namespace {
 
+using fuzz::Input;
 using protocol::secure::Grant;
 using protocol::secure::Roles;
 
@@ -68,26 +70,6 @@ class Watchman : public Link {
       Require(access.Has(Role::kWatch));
     }
   }
-};
-
-class Input {
- public:
-  explicit Input(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
-  [[nodiscard]] bool empty() const { return bytes_.empty(); }
-  std::uint8_t Byte() {
-    if (bytes_.empty()) return 0;
-    const std::uint8_t byte = bytes_.front();
-    bytes_ = bytes_.subspan(1);
-    return byte;
-  }
-  std::span<const std::uint8_t> Bytes(std::size_t count) {
-    const auto taken = bytes_.first(std::min(count, bytes_.size()));
-    bytes_ = bytes_.subspan(taken.size());
-    return taken;
-  }
-
- private:
-  std::span<const std::uint8_t> bytes_;
 };
 
 class Play {
@@ -219,6 +201,6 @@ class Play {
 }  // namespace furrow::server
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  furrow::server::Play().Run(furrow::server::Input({data, size}));
+  furrow::server::Play().Run(furrow::fuzz::Input({data, size}));
   return 0;
 }
