@@ -26,8 +26,8 @@ struct WireBytes {
 };
 
 WireBytes Measure(const LoadSetup& setting) {
-  const auto performance = ValueOrExit(
-      cli::LoadWorkload({.file = setting.recording, .rig = setting.rig, .quantise = true}));
+  const auto performance = ValueOrExit(cli::LoadWorkload(
+      {.file = setting.recording, .rig = setting.rig, .packing = cli::Packing::kAlways}));
   protocol::WeightFrame frame;
   frame.values.resize(performance.binding->weight_names().size(), 0.5f);
   std::vector<std::uint8_t> weights;

@@ -16,7 +16,8 @@ load::RunHooks Silently() {
 Result<load::RunResult> RunFresh(const LoadSetup& setting, const std::filesystem::path& recording,
                                  const std::filesystem::path& rig,
                                  const load::RunOptions& options) {
-  const auto performance = cli::LoadWorkload({.file = recording, .rig = rig, .quantise = true});
+  const auto performance =
+      cli::LoadWorkload({.file = recording, .rig = rig, .packing = cli::Packing::kAlways});
   FURROW_RETURN_IF_ERROR(performance);
   const auto daemon = DaemonProcess::Start(setting.daemon, rig, setting.folder);
   FURROW_RETURN_IF_ERROR(daemon);

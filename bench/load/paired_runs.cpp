@@ -16,10 +16,11 @@ constexpr int kSubjects = 256;
 
 }  // namespace
 
-PairedRuns::PairedRuns(const LoadSetup& setting, const load::ComparisonTargets& contestants, int searches)
+PairedRuns::PairedRuns(const LoadSetup& setting, const load::ComparisonTargets& contestants,
+                       int searches)
     : contestants_(contestants),
       performance_(ValueOrExit(cli::LoadWorkload(
-          {.file = setting.recording, .rig = setting.rig, .quantise = true}))) {
+          {.file = setting.recording, .rig = setting.rig, .packing = cli::Packing::kAlways}))) {
   options_.run = At60Hz(kSubjects, setting.seconds);
   options_.rounds = setting.rounds;
   options_.searches = std::min(searches, setting.rounds);

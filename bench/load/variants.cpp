@@ -86,7 +86,8 @@ Status SavePaddedRecording(const std::filesystem::path& path, int num_joints,
 }
 
 Result<int> CountWeights(const std::filesystem::path& recording, const std::filesystem::path& rig) {
-  const auto performance = cli::LoadWorkload({.file = recording, .rig = rig});
+  const auto performance =
+      cli::LoadWorkload({.file = recording, .rig = rig, .packing = cli::Packing::kNever});
   FURROW_RETURN_IF_ERROR(performance);
   return static_cast<int>(performance->binding->weight_names().size());
 }

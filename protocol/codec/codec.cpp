@@ -110,6 +110,9 @@ void Encoder::Encode(const Header& header, const Hello& message, std::vector<std
 void Encoder::Encode(const Header& header, const PoseFrame& message, std::vector<std::uint8_t>& out,
                      const PoseEncoding& encoding) {
   EncodeMessage(state_->payload, header, message, out, encoding);
+  if (encoding.quantise_to_fit && out.size() > kMaxDatagramBytes) {
+    EncodeMessage(state_->payload, header, message, out, PoseEncoding::Small());
+  }
 }
 
 void Encoder::Encode(const Header& header, const Welcome& message, std::vector<std::uint8_t>& out) {

@@ -84,7 +84,8 @@ FragmentStatus Reassembler::Push(std::uint64_t peer, std::span<const std::uint8_
   if (!ReadSlice(datagram, envelope, limits_.max_message_bytes, slice)) {
     return FragmentStatus::kMalformed;
   }
-  if (kEnvelopeBytes + envelope.payload_bytes > limits_.max_total_bytes) {
+  if (kEnvelopeBytes + envelope.payload_bytes >
+      std::min({limits_.max_stream_bytes, limits_.max_peer_bytes, limits_.max_total_bytes})) {
     return FragmentStatus::kOverLimit;
   }
   const Key key{peer, envelope.header.session, slice.message_id};
@@ -102,11 +103,9 @@ FragmentStatus Reassembler::Push(std::uint64_t peer, std::span<const std::uint8_
   std::memcpy(&pending.bytes[kEnvelopeBytes + slice.index * kFragmentPayloadBytes],
               slice.bytes.data(), slice.bytes.size());
   if (--pending.missing > 0) return FragmentStatus::kPending;
-  // The bytes become the result without a copy. Remove() then finds nothing to subtract.
-  pending_bytes_ -= pending.bytes.size();
-  done_.swap(pending.bytes);
-  pending.bytes.clear();
-  Remove(pending_.find(key));
+  const auto complete = pending_.find(key);
+  done_.swap(pending.bytes);  // the bytes become the result without a copy
+  Remove(complete);
   message = done_;
   return FragmentStatus::kComplete;
 }
@@ -114,9 +113,17 @@ FragmentStatus Reassembler::Push(std::uint64_t peer, std::span<const std::uint8_
 Reassembler::Pending& Reassembler::Begin(const Key& key, const Envelope& envelope,
                                          std::size_t count, std::int64_t now_us) {
   const std::size_t bytes = kEnvelopeBytes + envelope.payload_bytes;
-  MakeRoom(key.peer, bytes);
+  const StreamKey stream_key = StreamOf(key, envelope);
+  evicted_ += DropOld(now_us);  // between two calls of Expire(), too
+  MakeRoom(stream_key, bytes);
   Pending& pending = pending_[key];
-  pending.age = by_age_.insert(by_age_.end(), key);
+  const auto append = [&](Queue& queue) {
+    queue.bytes += bytes;
+    return queue.by_age.insert(queue.by_age.end(), key);
+  };
+  pending.in_all = append(all_);
+  pending.in_peer = append(peers_[key.peer]);
+  pending.in_stream = append(streams_[stream_key]);
   pending.envelope = envelope;
   pending.first_us = now_us;
   pending.missing = count;
@@ -127,47 +134,63 @@ Reassembler::Pending& Reassembler::Begin(const Key& key, const Envelope& envelop
   whole.flags = 0;
   WriteEnvelope(whole,
                 std::span<std::uint8_t, kEnvelopeBytes>(pending.bytes.data(), kEnvelopeBytes));
-  pending_bytes_ += bytes;
   return pending;
 }
 
-// Drops the oldest unfinished message of the peer first, then the oldest of all peers. The
-// fragments of one message arrive back to back, so a flood of first fragments mostly evicts other
-// first fragments. Rejecting new messages instead would let a few datagrams per second from many
-// ports block every large message.
-void Reassembler::MakeRoom(std::uint64_t peer, std::size_t bytes) {
-  std::size_t count = 0;
-  auto oldest = pending_.end();
-  // Keys are sorted by peer, so one peer's messages are neighbours.
-  for (auto it = pending_.lower_bound(Key{peer, 0, 0});
-       it != pending_.end() && it->first.peer == peer; ++it, ++count) {
-    if (oldest == pending_.end() || it->second.first_us < oldest->second.first_us) oldest = it;
+// Drops the oldest messages. The fragments of one message arrive close together, so the oldest has
+// lost a fragment, and a flood of first fragments mostly evicts other first fragments. Rejecting
+// new messages instead would let a few datagrams per second from many ports block every large
+// message.
+void Reassembler::MakeRoom(const StreamKey& stream, std::size_t bytes) {
+  if (const auto found = streams_.find(stream); found != streams_.end()) {
+    Shrink(found->second, limits_.max_stream_bytes - bytes);
   }
-  if (count >= limits_.max_pending_per_peer && oldest != pending_.end()) {
+  if (const auto found = peers_.find(stream.peer); found != peers_.end()) {
+    Shrink(found->second, limits_.max_peer_bytes - bytes);
+  }
+  Shrink(all_, limits_.max_total_bytes - bytes);
+}
+
+// Removes the oldest messages of `queue` until at most `max_bytes` are left. Remove() erases a
+// queue with its last message, so the loop looks at the queue only while messages are left.
+void Reassembler::Shrink(const Queue& queue, std::size_t max_bytes) {
+  for (std::size_t left = queue.bytes; left > max_bytes;) {
+    const auto oldest = pending_.find(queue.by_age.front());
+    left -= kEnvelopeBytes + oldest->second.envelope.payload_bytes;
     Remove(oldest);
-    ++evicted_;
-  }
-  while (pending_bytes_ + bytes > limits_.max_total_bytes) {
-    Remove(pending_.find(by_age_.front()));
     ++evicted_;
   }
 }
 
 void Reassembler::Remove(PendingMap::iterator it) {
-  pending_bytes_ -= it->second.bytes.size();
-  by_age_.erase(it->second.age);
+  const Pending& pending = it->second;
+  const std::size_t bytes = kEnvelopeBytes + pending.envelope.payload_bytes;
+  all_.by_age.erase(pending.in_all);
+  all_.bytes -= bytes;
+  const auto leave = [bytes](auto& queues, const auto& key, std::list<Key>::iterator position) {
+    const auto queue = queues.find(key);
+    queue->second.by_age.erase(position);
+    queue->second.bytes -= bytes;
+    if (queue->second.by_age.empty()) queues.erase(queue);
+  };
+  leave(peers_, it->first.peer, pending.in_peer);
+  leave(streams_, StreamOf(it->first, pending.envelope), pending.in_stream);
   pending_.erase(it);
 }
 
-std::size_t Reassembler::Expire(std::int64_t now_us) {
-  std::size_t dropped = std::exchange(evicted_, 0);
-  while (!by_age_.empty()) {
-    const auto oldest = pending_.find(by_age_.front());
+std::size_t Reassembler::DropOld(std::int64_t now_us) {
+  std::size_t dropped = 0;
+  while (!all_.by_age.empty()) {
+    const auto oldest = pending_.find(all_.by_age.front());
     if (now_us - oldest->second.first_us <= limits_.max_age_us) break;
     Remove(oldest);
     ++dropped;
   }
   return dropped;
+}
+
+std::size_t Reassembler::Expire(std::int64_t now_us) {
+  return DropOld(now_us) + std::exchange(evicted_, 0);
 }
 
 void Reassembler::ForgetPeer(std::uint64_t peer) {

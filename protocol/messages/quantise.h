@@ -13,8 +13,12 @@ struct PoseEncoding {
   bool quantise_rotations = false;     // 6 bytes per joint, error up to kMaxRotationError
   bool quantise_translations = false;  // 6 bytes; error per axis up to (largest offset) / 65534
   bool quantise_blend_shapes = false;  // 2 bytes; clamped to (-2, 2), error up to 1/32768
+  // Quantises everything if the pose does not fit one datagram otherwise, and nothing if it does.
+  bool quantise_to_fit = false;
   // The smallest encoding: everything quantised.
   [[nodiscard]] static PoseEncoding Small() { return {true, true, true}; }
+  // For UDP: floats where they fit one datagram, else Small(). A lost fragment loses its message.
+  [[nodiscard]] static PoseEncoding Fitting() { return {false, false, false, true}; }
 };
 
 // The functions below store a rotation as its "smallest three" components in 48 bits (STANDARD.md

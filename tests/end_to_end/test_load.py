@@ -113,7 +113,7 @@ class LoadTest(unittest.TestCase):
 
     def test_falsified_poses_give_wrong_weights(self):
         # A packed pose of this recording takes one datagram, an unpacked pose two.
-        for packing in (["--quantise"], []):
+        for packing in ([], ["--floats"]):
             with Daemon("--no-render") as daemon, Chaos(daemon, "--way", "up", "--falsify", "0.05") as chaos:
                 run, text = self.load(chaos.udp, "--subjects", "5", "--rate", "50", "--duration", "1", *packing)
             self.assertEqual(chaos.injected["up"].keys(), {"falsified"})
@@ -139,8 +139,8 @@ class LoadTest(unittest.TestCase):
         written = json.loads((self.folder / "figures.json").read_text())
         settings, injected = written["settings"], written["planted"]
         self.assertEqual(settings["file"], str(PERFORMANCE))
-        self.assertEqual([settings[key] for key in ("path", "subjects", "rate", "subscribers", "quantise")],
-                         ["udp", 10, 50.0, 1, True])
+        self.assertEqual([settings[key] for key in ("path", "subjects", "rate", "subscribers", "packing")],
+                         ["udp", 10, 50.0, 1, "always"])
         for way in ("up", "down"):
             self.assertEqual(settings["chaos"][way]["seed"], 5)
             self.assertEqual(settings["chaos"][way]["loss"], 0.05)

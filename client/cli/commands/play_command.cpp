@@ -33,6 +33,7 @@ struct PlayOptions {
   bool once = false;  // do not connect again after a loss
   bool loop = false;
   bool quantise = false;
+  bool floats = false;
   double rate = 0.0;
   double speed = 1.0;
   double from = 0.0;
@@ -94,6 +95,12 @@ TransportKind KindOf(const PlayOptions& options, const client::Address& address)
   return address.transport.value_or(TransportKind::kUdp);
 }
 
+protocol::PoseEncoding EncodingOf(const PlayOptions& options, TransportKind transport) {
+  if (options.quantise) return protocol::PoseEncoding::Small();
+  const bool fits = options.floats || transport == TransportKind::kTcp;
+  return fits ? protocol::PoseEncoding{} : protocol::PoseEncoding::Fitting();
+}
+
 int PlayFile(PlayOptions options) {
   const auto address = ParseHost(options.host, {.udp = !options.tcp, .token = options.token});
   if (!address) return kUsage;
@@ -110,7 +117,8 @@ int PlayFile(PlayOptions options) {
   }
   PrintMatches(*sources);
   int exit_code = kDone;
-  auto transport = OpenTransport(*address, KindOf(options, *address), options.once, &exit_code);
+  const TransportKind kind = KindOf(options, *address);
+  auto transport = OpenTransport(*address, kind, options.once, &exit_code);
   if (!transport) return exit_code;
   // After loading: until here Ctrl-C may end the program at once, from here on it must say goodbye.
   CatchInterrupts();
@@ -126,12 +134,11 @@ int PlayFile(PlayOptions options) {
     if (answer.kind != Kind::kAccepted) return NotAccepted(answer, options.host);
     tracks.push_back({stream, &source});
   }
-  SessionPlayer player(
-      publisher, std::move(tracks), std::move(schedule),
-      {.speed = options.speed,
-       .loop = options.loop,
-       .once = options.once,
-       .encoding = options.quantise ? protocol::PoseEncoding::Small() : protocol::PoseEncoding{}});
+  SessionPlayer player(publisher, std::move(tracks), std::move(schedule),
+                       {.speed = options.speed,
+                        .loop = options.loop,
+                        .once = options.once,
+                        .encoding = EncodingOf(options, kind)});
   exit_code = player.Run();
   // Without the goodbye, subscribers would see the subjects hold and decay first.
   publisher.Close();
@@ -167,11 +174,15 @@ void AddPlay(CLI::App& app, Action& action) {
       ->check(Within(0.0, 1e9))
       ->capture_default_str();
   command->add_flag("--loop", options->loop, "Repeat until Ctrl-C; pose numbers continue");
-  command->add_flag(
+  auto* quantise = command->add_flag(
       "--quantise", options->quantise,
       "Send packed poses: 6 bytes per rotation (error up to 1.5e-4 rad), 6 per translation "
       "(error up to 1/65534 of the largest in the pose) and 2 per blend shape (error up to "
-      "1/32768)");
+      "1/32768) (default over UDP: those that do not fit one datagram otherwise)");
+  command
+      ->add_flag("--floats", options->floats,
+                 "Send poses as floats, in several datagrams if necessary (default over TCP)")
+      ->excludes(quantise);
   command->add_option("--scale", options->scale, "Metres per unit of the recording's lengths")
       ->check(Within(1e-6, 1e6))
       ->capture_default_str();

@@ -201,6 +201,7 @@ Status RunComparison(const LoadFlags& flags, const load::Workload& workload, con
 
 int RunLoad(LoadFlags flags) {
   flags.run.path = flags.tcp ? Path::kTcp : flags.both ? Path::kBoth : Path::kUdp;
+  flags.input.packing = PackingOf(flags);
   flags.run.late_us = static_cast<std::int64_t>(flags.late_ms * 1e3);
   flags.run.plan.subjects = flags.subjects != 0 ? flags.subjects : flags.find_max ? 256 : 1;
   flags.run.plan.phases = 16;

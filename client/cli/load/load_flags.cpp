@@ -43,8 +43,13 @@ void AddTrafficOptions(CLI::App& command, LoadFlags& options) {
       "--other-port", options.other_port,
       "furrowd's port for the other transport, which PORT does not give (default: 7400 for "
       "TCP, 7401 for UDP)");
-  command.add_flag("--quantise", options.input.quantise,
-                   "Send packed poses, as 'furrow play --quantise' does");
+  auto* quantise = command.add_flag("--quantise", options.quantise,
+                                    "Send packed poses, as 'furrow play --quantise' does "
+                                    "(default: those that do not fit one datagram)");
+  command
+      .add_flag("--floats", options.floats,
+                "Send poses as floats, in several datagrams if necessary (default with --tcp)")
+      ->excludes(quantise);
   command.add_option("--scale", options.input.scale, "Metres per unit of the recording's lengths")
       ->check(Within(1e-6, 1e6))
       ->capture_default_str();
@@ -150,6 +155,11 @@ void AddLoadFlags(CLI::App& command, LoadFlags& flags) {
   AddComparisonOptions(command, flags);
   AddOutputOptions(command, flags);
   AddChaosFlags(command, flags.chaos);
+}
+
+Packing PackingOf(const LoadFlags& flags) {
+  if (flags.quantise) return Packing::kAlways;
+  return flags.floats || flags.tcp ? Packing::kNever : Packing::kToFit;
 }
 
 std::string FindConflict(const LoadFlags& flags) {

@@ -23,6 +23,8 @@ struct LoadFlags {
   bool udp = false;  // the default, so the value is not read
   bool tcp = false;
   bool both = false;
+  bool quantise = false;
+  bool floats = false;
   std::uint16_t other_port = 0;    // port of the transport that `host` does not name; 0: default
   double late_ms = 1000.0 / 60.0;  // latency limit: one frame at 60 Hz
   int pid = 0;                     // process of the daemon; 0: find it by its port
@@ -40,6 +42,9 @@ struct LoadFlags {
 
 // Adds the options to `command`. `flags` must outlive parsing.
 void AddLoadFlags(CLI::App& command, LoadFlags& flags);
+
+// How the poses are packed: as the options say, or by default to fit datagrams over UDP.
+[[nodiscard]] Packing PackingOf(const LoadFlags& flags);
 
 // An error message about options that are valid alone and contradict each other; empty if there is
 // none.

@@ -9,6 +9,7 @@
 #include "base/status.h"
 #include "client/cli/common/inputs.h"
 #include "protocol/codec/codec.h"
+#include "protocol/framing/fragment.h"
 #include "protocol/messages/hash.h"
 #include "protocol/messages/quantise.h"
 #include "recording/wire_pose.h"
@@ -88,16 +89,35 @@ Result<std::shared_ptr<const wrinkle::RigBinding>> BindRig(const LoadInput& inpu
   return std::make_shared<const wrinkle::RigBinding>(*std::move(binding));
 }
 
+protocol::PoseEncoding EncodingOf(Packing packing) {
+  switch (packing) {
+    case Packing::kAlways: return protocol::PoseEncoding::Small();
+    case Packing::kToFit: return protocol::PoseEncoding::Fitting();
+    case Packing::kNever: break;
+  }
+  return {};
+}
+
 }  // namespace
 
-void QuantiseClip(motion::Clip* clip) {
+void QuantiseClip(Packing packing, motion::Clip* clip) {
+  if (packing == Packing::kNever) return;
   const auto rest = clip->skeleton.rest_pose();
-  for (std::size_t first = 0; first + rest.size() <= clip->locals.size() && !rest.empty();
-       first += rest.size()) {
-    QuantiseFrame(std::span(clip->locals).subspan(first, rest.size()), rest);
+  const std::size_t shapes = clip->blend_shape_names.size();
+  protocol::Encoder encoder;
+  protocol::PoseFrame pose;
+  std::vector<std::uint8_t> message;
+  for (int frame = 0; frame < clip->num_frames(); ++frame) {
+    if (packing == Packing::kToFit) {
+      recording::FillPose(*clip, frame, &pose);
+      encoder.Encode({.session = 1}, pose, message);
+      if (protocol::NumDatagrams(message.size()) == 1) continue;
+    }
+    const auto at = static_cast<std::size_t>(frame);
+    QuantiseFrame(std::span(clip->locals).subspan(rest.size() * at, rest.size()), rest);
+    for (float& value : std::span(clip->blend_shapes).subspan(shapes * at, shapes))
+      value = protocol::UnpackBlendShape(protocol::PackBlendShape(value));
   }
-  for (float& value : clip->blend_shapes)
-    value = protocol::UnpackBlendShape(protocol::PackBlendShape(value));
 }
 
 Result<load::Workload> LoadWorkload(const LoadInput& input) {
@@ -105,7 +125,7 @@ Result<load::Workload> LoadWorkload(const LoadInput& input) {
   FURROW_RETURN_IF_ERROR(loaded);
   if (loaded->num_frames() == 0)
     return Status(StatusCode::kInvalidArgument, "the recording has no frames", input.file);
-  if (input.quantise) QuantiseClip(&*loaded);
+  QuantiseClip(input.packing, &*loaded);
   const auto clip = std::make_shared<const motion::Clip>(*std::move(loaded));
   rig::RigShapes shapes;
   auto binding = BindRig(input, *clip, &shapes);
@@ -119,7 +139,7 @@ Result<load::Workload> LoadWorkload(const LoadInput& input) {
     clip->GetPose(frame, pose);
     shapes.Extend(pose);
   };
-  const auto encoding = input.quantise ? protocol::PoseEncoding::Small() : protocol::PoseEncoding{};
+  const auto encoding = EncodingOf(input.packing);
   protocol::Encoder encoder;
   protocol::PoseFrame pose;
   pose.skeleton_hash = protocol::SkeletonHash(workload.offer);

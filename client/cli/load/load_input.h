@@ -9,6 +9,9 @@
 
 namespace furrow::cli {
 
+// How the poses of a load test are packed. kToFit: those that do not fit one datagram.
+enum class Packing { kToFit, kAlways, kNever };
+
 // The recording that a load test sends and the rig that checks the weights.
 struct LoadInput {
   std::string file;  // the recording
@@ -16,7 +19,7 @@ struct LoadInput {
   std::string rig;
   std::string skeleton_map;  // file or name of a shipped map; empty: the best match
   std::string shape_map;     // the same for the names of blend shapes
-  bool quantise = false;     // send packed poses
+  Packing packing = Packing::kToFit;
   float scale = 1.0f;        // metres per unit of the recording
   motion::LoadOptions read;  // how the recording, and the recordings of reference poses, are read
 };
@@ -28,8 +31,8 @@ struct LoadInput {
 // kNotFound (the recording has nothing that the rig reads).
 [[nodiscard]] Result<load::Workload> LoadWorkload(const LoadInput& input);
 
-// Replaces the values of a clip by their quantised wire values, so that the local solver and the
-// daemon solve the same numbers.
-void QuantiseClip(motion::Clip* clip);
+// Replaces the values of the frames that are sent packed by their quantised wire values, so that
+// the local solver and the daemon solve the same numbers.
+void QuantiseClip(Packing packing, motion::Clip* clip);
 
 }  // namespace furrow::cli

@@ -14,6 +14,15 @@ nlohmann::json TextOrNull(const std::string& text) {
   return text.empty() ? nlohmann::json() : nlohmann::json(text);
 }
 
+const char* NameOf(Packing packing) {
+  switch (packing) {
+    case Packing::kAlways: return "always";
+    case Packing::kNever: return "never";
+    case Packing::kToFit: break;
+  }
+  return "to fit";
+}
+
 const char* NameOf(load::Path path) {
   switch (path) {
     case load::Path::kTcp: return "tcp";
@@ -55,7 +64,7 @@ nlohmann::json SettingsOf(const LoadFlags& flags) {
       {"skeleton_map", TextOrNull(flags.input.skeleton_map)},
       {"shape_map", TextOrNull(flags.input.shape_map)},
       {"rest_frame", flags.input.read.rest_frame},
-      {"quantise", flags.input.quantise},
+      {"packing", NameOf(PackingOf(flags))},
       {"scale", flags.input.scale},
       {"path", NameOf(run.path)},
       {"subjects", run.plan.subjects},

@@ -10,9 +10,9 @@
 namespace furrow::load {
 namespace {
 
-// Limit of the values kept of mismatches; later mismatches count as unchecked. It bounds memory and
-// time if every message of a server is wrong.
-constexpr std::size_t kMaxMismatchValues = std::size_t{8} << 20;
+// Limit of the values kept of mismatches, 512 MiB; later mismatches count as unchecked. It bounds
+// memory and time if every message of a server is wrong.
+constexpr std::size_t kMaxMismatchValues = std::size_t{128} << 20;
 // Number of wrong messages that are searched for in the whole table.
 constexpr std::uint64_t kMaxClassified = 10'000;
 // A replay that starts late is exact if it agrees with the table within this difference.

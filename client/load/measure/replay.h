@@ -32,9 +32,9 @@ class Replay {
   void Missing(std::uint32_t pose);
   // Weights equal to the expected table arrived. Returns their distance from the nearest branch.
   float Agreed(std::uint32_t pose);
-  // Other weights arrived. Returns their distance from the nearest branch, or nothing if that is
-  // unknown: after a gap in which the server may have held and decayed the weights by its own
-  // clock, or after a gap with more possibilities than branches if no branch fits.
+  // Other weights arrived. Returns their distance from the nearest branch, or nothing if no branch
+  // fits and that proves nothing: after a gap in which the server may have held and decayed the
+  // weights by its own clock, or after a gap with more possibilities than branches.
   [[nodiscard]] std::optional<float> Mismatched(std::uint32_t pose, std::span<const float> values);
 
  private:

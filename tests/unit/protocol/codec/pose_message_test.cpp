@@ -63,6 +63,16 @@ TEST(PoseMessage, PackedNumbersStayWithinStatedErrors) {
   }
 }
 
+TEST(PoseMessage, IsPackedIfItDoesNotFitADatagramOtherwise) {
+  const PoseFrame small = test::MakePose(20, 0, 1);
+  EXPECT_EQ(Encoded(small, PoseEncoding::Fitting()), Encoded(small));
+  const PoseFrame large = test::MakePose(60, 52, 1);
+  ASSERT_GT(NumDatagrams(Encoded(large).size()), 1u);
+  const auto fitting = Encoded(large, PoseEncoding::Fitting());
+  EXPECT_EQ(fitting, Encoded(large, PoseEncoding::Small()));
+  EXPECT_EQ(NumDatagrams(fitting.size()), 1u);
+}
+
 TEST(PoseMessage, EmptyIndicesMeanAllInOrder) {
   PoseFrame pose = test::MakePose(9, 4, 1);
   const PoseFrame whole = pose;

@@ -2,6 +2,7 @@
 #include "protocol/framing/fragment.h"
 
 #include <algorithm>
+#include <map>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -22,6 +23,15 @@ std::vector<Bytes> Split(const Bytes& message, std::uint32_t id) {
     datagrams.push_back(datagram);
   }
   return datagrams;
+}
+
+// A message of two fragments.
+Bytes MediumMessage(std::uint16_t stream, std::uint32_t sequence) {
+  Encoder encoder;
+  Bytes bytes;
+  encoder.Encode({.session = 7, .stream = stream, .sequence = sequence}, test::MakeOffer(30, 0),
+                 bytes);
+  return bytes;
 }
 
 Bytes LargeMessage() { return test::Encoded(test::MakeOffer(163, 0)); }
@@ -112,25 +122,74 @@ TEST_F(Fragments, RejectDifferingEnvelope) {
   EXPECT_EQ(Push(datagrams[1]), FragmentStatus::kPending);
 }
 
-TEST_F(Fragments, MemoryIsBoundedPerPeerAndInTotal) {
+TEST_F(Fragments, MemoryIsBoundedPerStreamPeerAndInTotal) {
   const Bytes message = LargeMessage();
-  for (std::uint32_t id = 0; id < 100; ++id) (void)Push(Split(message, id).front(), 1, id);
-  EXPECT_EQ(reassembler_.pending_messages(), ReassemblyLimits{}.max_pending_per_peer);
-  // The oldest message was dropped; the newest one still completes.
+  const ReassemblyLimits limits;
+  for (std::uint32_t id = 0; id < 100; ++id) {
+    ASSERT_EQ(Push(Split(message, id).front(), 1, id), FragmentStatus::kPending);
+    ASSERT_LE(reassembler_.pending_bytes(), limits.max_stream_bytes);
+  }
+  EXPECT_EQ(reassembler_.pending_messages(), limits.max_stream_bytes / message.size());
+  // The oldest messages were dropped; the newest one still completes.
   const std::vector<Bytes> newest = Split(message, 99);
   for (std::size_t i = 1; i + 1 < newest.size(); ++i) (void)Push(newest[i], 1, 200);
   EXPECT_EQ(Push(newest.back(), 1, 200), FragmentStatus::kComplete);
+  // A peer with many streams.
+  for (std::uint16_t stream = 1; stream < 500; ++stream) {
+    for (std::uint32_t id = 0; id < 5; ++id) {
+      const Bytes other = Split(MediumMessage(stream, id), stream * 5u + id).front();
+      ASSERT_EQ(Push(other, 1, 250), FragmentStatus::kPending);
+    }
+    ASSERT_LE(reassembler_.pending_bytes(), limits.max_peer_bytes);
+  }
+  EXPECT_GT(reassembler_.pending_bytes(), limits.max_peer_bytes / 2);
+  reassembler_.ForgetPeer(1);
+  EXPECT_EQ(reassembler_.pending_bytes(), 0u);
+  (void)reassembler_.Expire(250);
   // First fragments from many peers evict each other. A complete message still gets through.
   for (std::uint64_t peer = 10; peer < 5000; ++peer) {
     ASSERT_EQ(Push(newest.front(), peer, 300), FragmentStatus::kPending);
-    ASSERT_LE(reassembler_.pending_bytes(), ReassemblyLimits{}.max_total_bytes);
+    ASSERT_LE(reassembler_.pending_bytes(), limits.max_total_bytes);
   }
   for (std::size_t i = 0; i + 1 < newest.size(); ++i) (void)Push(newest[i], 1, 300);
   EXPECT_EQ(Push(newest.back(), 1, 300), FragmentStatus::kComplete);
   EXPECT_EQ(Bytes(message_.begin(), message_.end()), message);
-  // Started: 100 messages of one peer, 4,990 of others and one more. Completed: two.
+  // Started: 4,990 messages and one more. Completed: one.
   const std::size_t left = reassembler_.pending_messages();
-  EXPECT_EQ(reassembler_.Expire(300), 100u + 4990u + 1u - 2u - left);
+  EXPECT_EQ(reassembler_.Expire(300), 4990u + 1u - 1u - left);
+}
+
+// 40 subjects of one sender, two fragments a pose, 60 poses per second, 10% loss and up to 50 ms of
+// jitter. Poses of one subject must not drop the fragments of another.
+TEST_F(Fragments, ManyStreamsOfOnePeerDoNotDropEachOther) {
+  constexpr int kSubjects = 40;
+  constexpr int kPoses = 300;
+  ASSERT_EQ(NumDatagrams(MediumMessage(0, 0).size()), 2u);
+  std::mt19937 random(3);
+  std::uniform_int_distribution<std::int64_t> jitter_us(0, 50'000);
+  std::bernoulli_distribution lost(0.1);
+  std::multimap<std::int64_t, Bytes> arrivals;
+  std::size_t whole = 0;
+  for (std::uint32_t pose = 0; pose < kPoses; ++pose) {
+    for (std::uint16_t stream = 0; stream < kSubjects; ++stream) {
+      const std::int64_t sent_us = pose * 16'667 + stream * 400;
+      bool complete = true;
+      for (const Bytes& fragment : Split(MediumMessage(stream, pose), pose * kSubjects + stream)) {
+        if (lost(random)) {
+          complete = false;
+        } else {
+          arrivals.emplace(sent_us + jitter_us(random), fragment);
+        }
+      }
+      if (complete) ++whole;
+    }
+  }
+  std::size_t received = 0;
+  for (const auto& [at_us, fragment] : arrivals) {
+    if (Push(fragment, 1, at_us) == FragmentStatus::kComplete) ++received;
+    ASSERT_LE(reassembler_.pending_bytes(), ReassemblyLimits{}.max_peer_bytes);
+  }
+  EXPECT_EQ(received, whole);
 }
 
 TEST(ReassemblerLimits, RejectsAMessageAboveTheTotal) {
@@ -144,9 +203,9 @@ TEST(ReassemblerLimits, RejectsAMessageAboveTheTotal) {
 TEST_F(Fragments, OldMessagesExpire) {
   const std::vector<Bytes> datagrams = Split(LargeMessage(), 1);
   (void)Push(datagrams[0], 1, 0);
-  (void)Push(datagrams[0], 2, 900'000);
-  EXPECT_EQ(reassembler_.Expire(1'000'000), 0u);
-  EXPECT_EQ(reassembler_.Expire(1'000'001), 1u);
+  (void)Push(datagrams[0], 2, 400'000);
+  EXPECT_EQ(reassembler_.Expire(500'000), 0u);
+  EXPECT_EQ(reassembler_.Expire(500'001), 1u);
   EXPECT_EQ(reassembler_.pending_messages(), 1u);
 }
 

@@ -7,8 +7,8 @@ export const MAX_DATAGRAM_BYTES = 1200;
 const MAX_FRAGMENTED_BYTES = 131_072;
 const FRAGMENT_HEAD_BYTES = 40;
 const SLICE_BYTES = MAX_DATAGRAM_BYTES - FRAGMENT_HEAD_BYTES;
-const MAX_UNFINISHED = 4;
-const MAX_AGE_MS = 1000;
+const MAX_UNFINISHED_BYTES = 1_048_576;
+const MAX_AGE_MS = 500;
 
 /** Splits a datagram that holds several whole messages. Throws Malformed if any of them is invalid. */
 export function splitBundle(datagram: Uint8Array): Uint8Array[] {
@@ -93,7 +93,8 @@ export class Datagrams {
     if (message === undefined) {
       message = { header, id, sinceMs: nowMs, slices: new Array(count), missing: count };
       this.unfinished.push(message);
-      if (this.unfinished.length > MAX_UNFINISHED) this.unfinished.shift();
+      let bytes = this.unfinished.reduce((sum, each) => sum + each.header.payloadBytes, 0);
+      for (; bytes > MAX_UNFINISHED_BYTES; bytes -= this.unfinished.shift()!.header.payloadBytes);
     }
     require(sameHeader(message.header, header), 'fragments of different messages');
     if (message.slices[index] === undefined) --message.missing;

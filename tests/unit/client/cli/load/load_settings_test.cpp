@@ -20,6 +20,7 @@ TEST(LoadSettings, UnsetValuesAreNull) {
   EXPECT_EQ(settings["host"], "localhost:7401");
   EXPECT_EQ(settings["file"], "performance.bvh");
   EXPECT_EQ(settings["path"], "udp");
+  EXPECT_EQ(settings["packing"], "to fit");
   for (const char* key : {"rig", "skeleton_map", "rate"})
     EXPECT_TRUE(settings[key].is_null()) << key;
   EXPECT_TRUE(settings["chaos"]["up"].is_null());
@@ -40,6 +41,13 @@ TEST(LoadSettings, ContainAllSettingsOfTheFigures) {
   EXPECT_EQ(settings["chaos"]["down"]["seed"], 9);
   EXPECT_EQ(settings["chaos"]["down"]["loss"], 0.5);
   EXPECT_EQ(settings["chaos"]["down"]["black_holes"][0]["every"], 4.0);
+}
+
+TEST(LoadSettings, PosesArePackedToFitDatagramsOnlyOverUdp) {
+  EXPECT_EQ(SettingsOf("--both")["packing"], "to fit");
+  EXPECT_EQ(SettingsOf("--tcp")["packing"], "never");
+  EXPECT_EQ(SettingsOf("--tcp --quantise")["packing"], "always");
+  EXPECT_EQ(SettingsOf("--floats")["packing"], "never");
 }
 
 TEST(LoadSettings, ContainTheSettingsOfComparisons) {
