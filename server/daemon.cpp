@@ -176,6 +176,7 @@ Status Daemon::StartRecording() {
 void Daemon::MakeHub() {
   Hub::Parts parts;
   parts.limits = config_.limits;
+  parts.jitter = config_.jitter;
   parts.session = session_ = RandomNumber();
   parts.rig = assets_.rig;
   // Without a renderer, weights need the character only if joints may move its shapes.

@@ -3,6 +3,7 @@
 #include <sstream>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -27,6 +28,7 @@ port is in use, or OpenGL is required and unavailable), 2 wrong usage,
 struct Flags {
   std::string config_file;
   std::string osc_out;
+  std::vector<std::string> jitter;
   bool no_render = false;
   bool no_http = false;
 };
@@ -80,6 +82,13 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
          "Number of threads that receive UDP, 1 to 64; each sender is served by one of them\n"
          "(default: 1)")
       ->type_name("N");
+  app->add_option(
+         "--jitter-buffer", flags->jitter,
+         "Hold poses of subjects for MS milliseconds, so that they leave in order and evenly\n"
+         "although a network delays them unevenly; all subjects, or those of the globs SUBJECTS\n"
+         "(repeatable; the last match counts; default: 0, off)")
+      ->type_name("[SUBJECTS=]MS")
+      ->allow_extra_args(false);
   app->add_option("--http", config->http.port,
                   "Port of the web page (default: 7480, or any free port if it is in use)");
   app->add_flag("--no-http", flags->no_http, "Disable the web page, WebSocket and HTTP API");
@@ -166,6 +175,14 @@ CommandLine ParseCommandLine(std::span<const std::string> args) {
   }
   if (flags.no_render) config.render = false;
   if (flags.no_http) config.http.enabled = false;
+  if (!flags.jitter.empty()) config.jitter.clear();
+  for (const std::string& text : flags.jitter) {
+    const Result<JitterRule> rule = ParseJitterRule(text);
+    if (!rule.ok()) {
+      return Fail(ExitCode::kUsage, rule.status().At("--jitter-buffer").ToString() + "\n");
+    }
+    config.jitter.push_back(*rule);
+  }
   if (!flags.osc_out.empty()) {
     Result<HostPort> destination = ParseHostPort(flags.osc_out);
     if (!destination.ok()) {

@@ -15,6 +15,7 @@
 #include "server/config/osc_config.h"
 #include "server/config/security_config.h"
 #include "server/core/exit_code.h"
+#include "server/core/jitter_rule.h"
 #include "server/core/limits.h"
 #include "server/core/network_address.h"
 
@@ -46,6 +47,7 @@ struct Config {
   SecurityConfig security;
   std::uint16_t tcp = 7400;  // 0: any free port; the ready line shows it
   std::uint16_t udp = 7401;
+  std::vector<JitterRule> jitter;  // jitter buffers; later rules come first
   int threads = 1;  // threads that receive UDP, [1, kMaxThreads]; see docs/CAPACITY.md
   bool render = true;
   bool require_render = false;                 // fail if OpenGL is unavailable
@@ -83,6 +85,10 @@ struct Config {
 [[nodiscard]] Status LoadConfigFile(const std::filesystem::path& path, Config* config);
 [[nodiscard]] Status ParseConfig(std::string_view toml, std::string_view source_name,
                                  Config* config);
+
+// Parses "MS" (of all subjects) or "SUBJECTS=MS", where SUBJECTS is a comma-separated list of
+// globs. Errors: kInvalidArgument.
+[[nodiscard]] Result<JitterRule> ParseJitterRule(std::string_view text);
 
 // True if programs on other computers can reach the daemon.
 [[nodiscard]] bool ListensToNetwork(const Config& config);

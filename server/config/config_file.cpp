@@ -57,6 +57,21 @@ Key Recording(std::string_view name, std::filesystem::path* target,
           }};
 }
 
+// Rules of jitter buffers, each as after --jitter-buffer.
+Key JitterRules(std::string_view name, std::vector<JitterRule>* rules) {
+  return {name, [rules](const toml::node& node) -> std::string {
+            const toml::array* list = node.as_array();
+            if (list == nullptr) return "must be a list of strings, MS or SUBJECTS=MS";
+            rules->clear();
+            for (const toml::node& element : *list) {
+              const auto rule = ParseJitterRule(element.value_exact<std::string>().value_or(""));
+              if (!rule.ok()) return rule.status().what();
+              rules->push_back(*rule);
+            }
+            return {};
+          }};
+}
+
 // "open" or "required".
 Key Mode(std::string_view name, Security* mode) {
   return {name, [mode](const toml::node& node) -> std::string {
@@ -103,7 +118,8 @@ Tables InputTables(Config* config, const std::filesystem::path& folder) {
             NameOrFile("shape_map", ".json", &config->shape_map, folder)}},
           {"listen",
            {Text("bind", &config->bind), Flag("open", &config->open), Port("tcp", &config->tcp),
-            Port("udp", &config->udp), Count("threads", &config->threads)}},
+            Port("udp", &config->udp), Count("threads", &config->threads),
+            JitterRules("jitter_buffer", &config->jitter)}},
           {"security",
            {Mode("mode", &config->security.mode), Path("keys", &config->security.keys, folder),
             Text("name", &config->security.name),

@@ -58,6 +58,8 @@ enum class Counter {
   kPosesDuplicate,
   kPosesInvalid,
   kPosesUnknownStream,
+  kPosesHeld,
+  kPosesHeldFull,
   kSkeletonsOffered,
   kSkeletonsRejected,
   kSkeletonsRequested,

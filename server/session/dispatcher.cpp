@@ -115,8 +115,10 @@ void Dispatcher::DispatchExclusive(Shard& shard, Peer& peer, const protocol::Mes
     case MessageKind::kHello:
       return Decode(shard, peer, view, in.hello, [&] { OnHello(peer, header, in.hello, now); });
     case MessageKind::kGoodbye:
-      return Decode(shard, peer, view, in.goodbye,
-                    [&] { parts_.publishers->OnGoodbye(peer, header, now); });
+      return Decode(shard, peer, view, in.goodbye, [&] {
+        parts_.router->ReleaseStream(shard, {peer.id, header.session, header.stream}, now);
+        parts_.publishers->OnGoodbye(peer, header, now);
+      });
     case MessageKind::kUnsubscribe:
       return Decode(shard, peer, view, in.unsubscribe,
                     [&] { parts_.subscribers->Unsubscribe(peer, header.stream); });

@@ -43,12 +43,13 @@ Hub::Hub(Parts parts)
                    static_cast<std::size_t>(parts.limits.max_skeletons), std::move(parts.skeletons),
                    std::move(parts.shape_matcher)),
       subjects_(static_cast<std::size_t>(limits_.max_subjects)),
-      publishers_(limits_, &definitions_, &subjects_, &exclusive_context_.messages, random_,
-                  metrics_),
+      publishers_(limits_, JitterDelays(parts.jitter), &definitions_, &subjects_,
+                  &exclusive_context_.messages, random_, metrics_),
       subscribers_(limits_, &subjects_, parts.pictures, parts.settings,
                    /*all_drivers=*/recording_ != nullptr, &exclusive_context_, metrics_),
       router_({.publishers = &publishers_,
                .subscribers = &subscribers_,
+               .subjects = &subjects_,
                .exclusive_context = &exclusive_context_,
                .recording = recording_}),
       shards_(parts.shards, parts.session, metrics_, &router_),
@@ -61,7 +62,8 @@ Hub::Hub(Parts parts)
                    .metrics = metrics_,
                    .gate = gate_,
                    .limits = limits_}),
-      mocap_(limits_.idle_seconds, &shards_, &router_, metrics_) {}
+      mocap_(limits_.idle_seconds, &shards_, &router_, metrics_),
+      holds_poses_(JitterDelays(std::move(parts.jitter)).any()) {}
 
 PeerId Hub::AddPeer(Transport transport, PeerLabel name, Link* link, Time now, int shard,
                     std::optional<Access> access) {
@@ -179,6 +181,11 @@ void Hub::OnMocapFrame(PeerId id, const protocol::mocap::NeutralFrame& frame, Ti
   Shard& shard = shards_.Of(id);
   const ShardLock lock(*this, shard.index);
   if (Peer* peer = shard.peers.Find(id); peer != nullptr) mocap_.OnFrame(shard, *peer, frame, now);
+}
+
+void Hub::ReleaseHeld(int index, Time now) {
+  const ShardLock lock(*this, index);
+  router_.ReleaseHeld(shards_.at(index), now);
 }
 
 bool Hub::IsIdle(PeerId id, Time now) {

@@ -10,11 +10,13 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/status.h"
 #include "protocol/mocap/neutral_frame.h"
 #include "render/settings/settings.h"
 #include "rig/skeleton_match.h"
+#include "server/core/jitter_rule.h"
 #include "server/core/limits.h"
 #include "server/core/metrics.h"
 #include "server/core/time.h"
@@ -47,7 +49,8 @@ class Hub {
  public:
   struct Parts {
     Limits limits;
-    std::uint64_t session = 1;  // random, not 0
+    std::vector<JitterRule> jitter;  // jitter buffers; later rules come first
+    std::uint64_t session = 1;       // random, not 0
     std::shared_ptr<const wrinkle::Rig> rig;
     rig::SkeletonMatcher skeletons;   // finds the rig's joints in foreign skeletons
     rig::ShapeMatcher shape_matcher;  // finds the rig's blend shapes by other names
@@ -124,6 +127,11 @@ class Hub {
   // Transport::kMocap.
   void OnMocapFrame(PeerId id, const protocol::mocap::NeutralFrame& frame, Time now);
 
+  // True if subjects may have jitter buffers. ReleaseHeld() must then be called every few
+  // milliseconds, by the thread of each shard: it publishes the poses whose time has come.
+  [[nodiscard]] bool HoldsPoses() const { return holds_poses_; }
+  void ReleaseHeld(int shard, Time now);
+
   // Only the thread of shard 0 calls the functions from here on.
 
   // Sends a finished picture to its viewers.
@@ -188,6 +196,7 @@ class Hub {
   Shards shards_;
   Dispatcher dispatcher_;
   MocapStreams mocap_;
+  const bool holds_poses_;
   bool draining_ = false;
 };
 

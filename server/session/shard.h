@@ -6,6 +6,7 @@
 #include "protocol/messages/messages.h"
 #include "server/core/metrics.h"
 #include "server/session/delivery/publish_context.h"
+#include "server/session/jitter/jitter_buffers.h"
 #include "server/session/peers/peer_table.h"
 #include "server/session/subjects/pose_batch.h"
 
@@ -28,6 +29,7 @@ struct Shard {
 
   const int index;
   PeerTable peers;
+  JitterBuffers held;  // poses that wait for their time
   PoseBatch gathered;  // poses accepted but not solved yet
   PublishContext context;
   BufferedSender* buffered_sender = nullptr;  // null: messages leave at once

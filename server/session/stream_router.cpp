@@ -20,16 +20,58 @@ void StreamRouter::AcceptPose(Shard& shard, Peer& peer, const protocol::Header& 
                               std::span<const std::uint8_t> payload, Time now) {
   Publishers& publishers = *parts_.publishers;
   Subject* subject = publishers.FindSubject(peer, header, pose);
-  // A batch must not be observable. An answer to a pose follows the poses before it, and the next
-  // pose of a subject builds on the last one.
-  const bool can_wait = subject != nullptr && !subject->pipeline->waits() && !shard.gathered.full();
-  // `waits` is true if a pose of this subject is already in the batch.
-  if (!can_wait) PublishGathered(shard);
   if (subject == nullptr) {
+    // A batch must not be observable: an answer to a pose follows the poses before it.
+    PublishGathered(shard);
     publishers.OnUnknownStream(peer, header, pose.skeleton_hash, shard.context.messages, now);
-  } else if (publishers.AcceptPose(*subject, header, pose)) {
-    shard.gathered.Add({.subject = subject, .header = header, .payload = payload, .now = now});
+  } else if (subject->hold == Time{0} || !Hold(shard, *subject, header, pose, payload, now)) {
+    Use(shard, *subject, header, pose, payload, now);
   }
+}
+
+// Puts a pose into the jitter buffer. False: it is too late for that.
+bool StreamRouter::Hold(Shard& shard, Subject& subject, const protocol::Header& header,
+                        const protocol::PoseFrame& pose, std::span<const std::uint8_t> payload,
+                        Time now) {
+  switch (shard.held.Add(subject.owner, header, pose, payload, subject.hold, now)) {
+    case JitterBuffers::Place::kLate: return false;
+    case JitterBuffers::Place::kDuplicate: parts_.publishers->OnDuplicate(subject); return true;
+    case JitterBuffers::Place::kFull: parts_.publishers->OnHeld(/*full=*/true); return true;
+    case JitterBuffers::Place::kHeld: parts_.publishers->OnHeld(/*full=*/false); return true;
+  }
+  return false;
+}
+
+void StreamRouter::Use(Shard& shard, Subject& subject, const protocol::Header& header,
+                       const protocol::PoseFrame& pose, std::span<const std::uint8_t> payload,
+                       Time now) {
+  // The next pose of a subject builds on the last one. `waits` is true if a pose of this subject is
+  // already in the batch.
+  if (subject.pipeline->waits() || shard.gathered.full()) PublishGathered(shard);
+  if (parts_.publishers->AcceptPose(subject, header, pose)) {
+    shard.gathered.Add({.subject = &subject, .header = header, .payload = payload, .now = now});
+  }
+}
+
+void StreamRouter::ReleaseHeld(Shard& shard, Time now) {
+  UseReleased(shard, shard.held.TakeDue(now), now);
+}
+
+void StreamRouter::ReleaseStream(Shard& shard, const StreamKey& stream, Time now) {
+  UseReleased(shard, shard.held.TakeAll(stream), now);
+}
+
+void StreamRouter::UseReleased(Shard& shard, std::span<const JitterBuffers::Released> released,
+                               Time now) {
+  if (released.empty()) return;
+  for (const auto& [stream, held] : released) {
+    // The subject may have left, changed hands or got another skeleton meanwhile.
+    Subject* subject = parts_.subjects->Find(stream);
+    if (subject == nullptr || subject->skeleton_hash != held->pose.skeleton_hash) continue;
+    Use(shard, *subject, held->header, held->pose, held->payload, now);
+  }
+  PublishGathered(shard);  // which reads the payloads
+  shard.held.Recycle();
 }
 
 // Solves together, then publishes in the order of arrival. So output does not depend on how many

@@ -29,6 +29,7 @@ class StreamRouter {
   struct Parts {
     Publishers* publishers = nullptr;
     Subscribers* subscribers = nullptr;
+    SubjectRegistry* subjects = nullptr;
     PublishContext* exclusive_context = nullptr;  // used under the exclusive lock
     RecordingTap* recording = nullptr;            // optional
   };
@@ -40,10 +41,17 @@ class StreamRouter {
                Time now);
 
   // Copies a pose into its subject's pipeline and adds it to the shard's batch, where it waits for
-  // PublishGathered(). `payload`: the FlatBuffers buffer of the pose, valid until then; empty if
-  // the pose is partial. Requires the lock of `shard`.
+  // PublishGathered(). If the subject has a jitter buffer, the pose waits there for ReleaseHeld().
+  // `payload`: the FlatBuffers buffer of the pose, valid until then; empty if the pose is partial.
+  // Requires the lock of `shard`.
   void AcceptPose(Shard& shard, Peer& peer, const protocol::Header& header,
                   const protocol::PoseFrame& pose, std::span<const std::uint8_t> payload, Time now);
+  // Accepts the poses of the shard's jitter buffers whose time has come, and publishes them.
+  // Requires the lock of `shard`.
+  void ReleaseHeld(Shard& shard, Time now);
+  // The same for all poses of one stream, due or not, before the stream ends. Requires the
+  // exclusive lock.
+  void ReleaseStream(Shard& shard, const StreamKey& stream, Time now);
   // A frame arrived in which the tracker of a subject sees no face. Requires the lock of the peer's
   // shard.
   void OnNoFace(const Peer& peer, const protocol::Header& header, Time now) {
@@ -65,6 +73,12 @@ class StreamRouter {
   void SetOnWeights(OnWeights on_weights) { on_weights_ = std::move(on_weights); }
 
  private:
+  [[nodiscard]] bool Hold(Shard& shard, Subject& subject, const protocol::Header& header,
+                          const protocol::PoseFrame& pose, std::span<const std::uint8_t> payload,
+                          Time now);
+  void Use(Shard& shard, Subject& subject, const protocol::Header& header,
+           const protocol::PoseFrame& pose, std::span<const std::uint8_t> payload, Time now);
+  void UseReleased(Shard& shard, std::span<const JitterBuffers::Released> released, Time now);
   void Publish(Shard& shard, Subject& subject, std::span<const std::uint8_t> payload,
                std::int64_t age_us, Time now);
 

@@ -27,6 +27,8 @@ export interface SubjectInfo {
   poses: number;
   lost: number;
   late: number;
+  /** Delay of the subject's jitter buffer; 0: none. */
+  buffer_ms: number;
   jitter_ms: number;
   age_ms: number;
   /** A neutral pose was captured. */

@@ -58,6 +58,7 @@ ApiReply StatusApi::Subjects(const ApiRequest& request, Hub& hub, Time now) cons
                     {"poses", stats.poses()},
                     {"lost", stats.lost()},
                     {"late", stats.late()},
+                    {"buffer_ms", ToSeconds(subject->hold) * 1e3},
                     {"jitter_ms", stats.jitter_seconds(now) * 1e3},
                     {"age_ms", ToSeconds(now - subject->last_pose) * 1e3},
                     {"neutral", pipeline.neutral_pose().has_value()}});

@@ -16,6 +16,8 @@ namespace furrow::server {
 namespace {
 
 constexpr auto kExpireInterval = std::chrono::seconds(1);
+// How much later than its time a pose may leave a jitter buffer.
+constexpr auto kReleaseInterval = std::chrono::milliseconds(2);
 
 // The kernel spreads senders by hash, so each shard gets about an equal part, rounded up.
 Limits LimitsOfShard(Limits limits, int shards) {
@@ -27,7 +29,7 @@ Limits LimitsOfShard(Limits limits, int shards) {
 
 UdpPort::UdpPort(asio::io_context& io, int shards, const Limits& limits, Hub* hub, Metrics* metrics,
                  RecordingTap* recording, SecureSessions* secure, bool requires_token)
-    : io_(io) {
+    : io_(io), hub_(hub) {
   std::vector<UdpServer*> by_shard;
   for (int shard = 0; shard < shards; ++shard) {
     // The hint 1 tells Asio that one thread runs the loop.
@@ -67,6 +69,7 @@ void UdpPort::Start() {
   for (std::size_t shard = 0; shard < servers_.size(); ++shard) {
     servers_[shard]->Start();
     StartCriticalTask(LoopOf(shard), ExpireLoop(shard));
+    if (hub_->HoldsPoses()) StartCriticalTask(LoopOf(shard), ReleaseLoop(shard));
   }
   // Only after every server has its first operation pending: a loop without work would return.
   for (const auto& loop : loops_) threads_.emplace_back([this, &loop = *loop] { Run(loop); });
@@ -87,6 +90,16 @@ asio::awaitable<void> UdpPort::ExpireLoop(std::size_t shard) {
     timer.expires_after(kExpireInterval);
     co_await timer.async_wait(kAwaitTuple);
     servers_[shard]->Expire(ReadClock());
+  }
+}
+
+// Runs only if some subject may have a jitter buffer.
+asio::awaitable<void> UdpPort::ReleaseLoop(std::size_t shard) {
+  asio::steady_timer timer(LoopOf(shard));
+  while (true) {
+    timer.expires_after(kReleaseInterval);
+    co_await timer.async_wait(kAwaitTuple);
+    hub_->ReleaseHeld(static_cast<int>(shard), ReadClock());
   }
 }
 

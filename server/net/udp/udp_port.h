@@ -48,8 +48,10 @@ class UdpPort {
   }
   void Run(asio::io_context& loop);
   asio::awaitable<void> ExpireLoop(std::size_t shard);
+  asio::awaitable<void> ReleaseLoop(std::size_t shard);
 
   asio::io_context& io_;
+  Hub* const hub_;
   std::vector<std::unique_ptr<asio::io_context>> loops_;  // of shards 1 and above
   std::vector<std::unique_ptr<UdpServer>> servers_;       // by shard
   std::vector<std::thread> threads_;

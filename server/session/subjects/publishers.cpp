@@ -27,10 +27,11 @@ bool HasSecretSession(const Peer& peer) {
 
 }  // namespace
 
-Publishers::Publishers(const Limits& limits, StreamDefinitions* definitions,
+Publishers::Publishers(const Limits& limits, JitterDelays delays, StreamDefinitions* definitions,
                        SubjectRegistry* subjects, MessageSender* messages,
                        std::function<std::uint64_t()> random, Metrics* metrics)
     : limits_(limits),
+      delays_(std::move(delays)),
       definitions_(definitions),
       subjects_(subjects),
       messages_(messages),
@@ -116,6 +117,7 @@ Subject* Publishers::Accept(Peer& peer, const StreamKey& key, const protocol::Sk
   auto shared_offer = ShareOffer(offer);
   if (subject == nullptr) {
     subject = &subjects_->Add(offer.subject, peer.host, now);
+    subject->hold = delays_.Of(offer.subject);
     spdlog::info("subject '{}' from {}: {} joints, {} blend shapes", offer.subject, peer.name,
                  offer.joints.size(), offer.blend_shape_names.size());
   } else if (subject->owner != key) {
@@ -202,6 +204,16 @@ bool Publishers::AcceptPose(Subject& subject, const protocol::Header& header,
   if (!IsNew(subject, header)) return false;
   ApplyPose(pose, pipeline.stream(), pipeline.mutable_pose());
   return true;
+}
+
+void Publishers::OnDuplicate(Subject& subject) {
+  metrics_->Add(Counter::kPosesDuplicate);
+  subject.stats.OnLate();
+}
+
+void Publishers::OnHeld(bool full) {
+  metrics_->Add(Counter::kPosesHeld);
+  if (full) metrics_->Add(Counter::kPosesHeldFull);
 }
 
 bool Publishers::OnSolved(const GatheredPose& pose) {

@@ -13,6 +13,7 @@
 #include "server/core/metrics.h"
 #include "server/pipeline/stream_definition.h"
 #include "server/session/delivery/message_sender.h"
+#include "server/session/jitter/jitter_delays.h"
 #include "server/session/peers/peer.h"
 #include "server/session/subjects/pose_batch.h"
 #include "server/session/subjects/subject_registry.h"
@@ -29,8 +30,9 @@ namespace furrow::server {
 class Publishers {
  public:
   // `random`: returns unpredictable numbers, never 0.
-  Publishers(const Limits& limits, StreamDefinitions* definitions, SubjectRegistry* subjects,
-             MessageSender* messages, std::function<std::uint64_t()> random, Metrics* metrics);
+  Publishers(const Limits& limits, JitterDelays delays, StreamDefinitions* definitions,
+             SubjectRegistry* subjects, MessageSender* messages,
+             std::function<std::uint64_t()> random, Metrics* metrics);
 
   // Limits new skeletons of all senders together, because binding one takes milliseconds. One host
   // gets half of it, so that a flood of offers leaves room for the others.
@@ -49,6 +51,10 @@ class Publishers {
   // it is late, duplicate or does not fit the skeleton.
   [[nodiscard]] bool AcceptPose(Subject& subject, const protocol::Header& header,
                                 const protocol::PoseFrame& pose);
+  // Counts a pose that waits in a jitter buffer already.
+  void OnDuplicate(Subject& subject);
+  // Counts a pose that went into a jitter buffer. `full`: another one left it early.
+  void OnHeld(bool full);
   // Completes a solved pose. False: the solver rejected the pose, which is counted.
   [[nodiscard]] bool OnSolved(const GatheredPose& pose);
   // Records that a stream arrives without a face. Its subject decays as if it were silent, but
@@ -81,6 +87,7 @@ class Publishers {
   std::shared_ptr<const protocol::SkeletonOffer> ShareOffer(const protocol::SkeletonOffer& offer);
 
   const Limits limits_;
+  const JitterDelays delays_;
   StreamDefinitions* const definitions_;
   SubjectRegistry* const subjects_;
   MessageSender* const messages_;

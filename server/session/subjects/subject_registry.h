@@ -54,7 +54,8 @@ struct Subject {
   std::shared_ptr<const protocol::SkeletonOffer> offer;
   protocol::SequenceWindow window;
   std::unique_ptr<SubjectPipeline> pipeline;
-  Time last_pose{0};               // arrival
+  Time hold{0};                    // delay of its jitter buffer; 0: none
+  Time last_pose{0};               // arrival, or release from the jitter buffer
   Time last_update{0};             // arrival or decay
   Time last_no_face{0};            // arrival of the last frame without a face
   bool no_face = false;            // the publisher sends, but its tracker sees no face

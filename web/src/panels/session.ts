@@ -47,6 +47,7 @@ export class SessionPanel {
       h('td', {}, h('span', { class: `state ${subject.state}` }, subject.state.replace('_', ' '))),
       h('td', { class: 'number' }, subject.rate_hz.toFixed(0)),
       h('td', { class: 'number', title: `${subject.lost} lost, ${subject.late} late` }, share > 0 ? `${(100 * share).toFixed(1)} %` : '0'),
-      h('td', { class: 'number' }, subject.jitter_ms.toFixed(1)));
+      h('td', { class: 'number', title: subject.buffer_ms > 0 ? `after a jitter buffer of ${subject.buffer_ms.toFixed(0)} ms` : '' },
+        subject.jitter_ms.toFixed(1)));
   }
 }

@@ -113,6 +113,7 @@ class HubTest : public testing::Test {
     Hub::Parts parts;
     parts.limits = limits;
     parts.shards = shards;
+    parts.jitter = jitter;
     parts.session = 4242;
     parts.rig = std::make_shared<const wrinkle::Rig>(std::move(rig));
     parts.pictures = &pictures;
@@ -167,7 +168,8 @@ class HubTest : public testing::Test {
   std::uint64_t Count(Counter counter) const { return metrics.Get(counter); }
 
   Metrics metrics;
-  const TokenGate* gate = nullptr;  // of hubs that are made from now on
+  const TokenGate* gate = nullptr;  // this and the next: of hubs that are made from now on
+  std::vector<JitterRule> jitter;
   FakePictures pictures;
   std::unique_ptr<Hub> hub;
   protocol::Encoder encoder;

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/session/jitter/jitter_buffer.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace furrow::server {
+namespace {
+
+// Sequences wrap at 2^32.
+bool IsNewer(std::uint32_t a, std::uint32_t b) { return static_cast<std::int32_t>(a - b) > 0; }
+
+}  // namespace
+
+JitterBuffer::Place JitterBuffer::Look(const protocol::Header& header, Time delay, Time now,
+                                       Time* due) {
+  last_arrival_ = now;
+  // Late poses count for the clock, too: after the sender's clock was set, all of them are late.
+  *due = clock_.Arrival(header.capture_time_us, now) + delay;
+  if (has_left_ && !IsNewer(header.sequence, newest_left_)) return Place::kLate;
+  const auto same = [&](const auto& pose) { return pose->header.sequence == header.sequence; };
+  return std::ranges::any_of(held_, same) ? Place::kDuplicate : Place::kHeld;
+}
+
+void JitterBuffer::Hold(std::unique_ptr<HeldPose> pose) {
+  // From the back: most poses are newer than all that wait.
+  auto at = held_.end();
+  while (at != held_.begin() && IsNewer((*(at - 1))->header.sequence, pose->header.sequence)) --at;
+  held_.insert(at, std::move(pose));
+}
+
+std::unique_ptr<HeldPose> JitterBuffer::TakeDue(Time now) {
+  return held_.empty() || held_.front()->due > now ? nullptr : TakeOldest();
+}
+
+std::unique_ptr<HeldPose> JitterBuffer::TakeOldest() {
+  std::unique_ptr<HeldPose> oldest = std::move(held_.front());
+  held_.erase(held_.begin());
+  has_left_ = true;
+  newest_left_ = oldest->header.sequence;
+  return oldest;
+}
+
+}  // namespace furrow::server

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "server/core/time.h"
+#include "server/session/jitter/capture_clock.h"
+#include "server/session/jitter/held_pose.h"
+
+namespace furrow::server {
+
+// The poses of one stream that wait for their time, in order of their sequence numbers. A pose is
+// due when `delay` has passed since it would have arrived on a network without jitter
+// (CaptureClock), so poses leave at the pace of their capture, and none waits longer than `delay`.
+class JitterBuffer {
+ public:
+  // What becomes of a pose. kLate: a newer pose has left already. kDuplicate: it waits already.
+  enum class Place : std::uint8_t { kHeld, kLate, kDuplicate };
+
+  // Decides about a pose that arrived. For kHeld, `due` receives when it leaves; pass it to Hold().
+  [[nodiscard]] Place Look(const protocol::Header& header, Time delay, Time now, Time* due);
+  // Adds a pose that Look() would hold.
+  void Hold(std::unique_ptr<HeldPose> pose);
+  // Takes the oldest pose if it is due; null: there is none.
+  [[nodiscard]] std::unique_ptr<HeldPose> TakeDue(Time now);
+  // Takes the oldest pose. Precondition: not empty().
+  [[nodiscard]] std::unique_ptr<HeldPose> TakeOldest();
+
+  [[nodiscard]] bool empty() const { return held_.empty(); }
+  [[nodiscard]] std::size_t size() const { return held_.size(); }
+  [[nodiscard]] Time last_arrival() const { return last_arrival_; }
+
+ private:
+  CaptureClock clock_;
+  std::vector<std::unique_ptr<HeldPose>> held_;  // by sequence
+  bool has_left_ = false;
+  std::uint32_t newest_left_ = 0;  // sequence of the newest pose that was taken
+  Time last_arrival_{0};
+};
+
+}  // namespace furrow::server
