@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The programs of a measurement on a bad network: a daemon whose log is read, clients whose lines are timed."""
+import dataclasses
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import threading
+import time
+
+# The network of the issue: lost, late, early and repeated datagrams, and up to 50 ms of jitter.
+FAULTS = ("--loss", "0.1", "--reorder", "0.2", "--duplicate", "0.05", "--jitter", "50")
+
+
+def recording_of(folder):
+    return pathlib.Path(folder).parent / "share" / "furrow" / "recordings" / "performance.bvh"
+
+
+class Lines:
+    """The lines that a stream prints, each with its time.monotonic(). A thread reads them."""
+
+    def __init__(self, stream):
+        self.lines = []
+        self._thread = threading.Thread(target=self._read, args=(stream,), daemon=True)
+        self._thread.start()
+
+    def _read(self, stream):
+        for line in stream:
+            self.lines.append((time.monotonic(), line.rstrip("\n")))
+
+    def count(self, words, until=float("inf")):
+        return sum(words in line for at, line in list(self.lines) if at <= until)
+
+    def last(self, words):
+        """The time of the last line with `words`; None: there is none."""
+        return max((at for at, line in list(self.lines) if words in line), default=None)
+
+    def first_after(self, moment):
+        """The time of the first line after `moment`; None: there is none yet."""
+        return next((at for at, _ in list(self.lines) if at > moment), None)
+
+    def newest(self):
+        return self.lines[-1][0] if self.lines else None
+
+
+class Daemon:
+    """A furrowd on free ports, or on those of an earlier one."""
+
+    def __init__(self, folder, *flags, ports=None, setup=None):
+        ports = ports or {"tcp": 0, "udp": 0}
+        listen = [word for name, port in ports.items() for word in (f"--{name}", str(port))]
+        if "http" not in ports:
+            listen.append("--no-http")
+        self.process = subprocess.Popen([pathlib.Path(folder) / "furrowd", *listen, *map(str, flags)], text=True,
+                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=setup)
+        ready = ""
+        self.ready_at = None
+        while not ready.startswith("furrowd ready"):
+            ready = self.process.stdout.readline()
+            if ready == "":
+                raise RuntimeError(self.process.stderr.read())
+        self.ready_at = time.monotonic()
+        self.ports = {name: int(port) for name, port in re.findall(r"(\w+)=[^ ]*?:(\d+)", ready)}
+        self.log = Lines(self.process.stderr)
+        self.out = Lines(self.process.stdout)
+
+    def host(self, name="udp"):
+        return f"127.0.0.1:{self.ports[name]}"
+
+    def kill(self):
+        self.process.send_signal(signal.SIGKILL)
+        self.process.wait()
+
+    def stop(self):
+        self.process.send_signal(signal.SIGTERM)
+        return self.process.wait(timeout=30)
+
+
+@dataclasses.dataclass
+class Usage:
+    """What a process takes: resident memory in KiB, and open files."""
+    resident_kib: int
+    files: int
+
+
+def usage_of(pid):
+    status = pathlib.Path(f"/proc/{pid}/status").read_text()
+    return Usage(int(re.search(r"VmRSS:\s+(\d+)", status).group(1)), len(os.listdir(f"/proc/{pid}/fd")))
