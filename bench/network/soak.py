@@ -26,7 +26,7 @@ import tempfile
 import threading
 import time
 
-from programs import FAULTS, Daemon, Lines, recording_of, usage_of
+from programs import FAULTS, Daemon, Lines, Usage, recording_of, usage_of
 
 MAX_FILES = 160
 DISK_MB = 24
@@ -37,15 +37,18 @@ TROUBLE = (*FAULTS, "--stalled", "3", "--slow", "2", "--churn", "2")
 
 
 class Samples:
-    """Memory and open files of a process, once per second."""
+    """Memory and open files of a process, once per second, and all of them in calm turns."""
 
     def __init__(self, pid):
         self.pid = pid
         self.rows = []
+        self.peak = usage_of(pid)
 
-    def take(self):
+    def take(self, calm):
         usage = usage_of(self.pid)
-        self.rows.append((time.monotonic(), usage.resident_kib, usage.files))
+        self.peak = Usage(max(usage.resident_kib, self.peak.resident_kib), max(usage.files, self.peak.files))
+        if calm:
+            self.rows.append((time.monotonic(), usage.resident_kib, usage.files))
 
     def slope_per_hour(self, column):
         """The least-squares slope after the first fifth, which warms up."""
@@ -72,6 +75,7 @@ class Soak:
         self.ends = []
         self.kills = 0
         self.troubled = threading.Event()
+        self.calm_since = float("inf")
 
     def over(self):
         return time.monotonic() >= self.end
@@ -87,7 +91,8 @@ class Soak:
             thread.start()
         while not self.over():
             time.sleep(1.0)
-            self.samples.take()
+            # The connections of the trouble before need some seconds to end.
+            self.samples.take(calm=time.monotonic() > self.calm_since + 15 and not self.troubled.is_set())
         for thread in threads:
             thread.join(timeout=3 * TURN_SECONDS + 60)
         began = time.monotonic()
@@ -107,6 +112,7 @@ class Soak:
         kind = "calm"
         while not self.over():
             (self.troubled.set if kind == "trouble" else self.troubled.clear)()
+            self.calm_since = float("inf") if kind == "trouble" else time.monotonic()
             flags = TROUBLE if kind == "trouble" else ()
             result = subprocess.run(
                 [self.folder / "furrow", "load", self.daemon.host(), recording_of(self.folder), "--subjects", "40", "--rate",
@@ -212,9 +218,9 @@ class Soak:
         memory = [row[1] for row in self.samples.rows]
         files = [row[2] for row in self.samples.rows]
         lines += [
-            f"memory  : {memory[-1] / 1024:.1f} MiB at the end, {max(memory) / 1024:.1f} MiB at most, slope after warm-up "
+            f"memory  : {memory[-1] / 1024:.1f} MiB at the end, {self.samples.peak.resident_kib / 1024:.1f} MiB at most, slope in calm turns "
             f"{self.samples.slope_per_hour(1) / 1024:+.2f} MiB/h",
-            f"files   : {files[-1]} open at the end, {max(files)} at most of {MAX_FILES}, slope {self.samples.slope_per_hour(2):+.1f} per hour",
+            f"files   : {files[-1]} open at the end, {self.samples.peak.files} at most of {MAX_FILES}, slope in calm turns {self.samples.slope_per_hour(2):+.1f} per hour",
             f"disk    : {'full ' + str(log.count('recording paused')) + ' times' if self.has_disk else 'not limited (no right to mount)'}",
             f"restarts: {self.kills}, every second one by SIGKILL; weights again after {statistics.median(self.returns):.2f} s, "
             f"{max(self.returns):.2f} s at most; stale {self.stale}" if self.returns else "restarts: none",

@@ -358,7 +358,7 @@ furrow_status Connection::SendPose(std::uint32_t stream, const furrow_pose* pose
   if (const furrow_status status = CopyIn(pose, &wanted); status != FURROW_OK) {
     return Fail(status, "pose: struct_size is wrong, or an unknown field is set");
   }
-  if ((wanted.flags & ~FURROW_POSE_PACKED) != 0) {
+  if ((wanted.flags & ~(FURROW_POSE_PACKED | FURROW_POSE_REDUNDANT)) != 0) {
     return Fail(FURROW_UNSUPPORTED, "pose: unknown flags");
   }
   if (const furrow_status status = StreamStatus(stream); status < FURROW_OK) return status;

@@ -33,7 +33,8 @@ Status Sender::Send(std::uint32_t stream, const furrow_pose& pose) {
   FURROW_RETURN_IF_ERROR(to.reader.Read(pose, &pose_));
   const bool packed = (pose.flags & FURROW_POSE_PACKED) != 0;
   const auto encoding = packed ? protocol::PoseEncoding::Small() : protocol::PoseEncoding{};
-  switch (publisher_.Send(to.number, pose_, pose.capture_time_us, encoding)) {
+  const bool redundant = (pose.flags & FURROW_POSE_REDUNDANT) != 0;
+  switch (publisher_.Send(to.number, pose_, pose.capture_time_us, encoding, redundant)) {
     case IoStatus::kOk: return {};
     case IoStatus::kTooLarge:
       return {StatusCode::kLimit, "the pose is too large for UDP", {}, "use transport=tcp"};

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/cpp/publisher.h"
 
+#include <cstdint>
 #include <random>
 #include <utility>
 
 #include "protocol/codec/offer_check.h"
+#include "protocol/framing/envelope.h"
 #include "protocol/messages/hash.h"
+#include "protocol/messages/limits.h"
 
 namespace furrow::client {
 
@@ -57,15 +60,46 @@ void Publisher::SendOffer(Stream& stream, std::int64_t now_us) {
 }
 
 IoStatus Publisher::Send(std::uint16_t number, protocol::PoseFrame& pose,
-                         std::int64_t capture_time_us, const protocol::PoseEncoding& encoding) {
+                         std::int64_t capture_time_us, const protocol::PoseEncoding& encoding,
+                         bool repeat_previous) {
   Stream& stream = streams_.at(number);
   pose.skeleton_hash = stream.skeleton_hash;
-  encoder_.Encode({.session = session_,
-                   .stream = number,
-                   .sequence = stream.next_sequence++,
-                   .capture_time_us = capture_time_us},
-                  pose, bytes_, encoding);
+  pose.previous.clear();
+  const protocol::Header header{.session = session_,
+                                .stream = number,
+                                .sequence = stream.next_sequence++,
+                                .capture_time_us = capture_time_us};
+  const bool repeats = repeat_previous && transport_->kind() == TransportKind::kUdp;
+  encoder_.Encode(header, pose, bytes_, repeats ? protocol::PoseEncoding::Small() : encoding);
+  if (repeats) {
+    RepeatPrevious(stream, header, pose);
+  } else {
+    stream.previous.clear();
+  }
   return transport_->Send(bytes_);
+}
+
+// Adds the stream's last pose to the encoded `pose` if there is room, and keeps `pose` for the next
+// one.
+void Publisher::RepeatPrevious(Stream& stream, const protocol::Header& header,
+                               protocol::PoseFrame& pose) {
+  alone_.swap(bytes_);
+  const std::int64_t age_us = header.capture_time_us - stream.previous_capture_us;
+  const bool fits = !stream.previous.empty() && age_us >= 0 && age_us <= UINT32_MAX &&
+                    alone_.size() + stream.previous.size() <= protocol::kMaxDatagramBytes;
+  if (fits) {
+    pose.previous = stream.previous;
+    pose.previous_age_us = static_cast<std::uint32_t>(age_us);
+    encoder_.Encode(header, pose, bytes_, protocol::PoseEncoding::Small());
+    pose.previous.clear();
+  }
+  // The table around the previous pose takes some bytes, too.
+  if (!fits || bytes_.size() > protocol::kMaxDatagramBytes) bytes_ = alone_;
+  stream.previous.clear();
+  if (!pose.partial) {
+    stream.previous.assign(alone_.begin() + protocol::kEnvelopeBytes, alone_.end());
+  }
+  stream.previous_capture_us = header.capture_time_us;
 }
 
 IoStatus Publisher::Poll(std::int64_t now_us, std::chrono::milliseconds wait) {

@@ -37,10 +37,12 @@ class Publisher {
   // Sends one pose of a stream that AddSubject() returned. Poses are numbered from 0 per stream.
   // Sets `pose.skeleton_hash`. `capture_time_us`: when the pose was captured, microseconds of any
   // clock that the sender uses for all of its poses. Before the daemon accepts the stream, it drops
-  // poses.
+  // poses. `repeat_previous`: over UDP, the datagram also holds the stream's pose before, if both
+  // fit and are whole, so that a lost datagram loses no pose; both are quantised.
   [[nodiscard]] IoStatus Send(std::uint16_t stream, protocol::PoseFrame& pose,
                               std::int64_t capture_time_us,
-                              const protocol::PoseEncoding& encoding = {});
+                              const protocol::PoseEncoding& encoding = {},
+                              bool repeat_previous = false);
 
   // Reads answers for up to `wait` and repeats unanswered offers. Call it between poses. kOk and
   // kTimeout are both normal. kNoConnection over UDP means that the port is closed at present.
@@ -73,11 +75,14 @@ class Publisher {
     std::uint64_t skeleton_hash = 0;
     std::int64_t offered_us = 0;
     std::uint32_t next_sequence = 0;
+    std::vector<std::uint8_t> previous;  // payload of the last pose; empty: not kept
+    std::int64_t previous_capture_us = 0;
     bool accepted = false;
     std::string rejection;
     bool oversized = false;
   };
 
+  void RepeatPrevious(Stream& stream, const protocol::Header& header, protocol::PoseFrame& pose);
   void SendOffer(Stream& stream, std::int64_t now_us);
   void OfferAll(std::int64_t now_us);
   void Introduce(std::int64_t now_us);
@@ -96,6 +101,7 @@ class Publisher {
   std::uint64_t generation_;  // of the transport's connection that the offers went to
   std::vector<Stream> streams_;
   std::vector<std::uint8_t> bytes_;
+  std::vector<std::uint8_t> alone_;  // a message without the pose that it could repeat
   protocol::SkeletonReply reply_;
   protocol::Welcome welcome_;
   protocol::Ping ping_;

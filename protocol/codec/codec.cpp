@@ -210,6 +210,15 @@ DecodeStatus Decode(const MessageView& view, SkeletonReply& message) {
 DecodeStatus Decode(const MessageView& view, PoseFrame& message) {
   return DecodeMessage(view, message);
 }
+DecodeStatus DecodePrevious(const PoseFrame& pose, PoseFrame& previous) {
+  // The verifier below checks the identifier.
+  const MessageView view{.kind = MessageKind::kPose, .payload = pose.previous};
+  const DecodeStatus status = DecodeMessage(view, previous);
+  if (status != DecodeStatus::kOk) return status;
+  const bool fits = !previous.partial && previous.previous.empty() &&
+                    previous.skeleton_hash == pose.skeleton_hash;
+  return fits ? DecodeStatus::kOk : DecodeStatus::kBadValue;
+}
 DecodeStatus Decode(const MessageView& view, SubscribeWeights& message) {
   return DecodeMessage(view, message);
 }

@@ -44,6 +44,10 @@ namespace furrow::protocol {
 [[nodiscard]] DecodeStatus Decode(const MessageView& view, ListSubjects& message);
 [[nodiscard]] DecodeStatus Decode(const MessageView& view, Subjects& message);
 
+// Decodes the pose that `pose` repeats (PoseFrame::previous, which must not be empty). kBadValue:
+// it is partial, repeats a pose itself, or is of another skeleton.
+[[nodiscard]] DecodeStatus DecodePrevious(const PoseFrame& pose, PoseFrame& previous);
+
 // Encodes messages. Reuse one encoder per thread: it keeps its working memory, so repeated calls
 // stop allocating.
 //

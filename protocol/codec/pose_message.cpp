@@ -108,6 +108,16 @@ DecodeStatus ReadBlendShapes(const wire::Pose& table, PoseFrame& pose) {
   return DecodeStatus::kOk;
 }
 
+// Copies the previous pose without reading it: few receivers need it.
+DecodeStatus ReadPrevious(const wire::Pose& table, PoseFrame& pose) {
+  pose.previous_age_us = table.previous_age_us();
+  pose.previous.clear();
+  if (table.previous() == nullptr) return DecodeStatus::kOk;
+  if (table.previous()->size() > kMaxDatagramBytes) return DecodeStatus::kLimit;
+  pose.previous.assign(table.previous()->begin(), table.previous()->end());
+  return DecodeStatus::kOk;
+}
+
 // The range for packed translations: the largest magnitude of any component.
 float LargestOffset(std::span<const Vec3> offsets) {
   float largest = 0.0f;
@@ -162,6 +172,7 @@ DecodeStatus ReadTable(const wire::Pose& table, PoseFrame& message) {
   FURROW_CHECK_DECODE(ReadRotations(table, message));
   FURROW_CHECK_DECODE(ReadTranslations(table, message));
   FURROW_CHECK_DECODE(ReadScales(table, message));
+  FURROW_CHECK_DECODE(ReadPrevious(table, message));
   return ReadBlendShapes(table, message);
 }
 
@@ -203,6 +214,8 @@ flatbuffers::Offset<wire::Pose> WriteTable(PayloadBuilder& payload, const PoseFr
   const auto translation_mask = WriteMask(payload, message.translation_joints, joints);
   const auto scale_mask = WriteMask(payload, message.scale_joints, joints);
   const auto shape_mask = WriteMask(payload, message.blend_shape_indices, message.num_blend_shapes);
+  Offset<Vector<std::uint8_t>> previous = 0;
+  if (!message.previous.empty()) previous = builder.CreateVector(message.previous);
   wire::PoseBuilder pose(builder);
   pose.add_skeleton_hash(message.skeleton_hash);
   pose.add_num_joints(message.num_joints);
@@ -220,6 +233,8 @@ flatbuffers::Offset<wire::Pose> WriteTable(PayloadBuilder& payload, const PoseFr
   pose.add_blend_shape_mask(shape_mask);
   pose.add_blend_shapes(shapes);
   pose.add_packed_blend_shapes(packed_shapes);
+  pose.add_previous(previous);
+  pose.add_previous_age_us(message.previous.empty() ? 0 : message.previous_age_us);
   return pose.Finish();
 }
 

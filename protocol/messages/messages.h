@@ -165,6 +165,10 @@ struct PoseFrame {
   std::vector<Vec3> scales;
   std::vector<std::uint16_t> blend_shape_indices;
   std::vector<float> blend_shapes;
+  // The encoded payload of the stream's previous pose, in case that its own datagram is lost
+  // (DecodePrevious()); at most kMaxDatagramBytes; empty: not repeated.
+  std::vector<std::uint8_t> previous;
+  std::uint32_t previous_age_us = 0;  // capture time of this pose minus that of the previous one
 };
 
 // --- Subscribing --------------------------------------------------------------------------------

@@ -55,18 +55,23 @@ inline Fields FieldsOf(const SkeletonReply& m) {
           {"message", Json(m.message)}};
 }
 inline Fields FieldsOf(const PoseFrame& m) {
-  return {{"skeleton_hash", JsonHex(m.skeleton_hash)},
-          {"partial", Json(m.partial)},
-          {"num_joints", Json(int{m.num_joints})},
-          {"num_blend_shapes", Json(int{m.num_blend_shapes})},
-          {"rotation_joints", Json(m.rotation_joints)},
-          {"rotations", Json(m.rotations)},
-          {"translation_joints", Json(m.translation_joints)},
-          {"translations", Json(m.translations)},
-          {"scale_joints", Json(m.scale_joints)},
-          {"scales", Json(m.scales)},
-          {"blend_shape_indices", Json(m.blend_shape_indices)},
-          {"blend_shapes", Json(m.blend_shapes)}};
+  Fields fields = {{"skeleton_hash", JsonHex(m.skeleton_hash)},
+                   {"partial", Json(m.partial)},
+                   {"num_joints", Json(int{m.num_joints})},
+                   {"num_blend_shapes", Json(int{m.num_blend_shapes})},
+                   {"rotation_joints", Json(m.rotation_joints)},
+                   {"rotations", Json(m.rotations)},
+                   {"translation_joints", Json(m.translation_joints)},
+                   {"translations", Json(m.translations)},
+                   {"scale_joints", Json(m.scale_joints)},
+                   {"scales", Json(m.scales)},
+                   {"blend_shape_indices", Json(m.blend_shape_indices)},
+                   {"blend_shapes", Json(m.blend_shapes)}};
+  if (!m.previous.empty()) {
+    fields.emplace_back("previous", Json(m.previous));
+    fields.emplace_back("previous_age_us", Json(static_cast<std::int64_t>(m.previous_age_us)));
+  }
+  return fields;
 }
 inline Fields FieldsOf(const SubscribeWeights& m) {
   return {{"subject", Json(m.subject)},

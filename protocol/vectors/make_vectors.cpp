@@ -120,6 +120,23 @@ PoseFrame SmallPose() {
   return pose;
 }
 
+// Repeats the pose before it, which is at rest but for one joint.
+PoseFrame RepeatingPose() {
+  PoseFrame before;
+  before.skeleton_hash = SkeletonHash(SmallOffer());
+  before.num_joints = 5;
+  before.num_blend_shapes = 3;
+  before.rotation_joints = {1};
+  before.rotations = {kTurns[1]};
+  Encoder encoder;
+  std::vector<std::uint8_t> message;
+  encoder.Encode({.session = 1}, before, message, PoseEncoding::Small());
+  PoseFrame pose = SmallPose();
+  pose.previous.assign(message.begin() + kEnvelopeBytes, message.end());
+  pose.previous_age_us = 16'667;
+  return pose;
+}
+
 PoseFrame PartialPose() {
   PoseFrame pose = SmallPose();
   pose.partial = true;
@@ -176,6 +193,7 @@ void AddPublishing(Files& files) {
   Add(files, "skeleton_needed", SkeletonReply{7, SkeletonStatus::kNeeded, ""});
   Add(files, "pose", SmallPose());
   Add(files, "pose_packed", SmallPose(), PoseEncoding::Small());
+  Add(files, "pose_previous", RepeatingPose(), PoseEncoding::Small());
   Add(files, "pose_partial", PartialPose());
   Add(files, "pose_partial_packed", PartialPose(), PoseEncoding::Small());
 }

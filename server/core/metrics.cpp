@@ -103,6 +103,8 @@ constexpr CounterInfo kCounters[] = {
      "Poses with wrong counts, non-finite numbers or unnormalised quaternions."},
     {Counter::kPosesUnknownStream, "furrow_poses_unknown_stream_total",
      "Poses of streams that have offered no skeleton."},
+    {Counter::kPosesRecovered, "furrow_poses_recovered_total",
+     "Poses whose own datagram was late or lost, taken from the next one."},
     {Counter::kPosesHeld, "furrow_poses_held_total", "Poses that waited in a jitter buffer."},
     {Counter::kPosesHeldFull, "furrow_poses_held_full_total",
      "Poses that left a jitter buffer before their time because it was full."},

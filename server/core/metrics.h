@@ -58,6 +58,7 @@ enum class Counter {
   kPosesDuplicate,
   kPosesInvalid,
   kPosesUnknownStream,
+  kPosesRecovered,
   kPosesHeld,
   kPosesHeldFull,
   kSkeletonsOffered,

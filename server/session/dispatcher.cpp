@@ -82,6 +82,7 @@ void Dispatcher::DispatchVerified(Shard& shard, Peer& peer, const protocol::Mess
       return Decode(shard, peer, view, in.pose, [&] {
         // A partial pose cannot be relayed as it came: a subscriber that lost the pose before it
         // would complete it wrongly.
+        if (!in.pose.previous.empty()) RecoverPrevious(shard, peer, header, now);
         const auto payload = in.pose.partial ? std::span<const std::uint8_t>() : view.payload;
         parts_.router->AcceptPose(shard, peer, header, in.pose, payload, now);
       });
@@ -100,6 +101,19 @@ void Dispatcher::DispatchVerified(Shard& shard, Peer& peer, const protocol::Mess
       return DispatchExclusive(shard, peer, view, now);
     }
   }
+}
+
+// Uses the pose that the shard's pose repeats, if it is missing. Invalid ones are counted, and the
+// pose itself stays valid.
+void Dispatcher::RecoverPrevious(Shard& shard, const Peer& peer, const protocol::Header& header,
+                                 Time now) {
+  if (!parts_.router->MissesPrevious(shard, peer, header)) return;
+  Shard::Incoming& in = shard.in;
+  if (protocol::DecodePrevious(in.pose, in.previous) != DecodeStatus::kOk) {
+    parts_.metrics->Add(Counter::kPosesInvalid);
+    return;
+  }
+  parts_.router->AcceptPrevious(shard, peer, header, in.pose.previous_age_us, in.previous, now);
 }
 
 // Messages of publishers and about the connection. The caller holds the exclusive lock, also for

@@ -61,6 +61,7 @@ class Dispatcher {
 
  private:
   void DispatchVerified(Shard& shard, Peer& peer, const protocol::MessageView& view, Time now);
+  void RecoverPrevious(Shard& shard, const Peer& peer, const protocol::Header& header, Time now);
   void DispatchExclusive(Shard& shard, Peer& peer, const protocol::MessageView& view, Time now);
   void DispatchRequest(Shard& shard, Peer& peer, const protocol::MessageView& view, Time now);
   template <class Request>

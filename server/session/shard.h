@@ -45,6 +45,7 @@ struct Shard {
     protocol::Goodbye goodbye;
     protocol::SkeletonOffer offer;
     protocol::PoseFrame pose;
+    protocol::PoseFrame previous;  // that `pose` repeats
     protocol::SubscribeWeights subscribe_weights;
     protocol::SubscribePictures subscribe_pictures;
     protocol::SubscribePoses subscribe_poses;

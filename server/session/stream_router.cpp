@@ -29,6 +29,32 @@ void StreamRouter::AcceptPose(Shard& shard, Peer& peer, const protocol::Header& 
   }
 }
 
+bool StreamRouter::MissesPrevious(Shard& shard, const Peer& peer, const protocol::Header& header) {
+  const StreamKey stream{peer.id, header.session, header.stream};
+  const Subject* subject = parts_.subjects->Find(stream);
+  if (subject == nullptr) return false;
+  const std::uint32_t sequence = header.sequence - 1;
+  const protocol::SequenceWindow& window = subject->window;
+  const bool follows = window.started() && window.session() == header.session;
+  // Sequences wrap at 2^32.
+  if (follows && static_cast<std::int32_t>(sequence - window.newest()) <= 0) return false;
+  return subject->hold == Time{0} || shard.held.Misses(stream, sequence);
+}
+
+void StreamRouter::AcceptPrevious(Shard& shard, const Peer& peer, protocol::Header header,
+                                  std::uint32_t age_us, const protocol::PoseFrame& previous,
+                                  Time now) {
+  Subject* subject = parts_.subjects->Find(StreamKey{peer.id, header.session, header.stream});
+  if (subject == nullptr || subject->skeleton_hash != previous.skeleton_hash) return;
+  parts_.publishers->OnRecovered();
+  header.sequence -= 1;
+  if (header.capture_time_us != 0) header.capture_time_us -= age_us;
+  // Relayed and recorded like a pose of a foreign wire: its bytes end with those of the other pose.
+  if (subject->hold == Time{0} || !Hold(shard, *subject, header, previous, {}, now)) {
+    Use(shard, *subject, header, previous, {}, now);
+  }
+}
+
 // Puts a pose into the jitter buffer. False: it is too late for that.
 bool StreamRouter::Hold(Shard& shard, Subject& subject, const protocol::Header& header,
                         const protocol::PoseFrame& pose, std::span<const std::uint8_t> payload,

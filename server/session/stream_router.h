@@ -46,6 +46,13 @@ class StreamRouter {
   // Requires the lock of `shard`.
   void AcceptPose(Shard& shard, Peer& peer, const protocol::Header& header,
                   const protocol::PoseFrame& pose, std::span<const std::uint8_t> payload, Time now);
+  // True if the pose before `header`'s can still be used: it was not received, and no newer one was
+  // used. Requires the lock of `shard`.
+  [[nodiscard]] bool MissesPrevious(Shard& shard, const Peer& peer, const protocol::Header& header);
+  // Takes the pose that another one repeats, before that one. Requires the lock of `shard`.
+  // `header`: of the other one; `age_us`: PoseFrame::previous_age_us.
+  void AcceptPrevious(Shard& shard, const Peer& peer, protocol::Header header, std::uint32_t age_us,
+                      const protocol::PoseFrame& previous, Time now);
   // Accepts the poses of the shard's jitter buffers whose time has come, and publishes them.
   // Requires the lock of `shard`.
   void ReleaseHeld(Shard& shard, Time now);

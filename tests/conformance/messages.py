@@ -157,7 +157,10 @@ def pose(t):
     plain, packed = t.vector(14, "f"), t.vector(15, "h")
     either(plain, packed)
     values = [unpack_offset(v, 1 / 16384) for v in packed] if packed else finite(plain or [])
-    return {"skeleton_hash": hexadecimal(t.scalar(0, "Q")), "partial": t.flag(3),
+    previous = t.vector(16, "B") or []
+    require(len(previous) <= 1200, "previous pose too large")
+    repeated = {"previous": list(previous), "previous_age_us": t.scalar(17, "I")} if previous else {}
+    return {"skeleton_hash": hexadecimal(t.scalar(0, "Q")), "partial": t.flag(3), **repeated,
             "num_joints": joints, "num_blend_shapes": shapes,
             "rotation_joints": masked(t.vector(4, "B"), joints, rotations), "rotations": rotations,
             "translation_joints": masked(t.vector(7, "B"), joints, translations),

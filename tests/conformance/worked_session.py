@@ -34,7 +34,7 @@ SLOTS = {
               ("rotation_mask", "[B]"), ("rotations", "[4f]"), ("packed_rotations", "[3H]"),
               ("translation_mask", "[B]"), ("translations", "[3f]"), ("packed_translations", "[3h]"),
               ("translation_range", "f"), ("scale_mask", "[B]"), ("scales", "[3f]"), ("blend_shape_mask", "[B]"),
-              ("blend_shapes", "[f]"), ("packed_blend_shapes", "[h]")],
+              ("blend_shapes", "[f]"), ("packed_blend_shapes", "[h]"), ("previous", "[B]"), ("previous_age_us", "I")],
     b"FSUW": [("subject", STRING), ("wait", "?"), ("pattern", STRING), ("max_rate_hz", "f"), ("format", "B"),
               ("source", "B"), ("every", "?")],
     b"FSUR": [("subject", STRING), ("names_hash", "Q"), ("names", STRINGS), ("publisher_session", "Q")],

@@ -33,6 +33,15 @@ void RoundTrip(const MessageView& view) {
   }
 }
 
+// The pose that a pose repeats.
+void DecodeRepeated(const MessageView& view) {
+  static furrow::protocol::PoseFrame pose;
+  static furrow::protocol::PoseFrame previous;
+  if (Decode(view, pose) != DecodeStatus::kOk || pose.previous.empty()) return;
+  const DecodeStatus status = DecodePrevious(pose, previous);
+  if (status == DecodeStatus::kOk && (previous.partial || !previous.previous.empty())) std::abort();
+}
+
 void DecodeAny(std::span<const std::uint8_t> bytes) {
   namespace p = furrow::protocol;
   MessageView view;
@@ -46,7 +55,7 @@ void DecodeAny(std::span<const std::uint8_t> bytes) {
     case MessageKind::kError: return RoundTrip<p::ErrorMessage>(view);
     case MessageKind::kSkeletonOffer: return RoundTrip<p::SkeletonOffer>(view);
     case MessageKind::kSkeletonReply: return RoundTrip<p::SkeletonReply>(view);
-    case MessageKind::kPose: return RoundTrip<p::PoseFrame>(view);
+    case MessageKind::kPose: DecodeRepeated(view); return RoundTrip<p::PoseFrame>(view);
     case MessageKind::kSubscribeWeights: return RoundTrip<p::SubscribeWeights>(view);
     case MessageKind::kSubscribePictures: return RoundTrip<p::SubscribePictures>(view);
     case MessageKind::kUnsubscribe: return RoundTrip<p::Unsubscribe>(view);

@@ -34,6 +34,7 @@ struct PlayOptions {
   bool loop = false;
   bool quantise = false;
   bool floats = false;
+  bool redundant = false;
   double rate = 0.0;
   double speed = 1.0;
   double from = 0.0;
@@ -138,7 +139,8 @@ int PlayFile(PlayOptions options) {
                        {.speed = options.speed,
                         .loop = options.loop,
                         .once = options.once,
-                        .encoding = EncodingOf(options, kind)});
+                        .encoding = EncodingOf(options, kind),
+                        .redundant = options.redundant});
   exit_code = player.Run();
   // Without the goodbye, subscribers would see the subjects hold and decay first.
   publisher.Close();
@@ -174,6 +176,10 @@ void AddPlay(CLI::App& app, Action& action) {
       ->check(Within(0.0, 1e9))
       ->capture_default_str();
   command->add_flag("--loop", options->loop, "Repeat until Ctrl-C; pose numbers continue");
+  auto* redundant = command->add_flag(
+      "--redundant", options->redundant,
+      "Repeat the previous pose in each datagram where both fit, so that a lost datagram loses no "
+      "pose; implies --quantise (UDP only)");
   auto* quantise = command->add_flag(
       "--quantise", options->quantise,
       "Send packed poses: 6 bytes per rotation (error up to 1.5e-4 rad), 6 per translation "
@@ -182,7 +188,8 @@ void AddPlay(CLI::App& app, Action& action) {
   command
       ->add_flag("--floats", options->floats,
                  "Send poses as floats, in several datagrams if necessary (default over TCP)")
-      ->excludes(quantise);
+      ->excludes(quantise)
+      ->excludes(redundant);
   command->add_option("--scale", options->scale, "Metres per unit of the recording's lengths")
       ->check(Within(1e-6, 1e6))
       ->capture_default_str();

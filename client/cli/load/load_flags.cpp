@@ -50,6 +50,12 @@ void AddTrafficOptions(CLI::App& command, LoadFlags& options) {
       .add_flag("--floats", options.floats,
                 "Send poses as floats, in several datagrams if necessary (default with --tcp)")
       ->excludes(quantise);
+  command
+      .add_flag("--redundant", options.run.redundant,
+                "Repeat the previous pose in each datagram where both fit, as 'furrow play "
+                "--redundant' does; implies --quantise")
+      ->excludes("--floats")
+      ->excludes(tcp);
   command.add_option("--scale", options.input.scale, "Metres per unit of the recording's lengths")
       ->check(Within(1e-6, 1e6))
       ->capture_default_str();
@@ -158,7 +164,7 @@ void AddLoadFlags(CLI::App& command, LoadFlags& flags) {
 }
 
 Packing PackingOf(const LoadFlags& flags) {
-  if (flags.quantise) return Packing::kAlways;
+  if (flags.quantise || flags.run.redundant) return Packing::kAlways;
   return flags.floats || flags.tcp ? Packing::kNever : Packing::kToFit;
 }
 

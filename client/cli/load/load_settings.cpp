@@ -65,6 +65,7 @@ nlohmann::json SettingsOf(const LoadFlags& flags) {
       {"shape_map", TextOrNull(flags.input.shape_map)},
       {"rest_frame", flags.input.read.rest_frame},
       {"packing", NameOf(PackingOf(flags))},
+      {"redundant", run.redundant},
       {"scale", flags.input.scale},
       {"path", NameOf(run.path)},
       {"subjects", run.plan.subjects},

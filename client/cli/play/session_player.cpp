@@ -57,8 +57,9 @@ void SessionPlayer::Play() {
     track.source->Fill(next->frame, &pose);
     // The pacing error is measured before Send(), which may block over TCP.
     pacing_[next->track].Sent(due, SteadyMicroseconds());
-    const IoStatus sent_as = publisher_.Send(
-        track.stream, pose, capture_start + std::llround(next->seconds * 1e6), options_.encoding);
+    const IoStatus sent_as =
+        publisher_.Send(track.stream, pose, capture_start + std::llround(next->seconds * 1e6),
+                        options_.encoding, options_.redundant);
     // A datagram that was sent proves no connection; an answer that Poll() reads does.
     if (sent_as != IoStatus::kOk) Note(sent_as);
     progress.Set(sent++ % schedule_.count() + 1);

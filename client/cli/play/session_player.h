@@ -23,6 +23,7 @@ class SessionPlayer {
     bool loop = false;   // repeat until an interrupt
     bool once = false;   // a lost connection makes the playback fail, even if it comes back
     protocol::PoseEncoding encoding;
+    bool redundant = false;  // repeat the previous pose where there is room
   };
   // `publisher` and the sources of `tracks` must outlive the player. `tracks`: one per track of
   // `schedule`, in the order of its tracks.

@@ -166,6 +166,7 @@ Status Runner::OpenSockets() {
   auto senders = Senders::Open(open, NumSockets(workload_, plan_, options_.path), workload_);
   FURROW_RETURN_IF_ERROR(senders);
   senders_.emplace(*std::move(senders));
+  if (options_.redundant) senders_->RepeatPrevious(plan_);
   if (target_.echo) return {};
   // Subjects before watchers: a subscription to an unknown subject is refused.
   FURROW_RETURN_IF_ERROR(senders_->Offer(plan_.num_subjects(), hooks_.keep_going));

@@ -41,6 +41,7 @@ struct RunOptions {
   float tolerance = 1e-4f;        // largest accepted difference of a weight
   double drain_seconds = 1.0;     // after this time without weights the missing ones count as lost
   bool check_weights = true;
+  bool redundant = false;  // over UDP, poses repeat the previous one where there is room
 };
 
 // Callbacks during a run. All of them must be set.

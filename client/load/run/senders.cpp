@@ -9,7 +9,9 @@
 #include "base/status.h"
 #include "client/cpp/acceptance.h"
 #include "client/net/clock.h"
+#include "protocol/codec/codec.h"
 #include "protocol/framing/envelope.h"
+#include "protocol/framing/fragment.h"
 
 namespace furrow::load {
 
@@ -71,12 +73,38 @@ Status Senders::Offer(int count, const std::function<bool()>& keep_going) {
   return {};
 }
 
+void Senders::RepeatPrevious(const Plan& plan) {
+  protocol::Encoder encoder;
+  protocol::PoseFrame pose;
+  const auto frames = static_cast<std::uint32_t>(messages_.size());
+  repeating_ = messages_;
+  for (std::uint32_t frame = 0; frame < frames; ++frame) {
+    protocol::MessageView view;
+    const bool is_pose =
+        protocol::OpenMessage(messages_[frame], view) == protocol::DecodeStatus::kOk &&
+        protocol::Decode(view, pose) == protocol::DecodeStatus::kOk;
+    if (!is_pose) continue;
+    // A subject with start phase 0 sends each frame as the pose of the same number. Rounds repeat.
+    const std::uint32_t number = frame + frames;
+    const auto& previous = messages_[(number - 1) % frames];
+    pose.previous.assign(previous.begin() + protocol::kEnvelopeBytes, previous.end());
+    pose.previous_age_us =
+        static_cast<std::uint32_t>(plan.CaptureUs(0, number) - plan.CaptureUs(0, number - 1));
+    std::vector<std::uint8_t> message;
+    encoder.Encode({.session = 1}, pose, message, protocol::PoseEncoding::Small());
+    if (protocol::NumDatagrams(message.size()) == 1) repeating_[frame] = std::move(message);
+  }
+}
+
 IoStatus Senders::Send(std::uint32_t subject, std::uint32_t pose, int frame,
                        std::int64_t capture_time_us) {
   const std::size_t i = subject % senders_.size();
   // The payload of a frame is encoded once. Only the envelope differs between subjects and rounds,
   // so sending costs no encoding, which would count as latency.
-  std::vector<std::uint8_t>& message = messages_[static_cast<std::size_t>(frame)];
+  const bool repeats =
+      pose > 0 && !repeating_.empty() && senders_[i].socket->kind() == client::TransportKind::kUdp;
+  auto& messages = repeats ? repeating_ : messages_;
+  std::vector<std::uint8_t>& message = messages[static_cast<std::size_t>(frame)];
   const protocol::Envelope envelope{
       .header = {.session = senders_[i].publisher->session(),
                  .stream = static_cast<std::uint16_t>(subject / senders_.size()),

@@ -35,6 +35,9 @@ class Senders {
   // kInvalidArgument (rejected, with the reason).
   [[nodiscard]] Status Offer(int count, const std::function<bool()>& keep_going);
 
+  // From now on, datagrams repeat the previous pose where both fit. `plan`: of the poses.
+  void RepeatPrevious(const Plan& plan);
+
   // Sends frame `frame` of the recording as pose number `pose` of a subject. kTimeout: the send
   // buffer is full and the pose was not sent.
   [[nodiscard]] client::IoStatus Send(std::uint32_t subject, std::uint32_t pose, int frame,
@@ -64,6 +67,8 @@ class Senders {
 
   const Workload* workload_;
   std::vector<std::vector<std::uint8_t>> messages_;  // Send() rewrites the envelopes
+  // The same with the previous pose, for all poses of a subject but the first; empty: not wanted.
+  std::vector<std::vector<std::uint8_t>> repeating_;
   std::vector<Sender> senders_;
 };
 

@@ -18,8 +18,12 @@ JitterBuffer::Place JitterBuffer::Look(const protocol::Header& header, Time dela
   // Late poses count for the clock, too: after the sender's clock was set, all of them are late.
   *due = clock_.Arrival(header.capture_time_us, now) + delay;
   if (has_left_ && !IsNewer(header.sequence, newest_left_)) return Place::kLate;
-  const auto same = [&](const auto& pose) { return pose->header.sequence == header.sequence; };
-  return std::ranges::any_of(held_, same) ? Place::kDuplicate : Place::kHeld;
+  return Misses(header.sequence) ? Place::kHeld : Place::kDuplicate;
+}
+
+bool JitterBuffer::Misses(std::uint32_t sequence) const {
+  const auto same = [=](const auto& pose) { return pose->header.sequence == sequence; };
+  return (!has_left_ || IsNewer(sequence, newest_left_)) && std::ranges::none_of(held_, same);
 }
 
 void JitterBuffer::Hold(std::unique_ptr<HeldPose> pose) {

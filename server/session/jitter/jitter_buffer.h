@@ -22,6 +22,8 @@ class JitterBuffer {
 
   // Decides about a pose that arrived. For kHeld, `due` receives when it leaves; pass it to Hold().
   [[nodiscard]] Place Look(const protocol::Header& header, Time delay, Time now, Time* due);
+  // True if the pose with this sequence neither waits nor came too late.
+  [[nodiscard]] bool Misses(std::uint32_t sequence) const;
   // Adds a pose that Look() would hold.
   void Hold(std::unique_ptr<HeldPose> pose);
   // Takes the oldest pose if it is due; null: there is none.

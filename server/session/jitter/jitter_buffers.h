@@ -36,6 +36,12 @@ class JitterBuffers {
             const protocol::PoseFrame& pose, std::span<const std::uint8_t> payload, Time delay,
             Time now);
 
+  // True if a pose with this sequence would be held.
+  [[nodiscard]] bool Misses(const StreamKey& stream, std::uint32_t sequence) const {
+    const auto found = streams_.find(stream);
+    return found == streams_.end() || found->second.Misses(sequence);
+  }
+
   // A pose whose time has come; valid until Recycle().
   struct Released {
     StreamKey stream;

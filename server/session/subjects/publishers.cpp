@@ -206,6 +206,8 @@ bool Publishers::AcceptPose(Subject& subject, const protocol::Header& header,
   return true;
 }
 
+void Publishers::OnRecovered() { metrics_->Add(Counter::kPosesRecovered); }
+
 void Publishers::OnDuplicate(Subject& subject) {
   metrics_->Add(Counter::kPosesDuplicate);
   subject.stats.OnLate();

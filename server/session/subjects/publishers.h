@@ -51,6 +51,8 @@ class Publishers {
   // it is late, duplicate or does not fit the skeleton.
   [[nodiscard]] bool AcceptPose(Subject& subject, const protocol::Header& header,
                                 const protocol::PoseFrame& pose);
+  // Counts a pose that was taken from the next one.
+  void OnRecovered();
   // Counts a pose that waits in a jitter buffer already.
   void OnDuplicate(Subject& subject);
   // Counts a pose that went into a jitter buffer. `full`: another one left it early.

@@ -347,6 +347,8 @@ FURROW_API furrow_status furrow_offer(furrow_connection* connection,
 
 /* Flags of furrow_pose. */
 #define FURROW_POSE_PACKED 1u /* 6 bytes per rotation and translation; error below 0.01 degrees */
+/* Over UDP, also repeats the stream's pose before in the same datagram, if both fit; packs both. */
+#define FURROW_POSE_REDUNDANT 2u
 
 /* One pose. An array that is NULL leaves its part at rest, and blend shapes at 0. */
 typedef struct furrow_pose {

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/cpp/publisher.h"
 
+#include <cmath>
 #include <set>
 
 #include <gtest/gtest.h>
 
 #include "fake_transport.h"
+#include "protocol/codec/codec.h"
 #include "protocol/messages/hash.h"
+#include "protocol/messages/limits.h"
 
 namespace furrow::client {
 namespace {
@@ -54,6 +57,63 @@ TEST_F(PublisherTest, OfferIsRepeatedUntilItIsAnswered) {
   EXPECT_TRUE(publisher_.accepted(stream));
   publisher_.Poll(900'000, milliseconds(0));
   EXPECT_TRUE(far_->sent.empty());
+}
+
+// The pose that the last message of the far end carries.
+protocol::PoseFrame LastPose(const FarEnd& far) {
+  protocol::MessageView view;
+  protocol::PoseFrame pose;
+  EXPECT_EQ(protocol::OpenMessage(far.sent.back(), view), protocol::DecodeStatus::kOk);
+  EXPECT_EQ(protocol::Decode(view, pose), protocol::DecodeStatus::kOk);
+  return pose;
+}
+
+TEST_F(PublisherTest, APoseRepeatsThePreviousOneWhereBothFit) {
+  const auto stream = publisher_.AddSubject(OneJoint(), 0);
+  protocol::PoseFrame pose;
+  pose.num_joints = 1;
+  pose.rotation_joints = {0};
+  const auto send = [&](float angle, std::int64_t capture_us) {
+    pose.rotations = {{std::sin(angle), 0.0f, 0.0f, std::cos(angle)}};
+    EXPECT_EQ(publisher_.Send(stream, pose, capture_us, {}, /*repeat_previous=*/true),
+              IoStatus::kOk);
+    return LastPose(*far_);
+  };
+  const protocol::PoseFrame first = send(0.1f, 1000);
+  EXPECT_TRUE(first.previous.empty());
+  const protocol::PoseFrame second = send(0.2f, 17'000);
+  EXPECT_EQ(second.previous_age_us, 16'000u);
+  protocol::PoseFrame previous;
+  ASSERT_EQ(protocol::DecodePrevious(second, previous), protocol::DecodeStatus::kOk);
+  EXPECT_EQ(previous.rotations, first.rotations);
+  EXPECT_TRUE(previous.previous.empty());
+  // A large pose leaves no room, and neither does the one after it.
+  pose.num_blend_shapes = 512;
+  for (std::uint16_t i = 0; i < 512; ++i) pose.blend_shape_indices.push_back(i);
+  pose.blend_shapes.assign(512, 0.5f);
+  EXPECT_TRUE(send(0.3f, 33'000).previous.empty());
+  EXPECT_LE(far_->sent.back().size(), protocol::kMaxDatagramBytes);
+  EXPECT_TRUE(send(0.4f, 49'000).previous.empty());
+  // A partial pose is not repeated.
+  pose = {};
+  pose.num_joints = 1;
+  pose.rotation_joints = {0};
+  (void)send(0.5f, 65'000);
+  pose.partial = true;
+  (void)send(0.6f, 81'000);
+  pose.partial = false;
+  EXPECT_TRUE(send(0.7f, 97'000).previous.empty());
+  EXPECT_FALSE(send(0.8f, 113'000).previous.empty());
+}
+
+TEST_F(PublisherTest, WithoutTheOptionNothingIsRepeated) {
+  const auto stream = publisher_.AddSubject(OneJoint(), 0);
+  protocol::PoseFrame pose;
+  pose.num_joints = 1;
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(publisher_.Send(stream, pose, i), IoStatus::kOk);
+    EXPECT_TRUE(LastPose(*far_).previous.empty());
+  }
 }
 
 TEST_F(PublisherTest, NothingIsOfferedBeforeTheAddressIsProven) {

@@ -197,6 +197,23 @@ TEST(CommandLine, FlagsOverrideTheFileAndTheFileTheDefaults) {
   EXPECT_THAT(line.config->mocap_allow, testing::ElementsAre("10.0.0.3"));
 }
 
+TEST(CommandLine, JitterBuffersAreRulesThatReplaceThoseOfTheFile) {
+  const ConfigFile file("[listen]\njitter_buffer = [\"60\", \"phone-*,tablet=80.5\"]\n");
+  CommandLine line = Parse({"--config", file.path()});
+  ASSERT_TRUE(line.config.has_value()) << line.text;
+  EXPECT_THAT(line.config->jitter,
+              testing::ElementsAre(JitterRule{"*", 60.0}, JitterRule{"phone-*,tablet", 80.5}));
+  line = Parse({"--config", file.path(), "--jitter-buffer", "5", "--jitter-buffer", "ada=0"});
+  ASSERT_TRUE(line.config.has_value()) << line.text;
+  EXPECT_THAT(line.config->jitter,
+              testing::ElementsAre(JitterRule{"*", 5.0}, JitterRule{"ada", 0.0}));
+  for (const char* wrong : {"", "x", "5ms", "-1", "1001", "nan", "=5", "ada=", "ada=5,6"}) {
+    const CommandLine failed = Parse({"--jitter-buffer", wrong});
+    EXPECT_EQ(failed.exit_code, ExitCode::kUsage) << wrong;
+    EXPECT_THAT(failed.text, HasSubstr("--jitter-buffer")) << wrong;
+  }
+}
+
 TEST(CommandLine, AnErrorInTheFileNamesTheLine) {
   const ConfigFile file("[listen]\nbind = \"127.0.0.1\"\nport = 7\n");
   const CommandLine line = Parse({"--config", file.path()});
