@@ -4,6 +4,7 @@
 # What the client library needs.
 find_package(Threads REQUIRED)
 find_package(FlatBuffers REQUIRED)
+find_package(OpenSSL 3.0 REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(SODIUM REQUIRED IMPORTED_TARGET libsodium)
 find_program(FURROW_FLATC flatc REQUIRED)

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstring>
 #include <new>
-#include <optional>
 #include <string>
 
 #include "base/text.h"
@@ -78,20 +77,27 @@ const Feed* NamedFeed(Connection& connection, const char* subject, furrow_status
   return nullptr;
 }
 
-// Takes over the token of the options, which the address may state instead.
-Status TakeToken(const furrow_options& options, furrow::client::Address* address) {
-  if (options.token == nullptr) return {};
-  if (!address->token.empty()) {
-    return {StatusCode::kInvalidArgument, "the address states a token, too", "options.token",
-            "use one of both"};
+// Takes over a file of the options, which the address may state instead.
+Status TakeFile(const char* value, const char* field, const char* todo, std::string* target) {
+  if (value == nullptr) return {};
+  if (!target->empty()) {
+    return {StatusCode::kInvalidArgument, "the address states it, too", field, "use one of both"};
   }
   constexpr int kMostBytes = 4096;
-  if (furrow::capi::ReadText(options.token, kMostBytes, &address->token) &&
-      !address->token.empty()) {
-    return {};
-  }
-  return {StatusCode::kInvalidArgument, "use the name of a file, or the text of a token",
-          "options.token"};
+  if (furrow::capi::ReadText(value, kMostBytes, target) && !target->empty()) return {};
+  return {StatusCode::kInvalidArgument, todo, field};
+}
+
+// Takes over the token and TLS of the options.
+Status TakeSecurity(const furrow_options& options, furrow::client::Address* address) {
+  FURROW_RETURN_IF_ERROR(TakeFile(options.token, "options.token",
+                                  "use the name of a file, or the text of a token",
+                                  &address->token));
+  FURROW_RETURN_IF_ERROR(TakeFile(options.tls_authority, "options.tls_authority",
+                                  "use the name of a file in PEM form",
+                                  &address->tls_files.authority));
+  address->tls |= options.tls != 0;
+  return address->Complete();
 }
 
 // Refuses what is reserved. A key that is silently ignored would pretend to protect.
@@ -101,8 +107,9 @@ Status CheckOptions(const furrow_options& options, std::string* program) {
                   std::string("options.") + field, "leave it empty");
   };
   if (options.server_key != nullptr) return reserved("server_key");
-  if (options.tls_authority != nullptr) return reserved("tls_authority");
-  if (options.tls != 0) return reserved("tls");
+  if (options.tls > 1) {
+    return {StatusCode::kUnsupported, "use 0 or 1", "options.tls"};
+  }
   if ((options.flags & ~FURROW_OPEN_WITHOUT_SUBSCRIPTION) != 0) {
     return {StatusCode::kUnsupported, "unknown flags", "options.flags"};
   }
@@ -127,19 +134,19 @@ furrow_status Open(const char* address, const furrow_options& options,
     const bool unsupported = parsed.status().code() == StatusCode::kUnsupported;
     return unsupported ? FURROW_UNSUPPORTED : FURROW_INVALID_ADDRESS;
   }
-  Status fault = TakeToken(options, &*parsed);
-  std::optional<furrow::client::Token> token;
+  Status fault = TakeSecurity(options, &*parsed);
+  furrow::client::Security security;
   if (fault.ok()) {
-    auto loaded = furrow::client::LoadTokenOf(*parsed);
-    if (loaded.ok()) token = *std::move(loaded);
-    fault = loaded.ok() ? Status() : loaded.status().Within("token");
+    auto loaded = furrow::client::LoadSecurityOf(*parsed);
+    if (loaded.ok()) security = *std::move(loaded);
+    fault = loaded.status();
   }
   if (!fault.ok()) {
     *error = fault.ToString();
     return FURROW_INVALID_ARGUMENT;
   }
   auto opened = std::unique_ptr<furrow_connection>(
-      new furrow_connection{{*std::move(parsed), std::move(program), std::move(token)}});
+      new furrow_connection{{*std::move(parsed), std::move(program), std::move(security)}});
   if ((options.flags & FURROW_OPEN_WITHOUT_SUBSCRIPTION) == 0) {
     const furrow_status status = opened->connection.SubscribeToAddress();
     *error = opened->connection.last_error();

@@ -52,8 +52,10 @@ class Mark {
 }  // namespace
 
 Connection::Connection(client::Address address, std::string program,
-                       std::optional<client::Token> token)
-    : address_(std::move(address)), program_(std::move(program)), token_(std::move(token)) {}
+                       client::Security security)
+    : address_(std::move(address)),
+      program_(std::move(program)),
+      security_(std::move(security)) {}
 
 Connection::~Connection() {
   // Without these, the daemon would notice after some seconds.
@@ -75,7 +77,7 @@ furrow_status Connection::Fail(const Status& status) {
 std::unique_ptr<client::Transport> Connection::OpenTransport() const {
   const auto kind = address_.transport.value_or(client::TransportKind::kUdp);
   return client::ReconnectingTransport::Create(kind, address_.host, address_.PortFor(kind),
-                                               kSendTimeout, nullptr, token_);
+                                               kSendTimeout, nullptr, security_);
 }
 
 furrow_status Connection::SubscribeToAddress() {
@@ -308,8 +310,11 @@ void Connection::PollSender(std::int64_t now_us, milliseconds wait, bool* news) 
 
 void Connection::NoteNetworkFailure() {
   const std::string why = receiving_->failure();
-  last_error_ = "no connection to " + address_.host + (why.empty() ? "" : ": " + why) +
-                " (is furrowd running there?)";
+  // What the library itself says is a whole sentence.
+  const bool is_whole = why.find(address_.host) != std::string::npos;
+  last_error_ = is_whole ? why
+                         : "no connection to " + address_.host + (why.empty() ? "" : ": " + why) +
+                               " (is furrowd running there?)";
 }
 
 void Connection::NoteRefusal() {

@@ -17,8 +17,8 @@ namespace furrow::capi {
 // their arguments are checked for null pointers by the caller.
 class Connection {
  public:
-  // `program`: for the daemon's log. `token`: that the address names, if any.
-  Connection(client::Address address, std::string program, std::optional<client::Token> token);
+  // `program`: for the daemon's log. `security`: what the address asks for.
+  Connection(client::Address address, std::string program, client::Security security);
   ~Connection();
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
@@ -68,7 +68,7 @@ class Connection {
 
   client::Address address_;
   std::string program_;
-  const std::optional<client::Token> token_;
+  const client::Security security_;
   Listener listener_;
   client::Transport* receiving_ = nullptr;  // owned by receiver_
   client::Transport* sending_ = nullptr;    // owned by sender_

@@ -18,11 +18,12 @@ constexpr std::string_view kScheme = "furrow://";
 constexpr std::size_t kMaxAddressBytes = 64 * 1024;
 constexpr std::size_t kMaxHostBytes = 255;
 constexpr std::size_t kMaxSubjects = 256;
-constexpr std::array<std::string_view, 5> kKeys = {"subject", "pattern", "rate", "transport",
-                                                   "token"};
-// Encryption of TCP will use these keys. Ignoring them would pretend to protect.
-constexpr std::array<std::string_view, 2> kReservedKeys = {"key", "tls"};
-constexpr std::size_t kMaxTokenBytes = 4096;  // of a path
+constexpr std::array<std::string_view, 10> kKeys = {
+    "subject",       "pattern",         "rate",    "transport",     "token", "tls",
+    "tls-authority", "tls-certificate", "tls-key", "token-in-clear"};
+// A later version will use it. Ignoring it would pretend to protect.
+constexpr std::string_view kReservedKey = "key";
+constexpr std::size_t kMaxPathBytes = 4096;
 
 Status Invalid(std::string what, std::string todo = {}) {
   return {StatusCode::kInvalidArgument, std::move(what), "address", std::move(todo)};
@@ -103,12 +104,31 @@ Status SetRate(const std::string& value, Address* address) {
 }
 
 Status SetToken(const std::string& value, Address* address) {
-  if (value.empty() || value.size() > kMaxTokenBytes || !protocol::IsPlainText(value)) {
+  if (value.empty() || value.size() > kMaxPathBytes || !protocol::IsPlainText(value)) {
     return Invalid("the token is not a file name and not a token",
                    "write token=FILE, with a file that 'furrow token new' made");
   }
   if (!address->token.empty()) return Invalid("token is stated twice");
   address->token = value;
+  return {};
+}
+
+Status SetFlag(std::string_view key, const std::string& value, bool* flag) {
+  if (value != "1") {
+    return Invalid(std::string(key) + "=" + Quoted(value) + " is unknown",
+                   "use " + std::string(key) + "=1, or leave it out");
+  }
+  *flag = true;
+  return {};
+}
+
+Status SetFile(std::string_view key, const std::string& value, std::string* file) {
+  if (value.empty() || value.size() > kMaxPathBytes || !protocol::IsPlainText(value)) {
+    return Invalid(std::string(key) + "=" + Quoted(value) + " is not a file name",
+                   "write " + std::string(key) + "=FILE, with a file in PEM form");
+  }
+  if (!file->empty()) return Invalid(std::string(key) + " is stated twice");
+  *file = value;
   return {};
 }
 
@@ -138,12 +158,13 @@ Status SetText(std::string_view key, const std::string& value, Address* address)
 Status SetValue(std::string_view item, Address* address) {
   const std::size_t equals = item.find('=');
   const std::string_view key = item.substr(0, equals);
-  if (std::ranges::find(kReservedKeys, key) != kReservedKeys.end()) {
+  if (key == kReservedKey) {
     return {StatusCode::kUnsupported, std::string(key) + " is reserved for a later version",
-            "address", "leave it out: this version encrypts UDP alone, with the key token"};
+            "address", "leave it out"};
   }
   if (std::ranges::find(kKeys, key) == kKeys.end()) {
-    return Invalid("unknown key " + Quoted(key), "use subject, pattern, rate, transport or token");
+    return Invalid("unknown key " + Quoted(key),
+                   "use subject, pattern, rate, transport, token or tls");
   }
   std::optional<std::string> value;
   if (equals != std::string_view::npos) value = DecodePercent(item.substr(equals + 1));
@@ -155,6 +176,11 @@ Status SetValue(std::string_view item, Address* address) {
   if (key == "token") return SetToken(*value, address);
   if (key == "transport") return SetTransport(*value, address);
   if (key == "rate") return SetRate(*value, address);
+  if (key == "tls") return SetFlag(key, *value, &address->tls);
+  if (key == "token-in-clear") return SetFlag(key, *value, &address->token_in_clear);
+  if (key == "tls-authority") return SetFile(key, *value, &address->tls_files.authority);
+  if (key == "tls-certificate") return SetFile(key, *value, &address->tls_files.certificate);
+  if (key == "tls-key") return SetFile(key, *value, &address->tls_files.key);
   return SetText(key, *value, address);
 }
 
@@ -172,6 +198,19 @@ Status ParseQuery(std::string_view query, Address* address) {
 std::uint16_t Address::PortFor(TransportKind kind) const {
   if (port != 0) return port;
   return kind == TransportKind::kTcp ? protocol::kDefaultTcpPort : protocol::kDefaultUdpPort;
+}
+
+Status Address::Complete() {
+  tls |= !tls_files.authority.empty() || !tls_files.certificate.empty() || !tls_files.key.empty();
+  if (!tls) return {};
+  if (transport == TransportKind::kUdp) {
+    return Invalid("TLS needs TCP", "use transport=tcp, or a token, which encrypts UDP");
+  }
+  if (tls_files.certificate.empty() && !tls_files.key.empty()) {
+    return Invalid("tls-key needs tls-certificate", "state both");
+  }
+  transport = TransportKind::kTcp;
+  return {};
 }
 
 Result<Address> ParseAddress(std::string_view text) {
@@ -193,6 +232,7 @@ Result<Address> ParseAddress(std::string_view text) {
   if (question < text.size()) {
     FURROW_RETURN_IF_ERROR(ParseQuery(text.substr(question + 1), &address));
   }
+  FURROW_RETURN_IF_ERROR(address.Complete());
   return address;
 }
 
@@ -203,6 +243,18 @@ Result<std::optional<Token>> LoadTokenOf(const Address& address) {
                        : protocol::secure::LoadToken(address.token);
   FURROW_RETURN_IF_ERROR(token);
   return std::optional<Token>(*std::move(token));
+}
+
+Result<Security> LoadSecurityOf(const Address& address) {
+  Security security{.token_in_clear = address.token_in_clear};
+  auto token = LoadTokenOf(address);
+  if (!token.ok()) return token.status().Within("token");
+  security.token = *std::move(token);
+  if (!address.tls) return security;
+  auto tls = MakeTlsContext(address.tls_files);
+  if (!tls.ok()) return tls.status().Within("tls");
+  security.tls = *std::move(tls);
+  return security;
 }
 
 }  // namespace furrow::client

@@ -40,11 +40,8 @@ ReconnectingTransport::ReconnectingTransport(TransportKind kind, Opener open, Cl
 
 std::unique_ptr<ReconnectingTransport> ReconnectingTransport::Create(
     TransportKind kind, const std::string& host, std::uint16_t port,
-    std::chrono::milliseconds send_timeout, std::unique_ptr<Transport> first,
-    std::optional<Token> token) {
-  const auto open = [=] {
-    return BeginTransport(kind, host, port, send_timeout, token ? &*token : nullptr);
-  };
+    std::chrono::milliseconds send_timeout, std::unique_ptr<Transport> first, Security security) {
+  const auto open = [=] { return BeginTransport(kind, host, port, send_timeout, security); };
   return std::make_unique<ReconnectingTransport>(
       kind, open, &SteadyMicroseconds, Backoff(std::random_device()(), {}), std::move(first));
 }

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "client/cpp/backoff.h"
+#include "client/cpp/tls/security.h"
 #include "client/cpp/transport.h"
 
 namespace furrow::client {
@@ -32,11 +33,11 @@ class ReconnectingTransport : public Transport {
                         std::unique_ptr<Transport> first = nullptr);
 
   // The usual one: the steady clock, and the default limits of Backoff. Does not connect yet.
-  // `send_timeout`, `token`: as for BeginTransport().
+  // `send_timeout`, `security`: as for BeginTransport().
   [[nodiscard]] static std::unique_ptr<ReconnectingTransport> Create(
       TransportKind kind, const std::string& host, std::uint16_t port,
       std::chrono::milliseconds send_timeout, std::unique_ptr<Transport> first = nullptr,
-      std::optional<Token> token = {});
+      Security security = {});
 
   [[nodiscard]] IoStatus Send(std::span<const std::uint8_t> message) override;
   [[nodiscard]] IoStatus Receive(std::span<const std::uint8_t>& message,

@@ -90,6 +90,8 @@ class Subscriber {
 
   // True if a lost connection is made again.
   [[nodiscard]] bool reconnects() const { return transport_->reconnects(); }
+  // Transport::failure().
+  [[nodiscard]] std::string failure() const { return transport_->failure(); }
 
   // Number of messages dropped because they could not be decoded.
   [[nodiscard]] std::uint64_t malformed() const { return malformed_; }

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/status.h"
+#include "client/cpp/tls/security.h"
 #include "client/cpp/transport.h"
 
 namespace furrow::client {
@@ -14,24 +15,26 @@ namespace furrow::client {
 // Connects to `host`, a name or a numeric address. `timeout` limits the connect, and over TCP
 // each later Send() to a slow peer. UDP has no handshake: Receive() reports a missing server.
 //
-// `token`: shown to the daemon, or null. Over UDP it begins a secure session, which the function
-// waits for; over TCP everybody on the way can read it.
+// With a token over UDP, waits for the secure session that it begins; with TLS over TCP, for the
+// handshake.
 //
 // Errors: kUnavailable (the name does not resolve, or the peer does not accept the connection),
-// kInvalidArgument (the daemon refuses the token).
+// kInvalidArgument (the daemon refuses the token, its certificate is not trusted, or the token
+// would travel to another computer unencrypted).
 [[nodiscard]] Result<std::unique_ptr<Transport>> OpenTransport(TransportKind kind,
                                                                const std::string& host,
                                                                std::uint16_t port,
                                                                std::chrono::milliseconds timeout,
-                                                               const Token* token = nullptr);
+                                                               const Security& security = {});
 // Begins to connect and returns at once, except for the time of the name resolver. Over TCP, and
 // with a token, the connection is complete once connected() is true; until then Receive() waits
 // for that, and Send() returns kNoConnection. `send_timeout` limits each Send() to a slow TCP
 // peer.
 //
-// Errors: kUnavailable (the name does not resolve, or there is no route).
+// Errors: kUnavailable (the name does not resolve, or there is no route), kInvalidArgument (the
+// token would travel to another computer unencrypted).
 [[nodiscard]] Result<std::unique_ptr<Transport>> BeginTransport(
     TransportKind kind, const std::string& host, std::uint16_t port,
-    std::chrono::milliseconds send_timeout, const Token* token = nullptr);
+    std::chrono::milliseconds send_timeout, const Security& security = {});
 
 }  // namespace furrow::client

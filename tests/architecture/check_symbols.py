@@ -14,7 +14,7 @@ import subprocess
 import sys
 
 # The C++ runtime and the C library. Sanitizers add their own.
-NEEDED = re.compile(r"lib(stdc\+\+|m|gcc_s|c|sodium|asan|ubsan|tsan|gcov)\.so\.\d+|ld-linux.*\.so\.\d+")
+NEEDED = re.compile(r"lib(stdc\+\+|m|gcc_s|c|sodium|ssl|crypto|asan|ubsan|tsan|gcov)\.so\.\d+|ld-linux.*\.so\.\d+")
 
 
 def run(*command):

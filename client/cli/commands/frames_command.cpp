@@ -65,7 +65,7 @@ class PictureFiles {
 
 int Frames(const FramesOptions& options) {
   const auto address =
-      ParseHost(options.listen.host, {.rate = true, .token = options.listen.token});
+      ParseHost(options.listen.host, {.rate = true, .security = options.listen.security});
   if (!address) return kUsage;
   if (options.out != "-") {
     std::error_code error;

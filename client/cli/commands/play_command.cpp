@@ -26,7 +26,7 @@ struct PlayOptions {
   std::string file;
   std::string host;
   std::string subject;
-  std::string token;  // argument of --token
+  SecurityFlags security;
   motion::LoadOptions read;
   bool udp = false;  // the default
   bool tcp = false;
@@ -103,7 +103,7 @@ protocol::PoseEncoding EncodingOf(const PlayOptions& options, TransportKind tran
 }
 
 int PlayFile(PlayOptions options) {
-  const auto address = ParseHost(options.host, {.udp = !options.tcp, .token = options.token});
+  const auto address = ParseHost(options.host, {.udp = !options.tcp, .security = options.security});
   if (!address) return kUsage;
   if (options.subject.empty() && !address->subjects.empty()) {
     options.subject = address->subjects.front();
@@ -163,7 +163,7 @@ void AddPlay(CLI::App& app, Action& action) {
   auto* udp = command->add_flag("--udp", options->udp, "Send over UDP, port 7401 (default)");
   command->add_flag("--tcp", options->tcp, "Send over TCP, port 7400")->excludes(udp);
   command->add_flag("--once", options->once, kOnceHelp);
-  AddTokenFile(*command, options->token);
+  AddSecurityOptions(*command, options->security);
   command->add_option("--subject", options->subject,
                       "Name of the subject (default: the name in a take, or the file name)");
   command

@@ -30,7 +30,7 @@ struct RecordOptions {
   std::string host;
   std::filesystem::path out;
   std::vector<std::string> subjects;
-  std::string token;  // argument of --token
+  SecurityFlags security;
   bool wait = false;
   bool once = false;      // do not connect again after a loss
   double duration = 0.0;  // seconds; 0: until an interrupt
@@ -147,7 +147,8 @@ int RecordInto(TakeRecorder& take, client::Subscriber& subscriber, const RecordO
 }
 
 int Record(RecordOptions options) {
-  const auto address = ParseHost(options.host, {.several_subjects = true, .token = options.token});
+  const auto address =
+      ParseHost(options.host, {.several_subjects = true, .security = options.security});
   if (!address) return kUsage;
   if (options.subjects.empty()) options.subjects = address->subjects;
   if (!recording::IsTakePath(options.out.string())) {
@@ -200,7 +201,7 @@ void AddRecord(CLI::App& app, Action& action) {
       "--wait", options->wait,
       "Wait for subjects that are not connected yet, and continue when all have left");
   command->add_flag("--once", options->once, kOnceHelp);
-  AddTokenFile(*command, options->token);
+  AddSecurityOptions(*command, options->security);
   command
       ->add_option("--duration", options->duration,
                    "Length of the recording, in seconds (default: until Ctrl-C)")

@@ -84,7 +84,7 @@ TransportKind KindOf(const WatchOptions& options, const client::Address& address
 int Watch(const WatchOptions& options) {
   const auto address = ParseHost(
       options.listen.host,
-      {.pattern = true, .rate = true, .udp = !options.tcp, .token = options.listen.token});
+      {.pattern = true, .rate = true, .udp = !options.tcp, .security = options.listen.security});
   if (!address) return kUsage;
   int exit_code = kDone;
   auto transport =

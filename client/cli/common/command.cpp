@@ -94,7 +94,27 @@ CLI::Validator Within(double least, double most) {
 void AddTokenFile(CLI::App& command, std::string& value) {
   command.add_option("--token", value,
                      "File with a connect token, as 'furrow token new' makes it (default: none).\n"
-                     "Over UDP it encrypts; over TCP everybody on the way can read it");
+                     "Over UDP it encrypts");
+}
+
+void AddSecurityOptions(CLI::App& command, SecurityFlags& flags) {
+  AddTokenFile(command, flags.token);
+  command.add_flag("--tls", flags.tls, "Use TLS over TCP; the system's authorities are trusted");
+  command
+      .add_option("--tls-authority", flags.tls_files.authority,
+                  "Use TLS, and trust these authorities, or this certificate of the daemon (PEM)")
+      ->type_name("FILE");
+  command
+      .add_option("--tls-certificate", flags.tls_files.certificate,
+                  "Use TLS, and show this certificate to a daemon that asks for one (PEM)")
+      ->type_name("FILE");
+  command
+      .add_option("--tls-key", flags.tls_files.key,
+                  "Private key of --tls-certificate (default: in the same file)")
+      ->type_name("FILE");
+  command.add_flag("--token-in-clear", flags.token_in_clear,
+                   "Send the token over plain TCP to other computers, where everybody on the way\n"
+                   "can read it (default: refuse)");
 }
 
 }  // namespace furrow::cli

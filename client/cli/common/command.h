@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "client/cli/common/endpoint.h"
 #include "motion/clip/clip.h"
 
 namespace furrow::cli {
@@ -65,8 +66,10 @@ void AddReadOptions(CLI::App& command, motion::LoadOptions& options);
 inline constexpr char kHostHelp[] =
     "Address of furrowd: HOST, HOST:PORT, [IPV6]:PORT or furrow://HOST:PORT?subject=NAME";
 
-// Adds --token. `value` receives its argument, for HostKeys::token.
+// Adds --token.
 void AddTokenFile(CLI::App& command, std::string& value);
+// Adds --token and the flags of TLS, for HostKeys::security.
+void AddSecurityOptions(CLI::App& command, SecurityFlags& flags);
 
 // The help text of --once.
 inline constexpr char kOnceHelp[] =

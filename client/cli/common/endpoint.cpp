@@ -10,11 +10,38 @@
 #include "client/cpp/transports.h"
 
 namespace furrow::cli {
+namespace {
+
+// Takes over a value that the address must not state, too.
+Status TakeOver(const char* flag, const std::string& value, std::string* target) {
+  if (value.empty()) return {};
+  if (!target->empty()) {
+    return {StatusCode::kInvalidArgument, "the address states it, too", flag, "use one of both"};
+  }
+  *target = value;
+  return {};
+}
+
+Status TakeOver(const SecurityFlags& flags, client::Address* address) {
+  client::ClientTlsFiles& files = address->tls_files;
+  FURROW_RETURN_IF_ERROR(TakeOver("--token", flags.token, &address->token));
+  FURROW_RETURN_IF_ERROR(TakeOver("--tls-authority", flags.tls_files.authority, &files.authority));
+  FURROW_RETURN_IF_ERROR(
+      TakeOver("--tls-certificate", flags.tls_files.certificate, &files.certificate));
+  FURROW_RETURN_IF_ERROR(TakeOver("--tls-key", flags.tls_files.key, &files.key));
+  address->tls |= flags.tls;
+  address->token_in_clear |= flags.token_in_clear;
+  return address->Complete();
+}
+
+}  // namespace
+
 bool ParseEndpoint(const std::string& text, client::TransportKind kind, Endpoint* endpoint) {
   const auto address = client::ParseAddress(text);
   if (!address.ok()) return false;
   const bool more = !address->subjects.empty() || !address->pattern.empty() ||
-                    address->max_rate_hz != 0.0f || address->transport.value_or(kind) != kind;
+                    address->max_rate_hz != 0.0f || address->transport.value_or(kind) != kind ||
+                    address->tls;
   if (more) return false;
   *endpoint = {address->host, address->PortFor(kind), address->token};
   return true;
@@ -26,12 +53,9 @@ std::optional<client::Address> ParseHost(const std::string& text, const HostKeys
     std::fprintf(stderr, "furrow: %s\n", address.status().ToString().c_str());
     return std::nullopt;
   }
-  if (!keys.token.empty()) {
-    if (!address->token.empty()) {
-      std::fprintf(stderr, "furrow: --token: the address states a token, too (use one of both)\n");
-      return std::nullopt;
-    }
-    address->token = keys.token;
+  if (const Status status = TakeOver(keys.security, &*address); !status.ok()) {
+    std::fprintf(stderr, "furrow: %s\n", status.ToString().c_str());
+    return std::nullopt;
   }
   const char* unused = nullptr;
   if (!address->pattern.empty() && !keys.pattern) unused = "pattern";
@@ -48,13 +72,17 @@ std::unique_ptr<client::Transport> OpenTransport(const client::Address& address,
                                                  int* exit_code) {
   const std::uint16_t port = address.PortFor(kind);
   constexpr std::chrono::milliseconds kTimeout(3000);
-  const auto token = client::LoadTokenOf(address);
-  if (!token.ok()) {
-    *exit_code = Fail(token.status().Within("token"));
+  if (address.tls && kind == client::TransportKind::kUdp) {
+    std::fprintf(stderr, "furrow: --udp: TLS needs TCP (over UDP, a token encrypts)\n");
+    *exit_code = kUsage;
     return nullptr;
   }
-  const client::Token* const shown = *token ? &**token : nullptr;
-  auto transport = client::OpenTransport(kind, address.host, port, kTimeout, shown);
+  const auto security = client::LoadSecurityOf(address);
+  if (!security.ok()) {
+    *exit_code = Fail(security.status());
+    return nullptr;
+  }
+  auto transport = client::OpenTransport(kind, address.host, port, kTimeout, *security);
   if (!transport.ok()) {
     const bool absent = transport.status().code() == StatusCode::kUnavailable;
     std::fprintf(stderr, "furrow: %s%s\n", transport.status().ToString().c_str(),
@@ -64,7 +92,7 @@ std::unique_ptr<client::Transport> OpenTransport(const client::Address& address,
   }
   if (once) return *std::move(transport);
   return client::ReconnectingTransport::Create(kind, address.host, port, kTimeout,
-                                               *std::move(transport), *token);
+                                               *std::move(transport), *security);
 }
 
 std::int64_t SystemMicroseconds() {

@@ -25,13 +25,22 @@ struct Endpoint {
 [[nodiscard]] bool ParseEndpoint(const std::string& text, client::TransportKind kind,
                                  Endpoint* endpoint);
 
-// The keys of an address that a command can use, besides token, one subject and transport=tcp.
+// The flags that state what the keys token, tls, tls-... and token-in-clear of an address do.
+struct SecurityFlags {
+  std::string token;
+  bool tls = false;
+  client::ClientTlsFiles tls_files;
+  bool token_in_clear = false;
+};
+
+// The keys of an address that a command can use, besides those of SecurityFlags, one subject and
+// transport=tcp.
 struct HostKeys {
   bool several_subjects = false;
   bool pattern = false;
   bool rate = false;
   bool udp = false;
-  std::string token = {};  // of --token, which states what the key token does; may be empty
+  SecurityFlags security = {};
 };
 
 // Parses a HOST argument. Prints the error and returns nothing if the text is invalid, or if it
@@ -39,9 +48,9 @@ struct HostKeys {
 [[nodiscard]] std::optional<client::Address> ParseHost(const std::string& text,
                                                        const HostKeys& keys);
 
-// Connects to a daemon within 3 seconds, with the token of the address. Later losses are repaired
-// by the transport, unless `once`. On failure prints the error, sets `exit_code` and returns null;
-// on success leaves `exit_code` unchanged.
+// Connects to a daemon within 3 seconds, with the token and the TLS of the address. Later losses
+// are repaired by the transport, unless `once`. On failure prints the error, sets `exit_code` and
+// returns null; on success leaves `exit_code` unchanged.
 [[nodiscard]] std::unique_ptr<client::Transport> OpenTransport(const client::Address& address,
                                                                client::TransportKind kind,
                                                                bool once, int* exit_code);

@@ -217,6 +217,12 @@ int RunLoad(LoadFlags flags) {
   const auto token = client::LoadTokenOf(stated);
   if (!token.ok()) return Fail(token.status().Within("token"));
   target.token = *token;
+  if (target.token && flags.run.path != Path::kUdp && !target.loopback) {
+    std::fprintf(stderr,
+                 "furrow: --token: the load tester speaks no TLS, so over TCP it sends a token to "
+                 "this computer only (use --udp)\n");
+    return kUsage;
+  }
   if (const int code = CheckFlags(flags); code != kDone) return code;
   const auto workload = LoadWorkload(flags.input);
   if (!workload.ok()) return Fail(workload.status());

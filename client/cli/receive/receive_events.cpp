@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "client/cli/common/endpoint.h"
@@ -23,7 +24,11 @@ const char* GoodbyeText(protocol::GoodbyeReason reason) {
 }
 
 // The daemon never answered, or its port closed.
-int ReportNoConnection(client::Event::Kind kind) {
+int ReportNoConnection(client::Event::Kind kind, const std::string& why) {
+  if (!why.empty()) {
+    std::fprintf(stderr, "furrow: no connection: %s\n", why.c_str());
+    return kNoConnection;
+  }
   std::fprintf(stderr, "furrow: %s\n",
                kind == client::Event::Kind::kNoConnection
                    ? "the port is closed (is furrowd running there?)"
@@ -104,11 +109,11 @@ class Reception {
     if (!heard_) {
       // A daemon that is starting gets some seconds.
       if (now_us - start_us_ < kFirstAnswerTimeoutUs) return std::nullopt;
-      return ReportNoConnection(kind);
+      return ReportNoConnection(kind, subscriber_.failure());
     }
     // Once the daemon has answered, silence is normal.
     if (kind == Kind::kTimeout) return std::nullopt;
-    if (!reconnects_) return ReportNoConnection(kind);
+    if (!reconnects_) return ReportNoConnection(kind, subscriber_.failure());
     notes_.Lost();
     return std::nullopt;
   }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "client/cli/common/command.h"
+#include "client/cli/common/endpoint.h"
 #include "client/cpp/address.h"
 #include "client/cpp/subscriber.h"
 #include "protocol/messages/limits.h"
@@ -14,15 +15,15 @@ namespace furrow::cli {
 
 // The options of all commands that subscribe.
 struct SubscriptionOptions {
-  std::string host;         // argument of ParseHost()
-  std::string token;        // argument of --token
+  std::string host;  // argument of ParseHost()
+  SecurityFlags security;
   bool once = false;        // do not connect again after a loss
   std::int64_t frames = 0;  // stop after this number of frames; 0: when the subject leaves
 };
 
-// Adds HOST, --subject, --wait, --rate, --frames and --once to `command`. `Request` is
-// SubscribeWeights or SubscribePictures. `unit` is what is counted, in the plural; `default_rate`
-// describes the rate without --rate.
+// Adds HOST, --subject, --wait, --rate, --frames, --once and those of SecurityFlags to `command`.
+// `Request` is SubscribeWeights or SubscribePictures. `unit` is what is counted, in the plural;
+// `default_rate` describes the rate without --rate.
 template <class Request>
 void AddSubscriptionOptions(CLI::App& command, SubscriptionOptions& options, Request& request,
                             const std::string& unit, const std::string& default_rate) {
@@ -39,7 +40,7 @@ void AddSubscriptionOptions(CLI::App& command, SubscriptionOptions& options, Req
                   "Number of " + unit + " to receive (default: until the subject leaves)")
       ->check(CLI::PositiveNumber);
   command.add_flag("--once", options.once, kOnceHelp);
-  AddTokenFile(command, options.token);
+  AddSecurityOptions(command, options.security);
 }
 
 // Takes over what the address states and the options do not. `Request`: as above.

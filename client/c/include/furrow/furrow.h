@@ -121,10 +121,12 @@ typedef struct furrow_options {
   const char* program;    /* your program and its version, for the daemon's log; at most 64 bytes */
   char* error;            /* receives the reason if furrow_open() fails; may be NULL */
   uint32_t error_size;    /* bytes of `error` */
-  uint32_t tls;           /* reserved: must be 0 */
+  uint32_t tls;           /* 1: TLS over TCP; 0: as the address says */
   const char* token;      /* file with a connect token, or its text; NULL: that of the address */
   const char* server_key; /* reserved for encryption: must be NULL */
-  const char* tls_authority; /* reserved for TLS: must be NULL */
+  /* File (PEM) with the authorities that the daemon's certificate is checked with, or with that
+     certificate itself; implies tls. NULL: that of the address, or those of the system. */
+  const char* tls_authority;
 } furrow_options;
 
 /*
@@ -135,14 +137,19 @@ typedef struct furrow_options {
  *               pattern    names of the weights, as comma-separated globs (default: all)
  *               rate       most frames per second, in (0, 1000] (default: every pose)
  *               transport  udp (default, port 7401) or tcp (port 7400)
- *               token      file with a connect token, or its text. Over UDP all is encrypted;
- *                          over TCP everybody on the way can read the token
- *             Write %26 for '&' and %25 for '%' in values. The keys key, tls and transport=shm are
+ *               token      file with a connect token, or its text. Over UDP all is encrypted.
+ *                          Over TCP to another computer it needs tls=1 or token-in-clear=1
+ *               tls        1: TLS over TCP
+ *               tls-authority, tls-certificate, tls-key  files (PEM): what the daemon's certificate
+ *                          is checked with, and the client's own certificate and key
+ *               token-in-clear  1: permits the token over plain TCP, where everybody on the way
+ *                          can read it
+ *             Write %26 for '&' and %25 for '%' in values. The key key and transport=shm are
  *             reserved and lead to FURROW_UNSUPPORTED.
  * options     NULL for the defaults.
  * connection  receives the connection; NULL after an error.
  *
- * Errors: FURROW_INVALID_ADDRESS, FURROW_INVALID_ARGUMENT (also a token that cannot be read),
+ * Errors: FURROW_INVALID_ADDRESS, FURROW_INVALID_ARGUMENT (also a file that cannot be read),
  * FURROW_UNSUPPORTED (a reserved field or key is set), FURROW_OUT_OF_MEMORY. `options->error`
  * receives the reason.
  */

@@ -13,15 +13,19 @@ export * from './api.js';
  * (default port: 7480); in Node it is UDP (default port: 7401) or what the address states with `transport=tcp`.
  *
  * `address`: `furrow://host[:port][?subject=ada&rate=60&pattern=brow_*]`. With `token=`, it shows a connect token
- * (docs/TOKENS.md). Throws FurrowError if it is invalid.
+ * (docs/TOKENS.md), which a browser sends unencrypted to its own computer only, unless the address has
+ * `token-in-clear=1`; `tls=1` encrypts. Throws FurrowError if the address is invalid.
  */
 export function open(address: string, options: OpenOptions = {}): Client {
-  return openClient(address, options, ({ host, port, transport, token }) => {
-    if (transport !== null) {
+  return openClient(address, options, ({ host, port, transport, token, tls, tlsAuthority, tlsCertificate, tokenInClear }) => {
+    if (tlsAuthority !== '' || tlsCertificate !== '') {
+      throw new FurrowError('unsupported', 'address: browsers read no files (use tls=1, and let the browser trust the authority)');
+    }
+    if (transport !== null && !tls) {
       throw new FurrowError('unsupported', `address: transport=${transport} needs Node (leave it out in browsers)`);
     }
     // A page from https may open secure sockets only.
-    const scheme = typeof location !== 'undefined' && location.protocol === 'https:' ? 'wss' : 'ws';
+    const scheme = tls || (typeof location !== 'undefined' && location.protocol === 'https:') ? 'wss' : 'ws';
     const name = host.includes(':') ? `[${host}]` : host;
     const url = `${scheme}://${name}:${port === 0 ? DEFAULT_HTTP_PORT : port}/ws`;
     try {
@@ -31,6 +35,11 @@ export function open(address: string, options: OpenOptions = {}): Client {
     }
     if (token !== '' && !token.startsWith(TOKEN_PREFIX)) {
       throw new FurrowError('invalid-address', `address: a token begins with '${TOKEN_PREFIX}' (browsers read no files)`);
+    }
+    const isLoopback = /^(localhost|127\.[0-9.]+|::1)$/i.test(host);
+    if (token !== '' && scheme === 'ws' && !isLoopback && !tokenInClear) {
+      throw new FurrowError('invalid-argument',
+        `the token would travel to ${host} unencrypted (use tls=1; token-in-clear=1 sends it anyway)`);
     }
     return browserSocket(url, () => token);
   });

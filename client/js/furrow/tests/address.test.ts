@@ -17,6 +17,11 @@ interface Case {
   pattern: string;
   rate: number;
   token?: string;
+  tls?: boolean;
+  'tls-authority'?: string;
+  'tls-certificate'?: string;
+  'tls-key'?: string;
+  'token-in-clear'?: boolean;
 }
 
 test('addresses and messages are those of every Furrow client', () => {
@@ -33,6 +38,10 @@ test('addresses and messages are those of every Furrow client', () => {
     assert.deepEqual([host, port, transport ?? '', subjects, pattern, maxRateHz, token],
       [expected.host, expected.port, expected.transport, expected.subjects, expected.pattern, expected.rate,
         expected.token ?? ''], expected.text);
+    const { tls, tlsAuthority, tlsCertificate, tlsKey, tokenInClear } = parseAddress(expected.text);
+    assert.deepEqual([tls, tlsAuthority, tlsCertificate, tlsKey, tokenInClear],
+      [expected.tls ?? false, expected['tls-authority'] ?? '', expected['tls-certificate'] ?? '',
+        expected['tls-key'] ?? '', expected['token-in-clear'] ?? false], expected.text);
   }
 });
 

@@ -120,8 +120,11 @@ TEST(CApi, ReservedOptionsAreRefusedRatherThanIgnored) {
   EXPECT_EQ(status_with([](furrow_options& o) { o.token = "frw1_x"; }), FURROW_INVALID_ARGUMENT);
   EXPECT_EQ(status_with([](furrow_options& o) { o.token = ""; }), FURROW_INVALID_ARGUMENT);
   EXPECT_EQ(status_with([](furrow_options& o) { o.server_key = ""; }), FURROW_UNSUPPORTED);
-  EXPECT_EQ(status_with([](furrow_options& o) { o.tls_authority = "x"; }), FURROW_UNSUPPORTED);
-  EXPECT_EQ(status_with([](furrow_options& o) { o.tls = 1; }), FURROW_UNSUPPORTED);
+  EXPECT_EQ(status_with([](furrow_options& o) { o.tls = 2; }), FURROW_UNSUPPORTED);
+  EXPECT_EQ(status_with([](furrow_options& o) { o.tls = 1; }), FURROW_OK);
+  EXPECT_EQ(status_with([](furrow_options& o) { o.tls_authority = ""; }), FURROW_INVALID_ARGUMENT);
+  EXPECT_EQ(status_with([](furrow_options& o) { o.tls_authority = "/nowhere.crt"; }),
+            FURROW_INVALID_ARGUMENT);
   EXPECT_EQ(status_with([](furrow_options& o) { o.flags = 2; }), FURROW_UNSUPPORTED);
   EXPECT_EQ(status_with([](furrow_options& o) { o.program = "a\n"; }), FURROW_INVALID_ARGUMENT);
   EXPECT_EQ(status_with([](furrow_options& o) { o.struct_size = 3; }), FURROW_INVALID_ARGUMENT);

@@ -49,6 +49,11 @@ TEST(Address, TextsOfAllClientsAreReadAlike) {
                                                                               : "udp";
     EXPECT_EQ(transport, expected["transport"]) << text;
     EXPECT_EQ(address->token, expected.value("token", "")) << text;
+    EXPECT_EQ(address->tls, expected.value("tls", false)) << text;
+    EXPECT_EQ(address->tls_files.authority, expected.value("tls-authority", "")) << text;
+    EXPECT_EQ(address->tls_files.certificate, expected.value("tls-certificate", "")) << text;
+    EXPECT_EQ(address->tls_files.key, expected.value("tls-key", "")) << text;
+    EXPECT_EQ(address->token_in_clear, expected.value("token-in-clear", false)) << text;
   }
 }
 

@@ -24,6 +24,14 @@ export interface Address {
   maxRateHz: number;
   /** The text of a connect token (docs/TOKENS.md), or in Node a file that holds one; empty: not stated. */
   token: string;
+  /** TLS over TCP or WebSocket. */
+  tls: boolean;
+  /** Files of TLS in PEM form, in Node; empty: not stated. The daemon's certificate is checked with the first one. */
+  tlsAuthority: string;
+  tlsCertificate: string;
+  tlsKey: string;
+  /** Permits the token without encryption to other computers, where everybody on the way can read it. */
+  tokenInClear: boolean;
 }
 
 /** The text of a connect token begins with it. */
@@ -36,10 +44,11 @@ const MAX_SUBJECTS = 256;
 const MAX_NAME_BYTES = 255;
 const MAX_PATTERN_BYTES = 4096;
 const MAX_RATE_HZ = 1000;
-const MAX_TOKEN_BYTES = 4096;
-const KEYS = ['subject', 'pattern', 'rate', 'transport', 'token'];
-/** Encryption of TCP will use these keys. Ignoring them would pretend to protect. */
-const RESERVED_KEYS = ['key', 'tls'];
+const MAX_PATH_BYTES = 4096;
+const KEYS = ['subject', 'pattern', 'rate', 'transport', 'token', 'tls', 'tls-authority', 'tls-certificate', 'tls-key',
+  'token-in-clear'];
+/** A later version will use it. Ignoring it would pretend to protect. */
+const RESERVED_KEY = 'key';
 const FORMS = 'use HOST, HOST:PORT or [IPV6]:PORT, alone or after furrow://';
 const NUMBER = /^[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$/;
 
@@ -143,12 +152,26 @@ function setRate(value: ByteText, address: Address): void {
 }
 
 function setToken(value: ByteText, address: Address): void {
-  const text = value.length > MAX_TOKEN_BYTES ? null : plainText(value);
+  const text = value.length > MAX_PATH_BYTES ? null : plainText(value);
   if (value === '' || text === null) {
     throw invalid('the token is not a file name and not a token', "write token=FILE, with a file that 'furrow token new' made");
   }
   if (address.token !== '') throw invalid('token is stated twice');
   address.token = text;
+}
+
+function setFlag(key: string, value: ByteText): true {
+  if (value !== '1') throw invalid(`${key}=${quotedBytes(value)} is unknown`, `use ${key}=1, or leave it out`);
+  return true;
+}
+
+function fileName(key: string, value: ByteText, former: string): string {
+  const text = value.length > MAX_PATH_BYTES ? null : plainText(value);
+  if (value === '' || text === null) {
+    throw invalid(`${key}=${quotedBytes(value)} is not a file name`, `write ${key}=FILE, with a file in PEM form`);
+  }
+  if (former !== '') throw invalid(`${key} is stated twice`);
+  return text;
 }
 
 function setText(key: 'subject' | 'pattern', value: ByteText, address: Address): void {
@@ -170,11 +193,10 @@ function setText(key: 'subject' | 'pattern', value: ByteText, address: Address):
 function setValue(item: string, address: Address): void {
   const equals = item.indexOf('=');
   const key = equals < 0 ? item : item.slice(0, equals);
-  if (RESERVED_KEYS.includes(key)) {
-    throw unsupported(`${key} is reserved for a later version`,
-      'leave it out: this version encrypts UDP alone, with the key token');
+  if (key === RESERVED_KEY) throw unsupported(`${key} is reserved for a later version`, 'leave it out');
+  if (!KEYS.includes(key)) {
+    throw invalid(`unknown key ${quoted(key)}`, 'use subject, pattern, rate, transport, token or tls');
   }
-  if (!KEYS.includes(key)) throw invalid(`unknown key ${quoted(key)}`, 'use subject, pattern, rate, transport or token');
   const value = equals < 0 ? null : decodePercent(item.slice(equals + 1));
   if (value === null) {
     // A token must not end up in a log.
@@ -183,13 +205,28 @@ function setValue(item: string, address: Address): void {
   if (key === 'token') setToken(value, address);
   else if (key === 'transport') setTransport(value, address);
   else if (key === 'rate') setRate(value, address);
+  else if (key === 'tls') address.tls = setFlag(key, value);
+  else if (key === 'token-in-clear') address.tokenInClear = setFlag(key, value);
+  else if (key === 'tls-authority') address.tlsAuthority = fileName(key, value, address.tlsAuthority);
+  else if (key === 'tls-certificate') address.tlsCertificate = fileName(key, value, address.tlsCertificate);
+  else if (key === 'tls-key') address.tlsKey = fileName(key, value, address.tlsKey);
   else setText(key as 'subject' | 'pattern', value, address);
+}
+
+/** What the values imply: tls=1 by the files of TLS, and TCP by tls=1. */
+function complete(address: Address): void {
+  if (address.tlsAuthority !== '' || address.tlsCertificate !== '' || address.tlsKey !== '') address.tls = true;
+  if (!address.tls) return;
+  if (address.transport === 'udp') throw invalid('TLS needs TCP', 'use transport=tcp, or a token, which encrypts UDP');
+  if (address.tlsCertificate === '' && address.tlsKey !== '') throw invalid('tls-key needs tls-certificate', 'state both');
+  address.transport = 'tcp';
 }
 
 /** Parses an address. Throws FurrowError: 'invalid-address', or 'unsupported' for what later versions reserve. */
 export function parseAddress(text: string): Address {
   if (numBytes(text) > MAX_ADDRESS_BYTES) throw invalid('longer than 65536 bytes');
-  const address: Address = { host: '', port: 0, transport: null, subjects: [], pattern: '', maxRateHz: 0, token: '' };
+  const address: Address = { host: '', port: 0, transport: null, subjects: [], pattern: '', maxRateHz: 0, token: '',
+    tls: false, tlsAuthority: '', tlsCertificate: '', tlsKey: '', tokenInClear: false };
   if (!text.startsWith(SCHEME)) {
     const end = text.indexOf('://');
     if (end >= 0) throw invalid(`unknown scheme ${quoted(text.slice(0, end))}`, 'use furrow://HOST');
@@ -202,5 +239,6 @@ export function parseAddress(text: string): Address {
   parseHost(authority.endsWith('/') ? authority.slice(0, -1) : authority, address);
   const query = question < 0 ? '' : rest.slice(question + 1).replace(/(.)&$/, '$1');
   if (query !== '') for (const item of query.split('&')) setValue(item, address);
+  complete(address);
   return address;
 }

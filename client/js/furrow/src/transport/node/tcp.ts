@@ -1,25 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 // TCP: each message follows its length (protocol/STANDARD.md section 1).
-import { createConnection } from 'node:net';
 import { ENVELOPE_BYTES, MAX_REPLY_BYTES } from '../../wire/envelope.js';
 import { MAX_UNSENT_BYTES, type Transport, type TransportEvents, type TransportOpener } from '../transport.js';
 import { ByteQueue } from './byte_queue.js';
+import { connectStream, failureText, NO_SECURITY, type StreamSecurity } from './stream.js';
 
-/** `token`: the text of a connect token, or empty. Everybody on the way can read it. */
-export function tcpSocket(host: string, port: number, token = ''): TransportOpener {
-  return { kind: 'tcp', access: token, open: (events) => openTcp(host, port, events) };
+export function tcpSocket(host: string, port: number, security = NO_SECURITY): TransportOpener {
+  return { kind: 'tcp', access: security.token, open: (events) => openTcp(host, port, security, events) };
 }
 
-function openTcp(host: string, port: number, events: TransportEvents): Transport {
-  const socket = createConnection({ host, port, noDelay: true });
+function openTcp(host: string, port: number, security: StreamSecurity, events: TransportEvents): Transport {
   const queue = new ByteQueue();
   let why = '';
   let isClosed = false;
+  let isOpen = false;
   const giveUp = (reason: string): void => {
     why = reason;
     socket.destroy();
   };
-  socket.on('connect', () => events.onOpen());
+  const opened = (): void => {
+    isOpen = true;
+    events.onOpen();
+  };
+  const socket = connectStream(host, port, security, 'furrow/1', opened, giveUp);
   socket.on('data', (chunk) => {
     queue.push(chunk);
     while (!isClosed) {
@@ -37,14 +40,14 @@ function openTcp(host: string, port: number, events: TransportEvents): Transport
     }
   });
   socket.on('error', (error) => {
-    why = error.message;
+    why = failureText(error);
   });
   socket.on('close', () => {
     if (!isClosed) events.onClose(why);
   });
   return {
     send: (message) => {
-      if (socket.readyState !== 'open') return;
+      if (!isOpen || socket.readyState !== 'open') return;
       if (socket.writableLength > MAX_UNSENT_BYTES) {
         giveUp('the daemon does not read');
         return;
@@ -59,7 +62,7 @@ function openTcp(host: string, port: number, events: TransportEvents): Transport
     close: () => {
       isClosed = true;
       // The last messages are still to be sent. A socket that is not connected has none, and would wait for minutes.
-      if (socket.connecting) socket.destroy();
+      if (!isOpen) socket.destroy();
       else socket.destroySoon();
     },
   };

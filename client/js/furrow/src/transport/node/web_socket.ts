@@ -2,11 +2,12 @@
 // A WebSocket client (RFC 6455) for Node, which has none before version 22. Messages are binary; there are no
 // extensions.
 import { createHash, randomBytes } from 'node:crypto';
-import { createConnection, type Socket } from 'node:net';
+import type { Socket } from 'node:net';
 import { MAX_REPLY_BYTES } from '../../wire/envelope.js';
 import { MAX_UNSENT_BYTES, type Transport, type TransportEvents, type TransportOpener } from '../transport.js';
 import { offeredProtocols } from '../web_socket.js';
 import { ByteQueue } from './byte_queue.js';
+import { connectStream, failureText, NO_SECURITY, type StreamSecurity } from './stream.js';
 
 const GUID = '258EAFA5-E914-47DA-95CA-C5AB0DC85B11';
 const MAX_HEAD_BYTES = 8192;
@@ -15,9 +16,8 @@ const MAX_CONTROL_BYTES = 125;
 /** Frames of one message. Empty ones would otherwise take memory without end. */
 const MAX_PARTS = 4096;
 
-/** `token`: the text of a connect token, or empty. */
-export function nodeWebSocket(host: string, port: number, token = '', path = '/ws'): TransportOpener {
-  return { kind: 'ws', open: (events) => new NodeWebSocket(host, port, token, path, events) };
+export function nodeWebSocket(host: string, port: number, security = NO_SECURITY, path = '/ws'): TransportOpener {
+  return { kind: 'ws', open: (events) => new NodeWebSocket(host, port, security, path, events) };
 }
 
 class NodeWebSocket implements Transport {
@@ -31,15 +31,15 @@ class NodeWebSocket implements Transport {
   private isStopped = false;
   private isClosed = false;
 
-  constructor(host: string, port: number, token: string, path: string, private readonly events: TransportEvents) {
-    this.socket = createConnection({ host, port, noDelay: true });
+  constructor(host: string, port: number, security: StreamSecurity, path: string, private readonly events: TransportEvents) {
     const name = host.includes(':') ? `[${host}]` : host;
-    this.socket.on('connect', () => this.socket.write(
+    const ask = (): void => void this.socket.write(
       `GET ${path} HTTP/1.1\r\nHost: ${name}:${port}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n` +
-      `Sec-WebSocket-Key: ${this.key}\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Protocol: ${offeredProtocols(token).join(', ')}\r\n\r\n`));
+      `Sec-WebSocket-Key: ${this.key}\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Protocol: ${offeredProtocols(security.token).join(', ')}\r\n\r\n`);
+    this.socket = connectStream(host, port, security, 'http/1.1', ask, (why) => this.giveUp(why));
     this.socket.on('data', (chunk) => this.received(chunk));
     this.socket.on('error', (error) => {
-      this.why = error.message;
+      this.why = failureText(error);
     });
     this.socket.on('close', () => {
       if (!this.isClosed) events.onClose(this.why);
