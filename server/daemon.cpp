@@ -44,6 +44,7 @@
 #include "server/session/access/key_file.h"
 #include "server/session/access/token_gate.h"
 #include "server/session/hub.h"
+#include "server/tls/tls_identity.h"
 
 namespace furrow::server {
 namespace {
@@ -81,13 +82,15 @@ class Daemon {
               &UnixSeconds, metrics_),
         secure_(&gate_, &UnixSeconds, std::min(config.limits.max_udp_peers, 0xFFFF), config.threads,
                 metrics_),
-        keys_file_(config.security.keys) {}
+        keys_file_(config.security.keys),
+        tls_(config.security.tls) {}
 
   // Call these in this order. Each leaves out what the configuration does not ask for.
   Status StartRendering();
   Status StartRecording();
   Status LoadPlayer();
   Status LoadKeys();
+  Status LoadTls() { return tls_.Load(); }
   Status Listen();
   void Serve();
 
@@ -120,6 +123,7 @@ class Daemon {
   TokenGate gate_;
   SecureSessions secure_;
   KeyFile keys_file_;
+  TlsIdentity tls_;
   std::unique_ptr<Hub> hub_;
   std::unique_ptr<TcpServer> tcp_;
   std::unique_ptr<UdpPort> udp_;
@@ -207,7 +211,7 @@ Status Daemon::Listen() {
   MakeHub();
   // ValidateConfig() has checked the address, so this does not throw.
   const auto address = asio::ip::make_address(config_.bind);
-  tcp_ = std::make_unique<TcpServer>(io_, config_.limits, hub_.get(), metrics_);
+  tcp_ = std::make_unique<TcpServer>(io_, config_.limits, hub_.get(), metrics_, &tls_);
   FURROW_RETURN_IF_ERROR(tcp_->Open({address, config_.tcp}));
   udp_ = std::make_unique<UdpPort>(io_, config_.threads, config_.limits, hub_.get(), metrics_,
                                    recorder_.get(), &secure_, gate_.required());
@@ -305,7 +309,8 @@ Status Daemon::StartWeb() {
              return api_->Answer(request, hub, now);
            },
        .metrics = metrics_,
-       .gate = &gate_});
+       .gate = &gate_,
+       .tls = &tls_});
   FURROW_RETURN_IF_ERROR(started);
   http_ = *std::move(started);
   return {};
@@ -403,6 +408,7 @@ asio::awaitable<void> Daemon::SecondLoop() {
     co_await timer.async_wait(kAwaitTuple);
     const Time now = ReadClock();
     if (auto keys = keys_file_.ReadIfChanged()) SetKeys(*std::move(keys));
+    tls_.ReadIfChanged();
     if (config_.verbose) {
       const Hub::ExclusiveLock lock(*hub_, 0);
       spdlog::info("{}", status_line.Next(hub_->num_subjects(), hub_->num_subscriptions(), now));
@@ -474,15 +480,20 @@ Result<OscOutputs> LoadOscOutputs(const Config& config) {
 
 void WarnAboutSecurity(const Config& config) {
   if (!ListensToNetwork(config)) return;
+  const bool has_tls = config.security.tls.enabled();
   if (config.security.mode == Security::kOpen) {
     spdlog::warn(
         "open to the network: everybody who reaches {} may publish, watch and change settings",
         config.bind);
+  } else if (has_tls) {
+    return;
   } else if (config.security.tokens_in_clear) {
     spdlog::warn(
         "tokens over TCP and HTTP are not encrypted: everybody on the way can read and use them");
   } else {
-    spdlog::info("other computers are served over UDP only: TCP and HTTP are not encrypted");
+    spdlog::info(
+        "other computers are served over UDP only: TCP and HTTP are not encrypted without "
+        "--tls-certificate");
   }
 }
 
@@ -520,6 +531,9 @@ ExitCode LoadAndServe(const Config& config, const RunOptions& options) {
   }
   if (Status status = daemon.LoadKeys(); !status.ok()) {
     return Fail(ExitCode::kBadInput, status.Within("--keys"));
+  }
+  if (Status status = daemon.LoadTls(); !status.ok()) {
+    return Fail(ExitCode::kBadInput, status.Within("tls"));
   }
   if (Status status = daemon.Listen(); !status.ok()) return Fail(ExitCode::kFailed, status);
   daemon.Serve();

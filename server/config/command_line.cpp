@@ -74,7 +74,20 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
                   "Name of this daemon: tokens for another --audience are refused");
   app->add_flag("--tokens-in-clear", config->security.tokens_in_clear,
                 "Accept tokens over TCP and HTTP from other computers. Everybody on the way can\n"
-                "read them (default: from this computer only; over UDP from anywhere, sealed)");
+                "read them (default: from this computer only; over UDP and TLS from anywhere)");
+  app->add_option(
+         "--tls-certificate", config->security.tls.certificate,
+         "Certificate of this daemon (PEM), with which the TCP port and the web port speak\n"
+         "TLS only; changes take effect within two seconds (see docs/SECURITY.md)")
+      ->type_name("FILE");
+  app->add_option("--tls-key", config->security.tls.key,
+                  "Private key of the certificate (PEM, without a passphrase)")
+      ->type_name("FILE");
+  app->add_option(
+         "--tls-client-authority", config->security.tls.client_authority,
+         "Let in only clients whose certificate one of these authorities (PEM) has signed\n"
+         "(default: clients need no certificate)")
+      ->type_name("FILE");
   app->add_option("--tcp", config->tcp, "TCP port for poses, weights and pictures (default: 7400)");
   app->add_option("--udp", config->udp, "UDP port for poses and weights (default: 7401)");
   app->add_option(

@@ -83,8 +83,9 @@ Status ValidateSecurity(const Config& config) {
                   "--bind " + config.bind +
                       " lets everybody on the network publish, watch and change settings",
                   "",
-                  "use --security required with --keys FILE, add --open (listen.open = true) if "
-                  "that is intended, or use --bind 127.0.0.1");
+                  "use --security required with --keys FILE, and --tls-certificate for TCP and the "
+                  "web page; add --open (listen.open = true) if that is intended, or use --bind "
+                  "127.0.0.1");
   }
   if (required && config.open) {
     return Invalid("--open and --security required cannot be combined");
@@ -92,6 +93,13 @@ Status ValidateSecurity(const Config& config) {
   if (required && security.keys.empty()) {
     return Status(StatusCode::kInvalidArgument, "--security required needs --keys FILE", "",
                   "make one with 'furrow token key new --key FILE'");
+  }
+  const TlsFiles& tls = security.tls;
+  if (tls.certificate.empty() != tls.key.empty()) {
+    return Invalid("--tls-certificate and --tls-key need each other");
+  }
+  if (!tls.client_authority.empty() && !tls.enabled()) {
+    return Invalid("--tls-client-authority needs --tls-certificate and --tls-key");
   }
   if (security.name.size() > protocol::secure::kMaxAudienceBytes) {
     return Invalid("--name has " + std::to_string(security.name.size()) + " bytes; the limit is " +

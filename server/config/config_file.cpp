@@ -124,6 +124,10 @@ Tables InputTables(Config* config, const std::filesystem::path& folder) {
            {Mode("mode", &config->security.mode), Path("keys", &config->security.keys, folder),
             Text("name", &config->security.name),
             Flag("tokens_in_clear", &config->security.tokens_in_clear)}},
+          {"tls",
+           {Path("certificate", &config->security.tls.certificate, folder),
+            Path("key", &config->security.tls.key, folder),
+            Path("client_authority", &config->security.tls.client_authority, folder)}},
           {"mocap",
            {Port("vmc", &config->vmc), Port("livelink_face", &config->livelink_face),
             Texts("allow", &config->mocap_allow)}}};

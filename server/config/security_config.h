@@ -5,6 +5,7 @@
 #include <string>
 
 #include "server/core/security.h"
+#include "server/tls/tls_files.h"
 
 namespace furrow::server {
 
@@ -14,6 +15,7 @@ struct SecurityConfig {
   std::filesystem::path keys;    // key file of `furrow token`; empty: no token is valid
   std::string name;              // of this daemon: tokens with another --audience are refused
   bool tokens_in_clear = false;  // accept tokens over plain TCP and HTTP from other computers
+  TlsFiles tls;                  // without them, TCP and HTTP are plain
   friend bool operator==(const SecurityConfig&, const SecurityConfig&) = default;
 };
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/http/http_server.h"
 
+#include <array>
 #include <exception>
+#include <optional>
+#include <span>
 #include <thread>
 #include <utility>
 
@@ -17,6 +20,9 @@
 #include "server/core/fair_share.h"
 #include "server/core/network_address.h"
 #include "server/http/http_session.h"
+#include "server/http/request/web_stream.h"
+#include "server/net/clock.h"
+#include "server/tls/handshake_watch.h"
 
 namespace furrow::server {
 namespace {
@@ -32,6 +38,32 @@ void Refuse(tcp::socket socket) {
   beast::error_code ignored;
   socket.non_blocking(true, ignored);
   socket.send(net::buffer(kAnswer, sizeof(kAnswer) - 1), 0, ignored);
+}
+
+// Answers a client that speaks plain HTTP where TLS is spoken, and waits until it has closed:
+// closing with unread input would reset the connection and lose the answer.
+net::awaitable<void> RefusePlain(tcp::socket& socket) {
+  static constexpr char kAnswer[] =
+      "HTTP/1.1 400 Bad Request\r\nConnection: close\r\nContent-Type: text/plain\r\n"
+      "Content-Length: 62\r\n\r\n"
+      "this port speaks HTTPS only: begin the address with https://.\n";
+  beast::error_code error;
+  socket.send(net::buffer(kAnswer, sizeof(kAnswer) - 1), 0, error);
+  socket.shutdown(tcp::socket::shutdown_send, error);
+  std::array<char, 1024> dropped;
+  while (!error) co_await socket.async_read_some(net::buffer(dropped), Redirect(error));
+}
+
+// Waits for the first bytes, which stay in the socket. Nothing: the client has closed.
+net::awaitable<std::optional<bool>> SpeaksTls(tcp::socket& socket) {
+  beast::error_code error;
+  co_await socket.async_wait(tcp::socket::wait_read, Redirect(error));
+  std::array<std::uint8_t, kTlsPrefixBytes> first;
+  std::size_t size = 0;
+  if (!error) socket.non_blocking(true, error);
+  if (!error) size = socket.receive(net::buffer(first), tcp::socket::message_peek, error);
+  if (error) co_return std::nullopt;
+  co_return LooksLikeTls(std::span(first).first(size));
 }
 
 Result<PageFiles> LoadPage(const HttpConfig& config) {
@@ -68,7 +100,8 @@ struct HttpServer::Impl {
                 .post_to_hub = std::move(parts.post_to_hub),
                 .answer = std::move(parts.answer),
                 .metrics = parts.metrics,
-                .gate = parts.gate} {
+                .gate = parts.gate,
+                .tls = parts.tls} {
     // Weak: tasks in the hub's queue may hold this function after the web server has gone.
     context.post_to_web = [weak = std::weak_ptr(loop)](std::function<void()> task) {
       if (const auto alive = weak.lock()) net::post(*alive, std::move(task));
@@ -78,9 +111,11 @@ struct HttpServer::Impl {
   Status Listen(const std::string& bind, std::uint16_t port);
   net::awaitable<void> Accept();
   net::awaitable<void> Serve(tcp::socket socket, std::string host);
+  net::awaitable<bool> BeginTls(WebStream* stream, const std::string& host);
   void Run();
 
   WebContext context;  // outlives the loop; its connections use it
+  HandshakeBudget handshakes;
   FairShare shares{static_cast<std::size_t>(context.config.max_connections)};
   std::shared_ptr<net::io_context> loop = std::make_shared<net::io_context>(1);
   tcp::acceptor acceptor{*loop};
@@ -138,12 +173,43 @@ net::awaitable<void> HttpServer::Impl::Accept() {
 net::awaitable<void> HttpServer::Impl::Serve(tcp::socket socket, std::string host) {
   ++context.connections;
   try {
-    co_await ServeConnection(beast::tcp_stream(std::move(socket)), &context);
+    WebStream stream(std::move(socket));
+    bool begins = context.tls == nullptr || !context.tls->enabled();
+    if (!begins) begins = co_await BeginTls(&stream, host);
+    if (begins) co_await ServeConnection(std::move(stream), &context);
   } catch (const std::exception& error) {  // such as out of memory: affects this connection only
     spdlog::error("a web connection failed: {}", error.what());
   }
   --context.connections;
   shares.Leave(host);
+}
+
+// False: the connection must close.
+net::awaitable<bool> HttpServer::Impl::BeginTls(WebStream* stream, const std::string& host) {
+  const HandshakeWatch<net::steady_timer, tcp::socket> watch(stream->socket());
+  const std::optional<bool> is_tls = co_await SpeaksTls(stream->socket());
+  if (!is_tls) {  // it has closed, or waited too long
+    if (watch.expired()) context.metrics->Add(Counter::kTlsSlow);
+    co_return false;
+  }
+  if (!*is_tls) {
+    context.metrics->Add(Counter::kTlsPlain);
+    co_await RefusePlain(stream->socket());
+    co_return false;
+  }
+  if (!handshakes.Take(host, ReadClock())) {
+    context.metrics->Add(Counter::kTlsBusy);
+    co_return false;
+  }
+  const beast::error_code error = co_await stream->Handshake(context.tls->for_web());
+  if (error) {
+    context.metrics->Add(watch.expired()
+                             ? Counter::kTlsSlow
+                             : HandshakeFailure(static_cast<unsigned long>(error.value())));
+    co_return false;
+  }
+  context.metrics->Add(Counter::kTlsHandshakes);
+  co_return true;
 }
 
 // An exception that ends the web loop also ends the hub's loop, so that the daemon does not run on

@@ -23,9 +23,10 @@ class HttpServer {
     // The character for browsers that draw it themselves, served as /character.glb; empty: none.
     std::filesystem::path character;
     PostToHub post_to_hub;
-    AnswerApi answer;                 // called on the hub's thread
-    Metrics* metrics = nullptr;       // not null; outlives the server
-    const TokenGate* gate = nullptr;  // outlives the server; null: everybody may do everything
+    AnswerApi answer;                  // called on the hub's thread
+    Metrics* metrics = nullptr;        // not null; outlives the server
+    const TokenGate* gate = nullptr;   // outlives the server; null: everybody may do everything
+    const TlsIdentity* tls = nullptr;  // outlives the server; null or not enabled: plain HTTP
   };
   // Starts listening. Errors: kIo, naming the address and the port. A missing page is only logged;
   // everything else works without it.

@@ -14,7 +14,6 @@
 #include <boost/beast/http/span_body.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
 
-#include "server/core/network_address.h"
 #include "server/http/pictures/picture_stream.h"
 #include "server/http/request/reply_writer.h"
 #include "server/http/request/request_access.h"
@@ -56,7 +55,7 @@ net::awaitable<ApiReply> AskHub(WebContext* context, ApiRequest request) {
 
 // Sends a file of the page from memory, compressed if the client accepts it. False: the connection
 // must close.
-net::awaitable<bool> WritePageFile(beast::tcp_stream& stream, const WebRequest& request,
+net::awaitable<bool> WritePageFile(WebStream& stream, const WebRequest& request,
                                    const PageFile& file) {
   const bool gzip = !file.gzip.empty() &&
                     request[http::field::accept_encoding].find("gzip") != beast::string_view::npos;
@@ -106,7 +105,7 @@ ApiReply NotFound(const std::string& path) {
 // One connection. All functions run on the web thread, in one coroutine.
 class HttpSession {
  public:
-  HttpSession(beast::tcp_stream stream, WebContext* context)
+  HttpSession(WebStream stream, WebContext* context)
       : stream_(std::move(stream)), context_(context) {}
 
   net::awaitable<void> Run() {
@@ -117,10 +116,7 @@ class HttpSession {
     }
     // After an upgrade the socket has moved to the WebSocket. Otherwise tell the client that no
     // reply follows.
-    if (stream_.socket().is_open()) {
-      beast::error_code error;
-      stream_.socket().shutdown(net::ip::tcp::socket::shutdown_send, error);
-    }
+    if (stream_.is_open()) co_await stream_.EndSending();
   }
 
  private:
@@ -184,12 +180,17 @@ class HttpSession {
           stream_, request_,
           ErrorReply(400, "parse", "", "the request target is not a valid path"));
     }
-    Result<Access> access = AccessOf(request_, context_->gate, IsLocal(), &*url);
+    if (LacksCertificate(url->path)) {
+      context_->metrics->Add(Counter::kTlsNoCertificate);
+      co_return co_await WriteReply(stream_, request_,
+                                    ErrorReply(403, "forbidden", "", "show a client certificate"));
+    }
+    Result<Access> access = AccessOf(request_, context_->gate, IsShielded(), &*url);
     const bool admitted = access.ok() && access->admitted();
     if (!admitted && !IsForAll(url->path)) {
       if (access.ok()) context_->metrics->Add(Counter::kRefusedNoToken);
       // 401 asks for a token, and the page then asks its user. Not where it would be disclosed.
-      ApiReply reply = access.ok() && !context_->gate->TakesTokensFrom(IsLocal())
+      ApiReply reply = access.ok() && !context_->gate->TakesTokens(IsShielded())
                            ? ErrorReply(403, "forbidden", "", kNoTokenHereText)
                            : NeedsToken(access.ok() ? kNeedsTokenText : access.status().what());
       co_return co_await WriteReply(stream_, request_, std::move(reply));
@@ -218,10 +219,13 @@ class HttpSession {
     return is_page || IsProbe(path);
   }
 
-  [[nodiscard]] bool IsLocal() {
-    beast::error_code error;
-    const auto remote = stream_.socket().remote_endpoint(error);
-    return !error && IsLoopback(remote.address().to_string());
+  // True if nobody on the network can read the request.
+  [[nodiscard]] bool IsShielded() const { return LabelOfClient(stream_).shielded; }
+
+  // True if the client must show a certificate and has not. Probes show none.
+  [[nodiscard]] bool LacksCertificate(const std::string& path) const {
+    return context_->tls != nullptr && context_->tls->asks_clients() &&
+           !stream_.has_client_certificate() && !IsProbe(path);
   }
 
   // JSON lines, by WebSocket or as an endless body. Returns whether the connection goes on.
@@ -258,7 +262,7 @@ class HttpSession {
       co_return co_await WriteReply(stream_, request_, NotFound(url.path));
     }
     ApiRequest request{std::string(ToView(request_.method_string())), std::move(url),
-                       std::move(request_.body()), access_};
+                       std::move(request_.body()), access_, IsShielded()};
     // The routes know GET only; WriteResponse() leaves the body out.
     if (request.method == "HEAD") request.method = "GET";
     // Subjects, settings and rig belong to the hub's thread. The page's files do not, and are sent
@@ -267,7 +271,7 @@ class HttpSession {
     co_return co_await WriteReply(stream_, request_, std::move(reply));
   }
 
-  beast::tcp_stream stream_;
+  WebStream stream_;
   WebContext* context_;
   Access access_;  // of the present request
   beast::flat_buffer buffer_;
@@ -276,7 +280,7 @@ class HttpSession {
 
 }  // namespace
 
-net::awaitable<void> ServeConnection(beast::tcp_stream stream, WebContext* context) {
+net::awaitable<void> ServeConnection(WebStream stream, WebContext* context) {
   HttpSession session(std::move(stream), context);
   co_await session.Run();
 }

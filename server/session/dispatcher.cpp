@@ -204,7 +204,7 @@ bool Dispatcher::OnToken(Peer& peer, const protocol::Header& header, const std::
   Shard& shard = parts_.shards->Of(peer.id);
   const bool shown = !token.empty() && parts_.gate != nullptr && peer.transport != Transport::kUdp;
   if (shown) {
-    auto access = parts_.gate->Admit(token, peer.local, now);
+    auto access = parts_.gate->Admit(token, peer.shielded, now);
     if (!access.ok()) {
       RefuseStranger(shard, peer, header, access.status().what());
       return false;
@@ -220,7 +220,7 @@ bool Dispatcher::OnToken(Peer& peer, const protocol::Header& header, const std::
 }
 
 const char* Dispatcher::WhyNeeded(const Peer& peer) const {
-  return parts_.gate == nullptr ? kNeedsTokenText : parts_.gate->WhyNeeded(peer.local);
+  return parts_.gate == nullptr ? kNeedsTokenText : parts_.gate->WhyNeeded(peer.shielded);
 }
 
 void Dispatcher::RefuseStranger(Peer& peer) {

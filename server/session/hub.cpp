@@ -167,14 +167,11 @@ void Hub::OnBadFrame(PeerId id) {
   }
 }
 
-void Hub::RefuseConnection(Link* link) {
+void Hub::RefuseConnection(Link* link, ErrorCode code, const std::string& why) {
   const ShardLock lock(*this, 0);
   Peer peer;  // never added: it only carries the link
   peer.link = link;
-  shards_.at(0).context.messages.SendError(peer, {}, ErrorCode::kLimit,
-                                           "this address has its share of the " +
-                                               std::to_string(limits_.max_connections) +
-                                               " connections; see limits.max_connections");
+  shards_.at(0).context.messages.SendError(peer, {}, code, why);
 }
 
 void Hub::OnMocapFrame(PeerId id, const protocol::mocap::NeutralFrame& frame, Time now) {

@@ -121,8 +121,8 @@ class Hub {
   [[nodiscard]] bool RequiresToken() const { return gate_ != nullptr && gate_->required(); }
   // TCP: answers a frame with an invalid length. The caller closes the connection afterwards.
   void OnBadFrame(PeerId id);
-  // TCP: answers a connection beyond Limits::max_connections, which never becomes a peer.
-  void RefuseConnection(Link* link);
+  // TCP: answers a connection that never becomes a peer.
+  void RefuseConnection(Link* link, protocol::ErrorCode code, const std::string& why);
   // Handles a frame of a foreign motion-capture protocol. The peer was added to shard 0 as
   // Transport::kMocap.
   void OnMocapFrame(PeerId id, const protocol::mocap::NeutralFrame& frame, Time now);

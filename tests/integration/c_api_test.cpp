@@ -15,6 +15,8 @@
 #include "client/c/include/furrow/furrow.h"
 #include "daemon_fixture.h"
 #include "process.h"
+#include "tests/certificates.h"
+#include "tests/temporary_folder.h"
 
 namespace furrow::testing_net {
 namespace {
@@ -270,6 +272,32 @@ TEST_P(CApi, TwoSubjectsSurviveADaemonThatIsKilled) {
     EXPECT_EQ(info(watcher.get()).connects, connects);
     EXPECT_EQ(info(watcher.get()).state, FURROW_CONNECTED);
   }
+}
+
+TEST(CApiTls, ConnectsWithTheAuthorityOfTheOptions) {
+  const TemporaryFolder folder;
+  const std::string certificate = TestCertificate().Write(folder.path(), "daemon");
+  server::Config config = WeightsConfig("arkit.json");
+  config.security.tls = {
+      .certificate = certificate, .key = folder / "daemon.key", .client_authority = {}};
+  const DaemonThread daemon(config);
+  ASSERT_TRUE(daemon.serves());
+  const std::string address = "furrow://127.0.0.1:" + std::to_string(daemon.ready().tcp);
+  furrow_options options{};
+  options.struct_size = sizeof options;
+  options.tls_authority = certificate.c_str();
+  furrow_connection* connection = nullptr;
+  ASSERT_EQ(furrow_open(address.c_str(), &options, &connection), FURROW_OK);
+  const Handle trusting(connection);
+  const Handle strange = Open(address + "?tls=1");
+  furrow_connection_info info{};
+  info.struct_size = sizeof info;
+  EXPECT_TRUE(Until({trusting.get(), strange.get()}, [&] {
+    EXPECT_EQ(furrow_get_info(trusting.get(), &info), FURROW_OK);
+    return info.state == FURROW_CONNECTED &&
+           LastError(strange.get()).find("no known authority") != std::string::npos;
+  })) << LastError(trusting.get())
+      << "; " << LastError(strange.get());
 }
 
 INSTANTIATE_TEST_SUITE_P(Transports, CApi, testing::Values("udp", "tcp"),

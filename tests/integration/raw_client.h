@@ -87,9 +87,15 @@ class RawClient {
 // loopback address. -1: there is none.
 [[nodiscard]] int ConnectSocket(int type, std::uint16_t port, const char* from = "127.0.0.1");
 
+// A stream that is connected already. The client that takes it owns the socket.
+struct Connected {
+  int socket = -1;
+};
+
 class TcpClient : public RawClient {
  public:
   explicit TcpClient(std::uint16_t port);
+  explicit TcpClient(Connected stream) : RawClient(stream.socket) {}
 
  private:
   void SendBytes(std::span<const std::uint8_t> message) override;

@@ -378,9 +378,9 @@ TEST_F(Secure, OtherComputersMayNotShowTokensInClear) {
   server::TokenGate gate(
       {.security = server::Security::kRequired}, [] { return 0u; }, &metrics);
   const std::string token = ToText(keys.Token(Role::kWatch));
-  EXPECT_THAT(gate.Admit(token, /*local=*/false, server::Time(0)).status().what(),
+  EXPECT_THAT(gate.Admit(token, /*shielded=*/false, server::Time(0)).status().what(),
               HasSubstr("not encrypted"));
-  EXPECT_THAT(gate.Admit(token, /*local=*/true, server::Time(0)).status().what(),
+  EXPECT_THAT(gate.Admit(token, /*shielded=*/true, server::Time(0)).status().what(),
               HasSubstr("does not have the key"));
   EXPECT_EQ(metrics.Get(Counter::kRefusedInClear), 1u);
 }

@@ -18,8 +18,11 @@ constexpr timeval kGuard{.tv_sec = 60, .tv_usec = 0};
 
 }  // namespace
 
-WebClient::WebClient(std::uint16_t port) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
+WebClient::WebClient(Connected stream) : socket_(stream.socket) {
   setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &kGuard, sizeof kGuard);
+}
+
+WebClient::WebClient(std::uint16_t port) : WebClient(Connected{::socket(AF_INET, SOCK_STREAM, 0)}) {
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(port);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "protocol/codec/codec.h"
+#include "raw_client.h"
 
 namespace furrow::testing_net {
 
@@ -17,6 +18,7 @@ namespace furrow::testing_net {
 class WebClient {
  public:
   explicit WebClient(std::uint16_t port);
+  explicit WebClient(Connected stream);
   ~WebClient();
   WebClient(const WebClient&) = delete;
   WebClient& operator=(const WebClient&) = delete;

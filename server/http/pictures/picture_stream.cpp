@@ -31,7 +31,7 @@ constexpr std::uint64_t kSession = 1;  // any number: the peer has only one sess
 // messages to and from the hub's thread.
 class PictureStream : public std::enable_shared_from_this<PictureStream> {
  public:
-  PictureStream(beast::tcp_stream* stream, WebContext* context)
+  PictureStream(WebStream* stream, WebContext* context)
       : stream_(stream), wake_(stream->get_executor()), context_(context) {
     ++context_->viewers;
   }
@@ -134,7 +134,7 @@ class PictureStream : public std::enable_shared_from_this<PictureStream> {
     }
   }
 
-  beast::tcp_stream* stream_;
+  WebStream* stream_;
   net::steady_timer wake_;
   WebContext* context_;
   std::optional<WebPeer> peer_;  // set by Open()
@@ -147,7 +147,7 @@ class PictureStream : public std::enable_shared_from_this<PictureStream> {
 };
 
 // Writes the three parts with one gathered write. False: the client has gone or does not read.
-net::awaitable<bool> WriteAll(beast::tcp_stream* stream, std::string_view head,
+net::awaitable<bool> WriteAll(WebStream* stream, std::string_view head,
                               const std::vector<std::uint8_t>& body, std::string_view tail) {
   const std::array<net::const_buffer, 3> parts = {net::buffer(head.data(), head.size()),
                                                   net::buffer(body),
@@ -163,7 +163,7 @@ std::string PartHead(std::size_t bytes) {
          "\r\nContent-Type: image/jpeg\r\nContent-Length: " + std::to_string(bytes) + "\r\n\r\n";
 }
 
-net::awaitable<bool> ServeMjpeg(beast::tcp_stream* stream, PictureStream* pictures,
+net::awaitable<bool> ServeMjpeg(WebStream* stream, PictureStream* pictures,
                                 const WebRequest& request) {
   beast::error_code ignored;
   // The kernel would otherwise buffer many pictures, and the client would see the past.
@@ -191,7 +191,7 @@ net::awaitable<bool> ServeMjpeg(beast::tcp_stream* stream, PictureStream* pictur
   }
 }
 
-net::awaitable<bool> ServeSnapshot(beast::tcp_stream* stream, PictureStream* pictures,
+net::awaitable<bool> ServeSnapshot(WebStream* stream, PictureStream* pictures,
                                    const WebRequest& request) {
   const PictureStream::Next next =
       co_await pictures->Wait(std::chrono::steady_clock::now() + kWebDeadline);
@@ -207,7 +207,7 @@ net::awaitable<bool> ServeSnapshot(beast::tcp_stream* stream, PictureStream* pic
 
 }  // namespace
 
-net::awaitable<bool> ServePictures(beast::tcp_stream* stream, WebContext* context,
+net::awaitable<bool> ServePictures(WebStream* stream, WebContext* context,
                                    const WebRequest& request, const Url& url,
                                    const Access& access) {
   Result<protocol::SubscribePictures> wanted = PicturesOf(url);

@@ -4,6 +4,7 @@
 #include "server/http/request/beast.h"
 #include "server/http/request/url.h"
 #include "server/http/request/web_context.h"
+#include "server/http/request/web_stream.h"
 
 namespace furrow::server {
 
@@ -11,7 +12,7 @@ namespace furrow::server {
 // subscribes to pictures, and acknowledges each picture after its bytes were sent. Arguments must
 // outlive the coroutine, which runs on the web thread. `access`: what the client may do. False: the
 // connection must close.
-[[nodiscard]] net::awaitable<bool> ServePictures(beast::tcp_stream* stream, WebContext* context,
+[[nodiscard]] net::awaitable<bool> ServePictures(WebStream* stream, WebContext* context,
                                                  const WebRequest& request, const Url& url,
                                                  const Access& access);
 

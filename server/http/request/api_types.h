@@ -16,6 +16,7 @@ struct ApiRequest {
   Url url;
   std::string body;
   Access access = Access::Everything();
+  bool shielded = true;  // nobody on the network can read the request and its reply
 };
 
 // True for the probes of supervisors, which everybody may ask. They read only what the hub's thread

@@ -24,8 +24,7 @@ void SetCommonHeaders(std::string_view content_type, http::fields* fields) {
   fields->set("Content-Security-Policy", kContentPolicy);
 }
 
-net::awaitable<bool> WriteReply(beast::tcp_stream& stream, const WebRequest& request,
-                                ApiReply reply) {
+net::awaitable<bool> WriteReply(WebStream& stream, const WebRequest& request, ApiReply reply) {
   http::response<http::string_body> response(static_cast<http::status>(reply.status),
                                              request.version());
   SetCommonHeaders(reply.type, &response);

@@ -8,6 +8,7 @@
 
 #include "server/http/request/api_types.h"
 #include "server/http/request/beast.h"
+#include "server/http/request/web_stream.h"
 
 namespace furrow::server {
 
@@ -22,8 +23,7 @@ void SetCommonHeaders(std::string_view content_type, http::fields* fields);
 // Sends a response, or only its head for a HEAD request. False: the connection must close, because
 // the client asked for it, has gone, or did not read the response within kWebDeadline.
 template <class Body>
-[[nodiscard]] net::awaitable<bool> WriteResponse(beast::tcp_stream& stream,
-                                                 const WebRequest& request,
+[[nodiscard]] net::awaitable<bool> WriteResponse(WebStream& stream, const WebRequest& request,
                                                  http::response<Body>& response) {
   http::response_serializer<Body> serializer(response);
   stream.expires_after(kWebDeadline);
@@ -37,7 +37,7 @@ template <class Body>
 }
 
 // Sends a whole reply. False: the connection must close, as for WriteResponse().
-[[nodiscard]] net::awaitable<bool> WriteReply(beast::tcp_stream& stream, const WebRequest& request,
+[[nodiscard]] net::awaitable<bool> WriteReply(WebStream& stream, const WebRequest& request,
                                               ApiReply reply);
 
 }  // namespace furrow::server

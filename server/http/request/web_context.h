@@ -12,6 +12,7 @@
 #include "server/http/request/request_guard.h"
 #include "server/http/request/thread_handoff.h"
 #include "server/session/access/token_gate.h"
+#include "server/tls/tls_identity.h"
 
 namespace furrow::server {
 
@@ -28,7 +29,8 @@ struct WebContext {
   PostToWeb post_to_web;
   AnswerApi answer;
   Metrics* metrics = nullptr;
-  const TokenGate* gate = nullptr;  // null: everybody may do everything
+  const TokenGate* gate = nullptr;   // null: everybody may do everything
+  const TlsIdentity* tls = nullptr;  // null or not enabled: plain HTTP
   std::atomic<int> connections = 0;
   std::atomic<int> viewers = 0;  // WebSockets and picture streams
 };

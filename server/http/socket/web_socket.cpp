@@ -17,7 +17,6 @@
 #include "protocol/codec/codec.h"
 #include "server/http/socket/web_message.h"
 #include "server/http/socket/web_peer.h"
-#include "server/session/peers/peer_label.h"
 
 namespace furrow::server {
 namespace {
@@ -28,7 +27,7 @@ namespace websocket = beast::websocket;
 // write at a time, and each coroutine does only one of them.
 class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
  public:
-  WebSocketSession(beast::tcp_stream stream, WebContext* context, Access access)
+  WebSocketSession(WebStream stream, WebContext* context, Access access)
       : socket_(std::move(stream)),
         wake_(socket_.get_executor()),
         write_watch_(socket_.get_executor()),
@@ -72,8 +71,7 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
   net::awaitable<bool> Accept(const WebRequest& request) {
     beast::error_code ignored;
     auto& tcp = beast::get_lowest_layer(socket_);
-    const auto remote = tcp.socket().remote_endpoint(ignored);
-    label_ = LabelOf("web", remote.address().to_string(), remote.port());
+    label_ = LabelOfClient(tcp);
     // Weights are small messages that must not wait for an acknowledgement (Nagle's algorithm).
     tcp.socket().set_option(net::ip::tcp::no_delay(true), ignored);
     tcp.expires_never();  // the WebSocket has its own timeouts
@@ -196,7 +194,7 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
     write_watch_.cancel();
   }
 
-  websocket::stream<beast::tcp_stream> socket_;
+  websocket::stream<WebStream> socket_;
   net::steady_timer wake_;
   net::steady_timer write_watch_;
   WebContext* context_;
@@ -209,8 +207,8 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
 
 }  // namespace
 
-net::awaitable<void> ServeWebSocket(beast::tcp_stream stream, WebContext* context,
-                                    WebRequest request, Access access) {
+net::awaitable<void> ServeWebSocket(WebStream stream, WebContext* context, WebRequest request,
+                                    Access access) {
   auto session = std::make_shared<WebSocketSession>(std::move(stream), context, std::move(access));
   co_await session->Run(std::move(request));
 }

@@ -20,7 +20,6 @@
 #include "protocol/codec/codec.h"
 #include "server/http/socket/web_peer.h"
 #include "server/http/weights/weight_lines.h"
-#include "server/session/peers/peer_label.h"
 
 namespace furrow::server {
 namespace {
@@ -101,13 +100,7 @@ class LineSource : public std::enable_shared_from_this<LineSource> {
   bool ended_ = false;
 };
 
-PeerLabel LabelOfClient(const beast::tcp_stream& stream) {
-  beast::error_code ignored;
-  const auto remote = stream.socket().remote_endpoint(ignored);
-  return LabelOf("web", remote.address().to_string(), remote.port());
-}
-
-void SetOptions(beast::tcp_stream& stream) {
+void SetOptions(WebStream& stream) {
   beast::error_code ignored;
   stream.socket().set_option(net::ip::tcp::no_delay(true), ignored);
   stream.socket().set_option(net::socket_base::send_buffer_size(kLineBufferBytes), ignored);
@@ -118,7 +111,7 @@ void SetOptions(beast::tcp_stream& stream) {
   setsockopt(stream.socket().native_handle(), IPPROTO_TCP, TCP_USER_TIMEOUT, &limit, sizeof(limit));
 }
 
-using Socket = websocket::stream<beast::tcp_stream>;
+using Socket = websocket::stream<WebStream>;
 
 void Close(Socket& socket) {
   beast::error_code ignored;
@@ -145,8 +138,8 @@ net::awaitable<void> ReadAndDrop(std::shared_ptr<Socket> socket,
 
 }  // namespace
 
-net::awaitable<void> ServeWeightSocket(beast::tcp_stream stream, WebContext* context,
-                                       WebRequest request, WeightQuery query, Access access) {
+net::awaitable<void> ServeWeightSocket(WebStream stream, WebContext* context, WebRequest request,
+                                       WeightQuery query, Access access) {
   const PeerLabel label = LabelOfClient(stream);
   stream.expires_never();  // the WebSocket has its own timeouts
   beast::error_code error;
@@ -194,8 +187,8 @@ net::awaitable<void> ServeWeightSocket(beast::tcp_stream stream, WebContext* con
   co_await socket->async_close(websocket::close_code::going_away, Redirect(error));
 }
 
-net::awaitable<void> ServeWeightLines(beast::tcp_stream* stream, WebContext* context,
-                                      WeightQuery query, Access access) {
+net::awaitable<void> ServeWeightLines(WebStream* stream, WebContext* context, WeightQuery query,
+                                      Access access) {
   beast::error_code error;
   SetOptions(*stream);
   stream->expires_never();

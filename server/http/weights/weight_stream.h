@@ -3,6 +3,7 @@
 
 #include "server/http/request/beast.h"
 #include "server/http/request/web_context.h"
+#include "server/http/request/web_stream.h"
 #include "server/http/weights/weight_query.h"
 
 namespace furrow::server {
@@ -15,13 +16,13 @@ namespace furrow::server {
 
 // Accepts the WebSocket upgrade in `request` and sends each object as a text message. Messages from
 // the client are ignored.
-[[nodiscard]] net::awaitable<void> ServeWeightSocket(beast::tcp_stream stream, WebContext* context,
+[[nodiscard]] net::awaitable<void> ServeWeightSocket(WebStream stream, WebContext* context,
                                                      WebRequest request, WeightQuery query,
                                                      Access access);
 
 // Answers a plain GET with one object per line, for clients without WebSockets. The arguments must
 // outlive the coroutine.
-[[nodiscard]] net::awaitable<void> ServeWeightLines(beast::tcp_stream* stream, WebContext* context,
+[[nodiscard]] net::awaitable<void> ServeWeightLines(WebStream* stream, WebContext* context,
                                                     WeightQuery query, Access access);
 
 }  // namespace furrow::server

@@ -1,19 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/net/tcp/tcp_server.h"
 
+#include <array>
 #include <chrono>
+#include <exception>
+#include <optional>
 #include <span>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
+#include <asio/co_spawn.hpp>
 #include <asio/steady_timer.hpp>
 #include <spdlog/spdlog.h>
 
 #include "protocol/framing/tcp_framing.h"
 #include "server/core/network_address.h"
 #include "server/net/await_tuple.h"
+#include "server/net/clock.h"
 #include "server/net/critical_task.h"
+#include "server/tls/handshake_watch.h"
 
 namespace furrow::server {
 namespace {
@@ -46,14 +53,30 @@ class RefusalLink : public Link {
   tcp::socket* socket_;
 };
 
+// Waits for the first bytes, which stay in the socket. Nothing: the client has closed.
+asio::awaitable<std::optional<bool>> SpeaksTls(StreamSocket& stream) {
+  const auto [failed] = co_await stream.socket().async_wait(tcp::socket::wait_read, kAwaitTuple);
+  std::array<std::uint8_t, kTlsPrefixBytes> first;
+  asio::error_code error = failed;
+  if (!error) stream.socket().non_blocking(true, error);
+  std::size_t size = 0;
+  if (!error) {
+    size = stream.socket().receive(asio::buffer(first), tcp::socket::message_peek, error);
+  }
+  if (error) co_return std::nullopt;
+  co_return LooksLikeTls(std::span(first).first(size));
+}
+
 }  // namespace
 
-TcpServer::TcpServer(asio::io_context& io, const Limits& limits, Hub* hub, Metrics* metrics)
+TcpServer::TcpServer(asio::io_context& io, const Limits& limits, Hub* hub, Metrics* metrics,
+                     const TlsIdentity* tls)
     : io_(io),
       acceptor_(io),
       limits_(limits),
       hub_(hub),
       metrics_(metrics),
+      tls_(tls),
       shares_(static_cast<std::size_t>(limits.max_connections)) {}
 
 Status TcpServer::Open(const tcp::endpoint& endpoint) {
@@ -92,26 +115,90 @@ asio::awaitable<void> TcpServer::Accept() {
     const tcp::endpoint client = socket.remote_endpoint(error);
     const std::string host = error ? std::string() : HostOf(client.address().to_string());
     if (!shares_.Enter(host)) {
-      Refuse(std::move(socket));
+      metrics_->Add(Counter::kConnectionsRefused);
+      // A client that speaks TLS only sees that the connection closes.
+      Refuse(socket, protocol::ErrorCode::kLimit,
+             "this address has its share of the " + std::to_string(limits_.max_connections) +
+                 " connections; see limits.max_connections");
+      continue;
+    }
+    auto stream = std::make_shared<StreamSocket>(std::move(socket));
+    if (!tls_->enabled()) {
+      Begin(std::move(stream), host);
     } else {
-      metrics_->Add(Counter::kConnectionsAccepted);
-      const auto session = std::make_shared<TcpSession>(
-          std::move(socket), limits_, hub_, metrics_,
-          // Runs on this thread, in Close(). The server outlives its sessions: the daemon destroys
-          // it after the event loop has ended.
-          [this, host](const std::shared_ptr<TcpSession>& closed) {
-            if (sessions_.erase(closed) > 0) shares_.Leave(host);
+      asio::co_spawn(
+          io_,
+          [this, stream = std::move(stream), host]() mutable {
+            return BeginWithTls(std::move(stream), host);
+          },
+          [this, host](const std::exception_ptr& failed, bool begun) {
+            if (failed || !begun) shares_.Leave(host);
           });
-      sessions_.insert(session);
-      session->Start();
     }
   }
 }
 
-void TcpServer::Refuse(tcp::socket socket) {
-  metrics_->Add(Counter::kConnectionsRefused);
+// The session has the place of the host in `shares_` from here on.
+void TcpServer::Begin(std::shared_ptr<StreamSocket> stream, const std::string& host) {
+  metrics_->Add(Counter::kConnectionsAccepted);
+  const auto session = std::make_shared<TcpSession>(
+      std::move(stream), limits_, hub_, metrics_,
+      // Runs on this thread, in Close(). The server outlives its sessions: the daemon destroys it
+      // after the event loop has ended.
+      [this, host](const std::shared_ptr<TcpSession>& closed) {
+        if (sessions_.erase(closed) > 0) shares_.Leave(host);
+      });
+  sessions_.insert(session);
+  session->Start();
+}
+
+// Returns whether a session has begun.
+asio::awaitable<bool> TcpServer::BeginWithTls(std::shared_ptr<StreamSocket> stream,
+                                              std::string host) {
+  const HandshakeWatch<asio::steady_timer, tcp::socket> watch(stream->socket());
+  const std::optional<bool> is_tls = co_await SpeaksTls(*stream);
+  if (!is_tls) {  // it has closed, or waited too long
+    if (watch.expired()) metrics_->Add(Counter::kTlsSlow);
+    co_return false;
+  }
+  if (!*is_tls) {
+    metrics_->Add(Counter::kTlsPlain);
+    co_await RefusePlain(*stream);
+    co_return false;
+  }
+  if (!handshakes_.Take(host, ReadClock())) {
+    metrics_->Add(Counter::kTlsBusy);
+    co_return false;
+  }
+  const asio::error_code error = co_await stream->Handshake(tls_->for_messages());
+  if (error) {
+    metrics_->Add(watch.expired() ? Counter::kTlsSlow
+                                  : HandshakeFailure(static_cast<unsigned long>(error.value())));
+    co_return false;
+  }
+  // While the handshake went on, the daemon may have begun to shut down.
+  if (!acceptor_.is_open()) co_return false;
+  metrics_->Add(Counter::kTlsHandshakes);
+  Begin(std::move(stream), host);
+  co_return true;
+}
+
+// Answers a client that speaks without TLS, and waits until it has closed: closing with unread
+// input would reset the connection and lose the answer. HandshakeWatch limits the time.
+asio::awaitable<void> TcpServer::RefusePlain(StreamSocket& stream) {
+  Refuse(stream.socket(), protocol::ErrorCode::kUnsupported,
+         "this port speaks TLS only: connect with furrow://HOST?tls=1 or --tls");
+  std::array<std::uint8_t, 1024> dropped;
+  asio::error_code error;
+  while (!error) {
+    std::tie(error, std::ignore) =
+        co_await stream.socket().async_read_some(asio::buffer(dropped), kAwaitTuple);
+  }
+}
+
+void TcpServer::Refuse(tcp::socket& socket, protocol::ErrorCode code, const std::string& why) {
   RefusalLink link(&socket);
-  hub_->RefuseConnection(&link);
+  hub_->RefuseConnection(&link, code, why);
 }
 
 void TcpServer::Drain() {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <unordered_set>
 
 #include <asio/awaitable.hpp>
@@ -13,17 +14,22 @@
 #include "server/core/fair_share.h"
 #include "server/core/limits.h"
 #include "server/core/metrics.h"
+#include "server/net/tcp/stream_socket.h"
 #include "server/net/tcp/tcp_session.h"
 #include "server/session/hub.h"
+#include "server/tls/handshake.h"
+#include "server/tls/tls_identity.h"
 
 namespace furrow::server {
 
 // Accepts TCP connections, at most Limits::max_connections at a time, shared fairly between hosts,
-// and owns their sessions.
+// and owns their sessions. With a certificate, connections begin with a TLS handshake, which holds
+// a place as a session does.
 class TcpServer {
  public:
-  // `io`, `hub` and `metrics` must outlive the server. All functions run on the thread of `io`.
-  TcpServer(asio::io_context& io, const Limits& limits, Hub* hub, Metrics* metrics);
+  // The arguments must outlive the server. All functions run on the thread of `io`.
+  TcpServer(asio::io_context& io, const Limits& limits, Hub* hub, Metrics* metrics,
+            const TlsIdentity* tls);
 
   // Listens at `endpoint`. Errors: kUnavailable; the message names the address and the port.
   [[nodiscard]] Status Open(const asio::ip::tcp::endpoint& endpoint);
@@ -40,14 +46,19 @@ class TcpServer {
 
  private:
   asio::awaitable<void> Accept();
-  void Refuse(asio::ip::tcp::socket socket);
+  void Begin(std::shared_ptr<StreamSocket> stream, const std::string& host);
+  asio::awaitable<bool> BeginWithTls(std::shared_ptr<StreamSocket> stream, std::string host);
+  asio::awaitable<void> RefusePlain(StreamSocket& stream);
+  void Refuse(asio::ip::tcp::socket& socket, protocol::ErrorCode code, const std::string& why);
 
   asio::io_context& io_;
   asio::ip::tcp::acceptor acceptor_;
   const Limits limits_;
   Hub* const hub_;
   Metrics* const metrics_;
-  FairShare shares_;  // of the sessions
+  const TlsIdentity* const tls_;
+  HandshakeBudget handshakes_;
+  FairShare shares_;  // of the sessions and handshakes
   std::unordered_set<std::shared_ptr<TcpSession>> sessions_;
 };
 

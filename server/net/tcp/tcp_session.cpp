@@ -36,26 +36,29 @@ constexpr std::size_t kMaxReplies = 1024;
 constexpr Time kStuckAfter = std::chrono::milliseconds(100);
 constexpr auto kWatchInterval = std::chrono::milliseconds(500);
 
-PeerLabel NameOf(const asio::ip::tcp::socket& socket) {
+PeerLabel NameOf(StreamSocket& stream) {
   asio::error_code error;
-  const auto endpoint = socket.remote_endpoint(error);
+  const auto endpoint = stream.socket().remote_endpoint(error);
+  const std::string transport = stream.is_tls() ? "tls" : "tcp";
   // It has reset the connection, and what it sent before is still read. It may be anywhere.
-  if (error) return {"tcp, disconnected", {}, /*is_local=*/false};
-  return LabelOf("tcp", endpoint.address().to_string(), endpoint.port());
+  if (error) return {transport + ", disconnected", {}, stream.is_tls()};
+  PeerLabel label = LabelOf(transport, endpoint.address().to_string(), endpoint.port());
+  label.shielded |= stream.is_tls();
+  return label;
 }
 
 }  // namespace
 
-TcpSession::TcpSession(asio::ip::tcp::socket socket, const Limits& limits, Hub* hub,
+TcpSession::TcpSession(std::shared_ptr<StreamSocket> stream, const Limits& limits, Hub* hub,
                        Metrics* metrics,
                        std::function<void(const std::shared_ptr<TcpSession>&)> on_closed)
-    : socket_(std::move(socket)),
+    : stream_(std::move(stream)),
       limits_(limits),
       hub_(hub),
       metrics_(metrics),
       on_closed_(std::move(on_closed)),
-      wake_(socket_.get_executor()),
-      watch_(socket_.get_executor()),
+      wake_(stream_->get_executor()),
+      watch_(stream_->get_executor()),
       outbox_(kMaxReplies, static_cast<std::size_t>(limits.outbox_messages)),
       // The reader checks a length before it allocates, so a client can make it hold this much at
       // most.
@@ -66,16 +69,16 @@ void TcpSession::Start() {
   asio::error_code error;
   // Nagle's algorithm would hold a small message back until the last one is acknowledged. The
   // writer joins messages itself.
-  socket_.set_option(asio::ip::tcp::no_delay(true), error);
+  stream_->socket().set_option(asio::ip::tcp::no_delay(true), error);
   // Optional: without it, slow readers only receive older frames.
-  setsockopt(socket_.native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &kUnsentBytes,
+  setsockopt(stream_->socket().native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &kUnsentBytes,
              sizeof(kUnsentBytes));
   thread_ = std::this_thread::get_id();
-  peer_ = hub_->AddPeer(Transport::kTcp, NameOf(socket_), this, ReadClock());
+  peer_ = hub_->AddPeer(Transport::kTcp, NameOf(*stream_), this, ReadClock());
   // Each coroutine holds the session, which therefore lives until the last of them has ended,
   // whatever Close() does. The hub has only a pointer to the Link, and RemovePeer() takes it back.
   const auto self = shared_from_this();
-  const auto executor = socket_.get_executor();
+  const auto executor = stream_->get_executor();
   // An exception, such as out of memory, ends this connection only.
   const auto ended = [self](const std::exception_ptr& failed) {
     if (failed) self->Close();
@@ -90,7 +93,7 @@ void TcpSession::Start() {
 
 asio::awaitable<void> TcpSession::Read() {
   while (state_ != State::kClosed) {
-    const auto [error, size] = co_await socket_.async_read_some(asio::buffer(in_), kAwaitTuple);
+    const auto [error, size] = co_await stream_->async_read_some(asio::buffer(in_), kAwaitTuple);
     if (error) break;
     if (state_ != State::kOpen) continue;  // ignore input; wait for the end of the stream
     // Without a valid length the start of the next frame is unknown, so the stream cannot go on.
@@ -124,17 +127,13 @@ asio::awaitable<void> TcpSession::Write() {
       // While a write is in progress nobody has to wake the writer: it looks again afterwards.
       SetWriting(true);
       const auto [error, size] =
-          co_await asio::async_write(socket_, asio::buffer(out_), kAwaitTuple);
+          co_await asio::async_write(*stream_, asio::buffer(out_), kAwaitTuple);
       SetWriting(false);
       if (error) Close();
     } else if (state_ == State::kFlushing) {
-      if (!linger_) {
-        Close();
-        co_return;
-      }
       state_ = State::kLingering;
-      asio::error_code error;
-      socket_.shutdown(asio::ip::tcp::socket::shutdown_send, error);
+      co_await stream_->EndSending(linger_);
+      if (!linger_) Close();
     } else {
       // A timer that never expires serves as a condition variable for coroutines. A message that
       // another thread queues between FillWriteBuffer() and this wait is not missed: Wake() posts
@@ -203,7 +202,7 @@ void TcpSession::Close() {
   state_ = State::kClosed;
   hub_->RemovePeer(peer_);
   asio::error_code error;
-  socket_.close(error);
+  stream_->socket().close(error);
   wake_.cancel();
   watch_.cancel();
   // Last, because it may release the server's reference to this session.
@@ -223,7 +222,7 @@ void TcpSession::SendReply(std::span<const std::uint8_t> message) {
   }
   metrics_->Add(Counter::kConnectionsOverrun);
   // Close later: the hub is using this peer right now.
-  asio::post(socket_.get_executor(), [self = shared_from_this()] { self->Close(); });
+  asio::post(stream_->get_executor(), [self = shared_from_this()] { self->Close(); });
 }
 
 int TcpSession::SendFrame(std::uint64_t key, std::span<const std::uint8_t> message,
@@ -240,7 +239,7 @@ void TcpSession::OnAdmitted() { frames_.SetMaxFrameBytes(protocol::kMaxRequestBy
 
 // Later, because the hub is using this peer right now.
 void TcpSession::Finish() {
-  asio::post(socket_.get_executor(),
+  asio::post(stream_->get_executor(),
              [self = shared_from_this()] { self->CloseAfterFlush(/*linger=*/true); });
 }
 
@@ -255,7 +254,7 @@ void TcpSession::Wake() {
   if (std::this_thread::get_id() == thread_) {
     wake_.cancel();
   } else if (!woken_.exchange(true)) {
-    asio::post(socket_.get_executor(), [self = shared_from_this()] {
+    asio::post(stream_->get_executor(), [self = shared_from_this()] {
       // Before the cancellation: a message that is queued from here on posts a new wake-up.
       self->woken_ = false;
       self->wake_.cancel();

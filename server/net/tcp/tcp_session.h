@@ -11,12 +11,12 @@
 #include <vector>
 
 #include <asio/awaitable.hpp>
-#include <asio/ip/tcp.hpp>
 #include <asio/steady_timer.hpp>
 
 #include "protocol/framing/tcp_framing.h"
 #include "server/core/limits.h"
 #include "server/core/metrics.h"
+#include "server/net/tcp/stream_socket.h"
 #include "server/session/hub.h"
 #include "server/session/peers/outbox.h"
 
@@ -27,8 +27,9 @@ namespace furrow::server {
 // Link, which any network thread may call.
 class TcpSession : public Link, public std::enable_shared_from_this<TcpSession> {
  public:
-  // `on_closed`: called once, after the connection has closed.
-  TcpSession(asio::ip::tcp::socket socket, const Limits& limits, Hub* hub, Metrics* metrics,
+  // `stream`: its TLS handshake is over, if it has one. `on_closed`: called once, after the
+  // connection has closed.
+  TcpSession(std::shared_ptr<StreamSocket> stream, const Limits& limits, Hub* hub, Metrics* metrics,
              std::function<void(const std::shared_ptr<TcpSession>&)> on_closed);
 
   // Adds the peer to the hub and starts the coroutines, which keep this object alive.
@@ -59,7 +60,7 @@ class TcpSession : public Link, public std::enable_shared_from_this<TcpSession> 
   bool OnBytes(std::span<const std::uint8_t> bytes, Time now);
   bool IsOverdue(Time now);
 
-  asio::ip::tcp::socket socket_;
+  const std::shared_ptr<StreamSocket> stream_;
   const Limits limits_;
   Hub* const hub_;
   Metrics* const metrics_;

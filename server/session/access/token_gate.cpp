@@ -49,12 +49,12 @@ Result<Access> TokenGate::Refuse(Refusal refusal) const {
 }
 
 // The public part of a token can be seen on the network, so the client key must be shown, too.
-Result<Access> TokenGate::Admit(std::string_view text, bool local, Time now) const {
-  if (!TakesTokensFrom(local)) {
+Result<Access> TokenGate::Admit(std::string_view text, bool shielded, Time now) const {
+  if (!TakesTokens(shielded)) {
     metrics_->Add(Counter::kRefusedInClear);
     return Status(StatusCode::kInvalidArgument,
                   "the daemon takes tokens over TCP and HTTP from its own computer only, because "
-                  "they are not encrypted; use UDP, or set security.tokens_in_clear");
+                  "they are not encrypted; use UDP, or start the daemon with --tls-certificate");
   }
   const auto token = secure::ParseToken(text);
   if (!token.ok()) return Refuse(Refusal::kBadToken);

@@ -26,12 +26,13 @@ inline constexpr char kNeedsTokenText[] =
 // refusal comes too late.
 inline constexpr char kNoTokenHereText[] =
     "the daemon requires a token, and takes none over TCP and HTTP from other computers, because "
-    "they are not encrypted: use UDP, or a tunnel such as ssh -L";
+    "they are not encrypted: use UDP, or start the daemon with --tls-certificate";
 
 struct GateSettings {
   Security security = Security::kOpen;
   std::string name;  // of this daemon: the audience of tokens; may be empty
-  // Accepts tokens over TCP and HTTP, which everybody on the way can read, from other computers.
+  // Accepts tokens over plain TCP and HTTP, which everybody on the way can read, from other
+  // computers.
   bool tokens_in_clear = false;
 };
 
@@ -46,6 +47,9 @@ class TokenGate {
   // Replaces the keys, for example after the key file changed.
   void SetKeys(protocol::secure::KeyRing keys);
   [[nodiscard]] bool HasKey(std::uint32_t id) const;
+  [[nodiscard]] std::shared_ptr<const protocol::secure::KeyRing> keys() const;
+  // The time of the system clock, Unix seconds.
+  [[nodiscard]] std::uint64_t unix_now() const { return unix_now_(); }
 
   [[nodiscard]] const GateSettings& settings() const { return settings_; }
   [[nodiscard]] bool required() const { return settings_.security == Security::kRequired; }
@@ -53,25 +57,25 @@ class TokenGate {
   [[nodiscard]] Access Stranger() const { return required() ? Access() : Access::Everything(); }
 
   // False: a client must not even be asked for its token, which would be sent in clear text.
-  // `local`: as for Admit().
-  [[nodiscard]] bool TakesTokensFrom(bool local) const {
-    return local || settings_.tokens_in_clear;
+  // `shielded`: as for Admit().
+  [[nodiscard]] bool TakesTokens(bool shielded) const {
+    return shielded || settings_.tokens_in_clear;
   }
   // The reply over TCP and HTTP to a client without a token.
-  [[nodiscard]] const char* WhyNeeded(bool local) const {
-    return TakesTokensFrom(local) ? kNeedsTokenText : kNoTokenHereText;
+  [[nodiscard]] const char* WhyNeeded(bool shielded) const {
+    return TakesTokens(shielded) ? kNeedsTokenText : kNoTokenHereText;
   }
 
-  // Opens a token that a client has shown. `local`: the client is on this computer. Errors
-  // (kInvalidArgument): a sentence for the client. Refusals are counted by reason.
-  [[nodiscard]] Result<Access> Admit(std::string_view token, bool local, Time now) const;
+  // Opens a token that a client has shown. `shielded`: nobody on the network can read it, because
+  // the client is on this computer or speaks TLS. Errors (kInvalidArgument): a sentence for the
+  // client. Refusals are counted by reason.
+  [[nodiscard]] Result<Access> Admit(std::string_view token, bool shielded, Time now) const;
 
   // When a token expires, on the daemon's clock. `expires`: Unix time in seconds.
   [[nodiscard]] Time ExpiryOf(std::uint64_t expires, Time now) const;
 
  private:
   [[nodiscard]] Result<Access> Refuse(protocol::secure::Refusal refusal) const;
-  [[nodiscard]] std::shared_ptr<const protocol::secure::KeyRing> keys() const;
 
   const GateSettings settings_;
   const std::function<std::uint64_t()> unix_now_;

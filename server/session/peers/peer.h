@@ -60,12 +60,14 @@ class Link {
 // The name of a peer in the log, and the host that it counts to in fair shares.
 struct PeerLabel {
   PeerLabel(const char* name) : text(name) {}  // NOLINT: implicit, for peers without a host
-  PeerLabel(std::string name, std::string address = {}, bool is_local = true)  // NOLINT: implicit
-      : text(std::move(name)), host(std::move(address)), local(is_local) {}
+  PeerLabel(std::string name, std::string address = {},
+            bool is_shielded = true)  // NOLINT: implicit
+      : text(std::move(name)), host(std::move(address)), shielded(is_shielded) {}
 
-  std::string text;   // for the log: "udp 127.0.0.1 port 50112"
-  std::string host;   // the address without the port; empty: this program itself
-  bool local = true;  // the peer is on this computer
+  std::string text;  // for the log: "udp 127.0.0.1 port 50112"
+  std::string host;  // the address without the port; empty: this program itself
+  // Nobody on the network can read what it sends: it is on this computer or speaks TLS.
+  bool shielded = true;
 };
 
 // The other end of a connection, or a proven UDP address.
@@ -76,7 +78,7 @@ struct Peer {
   Link* link = nullptr;          // not null; outlives the peer
   TokenBucket bucket{1.0, 1.0};  // limits incoming messages
   std::string host;              // PeerLabel::host
-  bool local = true;             // PeerLabel::local
+  bool shielded = true;          // PeerLabel::shielded
   Access access;                 // what it may do; change it by Permit()
   double rate_share = 1.0;       // part of Limits::packets_per_second that its token leaves
   Consent consent;               // UDP: whether the address still wants what it is sent

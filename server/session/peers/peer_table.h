@@ -29,7 +29,7 @@ class PeerTable {
     peer->transport = transport;
     peer->name = std::move(name.text);
     peer->host = std::move(name.host);
-    peer->local = name.local;
+    peer->shielded = name.shielded;
     peer->link = link;
     peer->bucket = bucket;
     peer->last_heard = now;

@@ -76,17 +76,17 @@ TEST_F(TokenGateTest, ATokenIsWorthNothingWithoutItsKey) {
 
 TEST_F(TokenGateTest, OtherComputersShowNothingInClearText) {
   const secure::ClientToken token = secure::test::MakeTestToken(ring, random);
-  EXPECT_THAT(Admit(token, /*local=*/false).status().what(), HasSubstr("not encrypted"));
+  EXPECT_THAT(Admit(token, /*shielded=*/false).status().what(), HasSubstr("not encrypted"));
   EXPECT_EQ(metrics.Get(Counter::kRefusedInClear), 1u);
   TokenGate lenient(
       {.security = Security::kRequired, .name = "", .tokens_in_clear = true},
       [this] { return unix_now; }, &metrics);
   lenient.SetKeys(ring);
-  EXPECT_TRUE(lenient.Admit(ToText(token), /*local=*/false, Time(0)).ok());
+  EXPECT_TRUE(lenient.Admit(ToText(token), /*shielded=*/false, Time(0)).ok());
   // Nobody is asked for a token that would be refused after it was sent.
-  EXPECT_STREQ(gate.WhyNeeded(/*local=*/true), kNeedsTokenText);
-  EXPECT_STREQ(gate.WhyNeeded(/*local=*/false), kNoTokenHereText);
-  EXPECT_STREQ(lenient.WhyNeeded(/*local=*/false), kNeedsTokenText);
+  EXPECT_STREQ(gate.WhyNeeded(/*shielded=*/true), kNeedsTokenText);
+  EXPECT_STREQ(gate.WhyNeeded(/*shielded=*/false), kNoTokenHereText);
+  EXPECT_STREQ(lenient.WhyNeeded(/*shielded=*/false), kNeedsTokenText);
 }
 
 TEST_F(TokenGateTest, ARetiredKeyIsGone) {

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include <boost/beast/core/role.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/ssl/ssl_stream.hpp>
+#include <boost/beast/websocket/teardown.hpp>
+
+#include "base/layered_stream.h"
+#include "server/http/request/beast.h"
+#include "server/session/peers/peer.h"
+#include "server/tls/tls_context.h"
+
+namespace furrow::server {
+
+// A web connection with or without TLS: Beast's tcp_stream, with its timeouts, and perhaps its
+// ssl_stream on top. Beast's reads, writes and WebSockets take one as they take a tcp_stream.
+class WebStream {
+ public:
+  using executor_type = beast::tcp_stream::executor_type;
+
+  explicit WebStream(net::ip::tcp::socket socket)
+      : layers_(std::make_unique<LayeredStream<beast::tcp_stream, Tls>>(std::move(socket))) {}
+
+  [[nodiscard]] executor_type get_executor() { return layers_->lower().get_executor(); }
+  // The socket itself, for its options and addresses.
+  [[nodiscard]] net::ip::tcp::socket& socket() { return layers_->lower().socket(); }
+  [[nodiscard]] const net::ip::tcp::socket& socket() const { return layers_->lower().socket(); }
+  // False after the stream has moved away.
+  [[nodiscard]] bool is_open() const { return layers_ != nullptr && socket().is_open(); }
+  [[nodiscard]] bool is_tls() const { return layers_->upper() != nullptr; }
+  // True if the client has shown a certificate, which is then valid.
+  [[nodiscard]] bool has_client_certificate() const;
+
+  // The deadline of reads and writes; see beast::tcp_stream.
+  void expires_after(std::chrono::steady_clock::duration time) {
+    layers_->lower().expires_after(time);
+  }
+  void expires_never() { layers_->lower().expires_never(); }
+
+  // Begins TLS as the server. From then on, reads and writes are encrypted.
+  [[nodiscard]] net::awaitable<beast::error_code> Handshake(TlsContext context);
+  // Tells the client that nothing follows. Does not wait for it to say the same.
+  [[nodiscard]] net::awaitable<void> EndSending();
+
+  template <class Buffers, class Handler>
+  auto async_read_some(const Buffers& buffers, Handler&& handler) {
+    return layers_->async_read_some(buffers, std::forward<Handler>(handler));
+  }
+  template <class Buffers, class Handler>
+  auto async_write_some(const Buffers& buffers, Handler&& handler) {
+    return layers_->async_write_some(buffers, std::forward<Handler>(handler));
+  }
+
+ private:
+  using Tls = beast::ssl_stream<beast::tcp_stream&>;
+  Tls& TlsThatEnds();
+
+  friend void beast_close_socket(WebStream& stream);
+  template <class Handler>
+  friend void async_teardown(beast::role_type role, WebStream& stream, Handler&& handler);
+
+  std::unique_ptr<LayeredStream<beast::tcp_stream, Tls>> layers_;
+};
+
+// The client of a connection, as a peer of the hub.
+[[nodiscard]] PeerLabel LabelOfClient(const WebStream& stream);
+
+// What Beast calls to end a WebSocket, at a timeout and after its close frames.
+void beast_close_socket(WebStream& stream);
+template <class Handler>
+void async_teardown(beast::role_type role, WebStream& stream, Handler&& handler) {
+  if (stream.is_tls()) {
+    stream.TlsThatEnds().async_shutdown(std::forward<Handler>(handler));
+  } else {
+    beast::async_teardown(role, stream.layers_->lower(), std::forward<Handler>(handler));
+  }
+}
+
+}  // namespace furrow::server

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/tls/handshake.h"
+
+#include <algorithm>
+#include <array>
+
+#include <arpa/inet.h>
+#include <openssl/err.h>
+#include <openssl/ssl.h>
+
+#include "protocol/secure/crypto/random_source.h"
+
+namespace furrow::server {
+namespace {
+
+namespace secure = protocol::secure;
+
+// A number that OpenSSL adds to the reasons of alerts that the other side has sent.
+constexpr int kFirstAlert = SSL_AD_REASON_OFFSET;
+
+secure::PeerAddress AddressOf(const std::string& host) {
+  secure::PeerAddress address;
+  std::array<std::uint8_t, 4> v4{};
+  if (inet_pton(AF_INET, host.c_str(), v4.data()) == 1) return secure::FromIpv4(v4, 0);
+  // Other text leaves the zeros, so all clients with unknown addresses share one place.
+  (void)inet_pton(AF_INET6, host.c_str(), address.host.data());
+  return address;
+}
+
+}  // namespace
+
+bool LooksLikeTls(std::span<const std::uint8_t> bytes) {
+  constexpr std::uint8_t kHandshake = 22;
+  constexpr std::uint8_t kMajor = 3;
+  constexpr std::uint8_t kLastMinor = 4;
+  return (bytes.empty() || bytes[0] == kHandshake) && (bytes.size() < 2 || bytes[1] == kMajor) &&
+         (bytes.size() < kTlsPrefixBytes || bytes[2] <= kLastMinor);
+}
+
+Counter HandshakeFailure(unsigned long code) {
+  if (ERR_GET_LIB(code) != ERR_LIB_SSL) return Counter::kTlsFailed;
+  const int reason = ERR_GET_REASON(code);
+  switch (reason) {
+    case SSL_R_PEER_DID_NOT_RETURN_A_CERTIFICATE: return Counter::kTlsNoCertificate;
+    case SSL_R_CERTIFICATE_VERIFY_FAILED: return Counter::kTlsBadCertificate;
+    case SSL_R_UNSUPPORTED_PROTOCOL:
+    case SSL_R_VERSION_TOO_LOW:
+    case SSL_R_WRONG_VERSION_NUMBER: return Counter::kTlsOldVersion;
+    case SSL_R_NO_APPLICATION_PROTOCOL: return Counter::kTlsWrongProtocol;
+    default: return reason >= kFirstAlert ? Counter::kTlsRefusedByClient : Counter::kTlsFailed;
+  }
+}
+
+HandshakeBudget::HandshakeBudget() : hosts_(kPerHost, secure::SystemRandom()) {}
+
+// A host that has used up its own budget takes nothing from that of all.
+bool HandshakeBudget::Take(const std::string& host, Time now) {
+  const std::int64_t now_us = std::chrono::duration_cast<std::chrono::microseconds>(now).count();
+  return hosts_.Take(AddressOf(host), {}, now_us) && total_.Take(now_us);
+}
+
+}  // namespace furrow::server

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/tls/tls_identity.h"
+
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+namespace furrow::server {
+
+TlsIdentity::TlsIdentity(TlsFiles files)
+    : files_(std::move(files)),
+      watches_{FileWatch(files_.certificate), FileWatch(files_.key),
+               FileWatch(files_.client_authority)} {}
+
+bool TlsIdentity::FilesChanged() {
+  bool changed = false;
+  for (FileWatch& watch : watches_) changed |= watch.Changed();  // each notes its file
+  return changed;
+}
+
+Status TlsIdentity::Load() {
+  if (!enabled()) return {};
+  (void)FilesChanged();  // before they are read, so that no change is missed
+  auto contexts = LoadTlsContexts(files_);
+  FURROW_RETURN_IF_ERROR(contexts);
+  Use(*std::move(contexts));
+  return {};
+}
+
+void TlsIdentity::ReadIfChanged() {
+  if (FilesChanged()) {
+    changed_ = true;
+    return;
+  }
+  if (!std::exchange(changed_, false)) return;
+  auto contexts = LoadTlsContexts(files_);
+  if (!contexts.ok()) {
+    spdlog::error("the certificate stays as it was: {}", contexts.status().ToString());
+    return;
+  }
+  Use(*std::move(contexts));
+  spdlog::info("read the certificate {}", files_.certificate.string());
+}
+
+void TlsIdentity::Use(TlsContexts contexts) {
+  if (!contexts.warning.empty()) spdlog::warn("{}", contexts.warning);
+  const std::lock_guard lock(mutex_);
+  contexts_ = std::move(contexts);
+}
+
+TlsContext TlsIdentity::for_messages() const {
+  const std::lock_guard lock(mutex_);
+  return contexts_.messages;
+}
+
+TlsContext TlsIdentity::for_web() const {
+  const std::lock_guard lock(mutex_);
+  return contexts_.web;
+}
+
+}  // namespace furrow::server

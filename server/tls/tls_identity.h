@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <mutex>
+#include <vector>
+
+#include "base/status.h"
+#include "server/core/file_watch.h"
+#include "server/tls/tls_context.h"
+#include "server/tls/tls_files.h"
+
+namespace furrow::server {
+
+// The certificate and key of a running daemon, read again when the files change. Connections that
+// are open keep what they began with. Load() and ReadIfChanged() belong to one thread; the other
+// functions are thread-safe.
+class TlsIdentity {
+ public:
+  explicit TlsIdentity(TlsFiles files);
+
+  // Reads the files, if there are any. Errors: those of LoadTlsContexts().
+  [[nodiscard]] Status Load();
+  // Reads files that have changed. Call it about once per second. A change counts when a second
+  // passes without another one, because certificate and key are written one after the other.
+  // Files that cannot be used change nothing; the fault is logged once per change.
+  void ReadIfChanged();
+
+  // False: the ports speak plain TCP and HTTP.
+  [[nodiscard]] bool enabled() const { return files_.enabled(); }
+  // True: clients must show a certificate.
+  [[nodiscard]] bool asks_clients() const { return !files_.client_authority.empty(); }
+  // The present contexts, with which new connections begin. Only if enabled().
+  [[nodiscard]] TlsContext for_messages() const;
+  [[nodiscard]] TlsContext for_web() const;
+
+ private:
+  [[nodiscard]] bool FilesChanged();
+  void Use(TlsContexts contexts);
+
+  const TlsFiles files_;
+  std::vector<FileWatch> watches_;
+  bool changed_ = false;  // and not read yet
+  mutable std::mutex mutex_;
+  TlsContexts contexts_;  // guarded by mutex_
+};
+
+}  // namespace furrow::server

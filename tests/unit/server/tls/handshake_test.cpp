@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/tls/handshake.h"
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <openssl/err.h>
+#include <openssl/ssl.h>
+
+namespace furrow::server {
+namespace {
+
+TEST(Handshake, TlsIsKnownByItsFirstBytes) {
+  for (std::uint8_t minor = 0; minor <= 4; ++minor) {
+    const std::array<std::uint8_t, 3> hello{22, 3, minor};
+    for (std::size_t size = 0; size <= hello.size(); ++size) {
+      EXPECT_TRUE(LooksLikeTls(std::span(hello).first(size)));
+    }
+  }
+  // HTTP, a Furrow message of 22 bytes, and records that begin no handshake.
+  const std::array<std::uint8_t, 3> others[] = {
+      {'G', 'E', 'T'}, {22, 0, 0}, {21, 3, 3}, {22, 2, 0}, {22, 3, 5}};
+  for (const auto& bytes : others) EXPECT_FALSE(LooksLikeTls(bytes));
+}
+
+TEST(Handshake, FailuresAreCountedByReason) {
+  const auto counter = [](int reason) {
+    return HandshakeFailure(ERR_PACK(ERR_LIB_SSL, 0, reason));
+  };
+  EXPECT_EQ(counter(SSL_R_UNSUPPORTED_PROTOCOL), Counter::kTlsOldVersion);
+  EXPECT_EQ(counter(SSL_R_NO_APPLICATION_PROTOCOL), Counter::kTlsWrongProtocol);
+  EXPECT_EQ(counter(SSL_R_PEER_DID_NOT_RETURN_A_CERTIFICATE), Counter::kTlsNoCertificate);
+  EXPECT_EQ(counter(SSL_R_CERTIFICATE_VERIFY_FAILED), Counter::kTlsBadCertificate);
+  EXPECT_EQ(counter(SSL_R_TLSV1_ALERT_UNKNOWN_CA), Counter::kTlsRefusedByClient);
+  EXPECT_EQ(counter(SSL_R_BAD_EXTENSION), Counter::kTlsFailed);
+  EXPECT_EQ(HandshakeFailure(2), Counter::kTlsFailed) << "the connection ended";
+}
+
+TEST(HandshakeBudget, AHostUsesUpNothingOfOthers) {
+  HandshakeBudget budget;
+  const Time now = std::chrono::seconds(100);
+  std::uint32_t taken = 0;
+  while (budget.Take("192.0.2.1", now)) ++taken;
+  EXPECT_EQ(taken, HandshakeBudget::kPerHost);
+  EXPECT_FALSE(budget.Take("192.0.2.1", now));
+  EXPECT_TRUE(budget.Take("192.0.2.2", now));
+  EXPECT_TRUE(budget.Take("2001:db8::", now));
+  EXPECT_TRUE(budget.Take("192.0.2.1", now + std::chrono::seconds(1))) << "it fills again";
+}
+
+TEST(HandshakeBudget, AllHostsTogetherHaveALimit) {
+  HandshakeBudget budget;
+  const Time now = std::chrono::seconds(100);
+  std::uint32_t taken = 0;
+  for (int host = 0; host < 250; ++host) {
+    const std::string name = "192.0.2." + std::to_string(host);
+    for (int i = 0; i < 3; ++i) taken += budget.Take(name, now) ? 1 : 0;
+  }
+  EXPECT_EQ(taken, HandshakeBudget::kTotal);
+}
+
+}  // namespace
+}  // namespace furrow::server
