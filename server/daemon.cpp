@@ -289,6 +289,7 @@ Status Daemon::StartWeb() {
     parts.recording_is_paused = [this] { return recorder_->is_paused(); };
   }
   parts.open_to_network = ListensToNetwork(config_) && !gate_.required();
+  parts.gate = &gate_;
   api_ = std::make_unique<Api>(std::move(parts));
   auto started = HttpServer::Start(
       {.config = config_.http,

@@ -9,6 +9,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <sys/socket.h>
 
 #include "daemon_fixture.h"
@@ -358,6 +359,34 @@ TEST_F(Secure, EveryWebDoorIsClosedWithoutAToken) {
   EXPECT_EQ(status("/api/explain?weight=x", direct), 403);
   EXPECT_GT(daemon.Count(Counter::kRefusedOperate), 1u);
   EXPECT_GT(daemon.Count(Counter::kRefusedDirect), 1u);
+}
+
+TEST_F(Secure, OperatorsMakeTokensForOthers) {
+  const auto ask = [&](secure::Roles roles, const std::string& body) {
+    return WebClient(*daemon.ready().http)
+        .Ask("POST", "/api/token", body,
+             "Host: localhost\r\nAuthorization: Bearer " +
+                 ToText(keys.Token(roles, "ann,bob")) + "\r\n");
+  };
+  const secure::Roles operates = kBoth | Role::kOperate;
+  const auto made = ask(operates, R"({"roles": "publish", "subjects": "ann", "for": "10m"})");
+  ASSERT_EQ(made.status, 200) << made.body;
+  const auto reply = nlohmann::json::parse(made.body);
+  EXPECT_EQ(reply["roles"], "publish");
+  // The new token is as good as any other one.
+  const auto token = secure::ParseToken(reply["token"].get<std::string>());
+  ASSERT_TRUE(token.ok());
+  SealedClient sender(daemon.ready().udp, *token);
+  Offer(sender, offer);
+  EXPECT_EQ(ask(kBoth, R"({"roles": "watch", "for": "10m"})").status, 403);
+  EXPECT_EQ(ask(operates, R"({"roles": "direct", "for": "10m"})").status, 403);
+  EXPECT_EQ(ask(operates, R"({"roles": "watch", "for": "10m", "subjects": "*"})").status, 403);
+  EXPECT_EQ(ask(operates, R"({"roles": "watch", "for": "10d"})").status, 403);
+  for (const char* body : {"{}", R"({"roles": "watch"})", R"({"roles": "all", "for": "1h"})",
+                           R"({"roles": "watch", "for": "soon"})", R"({"role": "watch"})", "[]"}) {
+    EXPECT_EQ(ask(operates, body).status, 400) << body;
+  }
+  EXPECT_EQ(daemon.Count(Counter::kTokensMade), 1u);
 }
 
 TEST_F(Secure, AWebSocketTakesATokenAsAProtocol) {

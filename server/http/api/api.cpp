@@ -22,6 +22,7 @@ Api::Api(Parts parts)
       rig_(&captures_),
       playback_(parts.player),
       osc_(parts.osc),
+      tokens_(parts.gate, parts.metrics),
       routes_{{"GET", "/api/subjects", Need::kToken,
                [this](const ApiRequest& request, Hub& hub, Time now) {
                  return status_.Subjects(request, hub, now);
@@ -66,6 +67,10 @@ Api::Api(Parts parts)
                [this](const ApiRequest& request, Hub&, Time) { return osc_.Add(request); }},
               {"DELETE", "/api/osc", Need::kOperate,
                [this](const ApiRequest& request, Hub&, Time) { return osc_.Remove(request); }},
+              {"POST", "/api/token", Need::kOperate,
+               [this](const ApiRequest& request, Hub&, Time now) {
+                 return tokens_.Make(request, now);
+               }},
               {"GET", "/healthz", Need::kNothing,
                [this](const ApiRequest&, Hub&, Time) { return status_.Health(); }},
               {"GET", "/readyz", Need::kNothing,

@@ -15,6 +15,7 @@
 #include "server/http/api/rig_api.h"
 #include "server/http/api/settings_api.h"
 #include "server/http/api/status_api.h"
+#include "server/http/api/token_api.h"
 #include "server/http/request/api_types.h"
 #include "server/osc/osc_control.h"
 #include "server/pipeline/picture_source.h"
@@ -41,6 +42,7 @@ class Api {
     std::function<int()> viewers;               // number of WebSockets and picture streams
     std::function<bool()> recording_is_paused;  // by a full disk; empty: nothing is recorded
     bool open_to_network = false;               // other computers need no token
+    const TokenGate* gate = nullptr;            // null: the daemon makes no tokens
   };
   explicit Api(Parts parts);
   Api(const Api&) = delete;
@@ -70,6 +72,7 @@ class Api {
   RigApi rig_;
   PlaybackApi playback_;
   OscApi osc_;
+  TokenApi tokens_;
   const std::vector<Route> routes_;
 };
 

@@ -41,6 +41,8 @@ class Access {
     return kind_ == Kind::kEverything || (kind_ == Kind::kToken && grant_.roles.Has(role));
   }
 
+  // What the token states. Only by_token().
+  [[nodiscard]] const protocol::secure::Grant& grant() const { return grant_; }
   // "the token allows publish, watch of stage-*", for messages.
   [[nodiscard]] std::string Text() const;
 
