@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Typed access to the daemon's JSON (docs/HTTP-API.md). Rejected requests throw an ApiError.
-import { currentToken, withToken } from './state/token';
+import { tokenHeaders } from './state/token';
 import type { CameraPreset } from './view/camera';
 
 export interface SettingInfo {
@@ -140,14 +140,14 @@ async function errorOf(response: Response): Promise<ApiError> {
   }
 }
 
-async function call<T>(path: string, method = 'GET', body?: unknown): Promise<T> {
+async function ask(path: string, method = 'GET', body?: unknown): Promise<Response> {
   let response: Response;
   try {
     response = await fetch(path, {
       method,
       cache: 'no-store',
       headers: {
-        ...(currentToken() === '' ? {} : { Authorization: `Bearer ${currentToken()}` }),
+        ...tokenHeaders(),
         ...(body === undefined ? {} : { 'Content-Type': 'application/json' }),
       },
       ...(body === undefined ? {} : { body: JSON.stringify(body) }),
@@ -156,7 +156,11 @@ async function call<T>(path: string, method = 'GET', body?: unknown): Promise<T>
     throw new ApiError(0, '', 'The daemon does not answer');
   }
   if (!response.ok) throw await errorOf(response);
-  return (await response.json()) as T;
+  return response;
+}
+
+async function call<T>(path: string, method = 'GET', body?: unknown): Promise<T> {
+  return (await (await ask(path, method, body)).json()) as T;
 }
 
 function query(values: Record<string, string>): string {
@@ -180,8 +184,8 @@ export const api = {
   playback: () => call<Playback>('api/playback'),
   patchPlayback: (values: Partial<Pick<Playback, 'playing' | 'loop' | 'speed' | 'position_s'>>) =>
     call<Playback>('api/playback', 'PATCH', values),
-  /** The address from which the current rig can be downloaded. */
-  rigFile: () => withToken('api/rig.json'),
+  /** The current rig as the text of a file. */
+  rigFile: async () => (await ask('api/rig.json')).text(),
 };
 
 /** The sentence to show for any thrown value. */

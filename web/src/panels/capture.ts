@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Captures the live pose as the performer's neutral pose or as a reference pose of the rig.
 import { api, type Capture, type CaptureResult, type NeutralPart, wordsOf } from '../api';
-import { button, h, select, setOptions } from '../ui/dom';
+import { button, download, h, select, setOptions } from '../ui/dom';
 import type { Toasts } from '../ui/toast';
 
 const NEW = '+';
@@ -14,7 +14,7 @@ export class CapturePanel {
   private readonly newName = h('input', { type: 'text', 'aria-label': 'Name of the new pose', placeholder: 'name', hidden: true, maxlength: 64 });
   private readonly part: HTMLSelectElement;
   private readonly undo: HTMLButtonElement;
-  private readonly save: HTMLAnchorElement;
+  private readonly save: HTMLButtonElement;
   private readonly error = h('p', { class: 'error', role: 'alert' });
   private readonly result = h('div', { class: 'capture-result', 'aria-live': 'polite' });
   private readonly done = h('ol', { class: 'captures', 'aria-label': 'Captures so far' });
@@ -27,9 +27,7 @@ export class CapturePanel {
     });
     this.part = select('Part of the performer', [[AUTO, 'face if there is one'], ['face', 'face only'], ['body', 'body only'], ['both', 'face and body']], () => undefined);
     this.undo = button('Undo', () => void this.undoCapture(), { disabled: true });
-    this.save = h('a', { href: api.rigFile(), download: 'rig.json', class: 'button' }, 'Download rig');
-    // The token may have come since.
-    this.save.addEventListener('click', () => this.save.setAttribute('href', api.rigFile()));
+    this.save = button('Download rig', () => void this.saveRig());
     this.element = h('div', { class: 'capture' },
       h('p', {}, 'Hold the expression, then click Capture. The pose becomes the neutral pose of this performer, from which all poses are measured, or a reference pose of the wrinkle rig, which its drivers use.'),
       h('div', { class: 'row' }, this.pose, this.newName, this.part),
@@ -38,6 +36,14 @@ export class CapturePanel {
         button('Capture', () => void this.capturePose(false), { class: 'primary' }), this.undo, this.save),
       this.error, this.result, this.done,
       h('p', { class: 'fine' }, 'A capture changes the rig of the running daemon for every subject. It is not written to a file: download the rig to keep it.'));
+  }
+
+  private async saveRig(): Promise<void> {
+    try {
+      download('rig.json', 'application/json', await api.rigFile());
+    } catch (error) {
+      this.toasts.say(wordsOf(error), 'error');
+    }
   }
 
   async load(): Promise<void> {

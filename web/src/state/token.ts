@@ -26,8 +26,7 @@ export function setToken(text: string): void {
   }
 }
 
-/** `path` for elements and loaders that cannot send a header. */
-export function withToken(path: string): string {
-  if (token === '') return path;
-  return `${path}${path.includes('?') ? '&' : '?'}token=${encodeURIComponent(token)}`;
+/** The header that shows the token; none without one. */
+export function tokenHeaders(): Record<string, string> {
+  return token === '' ? {} : { Authorization: `Bearer ${token}` };
 }

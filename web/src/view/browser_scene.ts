@@ -29,10 +29,10 @@ export class BrowserScene {
   }
 
   /** `url`: of the daemon's character for browsers. Throws an Error if the browser or the file cannot do it. */
-  static async create(canvas: HTMLCanvasElement, url: string): Promise<BrowserScene> {
+  static async create(canvas: HTMLCanvasElement, url: string, headers: Record<string, string>): Promise<BrowserScene> {
     const renderer = new WebGLRenderer({ canvas, antialias: true });
     try {
-      return new BrowserScene(renderer, await loadCharacter(url, renderer));
+      return new BrowserScene(renderer, await loadCharacter(url, renderer, { headers }));
     } catch (error) {
       release(renderer);
       throw error;

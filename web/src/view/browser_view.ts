@@ -5,7 +5,7 @@ import { type ReadSettings, readSettings } from 'furrow-three/settings';
 import { PoseFeed, WeightFeed } from 'furrow/protocol';
 import type { SubjectInfo } from '../api';
 import type { AppState } from '../state/app_state';
-import { withToken } from '../state/token';
+import { tokenHeaders } from '../state/token';
 import { h } from '../ui/dom';
 import { Signal } from '../ui/signal';
 import type { Connection } from '../wire/connection';
@@ -161,15 +161,15 @@ export class BrowserView {
     canvas.addEventListener('webglcontextlost', () => canvas.isConnected && this.give('failed'));
     this.element.replaceChildren(canvas);
     try {
-      const url = withToken(CHARACTER_URL);
-      const reply = await fetch(url, { method: 'HEAD' });
+      const headers = tokenHeaders();
+      const reply = await fetch(CHARACTER_URL, { method: 'HEAD', headers });
       if (reply.status === 404) {
         if (canvas.isConnected) this.give('none');
         return;
       }
       if (!reply.ok) throw new Error(`${CHARACTER_URL}: HTTP status ${reply.status}`);
       const { BrowserScene: Scene } = await import('./browser_scene');
-      const scene = await Scene.create(canvas, url);
+      const scene = await Scene.create(canvas, CHARACTER_URL, headers);
       if (!canvas.isConnected) {
         scene.dispose(); // the daemon was lost meanwhile
         return;

@@ -26,6 +26,8 @@ export interface Weights {
 export interface CharacterOptions {
   /** Of the wrinkle rig (default: inside the .glb file, or "<stem>.rig.json" beside it). */
   rigUrl?: string;
+  /** Of the requests for the .glb file and its rig, for example one that shows a token. */
+  headers?: Record<string, string>;
   /**
    * The picture has several samples per pixel, so hair and lashes have soft edges (default: whether the renderer was made
    * with `antialias`). Set it to true if you draw into a multisampled target, and to false if you draw into another.
@@ -408,5 +410,5 @@ class Builder {
 export async function loadCharacter(url: string, renderer: WebGLRenderer, options: CharacterOptions = {}): Promise<FurrowCharacter> {
   const softEdges = options.softEdges ?? renderer.getContextAttributes().antialias ?? false;
   const whyNot = options.skin === false ? 'the character was loaded without skin shading' : whyNoSkin(renderer);
-  return new Builder(await readCharacter(url, options.rigUrl), renderer, softEdges, whyNot).build();
+  return new Builder(await readCharacter(url, options.rigUrl, options.headers), renderer, softEdges, whyNot).build();
 }

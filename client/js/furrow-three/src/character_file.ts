@@ -24,14 +24,14 @@ interface GltfJson {
   scenes?: { extras?: { furrow_rig?: unknown; furrow_material_binds?: unknown } }[];
 }
 
-async function fetchText(url: string): Promise<string> {
-  const response = await fetch(url);
+async function fetchText(url: string, headers: Record<string, string>): Promise<string> {
+  const response = await fetch(url, { headers });
   if (!response.ok) throw new Error(`${url}: HTTP status ${response.status}`);
   return response.text();
 }
 
-async function fetchBytes(url: string): Promise<ArrayBuffer> {
-  const response = await fetch(url);
+async function fetchBytes(url: string, headers: Record<string, string>): Promise<ArrayBuffer> {
+  const response = await fetch(url, { headers });
   if (!response.ok) throw new Error(`${url}: HTTP status ${response.status}`);
   return response.arrayBuffer();
 }
@@ -93,10 +93,10 @@ function prepare(texture: Texture, kind: 'mask' | 'data' | 'colour'): Texture {
  * `url`: of the .glb file. `rigUrl`: of the rig; by default the rig inside the .glb file (scene extra `furrow_rig`),
  * else "<stem>.rig.json" beside the file.
  */
-export async function readCharacter(url: string, rigUrl?: string): Promise<CharacterFile> {
+export async function readCharacter(url: string, rigUrl?: string, headers: Record<string, string> = {}): Promise<CharacterFile> {
   const loader = new GLTFLoader();
   loader.register((parser) => new EmbeddedPictures(parser));
-  const bytes = await fetchBytes(url);
+  const bytes = await fetchBytes(url, headers);
   if (uses(bytes, 'EXT_meshopt_compression')) {
     // Loaded only if it is needed: it is WebAssembly, which pages may forbid.
     loader.setMeshoptDecoder((await import('three/addons/libs/meshopt_decoder.module.js')).MeshoptDecoder);
@@ -107,7 +107,7 @@ export async function readCharacter(url: string, rigUrl?: string): Promise<Chara
   const embedded = extras?.furrow_rig;
   const beside = rigUrl ?? url.replace(/(\.glb)?(\?.*)?$/, '.rig.json');
   const rig = rigUrl === undefined && embedded !== undefined
-    ? readRig(typeof embedded === 'string' ? embedded : JSON.stringify(embedded)) : readRig(await fetchText(beside));
+    ? readRig(typeof embedded === 'string' ? embedded : JSON.stringify(embedded)) : readRig(await fetchText(beside, headers));
   return {
     gltf,
     rig,
