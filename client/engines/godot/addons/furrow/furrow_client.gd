@@ -34,8 +34,10 @@ export var address = ""
 export(PoolStringArray) var subjects = PoolStringArray()
 # Names of the weights, as comma-separated globs; empty: all.
 export var pattern = ""
-# The text of a connect token, for daemons that require one (docs/TOKENS.md). It is not encrypted on its way.
+# The text of a connect token, for daemons that require one (docs/TOKENS.md).
 export var token = ""
+# Permits the token to another computer, where everybody on the way can read it: Godot 3 knows no TLS 1.3.
+export var token_in_clear = false
 # Late frames queue at the daemon; false: newer frames replace them, which is better on slow networks.
 export var every_frame = true
 export var open_on_ready = true
@@ -175,6 +177,9 @@ func _begin():
 	if subjects.size() > MAX_ASKED:
 		_give_up("%d subjects, but one FurrowClient follows at most %d; use another for more" % [subjects.size(), MAX_ASKED])
 		return
+	if token != "" and not token_in_clear and not _is_this_computer(get_address()):
+		_give_up("the token would travel to %s unencrypted; set token_in_clear to send it anyway" % get_address())
+		return
 	_set_state(State.CONNECTING if state != State.LOST else State.LOST)
 	_heard_msec = OS.get_ticks_msec()
 	_is_lost = false
@@ -187,6 +192,11 @@ func _begin():
 	_socket.connect("data_received", self, "_on_data")
 	if _socket.connect_to_url("ws://" + get_address() + "/weights?" + _query()) != OK:
 		_lose("'" + get_address() + "' is not HOST:PORT")
+
+
+static func _is_this_computer(host_and_port):
+	var host = host_and_port.substr(0, host_and_port.find_last(":")).trim_prefix("[").trim_suffix("]")
+	return host == "localhost" or host == "::1" or (host.begins_with("127.") and host.is_valid_ip_address())
 
 
 func _query():
