@@ -1,0 +1,81 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Measures TLS beside plain TCP: the time from a pose to its weights, and the daemon's processor time per pose.
+
+    tls_stream.py BIN [--rounds N] [--poses N]
+
+Two daemons run, one with a certificate. Rounds alternate between them, so both meet the same company on the machine.
+Prints one row per way, the medians and ranges over the rounds, and then the ratios of the medians. BIN: the folder with
+furrowd and bench_tls_client.
+"""
+import argparse
+import os
+import pathlib
+import re
+import statistics
+import subprocess
+import tempfile
+
+FIGURES = {"p50": "p50 (us)", "p99": "p99 (us)", "cpu": "CPU of the daemon (us per pose)", "client": "CPU of the client (us per pose)"}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("bin", type=pathlib.Path)
+    parser.add_argument("--rounds", type=int, default=7)
+    parser.add_argument("--poses", type=int, default=30_000, help="per round")
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        measure(options, pathlib.Path(folder))
+
+
+def start(options, config, *arguments):
+    daemon = subprocess.Popen([options.bin / "furrowd", "--config", config, "--rig", "arkit", "--no-render", "--no-http", "--tcp", "0", "--udp", "0", *arguments],
+                              stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+    return daemon, re.search(r"tcp=\S*?:(\d+)", daemon.stdout.readline()).group(1)
+
+
+def cpu_seconds(pid):
+    fields = pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def measure(options, folder):
+    certificate, key = folder / "crt", folder / "key"
+    subprocess.run(["openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256", "-nodes", "-days", "1", "-subj",
+                    "/CN=bench", "-addext", "subjectAltName=IP:127.0.0.1", "-keyout", key, "-out", certificate],
+                   check=True, capture_output=True)
+    config = folder / "furrow.toml"
+    # One client that waits for nothing but its weights sends more than a peer may send by default.
+    config.write_text("[limits]\npackets_per_second = 1e6\n")
+    daemons = {"plain": start(options, config), "TLS": start(options, config, "--tls-certificate", certificate, "--tls-key", key)}
+    found = {way: [] for way in daemons}
+    try:
+        for _ in range(options.rounds):
+            for way, (daemon, port) in daemons.items():
+                before = cpu_seconds(daemon.pid)
+                arguments = [certificate] if way == "TLS" else []
+                run = subprocess.run([options.bin / "bench_tls_client", port, str(options.poses), *arguments], check=True,
+                                     capture_output=True, text=True)
+                p50, p99, client = map(float, run.stdout.split())
+                cpu = 1e6 * (cpu_seconds(daemon.pid) - before) / options.poses
+                found[way].append({"p50": p50, "p99": p99, "cpu": cpu, "client": client})
+    finally:
+        for daemon, _ in daemons.values():
+            daemon.terminate()
+            daemon.wait()
+    print("| way | " + " | ".join(FIGURES.values()) + " |\n|---|" + "---|" * len(FIGURES))
+    for way, runs in found.items():
+        cells = []
+        for figure in FIGURES:
+            values = [run[figure] for run in runs]
+            cells.append(f"{statistics.median(values):.1f} ({min(values):.1f} to {max(values):.1f})")
+        print(f"| {way} | " + " | ".join(cells) + " |")
+    for figure in ("p50", "cpu"):
+        ratio = (statistics.median(run[figure] for run in found["TLS"]) /
+                 statistics.median(run[figure] for run in found["plain"]))
+        print(f"TLS / plain, {FIGURES[figure]}: {ratio:.2f}")
+
+
+if __name__ == "__main__":
+    main()
