@@ -93,9 +93,9 @@ void TcpTransport::Fail(const std::string& reason) {
 Status TcpTransport::Await(Clock::time_point deadline) {
   if (!AwaitConnect(deadline)) {
     Close();
-    const char* const phase =
-        stream_.upper() != nullptr ? "the TLS handshake took too long" : "the connection timed out";
-    Fail(phase);
+    Fail(stream_.upper() != nullptr
+             ? "the TLS handshake took too long (does it speak TLS at this port?)"
+             : asio::error_code(asio::error::timed_out).message());
   }
   return *result_;
 }
