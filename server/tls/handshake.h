@@ -32,7 +32,7 @@ inline constexpr std::size_t kTlsPrefixBytes = 3;
 class HandshakeBudget {
  public:
   static constexpr std::uint32_t kPerHost = 100;  // per second
-  static constexpr std::uint32_t kTotal = 400;    // per second
+  static constexpr std::uint32_t kTotal = 200;    // per second
 
   HandshakeBudget();
   // False, without effect on others, if the budget is used up. `host`: see HostOf().

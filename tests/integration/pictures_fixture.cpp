@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <filesystem>
 
+#include <sys/socket.h>
+
 #include "character/package/package.h"
 #include "motion/pose_source.h"
 
@@ -44,15 +46,20 @@ void PicturesTest::SetUp() {
   config.http.port = 0;
   // Rendering may be slow here, and the decay of a lost subject must not request pictures.
   config.limits.loss_seconds = config.limits.idle_seconds = 3600;
+  Configure(&config);
   auto loaded = character::LoadCharacter(glb, {}, motion::CachedPoseSource());
   ASSERT_TRUE(loaded.ok()) << loaded.status().ToString();
   clip = NoddingClip(*loaded, 20);
   daemon.emplace(config);
   ASSERT_TRUE(daemon->serves());
   if (!daemon->ready().render) GTEST_SKIP() << "no OpenGL 4.5 here";
-  sender.emplace(daemon->ready().tcp);
+  sender.emplace(ConnectSender());
   offer = OfferOf(clip, "ann");
   Offer(*sender, offer);
+}
+
+Connected PicturesTest::ConnectSender() {
+  return {ConnectSocket(SOCK_STREAM, daemon->ready().tcp)};
 }
 
 void PicturesTest::SendPose(int frame) {

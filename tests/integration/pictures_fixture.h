@@ -14,6 +14,10 @@ namespace furrow::testing_net {
 class PicturesTest : public testing::Test {
  protected:
   void SetUp() override;
+  // Changes the configuration of the daemon.
+  virtual void Configure(server::Config* /*config*/) {}
+  // The stream of the sender, which is connected to the daemon.
+  virtual Connected ConnectSender();
   // Frames 0 to 19; the nod deepens with the frame number.
   void SendPose(int frame);
 

@@ -20,6 +20,7 @@
 #include "client/cpp/tls/client_tls.h"
 #include "client/cpp/transports.h"
 #include "daemon_fixture.h"
+#include "pictures_fixture.h"
 #include "protocol/secure/token/token_text.h"
 #include "sealed_client.h"
 #include "tests/certificates.h"
@@ -111,7 +112,7 @@ TEST_F(Tls, ServesEveryWebDoor) {
   EXPECT_TRUE(socket.Await<protocol::SubscribeReply>().has_value());
   TlsTunnel lines_tunnel(*daemon->ready().http, trusted.get(), kHttp);
   WebClient lines(Connected{lines_tunnel.TakeSocket()});
-  EXPECT_EQ(lines.AskRaw("GET /weights?wait=1 HTTP/1.1\r\nHost: localhost\r\n\r\n").status, 200);
+  EXPECT_EQ(lines.AskRaw("GET /weights HTTP/1.1\r\nHost: localhost\r\n\r\n").status, 200);
 }
 
 TEST_F(Tls, PlainClientsGetOneAnswer) {
@@ -173,9 +174,12 @@ TEST_F(Tls, AnAuthorityMaySignTheCertificate) {
 TEST_F(Tls, AClientSaysThatADaemonSpeaksNoTls) {
   daemon.emplace(Weights());
   ASSERT_TRUE(daemon->serves());
-  const Status status = Connect({});
-  EXPECT_EQ(status.code(), StatusCode::kInvalidArgument);
-  EXPECT_THAT(status.what(), HasSubstr("TLS"));
+  // Such a daemon waits for the rest of a very long message.
+  const Status status =
+      client::OpenTransport(TransportKind::kTcp, "127.0.0.1", daemon->ready().tcp,
+                            std::chrono::milliseconds(200), {.tls = ContextOf({})})
+          .status();
+  EXPECT_THAT(status.what(), HasSubstr("does it speak TLS at this port?"));
 }
 
 TEST_F(Tls, EachPortSpeaksItsOwnProtocol) {
@@ -248,6 +252,40 @@ TEST_F(Tls, HandshakesHoldTheirHostsShare) {
   EXPECT_EQ(daemon->Count(Counter::kConnectionsRefused), 1u);
 }
 
+class TlsPictures : public PicturesTest {
+ protected:
+  void Configure(server::Config* config) override {
+    config->security.tls = {.certificate = TestCertificate().Write(folder.path(), "daemon"),
+                            .key = folder / "daemon.key",
+                            .client_authority = {}};
+    trusted = ContextOf({.authority = folder / "daemon.crt"});
+  }
+  Connected ConnectSender() override {
+    tunnel.emplace(daemon->ready().tcp, trusted.get());
+    return {tunnel->TakeSocket()};
+  }
+
+  TemporaryFolder folder;
+  Context trusted;
+  std::optional<TlsTunnel> tunnel;  // of the sender
+};
+
+TEST_F(TlsPictures, ArriveAsSnapshotsAndAsAStream) {
+  SendPose(0);
+  const std::string query = "?subject=ann&width=64&height=64&shading=diffuse";
+  TlsTunnel one(*daemon->ready().http, trusted.get(), kHttp);
+  const auto snapshot = WebClient(Connected{one.TakeSocket()}).Ask("GET", "/snapshot.png" + query);
+  ASSERT_EQ(snapshot.status, 200) << snapshot.body;
+  EXPECT_TRUE(snapshot.body.starts_with("\x89PNG"));
+  TlsTunnel two(*daemon->ready().http, trusted.get(), kHttp);
+  WebClient stream(Connected{two.TakeSocket()});
+  ASSERT_EQ(stream.AskRaw("GET /mjpeg" + query + " HTTP/1.1\r\nHost: localhost\r\n\r\n").status,
+            200);
+  stream.ReadUntil("Content-Type: image/jpeg");
+  stream.ReadUntil("\r\n\r\n");
+  EXPECT_EQ(stream.Take(3), "\xFF\xD8\xFF");
+}
+
 class ClientCertificates : public Tls {
  protected:
   void SetUp() override {
@@ -284,8 +322,8 @@ TEST_F(ClientCertificates, AreRequired) {
   EXPECT_THAT(Ping({.authority = folder / "daemon.crt"}),
               HasSubstr("asks for a certificate of the client"));
   EXPECT_THAT(Ping(As("stranger")), HasSubstr("TLS failed"));
-  EXPECT_EQ(daemon->Count(Counter::kTlsNoCertificate), 1u);
-  EXPECT_EQ(daemon->Count(Counter::kTlsBadCertificate), 1u);
+  daemon->AwaitCount(Counter::kTlsNoCertificate, 1);
+  daemon->AwaitCount(Counter::kTlsBadCertificate, 1);
 }
 
 TEST_F(ClientCertificates, ProbesNeedNone) {

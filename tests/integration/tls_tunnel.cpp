@@ -2,6 +2,7 @@
 #include "tls_tunnel.h"
 
 #include <array>
+#include <csignal>
 #include <utility>
 
 #include <openssl/ssl.h>
@@ -15,6 +16,8 @@ namespace furrow::testing_net {
 
 TlsTunnel::TlsTunnel(std::uint16_t port, SSL_CTX* context, const std::string& protocols)
     : tcp_(ConnectSocket(SOCK_STREAM, port)), ssl_(SSL_new(context), &SSL_free) {
+  // OpenSSL writes without MSG_NOSIGNAL.
+  std::signal(SIGPIPE, SIG_IGN);
   SSL_set_alpn_protos(ssl_.get(), reinterpret_cast<const unsigned char*>(protocols.data()),
                       static_cast<unsigned int>(protocols.size()));
   SSL_set_fd(ssl_.get(), tcp_);
