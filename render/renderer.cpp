@@ -2,6 +2,7 @@
 #include "render/renderer.h"
 
 #include <algorithm>
+#include <string>
 
 #include "base/status.h"
 #include "render/gl/egl_context.h"
@@ -21,17 +22,17 @@ constexpr int kTilesAcross = 6;  // ratio between the picture's size and a strip
 class GlRenderer final : public Renderer {
  public:
   static Result<std::unique_ptr<Renderer>> Create(const character::Character& character,
-                                                  std::string_view device) {
+                                                  const RendererOptions& options) {
     // The context is current from here on, as the uploads below require.
-    Result<std::unique_ptr<EglContext>> context = EglContext::Create(device);
+    Result<std::unique_ptr<EglContext>> context = EglContext::Create(options.device);
     FURROW_RETURN_IF_ERROR(context);
     Result<std::unique_ptr<GpuCharacter>> gpu = GpuCharacter::Create(character);
     FURROW_RETURN_IF_ERROR(gpu);
     Result<std::unique_ptr<WrinkleTables>> tables =
         WrinkleTables::Create(character, (*gpu)->layout());
     FURROW_RETURN_IF_ERROR(tables);
-    return std::unique_ptr<Renderer>(
-        new GlRenderer(character, std::move(*context), std::move(*gpu), std::move(*tables)));
+    return std::unique_ptr<Renderer>(new GlRenderer(character, options, std::move(*context),
+                                                    std::move(*gpu), std::move(*tables)));
   }
 
   ~GlRenderer() override {
@@ -50,6 +51,13 @@ class GlRenderer final : public Renderer {
     FrameGraph graph;
     FURROW_RETURN_IF_ERROR(BuildFrame(request, &graph));
     FURROW_RETURN_IF_ERROR(graph.Compile());
+    if (const std::size_t bytes = graph.PeakBytes(); bytes > pool_.max_bytes()) {
+      return {StatusCode::kLimit,
+              "the picture needs " + std::to_string(bytes >> 20) +
+                  " MiB of textures; the limit is " + std::to_string(pool_.max_bytes() >> 20) +
+                  " MiB",
+              "renderer", "ask for fewer pixels or fewer anti_aliasing.samples"};
+    }
     const Status status = graph.Execute(&pool_, observer_);
     pool_.EndFrame();
     return status;
@@ -73,14 +81,16 @@ class GlRenderer final : public Renderer {
   }
 
  private:
-  GlRenderer(const character::Character& character, std::unique_ptr<EglContext> context,
-             std::unique_ptr<GpuCharacter> gpu, std::unique_ptr<WrinkleTables> tables)
+  GlRenderer(const character::Character& character, const RendererOptions& options,
+             std::unique_ptr<EglContext> context, std::unique_ptr<GpuCharacter> gpu,
+             std::unique_ptr<WrinkleTables> tables)
       : skeleton_(character.skeleton),
         inverse_bind_matrices_(character.inverse_bind_matrices),
         num_shapes_(character.shapes.size()),
         presets_(CameraPresets(character)),
         context_(std::move(context)),
-        pool_(&device_),
+        pool_(&device_,
+              options.max_texture_bytes == 0 ? TransientPool::kNoLimit : options.max_texture_bytes),
         gpu_(std::move(gpu)),
         tables_(std::move(tables)),
         scene_(skeleton_, inverse_bind_matrices_, gpu_.get(), tables_.get(), &shaders_,
@@ -127,7 +137,7 @@ class GlRenderer final : public Renderer {
 
 Result<std::unique_ptr<Renderer>> Renderer::Create(const character::Character& character,
                                                    const RendererOptions& options) {
-  return GlRenderer::Create(character, options.device);
+  return GlRenderer::Create(character, options);
 }
 
 Result<Image> Renderer::Render(const FrameRequest& request) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -19,6 +20,9 @@ class FrameGraphObserver;  // render/graph/frame_graph.h
 struct RendererOptions {
   // EGL device index, or "surfaceless". Empty: the first device that provides OpenGL 4.5.
   std::string device;
+  // The most memory of the textures that one picture is drawn into, and of those that are kept for
+  // the next pictures, in bytes. 0: no limit.
+  std::size_t max_texture_bytes = 0;
 };
 
 // Draws pictures of one character without a window, with one or more subjects per picture. Owns its
@@ -39,7 +43,8 @@ class Renderer {
 
   // Starts to draw a picture. The request's spans may be freed when the call returns. Errors:
   // kInvalidArgument and kNonFinite (`where` is the field, "others[3].model"), kLimit (more than
-  // kMaxSubjects, or more than the vertex buffers hold), kUnavailable (two pictures are in flight,
+  // kMaxSubjects, more than the vertex buffers hold, or more than
+  // RendererOptions::max_texture_bytes), kUnavailable (two pictures are in flight,
   // or the context is lost; create a new renderer), kInternal (a shader).
   [[nodiscard]] virtual Status Submit(const FrameRequest& request) = 0;
   // Returns the oldest picture in flight if it is ready; otherwise an image of width 0. `wait`:

@@ -5,6 +5,20 @@
 
 namespace furrow::render {
 
+std::size_t TextureBytes(const TextureDesc& desc) {
+  std::size_t bytes = 0;  // per sample
+  switch (desc.format) {
+    case PixelFormat::kR8: bytes = 1; break;
+    case PixelFormat::kRgba8:
+    case PixelFormat::kR32F:
+    case PixelFormat::kDepth32F: bytes = 4; break;
+    case PixelFormat::kRgba16F: bytes = 8; break;
+    case PixelFormat::kRgba32F: bytes = 16; break;
+  }
+  return bytes * static_cast<std::size_t>(desc.width) * static_cast<std::size_t>(desc.height) *
+         static_cast<std::size_t>(desc.samples);
+}
+
 TransientPool::~TransientPool() {
   for (const Entry& entry : entries_) device_->DestroyTexture(entry.texture);
 }
@@ -14,7 +28,9 @@ TextureId TransientPool::Acquire(const TextureDesc& desc) {
   const auto fits = [&](const Entry& entry) { return !entry.in_use && entry.desc == desc; };
   auto found = std::find_if(entries_.begin(), entries_.end(), fits);
   if (found == entries_.end()) {
-    entries_.push_back({desc, device_->CreateTexture(desc), false, 0});
+    MakeRoom(TextureBytes(desc));
+    entries_.push_back({desc, device_->CreateTexture(desc), false, 0, 0});
+    num_bytes_ += TextureBytes(desc);
     found = entries_.end() - 1;
   }
   found->in_use = true;
@@ -25,14 +41,35 @@ TextureId TransientPool::Acquire(const TextureDesc& desc) {
 // The texture keeps its contents until another pass acquires it.
 void TransientPool::Release(TextureId texture) {
   for (Entry& entry : entries_) {
-    if (entry.texture == texture) entry.in_use = false;
+    if (entry.texture != texture) continue;
+    entry.in_use = false;
+    entry.released = ++num_released_;
+  }
+}
+
+void TransientPool::Destroy(const Entry& entry) {
+  device_->DestroyTexture(entry.texture);
+  num_bytes_ -= TextureBytes(entry.desc);
+}
+
+// Destroys unused textures until `bytes` fit. What is in use stays, however much that is.
+void TransientPool::MakeRoom(std::size_t bytes) {
+  while (num_bytes_ + bytes > max_bytes_) {
+    auto oldest = entries_.end();
+    for (auto entry = entries_.begin(); entry != entries_.end(); ++entry) {
+      if (entry->in_use) continue;
+      if (oldest == entries_.end() || entry->released < oldest->released) oldest = entry;
+    }
+    if (oldest == entries_.end()) return;
+    Destroy(*oldest);
+    entries_.erase(oldest);
   }
 }
 
 // Destroys textures that no frame has used for a while, such as those of a former picture size.
 void TransientPool::EndFrame() {
   for (Entry& entry : entries_) {
-    if (!entry.in_use && ++entry.idle_frames > kKeepFrames) device_->DestroyTexture(entry.texture);
+    if (!entry.in_use && ++entry.idle_frames > kKeepFrames) Destroy(entry);
   }
   std::erase_if(entries_, [](const Entry& entry) { return entry.idle_frames > kKeepFrames; });
 }
@@ -187,6 +224,21 @@ Status FrameGraph::Execute(TransientPool* pool, FrameGraphObserver* observer) {
     if (texture.id != 0 && !texture.imported) pool->Release(std::exchange(texture.id, 0));
   }
   return status;
+}
+
+std::size_t FrameGraph::PeakBytes() const {
+  std::size_t peak = 0;
+  for (int pass = 0; pass < static_cast<int>(passes_.size()); ++pass) {
+    std::size_t alive = 0;
+    for (const Texture& texture : textures_) {
+      if (texture.imported || texture.first_pass < 0) continue;
+      if (texture.first_pass <= pass && pass <= texture.last_pass) {
+        alive += TextureBytes(texture.desc);
+      }
+    }
+    peak = std::max(peak, alive);
+  }
+  return peak;
 }
 
 bool FrameGraph::IsCulled(std::string_view pass) const {

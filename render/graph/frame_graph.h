@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -25,6 +27,9 @@ struct TextureDesc {
 
   friend bool operator==(const TextureDesc&, const TextureDesc&) = default;
 };
+
+// The memory of a texture without the driver's own overhead.
+[[nodiscard]] std::size_t TextureBytes(const TextureDesc& desc);
 
 using TextureId = std::uint32_t;  // the device's name for a texture; 0: none
 
@@ -50,13 +55,16 @@ class FrameGraphObserver {
 };
 
 // Lends textures to passes, and keeps those that are given back for later passes and frames that
-// need the same TextureDesc.
+// need the same TextureDesc. Pictures of many sizes would fill the memory, so textures that are not
+// in use are destroyed, the longest unused first, before the pool holds more than `max_bytes`.
 class TransientPool {
  public:
   static constexpr int kKeepFrames = 8;  // a texture unused for this many frames is destroyed
+  static constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max();
 
   // `device` must outlive the pool.
-  explicit TransientPool(FrameGraphDevice* device) : device_(device) {}
+  explicit TransientPool(FrameGraphDevice* device, std::size_t max_bytes = kNoLimit)
+      : device_(device), max_bytes_(max_bytes) {}
   ~TransientPool();
   TransientPool(const TransientPool&) = delete;
   TransientPool& operator=(const TransientPool&) = delete;
@@ -67,6 +75,8 @@ class TransientPool {
   // Call once per frame: destroys the textures that were unused for kKeepFrames frames.
   void EndFrame();
   [[nodiscard]] int num_textures() const { return static_cast<int>(entries_.size()); }
+  [[nodiscard]] std::size_t num_bytes() const { return num_bytes_; }
+  [[nodiscard]] std::size_t max_bytes() const { return max_bytes_; }
 
  private:
   struct Entry {
@@ -74,8 +84,15 @@ class TransientPool {
     TextureId texture = 0;
     bool in_use = false;
     int idle_frames = 0;
+    std::uint64_t released = 0;  // counts up with each Release()
   };
+  void MakeRoom(std::size_t bytes);
+  void Destroy(const Entry& entry);
+
   FrameGraphDevice* device_;
+  const std::size_t max_bytes_;
+  std::size_t num_bytes_ = 0;
+  std::uint64_t num_released_ = 0;
   std::vector<Entry> entries_;
 };
 
@@ -147,6 +164,9 @@ class FrameGraph {
   // Runs the passes that were not culled, in order. Stops at the first failure and returns it.
   // Requires Compile(). `observer` may be null.
   [[nodiscard]] Status Execute(TransientPool* pool, FrameGraphObserver* observer = nullptr);
+
+  // The most bytes of transient textures that Execute() needs at a time. Requires Compile().
+  [[nodiscard]] std::size_t PeakBytes() const;
 
   [[nodiscard]] bool IsCulled(std::string_view pass) const;  // requires Compile(); false for
                                                              // unknown names

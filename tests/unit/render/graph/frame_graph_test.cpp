@@ -237,5 +237,53 @@ TEST_F(FrameGraphTest, AFailureStopsTheFrameAndLeaksNothing) {
   EXPECT_EQ(device_.num_alive(), 0);
 }
 
+TEST_F(FrameGraphTest, KnowsHowManyBytesAFrameNeeds) {
+  // 64 x 64 x 4 bytes, and 128 x 64 x 8 bytes x 4 samples.
+  EXPECT_EQ(TextureBytes(kSmall), 16'384u);
+  EXPECT_EQ(TextureBytes(kLarge), 262'144u);
+  // "a" and "b" live at the same time, then "b" and "c".
+  const FrameGraph::Handle a = AddStep("a", {}, kLarge);
+  const FrameGraph::Handle b = AddStep("b", a, kSmall);
+  AddSink(AddStep("c", b, kSmall));
+  AddStep("unused", {}, kLarge);
+  ASSERT_TRUE(graph_.Compile().ok());
+  EXPECT_EQ(graph_.PeakBytes(), TextureBytes(kLarge) + TextureBytes(kSmall));
+}
+
+TEST(TransientPool, PicturesOfManySizesDoNotFillTheMemory) {
+  test::NullDevice device;
+  constexpr std::size_t kMaxBytes = 1 << 20;
+  TransientPool pool(&device, kMaxBytes);
+  for (int size = 64; size < 512; ++size) {
+    const TextureId texture = pool.Acquire({size, size, PixelFormat::kRgba8, 1});
+    pool.Release(texture);
+    pool.EndFrame();
+    ASSERT_LE(pool.num_bytes(), kMaxBytes) << size;
+  }
+  EXPECT_EQ(device.num_bad_destroys(), 0);
+}
+
+TEST(TransientPool, TheLongestUnusedTextureGoesFirst) {
+  test::NullDevice device;
+  const TextureDesc other{32, 128, PixelFormat::kRgba8, 1};
+  TransientPool pool(&device, 2 * TextureBytes(kSmall));
+  const TextureId old = pool.Acquire(kSmall);
+  const TextureId recent = pool.Acquire(other);
+  pool.Release(old);
+  pool.Release(recent);
+  pool.Release(pool.Acquire({64, 32, PixelFormat::kRgba16F, 1}));
+  EXPECT_EQ(pool.Acquire(other), recent);
+  EXPECT_NE(pool.Acquire(kSmall), old);
+}
+
+TEST(TransientPool, TexturesInUseStayWhateverTheirSize) {
+  test::NullDevice device;
+  TransientPool pool(&device, 1);
+  const TextureId first = pool.Acquire(kSmall);
+  const TextureId second = pool.Acquire(kSmall);
+  EXPECT_NE(first, second);
+  EXPECT_EQ(device.num_alive(), 2);
+}
+
 }  // namespace
 }  // namespace furrow::render
