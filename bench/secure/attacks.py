@@ -1,0 +1,329 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Attacks a real daemon over loopback and prints what its other users notice.
+
+    attacks.py BIN RECORDING [--only WORD] [--seconds S]
+
+Prints one row per attack: what the victim notices without and with the attack, and how much the daemon's memory grows. Attacker and
+victim share the machine and the address 127.0.0.1, so the victim competes with the attacker's programs, too. BIN: the folder with
+furrow and furrowd, of a release build. RECORDING: a clip for `furrow load`.
+"""
+import argparse
+import contextlib
+import http.client
+import json
+import multiprocessing
+import pathlib
+import random
+import re
+import signal
+import socket
+import statistics
+import struct
+import subprocess
+import tempfile
+import time
+
+VECTORS = pathlib.Path(__file__).resolve().parents[2] / "protocol" / "vectors"
+DEADLINE = 15.0  # seconds; whatever takes longer counts as an outage
+HEAVY = "occlusion.samples=64&subsurface.method=burley&subsurface.samples=64&shadow.taps=32"
+
+
+def vector(name, sequence=1, session=0x1234567):
+    """A message of the wire with another session and sequence (STANDARD.md section 2)."""
+    data = bytearray((VECTORS / f"{name}.bin").read_bytes())
+    struct.pack_into("<Q", data, 8, session)
+    struct.pack_into("<I", data, 16, sequence)
+    return bytes(data)
+
+
+def framed(message):
+    return struct.pack("<I", len(message)) + message
+
+
+class Daemon:
+    def __init__(self, bin_folder, *arguments):
+        self.bin = bin_folder
+        self.process = subprocess.Popen([bin_folder / "furrowd", "--tcp", "0", "--udp", "0", "--http", "0", *arguments],
+                                        stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        ready = self.process.stdout.readline()
+        self.ports = {name: int(port) for name, port in re.findall(r"(\w+)=\S*?:(\d+)", ready)}
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.process.kill()
+        self.process.wait()
+
+    def mebibytes(self):
+        status = pathlib.Path(f"/proc/{self.process.pid}/status").read_text()
+        return int(re.search(r"VmRSS:\s+(\d+)", status).group(1)) / 1024
+
+    def get(self, path, timeout=DEADLINE):
+        """Returns the status and the seconds; status 0: no answer."""
+        begun = time.monotonic()
+        status = 0
+        with contextlib.suppress(OSError, http.client.HTTPException):
+            web = http.client.HTTPConnection("127.0.0.1", self.ports["http"], timeout=timeout)
+            web.request("GET", path)
+            answer = web.getresponse()
+            answer.read()
+            status = answer.status
+            web.close()
+        return status, time.monotonic() - begun
+
+    def weights_ms(self, recording, seconds):
+        """The p50 of the latency of weights, in ms, and the part that was lost."""
+        with tempfile.NamedTemporaryFile(suffix=".json") as report:
+            subprocess.run([self.bin / "furrow", "load", f"127.0.0.1:{self.ports['udp']}", recording, "--subjects", "20",
+                            "--rate", "60", "--duration", str(seconds), "--quantise", "--json", report.name],
+                           capture_output=True, check=False)
+            run = json.loads(pathlib.Path(report.name).read_text())["run"]
+        lost = run["lost"] if "lost" in run else run["tally"]["lost"]
+        return run["latency_us"]["p50"] / 1000, lost / max(1, run.get("sent", 20 * 60 * seconds))
+
+
+# --- Attackers, each a process of its own ------------------------------------------------------------------
+
+
+def tcp_flood(port, make, per_second):
+    """Sends make(i) over one connection and drops what comes back."""
+    with socket.create_connection(("127.0.0.1", port)) as connection:
+        connection.setblocking(False)
+        begun, sent, waiting = time.monotonic(), 0, b""
+        while True:
+            due = int((time.monotonic() - begun) * per_second)
+            while sent < due and len(waiting) < 1 << 20:
+                waiting += framed(make(sent))
+                sent += 1
+            with contextlib.suppress(BlockingIOError):
+                waiting = waiting[connection.send(waiting):]
+            with contextlib.suppress(BlockingIOError):
+                connection.recv(1 << 16)
+            if due <= sent:
+                time.sleep(0.001)
+
+
+def unsubscribes(port, per_second):
+    tcp_flood(port, lambda i: vector("unsubscribe", i), per_second)
+
+
+def long_patterns(port, per_second):
+    message = (pathlib.Path(VECTORS) / "subscribe_weights_all.bin").read_bytes()
+    del message  # the vectors have short patterns; the message is built below
+    tcp_flood(port, lambda i: subscribe_weights(",".join(f"?a{i}{k}*z" for k in range(450))[:4000], i), per_second)
+
+
+def subscribe_weights(pattern, sequence):
+    """A SubscribeWeights message, written by hand: a FlatBuffers table with one field, the pattern."""
+    text = pattern.encode()
+    # Root offset, identifier, vtable of 3 fields (subject, wait, pattern), table, string.
+    vtable = struct.pack("<HHHHH", 10, 8, 0, 0, 4) + b"\0\0"
+    table_at = 8 + len(vtable)
+    table = struct.pack("<iI", len(vtable), 4)
+    payload = struct.pack("<I", table_at) + IDENTIFIER_OF_WEIGHTS + vtable + table + struct.pack("<I", len(text)) + text + b"\0"
+    payload += b"\0" * (-len(payload) % 4)
+    envelope = bytearray(vector("subscribe_weights", sequence)[:32])
+    struct.pack_into("<I", envelope, 20, len(payload))
+    return bytes(envelope) + payload
+
+
+IDENTIFIER_OF_WEIGHTS = (VECTORS / "subscribe_weights.bin").read_bytes()[36:40]
+
+
+def api_flood(port, paths):
+    while True:
+        with contextlib.suppress(OSError, http.client.HTTPException):
+            web = http.client.HTTPConnection("127.0.0.1", port, timeout=DEADLINE)
+            while True:
+                web.request("GET", random.choice(paths))
+                web.getresponse().read()
+
+
+def snapshots(port, number, heavy, leaves):
+    """Asks for large pictures, each of another size. `leaves`: closes before the picture comes."""
+    side = 2048 - 16 * number
+    while True:
+        side = side - 1 if side > 1024 else 2048
+        with contextlib.suppress(OSError, http.client.HTTPException):
+            web = http.client.HTTPConnection("127.0.0.1", port, timeout=0.05 if leaves else DEADLINE)
+            web.request("GET", f"/snapshot.png?width={side}&height={side}&{heavy}")
+            web.getresponse().read()
+
+
+def captures(port, number):
+    web = http.client.HTTPConnection("127.0.0.1", port, timeout=DEADLINE)
+    i = 0
+    while True:
+        i += 1
+        with contextlib.suppress(OSError, http.client.HTTPException):
+            web.request("POST", "/api/capture", json.dumps({"pose": f"p{number}_{i % 300}"}))
+            web.getresponse().read()
+
+
+def hellos(port, per_second, counts):
+    """Hello from addresses that never prove themselves, each with a new session."""
+    sockets = []
+    for _ in range(16):
+        sockets.append(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
+        sockets[-1].connect(("127.0.0.1", port))
+        sockets[-1].setblocking(False)
+    begun, sent = time.monotonic(), 0
+    while True:
+        due = int((time.monotonic() - begun) * per_second)
+        while sent < due:
+            one = sockets[sent % len(sockets)]
+            with contextlib.suppress(OSError):
+                counts[0] += one.send(vector("hello", 1, random.getrandbits(63) | 1))
+                counts[1] += len(one.recv(2048))
+            sent += 1
+        time.sleep(0.001)
+
+
+@contextlib.contextmanager
+def attackers(*calls):
+    running = [multiprocessing.Process(target=call[0], args=call[1:], daemon=True) for call in calls]
+    for one in running:
+        one.start()
+    time.sleep(1.0)  # until the attack has its full strength
+    try:
+        yield
+    finally:
+        for one in running:
+            one.kill()
+            one.join()
+
+
+# --- Rows -----------------------------------------------------------------------------------------------
+
+
+class Table:
+    def __init__(self, options):
+        self.options = options
+        print("| attack | victim | without | with | memory |\n|---|---|---|---|---|")
+
+    def row(self, attack, victim, without, with_it, growth=None):
+        print(f"| {attack} | {victim} | {without} | {with_it} | {'' if growth is None else f'{growth:+.0f} MiB'} |", flush=True)
+
+    def weights(self, attack, daemon, *calls):
+        before, _ = daemon.weights_ms(self.options.recording, self.options.seconds)
+        memory = daemon.mebibytes()
+        with attackers(*calls):
+            during, lost = daemon.weights_ms(self.options.recording, self.options.seconds)
+            growth = daemon.mebibytes() - memory
+        self.row(attack, "weights, p50", f"{before:.2f} ms", f"{during:.2f} ms, {100 * lost:.1f}% lost", growth)
+
+
+def waiting_tcp(table, options):
+    with Daemon(options.bin, "--no-render") as daemon:
+        held = []
+        memory = daemon.mebibytes()
+        for _ in range(300):
+            one = socket.create_connection(("127.0.0.1", daemon.ports["tcp"]))
+            one.sendall(framed(vector("subscribe_weights_all")))
+            held.append(one)
+        time.sleep(0.5)
+        begun = time.monotonic()
+        newcomer = socket.create_connection(("127.0.0.1", daemon.ports["tcp"]))
+        newcomer.settimeout(DEADLINE)
+        newcomer.sendall(framed(vector("ping")))
+        answer = newcomer.recv(4096)
+        outcome = "refused" if answer[40:44] == (VECTORS / "error.bin").read_bytes()[36:40] else "served"
+        table.row("300 waiting subscriptions", "a newcomer over TCP", "served",
+                  f"{outcome} after {1000 * (time.monotonic() - begun):.0f} ms", daemon.mebibytes() - memory)
+
+
+def waiting_web(table, options):
+    with Daemon(options.bin, "--no-render") as daemon:
+        plain = daemon.get("/api/status")
+        memory = daemon.mebibytes()
+        held = []
+        for _ in range(160):
+            one = socket.create_connection(("127.0.0.1", daemon.ports["http"]))
+            one.sendall(b"GET /weights?subject=nobody HTTP/1.1\r\nHost: localhost\r\n\r\n")
+            held.append(one)
+        time.sleep(0.5)
+        status, seconds = daemon.get("/api/status")
+        table.row("160 waiting /weights", "a newcomer over HTTP", f"{plain[0]}, {1000 * plain[1]:.0f} ms",
+                  f"{status}, {1000 * seconds:.0f} ms", daemon.mebibytes() - memory)
+
+
+def requests(table, options):
+    with Daemon(options.bin, "--no-render", "--play", options.recording) as daemon:
+        http_port, tcp = daemon.ports["http"], daemon.ports["tcp"]
+        paths = ["/api/status", "/api/subjects", "/api/rig", "/api/rig.json", "/metrics"]
+        table.weights("API, 8 connections without pause", daemon, *[(api_flood, http_port, paths)] * 8)
+        table.weights("/readyz, 8 connections without pause", daemon, *[(api_flood, http_port, ["/readyz"])] * 8)
+        table.weights("19,000/s Unsubscribes of nothing", daemon, (unsubscribes, tcp, 19_000))
+        table.weights("1,000/s patterns of 4 kB", daemon, (long_patterns, tcp, 1_000))
+        table.weights("captures, 2 connections without pause", daemon, (captures, http_port, 1), (captures, http_port, 2))
+
+
+def forged(table, options):
+    with Daemon(options.bin, "--no-render") as daemon:
+        counts = multiprocessing.Array("q", 2)
+        table.weights("5,000/s Hello that prove nothing", daemon, (hellos, daemon.ports["udp"], 5_000, counts))
+        table.row("the same", "bytes out per byte in", "", f"{counts[1] / max(1, counts[0]):.2f}")
+
+
+def viewer_seconds(daemon, seconds):
+    """The time of small snapshots, one after the other."""
+    times, failed, end = [], 0, time.monotonic() + seconds
+    while time.monotonic() < end:
+        status, took = daemon.get("/snapshot.png?width=160&height=160")
+        times.append(took)
+        failed += status != 200
+    return statistics.median(times), max(times), failed
+
+
+def pictures(table, options):
+    with Daemon(options.bin, "--play", options.recording) as daemon:
+        for _ in range(5):  # until the shaders are ready
+            daemon.get("/snapshot.png?width=160&height=160")
+            daemon.get(f"/snapshot.png?width=160&height=160&{HEAVY}")
+        for name, heavy, leaves in (("8 viewers of 2048 x 2048 in distinct sizes", "", False),
+                                    ("the same, with the dearest settings", HEAVY, False),
+                                    ("the same, who leave before they are served", HEAVY, True)):
+            before = viewer_seconds(daemon, options.seconds)
+            memory = daemon.mebibytes()
+            with attackers(*[(snapshots, daemon.ports["http"], number, heavy, leaves) for number in range(8)]):
+                during = viewer_seconds(daemon, 3 * options.seconds)
+                growth = daemon.mebibytes() - memory
+            table.row(name, "a snapshot of 160 x 160, p50 (longest, failed)",
+                      f"{before[0]:.2f} s ({before[1]:.2f} s, {before[2]})",
+                      f"{during[0]:.2f} s ({during[1]:.2f} s, {during[2]})", growth)
+        table.weights("8 viewers of 2048 x 2048, the dearest settings", daemon,
+                      *[(snapshots, daemon.ports["http"], number, HEAVY, False) for number in range(8)])
+        memory = daemon.mebibytes()
+        for i in range(100):
+            daemon.get(f"/snapshot.png?width=64&height=64&occlusion.samples={4 + i % 60}&shadow.taps={1 + i % 32}")
+        table.row("100 variants of the shaders", "", "", "", daemon.mebibytes() - memory)
+
+
+def sigterm(table, options):
+    with Daemon(options.bin, "--play", options.recording) as daemon:
+        daemon.get("/snapshot.png?width=160&height=160")
+        with attackers(*[(snapshots, daemon.ports["http"], number, HEAVY, False) for number in range(4)]):
+            begun = time.monotonic()
+            daemon.process.send_signal(signal.SIGTERM)
+            daemon.process.wait(timeout=60)
+            table.row("SIGTERM while 2048 x 2048 is drawn", "time until the daemon has ended", "",
+                      f"{time.monotonic() - begun:.2f} s (drain_seconds is 2)")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("bin", type=pathlib.Path)
+    parser.add_argument("recording")
+    parser.add_argument("--only", default="", help="run the groups with this word in their name")
+    parser.add_argument("--seconds", type=float, default=5.0, help="of each measurement")
+    options = parser.parse_args()
+    table = Table(options)
+    for group in (waiting_tcp, waiting_web, requests, forged, pictures, sigterm):
+        if options.only in group.__name__:
+            group(table, options)
+
+
+if __name__ == "__main__":
+    main()
