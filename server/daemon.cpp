@@ -10,6 +10,7 @@
 #include <functional>
 #include <future>
 #include <memory>
+#include <new>
 #include <random>
 #include <string>
 #include <utility>
@@ -34,6 +35,7 @@
 #include "server/net/clock.h"
 #include "server/net/critical_task.h"
 #include "server/net/mocap_inputs.h"
+#include "server/net/run_loop.h"
 #include "server/net/tcp/tcp_server.h"
 #include "server/net/udp/secure_sessions.h"
 #include "server/net/udp/udp_port.h"
@@ -53,6 +55,8 @@ constexpr auto kTick = std::chrono::milliseconds(10);
 constexpr auto kSecond = std::chrono::seconds(1);
 // How often a shutdown checks whether the peers have received everything.
 constexpr auto kDrainPoll = std::chrono::milliseconds(5);
+// The time that joining a thread may take after it has ended.
+constexpr Time kJoinTime = std::chrono::milliseconds(50);
 
 // Returns unpredictable numbers, never 0, for session numbers and the tokens that prove an address.
 std::uint64_t RandomNumber() {
@@ -86,9 +90,9 @@ class Daemon {
         tls_(config.security.tls) {}
 
   // Call these in this order. Each leaves out what the configuration does not ask for.
+  Status LoadPlayer();
   Status StartRendering();
   Status StartRecording();
-  Status LoadPlayer();
   Status LoadKeys();
   Status LoadTls() { return tls_.Load(); }
   Status Listen();
@@ -102,10 +106,20 @@ class Daemon {
   void Announce() const;
   asio::awaitable<void> TickLoop();
   asio::awaitable<void> SecondLoop();
+  void EverySecond(StatusLine* status_line);
   asio::awaitable<void> PlayLoop();
   asio::awaitable<void> Drain();
   void RequestDrain();
   void StopRendering();
+  // Runs a part of the work. Lack of memory costs this part, not the daemon.
+  template <class Work>
+  void WithinMemory(const Work& work) {
+    try {
+      work();
+    } catch (const std::bad_alloc&) {
+      metrics_->Add(Counter::kAllocationsFailed);
+    }
+  }
 
   const Config& config_;
   const RunOptions& options_;
@@ -131,6 +145,7 @@ class Daemon {
   std::unique_ptr<Api> api_;
   std::unique_ptr<HttpServer> http_;
   bool draining_ = false;
+  Time drain_deadline_{0};
 };
 
 Status Daemon::StartRendering() {
@@ -138,7 +153,9 @@ Status Daemon::StartRendering() {
   auto started = RenderThread::Start(
       &assets_.character->skeleton,
       [this] {
-        return render::Renderer::Create(*assets_.character, {.device = config_.render_device});
+        return render::Renderer::Create(
+            *assets_.character,
+            {.device = config_.render_device, .max_texture_bytes = PictureViews::kMaxTextureBytes});
       },
       metrics_,
       [this](FinishedPicture picture) {
@@ -360,21 +377,21 @@ void Daemon::Serve() {
                                    [this] { asio::post(io_, [this] { RequestDrain(); }); });
   // After all parts have started: a client that reads the line may connect at once.
   Announce();
-  io_.run();
+  RunLoop(io_, metrics_);
   http_.reset();  // both post to io_, so they end first
   StopRendering();
 }
 
 // The render thread may be in the middle of a large picture, which nothing can interrupt. A process
-// that was told to end waits `drain_seconds` for it, and then ends without it.
+// that was told to end waits until the deadline of Drain() for it, and then ends without it.
 void Daemon::StopRendering() {
   if (render_ == nullptr) return;
   const std::future<void> ended = std::async(std::launch::async, [this] { render_.reset(); });
   // An embedding program goes on, so it must wait.
   if (!options_.handle_signals) return;
-  if (ended.wait_for(FromSeconds(config_.limits.drain_seconds)) == std::future_status::ready) {
-    return;
-  }
+  // Drain() has stopped the thread, so it has usually ended by now, and is only joined.
+  const Time left = std::max(drain_deadline_ - ReadClock(), kJoinTime);
+  if (ended.wait_for(left) == std::future_status::ready) return;
   spdlog::warn("ends before a picture is complete: it takes longer than limits.drain_seconds");
   recorder_.reset();  // closes the file
   spdlog::shutdown();
@@ -391,13 +408,15 @@ asio::awaitable<void> Daemon::TickLoop() {
     due = std::max(due + kTick, std::chrono::steady_clock::now());  // skip missed ticks
     timer.expires_at(due);
     co_await timer.async_wait(kAwaitTuple);
-    const Time now = ReadClock();
-    hub_->Tick(now);
-    if (osc_->limits_rates()) {
-      const Hub::ExclusiveLock lock(*hub_, 0);
-      osc_->SendOwed(hub_->subjects(), now);
-    }
-    mocap_.Tick(now);
+    WithinMemory([this] {
+      const Time now = ReadClock();
+      hub_->Tick(now);
+      if (osc_->limits_rates()) {
+        const Hub::ExclusiveLock lock(*hub_, 0);
+        osc_->SendOwed(hub_->subjects(), now);
+      }
+      mocap_.Tick(now);
+    });
   }
 }
 
@@ -407,13 +426,18 @@ asio::awaitable<void> Daemon::SecondLoop() {
   while (true) {
     timer.expires_after(kSecond);
     co_await timer.async_wait(kAwaitTuple);
-    const Time now = ReadClock();
-    if (auto keys = keys_file_.ReadIfChanged()) SetKeys(*std::move(keys));
-    tls_.ReadIfChanged();
-    if (config_.verbose) {
-      const Hub::ExclusiveLock lock(*hub_, 0);
-      spdlog::info("{}", status_line.Next(hub_->num_subjects(), hub_->num_subscriptions(), now));
-    }
+    WithinMemory([&] { EverySecond(&status_line); });
+  }
+}
+
+void Daemon::EverySecond(StatusLine* status_line) {
+  const Time now = ReadClock();
+  if (render_) render_->Watch(now);
+  if (auto keys = keys_file_.ReadIfChanged()) SetKeys(*std::move(keys));
+  tls_.ReadIfChanged();
+  if (config_.verbose) {
+    const Hub::ExclusiveLock lock(*hub_, 0);
+    spdlog::info("{}", status_line->Next(hub_->num_subjects(), hub_->num_subscriptions(), now));
   }
 }
 
@@ -438,7 +462,9 @@ void Daemon::RequestDrain() {
 // loop.
 asio::awaitable<void> Daemon::Drain() {
   spdlog::info("shutting down");
-  const Time deadline = ReadClock() + FromSeconds(config_.limits.drain_seconds);
+  drain_deadline_ = ReadClock() + FromSeconds(config_.limits.drain_seconds);
+  // While it completes its last picture, messages leave. Nobody receives pictures any more.
+  if (render_) render_->Stop();
   hub_->Drain();
   // Joins the threads of the other shards: from here on only this thread uses the hub. The goodbyes
   // have left already, at the end of the hub's exclusive lock.
@@ -451,7 +477,7 @@ asio::awaitable<void> Daemon::Drain() {
   const auto is_awaited = [this] {
     return tcp_->num_sessions() > 0 || (http_ && http_->viewers() > 0);
   };
-  while (is_awaited() && ReadClock() < deadline) {
+  while (is_awaited() && ReadClock() < drain_deadline_) {
     timer.expires_after(kDrainPoll);
     co_await timer.async_wait(kAwaitTuple);
   }
@@ -521,14 +547,14 @@ ExitCode LoadAndServe(const Config& config, const RunOptions& options) {
   auto osc_outputs = LoadOscOutputs(config);
   if (!osc_outputs.ok()) return Fail(ExitCode::kBadInput, osc_outputs.status());
   Daemon daemon(config, options, *std::move(assets), *std::move(osc_outputs));
+  if (Status status = daemon.LoadPlayer(); !status.ok()) {
+    return Fail(ExitCode::kBadInput, status.At("--play"));
+  }
   if (Status status = daemon.StartRendering(); !status.ok()) {
     return Fail(ExitCode::kFailed, status);
   }
   if (Status status = daemon.StartRecording(); !status.ok()) {
     return Fail(ExitCode::kFailed, status);
-  }
-  if (Status status = daemon.LoadPlayer(); !status.ok()) {
-    return Fail(ExitCode::kBadInput, status.At("--play"));
   }
   if (Status status = daemon.LoadKeys(); !status.ok()) {
     return Fail(ExitCode::kBadInput, status.Within("--keys"));

@@ -213,6 +213,10 @@ Status ValidateConfig(const Config& config) {
     return Invalid("http.max_connections is " + std::to_string(config.http.max_connections) +
                    "; it must be 1 to 1000000");
   }
+  if (!(config.http.api_share > 0.0 && config.http.api_share <= 1.0)) {
+    return Invalid("http.api_share is " + NumberText(config.http.api_share) +
+                   "; it must be more than 0 and at most 1");
+  }
   if (config.http.enabled && config.http.port && *config.http.port != 0 &&
       *config.http.port == config.tcp) {
     return Invalid("--http and --tcp use the same TCP port " + std::to_string(config.tcp));

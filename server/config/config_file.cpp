@@ -150,7 +150,8 @@ Tables OutputTables(Config* config, const std::filesystem::path& folder) {
       {"http",
        {Flag("enabled", &http.enabled), Port("port", &http.port),
         Texts("allow_hosts", &http.allow_hosts), Texts("allow_origins", &http.allow_origins),
-        Count("max_connections", &http.max_connections), Path("page", &http.page, folder)}},
+        Count("max_connections", &http.max_connections), Path("page", &http.page, folder),
+        Number("api_share", &http.api_share)}},
       {"log", {Flag("verbose", &config->verbose), Flag("json", &config->log_json)}}};
 }
 

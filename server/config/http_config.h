@@ -17,8 +17,11 @@ struct HttpConfig {
   std::optional<std::uint16_t> port;
   std::vector<std::string> allow_hosts;  // names accepted in the Host field
   std::vector<std::string>
-      allow_origins;           // foreign pages that may connect: "https://stage.example"
-  int max_connections = 256;   // at a time, [1, 1'000'000]; one host gets half
+      allow_origins;          // foreign pages that may connect: "https://stage.example"
+  int max_connections = 256;  // at a time, [1, 1'000'000]; one host gets half
+  // Part of the time of the main network thread that API requests of one host may use, (0, 1];
+  // 1: no limit.
+  double api_share = 0.1;
   std::filesystem::path page;  // folder of the page; empty: share/furrow/web
   friend bool operator==(const HttpConfig&, const HttpConfig&) = default;
 };

@@ -20,8 +20,7 @@ class FairShare {
 
   // False: the host has its share, or there is no place left.
   [[nodiscard]] bool HasRoomFor(const std::string& host) const {
-    const auto held = held_.find(host);
-    return (held == held_.end() ? 0 : held->second) < places_ - taken_;
+    return held(host) < places_ - taken_;
   }
   // Takes a place. False: HasRoomFor() is.
   [[nodiscard]] bool Enter(const std::string& host) {
@@ -37,6 +36,11 @@ class FairShare {
     --taken_;
   }
 
+  // The places that a host holds.
+  [[nodiscard]] std::size_t held(const std::string& host) const {
+    const auto held = held_.find(host);
+    return held == held_.end() ? 0 : held->second;
+  }
   [[nodiscard]] std::size_t taken() const { return taken_; }
 
  private:

@@ -3,8 +3,10 @@
 
 #include <array>
 #include <exception>
+#include <new>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <thread>
 #include <utility>
 
@@ -18,10 +20,13 @@
 #include "base/data_dir.h"
 #include "base/status.h"
 #include "server/core/fair_share.h"
+#include "server/core/lobby.h"
 #include "server/core/network_address.h"
 #include "server/http/http_session.h"
 #include "server/http/request/web_stream.h"
 #include "server/net/clock.h"
+#include "server/net/run_loop.h"
+#include "server/session/hub.h"
 #include "server/tls/handshake_watch.h"
 
 namespace furrow::server {
@@ -30,14 +35,20 @@ namespace {
 using net::ip::tcp;
 constexpr auto kAcceptPause = std::chrono::milliseconds(100);
 
-// The socket closes when it goes out of scope. The answer fits into a new socket's send buffer.
-// Answers with 429 and closes.
+// Answers with 429 and closes: the socket goes out of scope. The answer fits into the send buffer
+// of a new socket.
 void Refuse(tcp::socket socket) {
-  static constexpr char kAnswer[] =
-      "HTTP/1.1 429 Too Many Requests\r\nConnection: close\r\nContent-Length: 0\r\n\r\n";
+  static const std::string kBody =
+      ErrorReply(429, "limit", "", "this address has its share of the web connections",
+                 "close other pages, or see http.max_connections")
+          .body;
+  static const std::string kAnswer =
+      "HTTP/1.1 429 Too Many Requests\r\nConnection: close\r\nRetry-After: 1\r\n"
+      "Content-Type: application/json\r\nContent-Length: " +
+      std::to_string(kBody.size()) + "\r\n\r\n" + kBody;
   beast::error_code ignored;
   socket.non_blocking(true, ignored);
-  socket.send(net::buffer(kAnswer, sizeof(kAnswer) - 1), 0, ignored);
+  socket.send(net::buffer(kAnswer), 0, ignored);
 }
 
 // Answers a client that speaks plain HTTP where TLS is spoken, and waits until it has closed:
@@ -110,6 +121,8 @@ struct HttpServer::Impl {
 
   Status Listen(const std::string& bind, std::uint16_t port);
   net::awaitable<void> Accept();
+  void Admit(tcp::socket socket, const std::string& host);
+  net::awaitable<void> WaitForPlace(tcp::socket socket, std::string host, Lobby::Stay stay);
   net::awaitable<void> Serve(tcp::socket socket, std::string host);
   net::awaitable<bool> BeginTls(WebStream* stream, const std::string& host);
   void Run();
@@ -117,6 +130,7 @@ struct HttpServer::Impl {
   WebContext context;  // outlives the loop; its connections use it
   HandshakeBudget handshakes;
   FairShare shares{static_cast<std::size_t>(context.config.max_connections)};
+  Lobby lobby;  // of newcomers that wait for a place
   std::shared_ptr<net::io_context> loop = std::make_shared<net::io_context>(1);
   tcp::acceptor acceptor{*loop};
   std::uint16_t port = 0;
@@ -157,15 +171,64 @@ net::awaitable<void> HttpServer::Impl::Accept() {
     }
     const auto client = socket.remote_endpoint(error);
     std::string host = error ? std::string() : HostOf(client.address().to_string());
-    // Each connection may hold a request of kMaxWebMessageBytes, so their number bounds the memory.
-    if (!shares.Enter(host)) {
-      context.metrics->Add(Counter::kConnectionsRefused);
-      Refuse(std::move(socket));
-    } else {
-      context.metrics->Add(Counter::kHttpConnections);
-      // Detached is safe: Serve() lets no exception out, and the context outlives the loop.
-      net::co_spawn(*loop, Serve(std::move(socket), std::move(host)), net::detached);
+    try {
+      Lobby::Stay stay;
+      if (!shares.HasRoomFor(host)) stay = lobby.Enter(ReadClock());
+      if (stay == nullptr) {
+        Admit(std::move(socket), host);
+      } else {
+        // Detached is safe: neither coroutine lets an exception out, and the context outlives the
+        // loop.
+        net::co_spawn(*loop, WaitForPlace(std::move(socket), std::move(host), std::move(stay)),
+                      net::detached);
+      }
+    } catch (const std::bad_alloc&) {
+      context.metrics->Add(Counter::kAllocationsFailed);  // it costs one connection
     }
+  }
+}
+
+// Each connection may hold a request of kMaxWebMessageBytes, so their number bounds the memory.
+void HttpServer::Impl::Admit(tcp::socket socket, const std::string& host) {
+  if (!shares.Enter(host)) {
+    context.metrics->Add(Counter::kConnectionsRefused);
+    return Refuse(std::move(socket));
+  }
+  context.metrics->Add(Counter::kHttpConnections);
+  try {
+    net::co_spawn(*loop, Serve(std::move(socket), host), net::detached);
+  } catch (...) {
+    shares.Leave(host);
+    throw;
+  }
+}
+
+// The hub knows which connections are without use, and ends the one that has been so for longest.
+net::awaitable<void> HttpServer::Impl::WaitForPlace(tcp::socket socket, std::string host,
+                                                    [[maybe_unused]] Lobby::Stay stay) {
+  try {
+    const auto all_in_use = std::make_shared<bool>(false);
+    const Time begun = ReadClock();
+    Time again = begun;
+    net::steady_timer timer(*loop);
+    while (!*all_in_use && !shares.HasRoomFor(host)) {
+      const Time now = ReadClock();
+      if (now - begun >= Lobby::kPatience) break;
+      if (now >= again) {
+        again = now + Lobby::kAgain;
+        context.post_to_hub([host, any_host = shares.held(host) == 0, all_in_use,
+                             post_to_web = context.post_to_web](Hub& hub, Time hub_now) {
+          if (hub.MakeRoom(Transport::kWeb, host, any_host, hub_now)) return;
+          post_to_web([all_in_use] { *all_in_use = true; });
+        });
+      }
+      timer.expires_after(Lobby::kPoll);
+      beast::error_code ignored;
+      co_await timer.async_wait(Redirect(ignored));
+    }
+    Admit(std::move(socket), host);
+  } catch (const std::bad_alloc&) {
+    context.metrics->Add(Counter::kAllocationsFailed);
   }
 }
 
@@ -216,7 +279,7 @@ net::awaitable<bool> HttpServer::Impl::BeginTls(WebStream* stream, const std::st
 // without its web server.
 void HttpServer::Impl::Run() {
   try {
-    loop->run();
+    RunLoop(*loop, context.metrics);
   } catch (...) {
     context.post_to_hub(
         [error = std::current_exception()](Hub&, Time) { std::rethrow_exception(error); });
@@ -236,7 +299,8 @@ Result<std::unique_ptr<HttpServer>> HttpServer::Start(Parts parts) {
   }
   if (!status.ok()) return status;
   net::co_spawn(*impl->loop, impl->Accept(), [](const std::exception_ptr& failed) {
-    if (failed) std::rethrow_exception(failed);
+    // Not std::bad_alloc, which RunLoop() takes for the failure of one handler.
+    if (failed) throw std::runtime_error("the web server cannot accept connections any more");
   });
   // After co_spawn(), so that run() finds work and does not return at once.
   impl->thread = std::thread([impl = impl.get()] { impl->Run(); });

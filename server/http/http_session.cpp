@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/http/http_session.h"
 
+#include <chrono>
 #include <memory>
+#include <new>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,18 +16,24 @@
 #include <boost/beast/http/span_body.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
 
+#include "server/core/network_address.h"
 #include "server/http/pictures/picture_stream.h"
 #include "server/http/request/reply_writer.h"
 #include "server/http/request/request_access.h"
 #include "server/http/socket/web_socket.h"
 #include "server/http/weights/weight_query.h"
 #include "server/http/weights/weight_stream.h"
+#include "server/net/clock.h"
 
 namespace furrow::server {
 namespace {
 
-// Asks the hub's thread for a reply, or replies with 503 after kWebDeadline.
-net::awaitable<ApiReply> AskHub(WebContext* context, ApiRequest request) {
+constexpr auto kThrottlePause = std::chrono::milliseconds(100);
+constexpr Time kProbeAge = std::chrono::milliseconds(100);
+
+// Asks the hub's thread for a reply, or replies with 503 after kWebDeadline. `host`: it pays for
+// the time that the hub's thread needs.
+net::awaitable<ApiReply> AskHub(WebContext* context, std::string host, ApiRequest request) {
   // The timer is deadline and wake-up in one: the reply cancels it.
   struct Pending {
     net::steady_timer timer;
@@ -36,10 +44,20 @@ net::awaitable<ApiReply> AskHub(WebContext* context, ApiRequest request) {
       std::make_shared<Pending>(Pending{net::steady_timer(executor, kWebDeadline), std::nullopt});
   // Weak, because the task in the hub's queue may outlive the event loop of the timer.
   context->post_to_hub([weak = std::weak_ptr(pending), answer = context->answer,
-                        post_to_web = context->post_to_web,
+                        post_to_web = context->post_to_web, metrics = context->metrics,
+                        budget = std::weak_ptr(context->budget), host = std::move(host),
                         request = std::move(request)](Hub& hub, Time now) {
     // On the hub's thread. Only the web thread may touch `pending`, so the reply is posted back.
-    post_to_web([weak, reply = answer(request, hub, now)] {
+    const Time begun = ReadClock();
+    ApiReply reply;
+    try {
+      reply = answer(request, hub, now);
+    } catch (const std::bad_alloc&) {  // it costs one request, not the daemon
+      metrics->Add(Counter::kAllocationsFailed);
+      reply = ErrorReply(503, "unavailable", "", "the daemon is short of memory", "try again");
+    }
+    post_to_web([weak, budget, host, cost = ReadClock() - begun, reply = std::move(reply)] {
+      if (const auto alive = budget.lock()) alive->Charge(host, cost, ReadClock());
       // Late replies find nobody: the coroutine has answered with 503 and gone.
       if (const auto waiting = weak.lock()) {
         waiting->reply = reply;
@@ -267,8 +285,52 @@ class HttpSession {
     if (request.method == "HEAD") request.method = "GET";
     // Subjects, settings and rig belong to the hub's thread. The page's files do not, and are sent
     // without asking it.
-    ApiReply reply = co_await AskHub(context_, std::move(request));
+    ApiReply reply;
+    if (IsProbe(request.url.path) &&
+        request.method == "GET") {  // no ?:, with which GCC 12 destroys the operands twice
+      reply = co_await AnswerProbe(std::move(request));
+    } else {
+      reply = co_await AnswerApi(std::move(request));
+    }
     co_return co_await WriteReply(stream_, request_, std::move(reply));
+  }
+
+  net::awaitable<ApiReply> AnswerApi(ApiRequest request) {
+    std::string host = Host();
+    if (const int seconds = context_->budget->Ask(host, ReadClock()); seconds > 0) {
+      context_->metrics->Add(Counter::kHttpThrottled);
+      // The client waits, too, so that asking again at once does not cost the web thread more.
+      net::steady_timer pause(stream_.get_executor(), kThrottlePause);
+      beast::error_code ignored;
+      co_await pause.async_wait(Redirect(ignored));
+      ApiReply reply =
+          ErrorReply(429, "limit", "", "this address asks the API too often; see http.api_share",
+                     "try again in " + std::to_string(seconds) + " s");
+      reply.retry_after = seconds;
+      co_return reply;
+    }
+    co_return co_await AskHub(context_, std::move(host), std::move(request));
+  }
+
+  // Supervisors must not be refused because somebody else asks often. So probes have no budget, but
+  // share replies for a moment.
+  net::awaitable<ApiReply> AnswerProbe(ApiRequest request) {
+    const std::string path = request.url.path;
+    if (const auto last = context_->probes.find(path);
+        last != context_->probes.end() && ReadClock() - last->second.first < kProbeAge) {
+      co_return last->second.second;
+    }
+    std::string nobody;  // pays for it
+    ApiReply reply = co_await AskHub(context_, std::move(nobody), std::move(request));
+    context_->probes.insert_or_assign(path, std::pair(ReadClock(), reply));
+    co_return reply;
+  }
+
+  // The host that this connection counts to.
+  [[nodiscard]] std::string Host() {
+    beast::error_code error;
+    const auto remote = stream_.socket().remote_endpoint(error);
+    return error ? std::string() : HostOf(remote.address().to_string());
   }
 
   WebStream stream_;

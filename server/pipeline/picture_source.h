@@ -36,6 +36,10 @@ class PictureSource {
   // Cancels a still that waits to be rendered for this subscription. False: there is none, or its
   // rendering has begun.
   virtual bool WithdrawStill(std::uint64_t subscription) = 0;
+  // Cancels everything that the subscription waits for, because it has ended.
+  virtual void Withdraw(std::uint64_t subscription) = 0;
+  // True while the renderer does not respond; every request fails.
+  [[nodiscard]] virtual bool is_stuck() const { return false; }
   // A camera preset of the character. Errors: kNotFound; the hint lists the presets.
   [[nodiscard]] virtual Result<render::Camera> Preset(std::string_view name) const = 0;
 };

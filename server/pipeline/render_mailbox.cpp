@@ -2,7 +2,11 @@
 #include "server/pipeline/render_mailbox.h"
 
 #include <algorithm>
+#include <iterator>
+#include <unordered_map>
 #include <utility>
+
+#include "render/passes/picture_cost.h"
 
 namespace furrow::server {
 namespace {
@@ -48,6 +52,13 @@ Encoding EncodingOf(const PictureTicket& ticket) {
 
 bool RenderJob::IsStill() const { return std::ranges::any_of(tickets, &PictureTicket::still); }
 
+double RenderJob::Work() const {
+  static const render::Settings kDefaults;
+  return render::EstimateCost(spec.settings == nullptr ? kDefaults : *spec.settings, spec.width,
+                              spec.height, IsStill() ? kStillSamples : 1)
+      .work;
+}
+
 // A viewer that changes its view faster than pictures are rendered occupies one place only.
 void RenderMailbox::DropOlderTickets(const RenderJob& job) {
   if (job.tickets.empty()) return;
@@ -74,28 +85,112 @@ RenderMailbox::PutResult RenderMailbox::Put(RenderJob&& job) {
     // The new job takes the old one's place in the queue. At the back, a subject that moves all the
     // time would never be rendered.
     MergeTickets(*waiting, &job);
+    job.entry = waiting->entry;
     *waiting = std::move(job);
     return PutResult::kReplaced;
   }
   if (job.tickets.empty()) return PutResult::kNotWanted;
-  if (jobs_.size() >= capacity_) return PutResult::kFull;
+  if (!HasRoomFor(job)) return PutResult::kFull;
+  job.entry = order_.Enter(job.tickets.front().host, job.tickets.front().viewer);
   jobs_.push_back(std::move(job));
   changed_.notify_one();
   return PutResult::kQueued;
+}
+
+// The rule of FairShare. A job with several viewers counts to the host of the first one.
+bool RenderMailbox::HasRoomFor(const RenderJob& job) const {
+  const std::uint64_t host = job.tickets.front().host;
+  const auto held = static_cast<std::size_t>(std::ranges::count_if(
+      jobs_, [host](const RenderJob& other) { return other.tickets.front().host == host; }));
+  return jobs_.size() < capacity_ && held < capacity_ - jobs_.size();
+}
+
+// The fairest job among the stills, or among the others. First each host chooses among its viewers,
+// then the hosts are compared. A job for several viewers comes when the first of them would.
+RenderMailbox::Jobs::iterator RenderMailbox::Next(bool still) {
+  struct Choice {
+    Jobs::iterator job;
+    double tag = 0.0;
+    double work = 0.0;
+  };
+  std::unordered_map<std::uint64_t, Choice> choices;  // by host
+  for (auto job = jobs_.begin(); job != jobs_.end(); ++job) {
+    if (job->IsStill() != still) continue;
+    const double work = job->Work();
+    for (const PictureTicket& ticket : job->tickets) {
+      const double tag = order_.ViewerTag(ticket.host, ticket.viewer, job->entry, work);
+      const auto [choice, is_first] = choices.try_emplace(ticket.host, Choice{job, tag, work});
+      if (!is_first && tag < choice->second.tag) choice->second = {job, tag, work};
+    }
+  }
+  auto next = jobs_.end();
+  double least = 0.0;
+  for (const auto& [host, choice] : choices) {
+    const double tag = order_.HostTag(host, choice.job->entry, choice.work);
+    // Between equals, the job that came first.
+    if (next != jobs_.end() && (tag > least || (tag == least && choice.job > next))) continue;
+    next = choice.job;
+    least = tag;
+  }
+  return next;
+}
+
+// The hosts with waiting jobs, and the viewers of one host.
+std::pair<std::size_t, std::size_t> RenderMailbox::CountWaiting(std::uint64_t host) const {
+  std::unordered_set<std::uint64_t> hosts;
+  std::unordered_set<std::uint64_t> viewers;
+  for (const RenderJob& job : jobs_) {
+    for (const PictureTicket& ticket : job.tickets) {
+      hosts.insert(ticket.host);
+      if (ticket.host == host) viewers.insert(ticket.viewer);
+    }
+  }
+  return {hosts.size(), std::max<std::size_t>(1, viewers.size())};
 }
 
 std::optional<RenderJob> RenderMailbox::Take(bool wait) {
   std::unique_lock lock(mutex_);
   if (wait) changed_.wait(lock, [this] { return closed_ || !jobs_.empty(); });
   if (closed_ || jobs_.empty()) return std::nullopt;
-  // A still takes longer (more samples), and nothing moves in it, so it can wait.
-  auto next = std::ranges::find_if_not(jobs_, &RenderJob::IsStill);
-  if (next == jobs_.end() || passed_over_ >= kMaxPassedOver) next = jobs_.begin();
-  // Counts how often the oldest job was passed, so that a moving subject cannot starve stills.
-  passed_over_ = next == jobs_.begin() ? 0 : passed_over_ + 1;
+  // A still takes longer (more samples), and nothing moves in it, so it can wait, but not for ever:
+  // `passed_over_` counts how often stills were passed.
+  const auto still = Next(/*still=*/true);
+  auto next = Next(/*still=*/false);
+  if (next == jobs_.end() || (still != jobs_.end() && passed_over_ >= kMaxPassedOver)) next = still;
+  passed_over_ = still == jobs_.end() || next == still ? 0 : passed_over_ + 1;
+  const auto [hosts, viewers] = CountWaiting(next->tickets.front().host);
   RenderJob job = std::move(*next);
   jobs_.erase(next);
+  // Each viewer pays its part.
+  const double work = job.Work() / static_cast<double>(job.tickets.size());
+  for (const PictureTicket& ticket : job.tickets) {
+    order_.Serve(ticket.host, ticket.viewer, job.entry, work, hosts, viewers);
+    taken_.insert(ticket.subscription);
+  }
   return job;
+}
+
+std::size_t RenderMailbox::Complete(RenderJob* job) {
+  const std::lock_guard lock(mutex_);
+  return std::erase_if(job->tickets, [this](const PictureTicket& ticket) {
+    const auto taken = taken_.find(ticket.subscription);
+    if (taken == taken_.end()) return true;  // withdrawn
+    taken_.erase(taken);
+    return false;
+  });
+}
+
+std::size_t RenderMailbox::Withdraw(std::uint64_t subscription) {
+  const std::lock_guard lock(mutex_);
+  const std::size_t begun = taken_.erase(subscription);
+  const std::size_t waiting = std::erase_if(jobs_, [subscription](RenderJob& job) {
+    return std::erase_if(job.tickets,
+                         [subscription](const PictureTicket& ticket) {
+                           return ticket.subscription == subscription;
+                         }) > 0 &&
+           job.tickets.empty();
+  });
+  return begun + waiting;
 }
 
 bool RenderMailbox::WithdrawStill(std::uint64_t subscription) {
@@ -110,6 +205,14 @@ bool RenderMailbox::WithdrawStill(std::uint64_t subscription) {
     return true;
   }
   return false;
+}
+
+std::vector<RenderJob> RenderMailbox::TakeWaiting() {
+  const std::lock_guard lock(mutex_);
+  std::vector<RenderJob> waiting(std::make_move_iterator(jobs_.begin()),
+                                 std::make_move_iterator(jobs_.end()));
+  jobs_.clear();
+  return waiting;
 }
 
 void RenderMailbox::Close() {

@@ -5,13 +5,18 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
+#include <unordered_set>
+#include <utility>
 #include <vector>
 
 #include "render/renderer.h"
 #include "server/core/time.h"
+#include "server/pipeline/fair_order.h"
 #include "server/pipeline/snapshot.h"
 
 namespace furrow::server {
@@ -44,7 +49,14 @@ struct PictureTicket {
   std::uint32_t view_request = 0;  // sequence of the request that set the view
   std::uint8_t tier = 0;           // ViewerFlow::tier() that chose the encoding
   bool still = false;              // the refined picture of a pose at rest
+  std::uint64_t viewer = 0;        // Peer::id
+  std::uint64_t host = 0;          // HostKey() of the viewer's host
 };
+
+// A number for a host, by which tickets name it.
+[[nodiscard]] inline std::uint64_t HostKey(const std::string& host) {
+  return std::hash<std::string>()(host);
+}
 
 // The encoding to use for a ticket: for a still JPEG, quality 92 without chroma subsampling.
 [[nodiscard]] Encoding EncodingOf(const PictureTicket& ticket);
@@ -56,16 +68,25 @@ struct RenderJob {
   PictureSpec spec;
   std::shared_ptr<const Snapshot> snapshot;
   std::vector<PictureTicket> tickets;
-  Time moved_at{0};  // when the subject last moved; set if a viewer uses flow control
+  Time moved_at{0};        // when the subject last moved; set if a viewer uses flow control
+  FairOrder::Entry entry;  // set by the mailbox
 
   // True if at least one ticket wants a still, which is rendered with more samples.
   [[nodiscard]] bool IsStill() const;
+  // What drawing it costs (render::PictureCost::work).
+  [[nodiscard]] double Work() const;
 };
 
+// The samples per pixel of a still if the settings leave the number to the device.
+inline constexpr int kStillSamples = 4;
+
 // Carries jobs from the network threads to the render thread. At most one job per subject and spec
-// waits, with the newest snapshot, and at most `capacity` jobs in total. A subscription has at most
-// one waiting ticket, for the spec that it requested last. Thread-safe; Put() never waits for
-// rendering.
+// waits, with the newest snapshot, and at most `capacity` jobs in total, of which one host gets at
+// most half of what the others have left. A subscription has at most one waiting ticket, for the
+// spec that it requested last. Thread-safe; Put() never waits for rendering.
+//
+// The order is fair (FairOrder) between hosts, and between the viewers of a host. Large pictures
+// are more work, so a viewer gets fewer of them.
 class RenderMailbox {
  public:
   explicit RenderMailbox(std::size_t capacity) : capacity_(capacity) {}
@@ -81,29 +102,45 @@ class RenderMailbox {
   // the
   //   subject has moved, tickets for stills become normal ones.
   // - kNotWanted: the job has no tickets and there was no job to refresh.
-  // - kFull: `capacity` jobs wait, or the mailbox is closed. Only in this case is `job` unchanged.
+  // - kFull: `capacity` jobs wait, the host has its share of them, or the mailbox is closed. Only
+  //   in this case is `job` unchanged.
   PutResult Put(RenderJob&& job);
 
-  // Removes and returns the oldest job. Moving subjects go before stills, but at most
-  // kMaxPassedOver jobs pass the oldest one. With `wait`, blocks until there is a job or Close()
-  // was called.
+  // Removes and returns the next job. Moving subjects go before stills, but at most kMaxPassedOver
+  // jobs pass a still. With `wait`, blocks until there is a job or Close() was called. Every job
+  // must be given back by Complete().
   [[nodiscard]] std::optional<RenderJob> Take(bool wait);
+  // Call it once for each job of Take(), before its picture is encoded or it fails. Removes the
+  // tickets that were withdrawn in the meantime and returns how many these are.
+  std::size_t Complete(RenderJob* job);
 
   // Cancels a waiting still. False: there is none, or its rendering has begun.
   bool WithdrawStill(std::uint64_t subscription);
+  // Cancels whatever the subscription waits for, because it has ended: jobs that nobody else wants
+  // are not drawn, and if drawing has begun, not encoded. Returns how many jobs that saves.
+  std::size_t Withdraw(std::uint64_t subscription);
+
+  // Removes and returns all jobs that wait; Complete() is not called for these.
+  [[nodiscard]] std::vector<RenderJob> TakeWaiting();
 
   // Drops all jobs. Take() no longer blocks.
   void Close();
   [[nodiscard]] bool closed() const;
 
  private:
+  using Jobs = std::deque<RenderJob>;
   void DropOlderTickets(const RenderJob& job);
+  [[nodiscard]] bool HasRoomFor(const RenderJob& job) const;
+  [[nodiscard]] Jobs::iterator Next(bool still);
+  [[nodiscard]] std::pair<std::size_t, std::size_t> CountWaiting(std::uint64_t host) const;
 
   const std::size_t capacity_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<RenderJob> jobs_;
-  int passed_over_ = 0;  // consecutive jobs that passed the oldest one
+  Jobs jobs_;
+  std::unordered_multiset<std::uint64_t> taken_;  // subscriptions of the tickets being drawn
+  FairOrder order_;
+  int passed_over_ = 0;  // consecutive jobs that passed a still
   bool closed_ = false;
 };
 

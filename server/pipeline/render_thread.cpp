@@ -2,6 +2,8 @@
 #include "server/pipeline/render_thread.h"
 
 #include <algorithm>
+#include <cstdlib>
+#include <new>
 
 #include <spdlog/spdlog.h>
 
@@ -13,12 +15,38 @@ namespace {
 // One job per subject and view, so the limit concerns the number of different views only.
 constexpr std::size_t kMaxWaitingJobs = 256;
 constexpr int kMaxReadBacks = 2;  // the limit of render::Renderer
+// While a picture of this much work is drawn (more than 1920 x 1080 pixels), no other is begun, so
+// that a newcomer with a small picture waits for one large picture, not for two.
+constexpr double kLargeWork = 2.5e6;
+
+// Runs `work`, which returns a Status or a Result. Lack of memory becomes its error.
+template <class Work>
+auto WithinMemory(Metrics* metrics, const Work& work) -> decltype(work()) {
+  try {
+    return work();
+  } catch (const std::bad_alloc&) {
+    metrics->Add(Counter::kAllocationsFailed);
+    return Status(StatusCode::kInternal, "out of memory", "renderer");
+  }
+}
+
+// Counts the steps of the renderer for Watch(): odd within a step.
+class Step {
+ public:
+  explicit Step(std::atomic<std::uint64_t>* steps) : steps_(steps) { ++*steps_; }
+  ~Step() { ++*steps_; }
+  Step(const Step&) = delete;
+  Step& operator=(const Step&) = delete;
+
+ private:
+  std::atomic<std::uint64_t>* steps_;
+};
 
 }  // namespace
 
 Result<std::unique_ptr<RenderThread>> RenderThread::Start(const wrinkle::Skeleton* skeleton,
                                                           Factory make_renderer, Metrics* metrics,
-                                                          Deliver deliver) {
+                                                          OnPicture deliver) {
   std::unique_ptr<RenderThread> self(
       new RenderThread(skeleton, std::move(make_renderer), metrics, std::move(deliver)));
   // EGL binds a context to the thread that makes it current, so the render thread creates the
@@ -32,7 +60,7 @@ Result<std::unique_ptr<RenderThread>> RenderThread::Start(const wrinkle::Skeleto
 }
 
 RenderThread::RenderThread(const wrinkle::Skeleton* skeleton, Factory make_renderer,
-                           Metrics* metrics, Deliver deliver)
+                           Metrics* metrics, OnPicture deliver)
     : make_renderer_(std::move(make_renderer)),
       metrics_(metrics),
       deliver_(std::move(deliver)),
@@ -45,14 +73,22 @@ RenderThread::~RenderThread() {
 }
 
 void RenderThread::Submit(RenderJob job) {
+  if (stuck_) return Refuse(std::move(job));
   switch (mailbox_.Put(std::move(job))) {
     case RenderMailbox::PutResult::kQueued:
     case RenderMailbox::PutResult::kNotWanted: break;
     case RenderMailbox::PutResult::kReplaced: metrics_->Add(Counter::kSnapshotsReplaced); break;
     // Put() leaves the job alone only in this case. Its viewers must hear of it, because they wait
     // for an answer to every ticket.
-    case RenderMailbox::PutResult::kFull: Fail(std::move(job)); break;
+    case RenderMailbox::PutResult::kFull:
+      metrics_->Add(Counter::kPicturesCrowded);
+      Refuse(std::move(job));
+      break;
   }
+}
+
+void RenderThread::Withdraw(std::uint64_t subscription) {
+  metrics_->Add(Counter::kPicturesWithdrawn, mailbox_.Withdraw(subscription));
 }
 
 Result<render::Camera> RenderThread::Preset(std::string_view name) const {
@@ -66,7 +102,7 @@ Result<render::Camera> RenderThread::Preset(std::string_view name) const {
 }
 
 Status RenderThread::CreateRenderer() {
-  auto renderer = make_renderer_();
+  auto renderer = WithinMemory(metrics_, make_renderer_);
   FURROW_RETURN_IF_ERROR(renderer);
   renderer_ = *std::move(renderer);
   return {};
@@ -86,26 +122,50 @@ void RenderThread::Run(std::promise<Status> started) {
   started.set_value(status);
   if (!status.ok()) return;
   while (!mailbox_.closed()) {
-    // Fills the read-backs before it waits for the oldest, so that the GPU draws one picture while
-    // this thread encodes another. Blocks in Take() only if nothing is in flight.
-    while (static_cast<int>(in_flight_.size()) < kMaxReadBacks) {
-      std::optional<RenderJob> job = mailbox_.Take(/*wait=*/in_flight_.empty());
-      if (!job) break;
-      Draw(*std::move(job));
+    try {
+      DrawAndCollect();
+    } catch (const std::bad_alloc&) {  // what could not be reported; see Deliver()
+      metrics_->Add(Counter::kAllocationsFailed);
     }
-    if (!in_flight_.empty()) Collect(/*wait=*/true);
   }
   renderer_.reset();  // on this thread, which owns the context
 }
 
+void RenderThread::DrawAndCollect() {
+  // Fills the read-backs before it waits for the oldest, so that the GPU draws one picture while
+  // this thread encodes another. Blocks in Take() only if nothing is in flight.
+  while (static_cast<int>(in_flight_.size()) < kMaxReadBacks &&
+         (in_flight_.empty() || in_flight_.back().Work() < kLargeWork)) {
+    std::optional<RenderJob> job = mailbox_.Take(/*wait=*/in_flight_.empty());
+    if (!job) break;
+    Draw(*std::move(job));
+  }
+  if (!in_flight_.empty()) Collect(/*wait=*/true);
+}
+
 void RenderThread::Draw(RenderJob job) {
+  const Step step(&steps_);
   if (renderer_ == nullptr && !Revive()) return Fail(std::move(job));
+  // In flight before it is drawn, so that nothing can fail between the two.
+  in_flight_.push_back(std::move(job));
+  const Status status = WithinMemory(metrics_, [this] { return Render(in_flight_.back()); });
+  if (status.ok()) return;
+  job = std::move(in_flight_.back());
+  in_flight_.pop_back();
+  Fail(std::move(job));
+  // Other errors concern the job (its size, its pose), not the context.
+  if (status.code() == StatusCode::kUnavailable || status.code() == StatusCode::kInternal) {
+    Rebuild(status);
+  }
+}
+
+Status RenderThread::Render(const RenderJob& job) {
   const Snapshot& snapshot = *job.snapshot;
   // Retargeting runs here, not on the network thread: only poses that are drawn pay for it.
   if (drawn_.Run({*snapshot.retarget, *snapshot.blend_shape_pose, snapshot.shape_program.get(),
                   snapshot.head_turn.get()},
                  snapshot.joints, snapshot.blend_shapes) != wrinkle::JobStatus::kOk) {
-    return Fail(std::move(job));
+    return {StatusCode::kInvalidArgument, "the pose does not fit the character", "renderer"};
   }
   render::FrameRequest request;
   request.model = drawn_.model();
@@ -115,26 +175,24 @@ void RenderThread::Draw(RenderJob job) {
   request.filtered_values = snapshot.filtered_values;
   if (job.spec.settings != nullptr) request.settings = *job.spec.settings;
   request.settings.view = job.spec.view;
-  // 0 leaves the number to the device; a number that the user set also holds for stills.
-  if (int& samples = request.settings.anti_aliasing.samples; samples == 0 && job.IsStill()) {
-    samples = kStillSamples;
-  }
   request.camera = job.spec.camera;
   request.width = job.spec.width;
   request.height = job.spec.height;
-  if (Status status = renderer_->Submit(request); !status.ok()) {
-    Fail(std::move(job));
-    // Other errors concern the job (its size, its pose), not the context.
-    if (status.code() == StatusCode::kUnavailable || status.code() == StatusCode::kInternal) {
-      Rebuild(status);
-    }
-    return;
-  }
-  in_flight_.push_back(std::move(job));
+  // 0 leaves the number to the device; a number that the user set also holds for stills.
+  int& samples = request.settings.anti_aliasing.samples;
+  const bool refines = samples == 0 && job.IsStill();
+  if (refines) samples = kStillSamples;
+  const Status status = renderer_->Submit(request);
+  // A large still with this number of samples needs too much memory.
+  if (!refines || status.code() != StatusCode::kLimit) return status;
+  samples = 0;
+  return renderer_->Submit(request);
 }
 
 void RenderThread::Collect(bool wait) {
-  Result<render::Image> image = renderer_->Poll(wait);
+  const Step step(&steps_);
+  Result<render::Image> image =
+      WithinMemory(metrics_, [this, wait] { return renderer_->Poll(wait); });
   if (!image.ok()) {
     Rebuild(image.status());
     return;
@@ -144,46 +202,92 @@ void RenderThread::Collect(bool wait) {
   next_skip_ = 0;
   metrics_->Add(Counter::kPicturesRendered);
   // Read-backs finish in the order of Submit(), so the oldest job belongs to this image.
-  const RenderJob job = std::move(in_flight_.front());
+  RenderJob job = std::move(in_flight_.front());
   in_flight_.pop_front();
-  Finish(*image, job);
+  Finish(*image, std::move(job));
+}
+
+void RenderThread::Watch(Time now) {
+  const std::uint64_t step = steps_;
+  if (step % 2 == 0 || step != watched_step_) {
+    watched_step_ = step;
+    watched_since_ = now;
+    if (stuck_.exchange(false)) spdlog::info("the renderer responds again; pictures go on");
+    return;
+  }
+  if (stuck_ || now - watched_since_ < kStuckAfter) return;
+  stuck_ = true;
+  metrics_->Add(Counter::kRendererStuck);
+  spdlog::error(
+      "the renderer has not responded for {} s: pictures are off until it does, weights go on",
+      static_cast<int>(ToSeconds(now - watched_since_)));
+  for (RenderJob& job : mailbox_.TakeWaiting()) Refuse(std::move(job));
+}
+
+// A job that was taken from the mailbox cannot be drawn.
+void RenderThread::Fail(RenderJob job) {
+  (void)mailbox_.Complete(&job);
+  Refuse(std::move(job));
 }
 
 // Returns all tickets without a picture, so that the viewers' flow control does not wait forever.
-void RenderThread::Fail(RenderJob job) {
+void RenderThread::Refuse(RenderJob job) {
   metrics_->Add(Counter::kPicturesFailed);
-  deliver_({.sequence = job.snapshot->sequence, .tickets = std::move(job.tickets)});
+  Deliver({.sequence = job.snapshot->sequence, .tickets = std::move(job.tickets)});
 }
 
-void RenderThread::Finish(const render::Image& image, const RenderJob& job) {
-  // Viewers with equal encodings share the bytes.
-  std::vector<Encoding> done;
-  for (const PictureTicket& first : job.tickets) {
-    const Encoding encoding = EncodingOf(first);
-    if (std::ranges::find(done, encoding) != done.end()) continue;
-    done.push_back(encoding);
-    auto bytes = render::EncodeImage(image, encoding.format, encoding.quality);
-    metrics_->Add(bytes.ok() ? Counter::kPicturesEncoded : Counter::kPicturesFailed);
-    if (!bytes.ok()) {
-      spdlog::warn("cannot encode a picture: {}", bytes.status().ToString());
-      // Without bytes the picture reports a failure to its viewers.
-      bytes = std::vector<std::uint8_t>();
-    }
-    FinishedPicture picture{
-        .sequence = job.snapshot->sequence,
-        .capture_time_us = job.snapshot->capture_time_us,
-        .age_us = job.snapshot->age_us,
-        .received_us = job.snapshot->received_us,
-        .width = image.width,
-        .height = image.height,
-        .encoding = encoding,
-        .bytes = {bytes->begin(), bytes->end()},  // exact capacity: the bytes may wait in queues
-        .tickets = {}};
-    for (const PictureTicket& ticket : job.tickets) {
-      if (EncodingOf(ticket) == encoding) picture.tickets.push_back(ticket);
-    }
+// If memory is so short that not even a failure can be reported, the viewers ask again after
+// ViewerFlow::kGiveUp.
+void RenderThread::Deliver(FinishedPicture picture) {
+  try {
     deliver_(std::move(picture));
+  } catch (const std::bad_alloc&) {
+    metrics_->Add(Counter::kAllocationsFailed);
   }
+}
+
+// Viewers with equal encodings share the bytes.
+void RenderThread::Finish(const render::Image& image, RenderJob job) {
+  (void)mailbox_.Complete(&job);
+  std::vector<std::pair<Encoding, std::vector<PictureTicket>>> groups;
+  for (const PictureTicket& ticket : job.tickets) {
+    const Encoding wanted = EncodingOf(ticket);
+    auto group = groups.end();
+    for (auto it = groups.begin(); it != groups.end(); ++it) {
+      if (it->first.format != wanted.format) continue;
+      const auto distance = [&wanted](const auto& to) {
+        return std::abs(to->first.quality - wanted.quality);
+      };
+      if (group == groups.end() || distance(it) < distance(group)) group = it;
+    }
+    const bool is_new =
+        group == groups.end() || (group->first != wanted && groups.size() < kMaxEncodings);
+    if (is_new) group = groups.insert(groups.end(), {wanted, {}});
+    group->second.push_back(ticket);
+  }
+  for (auto& [encoding, tickets] : groups) Encode(image, job, encoding, std::move(tickets));
+}
+
+void RenderThread::Encode(const render::Image& image, const RenderJob& job,
+                          const Encoding& encoding, std::vector<PictureTicket> tickets) {
+  auto bytes = WithinMemory(
+      metrics_, [&] { return render::EncodeImage(image, encoding.format, encoding.quality); });
+  metrics_->Add(bytes.ok() ? Counter::kPicturesEncoded : Counter::kPicturesFailed);
+  if (!bytes.ok()) {
+    spdlog::warn("cannot encode a picture: {}", bytes.status().ToString());
+    // Without bytes the picture reports a failure to its viewers.
+    bytes = std::vector<std::uint8_t>();
+  }
+  bytes->shrink_to_fit();  // they may wait in queues
+  Deliver({.sequence = job.snapshot->sequence,
+           .capture_time_us = job.snapshot->capture_time_us,
+           .age_us = job.snapshot->age_us,
+           .received_us = job.snapshot->received_us,
+           .width = image.width,
+           .height = image.height,
+           .encoding = encoding,
+           .bytes = *std::move(bytes),
+           .tickets = std::move(tickets)});
 }
 
 // Drops the context with everything in flight. The next job that may try creates it again.

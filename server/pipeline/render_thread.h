@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -15,6 +17,7 @@
 #include "base/status.h"
 #include "render/renderer.h"
 #include "server/core/metrics.h"
+#include "server/core/time.h"
 #include "server/pipeline/picture_source.h"
 #include "server/pipeline/render_mailbox.h"
 #include "wrinkle/shapes/character_pose.h"
@@ -30,18 +33,21 @@ namespace furrow::server {
 // settings leave the number to the device: with one sample, hair and lashes show specks that are
 // noticeable once they stop moving.
 //
+// Lack of memory costs the pictures in flight and the context, not the daemon.
+//
 // A lost context is created again for the next job. While that fails, jobs are dropped and counted,
 // twice as many before each new attempt (up to kMaxJobsSkipped), so that a missing GPU does not
 // keep a core busy.
 class RenderThread : public PictureSource {
  public:
   static constexpr int kMaxJobsSkipped = 255;
-  static constexpr int kStillSamples = 4;
+  // Different encodings of one picture. Further JPEG qualities get the nearest of these.
+  static constexpr std::size_t kMaxEncodings = 4;
 
   // Receives finished pictures. Called on the render thread, or on the submitting thread if the
   // mailbox is full. Must not block. Every ticket of every job is returned, in a picture with bytes
   // or, after a failure, without.
-  using Deliver = std::function<void(FinishedPicture)>;
+  using OnPicture = std::function<void(FinishedPicture)>;
 
   // Creates the renderer, at the start and after each loss. Called on the render thread.
   using Factory = std::function<Result<std::unique_ptr<render::Renderer>>()>;
@@ -49,7 +55,8 @@ class RenderThread : public PictureSource {
   // Starts the thread and waits for the first renderer. `skeleton`: the character's; outlives this
   // object. Errors: those of `make_renderer`.
   [[nodiscard]] static Result<std::unique_ptr<RenderThread>> Start(
-      const wrinkle::Skeleton* skeleton, Factory make_renderer, Metrics* metrics, Deliver deliver);
+      const wrinkle::Skeleton* skeleton, Factory make_renderer, Metrics* metrics,
+      OnPicture deliver);
   ~RenderThread() override;  // drops waiting jobs and joins the thread
   RenderThread(const RenderThread&) = delete;
   RenderThread& operator=(const RenderThread&) = delete;
@@ -58,30 +65,53 @@ class RenderThread : public PictureSource {
   bool WithdrawStill(std::uint64_t subscription) override {
     return mailbox_.WithdrawStill(subscription);
   }
+  void Withdraw(std::uint64_t subscription) override;
+  [[nodiscard]] bool is_stuck() const override { return stuck_; }
+  // Draws nothing more; the picture that is being drawn is completed. Does not wait for it.
+  void Stop() { mailbox_.Close(); }
+  // Call it about once per second, always on the same thread. A renderer that does not come back
+  // for kStuckAfter, because the driver or the GPU hangs, is stuck: waiting and new jobs fail until
+  // it comes back. OpenGL calls cannot be interrupted, so the thread itself waits.
+  void Watch(Time now);
+  // Longer than a fence is waited for (render/gl/read_back.cpp) takes a driver that hangs.
+  static constexpr Time kStuckAfter = std::chrono::seconds(30);
   [[nodiscard]] Result<render::Camera> Preset(std::string_view name) const override;
   // The renderer and its device, for people.
   [[nodiscard]] const std::string& description() const { return description_; }
 
  private:
   RenderThread(const wrinkle::Skeleton* skeleton, Factory make_renderer, Metrics* metrics,
-               Deliver deliver);
+               OnPicture deliver);
 
   Status CreateRenderer();
   bool Revive();
   void BackOff();
   void Run(std::promise<Status> started);
+  void DrawAndCollect();
   void Draw(RenderJob job);
+  Status Render(const RenderJob& job);
   void Collect(bool wait);
-  void Finish(const render::Image& image, const RenderJob& job);
+  void Finish(const render::Image& image, RenderJob job);
+  void Encode(const render::Image& image, const RenderJob& job, const Encoding& encoding,
+              std::vector<PictureTicket> tickets);
   void Fail(RenderJob job);
+  void Refuse(RenderJob job);
+  void Deliver(FinishedPicture picture);
   void Rebuild(const Status& reason);
 
   const Factory make_renderer_;
   Metrics* const metrics_;
-  const Deliver deliver_;
+  const OnPicture deliver_;
   RenderMailbox mailbox_;
   std::vector<std::pair<std::string, render::Camera>> presets_;  // written before Start() returns
   std::string description_;
+
+  std::atomic<std::uint64_t> steps_ = 0;  // odd while the renderer works
+  std::atomic<bool> stuck_ = false;
+
+  // Used by Watch() only.
+  std::uint64_t watched_step_ = 0;
+  Time watched_since_{0};
 
   // Used by the render thread only.
   std::unique_ptr<render::Renderer> renderer_;  // null: lost

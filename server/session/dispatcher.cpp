@@ -14,6 +14,9 @@ using protocol::DecodeStatus;
 using protocol::ErrorCode;
 using protocol::MessageKind;
 
+// The payload of a request that costs one more.
+constexpr double kBytesPerRequest = 64.0;
+
 }  // namespace
 
 void Dispatcher::Dispatch(Shard& shard, Peer& peer, std::span<const std::uint8_t> bytes, Time now) {
@@ -93,7 +96,12 @@ void Dispatcher::DispatchVerified(Shard& shard, Peer& peer, const protocol::Mess
       });
     case MessageKind::kPong:
       return Decode(shard, peer, view, in.pong, [&] { peer.consent.Answered(in.pong.time_us); });
+    case MessageKind::kUnsubscribe:
+      // There is nothing to end, and so no reason to stop the other threads.
+      if (peer.num_subscriptions == 0) return Decode(shard, peer, view, in.unsubscribe, [] {});
+      [[fallthrough]];
     default: {
+      if (!TakeRequest(shard, peer, view, now)) return;
       // `peer` and `view` stay valid while the lock changes hands: only this thread removes the
       // peer or reuses the buffer of the message. Subjects may have left, so the handlers look them
       // up again.
@@ -114,6 +122,22 @@ void Dispatcher::RecoverPrevious(Shard& shard, const Peer& peer, const protocol:
     return;
   }
   parts_.router->AcceptPrevious(shard, peer, header, in.pose.previous_age_us, in.previous, now);
+}
+
+// Requests stop the other threads and are answered, so each peer has a budget of them; a long
+// pattern costs as much as several. UDP clients repeat a request that is not answered.
+bool Dispatcher::TakeRequest(Shard& shard, Peer& peer, const protocol::MessageView& view,
+                             Time now) {
+  const bool is_free = view.kind == MessageKind::kSkeletonOffer ||  // has limits of its own
+                       view.kind == MessageKind::kFrameAck || view.kind == MessageKind::kGoodbye;
+  const double cost = 1.0 + static_cast<double>(view.payload.size()) / kBytesPerRequest;
+  if (is_free || peer.requests.Take(now, cost)) return true;
+  parts_.metrics->Add(Counter::kRequestsThrottled);
+  if (peer.transport != Transport::kUdp) {
+    shard.context.messages.SendError(peer, view.header, ErrorCode::kLimit,
+                                     "too many requests per second; try again later");
+  }
+  return false;
 }
 
 // Messages of publishers and about the connection. The caller holds the exclusive lock, also for
@@ -236,14 +260,14 @@ void Dispatcher::RefuseStranger(Shard& shard, Peer& peer, const protocol::Header
   CutOff(peer);
 }
 
-void Dispatcher::CutOff(Peer& peer) {
+void Dispatcher::CutOff(Peer& peer, bool soon) {
   peer.token_ended = true;
   // A WebSocket closes after a goodbye to stream 0.
   if (peer.transport == Transport::kWeb) {
     parts_.shards->Of(peer.id).context.messages.SendReply(
         peer, {}, protocol::Goodbye{protocol::GoodbyeReason::kTimedOut});
   }
-  peer.link->Finish();
+  soon ? peer.link->FinishSoon() : peer.link->Finish();
 }
 
 void Dispatcher::OnListSubjects(Peer& peer, const protocol::Header& header,

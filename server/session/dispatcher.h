@@ -53,8 +53,9 @@ class Dispatcher {
   // Tells a peer that it must show a token, and cuts it off. Requires the lock of its shard.
   void RefuseStranger(Peer& peer);
   // Ends a peer whose token is missing, refused or has ended: its connection closes after what is
-  // queued, and further messages have no effect. Requires the lock of its shard.
-  void CutOff(Peer& peer);
+  // queued, and further messages have no effect. `soon`: it need not have read that. Requires the
+  // lock of its shard.
+  void CutOff(Peer& peer, bool soon = false);
   // Makes the dispatcher refuse all further subscriptions, because the daemon shuts down. Requires
   // the exclusive lock.
   void RefuseSubscriptions() { refuses_subscriptions_ = true; }
@@ -62,6 +63,8 @@ class Dispatcher {
  private:
   void DispatchVerified(Shard& shard, Peer& peer, const protocol::MessageView& view, Time now);
   void RecoverPrevious(Shard& shard, const Peer& peer, const protocol::Header& header, Time now);
+  [[nodiscard]] bool TakeRequest(Shard& shard, Peer& peer, const protocol::MessageView& view,
+                                 Time now);
   void DispatchExclusive(Shard& shard, Peer& peer, const protocol::MessageView& view, Time now);
   void DispatchRequest(Shard& shard, Peer& peer, const protocol::MessageView& view, Time now);
   template <class Request>

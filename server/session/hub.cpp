@@ -174,6 +174,35 @@ void Hub::RefuseConnection(Link* link, ErrorCode code, const std::string& why) {
   shards_.at(0).context.messages.SendError(peer, {}, code, why);
 }
 
+bool Hub::HasNoUse(const Peer& peer, Time now) {
+  if (peer.num_bound > 0 || peer.token_ended) return false;
+  const bool waits = peer.num_subscriptions > 0 && !peer.publishes;
+  return waits || now - peer.last_used >= kUnusedPatience;
+}
+
+bool Hub::MakeRoom(Transport transport, const std::string& host, bool any_host, Time now) {
+  const ExclusiveLock lock(*this, 0);
+  Peer* longest = nullptr;
+  shards_.ForEachPeer([&](Peer& peer) {
+    if (peer.transport != transport || !HasNoUse(peer, now)) return;
+    if (!any_host && peer.host != host) return;
+    // Ids count up: of those that have been without use for equally long, the first to connect.
+    if (longest == nullptr ||
+        std::pair(peer.last_used, peer.id) < std::pair(longest->last_used, longest->id)) {
+      longest = &peer;
+    }
+  });
+  if (longest == nullptr) return false;
+  metrics_->Add(Counter::kConnectionsGaveWay);
+  exclusive_context_.messages.SendError(
+      *longest, {}, ErrorCode::kLimit,
+      "closed to make room for a newcomer, because this connection only waited and all places are "
+      "taken; see limits.max_connections and http.max_connections");
+  subscribers_.RemovePeer(*longest);
+  dispatcher_.CutOff(*longest, /*soon=*/true);
+  return true;
+}
+
 void Hub::OnMocapFrame(PeerId id, const protocol::mocap::NeutralFrame& frame, Time now) {
   Shard& shard = shards_.Of(id);
   const ShardLock lock(*this, shard.index);
@@ -210,6 +239,7 @@ void Hub::Tick(Time now) {
   shards_.ForEachPeer([&](Peer& peer) {
     EndIfTokenEnded(peer, now);
     if (peer.transport == Transport::kUdp) RenewConsent(peer, now);
+    if (peer.num_bound > 0) peer.last_used = now;
     peer.stuck =
         peer.link->IsStuck(now) || (peer.transport == Transport::kUdp && !peer.consent.Holds(now));
   });

@@ -123,6 +123,13 @@ class Hub {
   void OnBadFrame(PeerId id);
   // TCP: answers a connection that never becomes a peer.
   void RefuseConnection(Link* link, protocol::ErrorCode code, const std::string& why);
+  // TCP and web: ends the connection that has had no use for longest, so that a newcomer finds a
+  // place: one of `host`, or, if `any_host`, of any host. It gets an error first. False: all are in
+  // use. Connections have no use while they wait for absent subjects, or if they neither watched
+  // nor published anything for kUnusedPatience. Only the thread of shard 0 calls it.
+  [[nodiscard]] bool MakeRoom(Transport transport, const std::string& host, bool any_host,
+                              Time now);
+  static constexpr Time kUnusedPatience = std::chrono::seconds(2);
   // Handles a frame of a foreign motion-capture protocol. The peer was added to shard 0 as
   // Transport::kMocap.
   void OnMocapFrame(PeerId id, const protocol::mocap::NeutralFrame& frame, Time now);
@@ -174,6 +181,7 @@ class Hub {
   [[nodiscard]] std::size_t num_subscriptions() const { return subscribers_.size(); }
 
  private:
+  [[nodiscard]] static bool HasNoUse(const Peer& peer, Time now);
   void AgeSubjects(Time now);
   void RemoveSubject(Subject& subject);
   void RenewConsent(Peer& peer, Time now);

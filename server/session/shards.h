@@ -58,11 +58,13 @@ class Shards {
   };
 
  private:
-  static void Flush(Shard& shard);
+  void Flush(Shard& shard) noexcept;
+  void PublishGathered(Shard& shard) noexcept;
 
   ShardMutexes mutexes_;
   std::vector<std::unique_ptr<Shard>> shards_;
   StreamRouter* const router_;
+  Metrics* const metrics_;
 };
 
 }  // namespace furrow::server

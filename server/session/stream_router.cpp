@@ -20,6 +20,7 @@ void StreamRouter::AcceptPose(Shard& shard, Peer& peer, const protocol::Header& 
                               std::span<const std::uint8_t> payload, Time now) {
   Publishers& publishers = *parts_.publishers;
   Subject* subject = publishers.FindSubject(peer, header, pose);
+  if (subject != nullptr) peer.last_used = now;
   if (subject == nullptr) {
     // A batch must not be observable: an answer to a pose follows the poses before it.
     PublishGathered(shard);

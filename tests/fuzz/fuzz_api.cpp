@@ -43,6 +43,7 @@ class Pictures : public PictureSource {
  public:
   void Submit(RenderJob) override {}
   bool WithdrawStill(std::uint64_t) override { return true; }
+  void Withdraw(std::uint64_t) override {}
   Result<render::Camera> Preset(std::string_view name) const override {
     if (name == "face") return render::Camera();
     return Status(StatusCode::kNotFound, "no such camera");

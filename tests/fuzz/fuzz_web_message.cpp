@@ -26,6 +26,7 @@ class Pictures : public PictureSource {
  public:
   void Submit(RenderJob job) override { last = std::move(job); }
   bool WithdrawStill(std::uint64_t) override { return true; }
+  void Withdraw(std::uint64_t) override {}
   Result<render::Camera> Preset(std::string_view) const override { return render::Camera(); }
   RenderJob last;
 };

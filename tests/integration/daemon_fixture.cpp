@@ -66,6 +66,7 @@ server::Config WeightsConfig(const std::string& rig) {
   config.tcp = 0;
   config.udp = 0;
   config.http.port = 0;
+  config.http.api_share = 1.0;  // tests ask without pause
   config.render = false;
   return config;
 }

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The web server over real sockets: replies, errors and closed connections (docs/HTTP-API.md).
 #include <fstream>
+#include <memory>
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -334,8 +336,56 @@ TEST_F(Http, ConnectionsAreLimited) {
   WebClient second(port());
   EXPECT_EQ(first.Ask("GET", "/healthz").status, 200);
   EXPECT_EQ(second.Ask("GET", "/healthz").status, 200);
-  EXPECT_EQ(WebClient(port()).AskRaw("").status, 429);
+  const WebClient::Answer refused = WebClient(port()).AskRaw("");
+  EXPECT_EQ(refused.status, 429);
+  EXPECT_NE(refused.head.find("Retry-After: 1"), std::string::npos);
+  EXPECT_NE(refused.body.find("http.max_connections"), std::string::npos);
   EXPECT_EQ(first.Ask("GET", "/healthz").status, 200);
+}
+
+// All web places of this host are taken by viewers that wait for a subject which never comes.
+TEST_F(Http, WaitingWebSocketsGiveWayToANewcomer) {
+  daemon.reset();
+  server::Config config = WeightsConfig("arkit.json");
+  config.http.max_connections = 16;  // 8 for one host
+  Start(config);
+  std::vector<std::unique_ptr<WebClient>> waiting;
+  for (int i = 0; i < 8; ++i) {
+    waiting.push_back(std::make_unique<WebClient>(port()));
+    ASSERT_EQ(waiting.back()->Upgrade().status, 101);
+    waiting.back()->Send(protocol::SubscribeWeights{.subject = "nobody", .wait = true}, 0, 1);
+    ASSERT_TRUE(waiting.back()->Take<protocol::SubscribeReply>().has_value()) << i;
+  }
+  WebClient newcomer(port());
+  EXPECT_EQ(newcomer.Ask("GET", "/api/status").status, 200);
+  EXPECT_EQ(daemon->Count(Counter::kConnectionsRefused), 0u);
+  const auto error = waiting.front()->Take<protocol::ErrorMessage>();
+  ASSERT_TRUE(error.has_value());
+  EXPECT_EQ(error->code, protocol::ErrorCode::kLimit);
+  EXPECT_TRUE(waiting.front()->Take<protocol::Goodbye>().has_value());
+  std::optional<WebClient::Frame> last;
+  while (auto frame = waiting.front()->Next()) last = frame;
+  ASSERT_TRUE(last.has_value());
+  EXPECT_EQ(last->opcode, WebClient::kClose);
+  waiting.back()->Send(protocol::Ping{7});
+  EXPECT_TRUE(waiting.back()->Take<protocol::Pong>().has_value()) << "the others stay";
+}
+
+// The same for streams of JSON lines, whose last line says why.
+TEST_F(Http, WaitingWeightLinesGiveWayToANewcomer) {
+  daemon.reset();
+  server::Config config = WeightsConfig("arkit.json");
+  config.http.max_connections = 4;  // 2 for one host
+  Start(config);
+  WebClient first(port());
+  WebClient second(port());
+  for (WebClient* each : {&first, &second}) {
+    EXPECT_EQ(each->Ask("GET", "/weights?subject=nobody").status, 200);
+    EXPECT_NE(each->ReadUntil("}\n").find("waiting"), std::string::npos);
+  }
+  EXPECT_EQ(WebClient(port()).Ask("GET", "/api/status").status, 200);
+  EXPECT_NE(first.ReadUntil("}\n").find("newcomer"), std::string::npos);
+  EXPECT_NE(first.ReadUntil("}\n").find("bye"), std::string::npos);
 }
 
 }  // namespace

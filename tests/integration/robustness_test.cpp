@@ -2,6 +2,7 @@
 // Garbage, malformed streams, slow readers and ports in use do not affect other clients.
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <random>
 #include <stdexcept>
 #include <string>
@@ -273,6 +274,38 @@ TEST(Robustness, DrainingSaysGoodbyeAndCloses) {
   ASSERT_TRUE(goodbye.has_value());
   EXPECT_EQ(goodbye->reason, protocol::GoodbyeReason::kDraining);
   EXPECT_TRUE(client.AwaitClose());
+}
+
+// All TCP places of this host are taken by subscriptions that wait for a subject which never comes.
+TEST(Robustness, WaitingSubscriptionsGiveWayToANewcomer) {
+  server::Config config = WeightsConfig("arkit.json");
+  config.limits.max_connections = 64;  // 32 for one host
+  DaemonThread daemon(config);
+  ASSERT_TRUE(daemon.serves());
+  std::vector<std::unique_ptr<TcpClient>> waiting;
+  for (int i = 0; i < 32; ++i) {
+    waiting.push_back(std::make_unique<TcpClient>(daemon.ready().tcp));
+    ASSERT_TRUE(Watch(*waiting.back(), {.subject = "nobody", .wait = true}).has_value()) << i;
+  }
+  const motion::Clip clip = ArkitClip(1);
+  const protocol::SkeletonOffer offer = OfferOf(clip, "ann");
+  TcpClient sender(daemon.ready().tcp);
+  Offer(sender, offer);
+  TcpClient viewer(daemon.ready().tcp);
+  ASSERT_TRUE(Watch(viewer, {.subject = "ann"}).has_value());
+  sender.Send(PoseOf(clip, 0, offer), 1, 1);
+  EXPECT_TRUE(viewer.Await<protocol::WeightFrame>().has_value());
+  EXPECT_EQ(daemon.Count(Counter::kConnectionsRefused), 0u);
+  EXPECT_EQ(daemon.Count(Counter::kConnectionsGaveWay), 2u);
+  // The first two learn why they had to go.
+  for (int i = 0; i < 2; ++i) {
+    const auto error = waiting[i]->Await<protocol::ErrorMessage>();
+    ASSERT_TRUE(error.has_value()) << i;
+    EXPECT_EQ(error->code, protocol::ErrorCode::kLimit);
+    EXPECT_TRUE(waiting[i]->AwaitClose());
+  }
+  waiting[2]->Send(protocol::Ping{7});
+  EXPECT_TRUE(waiting[2]->Await<protocol::Pong>().has_value()) << "the others stay";
 }
 
 }  // namespace

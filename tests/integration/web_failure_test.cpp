@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <deque>
 #include <functional>
+#include <future>
 #include <memory>
 #include <mutex>
 #include <new>
@@ -65,7 +66,9 @@ class WebFailure : public testing::Test {
         {.config = {.port = 0},
          .bind = "127.0.0.1",
          .post_to_hub = [this](Door::Task task) { door.Post(std::move(task)); },
-         .answer = {},
+         .answer = [](const server::ApiRequest&, Hub&, Time) -> server::ApiReply {
+           throw std::bad_alloc();
+         },
          .metrics = &metrics});
     ASSERT_TRUE(started.ok()) << started.status().ToString();
     http = *std::move(started);
@@ -101,6 +104,15 @@ TEST_F(WebFailure, AFailedPictureStreamLeavesNothingInTheHub) {
   door.RunNext(*hub);  // removes the peer
   hub->Drain();
   EXPECT_EQ(WebClient(http->port()).Ask("HEAD", "/mjpeg").status, 200);  // others are served
+}
+
+TEST_F(WebFailure, LackOfMemoryCostsOneRequest) {
+  WebClient client(http->port());
+  auto reply = std::async(std::launch::async, [&] { return client.Ask("GET", "/api/status"); });
+  door.RunNext(*hub);  // the answer fails
+  EXPECT_EQ(reply.get().status, 503);
+  EXPECT_EQ(metrics.Get(server::Counter::kAllocationsFailed), 1u);
+  EXPECT_EQ(client.Ask("HEAD", "/mjpeg").status, 200) << "the connection goes on";
 }
 
 }  // namespace

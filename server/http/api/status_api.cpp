@@ -96,6 +96,11 @@ ApiReply StatusApi::Ready(const Hub& hub) const {
   if (parts_.wants_pictures && !parts_.renders) {
     return ErrorReply(503, "unavailable", "", "rendering is enabled but no renderer is available");
   }
+  if (parts_.pictures != nullptr && parts_.pictures->is_stuck()) {
+    return ErrorReply(
+        503, "unavailable", "",
+        "the renderer does not respond: pictures are off, weights go on; see the log");
+  }
   if (parts_.recording_is_paused && parts_.recording_is_paused()) {
     return ErrorReply(503, "unavailable", "",
                       "the recording is paused until its disk has room; see the log");

@@ -22,6 +22,7 @@ class StatusApi {
     const Metrics* metrics = nullptr;
     bool renders = false;                       // a renderer is running
     bool wants_pictures = false;                // the configuration asks for pictures
+    const PictureSource* pictures = nullptr;    // the renderer; null: none is running
     bool plays = false;                         // started with --play
     std::string renderer;                       // description of the renderer, for people
     std::function<int()> connections;           // HTTP connections
@@ -38,8 +39,8 @@ class StatusApi {
   [[nodiscard]] ApiReply ShowStatus(const ApiRequest& request, const Hub& hub, Time now) const;
   // Always 200: a reply shows that the hub's event loop runs.
   [[nodiscard]] ApiReply Health() const;
-  // 200, or 503 while the daemon shuts down, lacks the renderer that its configuration asks for, or
-  // cannot record.
+  // 200, or 503 while the daemon shuts down, lacks the renderer that its configuration asks for,
+  // has one that does not respond, or cannot record.
   [[nodiscard]] ApiReply Ready(const Hub& hub) const;
   // All counters in Prometheus' text format.
   [[nodiscard]] ApiReply MetricsText(const Hub& hub) const;

@@ -16,6 +16,7 @@
 #include "server/http/request/reply_writer.h"
 #include "server/http/request/request_access.h"
 #include "server/http/socket/web_peer.h"
+#include "server/session/peers/peer_label.h"
 
 namespace furrow::server {
 namespace {
@@ -44,7 +45,10 @@ class PictureStream : public std::enable_shared_from_this<PictureStream> {
     auto wake = [weak = weak_from_this()] {
       if (const auto self = weak.lock()) self->wake_.cancel();
     };
-    peer_.emplace(context_->post_to_hub, "web pictures", access,
+    beast::error_code ignored;
+    const auto remote = stream_->socket().remote_endpoint(ignored);
+    peer_.emplace(context_->post_to_hub,
+                  LabelOf("web pictures", remote.address().to_string(), remote.port()), access,
                   [post_to_web = context_->post_to_web, wake] { post_to_web(wake); });
     Send(0, pictures);
   }
@@ -128,6 +132,11 @@ class PictureStream : public std::enable_shared_from_this<PictureStream> {
         return ErrorReply(404, "not_found", "subject", error.message);
       case ErrorCode::kNeedsToken: return NeedsToken(error.message);
       case ErrorCode::kNotPermitted: return ErrorReply(403, "forbidden", "subject", error.message);
+      case ErrorCode::kLimit: {
+        ApiReply reply = ErrorReply(503, "limit", "", error.message, "try again later");
+        reply.closes = true;  // the place is wanted by somebody else
+        return reply;
+      }
       case ErrorCode::kNotRendering:
       case ErrorCode::kDraining: return ErrorReply(503, "unavailable", "", error.message);
       default: return ErrorReply(400, "invalid_argument", "", error.message);

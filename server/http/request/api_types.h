@@ -32,6 +32,8 @@ struct ApiReply {
   std::string body;
   std::string file_name;  // suggested name for saving; empty: none
   std::string allow;      // status 405: the allowed methods, "GET, PATCH"
+  int retry_after = 1;    // status 429 and 503: seconds
+  bool closes = false;    // the connection ends after the reply
 };
 
 // Returns a reply with an error object: {"error": {"code", "field", "message", "hint"}}. `status`:

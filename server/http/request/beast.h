@@ -31,6 +31,9 @@ inline constexpr auto kWebDeadline = std::chrono::seconds(10);
 // The time after which a silent WebSocket is closed.
 inline constexpr auto kWebIdle = std::chrono::seconds(30);
 
+// The time that a client has to answer the close frame of a WebSocket.
+inline constexpr auto kWebCloseDeadline = std::chrono::seconds(1);
+
 using WebRequest = http::request<http::string_body>;
 
 }  // namespace furrow::server

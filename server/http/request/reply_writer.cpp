@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/http/request/reply_writer.h"
 
+#include <string>
 #include <utility>
 
 namespace furrow::server {
@@ -28,7 +29,7 @@ net::awaitable<bool> WriteReply(WebStream& stream, const WebRequest& request, Ap
   http::response<http::string_body> response(static_cast<http::status>(reply.status),
                                              request.version());
   SetCommonHeaders(reply.type, &response);
-  response.keep_alive(request.keep_alive());
+  response.keep_alive(request.keep_alive() && !reply.closes);
   // Replies show the state of this moment.
   response.set(http::field::cache_control, "no-store");
   if (!reply.file_name.empty()) {
@@ -36,6 +37,9 @@ net::awaitable<bool> WriteReply(WebStream& stream, const WebRequest& request, Ap
                  "attachment; filename=\"" + reply.file_name + "\"");
   }
   if (reply.status == 401) response.set(http::field::www_authenticate, "Bearer");
+  if (reply.status == 429 || reply.status == 503) {
+    response.set(http::field::retry_after, std::to_string(reply.retry_after));
+  }
   if (!reply.allow.empty()) response.set(http::field::allow, reply.allow);
   // A HEAD request for a picture renders none, so the length of the body is unknown.
   const bool has_no_length = request.method() == http::verb::head && reply.body.empty();

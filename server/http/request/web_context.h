@@ -3,12 +3,16 @@
 
 #include <atomic>
 #include <functional>
+#include <map>
+#include <memory>
 #include <string>
+#include <utility>
 
 #include "server/config/http_config.h"
 #include "server/core/metrics.h"
 #include "server/http/request/api_types.h"
 #include "server/http/request/page_files.h"
+#include "server/http/request/request_budget.h"
 #include "server/http/request/request_guard.h"
 #include "server/http/request/thread_handoff.h"
 #include "server/session/access/token_gate.h"
@@ -31,6 +35,9 @@ struct WebContext {
   Metrics* metrics = nullptr;
   const TokenGate* gate = nullptr;   // null: everybody may do everything
   const TlsIdentity* tls = nullptr;  // null or not enabled: plain HTTP
+  std::shared_ptr<RequestBudget> budget =
+      std::make_shared<RequestBudget>(config.api_share);    // of API requests
+  std::map<std::string, std::pair<Time, ApiReply>> probes;  // the last replies, by path
   std::atomic<int> connections = 0;
   std::atomic<int> viewers = 0;  // WebSockets and picture streams
 };

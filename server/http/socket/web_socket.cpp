@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/http/socket/web_socket.h"
 
+#include <chrono>
 #include <cstdint>
 #include <exception>
 #include <memory>
@@ -131,7 +132,7 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
   net::awaitable<void> CloseWith(websocket::close_code code) {
     // Reader and writer may both want to close; Beast allows one close.
     if (std::exchange(closing_, true)) co_return;
-    WatchWrite();
+    WatchWrite(kWebCloseDeadline);
     beast::error_code ignored;
     co_await socket_.async_close(code, Redirect(ignored));
   }
@@ -144,7 +145,7 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
         context_->metrics->Add(Counter::kConnectionsOverrun);
         Abort();
       } else if (peer_->Pop(&out)) {
-        WatchWrite();
+        WatchWrite(kWebDeadline);
         beast::error_code error;
         co_await socket_.async_write(net::buffer(out), Redirect(error));
         write_watch_.cancel();
@@ -171,9 +172,9 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
            view.kind == protocol::MessageKind::kGoodbye && view.header.stream == 0;
   }
 
-  // Closes the connection if the client does not read a message within kWebDeadline.
-  void WatchWrite() {
-    write_watch_.expires_after(kWebDeadline);
+  // Closes the connection if the client does not read a message in time.
+  void WatchWrite(std::chrono::seconds deadline) {
+    write_watch_.expires_after(deadline);
     // Weak: a waiting timer must not keep a closed session alive.
     write_watch_.async_wait([weak = weak_from_this()](beast::error_code error) {
       if (error) return;

@@ -168,11 +168,8 @@ net::awaitable<void> ServeWeightSocket(WebStream stream, WebContext* context, We
   const CloseOnExit close_on_exit{socket.get()};
   // The WebSocket's own timeout does not end a client that sends and never reads.
   net::steady_timer write_watch(socket->get_executor());
-  std::string line;
-  while (!error) {
-    const bool more = co_await lines->Next(&line);
-    if (!more) break;
-    write_watch.expires_after(kWebDeadline);
+  const auto watch = [&write_watch, &socket, context](std::chrono::seconds deadline) {
+    write_watch.expires_after(deadline);
     write_watch.async_wait(
         [weak = std::weak_ptr<Socket>(socket), context](beast::error_code cancelled) {
           const auto alive = weak.lock();
@@ -180,10 +177,18 @@ net::awaitable<void> ServeWeightSocket(WebStream stream, WebContext* context, We
           context->metrics->Add(Counter::kConnectionsIdle);
           Close(*alive);
         });
+  };
+  std::string line;
+  while (!error) {
+    const bool more = co_await lines->Next(&line);
+    if (!more) break;
+    watch(kWebDeadline);
     co_await socket->async_write(net::buffer(line), Redirect(error));
     write_watch.cancel();
   }
-  // After the last line the daemon shuts down; otherwise the client is slow or has gone already.
+  // After the last line the daemon shuts down, or a newcomer needs the place; otherwise the client
+  // is slow or has gone already.
+  watch(kWebCloseDeadline);
   co_await socket->async_close(websocket::close_code::going_away, Redirect(error));
 }
 

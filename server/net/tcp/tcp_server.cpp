@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <exception>
+#include <new>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include <asio/co_spawn.hpp>
+#include <asio/detached.hpp>
 #include <asio/steady_timer.hpp>
 #include <spdlog/spdlog.h>
 
@@ -114,31 +116,71 @@ asio::awaitable<void> TcpServer::Accept() {
     }
     const tcp::endpoint client = socket.remote_endpoint(error);
     const std::string host = error ? std::string() : HostOf(client.address().to_string());
-    if (!shares_.Enter(host)) {
-      metrics_->Add(Counter::kConnectionsRefused);
-      // A client that speaks TLS only sees that the connection closes.
-      Refuse(socket, protocol::ErrorCode::kLimit,
-             "this address has its share of the " + std::to_string(limits_.max_connections) +
-                 " connections; see limits.max_connections");
-      continue;
-    }
-    auto stream = std::make_shared<StreamSocket>(std::move(socket));
-    if (!tls_->enabled()) {
-      Begin(std::move(stream), host);
-    } else {
-      asio::co_spawn(
-          io_,
-          [this, stream = std::move(stream), host]() mutable {
-            return BeginWithTls(std::move(stream), host);
-          },
-          [this, host](const std::exception_ptr& failed, bool begun) {
-            if (failed || !begun) shares_.Leave(host);
-          });
+    try {
+      Lobby::Stay stay;
+      if (!shares_.HasRoomFor(host)) stay = lobby_.Enter(ReadClock());
+      if (stay == nullptr) {
+        Admit(std::move(socket), host);
+      } else {
+        // Detached is safe: WaitForPlace() lets no exception out.
+        asio::co_spawn(io_, WaitForPlace(std::move(socket), host, std::move(stay)), asio::detached);
+      }
+    } catch (const std::bad_alloc&) {
+      metrics_->Add(Counter::kAllocationsFailed);  // it costs one connection, not the daemon
     }
   }
 }
 
-// The session has the place of the host in `shares_` from here on.
+// Waits until a connection without use has given way to the newcomer.
+asio::awaitable<void> TcpServer::WaitForPlace(tcp::socket socket, std::string host,
+                                              [[maybe_unused]] Lobby::Stay stay) {
+  try {
+    const Time begun = ReadClock();
+    Time again = begun;
+    asio::steady_timer timer(io_);
+    while (acceptor_.is_open() && !shares_.HasRoomFor(host)) {
+      const Time now = ReadClock();
+      if (now - begun >= Lobby::kPatience) break;
+      if (now >= again) {
+        if (!hub_->MakeRoom(Transport::kTcp, host, shares_.held(host) == 0, now)) break;
+        again = now + Lobby::kAgain;
+      }
+      timer.expires_after(Lobby::kPoll);
+      co_await timer.async_wait(kAwaitTuple);
+    }
+    if (acceptor_.is_open()) Admit(std::move(socket), host);
+  } catch (const std::bad_alloc&) {
+    metrics_->Add(Counter::kAllocationsFailed);
+  }
+}
+
+// Begins a session or a handshake, or refuses the connection.
+void TcpServer::Admit(tcp::socket socket, const std::string& host) {
+  if (!shares_.Enter(host)) {
+    metrics_->Add(Counter::kConnectionsRefused);
+    // A client that speaks TLS only sees that the connection closes.
+    return Refuse(socket, protocol::ErrorCode::kLimit,
+                  "this address has its share of the " + std::to_string(limits_.max_connections) +
+                      " connections; see limits.max_connections");
+  }
+  try {
+    auto stream = std::make_shared<StreamSocket>(std::move(socket));
+    if (!tls_->enabled()) return Begin(std::move(stream), host);
+    asio::co_spawn(
+        io_,
+        [this, stream = std::move(stream), host]() mutable {
+          return BeginWithTls(std::move(stream), host);
+        },
+        [this, host](const std::exception_ptr& failed, bool begun) {
+          if (failed || !begun) shares_.Leave(host);
+        });
+  } catch (const std::bad_alloc&) {
+    shares_.Leave(host);
+    throw;
+  }
+}
+
+// The session has the place of the host in `shares_` once it is in `sessions_`.
 void TcpServer::Begin(std::shared_ptr<StreamSocket> stream, const std::string& host) {
   metrics_->Add(Counter::kConnectionsAccepted);
   const auto session = std::make_shared<TcpSession>(
@@ -149,7 +191,12 @@ void TcpServer::Begin(std::shared_ptr<StreamSocket> stream, const std::string& h
         if (sessions_.erase(closed) > 0) shares_.Leave(host);
       });
   sessions_.insert(session);
-  session->Start();
+  try {
+    session->Start();
+  } catch (const std::bad_alloc&) {
+    metrics_->Add(Counter::kAllocationsFailed);
+    session->Close();  // gives the place back
+  }
 }
 
 // Returns whether a session has begun.

@@ -13,6 +13,7 @@
 #include "base/status.h"
 #include "server/core/fair_share.h"
 #include "server/core/limits.h"
+#include "server/core/lobby.h"
 #include "server/core/metrics.h"
 #include "server/net/tcp/stream_socket.h"
 #include "server/net/tcp/tcp_session.h"
@@ -23,8 +24,8 @@
 namespace furrow::server {
 
 // Accepts TCP connections, at most Limits::max_connections at a time, shared fairly between hosts,
-// and owns their sessions. With a certificate, connections begin with a TLS handshake, which holds
-// a place as a session does.
+// and owns their sessions. Sessions without use give way to newcomers (Hub::MakeRoom()). With a
+// certificate, connections begin with a TLS handshake, which holds a place as a session does.
 class TcpServer {
  public:
   // The arguments must outlive the server. All functions run on the thread of `io`.
@@ -46,6 +47,9 @@ class TcpServer {
 
  private:
   asio::awaitable<void> Accept();
+  void Admit(asio::ip::tcp::socket socket, const std::string& host);
+  asio::awaitable<void> WaitForPlace(asio::ip::tcp::socket socket, std::string host,
+                                     Lobby::Stay stay);
   void Begin(std::shared_ptr<StreamSocket> stream, const std::string& host);
   asio::awaitable<bool> BeginWithTls(std::shared_ptr<StreamSocket> stream, std::string host);
   asio::awaitable<void> RefusePlain(StreamSocket& stream);
@@ -59,6 +63,7 @@ class TcpServer {
   const TlsIdentity* const tls_;
   HandshakeBudget handshakes_;
   FairShare shares_;  // of the sessions and handshakes
+  Lobby lobby_;       // of newcomers that wait for a place
   std::unordered_set<std::shared_ptr<TcpSession>> sessions_;
 };
 

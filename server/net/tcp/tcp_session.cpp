@@ -243,6 +243,11 @@ void TcpSession::Finish() {
              [self = shared_from_this()] { self->CloseAfterFlush(/*linger=*/true); });
 }
 
+void TcpSession::FinishSoon() {
+  asio::post(socket_.get_executor(),
+             [self = shared_from_this()] { self->CloseAfterFlush(/*linger=*/false); });
+}
+
 void TcpSession::SetWriting(bool writing) {
   const std::lock_guard lock(mutex_);
   writing_ = writing;

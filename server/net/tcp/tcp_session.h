@@ -46,6 +46,7 @@ class TcpSession : public Link, public std::enable_shared_from_this<TcpSession> 
   void DropFrames(std::uint64_t key) override;
   void OnAdmitted() override;
   void Finish() override;
+  void FinishSoon() override;
   [[nodiscard]] bool IsStuck(Time now) const override;
 
  private:

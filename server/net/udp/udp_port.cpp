@@ -11,6 +11,7 @@
 #include "server/net/await_tuple.h"
 #include "server/net/clock.h"
 #include "server/net/critical_task.h"
+#include "server/net/run_loop.h"
 
 namespace furrow::server {
 namespace {
@@ -29,7 +30,7 @@ Limits LimitsOfShard(Limits limits, int shards) {
 
 UdpPort::UdpPort(asio::io_context& io, int shards, const Limits& limits, Hub* hub, Metrics* metrics,
                  RecordingTap* recording, SecureSessions* secure, bool requires_token)
-    : io_(io), hub_(hub) {
+    : io_(io), hub_(hub), metrics_(metrics) {
   std::vector<UdpServer*> by_shard;
   for (int shard = 0; shard < shards; ++shard) {
     // The hint 1 tells Asio that one thread runs the loop.
@@ -78,7 +79,7 @@ void UdpPort::Start() {
 // An exception ends the caller's event loop, too.
 void UdpPort::Run(asio::io_context& loop) {
   try {
-    loop.run();
+    RunLoop(loop, metrics_);
   } catch (...) {
     asio::post(io_, [error = std::current_exception()] { std::rethrow_exception(error); });
   }

@@ -52,6 +52,7 @@ class UdpPort {
 
   asio::io_context& io_;
   Hub* const hub_;
+  Metrics* const metrics_;
   std::vector<std::unique_ptr<asio::io_context>> loops_;  // of shards 1 and above
   std::vector<std::unique_ptr<UdpServer>> servers_;       // by shard
   std::vector<std::thread> threads_;

@@ -51,6 +51,8 @@ class Link {
   // Ends the connection after the replies that are queued. Only TCP has one: WebSockets end with a
   // goodbye to stream 0, and UDP peers are forgotten.
   virtual void Finish() {}
+  // The same for a peer that is asked to leave: does not wait until it has read the replies.
+  virtual void FinishSoon() { Finish(); }
   // The peer has shown a valid token.
   virtual void OnAdmitted() {}
   // True if the peer has stopped reading, so that new frames would only replace queued ones.
@@ -77,12 +79,18 @@ struct Peer {
   std::string name;              // PeerLabel::text
   Link* link = nullptr;          // not null; outlives the peer
   TokenBucket bucket{1.0, 1.0};  // limits incoming messages
-  std::string host;              // PeerLabel::host
-  bool shielded = true;          // PeerLabel::shielded
-  Access access;                 // what it may do; change it by Permit()
-  double rate_share = 1.0;       // part of Limits::packets_per_second that its token leaves
-  Consent consent;               // UDP: whether the address still wants what it is sent
+  // Limits its requests; a burst is enough for all subscriptions that a peer may have.
+  TokenBucket requests{kRequestsPerSecond, kRequestBurst};
+  static constexpr double kRequestsPerSecond = 1000.0;
+  static constexpr double kRequestBurst = 2048.0;
+  std::string host;         // PeerLabel::host
+  bool shielded = true;     // PeerLabel::shielded
+  Access access;            // what it may do; change it by Permit()
+  double rate_share = 1.0;  // part of Limits::packets_per_second that its token leaves
+  Consent consent;          // UDP: whether the address still wants what it is sent
   Time last_heard{0};
+  Time last_used{0};  // when it last had a subject to send or to watch, or when it connected
+  int num_bound = 0;  // subscriptions that have a subject
   SkeletonRequestLimiter skeleton_requests;
   int num_subscriptions = 0;
   // At the last tick: the peer has stopped reading (Link::IsStuck()), or its consent has expired.

@@ -32,7 +32,7 @@ class PeerTable {
     peer->shielded = name.shielded;
     peer->link = link;
     peer->bucket = bucket;
-    peer->last_heard = now;
+    peer->last_heard = peer->last_used = now;
     peer->consent.Begin(now);
     Peer& added = *peer;
     peers_.emplace(added.id, std::move(peer));

@@ -10,6 +10,7 @@
 #include <spdlog/spdlog.h>
 
 #include "protocol/messages/limits.h"
+#include "render/passes/picture_cost.h"
 #include "render/request/request_check.h"
 
 namespace furrow::server {
@@ -86,6 +87,15 @@ Result<PictureRequest> PictureViews::MakeRequest(const protocol::SubscribePictur
   FURROW_RETURN_IF_ERROR(view);
   Result<SharedSettings> settings = settings_.Get(request.settings);
   FURROW_RETURN_IF_ERROR(settings);
+  const std::size_t bytes =
+      render::EstimateCost(**settings, request.width, request.height).texture_bytes;
+  if (bytes > kMaxTextureBytes) {
+    return Status(StatusCode::kLimit,
+                  "the picture needs " + std::to_string(bytes >> 20) +
+                      " MiB of textures; the limit is " + std::to_string(kMaxTextureBytes >> 20) +
+                      " MiB",
+                  "", "ask for fewer pixels, a smaller anti_aliasing.samples or shadow.resolution");
+  }
   const Result<render::Camera> camera = CameraOf(request, *pictures_);
   FURROW_RETURN_IF_ERROR(camera);
   result.spec = {.view = *view,
@@ -155,7 +165,14 @@ void PictureViews::AddJob(Subscription& subscription, PictureRequest& request, s
   FindOrAddJob(subscription, request.spec, age_us, jobs)
       .tickets.push_back({.subscription = subscription.uid,
                           .encoding = request.encoding,
-                          .view_request = request.view_request});
+                          .view_request = request.view_request,
+                          .viewer = subscription.peer->id,
+                          .host = HostKey(subscription.peer->host)});
+}
+
+void PictureViews::OnEnd(const Subscription& subscription) {
+  if (pictures_ == nullptr || !std::holds_alternative<PictureRequest>(subscription.request)) return;
+  pictures_->Withdraw(subscription.uid);
 }
 
 void PictureViews::AddFlowControlledJob(Subscription& subscription, PictureRequest& request,
@@ -180,7 +197,9 @@ void PictureViews::AddFlowControlledJob(Subscription& subscription, PictureReque
                        // The tier travels with the picture, because the viewer's tier may change
                        // while it is rendered.
                        .tier = static_cast<std::uint8_t>(flow.tier()),
-                       .still = at_rest};
+                       .still = at_rest,
+                       .viewer = subscription.peer->id,
+                       .host = HostKey(subscription.peer->host)};
   if (request.encoding.format == render::ImageFormat::kJpeg) {
     ticket.encoding.quality = kTierQualities[flow.tier()];
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -25,8 +26,10 @@ namespace furrow::server {
 // require exclusive access to the hub.
 class PictureViews {
  public:
-  // The largest picture. Targets of all passes need about 60 bytes a pixel, and strangers may ask.
+  // The largest picture, and the most memory of the textures that one picture needs. Strangers may
+  // ask.
   static constexpr int kMaxPicturePixels = 2048 * 2048;
+  static constexpr std::size_t kMaxTextureBytes = std::size_t{512} << 20;
 
   // `pictures` may be null: this daemon renders nothing. `settings`: the daemon's own.
   PictureViews(const SubscriptionTable* table, PictureSource* pictures,
@@ -38,6 +41,7 @@ class PictureViews {
         metrics_(metrics) {}
 
   [[nodiscard]] bool can_render() const { return pictures_ != nullptr; }
+  [[nodiscard]] bool is_stuck() const { return can_render() && pictures_->is_stuck(); }
   // Checks a request. Errors: unknown view, camera or setting, or values out of range.
   // Precondition: can_render().
   [[nodiscard]] Result<PictureRequest> MakeRequest(const protocol::SubscribePictures& request);
@@ -59,6 +63,8 @@ class PictureViews {
   // does so only if the viewer may receive one now; otherwise Subscription::owed stays true.
   void AddJob(Subscription& subscription, PictureRequest& request, std::int64_t age_us, Time now,
               std::vector<RenderJob>* jobs);
+  // The subscription ends: nothing is drawn for it any more.
+  void OnEnd(const Subscription& subscription);
   // Hands the jobs to the renderer and empties the list.
   void Submit(std::vector<RenderJob>* jobs);
   // Sends a finished picture to those of its viewers that are still subscribed. A picture without

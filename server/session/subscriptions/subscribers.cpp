@@ -89,6 +89,10 @@ void Subscribers::Subscribe(Peer& peer, const protocol::Header& header,
     return RefuseRequest(peer, header, ErrorCode::kNotRendering,
                          "this daemon renders no pictures: it has no character or no OpenGL");
   }
+  if (pictures_.is_stuck()) {
+    return RefuseRequest(peer, header, ErrorCode::kNotRendering,
+                         "the renderer does not respond; pictures are off until it does");
+  }
   Result<PictureRequest> pictures = pictures_.MakeRequest(request);
   if (!pictures.ok()) {
     return RefuseRequest(peer, header, ErrorCode::kBadPicture, pictures.status().ToString());
@@ -313,6 +317,7 @@ void Subscribers::RefuseAndErase(Subscription& subscription, ErrorCode code, std
 
 void Subscribers::Erase(Subscription& subscription) {
   Subject* const subject = subscription.subject;
+  pictures_.OnEnd(subscription);
   table_.Erase(subscription);
   if (subject != nullptr) UpdateDriverLevel(*subject);
 }
@@ -337,20 +342,16 @@ void Subscribers::EndForbidden(Peer& peer) {
 }
 
 void Subscribers::RemovePeer(Peer& peer) {
-  // Peers without subscriptions are the usual case: a flood of forged addresses must stay cheap.
-  if (peer.num_subscriptions == 0) return;
-  // Select() copies the pointers first, since Erase() changes the table.
-  const auto is_of_peer = [&peer](const Subscription& each) { return each.peer == &peer; };
-  for (Subscription* subscription : table_.Select(is_of_peer)) Erase(*subscription);
+  // Of() copies the pointers first, since Erase() changes the table.
+  for (Subscription* subscription : table_.Of(peer)) Erase(*subscription);
 }
 
 void Subscribers::RemovePeer(Peer& peer, protocol::GoodbyeReason goodbye) {
-  table_.ForEach([&](const Subscription& subscription) {
-    if (subscription.peer != &peer) return;
+  for (const Subscription* subscription : table_.Of(peer)) {
     messages_->SendReply(peer,
-                         {.stream = subscription.id, .sequence = subscription.request_sequence},
+                         {.stream = subscription->id, .sequence = subscription->request_sequence},
                          protocol::Goodbye{goodbye});
-  });
+  }
   RemovePeer(peer);
 }
 

@@ -17,6 +17,7 @@ Subscription& SubscriptionTable::Add(Peer& peer, const protocol::Header& request
   subscription->request_sequence = request.sequence;
   Subscription& added = *subscription;
   by_uid_.emplace(added.uid, std::move(subscription));
+  by_peer_[&peer].emplace(added.id, &added);
   ++peer.num_subscriptions;
   return added;
 }
@@ -24,10 +25,14 @@ Subscription& SubscriptionTable::Add(Peer& peer, const protocol::Header& request
 void SubscriptionTable::Erase(Subscription& subscription) {
   if (subscription.subject != nullptr) {
     std::erase(by_subject_[subscription.subject->id], &subscription);
+    --subscription.peer->num_bound;
   }
   // A client must not receive frames of a subscription that it has ended.
   subscription.peer->link->DropFrames(subscription.uid);
   --subscription.peer->num_subscriptions;
+  const auto of_peer = by_peer_.find(subscription.peer);
+  of_peer->second.erase(subscription.id);
+  if (of_peer->second.empty()) by_peer_.erase(of_peer);
   by_uid_.erase(subscription.uid);
 }
 
@@ -37,28 +42,37 @@ Subscription* SubscriptionTable::Find(std::uint64_t uid) const {
 }
 
 Subscription* SubscriptionTable::Find(const Peer& peer, std::uint16_t id) const {
-  // A search through all subscriptions is fast enough: it serves requests, not poses.
-  for (const auto& [uid, subscription] : by_uid_) {
-    if (subscription->peer == &peer && subscription->id == id) return subscription.get();
-  }
-  return nullptr;
+  const auto of_peer = by_peer_.find(&peer);
+  if (of_peer == by_peer_.end()) return nullptr;
+  const auto found = of_peer->second.find(id);
+  return found == of_peer->second.end() ? nullptr : found->second;
 }
 
 Subscription* SubscriptionTable::FindRepeated(const Peer& peer,
                                               const protocol::Header& request) const {
-  // Saves the search for the many peers that only publish.
-  if (peer.num_subscriptions == 0) return nullptr;
-  for (const auto& [uid, subscription] : by_uid_) {
-    if (subscription->peer == &peer && subscription->request_session == request.session &&
+  const auto of_peer = by_peer_.find(&peer);
+  if (of_peer == by_peer_.end()) return nullptr;
+  for (const auto& [id, subscription] : of_peer->second) {
+    if (subscription->request_session == request.session &&
         subscription->request_sequence == request.sequence) {
-      return subscription.get();
+      return subscription;
     }
   }
   return nullptr;
 }
 
+std::vector<Subscription*> SubscriptionTable::Of(const Peer& peer) const {
+  std::vector<Subscription*> selected;
+  const auto of_peer = by_peer_.find(&peer);
+  if (of_peer == by_peer_.end()) return selected;
+  for (const auto& [id, subscription] : of_peer->second) selected.push_back(subscription);
+  SortByRequest(&selected);
+  return selected;
+}
+
 void SubscriptionTable::Attach(Subscription& subscription, Subject& subject) {
   if (subscription.subject == &subject) return;
+  if (subscription.subject == nullptr) ++subscription.peer->num_bound;
   subscription.subject = &subject;
   by_subject_[subject.id].push_back(&subscription);
 }
@@ -69,7 +83,10 @@ std::vector<Subscription*> SubscriptionTable::DetachAll(const Subject& subject) 
   // Returned by value: the caller erases some of them, which changes the table.
   std::vector<Subscription*> detached = std::move(found->second);
   by_subject_.erase(found);
-  for (Subscription* subscription : detached) subscription->subject = nullptr;
+  for (Subscription* subscription : detached) {
+    subscription->subject = nullptr;
+    --subscription->peer->num_bound;
+  }
   return detached;
 }
 

@@ -16,7 +16,8 @@
 namespace furrow::server {
 
 // All subscriptions of a daemon, by uid and by the subject that they are bound to. Keeps
-// Peer::num_subscriptions up to date. The address of a subscription is stable until Erase().
+// Peer::num_subscriptions and Peer::num_bound up to date. The address of a subscription is stable
+// until Erase().
 class SubscriptionTable {
  public:
   // Adds a subscription and sets its peer, uid and id. `request`: the header of the message.
@@ -39,6 +40,8 @@ class SubscriptionTable {
   // The subscriptions bound to a subject, in the order in which they were attached. Does not
   // allocate. Valid until the table changes.
   [[nodiscard]] std::span<Subscription* const> Of(SubjectId subject) const;
+  // The subscriptions of a peer, in the order of their requests.
+  [[nodiscard]] std::vector<Subscription*> Of(const Peer& peer) const;
   // The subscriptions for which `matches` is true, in the order of their requests.
   template <class Predicate>
   [[nodiscard]] std::vector<Subscription*> Select(const Predicate& matches) const {
@@ -62,6 +65,7 @@ class SubscriptionTable {
 
   std::unordered_map<std::uint64_t, std::unique_ptr<Subscription>> by_uid_;
   std::unordered_map<SubjectId, std::vector<Subscription*>> by_subject_;
+  std::unordered_map<const Peer*, std::unordered_map<std::uint16_t, Subscription*>> by_peer_;
   std::uint64_t next_uid_ = 1;
 };
 

@@ -13,7 +13,8 @@ constexpr int kMinDue = 4;  // poses; a window with fewer decides nothing
 }  // namespace
 
 bool ViewerFlow::CanRequest(Time now) const {
-  if (pending_ || under_way() >= kMaxUnderWay) return false;
+  if (under_way() >= kMaxUnderWay) return false;
+  if (pending_) return now - requested_at_ >= kGiveUp;
   return !failed_ || now - requested_at_ >= kRetry;
 }
 

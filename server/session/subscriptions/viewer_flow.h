@@ -19,8 +19,10 @@ class ViewerFlow {
   static constexpr std::uint32_t kMaxUnderWay = 2;
   static constexpr int kNumTiers = 3;
   static constexpr Time kRetry = FromSeconds(0.25);  // delay after a failed picture
+  // A picture that has not come for this long is requested again.
+  static constexpr Time kGiveUp = FromSeconds(60.0);
 
-  // True if the viewer may receive another picture and none is requested.
+  // True if the viewer may receive another picture and none is requested, or not for kGiveUp.
   [[nodiscard]] bool CanRequest(Time now) const;
   // True between Request() and Send(), Fail() or Withdraw().
   [[nodiscard]] bool is_pending() const { return pending_; }

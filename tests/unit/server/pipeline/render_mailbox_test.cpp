@@ -46,7 +46,7 @@ TEST(RenderMailbox, OtherSubjectsAndSpecsWaitSeparately) {
 }
 
 TEST(RenderMailbox, AViewerThatChangesItsViewOccupiesOnePlace) {
-  RenderMailbox mailbox(4);
+  RenderMailbox mailbox(6);
   mailbox.Put(Job(1, 1, 200, 1000));
   mailbox.Put(Job(1, 2, 201, 1001));
   for (int width = 1; width <= 100; ++width) {
@@ -126,12 +126,101 @@ TEST(RenderMailbox, AWaitingStillCanBeWithdrawn) {
   EXPECT_FALSE(mailbox.Take(false).has_value());  // the job is gone, too
 }
 
-TEST(RenderMailbox, IsBounded) {
-  RenderMailbox mailbox(2);
-  EXPECT_EQ(mailbox.Put(Job(1, 1, 1)), RenderMailbox::PutResult::kQueued);
-  EXPECT_EQ(mailbox.Put(Job(2, 1, 2)), RenderMailbox::PutResult::kQueued);
-  EXPECT_EQ(mailbox.Put(Job(3, 1, 3)), RenderMailbox::PutResult::kFull);
-  EXPECT_EQ(mailbox.Put(Job(2, 2, 2)), RenderMailbox::PutResult::kReplaced);
+// A job of a viewer at a host; the subscription has the viewer's number.
+RenderJob JobOf(std::uint64_t host, std::uint64_t viewer, int width = 64) {
+  RenderJob job = Job(/*subject=*/1, 1, viewer, width);
+  job.tickets.front().host = host;
+  job.tickets.front().viewer = viewer;
+  return job;
+}
+
+TEST(RenderMailbox, IsBoundedAndSharedBetweenHosts) {
+  RenderMailbox mailbox(8);
+  int taken = 0;
+  for (std::uint64_t viewer = 1; viewer <= 8; ++viewer) {
+    const auto result = mailbox.Put(JobOf(1, viewer, 100 + static_cast<int>(viewer)));
+    taken += result == RenderMailbox::PutResult::kQueued ? 1 : 0;
+  }
+  EXPECT_EQ(taken, 4) << "one host gets half";
+  EXPECT_EQ(mailbox.Put(JobOf(2, 20, 200)), RenderMailbox::PutResult::kQueued);
+  EXPECT_EQ(mailbox.Put(JobOf(2, 20, 200)), RenderMailbox::PutResult::kReplaced);
+}
+
+TEST(RenderMailbox, LargePicturesDoNotDelayThoseOfOtherHosts) {
+  RenderMailbox mailbox(64);
+  // Host 1 has eight viewers of large pictures; host 2 asks for a small one at a time.
+  int small = 0;
+  for (int round = 0; round < 20; ++round) {
+    for (std::uint64_t viewer = 1; viewer <= 8; ++viewer) {
+      mailbox.Put(JobOf(1, viewer, 1024 + static_cast<int>(viewer)));
+    }
+    mailbox.Put(JobOf(2, 20, 64));
+    auto job = mailbox.Take(false);
+    ASSERT_TRUE(job.has_value());
+    small += job->tickets.front().host == 2 ? 1 : 0;
+    mailbox.Complete(&*job);
+  }
+  EXPECT_GE(small, 16) << "of 20, although the large ones came first";
+}
+
+TEST(RenderMailbox, ViewersOfAHostTakeTurns) {
+  RenderMailbox mailbox(64);
+  for (int width = 100; width < 110; ++width) {
+    RenderJob job = JobOf(1, 7, width);
+    job.tickets.front().subscription = static_cast<std::uint64_t>(width);
+    mailbox.Put(std::move(job));
+  }
+  mailbox.Put(JobOf(1, 8, 120));
+  EXPECT_EQ(mailbox.Take(false)->tickets.front().viewer, 7u);
+  EXPECT_EQ(mailbox.Take(false)->tickets.front().viewer, 8u) << "not behind ten others";
+}
+
+// As requests for single pictures from one host do: each is a viewer of its own.
+TEST(RenderMailbox, ASmallPictureDoesNotWaitForAllLargeOnesOfItsHost) {
+  RenderMailbox mailbox(64);
+  for (std::uint64_t viewer = 1; viewer <= 8; ++viewer) {
+    mailbox.Put(JobOf(1, viewer, 1024 + static_cast<int>(viewer)));
+  }
+  EXPECT_NE(mailbox.Take(false)->tickets.front().viewer, 20u);
+  mailbox.Put(JobOf(1, 20, 64));
+  EXPECT_EQ(mailbox.Take(false)->tickets.front().viewer, 20u);
+  EXPECT_NE(mailbox.Take(false)->tickets.front().viewer, 20u);
+}
+
+TEST(RenderMailbox, WhatNobodyWantsAnyMoreIsNotDrawn) {
+  RenderMailbox mailbox(8);
+  mailbox.Put(Job(1, 1, 100));
+  mailbox.Put(Job(1, 1, 101));
+  mailbox.Put(Job(1, 1, 102, 128));
+  EXPECT_EQ(mailbox.Withdraw(102), 1u);
+  EXPECT_EQ(mailbox.Withdraw(100), 0u) << "another viewer wants the same picture";
+  auto job = mailbox.Take(false);
+  ASSERT_TRUE(job.has_value());
+  EXPECT_EQ(job->tickets.size(), 1u);
+  EXPECT_FALSE(mailbox.Take(false).has_value());
+  // Drawing has begun; encoding has not.
+  EXPECT_EQ(mailbox.Withdraw(101), 1u);
+  EXPECT_EQ(mailbox.Complete(&*job), 1u);
+  EXPECT_TRUE(job->tickets.empty());
+}
+
+TEST(RenderMailbox, AJobInTwoPicturesIsCompletedTwice) {
+  RenderMailbox mailbox(8);
+  mailbox.Put(Job(1, 1, 100));
+  auto first = mailbox.Take(false);
+  mailbox.Put(Job(1, 2, 100));
+  auto second = mailbox.Take(false);
+  EXPECT_EQ(mailbox.Complete(&*first), 0u);
+  EXPECT_EQ(mailbox.Complete(&*second), 0u);
+  EXPECT_EQ(mailbox.Withdraw(100), 0u);
+}
+
+TEST(RenderMailbox, AllWaitingJobsCanBeTakenBack) {
+  RenderMailbox mailbox(8);
+  mailbox.Put(Job(1, 1, 1));
+  mailbox.Put(Still(2, 1, 2));
+  EXPECT_EQ(mailbox.TakeWaiting().size(), 2u);
+  EXPECT_FALSE(mailbox.Take(false).has_value());
 }
 
 TEST(RenderMailbox, ClosingWakesTake) {

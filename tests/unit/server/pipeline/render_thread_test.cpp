@@ -7,11 +7,14 @@
 #include <latch>
 #include <memory>
 #include <mutex>
+#include <new>
+#include <string>
 #include <utility>
 
 #include <gtest/gtest.h>
 
 #include "base/status.h"
+#include "tests/log_capture.h"
 
 namespace furrow::server {
 namespace {
@@ -25,6 +28,9 @@ struct Script {
   std::deque<Status> submit;
   std::deque<Status> poll;
   std::latch* hold_first_submit = nullptr;
+  std::latch* in_first_submit = nullptr;  // counted down when it holds
+  int out_of_memory_submits = 0;          // the next calls throw
+  int out_of_memory_polls = 0;
   std::deque<int> samples;                 // of the rendered requests
   std::vector<std::vector<float>> shapes;  // of the same
   int num_created = 0;
@@ -41,7 +47,12 @@ class ScriptedRenderer : public render::Renderer {
  public:
   explicit ScriptedRenderer(Script* script) : script_(script) {}
   Status Submit(const render::FrameRequest& request) override {
+    if (auto* latch = std::exchange(script_->in_first_submit, nullptr)) latch->count_down();
     if (auto* latch = std::exchange(script_->hold_first_submit, nullptr)) latch->wait();
+    if (script_->out_of_memory_submits > 0) {
+      --script_->out_of_memory_submits;
+      throw std::bad_alloc();
+    }
     Status status = Script::Next(&script_->submit);
     if (status.ok()) ++in_flight_;
     if (status.ok()) script_->samples.push_back(request.settings.anti_aliasing.samples);
@@ -49,6 +60,10 @@ class ScriptedRenderer : public render::Renderer {
     return status;
   }
   Result<render::Image> Poll(bool) override {
+    if (script_->out_of_memory_polls > 0) {
+      --script_->out_of_memory_polls;
+      throw std::bad_alloc();
+    }
     FURROW_RETURN_IF_ERROR(Script::Next(&script_->poll));
     if (in_flight_ == 0) return render::Image();
     --in_flight_;
@@ -220,7 +235,110 @@ TEST_F(RenderThreadTest, StillsUseMoreSamplesIfTheSettingsAllow) {
   Submit(3, {.subscription = 3, .still = true}, fixed);
   (void)pictures.Take();
   thread.reset();
-  EXPECT_EQ(script.samples, (std::deque<int>{0, RenderThread::kStillSamples, 2}));
+  EXPECT_EQ(script.samples, (std::deque<int>{0, kStillSamples, 2}));
+}
+
+TEST_F(RenderThreadTest, LackOfMemoryCostsPicturesNotTheThread) {
+  Start();
+  script.out_of_memory_submits = 1;
+  script.out_of_memory_polls = 1;
+  // The first is lost while it is drawn, the second while it is read back.
+  for (std::uint32_t number = 1; number <= 6; ++number) Submit(number);
+  EXPECT_GE(pictures.Take().sequence, 3u);
+  EXPECT_EQ(Count(Counter::kAllocationsFailed), 2u);
+  EXPECT_EQ(Count(Counter::kRendererRestarts), 2u);
+}
+
+TEST_F(RenderThreadTest, AStillThatNeedsTooMuchMemoryHasFewerSamples) {
+  script.submit = {Status(StatusCode::kLimit, "too much")};
+  Start();
+  Submit(1, {.subscription = 1, .still = true}, {});
+  EXPECT_EQ(pictures.Take().sequence, 1u);
+  thread.reset();
+  EXPECT_EQ(script.samples, (std::deque<int>{0}));
+}
+
+TEST_F(RenderThreadTest, APictureWhoseViewerHasLeftIsNotEncoded) {
+  std::latch go_on(1), holds(1);
+  script.hold_first_submit = &go_on;
+  script.in_first_submit = &holds;
+  Start();
+  Submit(1);
+  holds.wait();
+  thread->Withdraw(1);
+  Submit(2);
+  thread->Withdraw(2);  // not even drawn
+  go_on.count_down();
+  Submit(3);
+  EXPECT_EQ(pictures.Take().sequence, 3u);
+  EXPECT_EQ(Count(Counter::kPicturesEncoded), 1u);
+  EXPECT_EQ(Count(Counter::kPicturesRendered), 2u);
+  EXPECT_EQ(Count(Counter::kPicturesWithdrawn), 2u);
+}
+
+TEST_F(RenderThreadTest, TheEncodingsOfAPictureAreLimited) {
+  Start();
+  auto snapshot = std::make_shared<Snapshot>();
+  snapshot->retarget =
+      std::make_shared<const wrinkle::Retarget>(wrinkle::Retarget::Create(skeleton, skeleton));
+  snapshot->blend_shape_pose = std::make_shared<const wrinkle::BlendShapePose>();
+  snapshot->joints.assign(skeleton.rest_pose().begin(), skeleton.rest_pose().end());
+  RenderJob job{1, {.width = 16, .height = 16}, std::move(snapshot), {}};
+  for (int quality = 1; quality <= 100; ++quality) {
+    job.tickets.push_back({.subscription = static_cast<std::uint64_t>(quality),
+                           .encoding = {render::ImageFormat::kJpeg, quality}});
+  }
+  job.tickets.push_back({.subscription = 101, .encoding = {render::ImageFormat::kPng, 0}});
+  thread->Submit(std::move(job));
+  std::size_t viewers = 0;
+  std::size_t encodings = 0;
+  while (viewers < 101) {
+    const FinishedPicture picture = pictures.Take();
+    viewers += picture.tickets.size();
+    ++encodings;
+    for (const PictureTicket& ticket : picture.tickets) {
+      EXPECT_EQ(ticket.encoding.format, picture.encoding.format);
+    }
+  }
+  EXPECT_EQ(encodings, RenderThread::kMaxEncodings + 1) << "and one PNG";
+}
+
+TEST_F(RenderThreadTest, ARendererThatDoesNotRespondTurnsPicturesOff) {
+  std::latch go_on(1), holds(1);
+  script.hold_first_submit = &go_on;
+  script.in_first_submit = &holds;
+  Start();
+  LogCapture log;
+  Submit(1);
+  holds.wait();
+  Submit(2);  // waits
+  const Time begun = FromSeconds(100);
+  thread->Watch(begun);
+  thread->Watch(begun + RenderThread::kStuckAfter - FromSeconds(1));
+  EXPECT_FALSE(thread->is_stuck());
+  thread->Watch(begun + RenderThread::kStuckAfter);
+  EXPECT_TRUE(thread->is_stuck());
+  EXPECT_EQ(pictures.num_failed_tickets(), 1u) << "the one that waits";
+  Submit(3);
+  EXPECT_EQ(pictures.num_failed_tickets(), 2u) << "and each new one, at once";
+  thread->Watch(begun + FromSeconds(1000));
+  EXPECT_EQ(Count(Counter::kRendererStuck), 1u);
+  EXPECT_NE(log.text().find("has not responded for 30 s"), std::string::npos) << log.text();
+  // It comes back.
+  go_on.count_down();
+  EXPECT_EQ(pictures.Take().sequence, 1u);
+  while (thread->is_stuck()) thread->Watch(begun + FromSeconds(1001));
+  EXPECT_NE(log.text().find("the renderer responds again"), std::string::npos);
+  Submit(4);
+  EXPECT_EQ(pictures.Take().sequence, 4u);
+}
+
+TEST_F(RenderThreadTest, AfterStopNothingIsDrawn) {
+  Start();
+  thread->Stop();
+  Submit(1);
+  EXPECT_EQ(pictures.num_failed_tickets(), 1u);
+  EXPECT_EQ(Count(Counter::kPicturesRendered), 0u);
 }
 
 TEST_F(RenderThreadTest, StartFailsWithoutARenderer) {

@@ -78,8 +78,12 @@ class FakePictures : public PictureSource {
     withdrawn.push_back(subscription);
     return withdraws;
   }
+  void Withdraw(std::uint64_t subscription) override { ended.push_back(subscription); }
+  bool is_stuck() const override { return stuck; }
   std::vector<RenderJob> jobs;
   std::vector<std::uint64_t> withdrawn;
+  std::vector<std::uint64_t> ended;  // by Withdraw()
+  bool stuck = false;
   bool withdraws = false;  // the result of WithdrawStill()
 };
 

@@ -342,6 +342,45 @@ TEST_F(PictureViewsTest, HugePicturesAreRefused) {
   EXPECT_NE(error->message.message.find("4096x1025"), std::string::npos);
 }
 
+TEST_F(PictureViewsTest, PicturesThatNeedTooMuchMemoryAreRefused) {
+  Publish(sender, "ann");
+  protocol::SubscribePictures request{.subject = "ann", .width = 2048, .height = 2048};
+  request.settings = {"anti_aliasing.samples=8"};
+  Send(viewer, request, 0, 1);
+  const auto error = viewer.Take<protocol::ErrorMessage>();
+  ASSERT_TRUE(error.has_value());
+  EXPECT_EQ(error->message.code, ErrorCode::kBadPicture);
+  EXPECT_NE(error->message.message.find("MiB of textures; the limit is 512 MiB"), std::string::npos)
+      << error->message.message;
+  request.width = request.height = 640;
+  Send(viewer, request, 0, 2);
+  EXPECT_TRUE(viewer.Take<protocol::SubscribeReply>().has_value());
+}
+
+TEST_F(PictureViewsTest, TheJobsOfAViewerThatLeavesAreWithdrawn) {
+  Publish(sender, "ann");
+  Send(viewer, protocol::SubscribePictures{.subject = "ann"}, 0, 1);
+  const auto reply = viewer.Take<protocol::SubscribeReply>();
+  ASSERT_TRUE(reply.has_value());
+  Send(sender, Pose(0.5f), 1, 0);
+  ASSERT_EQ(pictures.jobs.size(), 1u);
+  const PictureTicket& ticket = pictures.jobs.front().tickets.front();
+  EXPECT_EQ(ticket.viewer, viewer.id);
+  Send(viewer, protocol::Unsubscribe{}, reply->header.stream);
+  EXPECT_EQ(pictures.ended, std::vector<std::uint64_t>{ticket.subscription});
+  Send(viewer, protocol::SubscribeWeights{.subject = "ann"}, 0, 2);
+  hub->RemovePeer(viewer.id);
+  EXPECT_EQ(pictures.ended.size(), 1u) << "weights have no jobs";
+}
+
+TEST_F(PictureViewsTest, WhileTheRendererDoesNotRespondPicturesAreRefused) {
+  Publish(sender, "ann");
+  pictures.stuck = true;
+  Send(viewer, protocol::SubscribePictures{.subject = "ann"}, 0, 1);
+  ExpectError(viewer, ErrorCode::kNotRendering);
+  EXPECT_NE(Watch(viewer, {.subject = "ann"}, 2), 0) << "weights go on";
+}
+
 TEST_F(PictureViewsTest, WithoutARendererPicturesAreRefused) {
   Hub::Parts parts;
   parts.rig = std::make_shared<const wrinkle::Rig>(MakeRig(false));

@@ -59,6 +59,14 @@ TEST(ViewerFlow, AStillOfAnOldViewDoesNotCount) {
   EXPECT_FALSE(flow.HasStill(changed));
 }
 
+TEST(ViewerFlow, APictureThatNeverComesIsRequestedAgain) {
+  ViewerFlow flow;
+  const Time begun = FromSeconds(100);
+  flow.Request(false, begun);
+  EXPECT_FALSE(flow.CanRequest(begun + ViewerFlow::kGiveUp - FromSeconds(1)));
+  EXPECT_TRUE(flow.CanRequest(begun + ViewerFlow::kGiveUp));
+}
+
 TEST(ViewerFlow, AFailedPictureIsRetriedLater) {
   ViewerFlow flow;
   const Time now = FromSeconds(5);
