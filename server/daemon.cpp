@@ -28,7 +28,9 @@
 #include "rig/rig_file.h"
 #include "server/assets.h"
 #include "server/config/osc_profile_file.h"
+#include "server/core/confine.h"
 #include "server/core/status_line.h"
+#include "server/daemon_files.h"
 #include "server/http/api/api.h"
 #include "server/http/http_server.h"
 #include "server/net/await_tuple.h"
@@ -92,6 +94,7 @@ class Daemon {
   // Call these in this order. Each leaves out what the configuration does not ask for.
   Status LoadPlayer();
   Status StartRendering();
+  void Confine();
   Status StartRecording();
   Status LoadKeys();
   Status LoadTls() { return tls_.Load(); }
@@ -99,6 +102,7 @@ class Daemon {
   void Serve();
 
  private:
+  [[nodiscard]] bool confines() const { return options_.confine && config_.security.confine; }
   void MakeHub();
   void SetKeys(protocol::secure::KeyRing keys);
   Status StartOsc();
@@ -144,6 +148,7 @@ class Daemon {
   MocapInputs mocap_;
   std::unique_ptr<Api> api_;
   std::unique_ptr<HttpServer> http_;
+  bool render_is_confined_ = false;  // used by the render thread
   bool draining_ = false;
   Time drain_deadline_{0};
 };
@@ -153,9 +158,15 @@ Status Daemon::StartRendering() {
   auto started = RenderThread::Start(
       &assets_.character->skeleton,
       [this] {
-        return render::Renderer::Create(
+        auto renderer = render::Renderer::Create(
             *assets_.character,
             {.device = config_.render_device, .max_texture_bytes = PictureViews::kMaxTextureBytes});
+        // After the first one: drivers may run helper programs to prepare their devices. Threads
+        // confine themselves, so this one does, too.
+        if (confines() && !std::exchange(render_is_confined_, true)) {
+          (void)server::Confine(FilesOf(config_));
+        }
+        return renderer;
       },
       metrics_,
       [this](FinishedPicture picture) {
@@ -173,6 +184,20 @@ Status Daemon::StartRendering() {
   if (config_.require_render) return started.status();
   spdlog::error("cannot render pictures: {}", started.status().ToString());
   return {};
+}
+
+// Before the threads that serve strangers start, because they inherit it.
+void Daemon::Confine() {
+  if (!options_.confine) return;
+  if (!confines()) {
+    spdlog::info("not confined: security.confine is off");
+    return;
+  }
+  std::error_code ignored;  // the recorder reports it
+  if (!config_.record.folder.empty()) {
+    std::filesystem::create_directories(config_.record.folder, ignored);
+  }
+  spdlog::info("confined: {}", server::Confine(FilesOf(config_)));
 }
 
 Status Daemon::StartRecording() {
@@ -553,6 +578,7 @@ ExitCode LoadAndServe(const Config& config, const RunOptions& options) {
   if (Status status = daemon.StartRendering(); !status.ok()) {
     return Fail(ExitCode::kFailed, status);
   }
+  daemon.Confine();
   if (Status status = daemon.StartRecording(); !status.ok()) {
     return Fail(ExitCode::kFailed, status);
   }

@@ -26,6 +26,7 @@ struct Ready {
 struct RunOptions {
   std::stop_token stop;         // requests a shutdown, as SIGTERM does
   bool handle_signals = false;  // shut down on SIGTERM and SIGINT
+  bool confine = false;         // the process is the daemon's own: SecurityConfig::confine applies
   std::function<void(const Ready&)>
       on_ready;                // called on the calling thread once the daemon serves
   Metrics* metrics = nullptr;  // used instead of the daemon's own; optional

@@ -21,5 +21,6 @@ int main(int argc, char** argv) {
   const furrow::server::Log log(line.config->log_json);
   furrow::server::RunOptions options;
   options.handle_signals = true;
+  options.confine = true;
   return static_cast<int>(furrow::server::Run(*line.config, options));
 }

@@ -88,6 +88,9 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
          "Let in only clients whose certificate one of these authorities (PEM) has signed\n"
          "(default: clients need no certificate)")
       ->type_name("FILE");
+  app->add_flag("!--no-confine", config->security.confine,
+                "Keep all privileges and the access to all files (default: give up what the\n"
+                "daemon does not need; see docs/SECURITY.md)");
   app->add_option("--tcp", config->tcp, "TCP port for poses, weights and pictures (default: 7400)");
   app->add_option("--udp", config->udp, "UDP port for poses and weights (default: 7401)");
   app->add_option(

@@ -16,6 +16,7 @@ struct SecurityConfig {
   std::string name;              // of this daemon: tokens with another --audience are refused
   bool tokens_in_clear = false;  // accept tokens over plain TCP and HTTP from other computers
   TlsFiles tls;                  // without them, TCP and HTTP are plain
+  bool confine = true;           // give up what the daemon does not need (Confine())
   friend bool operator==(const SecurityConfig&, const SecurityConfig&) = default;
 };
 

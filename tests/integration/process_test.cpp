@@ -12,6 +12,8 @@
 #include <gtest/gtest.h>
 
 #include "raw_client.h"
+#include "tests/temporary_folder.h"
+#include "web_client.h"
 
 namespace furrow::testing_net {
 namespace {
@@ -96,6 +98,41 @@ TEST(Furrowd, LogsAsJsonWhenAsked) {
   daemon.Signal(SIGTERM);
   EXPECT_EQ(daemon.Wait(), 0);
   EXPECT_THAT(daemon.ReadErrors(), HasSubstr(R"("level":"info","message":"shutting down"})"));
+}
+
+TEST(Furrowd, SaysWhetherItIsConfined) {
+  for (const bool confined : {true, false}) {
+    std::vector<std::string> command = Command({"--tcp", "0", "--udp", "0"});
+    if (!confined) command.emplace_back("--no-confine");
+    Process daemon(command);
+    ASSERT_TRUE(daemon.ReadLine().has_value());
+    daemon.Signal(SIGTERM);
+    EXPECT_EQ(daemon.Wait(), 0);
+    EXPECT_THAT(daemon.ReadErrors(), HasSubstr(confined ? "confined: no new privileges"
+                                                        : "not confined: security.confine is off"));
+  }
+}
+
+// The driver of OpenGL, the module of pictures and the recording need files after the start.
+TEST(Furrowd, DrawsAndRecordsWhileItIsConfined) {
+  const TemporaryFolder folder;
+  Process daemon({kProgram, "--tcp", "0", "--udp", "0", "--http", "0", "--play", "performance",
+                  "--record", (folder / "takes").string()});
+  const std::string ready = daemon.ReadLine().value_or("");
+  std::smatch match;
+  if (!std::regex_search(ready, match, std::regex(R"(render=on http=127\.0\.0\.1:(\d+))"))) {
+    GTEST_SKIP() << "no OpenGL 4.5 here, or furrow_share is not built: " << ready;
+  }
+  const auto port = static_cast<std::uint16_t>(std::stoi(match[1]));
+  WebClient::Answer answer;
+  for (int i = 0; i < 6 && answer.status != 200; ++i) {  // shaders may take longer than a reply
+    answer = WebClient(port).Ask("GET", "/snapshot.png?width=64&height=64");
+  }
+  EXPECT_EQ(answer.status, 200) << answer.body;
+  daemon.Signal(SIGTERM);
+  EXPECT_EQ(daemon.Wait(), 0);
+  EXPECT_FALSE(std::filesystem::is_empty(folder / "takes"));
+  EXPECT_THAT(daemon.ReadErrors(), HasSubstr("confined: "));
 }
 
 }  // namespace

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/daemon_files.h"
+
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include "base/data_dir.h"
+
+namespace furrow::server {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path FromEnvironment(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? fs::path() : fs::path(value);
+}
+
+// The folder of a file, because editors replace files instead of writing to them.
+fs::path FolderOf(const fs::path& file) {
+  std::error_code error;
+  return fs::absolute(file, error).parent_path();
+}
+
+// The list of FURROW_ASSET_PATH.
+void AddList(std::string_view list, std::vector<fs::path>* paths) {
+  while (!list.empty()) {
+    const std::size_t colon = list.find(':');
+    if (colon != 0) paths->emplace_back(list.substr(0, colon));
+    list = colon == std::string_view::npos ? std::string_view() : list.substr(colon + 1);
+  }
+}
+
+}  // namespace
+
+Confinement FilesOf(const Config& config) {
+  Confinement files;
+  // Drivers and the module of pictures are loaded late; /proc and /sys describe the devices.
+  files.read = {"/usr",       "/lib",         "/lib64", "/opt",
+                "/etc",       "/proc",        "/sys",   "/run/opengl-driver",
+                "/nix/store", InstallPrefix()};
+  files.read.push_back(FromEnvironment("FURROW_DATA_DIR"));
+  AddList(FromEnvironment("FURROW_ASSET_PATH").string(), &files.read);
+  AddList(FromEnvironment("LD_LIBRARY_PATH").string(), &files.read);
+  AddList(FromEnvironment("LIBGL_DRIVERS_PATH").string(), &files.read);
+  AddList(FromEnvironment("__EGL_VENDOR_LIBRARY_DIRS").string(), &files.read);
+  const TlsFiles& tls = config.security.tls;
+  for (const fs::path& file :
+       {config.character, config.rig, config.security.keys, config.play, config.render_settings,
+        config.http.page, tls.certificate, tls.key, tls.client_authority}) {
+    if (!file.empty()) files.read.push_back(FolderOf(file));
+  }
+  if (!config.http.page.empty()) files.read.push_back(config.http.page);
+  // The GPU, shared memory, and the drivers' temporary files and caches of compiled shaders.
+  std::error_code error;
+  files.write = {"/dev",
+                 fs::temp_directory_path(error),
+                 FromEnvironment("XDG_RUNTIME_DIR"),
+                 FromEnvironment("MESA_SHADER_CACHE_DIR"),
+                 FromEnvironment("__GL_SHADER_DISK_CACHE_PATH"),
+                 config.record.folder};
+  const fs::path home = FromEnvironment("HOME");
+  const fs::path cache = FromEnvironment("XDG_CACHE_HOME");
+  if (!cache.empty()) files.write.push_back(cache);
+  if (!home.empty()) {
+    if (cache.empty()) files.write.push_back(home / ".cache");
+    files.write.push_back(home / ".nv");
+  }
+  std::erase_if(files.read, [](const fs::path& path) { return path.empty(); });
+  std::erase_if(files.write, [](const fs::path& path) { return path.empty(); });
+  return files;
+}
+
+}  // namespace furrow::server

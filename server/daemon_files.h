@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "server/config/config.h"
+#include "server/core/confine.h"
+
+namespace furrow::server {
+
+// The files that a daemon needs after it has loaded its assets: those of the configuration, its
+// data, the system's libraries and drivers, recordings, and the drivers' caches.
+[[nodiscard]] Confinement FilesOf(const Config& config);
+
+}  // namespace furrow::server

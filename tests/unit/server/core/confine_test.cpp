@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// Confinement cannot be undone, so every test confines a child process.
+#include "server/core/confine.h"
+
+#include <cerrno>
+#include <cstdlib>
+#include <functional>
+#include <thread>
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "tests/temporary_folder.h"
+
+namespace furrow::server {
+namespace {
+
+// What a child found out. The names make failures readable.
+enum Finding {
+  kConfined = 0,
+  kNoLandlock = 10,
+  kWrong = 11,
+};
+
+// Runs `check` in a confined child. Returns its result.
+int InChild(const Confinement& allowed, const std::function<int()>& check) {
+  const pid_t child = fork();
+  if (child == 0) {
+    const std::string held = Confine(allowed);
+    if (held.find("Landlock is unavailable") != std::string::npos) _exit(kNoLandlock);
+    if (held.find("no new privileges") == std::string::npos) _exit(kWrong);
+    _exit(check());
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128;
+}
+
+// 0: the file can be opened; else the error.
+int Open(const std::filesystem::path& path, int flags) {
+  const int file = open(path.c_str(), flags | O_CLOEXEC, 0600);
+  if (file < 0) return errno;
+  close(file);
+  return 0;
+}
+
+class ConfineTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    for (const char* name : {"read", "write", "other"}) {
+      std::filesystem::create_directories(folder.path() / name);
+      ASSERT_EQ(Open(folder.path() / name / "file", O_CREAT | O_WRONLY), 0);
+    }
+    allowed = {.read = {folder.path() / "read", folder.path() / "absent"},
+               .write = {folder.path() / "write"}};
+  }
+  void Expect(const std::function<int()>& check) {
+    const int found = InChild(allowed, check);
+    if (found == kNoLandlock) GTEST_SKIP() << "this kernel has no Landlock";
+    EXPECT_EQ(found, kConfined);
+  }
+  [[nodiscard]] std::filesystem::path File(const char* of) const {
+    return folder.path() / of / "file";
+  }
+
+  TemporaryFolder folder;
+  Confinement allowed;
+};
+
+TEST_F(ConfineTest, OnlyTheListedFilesCanBeReadAndWritten) {
+  Expect([this] {
+    if (Open(File("read"), O_RDONLY) != 0) return 1;
+    if (Open(File("read"), O_WRONLY) != EACCES) return 2;
+    if (Open(folder.path() / "read" / "new", O_CREAT | O_WRONLY) != EACCES) return 3;
+    if (Open(File("write"), O_RDWR) != 0) return 4;
+    if (Open(folder.path() / "write" / "new", O_CREAT | O_WRONLY) != 0) return 5;
+    if (Open(File("other"), O_RDONLY) != EACCES) return 6;
+    if (Open("/etc/passwd", O_RDONLY) != EACCES) return 7;
+    if (unlink(File("other").c_str()) == 0) return 8;
+    return 0;
+  });
+}
+
+TEST_F(ConfineTest, NoProgramCanBeRun) {
+  allowed.read.emplace_back("/");
+  Expect([] {
+    execl("/bin/true", "true", nullptr);
+    return errno == EACCES ? 0 : 1;
+  });
+}
+
+TEST_F(ConfineTest, ThreadsInheritIt) {
+  Expect([this] {
+    int found = 1;
+    std::thread([&] { found = Open(File("other"), O_RDONLY) == EACCES ? 0 : 2; }).join();
+    return found;
+  });
+}
+
+TEST_F(ConfineTest, ThereAreNoPrivilegesAndNoCoreDumps) {
+  Expect([] {
+    if (prctl(PR_GET_NO_NEW_PRIVS, 0, 0, 0, 0) != 1) return 1;
+    rlimit cores{1, 1};
+    if (getrlimit(RLIMIT_CORE, &cores) != 0 || cores.rlim_max != 0) return 2;
+    // Changing the owner of a file needs a capability, also for root.
+    if (geteuid() == 0 && seteuid(1) == 0) return 3;
+    return 0;
+  });
+}
+
+}  // namespace
+}  // namespace furrow::server
