@@ -174,7 +174,7 @@ TEST_F(Tls, AnAuthorityMaySignTheCertificate) {
 TEST_F(Tls, AClientSaysThatADaemonSpeaksNoTls) {
   daemon.emplace(Weights());
   ASSERT_TRUE(daemon->serves());
-  // Such a daemon waits for the rest of a very long message.
+  // The daemon takes the handshake for a very long message, and waits for the rest.
   const Status status =
       client::OpenTransport(TransportKind::kTcp, "127.0.0.1", daemon->ready().tcp,
                             std::chrono::milliseconds(200), {.tls = ContextOf({})})
