@@ -55,3 +55,30 @@ test('the page asks for a token once, and keeps it for its tab', async () => {
     await daemon.stop();
   }
 });
+
+test('over TLS, the page shows pictures and downloads the rig with its token', async () => {
+  const [certificate, key] = [join(folder, 'crt'), join(folder, 'key')];
+  execFileSync('openssl', ['req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:P-256', '-nodes', '-days', '2', '-subj', '/CN=test',
+    '-addext', 'subjectAltName=IP:127.0.0.1', '-keyout', key, '-out', certificate], { stdio: 'ignore' });
+  const daemon = await Daemon.start(['--play', recording('performance'), '--security', 'required', '--keys', keys,
+    '--tls-certificate', certificate, '--tls-key', key]);
+  try {
+    const requests = [];
+    const page = await openPage(browser, daemon.address.replace('http:', 'https:'), { ignoreHTTPSErrors: true });
+    page.on('request', (request) => requests.push(request.url()));
+    page.on('websocket', (socket) => requests.push(socket.url()));
+    const dialog = page.locator('dialog.token');
+    await dialog.locator('input').fill(token('watch,direct'));
+    await dialog.locator('button.primary').click();
+    await page.waitForSelector('.condition.ok');
+    await shown(page);
+    await page.click('#tab-capture');
+    const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Download rig' }).click()]);
+    assert(JSON.parse(readFileSync(await download.path(), 'utf8')).regions.length > 0);
+    assert(requests.some((url) => url.startsWith('wss:')), requests.join(' '));
+    assert(!requests.some((url) => url.includes('frw1_')), 'addresses end up in logs');
+    await page.context().close();
+  } finally {
+    await daemon.stop();
+  }
+});
