@@ -252,6 +252,26 @@ TEST_F(Tls, HandshakesHoldTheirHostsShare) {
   EXPECT_EQ(daemon->Count(Counter::kConnectionsRefused), 1u);
 }
 
+TEST_F(Tls, RefusalsAndGoodbyesArriveBeforeTheEnd) {
+  const TestKeys keys;
+  Start({}, SecureConfig(keys));
+  TlsTunnel one(daemon->ready().tcp, trusted.get());
+  TcpClient stranger(Connected{one.TakeSocket()});
+  stranger.Send(protocol::SubscribeWeights{.wait = true});
+  const auto error = stranger.Await<protocol::ErrorMessage>();
+  ASSERT_TRUE(error.has_value());
+  EXPECT_EQ(error->code, ErrorCode::kNeedsToken);
+  EXPECT_TRUE(stranger.AwaitClose());
+  TlsTunnel two(daemon->ready().tcp, trusted.get());
+  TcpClient viewer(Connected{two.TakeSocket()});
+  viewer.Send(protocol::Hello{
+      .client = "test", .token = 0, .access = ToText(keys.Token(protocol::secure::Role::kWatch))});
+  ASSERT_TRUE(Watch(viewer, {.wait = true}).has_value());
+  EXPECT_EQ(daemon->Stop(), server::ExitCode::kOk);
+  EXPECT_TRUE(viewer.Await<protocol::Goodbye>().has_value());
+  EXPECT_TRUE(viewer.AwaitClose());
+}
+
 class TlsPictures : public PicturesTest {
  protected:
   void Configure(server::Config* config) override {
