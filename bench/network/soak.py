@@ -7,7 +7,7 @@
 The first daemon lives for the whole run and may open 160 files. `furrow load` sends it 40 subjects in turns of 30 s: calm, and
 with 10% loss, 20% reordering, 5% duplicates, 50 ms of jitter, viewers that stall, read slowly, and come and go. During the
 trouble, 400 TCP connections at a time exceed its open files, clients ask the web server and do not read, and its recording
-fills a disk of 24 MB, from which the oldest files are deleted now and then.
+fills a disk of 160 MB, from which the oldest files are deleted now and then.
 
 The second daemon is killed or ended every 15 s and comes back 2 s later. Its publishers and viewers reach it through
 `furrow chaos` with the same faults. A viewer is stale if its newest weights are older than 2 s, 2 s after the daemon came back.
@@ -29,7 +29,7 @@ import time
 from programs import FAULTS, Daemon, Lines, Usage, recording_of, usage_of
 
 MAX_FILES = 160
-DISK_MB = 24
+DISK_MB = 160
 TURN_SECONDS = 30
 LIFE_SECONDS = 15
 STALE_SECONDS = 2.0
@@ -81,7 +81,7 @@ class Soak:
         return time.monotonic() >= self.end
 
     def run(self):
-        record = ["--record", self.disk / "takes", "--record-rotate-megabytes", 4] if self.has_disk else []
+        record = ["--record", self.disk / "takes", "--record-rotate-megabytes", 16] if self.has_disk else []
         self.daemon = Daemon(self.folder, "--no-render", *record, ports={"tcp": 0, "udp": 0, "http": 0},
                              setup=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (MAX_FILES, MAX_FILES)))
         self.samples = Samples(self.daemon.process.pid)
@@ -157,7 +157,7 @@ class Soak:
 
     def free_disk(self):
         while self.has_disk and not self.over():
-            time.sleep(20)
+            time.sleep(60)
             takes = sorted((self.disk / "takes").glob("*.mcap"), key=lambda path: path.stat().st_mtime)
             for take in takes[:-1]:
                 take.unlink()
@@ -221,7 +221,7 @@ class Soak:
             f"memory  : {memory[-1] / 1024:.1f} MiB at the end, {self.samples.peak.resident_kib / 1024:.1f} MiB at most, slope in calm turns "
             f"{self.samples.slope_per_hour(1) / 1024:+.2f} MiB/h",
             f"files   : {files[-1]} open at the end, {self.samples.peak.files} at most of {MAX_FILES}, slope in calm turns {self.samples.slope_per_hour(2):+.1f} per hour",
-            f"disk    : {'full ' + str(log.count('recording paused')) + ' times' if self.has_disk else 'not limited (no right to mount)'}",
+            f"disk    : {'recording paused ' + str(log.count('recording paused')) + ' and resumed ' + str(log.count('recording again')) + ' times' if self.has_disk else 'not limited (no right to mount)'}",
             f"restarts: {self.kills}, every second one by SIGKILL; weights again after {statistics.median(self.returns):.2f} s, "
             f"{max(self.returns):.2f} s at most; stale {self.stale}" if self.returns else "restarts: none",
             f"ends    : {max(self.ends):.2f} s at most after SIGTERM",

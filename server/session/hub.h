@@ -134,8 +134,8 @@ class Hub {
   // Transport::kMocap.
   void OnMocapFrame(PeerId id, const protocol::mocap::NeutralFrame& frame, Time now);
 
-  // True if subjects may have jitter buffers. ReleaseHeld() must then be called every few
-  // milliseconds, by the thread of each shard: it publishes the poses whose time has come.
+  // True if subjects may have jitter buffers. The thread of each shard must then call ReleaseHeld()
+  // every few milliseconds, which publishes the poses that have waited long enough.
   [[nodiscard]] bool HoldsPoses() const { return holds_poses_; }
   void ReleaseHeld(int shard, Time now);
 

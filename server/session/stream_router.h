@@ -53,8 +53,8 @@ class StreamRouter {
   // `header`: of the other one; `age_us`: PoseFrame::previous_age_us.
   void AcceptPrevious(Shard& shard, const Peer& peer, protocol::Header header, std::uint32_t age_us,
                       const protocol::PoseFrame& previous, Time now);
-  // Accepts the poses of the shard's jitter buffers whose time has come, and publishes them.
-  // Requires the lock of `shard`.
+  // Accepts the poses of the shard's jitter buffers that have waited long enough, and publishes
+  // them. Requires the lock of `shard`.
   void ReleaseHeld(Shard& shard, Time now);
   // The same for all poses of one stream, due or not, before the stream ends. Requires the
   // exclusive lock.

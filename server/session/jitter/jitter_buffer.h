@@ -26,7 +26,7 @@ class JitterBuffer {
   [[nodiscard]] bool Misses(std::uint32_t sequence) const;
   // Adds a pose that Look() would hold.
   void Hold(std::unique_ptr<HeldPose> pose);
-  // Takes the oldest pose if it is due; null: there is none.
+  // Takes the oldest pose if its time has come, else returns null.
   [[nodiscard]] std::unique_ptr<HeldPose> TakeDue(Time now);
   // Takes the oldest pose. Precondition: not empty().
   [[nodiscard]] std::unique_ptr<HeldPose> TakeOldest();

@@ -42,7 +42,7 @@ class JitterBuffers {
     return found == streams_.end() || found->second.Misses(sequence);
   }
 
-  // A pose whose time has come; valid until Recycle().
+  // A pose that has waited long enough; valid until Recycle().
   struct Released {
     StreamKey stream;
     const HeldPose* pose = nullptr;

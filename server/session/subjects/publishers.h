@@ -13,8 +13,8 @@
 #include "server/core/metrics.h"
 #include "server/pipeline/stream_definition.h"
 #include "server/session/delivery/message_sender.h"
-#include "server/session/jitter/jitter_delays.h"
 #include "server/session/peers/peer.h"
+#include "server/session/subjects/jitter_delays.h"
 #include "server/session/subjects/pose_batch.h"
 #include "server/session/subjects/subject_registry.h"
 

@@ -75,6 +75,7 @@ struct Pose {
   std::vector<float> scales;        // 3 per joint
   std::vector<float> blend_shapes;
   bool packed = false;
+  bool redundant = false;  // FURROW_POSE_REDUNDANT
 };
 
 // What Poll() calls. Empty functions are not called. See furrow_callbacks.
@@ -205,7 +206,8 @@ class Connection {
     const Sizes sizes = stream < streams_.size() ? streams_[stream] : Sizes{};
     furrow_pose sent{};
     sent.struct_size = sizeof sent;
-    sent.flags = pose.packed ? FURROW_POSE_PACKED : 0u;
+    sent.flags = (pose.packed ? FURROW_POSE_PACKED : 0u) |
+                 (pose.redundant ? FURROW_POSE_REDUNDANT : 0u);
     sent.capture_time_us = pose.capture_time_us;
     sent.rotations = Data(pose.rotations, 4 * sizes.joints);
     sent.translations = Data(pose.translations, 3 * sizes.joints);

@@ -6,7 +6,6 @@
 #include <map>
 #include <random>
 
-#include "server/session/jitter/jitter_delays.h"
 #include "tests/unit/server/session/hub_fixture.h"
 
 namespace furrow::server {
@@ -14,17 +13,6 @@ namespace {
 
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
-
-TEST(JitterDelays, TheLastRuleThatMatchesCounts) {
-  const JitterDelays delays({{"*", 60.0}, {"phone-*,tablet", 100.0}, {"phone-0", 0.0}});
-  EXPECT_TRUE(delays.any());
-  EXPECT_EQ(delays.Of("ada"), milliseconds(60));
-  EXPECT_EQ(delays.Of("phone-7"), milliseconds(100));
-  EXPECT_EQ(delays.Of("tablet"), milliseconds(100));
-  EXPECT_EQ(delays.Of("phone-0"), Time{0});
-  EXPECT_FALSE(JitterDelays({}).any());
-  EXPECT_FALSE(JitterDelays({{"*", 0.0}}).any());
-}
 
 class JitterBuffersTest : public HubPeersTest {
  protected:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/session/jitter/jitter_delays.h"
+#include "server/session/subjects/jitter_delays.h"
 
 #include <algorithm>
 #include <ranges>
