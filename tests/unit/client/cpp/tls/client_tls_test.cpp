@@ -62,7 +62,7 @@ TEST_F(ClientTls, AConnectionIsForANameOrAnAddress) {
   for (const char* host : {"stage.example", "127.0.0.1", "::1", "fe80::1%eth0"}) {
     const std::unique_ptr<SSL, void (*)(SSL*)> ssl(NewTlsClient(context->get(), host), &SSL_free);
     ASSERT_NE(ssl, nullptr) << host;
-    // An address is no server name (RFC 6066 section 3).
+    // A server name is a name, never an address (RFC 6066 section 3).
     const char* const name = SSL_get_servername(ssl.get(), TLSEXT_NAMETYPE_host_name);
     EXPECT_EQ(name != nullptr, host == std::string("stage.example")) << host;
   }
