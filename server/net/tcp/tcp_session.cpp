@@ -244,7 +244,7 @@ void TcpSession::Finish() {
 }
 
 void TcpSession::FinishSoon() {
-  asio::post(socket_.get_executor(),
+  asio::post(stream_->get_executor(),
              [self = shared_from_this()] { self->CloseAfterFlush(/*linger=*/false); });
 }
 
