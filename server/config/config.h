@@ -86,10 +86,6 @@ struct Config {
 [[nodiscard]] Status ParseConfig(std::string_view toml, std::string_view source_name,
                                  Config* config);
 
-// Parses "MS" (of all subjects) or "SUBJECTS=MS", where SUBJECTS is a comma-separated list of
-// globs. Errors: kInvalidArgument.
-[[nodiscard]] Result<JitterRule> ParseJitterRule(std::string_view text);
-
 // True if programs on other computers can reach the daemon.
 [[nodiscard]] bool ListensToNetwork(const Config& config);
 

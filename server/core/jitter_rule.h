@@ -2,6 +2,9 @@
 #pragma once
 
 #include <string>
+#include <string_view>
+
+#include "base/status.h"
 
 namespace furrow::server {
 
@@ -14,5 +17,9 @@ struct JitterRule {
   double delay_ms = 0.0;       // [0, kMaxJitterDelayMs]; 0: no buffer
   friend bool operator==(const JitterRule&, const JitterRule&) = default;
 };
+
+// Parses "MS" (of all subjects) or "SUBJECTS=MS", where SUBJECTS is a comma-separated list of
+// globs. Errors: kInvalidArgument.
+[[nodiscard]] Result<JitterRule> ParseJitterRule(std::string_view text);
 
 }  // namespace furrow::server

@@ -2,7 +2,6 @@
 #include "server/session/subjects/jitter_delays.h"
 
 #include <algorithm>
-#include <ranges>
 
 #include "protocol/messages/pattern.h"
 
@@ -13,10 +12,10 @@ bool JitterDelays::any() const {
 }
 
 Time JitterDelays::Of(std::string_view subject) const {
-  for (const JitterRule& rule : std::views::reverse(rules_)) {
-    if (protocol::MatchesPattern(rule.subjects, subject)) return FromSeconds(rule.delay_ms * 1e-3);
-  }
-  return Time{0};
+  const auto rule = std::find_if(rules_.rbegin(), rules_.rend(), [=](const JitterRule& each) {
+    return protocol::MatchesPattern(each.subjects, subject);
+  });
+  return rule == rules_.rend() ? Time{0} : FromSeconds(rule->delay_ms * 1e-3);
 }
 
 }  // namespace furrow::server
