@@ -103,10 +103,6 @@ StatusCode Decode(std::span<const std::uint8_t> bytes, Picture* picture, std::st
     *why = "the picture is damaged: its header does not end";
     return StatusCode::kParse;
   }
-  if (format == "png" && !PngPixelsFit(bytes)) {
-    *why = "the picture is damaged: the file is too short for its pixels";
-    return StatusCode::kParse;
-  }
   // The reader never writes; its interface lacks const.
   OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(bytes.data()), bytes.size());
   OIIO::Filesystem::IOProxy* proxy = &memory;
@@ -122,6 +118,10 @@ StatusCode Decode(std::span<const std::uint8_t> bytes, Picture* picture, std::st
   }
   // After the header and before the pixels, so that a small file cannot claim a huge picture.
   if (const StatusCode code = CheckSize(spec, why); code != StatusCode::kOk) return code;
+  if (format == "png" && !PngPixelsFit(bytes)) {
+    *why = "the picture is damaged: the file is too short for its pixels";
+    return StatusCode::kParse;
+  }
   picture->width = spec.width;
   picture->height = spec.height;
   picture->channels = spec.nchannels;

@@ -129,7 +129,8 @@ TEST(Picture, RejectsAPngThatIsTooShortForItsPixels) {
   picture.width = picture.height = 1;
   picture.pixels.assign(4, 0);
   std::string png = *EncodePng(picture);
-  png.replace(16, 8, std::string("\0\0\x20\0\0\0\x20\0", 8));
+  // 8192 x 8192, 8 bits, RGBA, and the checksum of this header.
+  png.replace(16, 17, std::string("\0\0\x20\0\0\0\x20\0\x08\x06\0\0\0\x72\xaa\xca\x59", 17));
   const auto decoded = DecodePicture("p", Bytes(png));
   ASSERT_FALSE(decoded.ok());
   EXPECT_EQ(decoded.status().code(), StatusCode::kParse);
