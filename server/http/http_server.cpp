@@ -2,6 +2,7 @@
 #include "server/http/http_server.h"
 
 #include <array>
+#include <chrono>
 #include <exception>
 #include <new>
 #include <optional>
@@ -50,6 +51,10 @@ void Refuse(tcp::socket socket) {
   socket.non_blocking(true, ignored);
   socket.send(net::buffer(kAnswer), 0, ignored);
 }
+
+// A connection that gives way may take kWebCloseDeadline to close. Until then, no other one must.
+constexpr Time kGivesWay = kWebCloseDeadline + std::chrono::milliseconds(100);
+static_assert(kGivesWay < Lobby::kPatience);
 
 // Answers a client that speaks plain HTTP where TLS is spoken, and waits until it has closed:
 // closing with unread input would reset the connection and lose the answer.
@@ -215,7 +220,7 @@ net::awaitable<void> HttpServer::Impl::WaitForPlace(tcp::socket socket, std::str
       const Time now = ReadClock();
       if (now - begun >= Lobby::kPatience) break;
       if (now >= again) {
-        again = now + Lobby::kAgain;
+        again = now + kGivesWay;
         context.post_to_hub([host, any_host = shares.held(host) == 0, all_in_use,
                              post_to_web = context.post_to_web](Hub& hub, Time hub_now) {
           if (hub.MakeRoom(Transport::kWeb, host, any_host, hub_now)) return;
