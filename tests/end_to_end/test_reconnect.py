@@ -212,7 +212,7 @@ class AddressTest(unittest.TestCase):
 
     def test_wrong_addresses_are_wrong_usage(self):
         for command, address, message in (
-                ("watch", "furrow://a?nonsense=1", "use subject, pattern, rate, transport or token"),
+                ("watch", "furrow://a?nonsense=1", "use subject, pattern, rate, transport, token or tls"),
                 ("watch", "http://a", "use furrow://HOST"),
                 ("watch", "furrow://a?key=x", "reserved"),
                 ("watch", "furrow://a?token=x&token=x", "token is stated twice"),

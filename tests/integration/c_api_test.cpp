@@ -292,12 +292,14 @@ TEST(CApiTls, ConnectsWithTheAuthorityOfTheOptions) {
   const Handle strange = Open(address + "?tls=1");
   furrow_connection_info info{};
   info.struct_size = sizeof info;
-  EXPECT_TRUE(Until({trusting.get(), strange.get()}, [&] {
-    EXPECT_EQ(furrow_get_info(trusting.get(), &info), FURROW_OK);
-    return info.state == FURROW_CONNECTED &&
-           LastError(strange.get()).find("no known authority") != std::string::npos;
-  })) << LastError(trusting.get())
-      << "; " << LastError(strange.get());
+  EXPECT_TRUE(Until({trusting.get(), strange.get()},
+                    [&] {
+                      EXPECT_EQ(furrow_get_info(trusting.get(), &info), FURROW_OK);
+                      return info.state == FURROW_CONNECTED &&
+                             LastError(strange.get()).find("no known authority") !=
+                                 std::string::npos;
+                    }))
+      << LastError(trusting.get()) << "; " << LastError(strange.get());
 }
 
 INSTANTIATE_TEST_SUITE_P(Transports, CApi, testing::Values("udp", "tcp"),

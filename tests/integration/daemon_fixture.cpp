@@ -21,6 +21,7 @@ void DaemonThread::AwaitCount(server::Counter counter, std::uint64_t least) cons
   while (Count(counter) < least && std::chrono::steady_clock::now() < deadline) {
     std::this_thread::yield();
   }
+  EXPECT_GE(Count(counter), least);
 }
 
 DaemonThread::DaemonThread(server::Config config) : config_(std::move(config)) {

@@ -30,7 +30,7 @@ class DaemonThread {
   [[nodiscard]] bool serves() const { return ready_.has_value(); }
   [[nodiscard]] const server::Ready& ready() const { return *ready_; }
   [[nodiscard]] std::uint64_t Count(server::Counter counter) const { return metrics_.Get(counter); }
-  // Waits until the daemon's threads have counted `least`, for at most the time of an Await().
+  // Waits until the daemon's threads have counted `least`; the test fails after 20 s.
   void AwaitCount(server::Counter counter, std::uint64_t least) const;
   server::ExitCode Stop();
 

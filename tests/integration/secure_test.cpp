@@ -365,8 +365,8 @@ TEST_F(Secure, OperatorsMakeTokensForOthers) {
   const auto ask = [&](secure::Roles roles, const std::string& body) {
     return WebClient(*daemon.ready().http)
         .Ask("POST", "/api/token", body,
-             "Host: localhost\r\nAuthorization: Bearer " +
-                 ToText(keys.Token(roles, "ann,bob")) + "\r\n");
+             "Host: localhost\r\nAuthorization: Bearer " + ToText(keys.Token(roles, "ann,bob")) +
+                 "\r\n");
   };
   const secure::Roles operates = kBoth | Role::kOperate;
   const auto made = ask(operates, R"({"roles": "publish", "subjects": "ann", "for": "10m"})");

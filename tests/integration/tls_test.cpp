@@ -91,7 +91,7 @@ TEST_F(Tls, CarriesPosesAndWeights) {
     ASSERT_TRUE(viewer.Await<protocol::WeightFrame>(&header).has_value());
     ASSERT_EQ(header.sequence, static_cast<std::uint32_t>(frame));
   }
-  EXPECT_EQ(daemon->Count(Counter::kTlsHandshakes), 2u);
+  daemon->AwaitCount(Counter::kTlsHandshakes, 2);
 }
 
 TEST_F(Tls, ServesEveryWebDoor) {
@@ -127,7 +127,7 @@ TEST_F(Tls, PlainClientsGetOneAnswer) {
   const auto answer = WebClient(*daemon->ready().http).Ask("GET", "/healthz");
   EXPECT_EQ(answer.status, 400);
   EXPECT_THAT(answer.body, HasSubstr("https://"));
-  EXPECT_EQ(daemon->Count(Counter::kTlsPlain), 2u);
+  daemon->AwaitCount(Counter::kTlsPlain, 2);
   EXPECT_EQ(daemon->Count(Counter::kTlsHandshakes), 0u);
 }
 
@@ -188,7 +188,7 @@ TEST_F(Tls, EachPortSpeaksItsOwnProtocol) {
   EXPECT_FALSE(TlsTunnel(daemon->ready().tcp, trusted.get(), kHttp).connected());
   EXPECT_FALSE(TlsTunnel(*daemon->ready().http, trusted.get()).connected());
   EXPECT_TRUE(TlsTunnel(daemon->ready().tcp, trusted.get(), "").connected()) << "names none";
-  EXPECT_EQ(daemon->Count(Counter::kTlsWrongProtocol), 2u);
+  daemon->AwaitCount(Counter::kTlsWrongProtocol, 2);
 }
 
 TEST_F(Tls, Tls12IsTooOld) {
@@ -197,7 +197,7 @@ TEST_F(Tls, Tls12IsTooOld) {
   SSL_CTX_set_max_proto_version(trusted.get(), TLS1_2_VERSION);
   EXPECT_FALSE(TlsTunnel(daemon->ready().tcp, trusted.get()).connected());
   EXPECT_FALSE(TlsTunnel(*daemon->ready().http, trusted.get(), kHttp).connected());
-  EXPECT_EQ(daemon->Count(Counter::kTlsOldVersion), 2u);
+  daemon->AwaitCount(Counter::kTlsOldVersion, 2);
 }
 
 TEST_F(Tls, AChangedCertificateIsUsedWithoutDroppingAnybody) {
