@@ -100,7 +100,7 @@ std::string Confine(const Confinement& allowed) {
   const rlimit none{0, 0};
   if (setrlimit(RLIMIT_CORE, &none) == 0) add("no core dumps");
   const std::string why = ConfineFiles(allowed);
-  if (why.empty()) add("no programs, and only its own files");
+  if (why.empty()) add("no programs, no files but its own");
   if (DropCapabilities()) add("no capabilities");
   if (!why.empty()) held += "; all files, because Landlock is unavailable: " + why;
   return held;
