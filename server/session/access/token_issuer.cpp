@@ -73,10 +73,11 @@ Result<TokenIssuer::Issued> TokenIssuer::Issue(const Access& maker, const Wanted
   const std::uint64_t unix_now = gate_->unix_now();
   const std::uint64_t expires = unix_now + wanted.seconds;
   const auto ring = gate_->keys();
-  const secure::TokenKey* const key = ring->Newest(unix_now);
+  // The key of the maker's token: when it is retired, the tokens that were made with it end, too.
+  const secure::TokenKey* const key = ring->Find(maker.key_id());
   if (key == nullptr || key->expires < expires) {
-    return Status(StatusCode::kUnavailable, "no key is valid for that time", "for",
-                  "use a shorter time, or add a key with 'furrow token key new'");
+    return Status(StatusCode::kUnavailable, "the key of your token is not valid for that time",
+                  "for", "use a shorter time");
   }
   const std::int64_t now_us = ToMicroseconds(now);
   if (!budget_.Take(now_us)) {

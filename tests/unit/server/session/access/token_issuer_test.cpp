@@ -18,15 +18,16 @@ constexpr std::uint64_t kUnixNow = 1'000'000;
 class TokenIssuerTest : public testing::Test {
  protected:
   void SetUp() override {
-    secure::KeyRing ring;
-    ASSERT_TRUE(ring.AddNew(kUnixNow, kUnixNow + 10'000, secure::SystemRandom()).ok());
+    key_id = *ring.AddNew(kUnixNow, kUnixNow + 10'000, secure::SystemRandom());
     gate.SetKeys(ring);
     own.roles = secure::Roles(Role::kOperate) | Role::kWatch;
     own.subjects = "stage-*, ann";
     own.packets_per_second = 100;
     own.audience = "a";
   }
-  [[nodiscard]] Access Maker() const { return Access::Of(own, 1, now + std::chrono::hours(1)); }
+  [[nodiscard]] Access Maker() const {
+    return Access::Of(own, key_id, now + std::chrono::hours(1));
+  }
   Result<TokenIssuer::Issued> Issue(secure::Roles roles, const std::string& subjects = {},
                                     std::uint64_t seconds = 60) {
     return issuer.Issue(Maker(), {.roles = roles, .subjects = subjects, .seconds = seconds}, now);
@@ -35,6 +36,8 @@ class TokenIssuerTest : public testing::Test {
   Metrics metrics;
   TokenGate gate{{.security = Security::kRequired, .name = "a"}, [] { return kUnixNow; }, &metrics};
   TokenIssuer issuer{&gate, &metrics};
+  secure::KeyRing ring;
+  std::uint32_t key_id = 0;
   secure::Grant own;
   Time now = std::chrono::seconds(50);
 };
@@ -75,13 +78,24 @@ TEST_F(TokenIssuerTest, NobodyGivesMoreThanTheyHave) {
 }
 
 TEST_F(TokenIssuerTest, NoTokenOutlivesItsKey) {
-  secure::KeyRing ring;
-  ASSERT_TRUE(ring.AddNew(kUnixNow, kUnixNow + 30, secure::SystemRandom()).ok());
-  gate.SetKeys(ring);
+  secure::KeyRing short_lived;
+  key_id = *short_lived.AddNew(kUnixNow, kUnixNow + 30, secure::SystemRandom());
+  gate.SetKeys(short_lived);
   EXPECT_EQ(Issue(Role::kWatch, {}, 31).status().code(), StatusCode::kUnavailable);
   EXPECT_TRUE(Issue(Role::kWatch, {}, 30).ok());
   gate.SetKeys({});
   EXPECT_EQ(Issue(Role::kWatch, {}, 1).status().code(), StatusCode::kUnavailable);
+}
+
+// Otherwise whoever holds a token of a leaked key could move to the next key before it is retired.
+TEST_F(TokenIssuerTest, ANewTokenHasTheKeyOfItsMaker) {
+  ASSERT_TRUE(ring.AddNew(kUnixNow + 1, kUnixNow + 20'000, secure::SystemRandom()).ok());
+  gate.SetKeys(ring);
+  const auto issued = Issue(Role::kWatch);
+  ASSERT_TRUE(issued.ok()) << issued.status().ToString();
+  const auto access = gate.Admit(issued->text, /*shielded=*/true, now);
+  ASSERT_TRUE(access.ok()) << access.status().ToString();
+  EXPECT_EQ(access->key_id(), key_id);
 }
 
 TEST_F(TokenIssuerTest, TheRateIsLimited) {
