@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <chrono>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -187,8 +188,11 @@ bool Hub::MakeRoom(Transport transport, const std::string& host, bool any_host, 
     if (peer.transport != transport || !HasNoUse(peer, now)) return;
     if (!any_host && peer.host != host) return;
     // Ids count up: of those that have been without use for equally long, the first to connect.
-    if (longest == nullptr ||
-        std::pair(peer.last_used, peer.id) < std::pair(longest->last_used, longest->id)) {
+    // Those who have shown no token go first.
+    const auto order = [](const Peer& each) {
+      return std::tuple(each.access.admitted(), each.last_used, each.id);
+    };
+    if (longest == nullptr || order(peer) < order(*longest)) {
       longest = &peer;
     }
   });
