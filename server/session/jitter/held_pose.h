@@ -21,9 +21,10 @@ struct HeldPose {
   // The memory that the pose takes, bytes.
   [[nodiscard]] std::size_t bytes() const {
     const auto of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
-    return sizeof(HeldPose) + of(payload) + of(pose.rotation_joints) + of(pose.rotations) +
-           of(pose.translation_joints) + of(pose.translations) + of(pose.scale_joints) +
-           of(pose.scales) + of(pose.blend_shape_indices) + of(pose.blend_shapes);
+    return sizeof(HeldPose) + of(payload) + of(pose.previous) + of(pose.rotation_joints) +
+           of(pose.rotations) + of(pose.translation_joints) + of(pose.translations) +
+           of(pose.scale_joints) + of(pose.scales) + of(pose.blend_shape_indices) +
+           of(pose.blend_shapes);
   }
 };
 
