@@ -175,8 +175,8 @@ net::awaitable<void> HttpServer::Impl::Accept() {
       continue;
     }
     const auto client = socket.remote_endpoint(error);
-    std::string host = error ? std::string() : HostOf(client.address().to_string());
     try {
+      std::string host = error ? std::string() : HostOf(client.address().to_string());
       Lobby::Stay stay;
       if (!shares.HasRoomFor(host)) stay = lobby.Enter(ReadClock());
       if (stay == nullptr) {

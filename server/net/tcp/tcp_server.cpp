@@ -115,8 +115,8 @@ asio::awaitable<void> TcpServer::Accept() {
       continue;
     }
     const tcp::endpoint client = socket.remote_endpoint(error);
-    const std::string host = error ? std::string() : HostOf(client.address().to_string());
     try {
+      const std::string host = error ? std::string() : HostOf(client.address().to_string());
       Lobby::Stay stay;
       if (!shares_.HasRoomFor(host)) stay = lobby_.Enter(ReadClock());
       if (stay == nullptr) {
