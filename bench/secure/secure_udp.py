@@ -12,9 +12,10 @@ import argparse
 import json
 import pathlib
 import re
-import statistics
 import subprocess
 import tempfile
+
+import two_ways
 
 RATE_HZ = 60
 FIGURES = {"p50": "p50 (us)", "p99": "p99 (us)", "cpu": "CPU (us per pose)", "lost": "lost"}
@@ -57,17 +58,8 @@ def measure(options, folder):
     finally:
         daemon.terminate()
         daemon.wait()
-    print("| way | " + " | ".join(FIGURES.values()) + " |\n|---|" + "---|" * len(FIGURES))
-    for way, runs in found.items():
-        cells = []
-        for figure in FIGURES:
-            values = [run[figure] for run in runs]
-            cells.append(f"{statistics.median(values):.1f} ({min(values):.1f} to {max(values):.1f})")
-        print(f"| {way} | " + " | ".join(cells) + " |")
-    for figure in ("p50", "cpu"):
-        ratio = (statistics.median(run[figure] for run in found["secure"]) /
-                 statistics.median(run[figure] for run in found["plain"]))
-        print(f"secure / plain, {FIGURES[figure]}: {ratio:.2f}")
+    two_ways.print_table(FIGURES, found)
+    two_ways.print_ratios(FIGURES, found, "secure", "plain")
 
 
 if __name__ == "__main__":

@@ -12,9 +12,10 @@ import argparse
 import os
 import pathlib
 import re
-import statistics
 import subprocess
 import tempfile
+
+import two_ways
 
 FIGURES = {"p50": "p50 (us)", "p99": "p99 (us)", "cpu": "CPU of the daemon (us per pose)", "client": "CPU of the client (us per pose)"}
 
@@ -64,17 +65,8 @@ def measure(options, folder):
         for daemon, _ in daemons.values():
             daemon.terminate()
             daemon.wait()
-    print("| way | " + " | ".join(FIGURES.values()) + " |\n|---|" + "---|" * len(FIGURES))
-    for way, runs in found.items():
-        cells = []
-        for figure in FIGURES:
-            values = [run[figure] for run in runs]
-            cells.append(f"{statistics.median(values):.1f} ({min(values):.1f} to {max(values):.1f})")
-        print(f"| {way} | " + " | ".join(cells) + " |")
-    for figure in ("p50", "cpu"):
-        ratio = (statistics.median(run[figure] for run in found["TLS"]) /
-                 statistics.median(run[figure] for run in found["plain"]))
-        print(f"TLS / plain, {FIGURES[figure]}: {ratio:.2f}")
+    two_ways.print_table(FIGURES, found)
+    two_ways.print_ratios(FIGURES, found, "TLS", "plain")
 
 
 if __name__ == "__main__":
