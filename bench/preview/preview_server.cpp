@@ -10,6 +10,7 @@
 #include "bench/report/value_or_exit.h"
 #include "protocol/messages/hash.h"
 #include "server/net/clock.h"
+#include "tests/shape_rig.h"
 
 namespace furrow::bench {
 namespace {
@@ -18,23 +19,6 @@ using server::Time;
 
 constexpr char kSubject[] = "performer";
 constexpr Time kTick = server::FromSeconds(0.01);  // as in furrowd
-
-// One blend shape and one wrinkle weight: a subject with almost no cost.
-wrinkle::Rig SmallRig() {
-  wrinkle::Rig rig;
-  rig.name = "preview";
-  rig.wrinkle_maps.push_back({.name = "squash"});
-  wrinkle::Driver driver;
-  driver.name = "brow";
-  driver.kind = wrinkle::Driver::Kind::kBlendShape;
-  driver.blend_shape.blend_shape = "brow";
-  rig.drivers.push_back(driver);
-  wrinkle::Region region;
-  region.name = "brow";
-  region.feeds.push_back({"squash", {{"brow", "value", 1.0f}}});
-  rig.regions.push_back(region);
-  return rig;
-}
 
 }  // namespace
 
@@ -81,7 +65,8 @@ PreviewServer::PreviewServer(render::Image picture)
                  server::Hub& hub, Time) { hub.OnPicture(*shared); });
       }));
   server::Hub::Parts parts;
-  parts.rig = std::make_shared<const wrinkle::Rig>(SmallRig());
+  // One wrinkle weight: a subject with almost no cost.
+  parts.rig = std::make_shared<const wrinkle::Rig>(test::ShapeRig("preview", {"brow"}));
   parts.character = &skeleton_;
   parts.pictures = render_.get();
   parts.metrics = &metrics_;

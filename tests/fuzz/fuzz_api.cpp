@@ -22,6 +22,8 @@
 #include "server/http/request/url.h"
 #include "server/http/weights/weight_query.h"
 #include "tests/fuzz/fuzz_input.h"
+#include "tests/fuzz/fuzz_link.h"
+#include "tests/shape_rig.h"
 
 namespace furrow::server {
 namespace {
@@ -29,15 +31,6 @@ namespace {
 void Require(bool holds) {
   if (!holds) std::abort();
 }
-
-class Sink : public Link {
- public:
-  void SendReply(std::span<const std::uint8_t>) override {}
-  int SendFrame(std::uint64_t, std::span<const std::uint8_t>, std::size_t, int) override {
-    return 0;
-  }
-  void DropFrames(std::uint64_t) override {}
-};
 
 class Pictures : public PictureSource {
  public:
@@ -71,22 +64,6 @@ class Targets : public OscControl {
   std::vector<std::string> allowed_;
 };
 
-wrinkle::Rig TestRig() {
-  wrinkle::Rig rig;
-  rig.name = "fuzz";
-  rig.wrinkle_maps.push_back({.name = "squash"});
-  wrinkle::Driver driver;
-  driver.name = "brow";
-  driver.kind = wrinkle::Driver::Kind::kBlendShape;
-  driver.blend_shape.blend_shape = "brow";
-  rig.drivers.push_back(driver);
-  wrinkle::Region region;
-  region.name = "brow";
-  region.feeds.push_back({"squash", {{"brow", "value", 1.0f}}});
-  rig.regions.push_back(region);
-  return rig;
-}
-
 // A player of three frames of the same blend shape.
 std::unique_ptr<Player> TestPlayer() {
   motion::Clip clip;
@@ -102,7 +79,7 @@ class Daemon {
  public:
   Daemon() {
     Hub::Parts parts;
-    parts.rig = std::make_shared<const wrinkle::Rig>(TestRig());
+    parts.rig = std::make_shared<const wrinkle::Rig>(test::ShapeRig("fuzz", {"brow"}));
     parts.pictures = &pictures_;
     parts.metrics = &metrics_;
     parts.random = [this] { return ++random_; };
@@ -184,7 +161,7 @@ class Daemon {
   Metrics metrics_;
   Pictures pictures_;
   Targets targets_;
-  Sink link_;
+  fuzz::QuietLink link_;
   std::unique_ptr<Player> player_ = TestPlayer();
   std::uint64_t random_ = 0;
   Time now_ = FromSeconds(1);

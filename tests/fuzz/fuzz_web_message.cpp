@@ -9,18 +9,10 @@
 
 #include "server/http/socket/web_message.h"
 #include "server/session/hub.h"
+#include "tests/fuzz/fuzz_link.h"
 
 namespace furrow::server {
 namespace {
-
-class Sink : public Link {
- public:
-  void SendReply(std::span<const std::uint8_t>) override {}
-  int SendFrame(std::uint64_t, std::span<const std::uint8_t>, std::size_t, int) override {
-    return 0;
-  }
-  void DropFrames(std::uint64_t) override {}
-};
 
 class Pictures : public PictureSource {
  public:
@@ -34,7 +26,7 @@ class Pictures : public PictureSource {
 void Feed(std::span<const std::uint8_t> bytes) {
   Metrics metrics;
   Pictures pictures;
-  Sink link;
+  fuzz::QuietLink link;
   Hub::Parts parts;
   parts.rig = std::make_shared<const wrinkle::Rig>();
   parts.pictures = &pictures;

@@ -14,6 +14,7 @@
 #include "protocol/codec/codec.h"
 #include "protocol/messages/hash.h"
 #include "server/session/hub.h"
+#include "tests/shape_rig.h"
 
 namespace furrow::server {
 
@@ -93,22 +94,9 @@ class HubTest : public testing::Test {
   void SetUp() override { Make({}); }
 
   static wrinkle::Rig MakeRig(bool filter) {
-    wrinkle::Rig rig;
-    rig.name = "test";
+    wrinkle::Rig rig = test::ShapeRig("test", {"brow", "nose"});
     rig.filter.enabled = filter;
-    rig.wrinkle_maps.push_back({.name = "squash"});
-    for (const char* name : {"brow", "nose"}) {
-      wrinkle::Driver driver;
-      driver.name = name;
-      driver.kind = wrinkle::Driver::Kind::kBlendShape;
-      driver.blend_shape.blend_shape = name;
-      rig.drivers.push_back(driver);
-      wrinkle::Region region;
-      region.name = name;
-      region.modulation = wrinkle::Modulation::kLinear;
-      region.feeds.push_back({"squash", {{name, "value", 1.0f}}});
-      rig.regions.push_back(region);
-    }
+    for (wrinkle::Region& region : rig.regions) region.modulation = wrinkle::Modulation::kLinear;
     return rig;
   }
 
