@@ -9,7 +9,7 @@ import subprocess
 import threading
 import time
 
-# The network of the issue: lost, late, early and repeated datagrams, and up to 50 ms of jitter.
+# A bad network: lost, late, early and repeated datagrams, and up to 50 ms of jitter.
 FAULTS = ("--loss", "0.1", "--reorder", "0.2", "--duplicate", "0.05", "--jitter", "50")
 
 
