@@ -17,16 +17,19 @@ constexpr std::size_t kMaxNameBytes = 1024;
 std::vector<fs::path> AssetFolders(const fs::path& folder) {
   std::vector<fs::path> folders = {folder.empty() ? fs::path(".") : folder};
   const char* variable = std::getenv("FURROW_ASSET_PATH");
-  std::string_view rest = variable == nullptr ? "" : variable;
-  while (!rest.empty()) {
-    const std::size_t colon = std::min(rest.find(':'), rest.size());
-    if (colon > 0) folders.emplace_back(rest.substr(0, colon));
-    rest.remove_prefix(std::min(colon + 1, rest.size()));
-  }
+  if (variable != nullptr) AppendPaths(variable, &folders);
   return folders;
 }
 
 }  // namespace
+
+void AppendPaths(std::string_view list, std::vector<fs::path>* paths) {
+  while (!list.empty()) {
+    const std::size_t colon = std::min(list.find(':'), list.size());
+    if (colon > 0) paths->emplace_back(list.substr(0, colon));
+    list.remove_prefix(std::min(colon + 1, list.size()));
+  }
+}
 
 // Names come from rigs of strangers. They must not reach a file outside the search folders, so
 // absolute paths, "..", drive letters and backslashes are refused on every system.

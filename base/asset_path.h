@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/status.h"
 
@@ -13,6 +14,9 @@ namespace furrow {
 // "..", backslashes, colons and control characters (kInvalidArgument, kLimit), so that an untrusted
 // rig cannot reach files outside its folders.
 [[nodiscard]] Status CheckAssetName(std::string_view name);
+
+// Appends the paths of a colon-separated list, such as FURROW_ASSET_PATH. Empty ones are left out.
+void AppendPaths(std::string_view list, std::vector<std::filesystem::path>* paths);
 
 // Finds the regular file `name` in `folder`, then in the folders of FURROW_ASSET_PATH
 // (colon-separated). Errors: those of CheckAssetName(), and kNotFound, which lists the folders

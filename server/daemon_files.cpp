@@ -3,8 +3,8 @@
 
 #include <cstdlib>
 #include <string>
-#include <string_view>
 
+#include "base/asset_path.h"
 #include "base/data_dir.h"
 
 namespace furrow::server {
@@ -23,15 +23,6 @@ fs::path FolderOf(const fs::path& file) {
   return fs::absolute(file, error).parent_path();
 }
 
-// The list of FURROW_ASSET_PATH.
-void AddList(std::string_view list, std::vector<fs::path>* paths) {
-  while (!list.empty()) {
-    const std::size_t colon = list.find(':');
-    if (colon != 0) paths->emplace_back(list.substr(0, colon));
-    list = colon == std::string_view::npos ? std::string_view() : list.substr(colon + 1);
-  }
-}
-
 }  // namespace
 
 Confinement FilesOf(const Config& config) {
@@ -41,10 +32,10 @@ Confinement FilesOf(const Config& config) {
                 "/etc",       "/proc",        "/sys",   "/run/opengl-driver",
                 "/nix/store", InstallPrefix()};
   files.read.push_back(FromEnvironment("FURROW_DATA_DIR"));
-  AddList(FromEnvironment("FURROW_ASSET_PATH").string(), &files.read);
-  AddList(FromEnvironment("LD_LIBRARY_PATH").string(), &files.read);
-  AddList(FromEnvironment("LIBGL_DRIVERS_PATH").string(), &files.read);
-  AddList(FromEnvironment("__EGL_VENDOR_LIBRARY_DIRS").string(), &files.read);
+  AppendPaths(FromEnvironment("FURROW_ASSET_PATH").string(), &files.read);
+  AppendPaths(FromEnvironment("LD_LIBRARY_PATH").string(), &files.read);
+  AppendPaths(FromEnvironment("LIBGL_DRIVERS_PATH").string(), &files.read);
+  AppendPaths(FromEnvironment("__EGL_VENDOR_LIBRARY_DIRS").string(), &files.read);
   const TlsFiles& tls = config.security.tls;
   for (const fs::path& file :
        {config.character, config.rig, config.security.keys, config.play, config.render_settings,
