@@ -171,27 +171,27 @@ void TcpTransport::StartRead() {
                           });
 }
 
+// Runs handlers until `done()` or the deadline; over TLS, one read takes several.
+template <class Done>
+void TcpTransport::RunUntil(Clock::time_point deadline, const Done& done) {
+  if (done()) return;
+  // A context without work stops, and a stopped context runs nothing.
+  context_.restart();
+  while (!done() && context_.run_one_until(deadline) > 0) {
+  }
+  // With a deadline in the past nothing has run yet, although data may be waiting.
+  if (!done()) context_.poll();
+}
+
 // Returns true when the read has completed.
 bool TcpTransport::AwaitRead(Clock::time_point deadline) {
-  if (!read_done_) {
-    // A context without work stops, and a stopped context runs nothing.
-    context_.restart();
-    // A read over TLS takes several handlers.
-    while (!read_done_ && context_.run_one_until(deadline) > 0) {
-    }
-    // With a deadline in the past nothing has run yet, although data may be waiting.
-    if (!read_done_) context_.poll();
-  }
+  RunUntil(deadline, [this] { return read_done_; });
   return std::exchange(read_done_, false);
 }
 
 // Returns false if the connect has neither succeeded nor failed at the deadline.
 bool TcpTransport::AwaitConnect(Clock::time_point deadline) {
-  context_.restart();
-  while (!result_ && context_.run_one_until(deadline) > 0) {
-  }
-  // With a deadline in the past nothing has run yet.
-  if (!result_) context_.poll();
+  RunUntil(deadline, [this] { return result_.has_value(); });
   return result_.has_value();
 }
 

@@ -52,6 +52,8 @@ class TcpTransport : public Transport {
   void Finish(Status result);
   void Fail(const std::string& reason);
   void StartRead();
+  template <class Done>
+  void RunUntil(Clock::time_point deadline, const Done& done);
   bool AwaitRead(Clock::time_point deadline);
   bool AwaitConnect(Clock::time_point deadline);
   IoStatus OnReadError();

@@ -15,9 +15,7 @@ SequenceStatus SequenceWindow::Accept(std::uint64_t session, std::uint32_t seque
     Start(session, sequence);
     return SequenceStatus::kRestart;
   }
-  // The difference as a signed number orders sequences across the wrap at 2^32.
-  const auto ahead = static_cast<std::int32_t>(sequence - newest_);
-  if (ahead > 0) {
+  if (IsNewer(sequence, newest_)) {
     Advance(sequence);
     return SequenceStatus::kNewest;
   }
@@ -25,7 +23,7 @@ SequenceStatus SequenceWindow::Accept(std::uint64_t session, std::uint32_t seque
   if (behind >= kWindow) return SequenceStatus::kLate;
   if (TestAndSet(sequence)) return SequenceStatus::kDuplicate;
   // A late pose is no longer lost. A pose before the first one was never counted as lost.
-  if (static_cast<std::int32_t>(sequence - first_) > 0 && lost_ > 0) --lost_;
+  if (IsNewer(sequence, first_) && lost_ > 0) --lost_;
   return SequenceStatus::kLate;
 }
 

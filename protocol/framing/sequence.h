@@ -14,8 +14,12 @@ enum class SequenceStatus : std::uint8_t {
   kOldSession,  // drop the pose: its session was replaced
 };
 
-// Decides which poses of one stream are new. Sequences wrap at 2^32: `a` is newer than `b` if
-// a - b, as a signed 32-bit number, is above 0.
+// Sequences wrap at 2^32: `a` is newer than `b` if a - b, as a signed 32-bit number, is above 0.
+[[nodiscard]] inline bool IsNewer(std::uint32_t a, std::uint32_t b) {
+  return static_cast<std::int32_t>(a - b) > 0;
+}
+
+// Decides which poses of one stream are new, by IsNewer().
 class SequenceWindow {
  public:
   // A duplicate at least this far behind the newest pose is reported as kLate.

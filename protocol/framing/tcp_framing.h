@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 namespace furrow::protocol {
@@ -12,6 +13,11 @@ namespace furrow::protocol {
 // On TCP, a frame is a message after its length in bytes (u32, little-endian). The length does not
 // count itself.
 inline constexpr std::size_t kFramePrefixBytes = 4;
+
+// The name of this protocol in TLS (ALPN), as TLS sends it: with its length in front.
+inline constexpr std::string_view kTlsProtocols =
+    "\x08"
+    "furrow/1";
 
 // The length prefix of a message of `message_bytes`, envelope included.
 [[nodiscard]] std::array<std::uint8_t, kFramePrefixBytes> FramePrefix(std::size_t message_bytes);

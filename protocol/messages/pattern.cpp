@@ -39,12 +39,17 @@ std::string_view Trim(std::string_view text) {
 
 }  // namespace
 
+std::string_view NextGlob(std::string_view* pattern) {
+  const std::size_t comma = pattern->find(',');
+  const std::string_view glob = Trim(pattern->substr(0, comma));
+  *pattern = comma == std::string_view::npos ? std::string_view() : pattern->substr(comma + 1);
+  return glob;
+}
+
 bool MatchesPattern(std::string_view pattern, std::string_view name) {
   while (!pattern.empty()) {
-    const std::size_t comma = pattern.find(',');
-    const std::string_view glob = Trim(pattern.substr(0, comma));
+    const std::string_view glob = NextGlob(&pattern);
     if (!glob.empty() && MatchesGlob(glob, name)) return true;
-    pattern = comma == std::string_view::npos ? std::string_view() : pattern.substr(comma + 1);
   }
   return false;
 }

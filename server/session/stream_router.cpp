@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/session/stream_router.h"
 
+#include "protocol/framing/sequence.h"
+
 namespace furrow::server {
 
 // Requires the exclusive lock: an offer adds or rebinds a subject.
@@ -20,14 +22,14 @@ void StreamRouter::AcceptPose(Shard& shard, Peer& peer, const protocol::Header& 
                               std::span<const std::uint8_t> payload, Time now) {
   Publishers& publishers = *parts_.publishers;
   Subject* subject = publishers.FindSubject(peer, header, pose);
-  if (subject != nullptr) peer.last_used = now;
   if (subject == nullptr) {
     // A batch must not be observable: an answer to a pose follows the poses before it.
     PublishGathered(shard);
     publishers.OnUnknownStream(peer, header, pose.skeleton_hash, shard.context.messages, now);
-  } else if (subject->hold == Time{0} || !Hold(shard, *subject, header, pose, payload, now)) {
-    Use(shard, *subject, header, pose, payload, now);
+    return;
   }
+  peer.last_used = now;
+  HoldOrUse(shard, *subject, header, pose, payload, now);
 }
 
 bool StreamRouter::MissesPrevious(Shard& shard, const Peer& peer, const protocol::Header& header) {
@@ -37,8 +39,7 @@ bool StreamRouter::MissesPrevious(Shard& shard, const Peer& peer, const protocol
   const std::uint32_t sequence = header.sequence - 1;
   const protocol::SequenceWindow& window = subject->window;
   const bool follows = window.started() && window.session() == header.session;
-  // Sequences wrap at 2^32.
-  if (follows && static_cast<std::int32_t>(sequence - window.newest()) <= 0) return false;
+  if (follows && !protocol::IsNewer(sequence, window.newest())) return false;
   return subject->hold == Time{0} || shard.held.Misses(stream, sequence);
 }
 
@@ -51,9 +52,14 @@ void StreamRouter::AcceptPrevious(Shard& shard, const Peer& peer, protocol::Head
   header.sequence -= 1;
   if (header.capture_time_us != 0) header.capture_time_us -= age_us;
   // Relayed and recorded like a pose of a foreign wire: its bytes end with those of the other pose.
-  if (subject->hold == Time{0} || !Hold(shard, *subject, header, previous, {}, now)) {
-    Use(shard, *subject, header, previous, {}, now);
-  }
+  HoldOrUse(shard, *subject, header, previous, {}, now);
+}
+
+void StreamRouter::HoldOrUse(Shard& shard, Subject& subject, const protocol::Header& header,
+                             const protocol::PoseFrame& pose, std::span<const std::uint8_t> payload,
+                             Time now) {
+  const bool held = subject.hold != Time{0} && Hold(shard, subject, header, pose, payload, now);
+  if (!held) Use(shard, subject, header, pose, payload, now);
 }
 
 // Puts a pose into the jitter buffer. False: it is too late for that.

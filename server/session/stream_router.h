@@ -80,6 +80,8 @@ class StreamRouter {
   void SetOnWeights(OnWeights on_weights) { on_weights_ = std::move(on_weights); }
 
  private:
+  void HoldOrUse(Shard& shard, Subject& subject, const protocol::Header& header,
+                 const protocol::PoseFrame& pose, std::span<const std::uint8_t> payload, Time now);
   [[nodiscard]] bool Hold(Shard& shard, Subject& subject, const protocol::Header& header,
                           const protocol::PoseFrame& pose, std::span<const std::uint8_t> payload,
                           Time now);

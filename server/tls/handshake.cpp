@@ -55,7 +55,7 @@ HandshakeBudget::HandshakeBudget() : hosts_(kPerHost, secure::SystemRandom()) {}
 
 // A host that has used up its own budget takes nothing from that of all.
 bool HandshakeBudget::Take(const std::string& host, Time now) {
-  const std::int64_t now_us = std::chrono::duration_cast<std::chrono::microseconds>(now).count();
+  const std::int64_t now_us = ToMicroseconds(now);
   return hosts_.Take(AddressOf(host), {}, now_us) && total_.Take(now_us);
 }
 

@@ -12,6 +12,7 @@
 #include <openssl/x509.h>
 
 #include "base/files.h"
+#include "protocol/framing/tcp_framing.h"
 
 namespace furrow::server {
 namespace {
@@ -29,10 +30,7 @@ using Bio = std::unique_ptr<BIO, Free>;
 using Certificate = std::unique_ptr<X509, Free>;
 using PrivateKey = std::unique_ptr<EVP_PKEY, Free>;
 
-// Lists of protocols as TLS sends them: each name with its length in front.
-constexpr std::string_view kMessageProtocols =
-    "\x08"
-    "furrow/1";
+// As protocol::kTlsProtocols, of the web port.
 constexpr std::string_view kWebProtocols =
     "\x08"
     "http/1.1";
@@ -180,7 +178,7 @@ Result<TlsContexts> LoadTlsContexts(const TlsFiles& files) {
     material.client_authorities = *std::move(authorities);
   }
   // Probes of supervisors show no certificate, so the web port asks for one by request.
-  auto messages = MakeContext(files, material, kMessageProtocols,
+  auto messages = MakeContext(files, material, protocol::kTlsProtocols,
                               SSL_VERIFY_PEER | SSL_VERIFY_FAIL_IF_NO_PEER_CERT);
   FURROW_RETURN_IF_ERROR(messages);
   auto web = MakeContext(files, material, kWebProtocols, SSL_VERIFY_PEER);

@@ -8,13 +8,10 @@
 #include <openssl/ssl.h>
 #include <openssl/x509v3.h>
 
+#include "protocol/framing/tcp_framing.h"
+
 namespace furrow::client {
 namespace {
-
-// As TLS sends it: with its length in front.
-constexpr char kProtocol[] =
-    "\x08"
-    "furrow/1";
 
 // The file's fault, with the newest reason of OpenSSL.
 Status FileFault(const std::string& file, const std::string& what, const std::string& todo) {
@@ -89,8 +86,9 @@ Result<std::shared_ptr<SSL_CTX>> MakeTlsContext(const ClientTlsFiles& files) {
   SSL_CTX_set_verify(context.get(), SSL_VERIFY_PEER, nullptr);
   SSL_CTX_set_default_passwd_cb(context.get(), &RefusePassphrase);
   SSL_CTX_set_mode(context.get(), SSL_MODE_RELEASE_BUFFERS);
-  SSL_CTX_set_alpn_protos(context.get(), reinterpret_cast<const unsigned char*>(kProtocol),
-                          sizeof(kProtocol) - 1);
+  SSL_CTX_set_alpn_protos(context.get(),
+                          reinterpret_cast<const unsigned char*>(protocol::kTlsProtocols.data()),
+                          static_cast<unsigned int>(protocol::kTlsProtocols.size()));
   X509_VERIFY_PARAM* const param = SSL_CTX_get0_param(context.get());
   // A certificate that the user names is trusted, even if another authority has signed it.
   X509_VERIFY_PARAM_set_flags(param, X509_V_FLAG_PARTIAL_CHAIN);

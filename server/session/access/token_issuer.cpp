@@ -15,18 +15,10 @@ namespace {
 
 namespace secure = protocol::secure;
 
-// The globs of a pattern, without the spaces around them.
 std::vector<std::string_view> GlobsOf(std::string_view pattern) {
   std::vector<std::string_view> globs;
-  while (true) {
-    const std::size_t end = std::min(pattern.find(','), pattern.size());
-    std::string_view glob = pattern.substr(0, end);
-    while (glob.starts_with(' ')) glob.remove_prefix(1);
-    while (glob.ends_with(' ')) glob.remove_suffix(1);
-    globs.push_back(glob);
-    if (end == pattern.size()) return globs;
-    pattern.remove_prefix(end + 1);
-  }
+  while (!pattern.empty()) globs.push_back(protocol::NextGlob(&pattern));
+  return globs;
 }
 
 Status Forbidden(const std::string& what, const std::string& field, const Access& maker) {

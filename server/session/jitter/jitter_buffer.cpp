@@ -4,13 +4,11 @@
 #include <algorithm>
 #include <utility>
 
+#include "protocol/framing/sequence.h"
+
 namespace furrow::server {
-namespace {
 
-// Sequences wrap at 2^32.
-bool IsNewer(std::uint32_t a, std::uint32_t b) { return static_cast<std::int32_t>(a - b) > 0; }
-
-}  // namespace
+using protocol::IsNewer;
 
 JitterBuffer::Place JitterBuffer::Look(const protocol::Header& header, Time delay, Time now,
                                        Time* due) {
