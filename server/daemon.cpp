@@ -10,7 +10,6 @@
 #include <functional>
 #include <future>
 #include <memory>
-#include <new>
 #include <random>
 #include <string>
 #include <utility>
@@ -30,6 +29,7 @@
 #include "server/config/osc_profile_file.h"
 #include "server/core/confine.h"
 #include "server/core/status_line.h"
+#include "server/core/within_memory.h"
 #include "server/daemon_files.h"
 #include "server/http/api/api.h"
 #include "server/http/http_server.h"
@@ -115,15 +115,6 @@ class Daemon {
   asio::awaitable<void> Drain();
   void RequestDrain();
   void StopRendering();
-  // Runs a part of the work. Lack of memory costs this part, not the daemon.
-  template <class Work>
-  void WithinMemory(const Work& work) {
-    try {
-      work();
-    } catch (const std::bad_alloc&) {
-      metrics_->Add(Counter::kAllocationsFailed);
-    }
-  }
 
   const Config& config_;
   const RunOptions& options_;
@@ -433,7 +424,7 @@ asio::awaitable<void> Daemon::TickLoop() {
     due = std::max(due + kTick, std::chrono::steady_clock::now());  // skip missed ticks
     timer.expires_at(due);
     co_await timer.async_wait(kAwaitTuple);
-    WithinMemory([this] {
+    WithinMemory(metrics_, [this] {
       const Time now = ReadClock();
       hub_->Tick(now);
       if (osc_->limits_rates()) {
@@ -451,7 +442,7 @@ asio::awaitable<void> Daemon::SecondLoop() {
   while (true) {
     timer.expires_after(kSecond);
     co_await timer.async_wait(kAwaitTuple);
-    WithinMemory([&] { EverySecond(&status_line); });
+    WithinMemory(metrics_, [&] { EverySecond(&status_line); });
   }
 }
 

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <new>
-
-#include "server/core/metrics.h"
+#include "server/core/within_memory.h"
 
 namespace furrow::server {
 
@@ -12,13 +10,7 @@ namespace furrow::server {
 // them those of what the daemon cannot work without (StartCriticalTask()).
 template <class Loop>
 void RunLoop(Loop& loop, Metrics* metrics) {
-  while (true) {
-    try {
-      loop.run();
-      return;
-    } catch (const std::bad_alloc&) {
-      metrics->Add(Counter::kAllocationsFailed);
-    }
+  while (!WithinMemory(metrics, [&loop] { loop.run(); })) {
   }
 }
 

@@ -8,6 +8,7 @@
 #include <spdlog/spdlog.h>
 
 #include "base/status.h"
+#include "server/core/within_memory.h"
 
 namespace furrow::server {
 namespace {
@@ -21,7 +22,7 @@ constexpr double kLargeWork = 2.5e6;
 
 // Runs `work`, which returns a Status or a Result. Lack of memory becomes its error.
 template <class Work>
-auto WithinMemory(Metrics* metrics, const Work& work) -> decltype(work()) {
+auto OrOutOfMemory(Metrics* metrics, const Work& work) -> decltype(work()) {
   try {
     return work();
   } catch (const std::bad_alloc&) {
@@ -102,7 +103,7 @@ Result<render::Camera> RenderThread::Preset(std::string_view name) const {
 }
 
 Status RenderThread::CreateRenderer() {
-  auto renderer = WithinMemory(metrics_, make_renderer_);
+  auto renderer = OrOutOfMemory(metrics_, make_renderer_);
   FURROW_RETURN_IF_ERROR(renderer);
   renderer_ = *std::move(renderer);
   return {};
@@ -122,11 +123,8 @@ void RenderThread::Run(std::promise<Status> started) {
   started.set_value(status);
   if (!status.ok()) return;
   while (!mailbox_.closed()) {
-    try {
-      DrawAndCollect();
-    } catch (const std::bad_alloc&) {  // what could not be reported; see Deliver()
-      metrics_->Add(Counter::kAllocationsFailed);
-    }
+    // What could not be reported; see Deliver().
+    WithinMemory(metrics_, [this] { DrawAndCollect(); });
   }
   renderer_.reset();  // on this thread, which owns the context
 }
@@ -148,7 +146,7 @@ void RenderThread::Draw(RenderJob job) {
   if (renderer_ == nullptr && !Revive()) return Fail(std::move(job));
   // In flight before it is drawn, so that nothing can fail between the two.
   in_flight_.push_back(std::move(job));
-  const Status status = WithinMemory(metrics_, [this] { return Render(in_flight_.back()); });
+  const Status status = OrOutOfMemory(metrics_, [this] { return Render(in_flight_.back()); });
   if (status.ok()) return;
   job = std::move(in_flight_.back());
   in_flight_.pop_back();
@@ -192,7 +190,7 @@ Status RenderThread::Render(const RenderJob& job) {
 void RenderThread::Collect(bool wait) {
   const Step step(&steps_);
   Result<render::Image> image =
-      WithinMemory(metrics_, [this, wait] { return renderer_->Poll(wait); });
+      OrOutOfMemory(metrics_, [this, wait] { return renderer_->Poll(wait); });
   if (!image.ok()) {
     Rebuild(image.status());
     return;
@@ -239,11 +237,7 @@ void RenderThread::Refuse(RenderJob job) {
 // If memory is so short that not even a failure can be reported, the viewers ask again after
 // ViewerFlow::kGiveUp.
 void RenderThread::Deliver(FinishedPicture picture) {
-  try {
-    deliver_(std::move(picture));
-  } catch (const std::bad_alloc&) {
-    metrics_->Add(Counter::kAllocationsFailed);
-  }
+  WithinMemory(metrics_, [&] { deliver_(std::move(picture)); });
 }
 
 // Viewers with equal encodings share the bytes.
@@ -270,7 +264,7 @@ void RenderThread::Finish(const render::Image& image, RenderJob job) {
 
 void RenderThread::Encode(const render::Image& image, const RenderJob& job,
                           const Encoding& encoding, std::vector<PictureTicket> tickets) {
-  auto bytes = WithinMemory(
+  auto bytes = OrOutOfMemory(
       metrics_, [&] { return render::EncodeImage(image, encoding.format, encoding.quality); });
   metrics_->Add(bytes.ok() ? Counter::kPicturesEncoded : Counter::kPicturesFailed);
   if (!bytes.ok()) {

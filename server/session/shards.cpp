@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/session/shards.h"
 
-#include <new>
+#include "server/core/within_memory.h"
 
 namespace furrow::server {
 
@@ -15,19 +15,13 @@ Shards::Shards(int count, std::uint64_t session, Metrics* metrics, StreamRouter*
 // Runs while locks change hands, so it must not throw: what memory does not suffice for is lost,
 // like a datagram.
 void Shards::Flush(Shard& shard) noexcept {
-  try {
+  WithinMemory(metrics_, [&shard] {
     if (shard.buffered_sender != nullptr) shard.buffered_sender->Flush();
-  } catch (const std::bad_alloc&) {
-    metrics_->Add(Counter::kAllocationsFailed);
-  }
+  });
 }
 
 void Shards::PublishGathered(Shard& shard) noexcept {
-  try {
-    router_->PublishGathered(shard);
-  } catch (const std::bad_alloc&) {
-    metrics_->Add(Counter::kAllocationsFailed);
-  }
+  WithinMemory(metrics_, [&] { router_->PublishGathered(shard); });
 }
 
 // The counters belong to the shard's thread, so reading them needs no lock. A shard lock inside an

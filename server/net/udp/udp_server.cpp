@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
-#include <new>
 #include <optional>
 #include <string>
 
@@ -14,6 +13,7 @@
 
 #include "protocol/framing/envelope.h"
 #include "server/core/network_address.h"
+#include "server/core/within_memory.h"
 #include "server/net/await_tuple.h"
 #include "server/net/clock.h"
 #include "server/net/critical_task.h"
@@ -174,11 +174,7 @@ asio::awaitable<void> UdpServer::Read() {
       // held across co_await, which would let other coroutines of this thread run inside it.
       const Hub::ShardLock lock(*hub_, shard_);
       for (std::size_t i = 0; i < count; ++i) {
-        try {
-          OnDatagram(batch_.bytes(i), batch_.sender(i), now);
-        } catch (const std::bad_alloc&) {
-          metrics_->Add(Counter::kAllocationsFailed);  // it costs one datagram, not the daemon
-        }
+        WithinMemory(metrics_, [&] { OnDatagram(batch_.bytes(i), batch_.sender(i), now); });
       }
       ForgetClosed();
       is_drained = count < UdpBatch::kSize;
