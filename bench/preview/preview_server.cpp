@@ -67,7 +67,7 @@ PreviewServer::PreviewServer(render::Image picture)
   server::Hub::Parts parts;
   // One wrinkle weight: a subject with almost no cost.
   parts.rig = std::make_shared<const wrinkle::Rig>(test::ShapeRig("preview", {"brow"}));
-  parts.character = &skeleton_;
+  parts.character.skeleton = &skeleton_;
   parts.pictures = render_.get();
   parts.metrics = &metrics_;
   parts.random = [] { return 1; };

@@ -110,8 +110,6 @@ def unsubscribes(port, per_second):
 
 
 def long_patterns(port, per_second):
-    message = (pathlib.Path(VECTORS) / "subscribe_weights_all.bin").read_bytes()
-    del message  # the vectors have short patterns; the message is built below
     tcp_flood(port, lambda i: subscribe_weights(",".join(f"?a{i}{k}*z" for k in range(450))[:4000], i), per_second)
 
 
