@@ -124,9 +124,10 @@ class Hub {
   // TCP: answers a connection that never becomes a peer.
   void RefuseConnection(Link* link, protocol::ErrorCode code, const std::string& why);
   // TCP and web: ends the connection that has had no use for longest, so that a newcomer finds a
-  // place: one of `host`, or, if `any_host`, of any host. It gets an error first. False: all are in
-  // use. Connections have no use while they wait for absent subjects, or if they neither watched
-  // nor published anything for kUnusedPatience. Only the thread of shard 0 calls it.
+  // place: one of `host`, or, if `any_host`, of any host. It gets an error first. Those that have
+  // shown no token to a daemon that requires one go first. False: all are in use. Connections have
+  // no use while they wait for absent subjects, or if they neither watched nor published anything
+  // for kUnusedPatience. Only the thread of shard 0 calls it.
   [[nodiscard]] bool MakeRoom(Transport transport, const std::string& host, bool any_host,
                               Time now);
   static constexpr Time kUnusedPatience = std::chrono::seconds(2);
