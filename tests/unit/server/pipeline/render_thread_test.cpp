@@ -307,8 +307,8 @@ TEST_F(RenderThreadTest, ARendererThatDoesNotRespondTurnsPicturesOff) {
   std::latch go_on(1), holds(1);
   script.hold_first_submit = &go_on;
   script.in_first_submit = &holds;
+  const LogCapture log;
   Start();
-  LogCapture log;
   Submit(1);
   holds.wait();
   Submit(2);  // waits

@@ -51,6 +51,18 @@ TEST_F(HubRoom, TheConnectionThatHasWaitedLongestGivesWay) {
   EXPECT_TRUE(hub->IsIdle(first.id, now)) << "its connection may close";
 }
 
+TEST_F(HubRoom, WhoHasShownNoTokenGivesWayFirst) {
+  FakePeer viewer, stranger;
+  ConnectFrom(&viewer, "a");
+  WaitForNobody(viewer);
+  Advance(1);
+  stranger.id = hub->AddPeer(Transport::kTcp, {"fake", "a"}, &stranger, now, 0, Access());
+  now += Hub::kUnusedPatience;
+  ASSERT_TRUE(MakeRoom("a"));
+  ExpectGone(stranger);
+  EXPECT_FALSE(viewer.finished) << "although it has waited for longer";
+}
+
 TEST_F(HubRoom, ConnectionsInUseStay) {
   FakePeer sender, viewer;
   ConnectFrom(&sender, "a");
