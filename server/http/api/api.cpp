@@ -10,7 +10,6 @@ Api::Api(Parts parts)
       status_({.session = parts.session,
                .started = parts.started,
                .metrics = parts.metrics,
-               .renders = parts.pictures != nullptr,
                .wants_pictures = parts.wants_pictures,
                .pictures = parts.pictures,
                .plays = parts.player != nullptr,

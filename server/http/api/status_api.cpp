@@ -71,7 +71,7 @@ ApiReply StatusApi::ShowStatus(const ApiRequest& request, const Hub& hub, Time n
   return JsonReply({{"version", FURROW_VERSION},
                     {"session", fmt::format("{:016x}", parts_.session)},
                     {"uptime_s", ToSeconds(now - parts_.started)},
-                    {"render", parts_.renders},
+                    {"render", parts_.pictures != nullptr},
                     {"renderer", parts_.renderer},
                     {"viewers", parts_.viewers()},
                     {"subscriptions", hub.num_subscriptions()},
@@ -93,7 +93,7 @@ ApiReply StatusApi::Health() const { return JsonReply({{"ok", true}}); }
 
 ApiReply StatusApi::Ready(const Hub& hub) const {
   if (hub.draining()) return ErrorReply(503, "unavailable", "", "the daemon is shutting down");
-  if (parts_.wants_pictures && !parts_.renders) {
+  if (parts_.wants_pictures && parts_.pictures == nullptr) {
     return ErrorReply(503, "unavailable", "", "rendering is enabled but no renderer is available");
   }
   if (parts_.pictures != nullptr && parts_.pictures->is_stuck()) {

@@ -20,7 +20,6 @@ class StatusApi {
     std::uint64_t session = 0;
     Time started{0};
     const Metrics* metrics = nullptr;
-    bool renders = false;                       // a renderer is running
     bool wants_pictures = false;                // the configuration asks for pictures
     const PictureSource* pictures = nullptr;    // the renderer; null: none is running
     bool plays = false;                         // started with --play

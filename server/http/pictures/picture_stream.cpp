@@ -16,7 +16,6 @@
 #include "server/http/request/reply_writer.h"
 #include "server/http/request/request_access.h"
 #include "server/http/socket/web_peer.h"
-#include "server/session/peers/peer_label.h"
 
 namespace furrow::server {
 namespace {
@@ -45,10 +44,7 @@ class PictureStream : public std::enable_shared_from_this<PictureStream> {
     auto wake = [weak = weak_from_this()] {
       if (const auto self = weak.lock()) self->wake_.cancel();
     };
-    beast::error_code ignored;
-    const auto remote = stream_->socket().remote_endpoint(ignored);
-    peer_.emplace(context_->post_to_hub,
-                  LabelOf("web pictures", remote.address().to_string(), remote.port()), access,
+    peer_.emplace(context_->post_to_hub, LabelOfClient(*stream_, "web pictures"), access,
                   [post_to_web = context_->post_to_web, wake] { post_to_web(wake); });
     Send(0, pictures);
   }

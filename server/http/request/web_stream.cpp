@@ -37,12 +37,12 @@ WebStream::Tls& WebStream::TlsThatEnds() {
   return *layers_->upper();
 }
 
-PeerLabel LabelOfClient(const WebStream& stream) {
+PeerLabel LabelOfClient(const WebStream& stream, const std::string& kind) {
   beast::error_code error;
   const auto client = stream.socket().remote_endpoint(error);
   // It has reset the connection, and what it sent before is still read. It may be anywhere.
-  if (error) return {"web, disconnected", {}, stream.is_tls()};
-  PeerLabel label = LabelOf("web", client.address().to_string(), client.port());
+  if (error) return {kind + ", disconnected", {}, stream.is_tls()};
+  PeerLabel label = LabelOf(kind, client.address().to_string(), client.port());
   label.shielded |= stream.is_tls();
   return label;
 }

@@ -66,8 +66,8 @@ class WebStream {
   std::unique_ptr<LayeredStream<beast::tcp_stream, Tls>> layers_;
 };
 
-// The client of a connection, as a peer of the hub.
-[[nodiscard]] PeerLabel LabelOfClient(const WebStream& stream);
+// The client of a connection, as a peer of the hub. `kind`: of connection, for people.
+[[nodiscard]] PeerLabel LabelOfClient(const WebStream& stream, const std::string& kind = "web");
 
 // What Beast calls to end a WebSocket, at a timeout and after its close frames.
 void beast_close_socket(WebStream& stream);

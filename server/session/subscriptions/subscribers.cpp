@@ -330,10 +330,8 @@ bool Subscribers::Unsubscribe(Peer& peer, std::uint16_t id) {
 }
 
 void Subscribers::EndForbidden(Peer& peer) {
-  const auto is_forbidden = [&peer](const Subscription& each) {
-    return each.peer == &peer && !MayWatch(each, peer.access);
-  };
-  for (Subscription* subscription : table_.Select(is_forbidden)) {
+  for (Subscription* subscription : table_.Of(peer)) {
+    if (MayWatch(*subscription, peer.access)) continue;
     metrics_->Add(Counter::kRefusedWatch);
     RefuseAndErase(*subscription, ErrorCode::kNotPermitted,
                    WhyForbidden(*subscription, peer.access));
