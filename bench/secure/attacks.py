@@ -18,6 +18,7 @@ import random
 import re
 import signal
 import socket
+import ssl
 import statistics
 import struct
 import subprocess
@@ -179,6 +180,37 @@ def hellos(port, per_second, counts):
         time.sleep(0.001)
 
 
+def rival(bin_folder, port, recording):
+    """Publishes the subjects of the victim, over and over, soon after the victim has begun."""
+    time.sleep(2.5)
+    while True:
+        subprocess.run([bin_folder / "furrow", "load", f"127.0.0.1:{port}", recording, "--subjects", "20", "--rate", "60", "--duration", "5"],
+                       capture_output=True, check=False)
+
+
+def client_hello():
+    """The first bytes of a client that speaks TLS."""
+    context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
+    context.check_hostname = False
+    context.verify_mode = ssl.CERT_NONE
+    outgoing = ssl.MemoryBIO()
+    with contextlib.suppress(ssl.SSLWantReadError):
+        context.wrap_bio(ssl.MemoryBIO(), outgoing).do_handshake()
+    return outgoing.read()
+
+
+def stalled_handshakes(port):
+    """Keeps as many connections as it gets, each with a handshake that never ends."""
+    hello, held = client_hello(), []
+    while True:
+        with contextlib.suppress(OSError):
+            one = socket.create_connection(("127.0.0.1", port), timeout=DEADLINE)
+            one.sendall(hello)
+            held.append(one)
+        held = held[-400:]
+        time.sleep(0.01)
+
+
 @contextlib.contextmanager
 def attackers(*calls):
     running = [multiprocessing.Process(target=call[0], args=call[1:], daemon=True) for call in calls]
@@ -265,6 +297,53 @@ def forged(table, options):
         table.row("the same", "bytes out per byte in", "", f"{counts[1] / max(1, counts[0]):.2f}")
 
 
+def takeover(table, options):
+    with Daemon(options.bin, "--no-render") as daemon:
+        table.weights("another sender offers the same 20 subjects", daemon, (rival, options.bin, daemon.ports["udp"], options.recording))
+
+
+def unread(table, options):
+    with Daemon(options.bin, "--play", options.recording) as daemon:
+        daemon.get("/snapshot.png?width=1536&height=1536")
+        memory = daemon.mebibytes()
+        held = []
+        for _ in range(8):
+            one = socket.socket()
+            one.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+            one.connect(("127.0.0.1", daemon.ports["http"]))
+            one.sendall(b"GET /mjpeg?width=1536&height=1536&quality=100 HTTP/1.1\r\nHost: localhost\r\n\r\n")
+            held.append(one)
+        most = 0
+        for _ in range(int(4 * options.seconds)):
+            time.sleep(0.5)
+            most = max(most, daemon.mebibytes() - memory)
+        table.row("8 viewers of 1536 x 1536 who never read", "", "", "", most)
+
+
+def handshakes(table, options):
+    with tempfile.TemporaryDirectory() as folder:
+        certificate, key = f"{folder}/tls.crt", f"{folder}/tls.key"
+        subprocess.run(["openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256", "-nodes", "-days", "2", "-subj",
+                        "/CN=localhost", "-keyout", key, "-out", certificate], check=True, capture_output=True)
+        with Daemon(options.bin, "--no-render", "--tls-certificate", certificate, "--tls-key", key) as daemon:
+            context = ssl.create_default_context(cafile=certificate)
+            context.check_hostname = False
+
+            def newcomer():
+                begun = time.monotonic()
+                try:
+                    with context.wrap_socket(socket.create_connection(("127.0.0.1", daemon.ports["tcp"]), DEADLINE, ("127.0.0.2", 0))):
+                        return f"{1000 * (time.monotonic() - begun):.0f} ms"
+                except OSError as error:
+                    return f"refused ({error})"
+
+            before, memory = newcomer(), daemon.mebibytes()
+            with attackers((stalled_handshakes, daemon.ports["tcp"]), (stalled_handshakes, daemon.ports["http"])):
+                time.sleep(options.seconds)
+                table.row("handshakes of TLS that never end", "a newcomer of another address over TLS", before, newcomer(),
+                          daemon.mebibytes() - memory)
+
+
 def viewer_seconds(daemon, seconds):
     """The time of small snapshots, one after the other."""
     times, failed, end = [], 0, time.monotonic() + seconds
@@ -293,6 +372,11 @@ def pictures(table, options):
                       f"{during[0]:.2f} s ({during[1]:.2f} s, {during[2]})", growth)
         table.weights("8 viewers of 2048 x 2048, the dearest settings", daemon,
                       *[(snapshots, daemon.ports["http"], number, HEAVY, False) for number in range(8)])
+
+
+def variants(table, options):
+    with Daemon(options.bin, "--play", options.recording) as daemon:
+        daemon.get(f"/snapshot.png?width=64&height=64&{HEAVY}")
         memory = daemon.mebibytes()
         for i in range(100):
             daemon.get(f"/snapshot.png?width=64&height=64&occlusion.samples={4 + i % 60}&shadow.taps={1 + i % 32}")
@@ -318,7 +402,7 @@ def main():
     parser.add_argument("--seconds", type=float, default=5.0, help="of each measurement")
     options = parser.parse_args()
     table = Table(options)
-    for group in (waiting_tcp, waiting_web, requests, forged, pictures, sigterm):
+    for group in (waiting_tcp, waiting_web, requests, forged, takeover, handshakes, unread, pictures, variants, sigterm):
         if options.only in group.__name__:
             group(table, options)
 
