@@ -14,6 +14,8 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include "server/core/syscall_filter.h"
+
 namespace furrow::server {
 namespace {
 
@@ -102,7 +104,11 @@ std::string Confine(const Confinement& allowed) {
   const std::string why = ConfineFiles(allowed);
   if (why.empty()) add("no programs, no files but its own");
   if (DropCapabilities()) add("no capabilities");
+  const std::string unfiltered = FilterSystemCalls();  // last: it forbids the calls above
+  if (unfiltered.empty()) add("only the system calls that it needs");
   if (!why.empty()) held += "; all files, because Landlock is unavailable: " + why;
+  if (!unfiltered.empty())
+    held += "; all system calls, because seccomp is unavailable: " + unfiltered;
   return held;
 }
 

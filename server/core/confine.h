@@ -21,6 +21,7 @@ struct Confinement {
 // - It has no capabilities, except that of opening ports below 1024.
 // - It leaves no core dump, which would hold keys and tokens. This concerns the whole process.
 // - Where the kernel has Landlock (5.13), it reads and writes only `allowed`, and runs no programs.
+// - It makes only the system calls that it needs; see FilterSystemCalls().
 //
 // Nothing of this can be undone. Returns what holds now, for the log.
 [[nodiscard]] std::string Confine(const Confinement& allowed);
