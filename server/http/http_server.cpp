@@ -28,6 +28,7 @@
 #include "server/net/clock.h"
 #include "server/net/run_loop.h"
 #include "server/session/hub.h"
+#include "server/tls/handshake_places.h"
 #include "server/tls/handshake_watch.h"
 
 namespace furrow::server {
@@ -134,6 +135,7 @@ struct HttpServer::Impl {
 
   WebContext context;  // outlives the loop; its connections use it
   HandshakeBudget handshakes;
+  HandshakePlaces handshake_places;
   FairShare shares{static_cast<std::size_t>(context.config.max_connections)};
   Lobby lobby;  // of newcomers that wait for a place
   std::shared_ptr<net::io_context> loop = std::make_shared<net::io_context>(1);
@@ -269,7 +271,16 @@ net::awaitable<bool> HttpServer::Impl::BeginTls(WebStream* stream, const std::st
     context.metrics->Add(Counter::kTlsBusy);
     co_return false;
   }
+  // The watch ends the wait, too.
+  HandshakePlaces::Place place;
+  net::steady_timer timer(*loop);
+  while (!watch.expired() && (place = handshake_places.Enter(host)) == nullptr) {
+    timer.expires_after(HandshakePlaces::kPoll);
+    beast::error_code ignored;
+    co_await timer.async_wait(Redirect(ignored));
+  }
   const beast::error_code error = co_await stream->Handshake(context.tls->for_web());
+  place.reset();
   if (error) {
     context.metrics->Add(watch.expired()
                              ? Counter::kTlsSlow

@@ -1,31 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/tls/handshake.h"
 
-#include <algorithm>
-#include <array>
-
-#include <arpa/inet.h>
 #include <openssl/err.h>
 #include <openssl/ssl.h>
-
-#include "protocol/secure/crypto/random_source.h"
 
 namespace furrow::server {
 namespace {
 
-namespace secure = protocol::secure;
-
 // A number that OpenSSL adds to the reasons of alerts that the other side has sent.
 constexpr int kFirstAlert = SSL_AD_REASON_OFFSET;
-
-secure::PeerAddress AddressOf(const std::string& host) {
-  secure::PeerAddress address;
-  std::array<std::uint8_t, 4> v4{};
-  if (inet_pton(AF_INET, host.c_str(), v4.data()) == 1) return secure::FromIpv4(v4, 0);
-  // Other text leaves the zeros, so all clients with unknown addresses share one place.
-  (void)inet_pton(AF_INET6, host.c_str(), address.host.data());
-  return address;
-}
 
 }  // namespace
 
@@ -51,12 +34,11 @@ Counter HandshakeFailure(unsigned long code) {
   }
 }
 
-HandshakeBudget::HandshakeBudget() : hosts_(kPerHost, secure::SystemRandom()) {}
-
 // A host that has used up its own budget takes nothing from that of all.
 bool HandshakeBudget::Take(const std::string& host, Time now) {
-  const std::int64_t now_us = ToMicroseconds(now);
-  return hosts_.Take(AddressOf(host), {}, now_us) && total_.Take(now_us);
+  if (!hosts_.Take(host, now)) return false;
+  if (total_.Take(ToMicroseconds(now))) return true;
+  return reserves_.Take(host, now) && reserve_.Take(ToMicroseconds(now));
 }
 
 }  // namespace furrow::server

@@ -7,8 +7,8 @@
 #include <span>
 #include <string>
 
-#include "protocol/secure/session/host_budgets.h"
 #include "protocol/secure/session/rate_budget.h"
+#include "server/core/host_rates.h"
 #include "server/core/metrics.h"
 #include "server/core/time.h"
 
@@ -28,19 +28,24 @@ inline constexpr std::size_t kTlsPrefixBytes = 3;
 [[nodiscard]] Counter HandshakeFailure(unsigned long code);
 
 // Limits how often handshakes begin, because each costs the processor a signature: per host, so
-// that no host uses up what the others need, and altogether. Not thread-safe.
+// that no host uses up what the others need, and altogether. When a few hosts have used up the
+// total, the others still have a reserve. Not thread-safe.
 class HandshakeBudget {
  public:
-  static constexpr std::uint32_t kPerHost = 100;  // per second
-  static constexpr std::uint32_t kTotal = 200;    // per second
+  // All per second.
+  static constexpr std::uint32_t kPerHost = 100;
+  static constexpr std::uint32_t kTotal = 200;
+  static constexpr std::uint32_t kReservePerHost = 5;
+  static constexpr std::uint32_t kReserve = 100;
 
-  HandshakeBudget();
   // False, without effect on others, if the budget is used up. `host`: see HostOf().
   [[nodiscard]] bool Take(const std::string& host, Time now);
 
  private:
-  protocol::secure::HostBudgets hosts_;
+  HostRates hosts_{kPerHost};
   protocol::secure::RateBudget total_{kTotal};
+  HostRates reserves_{kReservePerHost};
+  protocol::secure::RateBudget reserve_{kReserve};
 };
 
 }  // namespace furrow::server

@@ -217,7 +217,15 @@ asio::awaitable<bool> TcpServer::BeginWithTls(std::shared_ptr<StreamSocket> stre
     metrics_->Add(Counter::kTlsBusy);
     co_return false;
   }
+  // The watch ends the wait, too.
+  HandshakePlaces::Place place;
+  asio::steady_timer timer(io_);
+  while (!watch.expired() && (place = handshake_places_.Enter(host)) == nullptr) {
+    timer.expires_after(HandshakePlaces::kPoll);
+    co_await timer.async_wait(kAwaitTuple);
+  }
   const asio::error_code error = co_await stream->Handshake(tls_->for_messages());
+  place.reset();
   if (error) {
     metrics_->Add(watch.expired() ? Counter::kTlsSlow
                                   : HandshakeFailure(static_cast<unsigned long>(error.value())));

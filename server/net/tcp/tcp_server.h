@@ -19,6 +19,7 @@
 #include "server/net/tcp/tcp_session.h"
 #include "server/session/hub.h"
 #include "server/tls/handshake.h"
+#include "server/tls/handshake_places.h"
 #include "server/tls/tls_identity.h"
 
 namespace furrow::server {
@@ -62,6 +63,7 @@ class TcpServer {
   Metrics* const metrics_;
   const TlsIdentity* const tls_;
   HandshakeBudget handshakes_;
+  HandshakePlaces handshake_places_;
   FairShare shares_;  // of the sessions and handshakes
   Lobby lobby_;       // of newcomers that wait for a place
   std::unordered_set<std::shared_ptr<TcpSession>> sessions_;

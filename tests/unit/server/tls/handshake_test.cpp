@@ -4,10 +4,13 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <openssl/err.h>
 #include <openssl/ssl.h>
+
+#include "server/tls/handshake_places.h"
 
 namespace furrow::server {
 namespace {
@@ -58,7 +61,38 @@ TEST(HandshakeBudget, AllHostsTogetherHaveALimit) {
     const std::string name = "192.0.2." + std::to_string(host);
     for (int i = 0; i < 3; ++i) taken += budget.Take(name, now) ? 1 : 0;
   }
-  EXPECT_EQ(taken, HandshakeBudget::kTotal);
+  EXPECT_EQ(taken, HandshakeBudget::kTotal + HandshakeBudget::kReserve);
+}
+
+TEST(HandshakeBudget, TwoHostsDoNotShutOutAThirdOne) {
+  HandshakeBudget budget;
+  const Time now = std::chrono::seconds(100);
+  for (const char* host : {"192.0.2.1", "192.0.2.2"}) {
+    while (budget.Take(host, now)) {
+    }
+  }
+  std::uint32_t taken = 0;
+  while (budget.Take("192.0.2.3", now)) ++taken;
+  EXPECT_EQ(taken, HandshakeBudget::kReservePerHost);
+}
+
+TEST(HandshakePlaces, AHostLeavesPlacesToOthersAndGivesItsOwnBack) {
+  HandshakePlaces places;
+  std::vector<HandshakePlaces::Place> held;
+  while (HandshakePlaces::Place place = places.Enter("192.0.2.1")) held.push_back(place);
+  EXPECT_EQ(held.size(), HandshakePlaces::kPlaces / 2);
+  EXPECT_NE(places.Enter("192.0.2.2"), nullptr);
+  held.pop_back();
+  EXPECT_NE(places.Enter("192.0.2.1"), nullptr) << "a place came back";
+}
+
+TEST(HandshakePlaces, APlaceMayOutliveThem) {
+  HandshakePlaces::Place place;
+  {
+    HandshakePlaces places;
+    place = places.Enter("192.0.2.1");
+  }
+  place.reset();  // must not touch what has gone
 }
 
 }  // namespace

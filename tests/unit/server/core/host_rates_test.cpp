@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/core/host_rates.h"
+
+#include <gtest/gtest.h>
+
+namespace furrow::server {
+namespace {
+
+constexpr Time kStart = std::chrono::seconds(100);
+
+int TakeAll(HostRates& rates, const std::string& host, Time now) {
+  int taken = 0;
+  while (rates.Take(host, now)) ++taken;
+  return taken;
+}
+
+TEST(HostRates, AHostHasItsRateAndTakesNothingFromOthers) {
+  HostRates rates(10);
+  EXPECT_EQ(TakeAll(rates, "192.0.2.1", kStart), 10);
+  EXPECT_EQ(TakeAll(rates, "192.0.2.2", kStart), 10);
+  EXPECT_EQ(TakeAll(rates, "2001:db8::", kStart), 10);
+}
+
+TEST(HostRates, TheRateComesBackWithTime) {
+  HostRates rates(10);
+  EXPECT_EQ(TakeAll(rates, "192.0.2.1", kStart), 10);
+  EXPECT_EQ(TakeAll(rates, "192.0.2.1", kStart + std::chrono::milliseconds(300)), 3);
+  EXPECT_EQ(TakeAll(rates, "192.0.2.1", kStart + std::chrono::hours(1)), 10) << "not more";
+}
+
+TEST(HostRates, HostsWithoutANumericAddressShareOne) {
+  HostRates rates(10);
+  EXPECT_EQ(TakeAll(rates, "somewhere", kStart), 10);
+  EXPECT_FALSE(rates.Take("", kStart));
+}
+
+}  // namespace
+}  // namespace furrow::server
