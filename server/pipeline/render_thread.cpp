@@ -6,6 +6,7 @@
 #include <new>
 
 #include <spdlog/spdlog.h>
+#include <sys/resource.h>
 
 #include "base/status.h"
 #include "server/core/within_memory.h"
@@ -19,6 +20,8 @@ constexpr int kMaxReadBacks = 2;  // the limit of render::Renderer
 // While a picture of this much work is drawn (more than 1920 x 1080 pixels), no other is begun, so
 // that a newcomer with a small picture waits for one large picture, not for two.
 constexpr double kLargeWork = 2.5e6;
+// Weights matter more than pictures where both need the same core.
+constexpr int kNiceness = 5;
 
 // Runs `work`, which returns a Status or a Result. Lack of memory becomes its error.
 template <class Work>
@@ -110,6 +113,8 @@ Status RenderThread::CreateRenderer() {
 }
 
 void RenderThread::Run(std::promise<Status> started) {
+  // Of this thread alone, and of those that a software renderer starts from it.
+  (void)setpriority(PRIO_PROCESS, 0, kNiceness);
   const Status status = CreateRenderer();
   if (status.ok()) {
     description_ = renderer_->description();
