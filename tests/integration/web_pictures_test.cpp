@@ -185,5 +185,30 @@ TEST_F(WebPictures, ASnapshotShowsTheCurrentPose) {
   EXPECT_EQ(cameras["cameras"][0]["name"], "face");
 }
 
+constexpr std::string_view kSnapshot =
+    "GET /snapshot.png?subject=ann&width=64&height=32&shading=diffuse HTTP/1.1\r\n"
+    "Host: localhost\r\n\r\n";
+
+// Its place and its picture are free at once, not after the time that a picture may take.
+TEST_F(WebPictures, NobodyDrawsASnapshotForAClientThatHasLeft) {
+  WebClient client(port());
+  const std::string probe = "GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n";
+  ASSERT_EQ(client.AskRaw(probe + std::string(kSnapshot)).status, 200);
+  client.EndSending();
+  // Without a pose there is no picture. A client that stays would be told so by a reply.
+  EXPECT_EQ(client.ReadUntil("\r\n\r\n"), "");
+}
+
+TEST_F(WebPictures, AClientMaySendItsNextRequestBeforeTheSnapshot) {
+  WebClient client(port());
+  SendPose(5);
+  sender->Send(protocol::Ping{1});
+  ASSERT_TRUE(sender->Await<protocol::Pong>().has_value());
+  const WebClient::Answer first = client.AskRaw(std::string(kSnapshot) + std::string(kSnapshot));
+  EXPECT_EQ(first.status, 200) << first.body;
+  EXPECT_EQ(client.AskRaw(kSnapshot).status, 200);
+  EXPECT_EQ(client.AskRaw("").status, 200);
+}
+
 }  // namespace
 }  // namespace furrow::testing_net

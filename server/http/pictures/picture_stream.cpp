@@ -75,18 +75,22 @@ class PictureStream : public std::enable_shared_from_this<PictureStream> {
       co_await wake_.async_wait(Redirect(ignored));
     }
   }
-  // A client of /mjpeg sends nothing after its request, so readable data means that it has closed.
-  void WatchForEnd() {
-    stream_->socket().async_wait(net::ip::tcp::socket::wait_read,
-                                 [weak = weak_from_this()](beast::error_code) {
-                                   if (const auto self = weak.lock()) {
-                                     self->gone_ = true;
-                                     self->wake_.cancel();
-                                   }
-                                 });
+  // Ends the wait when the client closes, so that nobody draws for it. A client of /mjpeg sends
+  // nothing after its request, so any readable data means that it has closed. `sends_more`: the
+  // client may already send its next request; then only the end of the connection counts.
+  void WatchForEnd(bool sends_more) {
+    const auto end = [weak = weak_from_this(), sends_more](beast::error_code) {
+      const auto self = weak.lock();
+      if (self == nullptr || (sends_more && !self->stream_->HasEnded())) return;
+      self->gone_ = true;
+      self->wake_.cancel();
+    };
+    stream_->socket().async_wait(net::ip::tcp::socket::wait_read, end);
   }
   void Acknowledge() { Send(subscription_, protocol::FrameAck{image_.number}); }
   [[nodiscard]] const protocol::ImageFrame& image() const { return image_; }
+  // The client has closed.
+  [[nodiscard]] bool is_gone() const { return gone_; }
 
  private:
   template <class Message>
@@ -179,7 +183,7 @@ net::awaitable<bool> ServeMjpeg(WebStream* stream, PictureStream* pictures,
                                "Connection: close\r\nContent-Type: ") +
                            kMjpegType + "\r\n\r\n";
   bool has_begun = false;
-  pictures->WatchForEnd();
+  pictures->WatchForEnd(/*sends_more=*/false);
   while (true) {
     PictureStream::Next next = co_await pictures->Wait(std::nullopt);
     // After the head it is too late for an error status; then the connection closes.
@@ -198,8 +202,10 @@ net::awaitable<bool> ServeMjpeg(WebStream* stream, PictureStream* pictures,
 
 net::awaitable<bool> ServeSnapshot(WebStream* stream, PictureStream* pictures,
                                    const WebRequest& request) {
+  pictures->WatchForEnd(/*sends_more=*/true);
   const PictureStream::Next next =
       co_await pictures->Wait(std::chrono::steady_clock::now() + kWebDeadline);
+  if (!next.has_image && pictures->is_gone()) co_return false;
   if (!next.has_image) {
     co_return co_await WriteReply(
         *stream, request,

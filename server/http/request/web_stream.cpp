@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/http/request/web_stream.h"
 
+#include <array>
+#include <cstdint>
+
 #include <boost/asio/ssl/context.hpp>
 #include <openssl/ssl.h>
 
@@ -10,6 +13,19 @@ namespace furrow::server {
 
 bool WebStream::has_client_certificate() const {
   return is_tls() && SSL_get0_peer_certificate(layers_->upper()->native_handle()) != nullptr;
+}
+
+bool WebStream::HasEnded() {
+  // TLS 1.3 encrypts its alerts: application data of two bytes, a type and a tag of 16 bytes
+  // (RFC 8446 sections 5.2 and 6).
+  static constexpr std::array<std::uint8_t, 5> kAlert = {23, 3, 3, 0, 19};
+  std::array<std::uint8_t, kAlert.size()> first{};
+  beast::error_code error;
+  socket().non_blocking(true, error);
+  const std::size_t size =
+      socket().receive(net::buffer(first), net::socket_base::message_peek, error);
+  if (error == net::error::would_block) return false;
+  return error || size == 0 || (is_tls() && first == kAlert);
 }
 
 net::awaitable<beast::error_code> WebStream::Handshake(TlsContext context) {

@@ -35,6 +35,9 @@ class WebStream {
   // True if the client has shown a certificate, which is then valid.
   [[nodiscard]] bool has_client_certificate() const;
 
+  // What can be read is the end of the connection: no data, or the alert by which TLS ends.
+  [[nodiscard]] bool HasEnded();
+
   // The deadline of reads and writes; see beast::tcp_stream.
   void expires_after(std::chrono::steady_clock::duration time) {
     layers_->lower().expires_after(time);
