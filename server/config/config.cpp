@@ -198,6 +198,10 @@ Status ValidateConfig(const Config& config) {
     return Invalid("http.api_share is " + NumberText(config.http.api_share) +
                    "; it must be more than 0 and at most 1");
   }
+  if (config.http.requests_per_second < 1 || config.http.requests_per_second > 1'000'000) {
+    return Invalid("http.requests_per_second is " +
+                   std::to_string(config.http.requests_per_second) + "; it must be 1 to 1000000");
+  }
   if (config.http.enabled && config.http.port && *config.http.port != 0 &&
       *config.http.port == config.tcp) {
     return Invalid("--http and --tcp use the same TCP port " + std::to_string(config.tcp));

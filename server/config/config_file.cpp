@@ -152,7 +152,8 @@ Tables OutputTables(Config* config, const std::filesystem::path& folder) {
        {Flag("enabled", &http.enabled), Port("port", &http.port),
         Texts("allow_hosts", &http.allow_hosts), Texts("allow_origins", &http.allow_origins),
         Count("max_connections", &http.max_connections), Path("page", &http.page, folder),
-        Number("api_share", &http.api_share)}},
+        Number("api_share", &http.api_share),
+        Count("requests_per_second", &http.requests_per_second)}},
       {"log", {Flag("verbose", &config->verbose), Flag("json", &config->log_json)}}};
 }
 

@@ -22,6 +22,9 @@ struct HttpConfig {
   // Part of the time of the main network thread that API requests of one host may use, (0, 1];
   // 1: no limit.
   double api_share = 0.1;
+  // Requests of one host, of whatever kind, that are answered at once, [1, 1'000'000]; further ones
+  // wait.
+  int requests_per_second = 500;
   std::filesystem::path page;  // folder of the page; empty: share/furrow/web
   friend bool operator==(const HttpConfig&, const HttpConfig&) = default;
 };

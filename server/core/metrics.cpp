@@ -201,6 +201,8 @@ constexpr CounterInfo kCounters[] = {
      "HTTP requests refused: malformed, too large, or with a forbidden Host or Origin."},
     {Counter::kHttpThrottled, "furrow_http_throttled_total",
      "API requests answered with 429, because their host used up its share."},
+    {Counter::kHttpSlowed, "furrow_http_slowed_total",
+     "Web requests answered later, because their host exceeds http.requests_per_second."},
     {Counter::kWebSocketsAccepted, "furrow_web_sockets_accepted_total", "WebSockets accepted."},
     {Counter::kRecordingMessages, "furrow_recording_messages_total", "Messages written to a take."},
     {Counter::kRecordingDropped, "furrow_recording_dropped_total",

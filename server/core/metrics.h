@@ -113,6 +113,7 @@ enum class Counter {
   kHttpRequests,
   kHttpRefused,
   kHttpThrottled,
+  kHttpSlowed,
   kWebSocketsAccepted,
   kRecordingMessages,
   kRecordingDropped,

@@ -53,6 +53,7 @@ constexpr std::pair<Counter, std::string_view> kDrops[] = {
     {Counter::kMocapRefused, "frames of refused mocap subjects"},
     {Counter::kHttpRefused, "refused web requests"},
     {Counter::kHttpThrottled, "API requests over the share of their host"},
+    {Counter::kHttpSlowed, "slowed web requests"},
     {Counter::kOscPacketsUnsendable, "unsendable OSC packets"},
 };
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/http/http_session.h"
 
-#include <chrono>
 #include <memory>
 #include <new>
 #include <optional>
@@ -16,7 +15,6 @@
 #include <boost/beast/http/span_body.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
 
-#include "server/core/network_address.h"
 #include "server/http/pictures/picture_stream.h"
 #include "server/http/request/reply_writer.h"
 #include "server/http/request/request_access.h"
@@ -28,7 +26,6 @@
 namespace furrow::server {
 namespace {
 
-constexpr auto kThrottlePause = std::chrono::milliseconds(100);
 constexpr Time kProbeAge = std::chrono::milliseconds(100);
 
 // Asks the hub's thread for a reply, or replies with 503 after kWebDeadline. `host`: it pays for
@@ -124,13 +121,18 @@ ApiReply NotFound(const std::string& path) {
 class HttpSession {
  public:
   HttpSession(WebStream stream, WebContext* context)
-      : stream_(std::move(stream)), context_(context) {}
+      : stream_(std::move(stream)), context_(context), client_(LabelOfClient(stream_)) {}
 
   net::awaitable<void> Run() {
     bool goes_on = true;
     while (goes_on) {  // two statements: GCC 12 awaits both operands of && in any case
       goes_on = co_await ReadRequest();
-      if (goes_on) goes_on = co_await Answer();
+      if (!goes_on) break;
+      if (!context_->pace.Take(client_.host, ReadClock())) {
+        context_->metrics->Add(Counter::kHttpSlowed);
+        co_await Pause();
+      }
+      goes_on = co_await Answer();
     }
     // After an upgrade the socket has moved to the WebSocket. Otherwise tell the client that no
     // reply follows.
@@ -203,12 +205,12 @@ class HttpSession {
       co_return co_await WriteReply(stream_, request_,
                                     ErrorReply(403, "forbidden", "", "show a client certificate"));
     }
-    Result<Access> access = AccessOf(request_, context_->gate, IsShielded(), &*url);
+    Result<Access> access = AccessOf(request_, context_->gate, client_.shielded, &*url);
     const bool admitted = access.ok() && access->admitted();
     if (!admitted && !IsForAll(url->path)) {
       if (access.ok()) context_->metrics->Add(Counter::kRefusedNoToken);
       // 401 asks for a token, and the page then asks its user. Not where it would be disclosed.
-      ApiReply reply = access.ok() && !context_->gate->TakesTokens(IsShielded())
+      ApiReply reply = access.ok() && !context_->gate->TakesTokens(client_.shielded)
                            ? ErrorReply(403, "forbidden", "", kNoTokenHereText)
                            : NeedsToken(access.ok() ? kNeedsTokenText : access.status().what());
       co_return co_await WriteReply(stream_, request_, std::move(reply));
@@ -236,9 +238,6 @@ class HttpSession {
     const bool is_page = path != kCharacterPath && context_->page.Find(path) != nullptr;
     return is_page || IsProbe(path);
   }
-
-  // True if nobody on the network can read the request.
-  [[nodiscard]] bool IsShielded() const { return LabelOfClient(stream_).shielded; }
 
   // True if the client must show a certificate and has not. Probes show none.
   [[nodiscard]] bool LacksCertificate(const std::string& path) const {
@@ -280,7 +279,7 @@ class HttpSession {
       co_return co_await WriteReply(stream_, request_, NotFound(url.path));
     }
     ApiRequest request{std::string(ToView(request_.method_string())), std::move(url),
-                       std::move(request_.body()), access_, IsShielded()};
+                       std::move(request_.body()), access_, client_.shielded};
     // The routes know GET only; WriteResponse() leaves the body out.
     if (request.method == "HEAD") request.method = "GET";
     // Subjects, settings and rig belong to the hub's thread. The page's files do not, and are sent
@@ -296,20 +295,17 @@ class HttpSession {
   }
 
   net::awaitable<ApiReply> AnswerApi(ApiRequest request) {
-    std::string host = Host();
-    if (const int seconds = context_->budget->Ask(host, ReadClock()); seconds > 0) {
+    if (const int seconds = context_->budget->Ask(client_.host, ReadClock()); seconds > 0) {
       context_->metrics->Add(Counter::kHttpThrottled);
       // The client waits, too, so that asking again at once does not cost the web thread more.
-      net::steady_timer pause(stream_.get_executor(), kThrottlePause);
-      beast::error_code ignored;
-      co_await pause.async_wait(Redirect(ignored));
+      co_await Pause();
       ApiReply reply =
           ErrorReply(429, "limit", "", "this address asks the API too often; see http.api_share",
                      "try again in " + std::to_string(seconds) + " s");
       reply.retry_after = seconds;
       co_return reply;
     }
-    co_return co_await AskHub(context_, std::move(host), std::move(request));
+    co_return co_await AskHub(context_, client_.host, std::move(request));
   }
 
   // Supervisors must not be refused because somebody else asks often. So probes have no budget, but
@@ -326,15 +322,15 @@ class HttpSession {
     co_return reply;
   }
 
-  // The host that this connection counts to.
-  [[nodiscard]] std::string Host() {
-    beast::error_code error;
-    const auto remote = stream_.socket().remote_endpoint(error);
-    return error ? std::string() : HostOf(remote.address().to_string());
+  net::awaitable<void> Pause() {
+    net::steady_timer pause(stream_.get_executor(), kThrottlePause);
+    beast::error_code ignored;
+    co_await pause.async_wait(Redirect(ignored));
   }
 
   WebStream stream_;
   WebContext* context_;
+  const PeerLabel client_;
   Access access_;  // of the present request
   beast::flat_buffer buffer_;
   WebRequest request_;

@@ -68,6 +68,7 @@ server::Config WeightsConfig(const std::string& rig) {
   config.udp = 0;
   config.http.port = 0;
   config.http.api_share = 1.0;  // tests ask without pause
+  config.http.requests_per_second = 1'000'000;
   config.render = false;
   return config;
 }

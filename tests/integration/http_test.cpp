@@ -343,6 +343,16 @@ TEST_F(Http, ConnectionsAreLimited) {
   EXPECT_EQ(first.Ask("GET", "/healthz").status, 200);
 }
 
+TEST_F(Http, AFloodOfProbesIsAnsweredLaterButNotRefused) {
+  daemon.reset();
+  server::Config config = WeightsConfig("arkit.json");
+  config.http.requests_per_second = 1;
+  Start(config);
+  WebClient client(port());
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(client.Ask("GET", "/healthz").status, 200);
+  EXPECT_GE(daemon->Count(Counter::kHttpSlowed), 1u);
+}
+
 // All web places of this host are taken by viewers that wait for a subject which never comes.
 TEST_F(Http, WaitingWebSocketsGiveWayToANewcomer) {
   daemon.reset();

@@ -31,11 +31,11 @@ std::string TokenOf(const WebRequest& request, Url* url) {
 
 }  // namespace
 
-Result<Access> AccessOf(const WebRequest& request, const TokenGate* gate, bool local, Url* url) {
+Result<Access> AccessOf(const WebRequest& request, const TokenGate* gate, bool shielded, Url* url) {
   const std::string token = TokenOf(request, url);
   if (gate == nullptr) return Access::Everything();
   if (token.empty()) return gate->Stranger();
-  return gate->Admit(token, local, ReadClock());
+  return gate->Admit(token, shielded, ReadClock());
 }
 
 ApiReply NeedsToken(std::string_view why) {

@@ -17,10 +17,10 @@ namespace furrow::server {
 //   Sec-WebSocket-Protocol: furrow.1, frw1_...   for browsers, which set no header on a WebSocket
 //   ?token=frw1_...                              for <img> and links; removed from `url`
 //
-// Without a token: TokenGate::Stranger(). `gate` null: everything. Errors: those of
-// TokenGate::Admit().
-[[nodiscard]] Result<Access> AccessOf(const WebRequest& request, const TokenGate* gate, bool local,
-                                      Url* url);
+// `shielded`: nobody on the network can read the request. Without a token: TokenGate::Stranger().
+// `gate` null: everything. Errors: those of TokenGate::Admit().
+[[nodiscard]] Result<Access> AccessOf(const WebRequest& request, const TokenGate* gate,
+                                      bool shielded, Url* url);
 
 // 401 for a request without a valid token.
 [[nodiscard]] ApiReply NeedsToken(std::string_view why);

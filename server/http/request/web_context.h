@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <functional>
 #include <map>
 #include <memory>
@@ -9,6 +10,7 @@
 #include <utility>
 
 #include "server/config/http_config.h"
+#include "server/core/host_rates.h"
 #include "server/core/metrics.h"
 #include "server/http/request/api_types.h"
 #include "server/http/request/page_files.h"
@@ -23,6 +25,11 @@ namespace furrow::server {
 // Answers the JSON routes, /metrics, /healthz and /readyz. Called on the hub's thread.
 using AnswerApi = std::function<ApiReply(const ApiRequest& request, Hub& hub, Time now)>;
 
+// Requests over http.requests_per_second are answered after this time: even an answer from memory
+// costs processor time that weights need. They are not refused, because a supervisor's probe must
+// get its answer.
+inline constexpr auto kThrottlePause = std::chrono::milliseconds(100);
+
 // The state that all connections of the web server share. It outlives the connections. The web
 // thread uses it; other threads only read `connections` and `viewers`.
 struct WebContext {
@@ -36,7 +43,9 @@ struct WebContext {
   const TokenGate* gate = nullptr;   // null: everybody may do everything
   const TlsIdentity* tls = nullptr;  // null or not enabled: plain HTTP
   std::shared_ptr<RequestBudget> budget =
-      std::make_shared<RequestBudget>(config.api_share);    // of API requests
+      std::make_shared<RequestBudget>(config.api_share);  // of API requests
+  // Of requests that are answered at once.
+  HostRates pace{static_cast<std::uint32_t>(config.requests_per_second)};
   std::map<std::string, std::pair<Time, ApiReply>> probes;  // the last replies, by path
   std::atomic<int> connections = 0;
   std::atomic<int> viewers = 0;  // WebSockets and picture streams
