@@ -105,6 +105,7 @@ class Daemon {
   [[nodiscard]] bool confines() const { return options_.confine && config_.security.confine; }
   void MakeHub();
   void SetKeys(protocol::secure::KeyRing keys);
+  Status CheckListener(const ServiceManager::Listener& listener);
   Status StartOsc();
   Status StartWeb();
   void Announce() const;
@@ -140,6 +141,7 @@ class Daemon {
   std::unique_ptr<Api> api_;
   std::unique_ptr<HttpServer> http_;
   bool render_is_confined_ = false;  // used by the render thread
+  bool on_network_ = false;          // a socket of the service manager is
   bool draining_ = false;
   Time drain_deadline_{0};
 };
@@ -240,12 +242,29 @@ void Daemon::MakeHub() {
   hub_ = std::make_unique<Hub>(std::move(parts));
 }
 
+// The configuration does not know where the sockets of the service manager listen, and an open
+// daemon must not be on the network without anybody having said so.
+Status Daemon::CheckListener(const ServiceManager::Listener& listener) {
+  if (IsLoopback(listener.address)) return {};
+  on_network_ = true;
+  if (gate_.required() || config_.open) return {};
+  return Status(StatusCode::kUnavailable,
+                "a socket of the service manager listens on " + listener.address +
+                    ", where everybody could publish and change settings",
+                "", "set --security required, or --open");
+}
+
 Status Daemon::Listen() {
   MakeHub();
   // ValidateConfig() has checked the address, so this does not throw.
   const auto address = asio::ip::make_address(config_.bind);
   tcp_ = std::make_unique<TcpServer>(io_, config_.limits, hub_.get(), metrics_, &tls_);
-  FURROW_RETURN_IF_ERROR(tcp_->Open({address, config_.tcp}));
+  const auto& listeners = options_.listeners;
+  for (const auto& listener : {listeners.tcp, listeners.http}) {
+    if (listener) FURROW_RETURN_IF_ERROR(CheckListener(*listener));
+  }
+  FURROW_RETURN_IF_ERROR(listeners.tcp ? tcp_->Adopt(*listeners.tcp)
+                                       : tcp_->Open({address, config_.tcp}));
   udp_ = std::make_unique<UdpPort>(io_, config_.threads, config_.limits, hub_.get(), metrics_,
                                    recorder_.get(), &secure_, gate_.required());
   FURROW_RETURN_IF_ERROR(udp_->Open({address, config_.udp}));
@@ -321,12 +340,13 @@ Status Daemon::StartWeb() {
   if (recorder_ != nullptr) {
     parts.recording_is_paused = [this] { return recorder_->is_paused(); };
   }
-  parts.open_to_network = ListensToNetwork(config_) && !gate_.required();
+  parts.open_to_network = (ListensToNetwork(config_) || on_network_) && !gate_.required();
   parts.gate = &gate_;
   api_ = std::make_unique<Api>(std::move(parts));
   auto started = HttpServer::Start(
       {.config = config_.http,
        .bind = config_.bind,
+       .listener = options_.listeners.http,
        .character = render_ != nullptr ? assets_.web_package : std::filesystem::path(),
        .post_to_hub =
            [this](std::function<void(Hub&, Time)> task) {
@@ -352,7 +372,7 @@ Status Daemon::StartWeb() {
 
 void Daemon::Announce() const {
   Ready ready;
-  ready.tcp = tcp_->port();
+  ready.tcp = tcp_->address().port;
   ready.udp = udp_->port();
   ready.render = render_ != nullptr;
   ready.vmc = mocap_.vmc_port();
@@ -360,17 +380,18 @@ void Daemon::Announce() const {
   // IPv6 addresses need brackets, as in a URL.
   const std::string host =
       (config_.bind.find(':') == std::string::npos ? config_.bind : "[" + config_.bind + "]") + ":";
-  std::string line = "furrowd ready tcp=" + host + std::to_string(ready.tcp) + " udp=" + host +
+  std::string line = "furrowd ready tcp=" + HostPortText(tcp_->address()) + " udp=" + host +
                      std::to_string(ready.udp) + " render=" + (ready.render ? "on" : "off");
   if (ready.vmc) line += " vmc=" + host + std::to_string(*ready.vmc);
   if (ready.livelink_face) line += " livelink_face=" + host + std::to_string(*ready.livelink_face);
   if (http_) {
-    ready.http = http_->port();
-    line += " http=" + host + std::to_string(*ready.http);
+    ready.http = http_->address().port;
+    line += " http=" + HostPortText(http_->address());
   }
   std::printf("%s\n", line.c_str());
   // Scripts wait for this line, and a pipe is buffered.
   std::fflush(stdout);
+  if (options_.manager != nullptr) options_.manager->Ready(line);
   if (options_.on_ready) options_.on_ready(ready);
 }
 
@@ -451,10 +472,14 @@ void Daemon::EverySecond(StatusLine* status_line) {
   if (render_) render_->Watch(now);
   if (auto keys = keys_file_.ReadIfChanged()) SetKeys(*std::move(keys));
   tls_.ReadIfChanged();
-  if (config_.verbose) {
+  if (!config_.verbose && options_.manager == nullptr) return;
+  std::string line;
+  {
     const Hub::ExclusiveLock lock(*hub_, 0);
-    spdlog::info("{}", status_line->Next(hub_->num_subjects(), hub_->num_subscriptions(), now));
+    line = status_line->Next(hub_->num_subjects(), hub_->num_subscriptions(), now);
   }
+  if (config_.verbose) spdlog::info("{}", line);
+  if (options_.manager != nullptr && !draining_) options_.manager->Alive(line);
 }
 
 asio::awaitable<void> Daemon::PlayLoop() {
@@ -478,6 +503,7 @@ void Daemon::RequestDrain() {
 // loop.
 asio::awaitable<void> Daemon::Drain() {
   spdlog::info("shutting down");
+  if (options_.manager != nullptr) options_.manager->Stopping();
   drain_deadline_ = ReadClock() + FromSeconds(config_.limits.drain_seconds);
   // While it completes its last picture, messages leave. Nobody receives pictures any more.
   if (render_) render_->Stop();

@@ -9,6 +9,7 @@
 #include "server/config/config.h"
 #include "server/core/exit_code.h"
 #include "server/core/metrics.h"
+#include "server/core/service_manager.h"
 
 namespace furrow::server {
 
@@ -28,8 +29,10 @@ struct RunOptions {
   bool handle_signals = false;  // shut down on SIGTERM and SIGINT
   bool confine = false;         // the process is the daemon's own: SecurityConfig::confine applies
   std::function<void(const Ready&)>
-      on_ready;                // called on the calling thread once the daemon serves
-  Metrics* metrics = nullptr;  // used instead of the daemon's own; optional
+      on_ready;                         // called on the calling thread once the daemon serves
+  Metrics* metrics = nullptr;           // used instead of the daemon's own; optional
+  ServiceManager* manager = nullptr;    // hears how the daemon is; optional
+  ServiceManager::Listeners listeners;  // used instead of the configured addresses
 };
 
 // Runs a daemon: loads its files, listens, prints 'furrowd ready ...' on stdout, serves until it is

@@ -22,5 +22,8 @@ int main(int argc, char** argv) {
   furrow::server::RunOptions options;
   options.handle_signals = true;
   options.confine = true;
+  furrow::server::ServiceManager manager;
+  if (furrow::server::ServiceManager::IsPresent()) options.manager = &manager;
+  options.listeners = furrow::server::ServiceManager::TakeListeners();
   return static_cast<int>(furrow::server::Run(*line.config, options));
 }

@@ -126,6 +126,7 @@ struct HttpServer::Impl {
   }
 
   Status Listen(const std::string& bind, std::uint16_t port);
+  Status Adopt(const ServiceManager::Listener& listener);
   net::awaitable<void> Accept();
   void Admit(tcp::socket socket, const std::string& host);
   net::awaitable<void> WaitForPlace(tcp::socket socket, std::string host, Lobby::Stay stay);
@@ -140,7 +141,7 @@ struct HttpServer::Impl {
   Lobby lobby;  // of newcomers that wait for a place
   std::shared_ptr<net::io_context> loop = std::make_shared<net::io_context>(1);
   tcp::acceptor acceptor{*loop};
-  std::uint16_t port = 0;
+  HostPort address;
   std::thread thread;
 };
 
@@ -161,7 +162,18 @@ Status HttpServer::Impl::Listen(const std::string& bind, std::uint16_t wanted) {
                   "http " + bind + " port " + std::to_string(wanted),
                   "set another port with --http, or use --no-http");
   }
-  port = acceptor.local_endpoint().port();
+  address = {bind, acceptor.local_endpoint().port()};
+  return {};
+}
+
+Status HttpServer::Impl::Adopt(const ServiceManager::Listener& listener) {
+  beast::error_code error;
+  acceptor.assign(listener.is_v6 ? tcp::v6() : tcp::v4(), listener.socket, error);
+  if (error) {
+    return Status(StatusCode::kIo,
+                  "cannot use the socket 'http' of the service manager: " + error.message());
+  }
+  address = {listener.address, acceptor.local_endpoint().port()};
   return {};
 }
 
@@ -305,11 +317,13 @@ void HttpServer::Impl::Run() {
 Result<std::unique_ptr<HttpServer>> HttpServer::Start(Parts parts) {
   const std::string bind = parts.bind;
   const std::optional<std::uint16_t> asked = parts.config.port;
+  const std::optional<ServiceManager::Listener> listener = parts.listener;
   auto impl = std::make_unique<Impl>(std::move(parts));
-  Status status = impl->Listen(bind, asked.value_or(HttpConfig::kDefaultPort));
+  Status status = listener ? impl->Adopt(*listener)
+                           : impl->Listen(bind, asked.value_or(HttpConfig::kDefaultPort));
   // Only the default port may be replaced. A port that the user asked for is an error if it is
   // taken.
-  if (!status.ok() && !asked) {
+  if (!status.ok() && !asked && !listener) {
     spdlog::warn("{}: {}; using any free port", status.where(), status.what());
     status = impl->Listen(bind, 0);
   }
@@ -332,7 +346,7 @@ HttpServer::~HttpServer() {
   impl_->thread.join();
 }
 
-std::uint16_t HttpServer::port() const { return impl_->port; }
+const HostPort& HttpServer::address() const { return impl_->address; }
 int HttpServer::connections() const { return impl_->context.connections; }
 int HttpServer::viewers() const { return impl_->context.viewers; }
 

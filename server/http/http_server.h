@@ -4,10 +4,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "base/status.h"
 #include "server/config/http_config.h"
+#include "server/core/network_address.h"
+#include "server/core/service_manager.h"
 #include "server/http/request/web_context.h"
 
 namespace furrow::server {
@@ -19,7 +22,8 @@ class HttpServer {
  public:
   struct Parts {
     HttpConfig config;
-    std::string bind;  // numeric address
+    std::string bind;                                  // numeric address
+    std::optional<ServiceManager::Listener> listener;  // used instead of `bind` and the port
     // The character for browsers that draw it themselves, served as /character.glb; empty: none.
     std::filesystem::path character;
     PostToHub post_to_hub;
@@ -37,8 +41,9 @@ class HttpServer {
   HttpServer(const HttpServer&) = delete;
   HttpServer& operator=(const HttpServer&) = delete;
 
-  // The port that it listens on.
-  [[nodiscard]] std::uint16_t port() const;
+  // Where it listens.
+  [[nodiscard]] const HostPort& address() const;
+  [[nodiscard]] std::uint16_t port() const { return address().port; }
   // The open connections, and those of them that are WebSockets or picture streams. Thread-safe.
   [[nodiscard]] int connections() const;
   [[nodiscard]] int viewers() const;

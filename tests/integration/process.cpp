@@ -13,7 +13,27 @@
 
 namespace furrow::testing_net {
 
-Process::Process(std::vector<std::string> command) {
+namespace {
+
+constexpr int kFirstPassed = 3;
+
+// In the child, before the program starts.
+void BecomeService(const Process::Service& service) {
+  if (!service.notify_socket.empty()) ::setenv("NOTIFY_SOCKET", service.notify_socket.c_str(), 1);
+  if (service.sockets.empty()) return;
+  std::vector<int> copies;  // out of the way of the final numbers
+  for (const int each : service.sockets) copies.push_back(::fcntl(each, F_DUPFD_CLOEXEC, 100));
+  for (std::size_t i = 0; i < copies.size(); ++i) {
+    ::dup2(copies[i], kFirstPassed + static_cast<int>(i));
+  }
+  ::setenv("LISTEN_PID", std::to_string(::getpid()).c_str(), 1);
+  ::setenv("LISTEN_FDS", std::to_string(copies.size()).c_str(), 1);
+  ::setenv("LISTEN_FDNAMES", service.names.c_str(), 1);
+}
+
+}  // namespace
+
+Process::Process(std::vector<std::string> command, const Service& service) {
   std::array<int, 2> out{};
   std::array<int, 2> errors{};
   if (::pipe2(out.data(), O_CLOEXEC) != 0 || ::pipe2(errors.data(), O_CLOEXEC) != 0) return;
@@ -24,6 +44,7 @@ Process::Process(std::vector<std::string> command) {
   if (pid_ == 0) {
     ::dup2(out[1], STDOUT_FILENO);
     ::dup2(errors[1], STDERR_FILENO);
+    BecomeService(service);
     ::execv(args[0], args.data());
     ::_exit(127);
   }

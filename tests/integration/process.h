@@ -12,7 +12,13 @@ namespace furrow::testing_net {
 // A child process with pipes for stdout and stderr.
 class Process {
  public:
-  explicit Process(std::vector<std::string> command);
+  // What a service manager passes to a process it starts (sd_listen_fds(3), sd_notify(3)).
+  struct Service {
+    std::string notify_socket;  // path; empty: none
+    std::vector<int> sockets;   // become the descriptors from 3 on
+    std::string names;          // of the sockets, separated by colons
+  };
+  explicit Process(std::vector<std::string> command, const Service& service = {});
   ~Process();  // kills the process if it is running
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;

@@ -81,6 +81,14 @@ TcpServer::TcpServer(asio::io_context& io, const Limits& limits, Hub* hub, Metri
       tls_(tls),
       shares_(static_cast<std::size_t>(limits.max_connections)) {}
 
+Status TcpServer::Adopt(const ServiceManager::Listener& listener) {
+  asio::error_code error;
+  acceptor_.assign(listener.is_v6 ? tcp::v6() : tcp::v4(), listener.socket, error);
+  if (!error) return {};
+  return Status(StatusCode::kUnavailable,
+                "cannot use the socket 'tcp' of the service manager: " + error.message());
+}
+
 Status TcpServer::Open(const tcp::endpoint& endpoint) {
   asio::error_code error;
   acceptor_.open(endpoint.protocol(), error);
@@ -95,9 +103,10 @@ Status TcpServer::Open(const tcp::endpoint& endpoint) {
                 "", "stop the program that uses the port, or set another one with --tcp");
 }
 
-std::uint16_t TcpServer::port() const {
+HostPort TcpServer::address() const {
   asio::error_code error;
-  return acceptor_.local_endpoint(error).port();
+  const tcp::endpoint local = acceptor_.local_endpoint(error);
+  return {local.address().to_string(), local.port()};
 }
 
 void TcpServer::Start() { StartCriticalTask(io_, Accept()); }

@@ -15,6 +15,8 @@
 #include "server/core/limits.h"
 #include "server/core/lobby.h"
 #include "server/core/metrics.h"
+#include "server/core/network_address.h"
+#include "server/core/service_manager.h"
 #include "server/net/tcp/stream_socket.h"
 #include "server/net/tcp/tcp_session.h"
 #include "server/session/hub.h"
@@ -35,8 +37,10 @@ class TcpServer {
 
   // Listens at `endpoint`. Errors: kUnavailable; the message names the address and the port.
   [[nodiscard]] Status Open(const asio::ip::tcp::endpoint& endpoint);
-  // The port that it listens on.
-  [[nodiscard]] std::uint16_t port() const;
+  // Listens at a socket of the service manager instead. Errors: kUnavailable.
+  [[nodiscard]] Status Adopt(const ServiceManager::Listener& listener);
+  // Where it listens.
+  [[nodiscard]] HostPort address() const;
   // Starts accepting.
   void Start();
 

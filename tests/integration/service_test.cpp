@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// furrowd under a service manager, which this test plays.
+#include <csignal>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <sys/time.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include "process.h"
+#include "raw_client.h"
+#include "tests/temporary_folder.h"
+#include "web_client.h"
+
+namespace furrow::testing_net {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+std::vector<std::string> Command(std::vector<std::string> more = {}) {
+  std::vector<std::string> command = {FURROW_BINARY_DIR "/bin/furrowd",
+                                      "--rig",
+                                      FURROW_SOURCE_DIR "/rig/rigs/arkit.json",
+                                      "--no-render",
+                                      "--tcp",
+                                      "0",
+                                      "--udp",
+                                      "0",
+                                      "--http",
+                                      "0"};
+  command.insert(command.end(), more.begin(), more.end());
+  return command;
+}
+
+// The socket that receives what the daemon says.
+class NotifySocket {
+ public:
+  NotifySocket() : socket_(socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    path().copy(address.sun_path, sizeof(address.sun_path) - 1);
+    EXPECT_EQ(bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)), 0);
+    const timeval deadline{20, 0};
+    setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &deadline, sizeof(deadline));
+  }
+  ~NotifySocket() { close(socket_); }
+  NotifySocket(const NotifySocket&) = delete;
+  NotifySocket& operator=(const NotifySocket&) = delete;
+
+  [[nodiscard]] std::string path() const { return (folder_.path() / "notify").string(); }
+  // The next message; empty after 20 s without one.
+  [[nodiscard]] std::string Next() const {
+    char text[4096];
+    const ssize_t size = recv(socket_, text, sizeof(text), 0);
+    return size > 0 ? std::string(text, static_cast<std::size_t>(size)) : std::string();
+  }
+
+ private:
+  TemporaryFolder folder_;
+  int socket_;
+};
+
+// A TCP socket that listens on a free port.
+class Listener {
+ public:
+  explicit Listener(std::uint32_t address)
+      : socket_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_in any{};
+    any.sin_family = AF_INET;
+    any.sin_addr.s_addr = htonl(address);
+    EXPECT_EQ(bind(socket_, reinterpret_cast<const sockaddr*>(&any), sizeof(any)), 0);
+    EXPECT_EQ(listen(socket_, 16), 0);
+  }
+  ~Listener() { close(socket_); }
+  Listener(const Listener&) = delete;
+  Listener& operator=(const Listener&) = delete;
+
+  [[nodiscard]] int socket_number() const { return socket_; }
+  [[nodiscard]] std::uint16_t port() const {
+    sockaddr_in address{};
+    socklen_t size = sizeof(address);
+    getsockname(socket_, reinterpret_cast<sockaddr*>(&address), &size);
+    return ntohs(address.sin_port);
+  }
+
+ private:
+  int socket_;
+};
+
+TEST(Service, TheManagerHearsThatTheDaemonServesLivesAndEnds) {
+  const NotifySocket manager;
+  Process daemon(Command(), {.notify_socket = manager.path()});
+  const std::string ready = manager.Next();
+  EXPECT_THAT(ready, StartsWith("READY=1\n"));
+  EXPECT_THAT(ready, HasSubstr("STATUS=furrowd ready tcp=127.0.0.1:"));
+  EXPECT_THAT(manager.Next(), StartsWith("WATCHDOG=1"));
+  daemon.Signal(SIGTERM);
+  std::string last = manager.Next();
+  while (last.starts_with("WATCHDOG=1")) last = manager.Next();
+  EXPECT_THAT(last, StartsWith("STOPPING=1"));
+  EXPECT_EQ(daemon.Wait(), 0);
+}
+
+// The clients have connected before the daemon runs.
+TEST(Service, ServesTheSocketsOfTheManager) {
+  const Listener tcp(INADDR_LOOPBACK);
+  const Listener http(INADDR_LOOPBACK);
+  TcpClient client(tcp.port());
+  client.Send(protocol::Hello{"test", 0});
+  WebClient web(http.port());
+  Process daemon(Command(),
+                 {.sockets = {http.socket_number(), tcp.socket_number()}, .names = "http:tcp"});
+  EXPECT_TRUE(client.Await<protocol::Welcome>().has_value());
+  EXPECT_EQ(web.Ask("GET", "/healthz").status, 200);
+  const std::string ready = daemon.ReadLine().value_or("");
+  EXPECT_THAT(ready, HasSubstr("tcp=127.0.0.1:" + std::to_string(tcp.port()) + " "));
+  EXPECT_THAT(ready, HasSubstr("http=127.0.0.1:" + std::to_string(http.port())));
+}
+
+TEST(Service, AnOpenDaemonTakesNoSocketOnTheNetwork) {
+  const Listener tcp(INADDR_ANY);
+  Process daemon(Command(), {.sockets = {tcp.socket_number()}, .names = "tcp"});
+  EXPECT_EQ(daemon.Wait(), 1);
+  EXPECT_THAT(daemon.ReadErrors(), HasSubstr("listens on 0.0.0.0"));
+  Process open(Command({"--open"}), {.sockets = {tcp.socket_number()}, .names = "tcp"});
+  EXPECT_THAT(open.ReadLine().value_or(""), HasSubstr("tcp=0.0.0.0:"));
+}
+
+TEST(Service, OtherSocketsAreNamedAndClosed) {
+  const Listener other(INADDR_LOOPBACK);
+  Process daemon(Command(), {.sockets = {other.socket_number()}, .names = "telnet"});
+  EXPECT_THAT(daemon.ReadLine().value_or(""), StartsWith("furrowd ready"));
+  daemon.Signal(SIGTERM);
+  EXPECT_EQ(daemon.Wait(), 0);
+  EXPECT_THAT(daemon.ReadErrors(), HasSubstr("passes socket 'telnet', which is not used"));
+}
+
+}  // namespace
+}  // namespace furrow::testing_net
