@@ -17,7 +17,7 @@ import { DebugStrip } from './panels/strip';
 import { Timeline } from './panels/timeline';
 import { ViewBar } from './panels/view_bar';
 import { AppState } from './state/app_state';
-import { isCompact } from './state/layout';
+import { isAcross, isCompact } from './state/layout';
 import { setToken } from './state/token';
 import { WeightHistory } from './state/weight_history';
 import { text } from './text';
@@ -137,6 +137,7 @@ export class App {
       dialog, this.help, this.token.element, this.toasts.element);
     parent.replaceChildren(this.root);
     isCompact.bind((compact) => this.arrange(compact));
+    isAcross.bind((across) => this.header.element.classList.toggle('on-picture', across));
     if (this.state.panel.value !== '') this.tabs.choose(this.state.panel.value);
     this.state.panel.bind((panel) => {
       this.root.classList.toggle('no-panel', panel === '');
@@ -368,6 +369,7 @@ export class App {
       wanted: this.state.subject.value,
       hasPicture: picture !== null,
       pictureMs: picture?.ageMs ?? null,
+      isChanging: this.viewer.isChanging,
       isAtRest: this.isAtRest(),
       isPaused: subject !== '' && this.timeline.pausedSubject === subject,
     });

@@ -9,7 +9,7 @@ import { clockText, positionAfter } from '../src/panels/timeline';
 
 const GOOD: Situation = {
   link: 'open', everConnected: true, notDrawn: '', renders: true, wanted: '', hasPicture: true,
-  silentMs: 100, drawing: null, pictureMs: 40, isAtRest: false, isPaused: false,
+  silentMs: 100, drawing: null, pictureMs: 40, isChanging: false, isAtRest: false, isPaused: false,
   subjects: [{ name: 'demo', state: 'live', age_ms: 8 }],
 };
 
@@ -35,6 +35,7 @@ test('each condition has its own sentence', () => {
     [{ drawing: { done: 3, passes: 12 } }, 'live', /Live/],
     [{ isPaused: true, pictureMs: 9000 }, 'paused', /Paused: demo/],
     [{ pictureMs: 3000 }, 'stale', /3 s old/],
+    [{ pictureMs: 3000, isChanging: true, drawing: { done: 1, passes: 9 } }, 'stale', /3 s old/],
     [{ pictureMs: 3000, isAtRest: true }, 'live', /Live/],
   ];
   for (const [part, state, text] of cases) {
@@ -42,6 +43,8 @@ test('each condition has its own sentence', () => {
     assert.equal(condition.state, state, condition.text);
     assert.match(condition.text, text);
   }
+  assert.match(assess({ ...GOOD, pictureMs: 3000, isChanging: true, drawing: { done: 1, passes: 9 } }).advice, /step 2 of 9/);
+  assert.match(assess({ ...GOOD, pictureMs: 3000, drawing: { done: 1, passes: 9 } }).advice, /Fast/);
   assert.equal(assess({ ...GOOD, hasPicture: false, drawing: { done: 3, passes: 12 } }).progress, 0.25);
   assert.deepEqual((['live', 'paused', 'stale', 'lost'] as const).map(isDimmed), [false, false, true, true]);
   assert.equal(assess({ ...GOOD, notDrawn: 'no EGL device' }).advice, 'no EGL device');

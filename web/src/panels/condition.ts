@@ -33,6 +33,8 @@ export interface Situation {
   hasPicture: boolean;
   /** Time since the pose on the screen reached the daemon; null: unknown. */
   pictureMs: number | null;
+  /** The picture does not show the last change of the page yet. */
+  isChanging: boolean;
   /** The subject has not moved since the pose on the screen. */
   isAtRest: boolean;
   /** The subject is a recording that the daemon plays, and it is paused. */
@@ -81,7 +83,10 @@ export function assess(situation: Situation): Condition {
   if (!situation.hasPicture) return firstPicture(situation.drawing);
   if (situation.isPaused) return condition('paused', t.paused(subject.name));
   if (!situation.isAtRest && situation.pictureMs !== null && situation.pictureMs > STALE_MS) {
-    return condition('stale', t.stale(seconds(situation.pictureMs)), t.staleAdvice);
+    const old = t.stale(seconds(situation.pictureMs));
+    const { drawing } = situation;
+    if (!situation.isChanging || drawing === null) return condition('stale', old, t.staleAdvice);
+    return condition('stale', old, t.changing(drawing.done, drawing.passes));
   }
   return condition('live', t.live(subject.name));
 }

@@ -20,16 +20,21 @@ export class Notice {
 
   /** `openSources`: shows how to connect a phone or a tracker. */
   constructor(toasts: Toasts, openSources: () => void) {
-    const copy = button(text.stage.copy, () => {
-      navigator.clipboard?.writeText(this.command.textContent!).then(
-        () => toasts.say(text.stage.copied), () => getSelection()?.selectAllChildren(this.command));
-      if (navigator.clipboard === undefined) getSelection()?.selectAllChildren(this.command);
-    });
+    const copy = button(text.stage.copy, () => void this.copy(toasts));
     this.help = h('div', { class: 'notice-help' },
       h('div', { class: 'row command' }, this.command, copy), button(text.stage.sources, openSources, { class: 'primary' }));
     this.element = h('div', { class: 'notice' }, this.badge,
       h('div', { class: 'card' }, this.title, this.progress, this.advice, this.help));
     this.show({ state: 'loading', text: text.condition.connecting, advice: '', progress: null }, false);
+  }
+
+  private async copy(toasts: Toasts): Promise<void> {
+    try {
+      await navigator.clipboard.writeText(this.command.textContent!);
+      toasts.say(text.stage.copied);
+    } catch {
+      getSelection()?.selectAllChildren(this.command); // browsers forbid copying except on https and localhost
+    }
   }
 
   /** `hasPicture`: there is a picture behind the card, perhaps an old one. */

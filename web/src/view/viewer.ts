@@ -99,6 +99,11 @@ export class Viewer {
     if (isSoftware) this.scale.begin(clientWidth * clientHeight * devicePixelRatio ** 2, SOFTWARE_PIXELS);
   }
 
+  /** True until the picture shows the last change of the page. */
+  get isChanging(): boolean {
+    return !this.drawing.active.value && this.main?.pending.value === true;
+  }
+
   /** What is on the screen, whoever drew it; null: nothing. */
   canvas(): HTMLCanvasElement | null {
     if (this.drawing.active.value) return this.drawing.canvas();
