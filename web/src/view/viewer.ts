@@ -29,6 +29,8 @@ const WIPES: Record<Exclude<Wipe, 'none'>, WipeSides> = {
 
 /** Pixels that a renderer on the processor draws within a fraction of a second. */
 const SOFTWARE_PIXELS = 130_000;
+/** Nobody minds waiting this long for a full picture. */
+const LONG_MS = 500;
 
 export class Viewer {
   readonly stage = new Stage();
@@ -41,8 +43,11 @@ export class Viewer {
   private main: PictureStream | null = null;
   private other: PictureStream | null = null;
   private accepted: Values = new Map();
-  /** A change of a resting picture is drawn small first, because a full picture can take seconds. */
+  /** A change of a resting picture is drawn small first where a full picture takes long. */
   private isHasty = false;
+  /** Time that the last full picture took, and when the one under way was requested. */
+  private fullMs = 0;
+  private fullAskedMs: number | null = null;
 
   constructor(
     private readonly connection: Connection,
@@ -54,7 +59,7 @@ export class Viewer {
     const { settings, camera, subject, wipe, comparing, sharpness } = state;
     for (const signal of [settings.changed, camera, wipe, comparing]) {
       (signal as Signal<unknown>).watch(() => {
-        this.isHasty = this.stats.resting;
+        this.isHasty = this.stats.resting && this.fullMs > LONG_MS;
         this.refresh();
       });
     }
@@ -169,7 +174,9 @@ export class Viewer {
       this.main = this.open(request, 'right');
       this.main.pending.bind((busy) => this.stage.setBusy(busy));
     } else {
+      const former = this.main.view;
       this.main.update(request);
+      if (this.main.view !== former) this.fullAskedMs = this.pixelScale() === 1 ? performance.now() : null;
     }
     this.refreshOther(values);
   }
@@ -204,6 +211,10 @@ export class Viewer {
     this.stats.add(picture, this.connection.nowUs(), this.connection.clock.offsetUs());
     this.notDrawn.set('');
     const isShown = !this.main!.pending.value;
+    if (isShown && this.fullAskedMs !== null) {
+      this.fullMs = performance.now() - this.fullAskedMs;
+      this.fullAskedMs = null;
+    }
     if (isShown) this.accepted = this.state.settings.overrides;
     // A slow machine draws motion and changes smaller; the first picture at rest may still be small.
     const main = this.main!;
