@@ -72,6 +72,7 @@ class GlRenderer final : public Renderer {
 
   void SetObserver(FrameGraphObserver* observer) override { observer_ = observer; }
   int in_flight() const override { return read_back_.in_flight(); }
+  bool is_software() const override { return context_->is_software(); }
   std::string description() const override { return context_->description(); }
   Result<Camera> Preset(std::string_view name) const override {
     for (const auto& [preset, camera] : presets_) {

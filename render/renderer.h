@@ -44,8 +44,8 @@ class Renderer {
   // Starts to draw a picture. The request's spans may be freed when the call returns. Errors:
   // kInvalidArgument and kNonFinite (`where` is the field, "others[3].model"), kLimit (more than
   // kMaxSubjects, more than the vertex buffers hold, or more than
-  // RendererOptions::max_texture_bytes), kUnavailable (two pictures are in flight,
-  // or the context is lost; create a new renderer), kInternal (a shader).
+  // RendererOptions::max_texture_bytes), kUnavailable (two pictures are in flight, the observer
+  // ended the frame, or the context is lost; create a new renderer), kInternal (a shader).
   [[nodiscard]] virtual Status Submit(const FrameRequest& request) = 0;
   // Returns the oldest picture in flight if it is ready; otherwise an image of width 0. `wait`:
   // blocks until it is ready. Error: kUnavailable (the context is lost; create a new renderer).
@@ -61,6 +61,8 @@ class Renderer {
   // until it is removed with null or the renderer ends.
   virtual void SetObserver(FrameGraphObserver* observer) = 0;
 
+  // True if the driver draws on the processor.
+  [[nodiscard]] virtual bool is_software() const { return false; }
   // Vendor, renderer and version of the OpenGL context, for the log.
   [[nodiscard]] virtual std::string description() const = 0;
 

@@ -16,6 +16,7 @@
 #include "render/settings/settings_file.h"
 #include "rig/poses_in_axes.h"
 #include "rig/rig_file.h"
+#include "server/session/subscriptions/view_settings.h"
 #include "wrinkle/rig/rig_blend_shapes.h"
 
 namespace furrow::server {
@@ -86,6 +87,7 @@ Result<Assets> LoadAssets(const Config& config) {
   auto shapes = LoadShapeMaps(config.shape_map);
   if (!shapes.ok()) return shapes.status().At("--shape-map");
   assets.shape_matcher = *std::move(shapes);
+  assets.settings = DefaultSettings();
   if (!config.render_settings.empty()) {
     Status loaded = render::LoadSettings(config.render_settings, &assets.settings);
     if (!loaded.ok()) return loaded.At("--render-settings");
@@ -129,6 +131,7 @@ Result<Assets> LoadAssets(const Config& config) {
       return assets;
     }
   }
+  spdlog::info("loading the character {}", glb.string());
   auto loaded = character::LoadCharacter(glb, chosen_rig, poses);
   FURROW_RETURN_IF_ERROR(loaded);
   assets.skeletons.SetCharacterRoles(loaded->skeleton, loaded->roles);

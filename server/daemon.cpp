@@ -28,6 +28,7 @@
 #include "server/assets.h"
 #include "server/config/osc_profile_file.h"
 #include "server/core/confine.h"
+#include "server/core/network_address.h"
 #include "server/core/status_line.h"
 #include "server/core/within_memory.h"
 #include "server/daemon_files.h"
@@ -42,6 +43,7 @@
 #include "server/net/udp/secure_sessions.h"
 #include "server/net/udp/udp_port.h"
 #include "server/osc/osc_targets.h"
+#include "server/pipeline/preparation.h"
 #include "server/pipeline/render_thread.h"
 #include "server/playback/player.h"
 #include "server/recording/recorder.h"
@@ -106,6 +108,7 @@ class Daemon {
   void MakeHub();
   void SetKeys(protocol::secure::KeyRing keys);
   Status CheckListener(const ServiceManager::Listener& listener);
+  void WarnAboutLoopback() const;
   Status StartOsc();
   Status StartWeb();
   void Announce() const;
@@ -115,6 +118,7 @@ class Daemon {
   asio::awaitable<void> PlayLoop();
   asio::awaitable<void> Drain();
   void RequestDrain();
+  void PrepareRendering();
   void StopRendering();
 
   const Config& config_;
@@ -148,6 +152,7 @@ class Daemon {
 
 Status Daemon::StartRendering() {
   if (!config_.render || assets_.character == nullptr) return {};
+  spdlog::info("starting the renderer");
   auto started = RenderThread::Start(
       &assets_.character->skeleton,
       [this] {
@@ -273,8 +278,18 @@ Status Daemon::Listen() {
                                       .livelink_face = config_.livelink_face,
                                       .allow = config_.mocap_allow},
                                      io_, hub_.get(), metrics_));
+  WarnAboutLoopback();
   FURROW_RETURN_IF_ERROR(StartOsc());
   return StartWeb();
+}
+
+// The port is useless for phones otherwise, and nothing on them says why.
+void Daemon::WarnAboutLoopback() const {
+  if (!mocap_.livelink_face_port() || !IsLoopback(config_.bind)) return;
+  spdlog::warn(
+      "--livelink-face listens on {} only, so no phone can reach it: --bind 0.0.0.0 --open opens "
+      "the daemon to the network (docs/SECURITY.md)",
+      config_.bind);
 }
 
 Status Daemon::LoadKeys() {
@@ -342,6 +357,10 @@ Status Daemon::StartWeb() {
   }
   parts.open_to_network = (ListensToNetwork(config_) || on_network_) && !gate_.required();
   parts.gate = &gate_;
+  parts.sources = {.bind = config_.bind,
+                   .allow = config_.mocap_allow,
+                   .livelink_face = [this](Time now) { return mocap_.ReportLiveLinkFace(now); },
+                   .vmc = [this](Time now) { return mocap_.ReportVmc(now); }};
   api_ = std::make_unique<Api>(std::move(parts));
   auto started = HttpServer::Start(
       {.config = config_.http,
@@ -395,6 +414,14 @@ void Daemon::Announce() const {
   if (options_.on_ready) options_.on_ready(ready);
 }
 
+// While nobody watches yet, so that the first viewer does not wait for the shader compiler.
+void Daemon::PrepareRendering() {
+  const auto camera = render_->Preset("face");
+  if (!camera.ok()) return;
+  auto jobs = Preparations(*assets_.character, *assets_.rig, assets_.settings, *camera);
+  if (jobs.ok()) render_->Prepare(*std::move(jobs));
+}
+
 void Daemon::Serve() {
   tcp_->Start();
   udp_->Start();
@@ -414,6 +441,8 @@ void Daemon::Serve() {
                                    [this] { asio::post(io_, [this] { RequestDrain(); }); });
   // After all parts have started: a client that reads the line may connect at once.
   Announce();
+  // A program that embeds the daemon has its own uses for the processor.
+  if (render_ && options_.confine) PrepareRendering();
   RunLoop(io_, metrics_);
   http_.reset();  // both post to io_, so they end first
   StopRendering();

@@ -6,6 +6,7 @@
 
 #include "base/asset_path.h"
 #include "base/data_dir.h"
+#include "server/machine/cache_folder.h"
 
 namespace furrow::server {
 namespace {
@@ -50,6 +51,7 @@ Confinement FilesOf(const Config& config) {
                  FromEnvironment("XDG_RUNTIME_DIR"),
                  FromEnvironment("MESA_SHADER_CACHE_DIR"),
                  FromEnvironment("__GL_SHADER_DISK_CACHE_PATH"),
+                 CacheFolder(),
                  config.record.folder};
   const fs::path home = FromEnvironment("HOME");
   const fs::path cache = FromEnvironment("XDG_CACHE_HOME");

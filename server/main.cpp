@@ -1,12 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
 #include <string>
 #include <vector>
+
+#include <spdlog/spdlog.h>
 
 #include "server/config/config.h"
 #include "server/config/log.h"
 #include "server/daemon.h"
+#include "server/machine/cache_folder.h"
+
+namespace {
+
+// The environment belongs to the process, so this is not the business of Run().
+void PrepareCaches() {
+  const std::filesystem::path folder = furrow::server::CacheFolder();
+  if (folder.empty()) return;
+  if (const furrow::Status status = furrow::server::PrepareCacheFolder(folder); !status.ok()) {
+    spdlog::warn("shaders are compiled at every start: {}", status.ToString());
+    return;
+  }
+  furrow::server::LetDriversCache(folder);
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   using furrow::server::ExitCode;
@@ -19,6 +38,7 @@ int main(int argc, char** argv) {
   // The readers of the log and of the ready line may close their pipes. The daemon continues.
   std::signal(SIGPIPE, SIG_IGN);
   const furrow::server::Log log(line.config->log_json);
+  if (line.config->render) PrepareCaches();
   furrow::server::RunOptions options;
   options.handle_signals = true;
   options.confine = true;

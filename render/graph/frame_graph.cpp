@@ -205,8 +205,15 @@ Status FrameGraph::Run(const Pass& pass, FrameGraphObserver* observer) const {
 
 Status FrameGraph::Execute(TransientPool* pool, FrameGraphObserver* observer) {
   Status status;
+  if (observer != nullptr) {
+    observer->BeginFrame(static_cast<int>(std::ranges::count_if(passes_, &Pass::needed)));
+  }
   for (int index = 0; index < static_cast<int>(passes_.size()) && status.ok(); ++index) {
     if (!passes_[index].needed) continue;
+    if (observer != nullptr && !observer->Continues()) {
+      status = Status(StatusCode::kUnavailable, "the frame was abandoned", passes_[index].name);
+      break;
+    }
     // Textures are acquired as late and released as early as possible, so that passes of one frame
     // share memory.
     for (Texture& texture : textures_) {

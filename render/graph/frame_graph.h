@@ -50,6 +50,10 @@ class FrameGraphObserver {
     TextureId texture = 0;  // holds the pass's output until AfterPass() returns
   };
   virtual ~FrameGraphObserver() = default;
+  // The frame begins, with this number of passes.
+  virtual void BeginFrame(int /*passes*/) {}
+  // Asked before every pass. False: nobody wants the frame any more, so it ends here.
+  [[nodiscard]] virtual bool Continues() { return true; }
   virtual void BeforePass(std::string_view pass) = 0;
   virtual void AfterPass(std::string_view pass, const std::vector<Written>& written) = 0;
 };
@@ -162,7 +166,8 @@ class FrameGraph {
   // texture that no pass wrote, or a version that was overwritten).
   [[nodiscard]] Status Compile();
   // Runs the passes that were not culled, in order. Stops at the first failure and returns it.
-  // Requires Compile(). `observer` may be null.
+  // Requires Compile(). `observer` may be null. Error besides those of the passes: kUnavailable if
+  // the observer ends the frame.
   [[nodiscard]] Status Execute(TransientPool* pool, FrameGraphObserver* observer = nullptr);
 
   // The most bytes of transient textures that Execute() needs at a time. Requires Compile().

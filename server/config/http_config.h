@@ -15,9 +15,9 @@ struct HttpConfig {
   bool enabled = true;
   // Absent: kDefaultPort, or any free port if that is in use. 0: any free port.
   std::optional<std::uint16_t> port;
-  std::vector<std::string> allow_hosts;  // names accepted in the Host field
-  std::vector<std::string>
-      allow_origins;          // foreign pages that may connect: "https://stage.example"
+  std::vector<std::string> allow_hosts;    // names accepted in the Host field
+  std::vector<std::string> allow_origins;  // foreign pages that may connect and show /embed in a
+                                           // frame: "https://stage.example"
   int max_connections = 256;  // at a time, [1, 1'000'000]; one host gets half
   // Part of the time of the main network thread that API requests of one host may use, (0, 1];
   // 1: no limit.

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
@@ -68,10 +69,17 @@ net::awaitable<ApiReply> AskHub(WebContext* context, std::string host, ApiReques
   co_return ErrorReply(503, "unavailable", "", "the daemon did not answer within 10 s");
 }
 
+// The origins whose pages may show the file at `path` in a frame. A reference, because GCC 12
+// destroys temporaries of a co_await expression twice.
+const std::vector<std::string>& FramesOf(std::string_view path, const HttpConfig& config) {
+  static const std::vector<std::string> kNobody;
+  return path == kEmbedPath ? config.allow_origins : kNobody;
+}
+
 // Sends a file of the page from memory, compressed if the client accepts it. False: the connection
-// must close.
+// must close. `frames`: the origins whose pages may show the file in a frame.
 net::awaitable<bool> WritePageFile(WebStream& stream, const WebRequest& request,
-                                   const PageFile& file) {
+                                   const PageFile& file, const std::vector<std::string>& frames) {
   const bool gzip = !file.gzip.empty() &&
                     request[http::field::accept_encoding].find("gzip") != beast::string_view::npos;
   const bool known = request[http::field::if_none_match] == file.etag;
@@ -79,6 +87,7 @@ net::awaitable<bool> WritePageFile(WebStream& stream, const WebRequest& request,
   http::response<http::span_body<const char>> response(
       known ? http::status::not_modified : http::status::ok, request.version());
   SetCommonHeaders(file.type, &response);
+  AllowFrames(frames, &response);
   response.keep_alive(request.keep_alive());
   response.set(http::field::etag, file.etag);
   // Caches must keep the two encodings apart (RFC 9110 section 12.5.5).
@@ -267,7 +276,8 @@ class HttpSession {
   net::awaitable<bool> AnswerPlainRequest(Url url) {
     const PageFile* file = context_->page.Find(url.path);
     if (file != nullptr && IsRead(request_)) {
-      co_return co_await WritePageFile(stream_, request_, *file);
+      co_return co_await WritePageFile(stream_, request_, *file,
+                                       FramesOf(url.path, context_->config));
     }
     if (file != nullptr || IsStream(url.path)) {
       ApiReply reply = MethodReply(ToView(request_.method_string()), url.path, "GET, HEAD");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/net/mocap_input.h"
 
+#include <chrono>
 #include <utility>
 
 #include <spdlog/spdlog.h>
@@ -12,6 +13,12 @@
 namespace furrow::server {
 
 using asio::ip::udp;
+
+namespace {
+
+constexpr Time kSecond = std::chrono::seconds(1);
+
+}  // namespace
 
 MocapInput::MocapInput(asio::io_context& io, std::string flag,
                        std::unique_ptr<protocol::mocap::MocapAdapter> adapter, SenderGate gate,
@@ -66,8 +73,13 @@ asio::awaitable<void> MocapInput::Read() {
 
 void MocapInput::OnDatagram(std::span<const std::uint8_t> bytes, const asio::ip::address& sender,
                             Time now) {
+  ++packets_;
   // Before parsing, so that rejected senders cost nothing and cannot change the adapter's state.
-  if (!gate_.Admits(sender, now)) return Reject(sender);
+  if (!gate_.Admits(sender, now)) {
+    ++rejected_;
+    last_rejected_ = {sender, now};
+    return Reject(sender);
+  }
   // Half a frame of the former sender must not mix with the first of the new one.
   if (gate_.IsSuccessor(sender)) adapter_->Forget();
   // Only valid datagrams let their sender hold the port: a port scan must not lock a tracker out.
@@ -75,13 +87,41 @@ void MocapInput::OnDatagram(std::span<const std::uint8_t> bytes, const asio::ip:
   adapter_->Push(bytes, ToMicroseconds(now),
                  [&](const auto& frame) { hub_->OnMocapFrame(peer_, frame, now); });
   const bool is_valid = adapter_->counters().malformed == malformed;
+  if (is_valid) CountUnderstood(sender, now);
   if (!is_valid) {
+    last_malformed_ = {sender, now};
     gate_.Discard(sender);
   } else if (gate_.Hold(sender, now)) {
     spdlog::info("{} now accepts {}", flag_, sender.to_string());
     has_logged_rejected_ = false;
   }
   UpdateMetrics();
+}
+
+void MocapInput::CountUnderstood(const asio::ip::address& sender, Time now) {
+  last_ = {sender, now};
+  if (now - second_ >= kSecond) {
+    rate_hz_ = now - second_ < 2 * kSecond ? in_second_ : 0.0;
+    second_ = now;
+    in_second_ = 0;
+  }
+  ++in_second_;
+}
+
+MocapReport MocapInput::Report(Time now) const {
+  const auto text = [](const std::optional<Arrival>& arrival) {
+    return arrival ? std::optional(MocapReport::Arrival{arrival->sender.to_string(), arrival->at})
+                   : std::nullopt;
+  };
+  return {.port = port(),
+          .packets = packets_,
+          .malformed = adapter_->counters().malformed,
+          .rejected = rejected_,
+          // Without datagrams, nothing ends the second.
+          .rate_hz = now - second_ >= 2 * kSecond ? 0.0 : rate_hz_,
+          .last = text(last_),
+          .last_malformed = text(last_malformed_),
+          .last_rejected = text(last_rejected_)};
 }
 
 // A rejected sender keeps sending, so it is logged once until the port changes hands.

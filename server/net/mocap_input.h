@@ -4,16 +4,19 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
 #include <asio/awaitable.hpp>
 #include <asio/io_context.hpp>
+#include <asio/ip/address.hpp>
 #include <asio/ip/udp.hpp>
 
 #include "base/status.h"
 #include "protocol/mocap/adapter.h"
 #include "server/core/metrics.h"
+#include "server/net/mocap_report.h"
 #include "server/net/sender_gate.h"
 #include "server/session/hub.h"
 
@@ -34,6 +37,7 @@ class MocapInput {
   // Errors: kUnavailable, naming address and port.
   [[nodiscard]] Status Open(const asio::ip::udp::endpoint& endpoint);
   [[nodiscard]] std::uint16_t port() const;
+  [[nodiscard]] MocapReport Report(Time now) const;
   // Starts reading. Precondition: Open() succeeded.
   void Start();
   // Stops reading and closes the port.
@@ -55,6 +59,7 @@ class MocapInput {
   void OnDatagram(std::span<const std::uint8_t> bytes, const asio::ip::address& sender, Time now);
   void Reject(const asio::ip::address& sender);
   void UpdateMetrics();
+  void CountUnderstood(const asio::ip::address& sender, Time now);
 
   asio::io_context& io_;
   asio::ip::udp::socket socket_;
@@ -64,6 +69,19 @@ class MocapInput {
   bool has_logged_rejected_ = false;  // since the port changed hands
   Hub* const hub_;
   Metrics* const metrics_;
+  // The last datagram of a kind, for Report().
+  struct Arrival {
+    asio::ip::address sender;
+    Time at{0};
+  };
+  std::uint64_t packets_ = 0;
+  std::uint64_t rejected_ = 0;
+  double rate_hz_ = 0.0;
+  Time second_{0};     // when the second that is being counted began
+  int in_second_ = 0;  // understood datagrams in it
+  std::optional<Arrival> last_;
+  std::optional<Arrival> last_malformed_;
+  std::optional<Arrival> last_rejected_;
   NullLink link_;
   PeerId peer_ = 0;
   protocol::mocap::AdapterCounters counted_;  // already added to the metrics

@@ -37,6 +37,13 @@ class MocapInputs {
   // Stops reading and closes the ports.
   void Close();
 
+  // What has arrived at the input; absent if it is off.
+  [[nodiscard]] std::optional<MocapReport> ReportVmc(Time now) const {
+    return ReportOf(vmc_.get(), now);
+  }
+  [[nodiscard]] std::optional<MocapReport> ReportLiveLinkFace(Time now) const {
+    return ReportOf(livelink_face_.get(), now);
+  }
   // The port that the input listens on; absent if it is off.
   [[nodiscard]] std::optional<std::uint16_t> vmc_port() const { return PortOf(vmc_.get()); }
   [[nodiscard]] std::optional<std::uint16_t> livelink_face_port() const {
@@ -46,6 +53,10 @@ class MocapInputs {
  private:
   static std::optional<std::uint16_t> PortOf(const MocapInput* input) {
     return input != nullptr ? std::optional(input->port()) : std::nullopt;
+  }
+
+  static std::optional<MocapReport> ReportOf(const MocapInput* input, Time now) {
+    return input != nullptr ? std::optional(input->Report(now)) : std::nullopt;
   }
 
   std::unique_ptr<MocapInput> vmc_;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -33,11 +34,19 @@ class PictureSource {
   // Requests a picture. A newer job replaces a waiting one of the same subject and spec. May be
   // called from any thread; never waits for rendering.
   virtual void Submit(RenderJob job) = 0;
-  // Cancels a still that waits to be rendered for this subscription. False: there is none, or its
-  // rendering has begun.
+  // Cancels a still of this subscription that waits or is being drawn. False: there is none.
   virtual bool WithdrawStill(std::uint64_t subscription) = 0;
   // Cancels everything that the subscription waits for, because it has ended.
   virtual void Withdraw(std::uint64_t subscription) = 0;
+  // The passes of the picture that is being drawn.
+  struct Drawing {
+    int done = 0;
+    int passes = 0;
+  };
+  // Absent: nothing is being drawn.
+  [[nodiscard]] virtual std::optional<Drawing> drawing() const { return std::nullopt; }
+  // True if pictures are drawn on the processor.
+  [[nodiscard]] virtual bool is_software() const { return false; }
   // True while the renderer does not respond; every request fails.
   [[nodiscard]] virtual bool is_stuck() const { return false; }
   // A camera preset of the character. Errors: kNotFound; the hint lists the presets.

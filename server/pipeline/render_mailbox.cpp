@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iterator>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include "render/passes/picture_cost.h"
@@ -148,10 +149,34 @@ std::pair<std::size_t, std::size_t> RenderMailbox::CountWaiting(std::uint64_t ho
   return {hosts.size(), std::max<std::size_t>(1, viewers.size())};
 }
 
+void RenderMailbox::PutPreparation(RenderJob job, bool first) {
+  const std::lock_guard lock(mutex_);
+  if (closed_) return;
+  preparations_.insert(first ? preparations_.begin() : preparations_.end(), std::move(job));
+  changed_.notify_one();
+}
+
+bool RenderMailbox::IsWanted(const RenderJob& job) const {
+  const std::lock_guard lock(mutex_);
+  if (closed_) return false;
+  if (job.prepares) return jobs_.empty();
+  return std::ranges::any_of(job.tickets, [this](const PictureTicket& ticket) {
+    return taken_.contains(ticket.subscription);
+  });
+}
+
 std::optional<RenderJob> RenderMailbox::Take(bool wait) {
   std::unique_lock lock(mutex_);
-  if (wait) changed_.wait(lock, [this] { return closed_ || !jobs_.empty(); });
-  if (closed_ || jobs_.empty()) return std::nullopt;
+  if (wait) {
+    changed_.wait(lock, [this] { return closed_ || !jobs_.empty() || !preparations_.empty(); });
+  }
+  if (closed_) return std::nullopt;
+  if (jobs_.empty()) {
+    if (!wait || preparations_.empty()) return std::nullopt;
+    RenderJob job = std::move(preparations_.front());
+    preparations_.pop_front();
+    return job;
+  }
   // A still takes longer (more samples), and nothing moves in it, so it can wait, but not for ever:
   // `passed_over_` counts how often stills were passed.
   const auto still = Next(/*still=*/true);
@@ -165,7 +190,7 @@ std::optional<RenderJob> RenderMailbox::Take(bool wait) {
   const double work = job.Work() / static_cast<double>(job.tickets.size());
   for (const PictureTicket& ticket : job.tickets) {
     order_.Serve(ticket.host, ticket.viewer, job.entry, work, hosts, viewers);
-    taken_.insert(ticket.subscription);
+    taken_.emplace(ticket.subscription, ticket.still);
   }
   return job;
 }
@@ -204,7 +229,11 @@ bool RenderMailbox::WithdrawStill(std::uint64_t subscription) {
     if (job->tickets.empty()) jobs_.erase(job);
     return true;
   }
-  return false;
+  const auto [begin, end] = taken_.equal_range(subscription);
+  const auto taken = std::find_if(begin, end, [](const auto& entry) { return entry.second; });
+  if (taken == end) return false;
+  taken_.erase(taken);
+  return true;
 }
 
 std::vector<RenderJob> RenderMailbox::TakeWaiting() {
@@ -219,6 +248,7 @@ void RenderMailbox::Close() {
   const std::lock_guard lock(mutex_);
   closed_ = true;
   jobs_.clear();
+  preparations_.clear();
   // Take() returns without a job, and the render thread ends.
   changed_.notify_all();
 }

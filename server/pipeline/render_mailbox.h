@@ -10,7 +10,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <unordered_set>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -69,6 +69,7 @@ struct RenderJob {
   std::shared_ptr<const Snapshot> snapshot;
   std::vector<PictureTicket> tickets;
   Time moved_at{0};        // when the subject last moved; set if a viewer uses flow control
+  bool prepares = false;   // nobody sees the picture: it compiles what later pictures need
   FairOrder::Entry entry;  // set by the mailbox
 
   // True if at least one ticket wants a still, which is rendered with more samples.
@@ -106,15 +107,22 @@ class RenderMailbox {
   //   in this case is `job` unchanged.
   PutResult Put(RenderJob&& job);
 
+  // Adds a job that prepares later pictures (RenderJob::prepares), before the others of its kind
+  // with `first`. It waits until nothing else does.
+  void PutPreparation(RenderJob job, bool first = false);
+
   // Removes and returns the next job. Moving subjects go before stills, but at most kMaxPassedOver
-  // jobs pass a still. With `wait`, blocks until there is a job or Close() was called. Every job
-  // must be given back by Complete().
+  // jobs pass a still; preparations come last. With `wait`, blocks until there is a job or Close()
+  // was called. Every job with tickets must be given back by Complete().
   [[nodiscard]] std::optional<RenderJob> Take(bool wait);
+  // False: drawing a job of Take() may stop, because all its tickets were withdrawn, because a
+  // picture waits that is more urgent than a preparation, or because the mailbox is closed.
+  [[nodiscard]] bool IsWanted(const RenderJob& job) const;
   // Call it once for each job of Take(), before its picture is encoded or it fails. Removes the
   // tickets that were withdrawn in the meantime and returns how many these are.
   std::size_t Complete(RenderJob* job);
 
-  // Cancels a waiting still. False: there is none, or its rendering has begun.
+  // Cancels a still that waits or is being drawn. False: there is none.
   bool WithdrawStill(std::uint64_t subscription);
   // Cancels whatever the subscription waits for, because it has ended: jobs that nobody else wants
   // are not drawn, and if drawing has begun, not encoded. Returns how many jobs that saves.
@@ -138,7 +146,9 @@ class RenderMailbox {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   Jobs jobs_;
-  std::unordered_multiset<std::uint64_t> taken_;  // subscriptions of the tickets being drawn
+  std::deque<RenderJob> preparations_;
+  // The tickets being drawn: their subscriptions, and whether they are stills.
+  std::unordered_multimap<std::uint64_t, bool> taken_;
   FairOrder order_;
   int passed_over_ = 0;  // consecutive jobs that passed a still
   bool closed_ = false;

@@ -69,11 +69,41 @@ RenderThread::RenderThread(const wrinkle::Skeleton* skeleton, Factory make_rende
       metrics_(metrics),
       deliver_(std::move(deliver)),
       mailbox_(kMaxWaitingJobs),
+      progress_(&mailbox_, &steps_),
       drawn_(skeleton) {}
 
 RenderThread::~RenderThread() {
   mailbox_.Close();
   if (thread_.joinable()) thread_.join();
+}
+
+void RenderThread::Progress::Begin(const RenderJob* job) {
+  job_ = job;
+  abandoned_ = false;
+  done_ = 0;
+}
+
+void RenderThread::Progress::End() {
+  job_ = nullptr;
+  passes_ = 0;
+}
+
+bool RenderThread::Progress::Continues() {
+  abandoned_ = job_ != nullptr && !mailbox_->IsWanted(*job_);
+  return !abandoned_;
+}
+
+std::optional<PictureSource::Drawing> RenderThread::Progress::drawing() const {
+  const int passes = passes_;
+  if (passes == 0) return std::nullopt;
+  return Drawing{std::min<int>(done_, passes), passes};
+}
+
+void RenderThread::Prepare(std::vector<RenderJob> jobs) {
+  for (RenderJob& job : jobs) {
+    job.prepares = true;
+    mailbox_.PutPreparation(std::move(job));
+  }
 }
 
 void RenderThread::Submit(RenderJob job) {
@@ -109,6 +139,7 @@ Status RenderThread::CreateRenderer() {
   auto renderer = OrOutOfMemory(metrics_, make_renderer_);
   FURROW_RETURN_IF_ERROR(renderer);
   renderer_ = *std::move(renderer);
+  renderer_->SetObserver(&progress_);
   return {};
 }
 
@@ -118,6 +149,7 @@ void RenderThread::Run(std::promise<Status> started) {
   const Status status = CreateRenderer();
   if (status.ok()) {
     description_ = renderer_->description();
+    is_software_ = renderer_->is_software();
     for (const std::string_view name : render::CameraPresetNames()) {
       // Preset() serves network threads from this copy; they must not call the renderer.
       if (auto camera = renderer_->Preset(name); camera.ok()) presets_.emplace_back(name, *camera);
@@ -151,10 +183,13 @@ void RenderThread::Draw(RenderJob job) {
   if (renderer_ == nullptr && !Revive()) return Fail(std::move(job));
   // In flight before it is drawn, so that nothing can fail between the two.
   in_flight_.push_back(std::move(job));
+  progress_.Begin(&in_flight_.back());
   const Status status = OrOutOfMemory(metrics_, [this] { return Render(in_flight_.back()); });
+  progress_.End();
   if (status.ok()) return;
   job = std::move(in_flight_.back());
   in_flight_.pop_back();
+  if (progress_.abandoned()) return Abandon(std::move(job));
   Fail(std::move(job));
   // Other errors concern the job (its size, its pose), not the context.
   if (status.code() == StatusCode::kUnavailable || status.code() == StatusCode::kInternal) {
@@ -203,10 +238,11 @@ void RenderThread::Collect(bool wait) {
   if (image->width == 0) return;
   // A finished picture, not a created context, proves that rendering works again.
   next_skip_ = 0;
-  metrics_->Add(Counter::kPicturesRendered);
   // Read-backs finish in the order of Submit(), so the oldest job belongs to this image.
   RenderJob job = std::move(in_flight_.front());
   in_flight_.pop_front();
+  if (job.prepares) return;
+  metrics_->Add(Counter::kPicturesRendered);
   Finish(*image, std::move(job));
 }
 
@@ -227,8 +263,17 @@ void RenderThread::Watch(Time now) {
   for (RenderJob& job : mailbox_.TakeWaiting()) Refuse(std::move(job));
 }
 
+// The frame of a job has ended early. What it has compiled remains.
+void RenderThread::Abandon(RenderJob job) {
+  if (job.prepares) return mailbox_.PutPreparation(std::move(job), /*first=*/true);
+  (void)mailbox_.Complete(&job);
+  // A viewer may have come back between the last pass and now.
+  if (!job.tickets.empty()) Refuse(std::move(job));
+}
+
 // A job that was taken from the mailbox cannot be drawn.
 void RenderThread::Fail(RenderJob job) {
+  if (job.prepares) return;
   (void)mailbox_.Complete(&job);
   Refuse(std::move(job));
 }

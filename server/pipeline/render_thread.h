@@ -8,6 +8,7 @@
 #include <functional>
 #include <future>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -15,6 +16,7 @@
 #include <vector>
 
 #include "base/status.h"
+#include "render/graph/frame_graph.h"
 #include "render/renderer.h"
 #include "server/core/metrics.h"
 #include "server/core/time.h"
@@ -34,6 +36,10 @@ namespace furrow::server {
 // noticeable once they stop moving.
 //
 // Lack of memory costs the pictures in flight and the context, not the daemon.
+//
+// While no picture is wanted, it draws the pictures of Prepare(), so that the programs of the first
+// pictures are compiled before somebody waits for them. A picture that nobody wants any more is
+// abandoned after the pass that is being drawn.
 //
 // A lost context is created again for the next job. While that fails, jobs are dropped and counted,
 // twice as many before each new attempt (up to kMaxJobsSkipped), so that a missing GPU does not
@@ -61,11 +67,15 @@ class RenderThread : public PictureSource {
   RenderThread(const RenderThread&) = delete;
   RenderThread& operator=(const RenderThread&) = delete;
 
+  // Draws these jobs in this order while nobody wants a picture, and drops the results.
+  void Prepare(std::vector<RenderJob> jobs);
   void Submit(RenderJob job) override;
   bool WithdrawStill(std::uint64_t subscription) override {
     return mailbox_.WithdrawStill(subscription);
   }
   void Withdraw(std::uint64_t subscription) override;
+  [[nodiscard]] std::optional<Drawing> drawing() const override { return progress_.drawing(); }
+  [[nodiscard]] bool is_software() const override { return is_software_; }
   [[nodiscard]] bool is_stuck() const override { return stuck_; }
   // Draws nothing more; the picture that is being drawn is completed. Does not wait for it.
   void Stop() { mailbox_.Close(); }
@@ -80,6 +90,35 @@ class RenderThread : public PictureSource {
   [[nodiscard]] const std::string& description() const { return description_; }
 
  private:
+  // Counts the passes of the frame, for drawing(), and ends it if nobody wants it.
+  class Progress : public render::FrameGraphObserver {
+   public:
+    // `steps`: steps_, which each pass moves on: a long frame is not a renderer that hangs.
+    Progress(const RenderMailbox* mailbox, std::atomic<std::uint64_t>* steps)
+        : mailbox_(mailbox), steps_(steps) {}
+    void Begin(const RenderJob* job);
+    void End();
+    // True if the last frame was ended, because nobody wanted it.
+    [[nodiscard]] bool abandoned() const { return abandoned_; }
+    [[nodiscard]] std::optional<Drawing> drawing() const;
+
+    void BeginFrame(int passes) override { passes_ = passes; }
+    [[nodiscard]] bool Continues() override;
+    void BeforePass(std::string_view) override {}
+    void AfterPass(std::string_view, const std::vector<Written>&) override {
+      ++done_;
+      *steps_ += 2;  // it stays odd
+    }
+
+   private:
+    const RenderMailbox* const mailbox_;
+    std::atomic<std::uint64_t>* const steps_;
+    const RenderJob* job_ = nullptr;
+    bool abandoned_ = false;
+    std::atomic<int> done_ = 0;
+    std::atomic<int> passes_ = 0;  // 0: no frame is being drawn
+  };
+
   RenderThread(const wrinkle::Skeleton* skeleton, Factory make_renderer, Metrics* metrics,
                OnPicture deliver);
 
@@ -94,6 +133,7 @@ class RenderThread : public PictureSource {
   void Finish(const render::Image& image, RenderJob job);
   void Encode(const render::Image& image, const RenderJob& job, const Encoding& encoding,
               std::vector<PictureTicket> tickets);
+  void Abandon(RenderJob job);
   void Fail(RenderJob job);
   void Refuse(RenderJob job);
   void Deliver(FinishedPicture picture);
@@ -105,6 +145,8 @@ class RenderThread : public PictureSource {
   RenderMailbox mailbox_;
   std::vector<std::pair<std::string, render::Camera>> presets_;  // written before Start() returns
   std::string description_;
+  bool is_software_ = false;  // written before Start() returns
+  Progress progress_;
 
   std::atomic<std::uint64_t> steps_ = 0;  // odd while the renderer works
   std::atomic<bool> stuck_ = false;

@@ -19,16 +19,37 @@ export function launch(options = []) {
   });
 }
 
-/** Opens an isolated page. `errors` collects the errors on its console. */
-export async function openPage(browser, address, options = {}) {
-  const context = await browser.newContext({ viewport: { width: 1000, height: 640 }, acceptDownloads: true, ...options });
+/** The size and the touch screen of a phone. */
+export const PHONE = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true, deviceScaleFactor: 2 };
+
+/**
+ * Opens an isolated page. `errors` collects the errors on its console. `prepare` gets the page before it loads anything.
+ */
+export async function openPage(browser, address, options = {}, prepare = () => {}) {
+  const context = await browser.newContext({ viewport: { width: 1000, height: 640 }, colorScheme: 'dark', acceptDownloads: true, ...options });
   const page = await context.newPage();
   page.setDefaultTimeout(PATIENCE_MS);
   page.errors = [];
   page.on('console', (message) => message.type() === 'error' && page.errors.push(message.text()));
   page.on('pageerror', (error) => page.errors.push(String(error)));
+  await prepare(page);
   await page.goto(address);
   return page;
+}
+
+/** The kind of a wire message, "FIMG", and the sequence in its envelope (protocol/STANDARD.md section 2). */
+export function envelopeOf(message) {
+  return { kind: message.toString('latin1', 36, 40), sequence: message.readUInt32LE(16) };
+}
+
+/** Holds back the daemon's messages for which `passes` is false. The rest reaches the page as it is. */
+export async function filterMessages(page, passes) {
+  await page.routeWebSocket(/\/ws$/, (socket) => {
+    const server = socket.connectToServer();
+    socket.onMessage((message) => server.send(message));
+    server.onMessage((message) => passes(message) && socket.send(message));
+    server.onClose((code, reason) => socket.close({ code: code === 1006 ? 1001 : code, reason }));
+  });
 }
 
 /** Waits until the picture shows the last change. */

@@ -2,16 +2,29 @@
 // The programs under test: furrowd on ports of its own, and furrow beside it.
 import { spawn } from 'node:child_process';
 import { once } from 'node:events';
-import { join } from 'node:path';
+import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { dirname, join } from 'node:path';
 
 const BIN = process.env.FURROW_BIN;
 export const SHARE = process.env.FURROW_SHARE;
 export const recording = (name) => join(SHARE, 'recordings', `${name}.bvh`);
 
+/** Without a GPU, pictures of skin take several times longer, and most tests are about other things. */
+const PLAIN = join(mkdtempSync(join(tmpdir(), 'furrow-browser-')), 'plain.toml');
+writeFileSync(PLAIN, 'shading = "diffuse"\n');
+process.on('exit', () => rmSync(dirname(PLAIN), { recursive: true, force: true }));
+
 /** Starts a furrowd. `ports` of a former daemon make it reuse the same addresses. */
 export class Daemon {
-  static async start(options = [], ports = { tcp: 0, udp: 0, http: 0 }) {
-    const listen = Object.entries(ports).flatMap(([name, port]) => [`--${name}`, String(port)]);
+  static start(options = [], ports = undefined) {
+    return Daemon.startAsShipped(['--render-settings', PLAIN, ...options], ports);
+  }
+
+  /** With the look that viewers see first. */
+  static async startAsShipped(options = [], ports = { tcp: 0, udp: 0, http: 0 }) {
+    const listen = Object.entries(ports).filter(([name]) => ['tcp', 'udp', 'http'].includes(name))
+      .flatMap(([name, port]) => [`--${name}`, String(port)]);
     const child = spawn(join(BIN, 'furrowd'), [...listen, ...options], { stdio: ['ignore', 'pipe', 'pipe'] });
     const daemon = new Daemon(child);
     child.stderr.on('data', (text) => (daemon.log += text));
@@ -24,8 +37,9 @@ export class Daemon {
       });
       child.on('exit', (code) => reject(new Error(`furrowd ended with ${code}:\n${daemon.log}`)));
     });
-    for (const name of ['tcp', 'udp', 'http']) {
+    for (const name of ['tcp', 'udp', 'http', 'livelink_face']) {
       const port = new RegExp(`${name}=\\S*?:(\\d+)`).exec(ready)?.[1];
+      if (port === undefined && name === 'livelink_face') continue;
       if (port === undefined) throw new Error(`no ${name} port in: ${ready}`);
       daemon.ports[name] = Number(port);
     }

@@ -10,7 +10,7 @@ import { changedShare, difference, eventually, launch, openPage, shown, still } 
 import { Daemon, recording, SHARE } from './daemon.mjs';
 
 const FROWN_S = 6.5;
-const SMALL = { viewport: { width: 640, height: 480 } }; // large pictures take seconds in software
+const SMALL = { viewport: { width: 910, height: 510 } }; // large pictures take seconds in software
 let daemon;
 let browser;
 
@@ -95,7 +95,7 @@ test('the browser draws skin shading by the page\'s settings', async (context) =
 
 test('a change of the settings changes the picture that the browser draws', async () => {
   await daemon.hold(FROWN_S);
-  const page = await openPage(browser, `${daemon.address}#drawn=browser&shading=skin`, { viewport: { width: 900, height: 480 } });
+  const page = await openPage(browser, `${daemon.address}#drawn=browser&shading=skin`, { viewport: { width: 1100, height: 510 } });
   await page.keyboard.press('g');
   await drawnBy(page, 'browser');
   const usual = await resting(page);

@@ -4,7 +4,8 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { test } from 'node:test';
-import { changedShare, difference, eventually, keep, openPage, pixels, shown, still, swipe } from './browser.mjs';
+import { PNG } from 'pngjs';
+import { changedShare, difference, envelopeOf, eventually, filterMessages, keep, openPage, pixels, shown, still, swipe } from './browser.mjs';
 import { browser, daemon } from './played.mjs';
 
 const AXE = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
@@ -121,6 +122,69 @@ test('keys, wheel and framings move the camera', async () => {
   await closePage(page);
 });
 
+test('keys work after a click on a button, a list or a slider', async () => {
+  await daemon.hold(SMILE_S);
+  const page = await openPage(browser, daemon.address);
+  await still(page);
+  let plays = false;
+  for (const act of [
+    () => page.click('[data-preset=eyes]'),
+    () => page.selectOption('select[aria-label=Sharpness]', 'sharp'),
+    () => page.locator('input[aria-label="Position in the recording"]').click(),
+    () => page.click('#tab-wrinkles'),
+  ]) {
+    // By mouse, as people do; selectOption() alone has no pointer.
+    await page.locator('select[aria-label=Sharpness]').dispatchEvent('pointerdown');
+    await act();
+    await page.keyboard.press('Space');
+    plays = !plays;
+    await eventually(`playing: ${plays}`, async () => (await daemon.get('api/playback')).playing === plays);
+    await eventually('the page knows', async () => await page.locator('.play').textContent() === (plays ? 'Pause' : 'Play'));
+  }
+  // People who use the keyboard alone keep their place, and press the button again.
+  await daemon.hold(SMILE_S);
+  await page.focus('[data-preset=face]');
+  await page.keyboard.press('Space');
+  assert.equal(await page.evaluate(() => document.activeElement.dataset.preset), 'face');
+  assert.equal((await daemon.get('api/playback')).playing, false);
+  await closePage(page);
+});
+
+test('the page says what it draws, and does not leave the old picture without a word', async () => {
+  await daemon.hold(SMILE_S);
+  let holds = false;
+  const page = await openPage(browser, `${daemon.address}#camera=eyes`, {}, (opened) =>
+    filterMessages(opened, (message) => !(holds && envelopeOf(message).kind === 'FIMG')));
+  await still(page);
+  holds = true;
+  await page.click('[data-preset=face]');
+  await page.locator('.busy', { hasText: 'Drawing Face' }).waitFor();
+  await keep(page, 'drawing-face');
+  await closePage(page);
+});
+
+test('the picture can be saved, recorded and shown alone', async () => {
+  await daemon.hold(SMILE_S);
+  const page = await openPage(browser, daemon.address);
+  await still(page);
+  const [file] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Save the picture as PNG' }).click()]);
+  assert.match(file.suggestedFilename(), /^furrow-\d{4}-\d\d-\d\d-\d{6}\.png$/);
+  assert.equal(difference(PNG.sync.read(readFileSync(await file.path())), await pixels(page)), 0);
+  await daemon.patch('api/playback', { playing: true });
+  await page.keyboard.press('r');
+  await page.locator('.record-clock', { hasText: '0:01' }).waitFor();
+  const [video] = await Promise.all([page.waitForEvent('download'), page.keyboard.press('r')]);
+  assert.match(video.suggestedFilename(), /\.webm$/);
+  const bytes = readFileSync(await video.path());
+  assert.equal(bytes.toString('hex', 0, 4), '1a45dfa3', 'the magic of WebM');
+  assert(bytes.length > 5000, `${bytes.length} bytes`);
+  await page.keyboard.press('f');
+  await eventually('fullscreen', () => page.evaluate(() => document.fullscreenElement !== null));
+  await page.keyboard.press('f');
+  await eventually('a window', () => page.evaluate(() => document.fullscreenElement === null));
+  await closePage(page);
+});
+
 test('settings survive a reload', async () => {
   await daemon.hold(SMILE_S);
   const page = await openPage(browser, `${daemon.address}#camera=mouth&wrinkles=off&wrinkle_strength=2&panel=session`);
@@ -207,6 +271,7 @@ for (const [name, options] of [
   ['1280x720', { viewport: { width: 1280, height: 720 } }],
   ['tablet-upright', { viewport: { width: 820, height: 1180 }, hasTouch: true }],
   ['tablet-across', { viewport: { width: 1180, height: 820 }, deviceScaleFactor: 2, hasTouch: true }],
+  ['light', { viewport: { width: 1024, height: 768 }, colorScheme: 'light', reducedMotion: 'reduce' }],
 ]) {
   test(`axe finds no serious fault: ${name}`, async () => {
     await daemon.hold(SMILE_S);

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Streams a recording over real sockets: weights equal `furrow solve`, pictures arrive and change."""
+import contextlib
 import pathlib
 import shutil
 import subprocess
@@ -83,7 +84,10 @@ class StreamTest(unittest.TestCase):
     @unittest.skipUnless(shutil.which("oiiotool"), "oiiotool is not installed")
     def test_live_pictures_equal_those_of_render(self):
         look = ["--size", "96x96", "--camera", "three_quarter"]
-        with tempfile.TemporaryDirectory() as folder, Daemon() as daemon:
+        with tempfile.TemporaryDirectory() as folder, contextlib.ExitStack() as stack:
+            settings = pathlib.Path(folder, "look.toml")
+            settings.write_text('shading = "diffuse"\n')  # skin has other samples per pixel live
+            daemon = stack.enter_context(Daemon("--render-settings", settings))
             live, drawn = pathlib.Path(folder, "live"), pathlib.Path(folder, "drawn")
             watcher = spawn("frames", daemon.tcp, "--subject", "ada", "--wait", "--out", live, "--format", "png",
                             "--rate", "2", *look)

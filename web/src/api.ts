@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Typed access to the daemon's JSON (docs/HTTP-API.md). Rejected requests throw an ApiError.
 import { tokenHeaders } from './state/token';
+import { text } from './text';
 import type { CameraPreset } from './view/camera';
 
 export interface SettingInfo {
@@ -31,8 +32,16 @@ export interface SubjectInfo {
   buffer_ms: number;
   jitter_ms: number;
   age_ms: number;
+  /** Time since the subject last moved visibly; null: unknown, because nobody watches. */
+  moved_ms: number | null;
   /** A neutral pose was captured. */
   neutral: boolean;
+}
+
+/** The passes of the picture that the renderer draws now. The first one compiles shaders. */
+export interface Drawing {
+  done: number;
+  passes: number;
 }
 
 export interface DaemonStatus {
@@ -41,6 +50,10 @@ export interface DaemonStatus {
   uptime_s: number;
   render: boolean;
   renderer: string;
+  /** The renderer draws on the processor. */
+  software: boolean;
+  /** Null: nothing is being drawn. */
+  drawing: Drawing | null;
   viewers: number;
   subjects: number;
   pictures_rendered: number;
@@ -50,6 +63,42 @@ export interface DaemonStatus {
   draining: boolean;
   /** Everybody on the network may connect, without a token. */
   open: boolean;
+}
+
+/** A port for phones and trackers. */
+export interface MocapInputInfo {
+  name: 'livelink_face' | 'vmc';
+  /** The option of furrowd that opens it. */
+  option: string;
+  /** Null: it is off. */
+  port: number | null;
+  usual_port: number;
+  packets: number;
+  malformed: number;
+  /** Packets of senders that may not send now. */
+  rejected: number;
+  /** Understood packets in the last second. */
+  rate_hz: number;
+  /** The address of the last sender whose packet was understood; empty: none. */
+  sender: string;
+  /** Times since the last packet of each kind; null: none. */
+  age_ms: number | null;
+  malformed_sender: string;
+  malformed_age_ms: number | null;
+  rejected_sender: string;
+  rejected_age_ms: number | null;
+}
+
+export interface SourcesInfo {
+  /** The address that the daemon listens on. */
+  bind: string;
+  /** Only this computer can reach that address. */
+  loopback: boolean;
+  /** Addresses of the daemon's computer in its networks. */
+  addresses: string[];
+  /** The only senders that may send; empty: any. */
+  allow: string[];
+  inputs: MocapInputInfo[];
 }
 
 export interface RigInfo {
@@ -136,9 +185,12 @@ async function errorOf(response: Response): Promise<ApiError> {
     const { error } = await response.json();
     return new ApiError(response.status, error.field, error.message, error.hint);
   } catch {
-    return new ApiError(response.status, '', `The daemon replied with HTTP status ${response.status}`);
+    return new ApiError(response.status, '', text.api.status(response.status));
   }
 }
+
+/** A daemon that is stuck must not keep the page waiting for ever. */
+const PATIENCE_MS = 10_000;
 
 async function ask(path: string, method = 'GET', body?: unknown): Promise<Response> {
   let response: Response;
@@ -146,6 +198,7 @@ async function ask(path: string, method = 'GET', body?: unknown): Promise<Respon
     response = await fetch(path, {
       method,
       cache: 'no-store',
+      signal: AbortSignal.timeout(PATIENCE_MS),
       headers: {
         ...tokenHeaders(),
         ...(body === undefined ? {} : { 'Content-Type': 'application/json' }),
@@ -153,7 +206,7 @@ async function ask(path: string, method = 'GET', body?: unknown): Promise<Respon
       ...(body === undefined ? {} : { body: JSON.stringify(body) }),
     });
   } catch {
-    throw new ApiError(0, '', 'The daemon does not answer');
+    throw new ApiError(0, '', text.api.silent);
   }
   if (!response.ok) throw await errorOf(response);
   return response;
@@ -169,6 +222,7 @@ function query(values: Record<string, string>): string {
 
 export const api = {
   status: () => call<DaemonStatus>('api/status'),
+  sources: () => call<SourcesInfo>('api/sources'),
   subjects: async () => (await call<{ subjects: SubjectInfo[] }>('api/subjects')).subjects,
   settings: async () => (await call<{ settings: SettingInfo[] }>('api/settings')).settings,
   patchSettings: async (values: Record<string, string>) =>

@@ -2,31 +2,44 @@
 // Assembles the page and feeds it with the state of the daemon.
 import { api, ApiError, type DaemonStatus, type SubjectInfo, wordsOf } from './api';
 import { CapturePanel } from './panels/capture';
-import { assess } from './panels/condition';
+import { assess, isDimmed, type PictureState } from './panels/condition';
 import { CurvesPanel } from './panels/curves';
 import { ExplainPanel } from './panels/explain';
 import { FaceMap } from './panels/face_map';
 import { Header } from './panels/header';
 import { SettingsMenu } from './panels/menu';
+import { Notice } from './panels/notice';
+import { PictureActions } from './panels/picture_actions';
 import { SessionPanel } from './panels/session';
 import { SettingsText } from './panels/settings_text';
+import { SourcesPanel } from './panels/sources';
 import { DebugStrip } from './panels/strip';
 import { Timeline } from './panels/timeline';
 import { ViewBar } from './panels/view_bar';
 import { AppState } from './state/app_state';
+import { isAcross, isCompact } from './state/layout';
 import { setToken } from './state/token';
 import { WeightHistory } from './state/weight_history';
+import { text } from './text';
 import { h } from './ui/dom';
+import { returnFocus } from './ui/focus';
 import { type Command, helpDialog, installKeys } from './ui/keys';
 import { Tabs } from './ui/tabs';
 import { Toasts } from './ui/toast';
 import { TokenDialog } from './ui/token_dialog';
 import { CameraInput } from './view/camera_input';
+import { limitOf } from './view/limit';
 import { Viewer } from './view/viewer';
 import { Connection } from './wire/connection';
 import { WeightStream } from './wire/weight_stream';
 
 const POLL_MS = 1000;
+/** Ages count up while they are read. */
+const SHOW_MS = 250;
+/** While the first picture is prepared. */
+const LOADING_POLL_MS = 250;
+/** Clocks of the daemon and the page, and the time of a request. */
+const REST_TOLERANCE_MS = 300;
 /** While the browser draws: polls until the page notices that another viewer changed the daemon's settings. */
 const POLLS_PER_SETTINGS = 3;
 
@@ -48,6 +61,12 @@ export class App {
   private readonly menu: SettingsMenu;
   private readonly timeline: Timeline;
   private readonly tabs: Tabs;
+  private readonly notice: Notice;
+  private readonly actions: PictureActions;
+  private readonly viewHolder = h('div', { class: 'view-holder' });
+  private readonly curvesHolder = h('div', { class: 'curves-holder' });
+  private readonly dock = h('footer', { class: 'dock', 'aria-label': text.app.dock });
+  private readonly main = h('main', { 'aria-label': text.app.main });
   private readonly token = new TokenDialog(setToken);
   private toldWhy = '';
   private readonly help: HTMLDialogElement;
@@ -58,6 +77,9 @@ export class App {
   private everConnected = false;
   private began = false;
   private numPolls = 0;
+  private pictureState: PictureState = 'loading';
+  /** When the daemon last said how its subjects are. */
+  private askedMs = 0;
 
   constructor(parent: HTMLElement) {
     const { state, toasts } = this;
@@ -67,11 +89,13 @@ export class App {
     this.explain = new ExplainPanel(subject, () => this.faceMap.setChosen(''));
     this.faceMap = new FaceMap(this.history, (region, weights) => this.explainRegion(region, weights));
     this.weights = new WeightStream(this.connection, state.subject.value, this.history, () => this.onWeights());
-    this.viewer = new Viewer(this.connection, state, (text) => toasts.say(text, 'error'));
+    this.viewer = new Viewer(this.connection, state, (words) => toasts.say(words, 'error'), () => this.onPicture());
+    this.actions = new PictureActions(() => this.viewer.canvas(), this.root, toasts);
+    this.notice = new Notice(toasts, () => this.tabs.choose('sources'));
     this.capture = new CapturePanel(subject, toasts, () => void this.readRig());
     this.session = new SessionPanel((name) => state.subject.set(name));
-    const text = new SettingsText(state, toasts);
-    this.menu = new SettingsMenu(state, toasts, () => text.open());
+    const settingsText = new SettingsText(state, toasts);
+    this.menu = new SettingsMenu(state, toasts, () => settingsText.open());
     this.timeline = new Timeline(toasts);
     this.strip = new DebugStrip(this.connection, state);
     this.viewBar = new ViewBar(state, this.strip.adder, this.viewer.drawing);
@@ -80,29 +104,57 @@ export class App {
     this.header = new Header(state, {
       help: () => this.help.showModal(), panel: () => this.togglePanel(), dock: () => this.toggleDock(),
     });
+    const wrinkles = h('div', { class: 'wrinkles' }, this.faceMap.map, this.explain.element, this.faceMap.list);
     this.tabs = new Tabs([
-      { id: 'look', label: 'Look', content: this.menu.element },
-      { id: 'wrinkles', label: 'Wrinkles', content: h('div', { class: 'wrinkles' }, this.faceMap.map, this.explain.element, this.faceMap.list) },
-      { id: 'capture', label: 'Capture', content: this.capture.element },
-      { id: 'session', label: 'Session', content: this.session.element },
-    ], (id) => this.began && state.panel.set(id));
-    this.buildLayout(parent, text.element);
+      { id: 'view', label: text.tabs.view, icon: 'view', content: this.viewHolder, isForSheets: true },
+      { id: 'look', label: text.tabs.look, icon: 'look', content: this.menu.element },
+      { id: 'wrinkles', label: text.tabs.wrinkles, icon: 'wrinkles', content: wrinkles },
+      { id: 'curves', label: text.tabs.curves, icon: 'curves', content: this.curvesHolder, isForSheets: true },
+      { id: 'capture', label: text.tabs.capture, icon: 'capture', content: this.capture.element },
+      { id: 'sources', label: text.tabs.sources, icon: 'sources', content: new SourcesPanel().element },
+      { id: 'session', label: text.tabs.session, icon: 'session', content: this.session.element },
+    ], (id) => state.panel.set(id));
+    this.buildLayout(parent, settingsText.element);
     installKeys(commands);
     this.connectSignals();
     void this.poll();
+    // Not with the poll, which waits for a daemon that may be stuck.
+    setInterval(() => this.showNow(), SHOW_MS);
+  }
+
+  private showNow(): void {
+    this.showFigures(performance.now() / 1000);
+    this.showCondition();
   }
 
   private buildLayout(parent: HTMLElement, dialog: HTMLElement): void {
+    const { stage } = this.viewer;
+    stage.element.append(this.notice.element, this.actions.element);
+    this.main.append(stage.element);
     this.root.append(
-      this.header.element,
-      this.strip.element,
-      h('main', { 'aria-label': 'Picture' }, this.viewer.stage.element, this.viewBar.element),
-      h('footer', { class: 'dock', 'aria-label': 'Curves and recording' }, this.curves.element, this.timeline.element),
-      h('aside', { class: 'side', 'aria-label': 'Panels' }, this.tabs.list, this.tabs.panels),
+      this.header.element, this.strip.element, this.main, this.dock,
+      h('aside', { class: 'side', 'aria-label': text.tabs.list }, this.tabs.list, this.tabs.panels),
       dialog, this.help, this.token.element, this.toasts.element);
     parent.replaceChildren(this.root);
+    isCompact.bind((compact) => this.arrange(compact));
+    isAcross.bind((across) => this.header.element.classList.toggle('on-picture', across));
     if (this.state.panel.value !== '') this.tabs.choose(this.state.panel.value);
-    this.state.panel.bind((panel) => this.root.classList.toggle('no-panel', panel === ''));
+    this.state.panel.bind((panel) => {
+      this.root.classList.toggle('no-panel', panel === '');
+      this.tabs.setOpen(panel !== '');
+    });
+    // /embed is the page in a frame of another page.
+    const isEmbedded = location.pathname.endsWith('/embed');
+    this.state.kiosk.bind((kiosk) => this.root.classList.toggle('bare', kiosk || isEmbedded));
+    returnFocus(this.root, stage.surface);
+  }
+
+  /** On small screens, the bars around the picture become sheets. */
+  private arrange(compact: boolean): void {
+    this.root.classList.toggle('compact', compact);
+    (compact ? this.viewHolder : this.main).append(this.viewBar.element);
+    (compact ? this.curvesHolder : this.dock).prepend(this.curves.element);
+    this.dock.append(this.timeline.element);
   }
 
   private connectSignals(): void {
@@ -118,7 +170,7 @@ export class App {
         void this.askDaemon().then(() => this.showCondition());
         void this.readDaemon();
       }
-      this.showCondition();
+      this.showNow();
     });
     this.viewer.notDrawn.watch(() => this.showCondition());
     window.addEventListener('hashchange', () => location.reload()); // the user entered another URL
@@ -126,21 +178,26 @@ export class App {
 
   private commands(): Command[] {
     const { state } = this;
+    const k = text.keys;
     const command = (key: string, words: string, run: () => void, release?: () => void): Command =>
       ({ key, words, run, ...(release ? { release } : {}) });
     return [
-      ...Array.from({ length: 9 }, (_, i) => command(String(i + 1), i === 0 ? 'choose framing 1 to 9' : '', () => this.viewBar.choose(i))),
-      command('0', 'first framing', () => this.viewBar.choose(0)),
-      command('space', 'play or pause the recording', () => this.timeline.toggle()),
-      command('c', 'hold to see the picture without the last change', () => state.comparing.set(true), () => state.comparing.set(false)),
-      command('x', 'change the wipe: wrinkles, shading, none', () => this.viewBar.nextWipe()),
-      command('escape', 'leave a debug view', () => state.settings.set('view', 'final', performance.now())),
-      command('/', 'search the settings', () => this.openMenu()),
-      command('ctrl+z', 'undo the last change', () => state.settings.undo()),
-      command('ctrl+y', 'redo', () => state.settings.redo()),
-      command('p', 'show or hide the side panel', () => this.togglePanel()),
-      command('g', 'show or hide the curves', () => this.toggleDock()),
-      command('?', 'show this list', () => this.help.showModal()),
+      ...Array.from({ length: 9 }, (_, i) => command(String(i + 1), i === 0 ? k.framing : '', () => this.viewBar.choose(i))),
+      command('0', k.first, () => this.viewBar.choose(0)),
+      command('f', k.fullscreen, () => this.actions.toggleFullscreen()),
+      command('k', k.kiosk, () => state.kiosk.set(!state.kiosk.value)),
+      command('b', k.screenshot, () => void this.actions.screenshot()),
+      command('r', k.record, () => this.actions.toggleRecording()),
+      command('space', k.play, () => this.timeline.toggle()),
+      command('c', k.compare, () => state.comparing.set(true), () => state.comparing.set(false)),
+      command('x', k.wipe, () => this.viewBar.nextWipe()),
+      command('escape', k.leave, () => state.settings.set('view', 'final', performance.now())),
+      command('/', k.search, () => this.openMenu()),
+      command('ctrl+z', k.undo, () => state.settings.undo()),
+      command('ctrl+y', k.redo, () => state.settings.redo()),
+      command('p', k.panel, () => this.togglePanel()),
+      command('g', k.curves, () => this.toggleDock()),
+      command('?', k.help, () => this.help.showModal()),
     ];
   }
 
@@ -167,17 +224,25 @@ export class App {
     this.faceMap.onFrame();
   }
 
+  /** The weights beside the picture are those of its pose. */
+  private onPicture(): void {
+    this.history.pinned = this.viewer.picture()?.sequence ?? null;
+    this.onWeights();
+    if (this.pictureState !== 'live' && this.pictureState !== 'paused') this.showCondition();
+  }
+
   /** Reads settings and cameras on the first connection and after every restart of the daemon. */
   private async readDaemon(): Promise<void> {
     try {
-      const [settings, cameras] = await Promise.all([api.settings(), api.cameras().catch(() => [])]);
+      const [settings, cameras, status] = await Promise.all([api.settings(), api.cameras().catch(() => []), api.status()]);
+      this.viewer.setRenderer(status.software);
       this.state.settings.setInfos(settings);
       if (this.began) {
         this.state.setPresets(cameras);
       } else {
         const unknown = this.state.begin(cameras);
         this.began = true;
-        if (unknown.length > 0) this.toasts.say(`Unknown to this daemon and ignored: ${unknown.join(', ')}`, 'error');
+        if (unknown.length > 0) this.toasts.say(text.menu.unknown(unknown), 'error');
       }
     } catch (error) {
       this.toasts.say(wordsOf(error), 'error');
@@ -207,19 +272,49 @@ export class App {
     const nowS = performance.now() / 1000;
     if (!document.hidden) await this.askDaemon();
     if (!document.hidden && this.connection.link.value === 'lost') await this.askForToken();
-    const shown = this.subjects?.find(({ name }) => name === this.weights.subject.value);
+    const shown = this.shownSubject();
     this.viewer.observeRate(shown?.rate_hz ?? 0, nowS);
     this.viewer.drawing.observe(shown, this.viewer.stats.rateHz(nowS));
-    this.header.showStats(this.viewer, nowS);
     if (this.viewer.drawing.active.value && this.numPolls++ % POLLS_PER_SETTINGS === 0) void this.readSettings();
-    this.showCondition();
-    setTimeout(() => void this.poll(), POLL_MS);
+    setTimeout(() => void this.poll(), this.pictureState === 'loading' ? LOADING_POLL_MS : POLL_MS);
+  }
+
+  private shownSubject(): SubjectInfo | undefined {
+    return this.subjects?.find(({ name }) => name === this.weights.subject.value);
+  }
+
+  /** True if the subject has not moved since the pose on the screen. */
+  private isAtRest(): boolean {
+    const picture = this.viewer.picture();
+    const subject = this.shownSubject();
+    const movedMs = subject?.moved_ms ?? null;
+    const isSlow = picture?.isStill === true || (subject?.rate_hz ?? 0) < 1; // else the answer is too old to tell
+    return picture !== null && isSlow && picture.ageMs !== null && movedMs !== null &&
+      picture.ageMs <= movedMs + performance.now() - this.askedMs + REST_TOLERANCE_MS;
+  }
+
+  private showFigures(nowS: number): void {
+    const { stats, drawing } = this.viewer;
+    const picture = this.viewer.picture();
+    if (picture === null) {
+      this.header.showFigures(null);
+      return;
+    }
+    const isHere = drawing.active.value;
+    const picturesHz = isHere ? drawing.rateHz(nowS) : stats.rateHz(nowS);
+    const posesHz = this.shownSubject()?.rate_hz ?? 0;
+    const isAtRest = this.isAtRest();
+    this.header.showFigures({
+      picturesHz, posesHz, isAtRest, ageMs: picture.ageMs, width: picture.width, height: picture.height,
+      limit: limitOf({ posesHz, picturesHz, waitedHz: stats.waitedHz(nowS), decodeMs: stats.decodeMs(), isAtRest, isHere }),
+    });
   }
 
   private async askDaemon(): Promise<void> {
     if (this.connection.link.value !== 'open') return;
     try {
       [this.subjects, this.status] = await Promise.all([api.subjects(), api.status()]);
+      this.askedMs = performance.now();
       this.showDaemon();
     } catch {
       // The header already reports the state of the connection.
@@ -245,24 +340,46 @@ export class App {
     const status = this.status!;
     this.timeline.setAvailable(status.playback);
     const subjects = this.subjects!;
-    this.session.show(subjects, status, this.weights.subject.value);
+    const { stats, drawing } = this.viewer;
+    const isHere = drawing.active.value;
+    this.session.show(subjects, status, this.weights.subject.value, {
+      latencyMs: isHere ? null : stats.latencyMs(),
+      skipped: stats.dropped,
+      quality: isHere ? text.session.here : stats.still ? text.session.still : (text.session.tiers[stats.tier] ?? text.figures.none),
+    });
     this.header.showOpen(status.open);
     this.header.showSubjects(subjects.map(({ name }) => name));
     if (this.daemonSession !== '' && status.session !== this.daemonSession) {
-      this.toasts.say('The daemon was restarted; this page keeps its settings');
+      this.toasts.say(text.app.restarted);
     }
     this.daemonSession = status.session;
   }
 
   private showCondition(): void {
-    this.header.showCondition(assess({
+    const picture = this.viewer.picture();
+    const subject = this.weights.subject.value;
+    const condition = assess({
       link: this.connection.link.value,
+      silentMs: document.hidden ? 0 : this.connection.silentMs,
       everConnected: this.everConnected,
       notDrawn: this.viewer.notDrawn.value,
       renders: this.status?.render ?? true,
+      drawing: this.status?.drawing ?? null,
       subjects: this.subjects,
       wanted: this.state.subject.value,
-      hasPicture: this.viewer.stats.shown > 0,
-    }));
+      hasPicture: picture !== null,
+      pictureMs: picture?.ageMs ?? null,
+      isChanging: this.viewer.isChanging,
+      isAtRest: this.isAtRest(),
+      isPaused: subject !== '' && this.timeline.pausedSubject === subject,
+    });
+    this.pictureState = condition.state;
+    const { stage } = this.viewer;
+    const hasPicture = picture !== null || stage.hasPicture;
+    // Also the picture of a former connection, until there is another.
+    stage.setDimmed(stage.hasPicture && (isDimmed(condition.state) || picture === null));
+    this.header.showCondition(condition);
+    this.notice.show(condition, hasPicture);
+    this.root.dataset.state = condition.state;
   }
 }

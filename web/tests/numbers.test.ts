@@ -2,6 +2,7 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { WeightHistory } from '../src/state/weight_history';
+import { limitOf } from '../src/view/limit';
 import { PictureStats } from '../src/view/picture_stats';
 import { AdaptiveScale, pictureSize } from '../src/view/resolution';
 
@@ -45,7 +46,7 @@ test('the CSV equals the output of furrow watch', () => {
   assert.equal(weights.toCsv(), 'frame,time,a,b,c\n41,0.000000,0.000000,0.500000,1.000000\n42,0.250000,0.000000,0.250000,1.000000\n');
 });
 
-const FACTS = { sequence: 1, ageUs: 0, still: false, tier: 0, dropped: 0, receivedUs: 990_000 };
+const FACTS = { sequence: 1, ageUs: 0, still: false, tier: 0, dropped: 0, receivedUs: 990_000, width: 640, height: 480, decodeMs: 4 };
 
 test('latency is the median of fresh pictures on the daemon’s clock', () => {
   const stats = new PictureStats();
@@ -69,6 +70,59 @@ test('rate and drops', () => {
   assert.equal(stats.dropped, 11);
   assert.equal(stats.rateHz(100), 0);
   assert.equal(stats.shown, 41);
+});
+
+test('the age of the picture counts from the arrival of its pose, and a new connection begins again', () => {
+  const stats = new PictureStats();
+  assert.equal(stats.ageMs(500_000, 500_000), null);
+  stats.add({ ...FACTS, sequence: 7 }, 500_000, 500_000);
+  assert.equal(stats.sequence, 7);
+  assert.equal(stats.ageMs(740_000, 500_000), 250);
+  assert.equal(stats.ageMs(740_000, null), null);
+  stats.reset();
+  assert.deepEqual([stats.shown, stats.sequence, stats.ageMs(740_000, 500_000), stats.rateHz(0.74)], [0, null, null, 0]);
+});
+
+test('poses that waited for this page, and the time to decode', () => {
+  const stats = new PictureStats();
+  for (let i = 0; i < 10; ++i) stats.add({ ...FACTS, sequence: i, dropped: 3 * i, decodeMs: i % 2 === 0 ? 2 : 4 }, i * 100_000, null);
+  assert.equal(stats.waitedHz(0.9), 13.5);
+  assert.equal(stats.decodeMs(), 3);
+});
+
+const PACE = { posesHz: 60, picturesHz: 20, waitedHz: 0, decodeMs: 5, isAtRest: false, isHere: false };
+
+test('what limits the pictures', () => {
+  assert.equal(limitOf(PACE), 'drawing');
+  assert.equal(limitOf({ ...PACE, picturesHz: 58 }), 'none');
+  assert.equal(limitOf({ ...PACE, posesHz: 120, picturesHz: 59 }), 'none'); // screens show no more
+  assert.equal(limitOf({ ...PACE, isAtRest: true, picturesHz: 0 }), 'none');
+  assert.equal(limitOf({ ...PACE, waitedHz: 30 }), 'network');
+  assert.equal(limitOf({ ...PACE, waitedHz: 30, decodeMs: 40 }), 'browser');
+  assert.equal(limitOf({ ...PACE, isHere: true }), 'browser');
+});
+
+test('weights belong to the pose on the screen', () => {
+  const weights = history();
+  for (let i = 0; i <= 5; ++i) weights.add({ sequence: 2 * i, atS: i, values: new Float32Array([i / 10, 0, 0]) });
+  assert.equal(weights.current!.sequence, 10);
+  weights.pinned = 4;
+  assert(Math.abs(weights.value('a') - 0.2) < 1e-6);
+  assert.equal(weights.shown.length, 3);
+  weights.pinned = 7; // its weights were not sent: those of the pose before it
+  assert.equal(weights.current!.sequence, 6);
+  weights.pinned = 2 ** 31; // of a stream that has begun again since
+  assert.equal(weights.current!.sequence, 10);
+});
+
+test('the first pictures of a slow renderer are small', () => {
+  const scale = new AdaptiveScale();
+  scale.begin(1280 * 600, 130_000);
+  assert.equal(scale.scale, 0.35);
+  scale.begin(300 * 300, 130_000);
+  assert.equal(scale.scale, 1);
+  scale.begin(4000 * 3000, 130_000);
+  assert.equal(scale.scale, 0.25);
 });
 
 test('a single change at rest is not movement, several in a row are', () => {

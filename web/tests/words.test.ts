@@ -2,39 +2,51 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { ApiError, type Explanation, type Playback } from '../src/api';
-import { assess, type Situation } from '../src/panels/condition';
+import { assess, isDimmed, type PictureState, type Situation } from '../src/panels/condition';
 import { afterwardsWords, contributionWords } from '../src/panels/explain';
 import { colourOf } from '../src/panels/face_map';
 import { clockText, positionAfter } from '../src/panels/timeline';
 
 const GOOD: Situation = {
   link: 'open', everConnected: true, notDrawn: '', renders: true, wanted: '', hasPicture: true,
+  silentMs: 100, drawing: null, pictureMs: 40, isChanging: false, isAtRest: false, isPaused: false,
   subjects: [{ name: 'demo', state: 'live', age_ms: 8 }],
 };
 
 test('each condition has its own sentence', () => {
-  const cases: [Partial<Situation>, 'ok' | 'wait' | 'bad', RegExp][] = [
-    [{}, 'ok', /Live: demo/],
-    [{ link: 'lost' }, 'bad', /Connection lost/],
-    [{ link: 'lost', everConnected: false }, 'bad', /No daemon responds/],
-    [{ link: 'draining' }, 'bad', /shutting down/],
-    [{ link: 'connecting' }, 'wait', /Connecting/],
-    [{ subjects: null }, 'wait', /Connecting/],
-    [{ subjects: [] }, 'wait', /No subject is streaming/],
-    [{ wanted: 'other' }, 'wait', /“other” is not streaming/],
-    [{ renders: false }, 'bad', /does not render pictures/],
-    [{ notDrawn: 'no EGL device' }, 'bad', /does not render pictures/],
-    [{ subjects: [{ name: 'demo', state: 'waiting', age_ms: 0 }] }, 'wait', /no pose yet/],
-    [{ subjects: [{ name: 'demo', state: 'lost', age_ms: 4200 }] }, 'bad', /No data from “demo” for 4 s/],
-    [{ subjects: [{ name: 'demo', state: 'no_face', age_ms: 4200 }] }, 'wait', /“demo” sees no face/],
-    [{ subjects: [{ name: 'demo', state: 'ended', age_ms: 0 }] }, 'wait', /No subject is streaming/],
-    [{ hasPicture: false }, 'wait', /first picture/],
+  const cases: [Partial<Situation>, PictureState, RegExp][] = [
+    [{}, 'live', /Live: demo/],
+    [{ link: 'lost' }, 'lost', /Connection lost/],
+    [{ link: 'lost', everConnected: false }, 'lost', /No daemon responds/],
+    [{ link: 'draining' }, 'lost', /shutting down/],
+    [{ link: 'connecting' }, 'loading', /Connecting/],
+    [{ subjects: null }, 'loading', /Connecting/],
+    [{ silentMs: 4000 }, 'stale', /not answered for 4 s/],
+    [{ subjects: [] }, 'empty', /No subject is streaming/],
+    [{ wanted: 'other' }, 'empty', /“other” is not streaming/],
+    [{ renders: false }, 'off', /does not render pictures/],
+    [{ notDrawn: 'no EGL device' }, 'off', /does not render pictures/],
+    [{ subjects: [{ name: 'demo', state: 'waiting', age_ms: 0 }] }, 'empty', /no pose yet/],
+    [{ subjects: [{ name: 'demo', state: 'lost', age_ms: 4200 }] }, 'lost', /No data from “demo” for 4 s/],
+    [{ subjects: [{ name: 'demo', state: 'no_face', age_ms: 4200 }] }, 'stale', /“demo” sees no face/],
+    [{ subjects: [{ name: 'demo', state: 'ended', age_ms: 0 }] }, 'empty', /No subject is streaming/],
+    [{ hasPicture: false }, 'loading', /first picture/],
+    [{ hasPicture: false, drawing: { done: 3, passes: 12 } }, 'loading', /step 4 of 12/],
+    [{ drawing: { done: 3, passes: 12 } }, 'live', /Live/],
+    [{ isPaused: true, pictureMs: 9000 }, 'paused', /Paused: demo/],
+    [{ pictureMs: 3000 }, 'stale', /3 s old/],
+    [{ pictureMs: 3000, isChanging: true, drawing: { done: 1, passes: 9 } }, 'stale', /3 s old/],
+    [{ pictureMs: 3000, isAtRest: true }, 'live', /Live/],
   ];
-  for (const [part, level, text] of cases) {
+  for (const [part, state, text] of cases) {
     const condition = assess({ ...GOOD, ...part });
-    assert.equal(condition.level, level, condition.text);
+    assert.equal(condition.state, state, condition.text);
     assert.match(condition.text, text);
   }
+  assert.match(assess({ ...GOOD, pictureMs: 3000, isChanging: true, drawing: { done: 1, passes: 9 } }).advice, /step 2 of 9/);
+  assert.match(assess({ ...GOOD, pictureMs: 3000, drawing: { done: 1, passes: 9 } }).advice, /Fast/);
+  assert.equal(assess({ ...GOOD, hasPicture: false, drawing: { done: 3, passes: 12 } }).progress, 0.25);
+  assert.deepEqual((['live', 'paused', 'stale', 'lost'] as const).map(isDimmed), [false, false, true, true]);
   assert.equal(assess({ ...GOOD, notDrawn: 'no EGL device' }).advice, 'no EGL device');
 });
 

@@ -23,6 +23,7 @@ Api::Api(Parts parts)
       playback_(parts.player),
       osc_(parts.osc),
       tokens_(parts.gate, parts.metrics),
+      sources_(std::move(parts.sources)),
       routes_{{"GET", "/api/subjects", Need::kToken,
                [this](const ApiRequest& request, Hub& hub, Time now) {
                  return status_.Subjects(request, hub, now);
@@ -31,6 +32,8 @@ Api::Api(Parts parts)
                [this](const ApiRequest& request, Hub& hub, Time now) {
                  return status_.ShowStatus(request, hub, now);
                }},
+              {"GET", "/api/sources", Need::kToken,
+               [this](const ApiRequest&, Hub&, Time now) { return sources_.Show(now); }},
               {"GET", "/api/settings", Need::kToken,
                [this](const ApiRequest&, Hub& hub, Time) { return settings_.Settings(hub); }},
               {"PATCH", "/api/settings", Need::kDirect,

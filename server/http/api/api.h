@@ -14,6 +14,7 @@
 #include "server/http/api/playback_api.h"
 #include "server/http/api/rig_api.h"
 #include "server/http/api/settings_api.h"
+#include "server/http/api/sources_api.h"
 #include "server/http/api/status_api.h"
 #include "server/http/api/token_api.h"
 #include "server/http/request/api_types.h"
@@ -43,6 +44,7 @@ class Api {
     std::function<bool()> recording_is_paused;  // by a full disk; empty: nothing is recorded
     bool open_to_network = false;               // other computers need no token
     const TokenGate* gate = nullptr;            // null: the daemon makes no tokens
+    SourcesApi::Parts sources;
   };
   explicit Api(Parts parts);
   Api(const Api&) = delete;
@@ -73,6 +75,7 @@ class Api {
   PlaybackApi playback_;
   OscApi osc_;
   TokenApi tokens_;
+  SourcesApi sources_;
   const std::vector<Route> routes_;
 };
 

@@ -31,7 +31,8 @@ bool HasRange(const render::SettingInfo& info) {
 
 }  // namespace
 
-Json SettingJson(const render::SettingInfo& info, const std::string& value) {
+Json SettingJson(const render::SettingInfo& info, const std::string& value,
+                 const std::string& default_value) {
   // "skin.roughness" belongs to the group "skin".
   const std::size_t dot = info.name.find('.');
   Json json = {{"name", info.name},
@@ -42,7 +43,7 @@ Json SettingJson(const render::SettingInfo& info, const std::string& value) {
                {"choices", info.choices},
                {"min", nullptr},
                {"max", nullptr},
-               {"default", info.default_value},
+               {"default", default_value},
                {"value", value}};
   if (HasRange(info)) {
     json["min"] = info.low;

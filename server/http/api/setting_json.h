@@ -10,9 +10,11 @@
 
 namespace furrow::server {
 
-// Returns one entry of GET /api/settings: the description of a setting and its current `value`.
+// Returns one entry of GET /api/settings: the description of a setting, its current `value`, and
+// the one that the daemon starts with.
 [[nodiscard]] nlohmann::ordered_json SettingJson(const render::SettingInfo& info,
-                                                 const std::string& value);
+                                                 const std::string& value,
+                                                 const std::string& default_value);
 
 // Converts a value from PATCH (text, number or boolean) to the text that render::SetSetting()
 // takes. Errors: kSchema, with the name as `where`.

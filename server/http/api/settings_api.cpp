@@ -9,13 +9,16 @@
 #include "render/settings/settings_file.h"
 #include "server/http/api/json_reply.h"
 #include "server/http/api/setting_json.h"
+#include "server/session/subscriptions/view_settings.h"
 
 namespace furrow::server {
 
 ApiReply SettingsApi::Settings(const Hub& hub) const {
   Json list = Json::array();
+  const render::Settings defaults = DefaultSettings();
   for (const render::SettingInfo& info : render::AllSettings()) {
-    list.push_back(SettingJson(info, render::GetSetting(info.name, hub.own_settings())));
+    list.push_back(SettingJson(info, render::GetSetting(info.name, hub.own_settings()),
+                               render::GetSetting(info.name, defaults)));
   }
   return JsonReply({{"settings", std::move(list)}});
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/http/api/status_api.h"
 
+#include <optional>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -21,6 +22,18 @@ std::string_view StateOf(const Subject& subject) {
   if (subject.no_face) return "no_face";
   if (!subject.pipeline->has_pose()) return "waiting";
   return subject.lost ? "lost" : "live";
+}
+
+// Null: nobody watches, so nobody has looked whether the subject moves.
+Json MovedMs(const Subject& subject, Time now) {
+  const Time moved = subject.rest.moved_at();
+  return moved == Time{0} ? Json() : Json(ToSeconds(now - moved) * 1e3);
+}
+
+// Null: nothing is being drawn.
+Json DrawingJson(const PictureSource* pictures) {
+  const auto drawing = pictures == nullptr ? std::nullopt : pictures->drawing();
+  return drawing ? Json{{"done", drawing->done}, {"passes", drawing->passes}} : Json();
 }
 
 using prometheus::MetricType;
@@ -61,6 +74,7 @@ ApiReply StatusApi::Subjects(const ApiRequest& request, Hub& hub, Time now) cons
                     {"buffer_ms", ToSeconds(subject->hold) * 1e3},
                     {"jitter_ms", stats.jitter_seconds(now) * 1e3},
                     {"age_ms", ToSeconds(now - subject->last_pose) * 1e3},
+                    {"moved_ms", MovedMs(*subject, now)},
                     {"neutral", pipeline.neutral_pose().has_value()}});
   }
   return JsonReply({{"subjects", std::move(list)}});
@@ -73,6 +87,8 @@ ApiReply StatusApi::ShowStatus(const ApiRequest& request, const Hub& hub, Time n
                     {"uptime_s", ToSeconds(now - parts_.started)},
                     {"render", parts_.pictures != nullptr},
                     {"renderer", parts_.renderer},
+                    {"software", parts_.pictures != nullptr && parts_.pictures->is_software()},
+                    {"drawing", DrawingJson(parts_.pictures)},
                     {"viewers", parts_.viewers()},
                     {"subscriptions", hub.num_subscriptions()},
                     {"subjects", hub.num_subjects()},

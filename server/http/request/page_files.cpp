@@ -106,7 +106,8 @@ Status PageFiles::Add(std::string name, const fs::path& file, std::uintmax_t mos
 }
 
 const PageFile* PageFiles::Find(std::string_view path) const {
-  const auto file = files_.find(path == "/" ? "/index.html" : path);
+  const bool is_page = path == "/" || path == kEmbedPath;
+  const auto file = files_.find(is_page ? "/index.html" : path);
   return file == files_.end() ? nullptr : &file->second;
 }
 

@@ -22,13 +22,16 @@ struct PageFile {
 // The character for browsers that draw it themselves.
 inline constexpr char kCharacterPath[] = "/character.glb";
 
+// The page as the picture alone, for frames of other pages.
+inline constexpr char kEmbedPath[] = "/embed";
+
 // The files of the web page, read and compressed once. Requests never access the file system.
 class PageFiles {
  public:
   static constexpr std::uintmax_t kMaxBytes = 64u << 20;  // of all files together
 
-  // Reads every regular file under `folder` as "/<path>"; "/" is index.html. Errors: kNotFound (no
-  // folder or no index.html), kIo, kLimit.
+  // Reads every regular file under `folder` as "/<path>"; "/" and kEmbedPath are index.html.
+  // Errors: kNotFound (no folder or no index.html), kIo, kLimit.
   [[nodiscard]] static Result<PageFiles> Load(const std::filesystem::path& folder);
 
   // Adds one more file as `name` ("/character.glb"). Errors: kIo, kLimit (more than `most` bytes).

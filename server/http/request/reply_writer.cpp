@@ -3,15 +3,16 @@
 
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace furrow::server {
 namespace {
 
-// The page loads nothing from other hosts and must not be framed. Its menu sets styles from
-// scripts.
+// The page loads nothing from other hosts and must not be framed, unless AllowFrames() says so. Its
+// menu sets styles from scripts.
 constexpr char kContentPolicy[] =
     "default-src 'self'; img-src 'self' blob: data:; style-src 'self' 'unsafe-inline'; "
-    "connect-src 'self'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
+    "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors ";
 
 }  // namespace
 
@@ -22,7 +23,15 @@ void SetCommonHeaders(std::string_view content_type, http::fields* fields) {
   // A browser must not run a JSON or text reply as a script.
   fields->set("X-Content-Type-Options", "nosniff");
   fields->set("Referrer-Policy", "no-referrer");
-  fields->set("Content-Security-Policy", kContentPolicy);
+  fields->set("Content-Security-Policy", std::string(kContentPolicy) + "'none'");
+}
+
+void AllowFrames(const std::vector<std::string>& origins, http::fields* fields) {
+  if (origins.empty()) return;
+  std::string policy = kContentPolicy;
+  policy += "'self'";
+  for (const std::string& origin : origins) policy += " " + origin;
+  fields->set("Content-Security-Policy", policy);
 }
 
 net::awaitable<bool> WriteReply(WebStream& stream, const WebRequest& request, ApiReply reply) {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include <boost/beast/http/serializer.hpp>
 #include <boost/beast/http/write.hpp>
@@ -19,6 +21,9 @@ namespace furrow::server {
 
 // Sets the header fields that every response has: server, content type and security policies.
 void SetCommonHeaders(std::string_view content_type, http::fields* fields);
+
+// Lets the pages of `origins` show the response in a frame; SetCommonHeaders() lets nobody.
+void AllowFrames(const std::vector<std::string>& origins, http::fields* fields);
 
 // Sends a response, or only its head for a HEAD request. False: the connection must close, because
 // the client asked for it, has gone, or did not read the response within kWebDeadline.

@@ -9,6 +9,12 @@
 
 namespace furrow::server {
 
+render::Settings DefaultSettings() {
+  render::Settings settings;
+  settings.shading = render::Shading::kSkin;
+  return settings;
+}
+
 Result<SharedSettings> ViewSettings::Get(std::span<const std::string> overrides) {
   render::Settings settings = own_;
   for (const std::string& assignment : overrides) {

@@ -13,6 +13,10 @@ namespace furrow::server {
 
 using SharedSettings = std::shared_ptr<const render::Settings>;
 
+// The settings that a daemon starts with: the renderer's own, but with skin shading, because its
+// viewers look at faces.
+[[nodiscard]] render::Settings DefaultSettings();
+
 // The settings of picture views: the daemon's own settings plus each view's overrides. Equal
 // settings share one object while it is in use, so that comparing two views compares pointers.
 class ViewSettings {

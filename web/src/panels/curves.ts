@@ -4,37 +4,43 @@ import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
 import type { AppState } from '../state/app_state';
 import type { WeightHistory } from '../state/weight_history';
+import { text } from '../text';
 import { button, download, h } from '../ui/dom';
 
+const t = text.curves;
 const SHOWN_S = 10;
 const AUTOMATIC = 5;
 const REDRAW_MS = 50;
 /** Seconds for which an automatic choice is kept, so that curves do not flicker. */
 const CHOICE_S = 4;
 /** Distinguishable on a dark background, also with colour blindness (Okabe and Ito, lightened). */
-const COLOURS = ['#f0b43c', '#62bdf0', '#3fcf9e', '#f3ec6c', '#7aa5ff', '#ff8a5c', '#e09fcb', '#e6e6e6'];
+const ON_DARK = ['#f0b43c', '#62bdf0', '#3fcf9e', '#f3ec6c', '#7aa5ff', '#ff8a5c', '#e09fcb', '#e6e6e6'];
+/** The same on a light background (Okabe and Ito, darkened). */
+const ON_LIGHT = ['#b07400', '#2f86b8', '#007a59', '#8a8200', '#0058a3', '#b84a00', '#a8598b', '#000000'];
 
 export class CurvesPanel {
   readonly element: HTMLElement;
-  private readonly plotHolder = h('div', { class: 'plot', role: 'img', 'aria-label': 'Wrinkle weights of the last ten seconds' });
-  private readonly chips = h('div', { class: 'chips', role: 'group', 'aria-label': 'Curves shown' });
+  private readonly plotHolder = h('div', { class: 'plot', role: 'img', 'aria-label': t.plot });
+  private readonly chips = h('div', { class: 'chips', role: 'group', 'aria-label': t.shown });
   private readonly picker = h('details', { class: 'picker' });
   private readonly freeze: HTMLButtonElement;
   private plot: uPlot | null = null;
   private shown: string[] = [];
   private chosenAtS = -Infinity;
+  private readonly light = matchMedia('(prefers-color-scheme: light)');
   private frozen = false;
   private drawnMs = 0;
   private pickerNames = '';
 
   constructor(private readonly state: AppState, private readonly history: WeightHistory) {
-    this.freeze = button('Freeze', () => this.toggleFrozen(), { 'aria-pressed': 'false' });
-    this.picker.append(h('summary', {}, 'Choose'));
+    this.freeze = button(t.freeze, () => this.toggleFrozen(), { 'aria-pressed': 'false' });
+    this.picker.append(h('summary', {}, t.choose));
     this.picker.addEventListener('toggle', () => this.fillPicker());
-    this.element = h('section', { class: 'curves', 'aria-label': 'Weight curves' },
+    this.element = h('section', { class: 'curves', 'aria-label': t.group },
       h('div', { class: 'row bar-row' }, this.chips, this.picker, this.freeze,
-        button('CSV', () => this.save(), { title: 'Download the last 20 s in the format of furrow watch' })),
+        button(t.csv, () => this.save(), { title: t.csvTitle })),
       this.plotHolder);
+    this.light.addEventListener('change', () => this.plot !== null && this.build());
     state.curves.watch(() => {
       this.choose();
       this.redraw();
@@ -54,7 +60,7 @@ export class CurvesPanel {
   private choose(): void {
     this.chosenAtS = performance.now() / 1000;
     const picked = this.state.curves.value.filter((name) => this.history.indexOf(name) >= 0);
-    const next = picked.length > 0 ? picked.slice(0, COLOURS.length) : this.history.mostActive(AUTOMATIC);
+    const next = picked.length > 0 ? picked.slice(0, ON_DARK.length) : this.history.mostActive(AUTOMATIC);
     if (next.join() === this.shown.join() && this.plot !== null) return;
     this.shown = next;
     this.build();
@@ -66,24 +72,28 @@ export class CurvesPanel {
 
   private build(): void {
     this.plot?.destroy();
-    const axis = { stroke: '#a9afb8', grid: { stroke: '#2c3036', width: 1 }, ticks: { stroke: '#2c3036' }, font: '11px system-ui' };
+    const style = getComputedStyle(this.element);
+    const [words, grid] = ['--dim', '--grid'].map((name) => style.getPropertyValue(name).trim() || '#888') as [string, string];
+    const colours = this.light.matches ? ON_LIGHT : ON_DARK;
+    const axis = { stroke: words, grid: { stroke: grid, width: 1 }, ticks: { stroke: grid }, font: '11px system-ui' };
     this.plot = new uPlot({
       ...this.size(),
       legend: { show: false },
       cursor: { y: false },
       padding: [6, 8, 0, 0],
       scales: { x: { time: false, range: [-SHOWN_S, 0] }, y: { range: [0, 1] } },
-      axes: [{ ...axis, values: (_, ticks) => ticks.map((t) => `${t} s`), size: 24 }, { ...axis, size: 42, splits: [0, 0.25, 0.5, 0.75, 1] }],
-      series: [{}, ...this.shown.map((name, i) => ({ label: name, stroke: COLOURS[i]!, width: 1.6, points: { show: false } }))],
+      axes: [{ ...axis, values: (_, ticks) => ticks.map((tick) => `${tick} s`), size: 24 }, { ...axis, size: 42, splits: [0, 0.25, 0.5, 0.75, 1] }],
+      series: [{}, ...this.shown.map((name, i) => ({ label: name, stroke: colours[i]!, width: 1.6, points: { show: false } }))],
     }, [[], ...this.shown.map(() => [])], this.plotHolder);
     this.chips.replaceChildren(...this.shown.map((name, i) =>
-      h('span', { class: 'chip', style: `--colour:${COLOURS[i]!}`, 'data-name': name }, name, h('output', {}, '–'))));
+      h('span', { class: 'chip', style: `--colour:${colours[i]!}`, 'data-name': name }, name, h('output', {}, '–'))));
   }
 
   private redraw(): void {
     if (this.plot === null) return;
-    const newest = this.history.latest?.atS ?? 0;
-    const frames = this.history.frames.filter((frame) => newest - frame.atS <= SHOWN_S);
+    // The curves end with the pose on the screen, so that both show the same moment.
+    const newest = this.history.current?.atS ?? 0;
+    const frames = this.history.shown.filter((frame) => newest - frame.atS <= SHOWN_S);
     const columns = this.shown.map((name) => this.history.indexOf(name));
     this.plot.setData([
       frames.map((frame) => frame.atS - newest),
@@ -102,7 +112,7 @@ export class CurvesPanel {
       box.addEventListener('change', () => this.pick(name, box.checked));
       return h('label', { class: 'check' }, box, name);
     });
-    const automatic = button('Most active', () => {
+    const automatic = button(t.mostActive, () => {
       this.picker.querySelectorAll('input').forEach((box) => (box.checked = false));
       this.state.curves.set([]);
     });

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Explains a region: the drivers and poses behind its weights, refreshed while the panel is shown.
 import { api, type Contribution, type Explanation, wordsOf } from '../api';
+import { text } from '../text';
 import { button, h, regionWords } from '../ui/dom';
 
+const t = text.explain;
 const REFRESH_MS = 400;
 /** Blend shapes of a driver that are named; they come strongest first. */
 const MOST_SHAPES = 4;
@@ -13,37 +15,37 @@ const fixed = (x: number): string => x.toFixed(2);
 export function contributionWords(item: Contribution): string {
   const parts: string[] = [];
   if (item.pose !== null) {
-    const goal = item.reference_pose ? `the pose “${item.reference_pose}”` : 'its reference pose';
-    parts.push(`${Math.round(item.pose.along * 100)} % of the way to ${goal}`);
-    if (item.pose.falloff < 0.995) parts.push(`reduced to ${Math.round(item.pose.falloff * 100)} % because it deviates from that path`);
+    const goal = item.reference_pose ? t.pose(item.reference_pose) : t.itsPose;
+    parts.push(t.along(Math.round(item.pose.along * 100), goal));
+    if (item.pose.falloff < 0.995) parts.push(t.falloff(Math.round(item.pose.falloff * 100)));
   }
   for (const { what, degrees } of item.angles ?? []) parts.push(`${what} ${degrees.toFixed(1)}°`);
   if (item.strain !== null) {
-    parts.push(`skin at ${Math.round(item.strain.smallest * 100)} % to ${Math.round(item.strain.largest * 100)} % of its length`);
+    parts.push(t.strain(Math.round(item.strain.smallest * 100), Math.round(item.strain.largest * 100)));
   }
   const moved = (item.blend_shapes ?? []).filter(({ coefficient }) => Math.abs(coefficient) >= 0.005);
   for (const { name, coefficient } of moved.slice(0, MOST_SHAPES)) parts.push(`${name} ${fixed(coefficient)}`);
-  if (moved.length > MOST_SHAPES) parts.push(`${moved.length - MOST_SHAPES} more blend shapes`);
-  return parts.length > 0 ? parts.join(', ') : 'the coefficient of the blend shape';
+  if (moved.length > MOST_SHAPES) parts.push(t.moreShapes(moved.length - MOST_SHAPES));
+  return parts.length > 0 ? parts.join(', ') : t.coefficient;
 }
 
 /** Describes the steps after the drivers were combined. Empty if those steps changed nothing. */
 export function afterwardsWords(explanation: Explanation): string[] {
   const words: string[] = [];
   if (Math.abs(explanation.modulated - explanation.combined) > 0.005) {
-    words.push(`Modulation changes ${fixed(explanation.combined)} to ${fixed(explanation.modulated)}.`);
+    words.push(t.modulation(fixed(explanation.combined), fixed(explanation.modulated)));
   }
   for (const { weight, other, factor } of explanation.conflicts) {
-    if (factor < 0.995) words.push(`${weight} is ${fixed(other)} and conflicts with this weight: multiplied by ${fixed(factor)}.`);
+    if (factor < 0.995) words.push(t.conflict(weight, fixed(other), fixed(factor)));
   }
   if (Math.abs(explanation.live - explanation.result) > 0.02) {
-    words.push(`The filter has not settled: ${fixed(explanation.live)} now, ${fixed(explanation.result)} for this pose without the filter.`);
+    words.push(t.filter(fixed(explanation.live), fixed(explanation.result)));
   }
   return words;
 }
 
 export class ExplainPanel {
-  readonly element = h('section', { class: 'explain', 'aria-label': 'Explanation', hidden: true });
+  readonly element = h('section', { class: 'explain', 'aria-label': t.label, hidden: true });
   private readonly title = h('h3', {});
   private readonly body = h('div', { class: 'explain-body' });
   private weights: string[] = [];
@@ -51,14 +53,14 @@ export class ExplainPanel {
 
   constructor(private readonly subject: () => string, private readonly onClose: () => void) {
     this.element.append(
-      h('div', { class: 'row' }, this.title, h('span', { class: 'space' }), button('Close', () => this.close())), this.body);
+      h('div', { class: 'row' }, this.title, h('span', { class: 'space' }), button(t.close, () => this.close())), this.body);
   }
 
   show(region: string, weights: string[]): void {
     this.weights = weights;
-    this.title.textContent = `Explanation: ${regionWords(region)}`;
+    this.title.textContent = t.title(regionWords(region));
     this.element.hidden = false;
-    this.body.replaceChildren(h('p', { class: 'empty' }, 'Loading…'));
+    this.body.replaceChildren(h('p', { class: 'empty' }, t.loading));
     this.element.scrollIntoView({ block: 'nearest' });
     if (this.timer !== null) clearTimeout(this.timer);
     void this.ask();
@@ -97,7 +99,7 @@ function explanationElement(explanation: Explanation): HTMLElement {
   });
   return h('article', { 'data-weight': explanation.weight },
     h('h4', {}, explanation.weight, h('output', {}, fixed(explanation.live))),
-    h('table', {}, h('thead', {}, h('tr', {}, h('th', { scope: 'col' }, 'Driver'), h('th', { scope: 'col' }, 'Value'), h('th', { scope: 'col' }, 'Share'))),
+    h('table', {}, h('thead', {}, h('tr', {}, ...t.columns.map((word) => h('th', { scope: 'col' }, word)))),
       h('tbody', {}, ...rows)),
     ...afterwardsWords(explanation).map((words) => h('p', { class: 'note' }, words)));
 }

@@ -3,6 +3,7 @@
 // bars. A click on either opens the explanation.
 import { api, type RigInfo } from '../api';
 import type { WeightHistory } from '../state/weight_history';
+import { text } from '../text';
 import { h, regionWords, svg } from '../ui/dom';
 
 const SVG_VIEW = '0 0 200 236';
@@ -39,14 +40,14 @@ export function colourOf(pressed: number, drawn: number): string {
 export class FaceMap {
   readonly map: HTMLElement;
   private readonly picture = svg('svg', { viewBox: SVG_VIEW, class: 'face-map', 'aria-hidden': 'true' });
-  readonly list = h('ul', { class: 'regions', 'aria-label': 'Regions' });
+  readonly list = h('ul', { class: 'regions', 'aria-label': text.faceMap.regions });
   private regions: RegionView[] = [];
   private drawnMs = 0;
   private rigOf = '';
 
   constructor(private readonly history: WeightHistory, private readonly onChoose: (region: string, weights: string[]) => void) {
     this.map = h('figure', { class: 'map' }, this.picture,
-      h('figcaption', {}, h('span', { class: 'key pressed' }, 'compressed (squash, folds)'), h('span', { class: 'key drawn' }, 'stretched (stretch)')));
+      h('figcaption', {}, h('span', { class: 'key pressed' }, text.faceMap.compressed), h('span', { class: 'key drawn' }, text.faceMap.stretched)));
   }
 
   /** Loads the rig of a subject. Rebuilds the map only if the regions differ. */

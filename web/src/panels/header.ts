@@ -1,44 +1,63 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bar at the top: subject, condition and picture statistics.
+// The bar at the top: subject, condition and the figures of the picture.
 import type { AppState } from '../state/app_state';
+import { text } from '../text';
 import { button, h, select, setOptions } from '../ui/dom';
-import type { Viewer } from '../view/viewer';
-import type { Condition } from './condition';
+import type { Limit } from '../view/limit';
+import type { Condition, PictureState } from './condition';
 
-const TIERS = ['best', 'medium', 'low'];
+/** What the page shows of the picture on the screen. */
+export interface Figures {
+  picturesHz: number;
+  posesHz: number;
+  /** Null: unknown. */
+  ageMs: number | null;
+  isAtRest: boolean;
+  width: number;
+  height: number;
+  limit: Limit;
+}
+
+const LEVELS: Record<PictureState, 'ok' | 'wait' | 'bad'> = {
+  empty: 'wait', loading: 'wait', live: 'ok', paused: 'ok', stale: 'wait', lost: 'bad', off: 'bad',
+};
+
+/** "45 ms", "2.3 s" or "3 min". */
+export function ageWords(ms: number): string {
+  if (ms < 995) return `${Math.round(ms)} ms`;
+  return ms < 100_000 ? `${(ms / 1000).toFixed(1)} s` : `${Math.round(ms / 60_000)} min`;
+}
 
 export class Header {
   readonly element: HTMLElement;
   private readonly subject: HTMLSelectElement;
   private readonly status = h('p', { class: 'condition wait', role: 'status' });
-  private readonly open = h('p', { class: 'open', hidden: true,
-    title: 'Everybody on the network may connect, publish and change settings (docs/SECURITY.md)' }, 'Open');
-  private readonly numbers = new Map<string, HTMLOutputElement>();
+  private readonly open = h('p', { class: 'open', hidden: true, title: text.header.openTitle }, text.header.open);
+  private readonly figures = new Map<string, HTMLOutputElement>();
 
   constructor(private readonly state: AppState, commands: { help: () => void; panel: () => void; dock: () => void }) {
-    this.subject = select('Subject', [['', 'Any subject']], (name) => state.subject.set(name));
+    const t = text.header;
+    this.subject = select(t.subject, [['', t.anySubject]], (name) => state.subject.set(name));
     this.element = h('header', {},
       h('h1', {}, 'Furrow'), this.subject, this.status, this.open, h('span', { class: 'space' }),
-      h('div', { class: 'numbers', 'aria-label': 'Picture', role: 'group' },
-        this.number('rate', 'Pictures', 'Pictures per second'),
-        this.number('latency', 'Latency', 'Median time from the arrival of a pose at the daemon to this screen'),
-        this.number('dropped', 'Dropped', 'Poses that were replaced by newer ones before they were shown'),
-        this.number('tier', 'Quality', 'JPEG quality: best, medium or low; “still” is the refined picture of a pose at rest')),
-      button('Curves', commands.dock, { title: 'Show or hide the curves (key G)' }),
-      button('Panel', commands.panel, { title: 'Show or hide the side panel (key P)' }),
-      button('?', commands.help, { title: 'Keyboard shortcuts (key ?)', 'aria-label': 'Help: keyboard shortcuts' }));
+      h('div', { class: 'numbers', 'aria-label': text.figures.group, role: 'group' },
+        this.figure('rate'), this.figure('age'), this.figure('size'), this.figure('limit')),
+      button(t.curves, commands.dock, { title: t.curvesTitle, class: 'wide-only' }),
+      button(t.panel, commands.panel, { title: t.panelTitle, class: 'wide-only' }),
+      button('?', commands.help, { title: t.helpTitle, 'aria-label': t.help, class: 'help-button' }));
   }
 
-  private number(id: string, label: string, title: string): HTMLElement {
-    const output = h('output', { 'data-number': id }, '–');
-    this.numbers.set(id, output);
+  private figure(id: 'rate' | 'age' | 'size' | 'limit'): HTMLElement {
+    const [label, title] = text.figures[id];
+    const output = h('output', { 'data-number': id }, text.figures.none);
+    this.figures.set(id, output);
     return h('span', { class: 'figure', title }, h('span', {}, label), output);
   }
 
   showSubjects(names: readonly string[]): void {
     const wanted = this.state.subject.value;
     const known = wanted === '' || names.includes(wanted) ? names : [...names, wanted];
-    setOptions(this.subject, [['', 'Any subject'], ...known.map((name) => [name, name] as const)]);
+    setOptions(this.subject, [['', text.header.anySubject], ...known.map((name) => [name, name] as const)]);
     this.subject.value = wanted;
   }
 
@@ -47,24 +66,32 @@ export class Header {
     this.open.hidden = !open;
   }
 
-  showCondition({ level, text, advice }: Condition): void {
-    const whole = advice === '' ? text : `${text}. ${advice}`;
-    if (this.status.textContent === whole) return;
-    this.status.className = `condition ${level}`;
-    this.status.replaceChildren(h('strong', {}, text), advice === '' ? '' : `. ${advice}`);
+  /** The advice is beside the picture, where there is room for it. */
+  showCondition({ state, text: words }: Condition): void {
+    if (this.status.textContent === words && this.status.dataset.state === state) return;
+    this.status.className = `condition ${LEVELS[state]}`;
+    this.status.dataset.state = state;
+    this.status.title = words;
+    this.status.replaceChildren(h('strong', {}, words));
   }
 
-  showStats({ stats, drawing }: Viewer, nowS: number): void {
-    const isHere = drawing.active.value;
-    const latency = isHere ? null : stats.latencyMs();
-    this.put('rate', `${(isHere ? drawing.rateHz(nowS) : stats.rateHz(nowS)).toFixed(0)} /s`);
-    this.put('latency', latency === null ? '–' : `${latency.toFixed(0)} ms`);
-    this.put('dropped', String(stats.dropped));
-    this.put('tier', isHere ? 'drawn here' : stats.still ? 'still' : (TIERS[stats.tier] ?? '–'));
+  /** Null: there is no picture. */
+  showFigures(figures: Figures | null): void {
+    const t = text.figures;
+    if (figures === null) {
+      for (const id of this.figures.keys()) this.put(id, t.none);
+      return;
+    }
+    const { picturesHz, posesHz, ageMs, isAtRest, width, height, limit } = figures;
+    // Pictures of a pose at rest say nothing about the speed.
+    this.put('rate', posesHz < 0.5 ? t.none : `${picturesHz.toFixed(0)} of ${posesHz.toFixed(0)} /s`);
+    this.put('age', isAtRest ? t.atRest : ageMs === null ? t.none : ageWords(ageMs));
+    this.put('size', width === 0 ? t.none : `${width} × ${height}`);
+    this.put('limit', t.limits[limit]);
   }
 
-  private put(id: string, text: string): void {
-    const output = this.numbers.get(id)!;
-    if (output.textContent !== text) output.textContent = text;
+  private put(id: string, words: string): void {
+    const output = this.figures.get(id)!;
+    if (output.textContent !== words) output.textContent = words;
   }
 }

@@ -17,7 +17,7 @@ export class ListRow {
     this.folder = parent.addFolder({ title: labelOf(info), expanded: false });
     this.folder.element.dataset.setting = info.name;
     this.folder.element.title = info.help;
-    this.folder.element.addEventListener('pointerenter', events.onPointed);
+    for (const type of ['pointerenter', 'pointerdown', 'focusin'] as const) this.folder.element.addEventListener(type, events.onPointed);
     for (const word of info.choices ?? []) {
       this.holder[word] = false;
       const binding = this.folder.addBinding(this.holder, word, { label: readable(word) });

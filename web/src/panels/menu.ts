@@ -5,6 +5,7 @@ import { Pane } from 'tweakpane';
 import type { SettingInfo } from '../api';
 import type { AppState } from '../state/app_state';
 import { PresetShelf } from '../state/presets';
+import { text } from '../text';
 import { button, h, readable, select, setOptions } from '../ui/dom';
 import type { Toasts } from '../ui/toast';
 import { ListRow } from './list_row';
@@ -19,10 +20,10 @@ export class SettingsMenu {
   readonly element: HTMLElement;
   private readonly paneHolder = h('div', { class: 'pane' });
   private readonly search = h('input', {
-    type: 'search', placeholder: 'Search settings', 'aria-label': 'Search settings', id: 'settings-search',
+    type: 'search', placeholder: text.menu.search, 'aria-label': text.menu.search, id: 'settings-search',
   });
-  private readonly help = h('p', { class: 'help-line' }, 'Point at a setting to read its description.');
-  private readonly nothing = h('p', { class: 'empty', hidden: true }, 'No setting matches.');
+  private readonly help = h('p', { class: 'help-line' }, matchMedia('(hover: hover)').matches ? text.menu.hint : text.menu.touchHint);
+  private readonly nothing = h('p', { class: 'empty', hidden: true }, text.menu.nothing);
   private readonly undo: HTMLButtonElement;
   private readonly redo: HTMLButtonElement;
   private readonly reset: HTMLButtonElement;
@@ -36,18 +37,18 @@ export class SettingsMenu {
 
   constructor(private readonly state: AppState, private readonly toasts: Toasts, openText: () => void) {
     const { settings } = state;
-    this.undo = button('Undo', () => settings.undo(), { title: 'Undo (Ctrl+Z)' });
-    this.redo = button('Redo', () => settings.redo(), { title: 'Redo (Ctrl+Y)' });
-    this.reset = button('Reset', () => settings.replace(new Map()), { title: 'Reset all settings to the daemon’s values' });
-    this.compare = button('Compare', () => {}, { title: 'Hold to see the picture without the last change (key C)' });
+    this.undo = button(text.menu.undo, () => settings.undo(), { title: text.menu.undoTitle });
+    this.redo = button(text.menu.redo, () => settings.redo(), { title: text.menu.redoTitle });
+    this.reset = button(text.menu.reset, () => settings.replace(new Map()), { title: text.menu.resetTitle });
+    this.compare = button(text.menu.compare, () => {}, { title: text.menu.compareTitle });
     this.shelf = new PresetShelf(storage());
-    this.presets = select('Preset', [], (name) => this.choosePreset(name));
+    this.presets = select(text.menu.preset, [], (name) => this.choosePreset(name));
     this.search.addEventListener('input', () => this.filter());
     this.holdToCompare();
     this.element = h('div', { class: 'menu' },
       h('div', { class: 'row' }, this.presets,
-        button('Save…', () => this.savePreset(), { title: 'Save these settings as a preset in this browser' }),
-        button('As text…', openText, { title: 'Copy or paste the settings as TOML, or set them for all viewers' })),
+        button(text.menu.save, () => this.savePreset(), { title: text.menu.saveTitle }),
+        button(text.menu.asText, openText, { title: text.menu.asTextTitle })),
       h('div', { class: 'row' }, this.undo, this.redo, this.reset, this.compare),
       h('div', { class: 'row' }, this.search),
       this.paneHolder, this.nothing, this.help);
@@ -118,8 +119,8 @@ export class SettingsMenu {
   }
 
   private explain(info: SettingInfo): void {
-    const range = info.min !== null && info.max !== null ? ` ${info.min} to ${info.max}${info.unit ? ` ${info.unit}` : ''}.` : '';
-    this.help.replaceChildren(h('code', {}, info.name), ` ${info.help}.${range} Default: ${info.default || 'none'}.`);
+    const range = info.min !== null && info.max !== null ? text.menu.range(info.min, info.max, info.unit) : '';
+    this.help.replaceChildren(h('code', {}, info.name), text.menu.describe(info.help, range, info.default));
   }
 
   private filter(): void {
@@ -134,8 +135,8 @@ export class SettingsMenu {
   }
 
   private fillPresets(): void {
-    const options = this.shelf.all().map(({ name, own }) => [name, own ? `${name} (mine)` : name] as const);
-    setOptions(this.presets, [['', 'Presets…'], ...options]);
+    const options = this.shelf.all().map(({ name, own }) => [name, own ? text.menu.mine(name) : name] as const);
+    setOptions(this.presets, [['', text.menu.presets], ...options]);
     this.presets.value = '';
   }
 
@@ -144,14 +145,14 @@ export class SettingsMenu {
     this.presets.value = '';
     if (preset === undefined) return;
     const unknown = this.state.settings.replace(preset.values);
-    if (unknown.length > 0) this.toasts.say(`Unknown to this daemon and ignored: ${unknown.join(', ')}`);
+    if (unknown.length > 0) this.toasts.say(text.menu.unknown(unknown));
   }
 
   private savePreset(): void {
-    const name = prompt('Name of the preset (saved in this browser):')?.trim();
+    const name = prompt(text.menu.presetName)?.trim();
     if (name === undefined) return;
     if (this.shelf.save(name, this.state.settings.overrides)) this.fillPresets();
-    else this.toasts.say('This name belongs to a built-in preset', 'error');
+    else this.toasts.say(text.menu.builtIn, 'error');
   }
 }
 

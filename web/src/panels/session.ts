@@ -1,41 +1,52 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lists the streaming subjects with their statistics, and facts about the daemon.
 import type { DaemonStatus, SubjectInfo } from '../api';
+import { text } from '../text';
 import { h } from '../ui/dom';
 
-const HEADINGS: readonly (readonly [string, string])[] = [
-  ['Subject', 'Name and source address'],
-  ['State', ''],
-  ['Hz', 'Poses in the last second'],
-  ['Lost', 'Share of poses lost on the way'],
-  ['Jitter', 'Arrival jitter against capture time, in ms'],
-];
+/** Of the picture on the screen. */
+export interface PictureFigures {
+  latencyMs: number | null;
+  skipped: number;
+  quality: string;
+}
 
 export class SessionPanel {
   private readonly rows = h('tbody', {});
-  private readonly empty = h('p', { class: 'empty' }, 'No subject is streaming.');
+  private readonly empty = h('p', { class: 'empty' }, text.session.nobody);
+  private readonly picture = h('dl', { class: 'facts' });
   private readonly facts = h('dl', { class: 'facts' });
   readonly element = h('div', { class: 'session' },
-    h('h3', {}, 'Subjects'),
+    h('h3', {}, text.session.subjects),
     h('table', { class: 'subjects' },
-      h('thead', {}, h('tr', {}, ...HEADINGS.map(([word, title]) => h('th', { scope: 'col', title }, word)))), this.rows),
-    this.empty, h('h3', {}, 'Daemon'), this.facts);
+      h('thead', {}, h('tr', {}, ...text.session.headings.map(([word, title]) => h('th', { scope: 'col', title }, word)))), this.rows),
+    this.empty, h('h3', {}, text.session.picture), this.picture, h('h3', {}, text.session.daemon), this.facts);
 
   constructor(private readonly onChoose: (subject: string) => void) {}
 
-  show(subjects: readonly SubjectInfo[], status: DaemonStatus, chosen: string): void {
+  show(subjects: readonly SubjectInfo[], status: DaemonStatus, chosen: string, picture: PictureFigures): void {
+    const t = text.session;
+    this.showFacts(this.picture, [
+      [t.latency, picture.latencyMs === null ? text.figures.none : `${picture.latencyMs.toFixed(0)} ms`],
+      [t.dropped, t.steps(picture.skipped)],
+      [t.quality, picture.quality],
+    ]);
     this.empty.hidden = subjects.length > 0;
     const focused = document.activeElement?.closest('tr')?.dataset.subject;
     this.rows.replaceChildren(...subjects.map((subject) => this.row(subject, subject.name === chosen)));
     if (focused !== undefined) this.rows.querySelector<HTMLElement>(`tr[data-subject="${CSS.escape(focused)}"] button`)?.focus();
-    const facts: [string, string][] = [
-      ['Version', status.version],
-      ['Renderer', status.render ? status.renderer : 'none (weights only)'],
-      ['Viewers', String(status.viewers)],
-      ['Pictures', `${status.pictures_rendered} drawn, ${status.pictures_encoded} encoded, ${status.pictures_dropped} dropped`],
-      ['Uptime', `${Math.round(status.uptime_s)} s`],
-    ];
-    this.facts.replaceChildren(...facts.flatMap(([name, value]) => [h('dt', {}, name), h('dd', {}, value)]));
+    this.showFacts(this.facts, [
+      [[t.version, ''], status.version],
+      [[t.renderer, ''], status.render ? status.renderer : t.noRenderer],
+      [[t.viewers, ''], String(status.viewers)],
+      [[t.pictures, ''], t.picturesOf(status.pictures_rendered, status.pictures_encoded, status.pictures_dropped)],
+      [[t.uptime, ''], `${Math.round(status.uptime_s)} s`],
+    ]);
+  }
+
+  private showFacts(list: HTMLElement, facts: readonly (readonly [readonly [string, string], string])[]): void {
+    list.replaceChildren(...facts.flatMap(([[name, title], value]) =>
+      [h('dt', { title: title === '' ? undefined : title }, name), h('dd', {}, value)]));
   }
 
   private row(subject: SubjectInfo, isChosen: boolean): HTMLElement {
@@ -44,10 +55,10 @@ export class SessionPanel {
       h('th', { scope: 'row' },
         h('button', { type: 'button', class: 'link', onclick: () => this.onChoose(subject.name), 'aria-pressed': String(isChosen) }, subject.name),
         h('small', {}, subject.source)),
-      h('td', {}, h('span', { class: `state ${subject.state}` }, subject.state.replace('_', ' '))),
+      h('td', {}, h('span', { class: `state ${subject.state}` }, text.session.states[subject.state])),
       h('td', { class: 'number' }, subject.rate_hz.toFixed(0)),
-      h('td', { class: 'number', title: `${subject.lost} lost, ${subject.late} late` }, share > 0 ? `${(100 * share).toFixed(1)} %` : '0'),
-      h('td', { class: 'number', title: subject.buffer_ms > 0 ? `after a jitter buffer of ${subject.buffer_ms.toFixed(0)} ms` : '' },
+      h('td', { class: 'number', title: text.session.losses(subject.lost, subject.late) }, share > 0 ? `${(100 * share).toFixed(1)} %` : '0'),
+      h('td', { class: 'number', title: subject.buffer_ms > 0 ? text.session.buffer(subject.buffer_ms.toFixed(0)) : '' },
         subject.jitter_ms.toFixed(1)));
   }
 }

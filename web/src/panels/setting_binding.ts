@@ -4,6 +4,7 @@
 import type { BindingApi, BindingParams, FolderApi } from '@tweakpane/core';
 import type { SettingInfo } from '../api';
 import { isOn } from '../state/settings';
+import { text as words } from '../text';
 import { button, readable } from '../ui/dom';
 
 const toSrgb = (x: number): number => (x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055);
@@ -95,12 +96,12 @@ export class SettingRow {
       input.setAttribute('aria-description', info.help);
     }
     // Tweakpane's colour swatch is a button without a name.
-    for (const swatch of element.querySelectorAll('button')) swatch.setAttribute('aria-label', `${label}: picker`);
+    for (const swatch of element.querySelectorAll('button')) swatch.setAttribute('aria-label', words.menu.picker(label));
     this.resetButton = button('↺', events.onReset, {
-      class: 'reset', title: 'Reset to the daemon’s value', 'aria-label': `Reset ${label}`, hidden: true,
+      class: 'reset', title: words.menu.resetOne, 'aria-label': words.menu.resetNamed(label), hidden: true,
     });
     element.append(this.resetButton);
-    for (const type of ['pointerenter', 'focusin'] as const) element.addEventListener(type, events.onPointed);
+    for (const type of ['pointerenter', 'pointerdown', 'focusin'] as const) element.addEventListener(type, events.onPointed);
   }
 
   get element(): HTMLElement {

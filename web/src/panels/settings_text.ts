@@ -3,28 +3,31 @@
 import { api, wordsOf } from '../api';
 import type { AppState } from '../state/app_state';
 import { fromToml, toToml } from '../state/toml';
+import { text } from '../text';
 import { button, h } from '../ui/dom';
 import type { Toasts } from '../ui/toast';
 
+const t = text.settingsText;
+
 export class SettingsText {
   readonly element: HTMLDialogElement;
-  private readonly text = h('textarea', { rows: 14, spellcheck: 'false', 'aria-label': 'Settings as TOML' });
+  private readonly text = h('textarea', { rows: 14, spellcheck: 'false', 'aria-label': t.label });
   private readonly error = h('p', { class: 'error', role: 'alert' });
   private readonly everything = h('input', { type: 'checkbox', id: 'toml-everything' });
 
   constructor(private readonly state: AppState, private readonly toasts: Toasts) {
     this.everything.addEventListener('change', () => this.fill());
     this.element = h('dialog', { 'aria-labelledby': 'toml-title', class: 'settings-text' },
-      h('h2', { id: 'toml-title' }, 'Settings as text'),
-      h('p', {}, 'The changes of this page as a file for ', h('code', {}, 'furrowd --render-settings'), '. Edit or paste to apply.'),
+      h('h2', { id: 'toml-title' }, t.title),
+      h('p', {}, t.intro, h('code', {}, 'furrowd --render-settings'), t.introEnd),
       this.text, this.error,
       h('div', { class: 'row' },
-        h('label', { for: 'toml-everything', class: 'check' }, this.everything, 'Include unchanged settings')),
+        h('label', { for: 'toml-everything', class: 'check' }, this.everything, t.everything)),
       h('div', { class: 'row end' },
-        button('Copy', () => void this.copy()),
-        button('Apply here', () => this.applyHere(), { title: 'Apply to this page only' }),
-        button('Set for all viewers', () => void this.setForAll(), { title: 'Change the daemon’s settings, which every viewer starts with' }),
-        button('Close', () => this.element.close(), { class: 'primary' })));
+        button(t.copy, () => void this.copy()),
+        button(t.apply, () => this.applyHere(), { title: t.applyTitle }),
+        button(t.setForAll, () => void this.setForAll(), { title: t.setForAllTitle }),
+        button(t.close, () => this.element.close(), { class: 'primary' })));
   }
 
   open(): void {
@@ -38,7 +41,7 @@ export class SettingsText {
     const values = this.everything.checked
       ? new Map(settings.infos.map((info) => [info.name, settings.value(info.name)]))
       : settings.overrides;
-    this.text.value = toToml(settings.infos, values) || '# No settings were changed.\n';
+    this.text.value = toToml(settings.infos, values) || t.unchanged;
     this.error.textContent = '';
   }
 
@@ -47,10 +50,10 @@ export class SettingsText {
       await navigator.clipboard.writeText(this.text.value);
     } catch {
       this.text.select(); // browsers forbid copying except on https and localhost
-      this.error.textContent = 'This browser does not allow the page to copy. Press Ctrl+C.';
+      this.error.textContent = t.cannotCopy;
       return;
     }
-    this.toasts.say('Copied');
+    this.toasts.say(t.copied);
   }
 
   private read(): Map<string, string> | null {
@@ -67,7 +70,7 @@ export class SettingsText {
     const values = this.read();
     if (values === null) return;
     const unknown = this.state.settings.replace(values);
-    if (unknown.length > 0) this.error.textContent = `Unknown setting: ${unknown.join(', ')}`;
+    if (unknown.length > 0) this.error.textContent = t.unknown(unknown);
     else this.element.close();
   }
 
@@ -81,6 +84,6 @@ export class SettingsText {
       return;
     }
     this.element.close();
-    this.toasts.say('Set for all viewers without their own value');
+    this.toasts.say(t.done);
   }
 }

@@ -3,11 +3,13 @@
 import type { PictureRequest } from 'furrow/protocol';
 import type { AppState } from '../state/app_state';
 import { assignments } from '../state/settings';
+import { text } from '../text';
 import { button, h, readable, select, setOptions } from '../ui/dom';
 import type { Signal } from '../ui/signal';
 import { PictureStream } from '../view/picture_stream';
 import type { Connection } from '../wire/connection';
 
+const t = text.strip;
 const MAX_THUMBNAILS = 6;
 const CSS_WIDTH = 144;
 const CSS_HEIGHT = 108;
@@ -22,10 +24,10 @@ class Thumbnail {
   constructor(readonly view: string, connection: Connection, request: PictureRequest,
               onEnlarge: () => void, onRemove: () => void) {
     this.canvas = h('canvas', { width: request.width, height: request.height, 'aria-hidden': 'true' });
-    this.enlarge = h('button', { type: 'button', class: 'thumb', onclick: onEnlarge, 'aria-label': `Show ${readable(view)} large` }, this.canvas);
+    this.enlarge = h('button', { type: 'button', class: 'thumb', onclick: onEnlarge, 'aria-label': t.enlarge(readable(view)) }, this.canvas);
     this.element = h('figure', { 'data-view': view }, this.enlarge,
       h('figcaption', {}, readable(view)),
-      button('×', onRemove, { class: 'remove', 'aria-label': `Remove ${readable(view)}` }));
+      button('×', onRemove, { class: 'remove', 'aria-label': t.remove(readable(view)) }));
     this.stream = new PictureStream(connection, request, {
       onPicture: ({ bitmap }) => {
         this.canvas.getContext('2d', { alpha: false })!.drawImage(bitmap, 0, 0, this.canvas.width, this.canvas.height);
@@ -42,13 +44,13 @@ class Thumbnail {
 }
 
 export class DebugStrip {
-  readonly element = h('aside', { class: 'strip', 'aria-label': 'Debug views' });
+  readonly element = h('aside', { class: 'strip', 'aria-label': t.group });
   /** The select that adds views. The bar below the picture shows it. */
   readonly adder: HTMLSelectElement;
   private readonly thumbnails = new Map<string, Thumbnail>();
 
   constructor(private readonly connection: Connection, private readonly state: AppState) {
-    this.adder = select('Add a debug view', [], (view) => this.add(view));
+    this.adder = select(t.add, [], (view) => this.add(view));
     const { strip, settings, camera, subject } = state;
     for (const signal of [strip, settings.changed, camera, subject]) {
       (signal as Signal<unknown>).watch(() => this.refresh());
@@ -96,7 +98,7 @@ export class DebugStrip {
     }
     for (const view of wanted) this.refreshOne(view);
     const free = choices.filter((view) => !wanted.includes(view));
-    setOptions(this.adder, [['', 'Debug view'], ...free.map((view) => [view, readable(view)] as const)]);
+    setOptions(this.adder, [['', t.none], ...free.map((view) => [view, readable(view)] as const)]);
     this.adder.disabled = wanted.length >= MAX_THUMBNAILS || choices.length === 0;
     this.element.hidden = wanted.length === 0;
   }

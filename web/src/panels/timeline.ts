@@ -2,9 +2,11 @@
 // Controls the recording that the daemon plays: play, pause, scrub, loop and speed. Hidden if the
 // daemon plays none.
 import { api, type Playback, wordsOf } from '../api';
+import { text } from '../text';
 import { button, h, select } from '../ui/dom';
 import type { Toasts } from '../ui/toast';
 
+const t = text.timeline;
 const POLL_MS = 500;
 const SCRUB_MS = 60;
 const SPEEDS = ['0.1', '0.25', '0.5', '1', '2', '4'];
@@ -25,7 +27,7 @@ export function positionAfter(playback: Playback, elapsedS: number): number {
 export class Timeline {
   readonly element: HTMLElement;
   private readonly play: HTMLButtonElement;
-  private readonly scrub = h('input', { type: 'range', min: 0, max: 1, step: 0.001, value: 0, 'aria-label': 'Position in the recording' });
+  private readonly scrub = h('input', { type: 'range', min: 0, max: 1, step: 0.001, value: 0, 'aria-label': t.position });
   private readonly time = h('output', { class: 'time' });
   private readonly loop = h('input', { type: 'checkbox' });
   private readonly speed: HTMLSelectElement;
@@ -37,8 +39,8 @@ export class Timeline {
   private lastScrubMs = 0;
 
   constructor(private readonly toasts: Toasts) {
-    this.play = button('Play', () => this.toggle(), { class: 'play', title: 'Play or pause (space)' });
-    this.speed = select('Speed', SPEEDS.map((s) => [s, `${s}×`] as const), (value) => void this.patch({ speed: Number(value) }));
+    this.play = button(t.play, () => this.toggle(), { class: 'play', title: t.playTitle });
+    this.speed = select(t.speed, SPEEDS.map((s) => [s, `${s}×`] as const), (value) => void this.patch({ speed: Number(value) }));
     this.speed.value = '1';
     this.loop.addEventListener('change', () => void this.patch({ loop: this.loop.checked }));
     this.scrub.addEventListener('input', () => this.onScrub());
@@ -46,9 +48,14 @@ export class Timeline {
       this.scrubbing = false;
       void this.patch({ position_s: Number(this.scrub.value) });
     });
-    this.element = h('section', { class: 'timeline', 'aria-label': 'Recording', hidden: true },
-      this.play, this.scrub, this.time, h('label', { class: 'check' }, this.loop, 'Loop'), this.speed, this.name);
+    this.element = h('section', { class: 'timeline', 'aria-label': t.group, hidden: true },
+      this.play, this.scrub, this.time, h('label', { class: 'check' }, this.loop, t.loop), this.speed, this.name);
     this.tick();
+  }
+
+  /** The subject of a recording that is paused; empty: none is. */
+  get pausedSubject(): string {
+    return this.state !== null && !this.state.playing ? this.state.subject : '';
   }
 
   toggle(): void {
@@ -78,7 +85,7 @@ export class Timeline {
     this.askedMs = performance.now();
     this.element.hidden = playback === null;
     if (playback === null) return;
-    this.play.textContent = playback.playing ? 'Pause' : 'Play';
+    this.play.textContent = playback.playing ? t.pause : t.play;
     this.scrub.max = String(playback.seconds);
     this.loop.checked = playback.loop;
     this.name.textContent = playback.file;

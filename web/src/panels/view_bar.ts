@@ -2,20 +2,22 @@
 // The bar below the picture: framing, comparison and sharpness.
 import type { Wipe } from '../state/address';
 import type { AppState } from '../state/app_state';
+import { text } from '../text';
 import { button, h, readable, select } from '../ui/dom';
 import type { BrowserView } from '../view/browser_view';
 import type { DrawnBy } from '../view/draw_choice';
 import type { Sharpness } from '../view/resolution';
 
+const t = text.viewBar;
 const WIPES: readonly (readonly [Wipe, string])[] = [
-  ['none', 'No wipe'], ['wrinkles', 'Wipe wrinkles'], ['shading', 'Wipe shading'],
+  ['none', t.wipes.none], ['wrinkles', t.wipes.wrinkles], ['shading', t.wipes.shading],
 ];
 const SHARPNESS: readonly (readonly [Sharpness, string])[] = [
-  ['auto', 'Auto detail'], ['sharp', 'Full detail'], ['fast', 'Fast (coarse)'],
+  ['auto', t.details.auto], ['sharp', t.details.sharp], ['fast', t.details.fast],
 ];
 
 const DRAWN_BY: readonly (readonly [DrawnBy, string])[] = [
-  ['auto', 'Drawn by the faster'], ['browser', 'Drawn by this browser'], ['daemon', 'Drawn by the daemon'],
+  ['auto', t.drawers.auto], ['browser', t.drawers.browser], ['daemon', t.drawers.daemon],
 ];
 
 /** A short label, because all framings share one row. */
@@ -25,22 +27,22 @@ function shortName(name: string): string {
 
 export class ViewBar {
   readonly element: HTMLElement;
-  private readonly framings = h('div', { class: 'framings', role: 'group', 'aria-label': 'Framing' });
+  private readonly framings = h('div', { class: 'framings', role: 'group', 'aria-label': t.framing });
   private readonly wipe: HTMLSelectElement;
   private readonly drawnBy: HTMLSelectElement;
 
   constructor(private readonly state: AppState, debugViews: HTMLElement, drawing: BrowserView) {
-    this.wipe = select('Split the picture', WIPES, (value) => state.wipe.set(value as Wipe));
-    const sharpness = select('Sharpness', SHARPNESS, (value) => state.sharpness.set(value as Sharpness));
-    this.drawnBy = select('Drawn by', DRAWN_BY, (value) => state.drawnBy.set(value as DrawnBy));
-    this.element = h('div', { class: 'view-bar', role: 'toolbar', 'aria-label': 'View' },
+    this.wipe = select(t.split, WIPES, (value) => state.wipe.set(value as Wipe));
+    const sharpness = select(t.sharpness, SHARPNESS, (value) => state.sharpness.set(value as Sharpness));
+    this.drawnBy = select(t.drawnBy, DRAWN_BY, (value) => state.drawnBy.set(value as DrawnBy));
+    this.element = h('div', { class: 'view-bar', role: 'toolbar', 'aria-label': t.group },
       this.framings, h('span', { class: 'space' }), h('div', { class: 'choices' }, debugViews, this.wipe, sharpness, this.drawnBy));
     state.presets.bind(() => this.fill());
     state.camera.watch(() => this.mark());
     state.wipe.bind((wipe) => (this.wipe.value = wipe));
     state.drawnBy.bind((drawnBy) => (this.drawnBy.value = drawnBy));
     drawing.why.bind((why) => {
-      this.drawnBy.title = why === '' ? 'This browser draws the picture' : `The daemon draws the picture: ${why}`;
+      this.drawnBy.title = why === '' ? t.drawnHere : t.drawnThere(why);
     });
   }
 
@@ -58,7 +60,7 @@ export class ViewBar {
   private fill(): void {
     this.framings.replaceChildren(...this.state.presets.value.map(({ name }, i) =>
       button(shortName(name), () => this.state.choosePreset(name), {
-        'data-preset': name, title: i < 9 ? `${readable(name)} (key ${i + 1})` : readable(name),
+        'data-preset': name, title: i < 9 ? t.withKey(readable(name), i + 1) : readable(name),
       })));
     this.mark();
   }

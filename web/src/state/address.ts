@@ -16,12 +16,14 @@ export interface PageState {
   strip: string[];
   /** Chosen curves. Empty: the most active ones. */
   curves: string[];
-  /** The open tab of the side panel. Empty: the panel is closed. */
-  panel: string;
+  /** The open tab of the side panel. Empty: the panel is closed. Null: as usual on this screen. */
+  panel: string | null;
   drawnBy: DrawnBy;
+  /** The picture alone. */
+  kiosk: boolean;
 }
 
-const RESERVED = ['subject', 'camera', 'wipe', 'debug', 'curves', 'panel', 'drawn'] as const;
+const RESERVED = ['subject', 'camera', 'wipe', 'debug', 'curves', 'panel', 'drawn', 'kiosk'] as const;
 
 function writeCamera(camera: Camera): string {
   const numbers = [...camera.eye, ...camera.target, camera.fovDegrees];
@@ -57,8 +59,9 @@ export function readAddress(hash: string): PageState {
     wipe: wipe === 'wrinkles' || wipe === 'shading' ? wipe : 'none',
     strip: words(parameters.get('debug')),
     curves: words(parameters.get('curves')),
-    panel: parameters.get('panel') ?? 'look',
+    panel: parameters.get('panel'),
     drawnBy: drawn === 'browser' || drawn === 'daemon' ? drawn : 'auto',
+    kiosk: parameters.get('kiosk') === '1',
   };
   for (const [name, value] of parameters) {
     if (!(RESERVED as readonly string[]).includes(name)) state.settings.set(name, value);
@@ -77,8 +80,9 @@ export function writeAddress(state: PageState): string {
   if (state.wipe !== 'none') pairs.push(['wipe', state.wipe]);
   if (state.strip.length > 0) pairs.push(['debug', state.strip.join(',')]);
   if (state.curves.length > 0) pairs.push(['curves', state.curves.join(',')]);
-  if (state.panel !== 'look') pairs.push(['panel', state.panel]);
+  if (state.panel !== null) pairs.push(['panel', state.panel]);
   if (state.drawnBy !== 'auto') pairs.push(['drawn', state.drawnBy]);
+  if (state.kiosk) pairs.push(['kiosk', '1']);
   pairs.push(...state.settings);
   const encode = (text: string): string => encodeURIComponent(text).replaceAll('%2C', ',');
   return pairs.length === 0 ? '' : `#${pairs.map(([k, v]) => `${encode(k)}=${encode(v)}`).join('&')}`;

@@ -5,9 +5,15 @@ import { type Camera, type CameraPreset, fromPreset, sameCamera } from '../view/
 import type { DrawnBy } from '../view/draw_choice';
 import type { Sharpness } from '../view/resolution';
 import { type PageState, readAddress, type Wipe, writeAddress } from './address';
+import { isCompact } from './layout';
 import { SettingsModel } from './settings';
 
 const ADDRESS_DELAY_MS = 250;
+
+/** Small screens show the picture first, and a panel when somebody asks for it. */
+function usualPanel(compact = isCompact.value): string {
+  return compact ? '' : 'look';
+}
 
 export class AppState {
   readonly settings = new SettingsModel();
@@ -22,6 +28,8 @@ export class AppState {
   readonly panel: Signal<string>;
   readonly sharpness = new Signal<Sharpness>('auto');
   readonly drawnBy: Signal<DrawnBy>;
+  /** The picture alone. */
+  readonly kiosk: Signal<boolean>;
   /** True while the user compares: the picture is drawn without the last change. */
   readonly comparing = new Signal(false);
   private readonly wishes: PageState;
@@ -33,15 +41,20 @@ export class AppState {
     this.wipe = new Signal(this.wishes.wipe);
     this.strip = new Signal<readonly string[]>(this.wishes.strip);
     this.curves = new Signal<readonly string[]>(this.wishes.curves);
-    this.panel = new Signal(this.wishes.panel);
+    this.panel = new Signal(this.wishes.panel ?? usualPanel());
+    isCompact.watch((compact) => {
+      // Only what the user did not choose.
+      if (this.panel.value === usualPanel(!compact)) this.panel.set(usualPanel());
+    });
     this.drawnBy = new Signal(this.wishes.drawnBy);
+    this.kiosk = new Signal(this.wishes.kiosk);
   }
 
   /** Applies the URL once the daemon has replied. Returns names in the URL that the daemon does not know. */
   begin(presets: readonly CameraPreset[]): string[] {
     const unknown = this.settings.begin(this.wishes.settings);
     this.setPresets(presets);
-    for (const signal of [this.subject, this.wipe, this.strip, this.curves, this.panel, this.drawnBy, this.camera, this.settings.changed]) {
+    for (const signal of [this.subject, this.wipe, this.strip, this.curves, this.panel, this.drawnBy, this.kiosk, this.camera, this.settings.changed]) {
       (signal as Signal<unknown>).watch(() => this.writeSoon());
     }
     return unknown;
@@ -79,8 +92,9 @@ export class AppState {
       wipe: this.wipe.value,
       strip: [...this.strip.value],
       curves: [...this.curves.value],
-      panel: this.panel.value,
+      panel: this.panel.value === usualPanel() ? null : this.panel.value,
       drawnBy: this.drawnBy.value,
+      kiosk: this.kiosk.value,
     };
   }
 

@@ -10,6 +10,8 @@ export interface WeightFrame {
 
 export class WeightHistory {
   names: readonly string[] = [];
+  /** Sequence of the pose on the screen, whose weights current() returns; null: the newest pose. */
+  pinned: number | null = null;
   private frames_: WeightFrame[] = [];
   private index = new Map<string, number>();
 
@@ -21,6 +23,25 @@ export class WeightHistory {
   }
   get latest(): WeightFrame | undefined {
     return this.frames_.at(-1);
+  }
+
+  /** Index of the frame that belongs to the picture; -1: there are no frames. */
+  private get currentIndex(): number {
+    const { frames_, pinned } = this;
+    if (pinned === null) return frames_.length - 1;
+    // Weights arrive before their picture, and pictures are recent, so the search begins at the end.
+    for (let i = frames_.length - 1; i >= 0; --i) {
+      if (((frames_[i]!.sequence - pinned) | 0) <= 0) return i;
+    }
+    return frames_.length - 1;
+  }
+  /** The weights of the pose on the screen, or of the last pose before it that has any. */
+  get current(): WeightFrame | undefined {
+    return this.frames_[this.currentIndex];
+  }
+  /** The frames up to current(). */
+  get shown(): readonly WeightFrame[] {
+    return this.frames_.slice(0, this.currentIndex + 1);
   }
 
   /** Discards all frames, because the subject or the rig changed. */
@@ -48,10 +69,10 @@ export class WeightHistory {
     return this.index.get(name) ?? -1;
   }
 
-  /** 0 where there is none. */
+  /** The weight of the pose on the screen; 0 where there is none. */
   value(name: string): number {
     const i = this.indexOf(name);
-    return i < 0 ? 0 : (this.latest?.values[i] ?? 0);
+    return i < 0 ? 0 : (this.current?.values[i] ?? 0);
   }
 
   /** The `count` names that moved most in what is kept, in the daemon's order. */

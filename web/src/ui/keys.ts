@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The keyboard shortcuts of the page, and the dialog that lists them.
+import { text } from '../text';
 import { button, h, takesKeys } from './dom';
 
 export interface Command {
@@ -10,13 +11,6 @@ export interface Command {
   release?: () => void;
 }
 
-const CAMERA_KEYS: readonly (readonly [string, string])[] = [
-  ['drag, arrows', 'orbit the camera around the subject'],
-  ['shift + drag, right button, two fingers', 'pan'],
-  ['wheel, pinch, + −', 'zoom'],
-  ['alt + drag', 'look around'],
-  ['w a s d, q e', 'move the camera, down and up'],
-];
 
 function nameOf(event: KeyboardEvent): string {
   const modifier = event.ctrlKey || event.metaKey ? 'ctrl+' : '';
@@ -43,10 +37,10 @@ export function helpDialog(commands: readonly Command[]): HTMLDialogElement {
     h('tr', {}, h('th', { scope: 'row' }, h('kbd', {}, keys)), h('td', {}, words));
   const shown = commands.filter(({ words }) => words !== '');
   const dialog = h('dialog', { class: 'help', 'aria-labelledby': 'help-title' },
-    h('h2', { id: 'help-title' }, 'Mouse, touch and keyboard'),
-    h('table', {}, h('tbody', {}, ...CAMERA_KEYS.map(([keys, words]) => row(keys, words)),
+    h('h2', { id: 'help-title' }, text.keys.title),
+    h('table', {}, h('tbody', {}, ...text.keys.camera.map(([keys, words]) => row(keys, words)),
       ...shown.map(({ key, words }) => row(key.replace('ctrl+', 'Ctrl + '), words)))),
-    h('p', { class: 'fine' }, 'Camera keys work while the picture has the focus. All settings are saved in the URL, which you can bookmark or share.'));
-  dialog.append(h('div', { class: 'row end' }, button('Close', () => dialog.close(), { class: 'primary' })));
+    h('p', { class: 'fine' }, text.keys.note));
+  dialog.append(h('div', { class: 'row end' }, button(text.keys.close, () => dialog.close(), { class: 'primary' })));
   return dialog;
 }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Asks for the connect token when the daemon requires one.
+import { text } from '../text';
 import { button, h } from './dom';
+
+const t = text.token;
 
 export class TokenDialog {
   readonly element: HTMLDialogElement;
@@ -11,17 +14,17 @@ export class TokenDialog {
 
   constructor(onToken: (token: string) => void) {
     const form = h('form', { method: 'dialog' },
-      h('label', { for: 'token' }, 'Token'), this.input,
+      h('label', { for: 'token' }, t.label), this.input,
       h('div', { class: 'row end' },
-        button('Cancel', () => this.element.close()),
-        h('button', { class: 'primary', type: 'submit' }, 'Connect')));
+        button(t.cancel, () => this.element.close()),
+        h('button', { class: 'primary', type: 'submit' }, t.connect)));
     form.addEventListener('submit', () => {
       if (this.input.value.trim() !== '') onToken(this.input.value);
       this.input.value = '';
     });
     this.element = h('dialog', { class: 'token', 'aria-labelledby': 'token-title' },
-      h('h2', { id: 'token-title' }, 'This daemon requires a token'), this.reason, form,
-      h('p', { class: 'fine' }, 'An operator makes one with “furrow token new”. It is kept until this tab is closed.'));
+      h('h2', { id: 'token-title' }, t.title), this.reason, form,
+      h('p', { class: 'fine' }, t.note));
   }
 
   ask(reason: string): void {

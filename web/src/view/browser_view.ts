@@ -11,6 +11,7 @@ import { Signal } from '../ui/signal';
 import type { Connection } from '../wire/connection';
 import type { BrowserScene } from './browser_scene';
 import { decide, type DrawDecision } from './draw_choice';
+import type { ShownPicture } from './picture_stats';
 import { pictureSize } from './resolution';
 
 const CHARACTER_URL = 'character.glb';
@@ -56,9 +57,10 @@ export class BrowserView {
   private shownAtS: number[] = [];
   private slowS = 0;
   private lastDrawn = '';
+  private drawn: (ShownPicture & { ageMs: number; atMs: number }) | null = null;
   private isScheduled = false;
 
-  constructor(private readonly connection: Connection, private readonly state: AppState) {
+  constructor(private readonly connection: Connection, private readonly state: AppState, private readonly onShown: () => void) {
     const { settings, wipe, comparing, drawnBy, subject } = state;
     for (const signal of [settings.changed, wipe, comparing, drawnBy, subject]) {
       (signal as Signal<unknown>).watch(() => this.update());
@@ -74,6 +76,19 @@ export class BrowserView {
   rateHz(nowS: number): number {
     this.shownAtS = this.shownAtS.filter((at) => nowS - at <= RATE_WINDOW_S);
     return this.shownAtS.length / RATE_WINDOW_S;
+  }
+
+  /** The pose that this browser has drawn; null: none. */
+  shown(): ShownPicture | null {
+    const { drawn } = this;
+    return drawn === null ? null : { ...drawn, ageMs: drawn.ageMs + performance.now() - drawn.atMs };
+  }
+
+  /** The canvas with its picture, which browsers drop after the task that drew it. */
+  canvas(): HTMLCanvasElement | null {
+    this.lastDrawn = '';
+    this.draw();
+    return this.element.querySelector('canvas');
   }
 
   /** Called once per second: what the daemon says of the shown subject, and how fast it draws a moving pose. */
@@ -150,6 +165,7 @@ export class BrowserView {
     this.shownAtS = [];
     // Shown with the first picture (draw()), so that the daemon's stays until then.
     if (!active) {
+      this.drawn = null;
       this.element.hidden = true;
       this.active.set(false);
     }
@@ -254,8 +270,13 @@ export class BrowserView {
       return;
     }
     const endedMs = performance.now();
-    if (step === 'measure') this.note(endedMs - beganMs);
-    else this.show(endedMs / 1000);
+    if (step === 'measure') {
+      this.note(endedMs - beganMs);
+    } else {
+      this.drawn = { sequence: pose.sequence, width, height, isStill: false, ageMs: pose.ageMs, atMs: endedMs };
+      this.show(endedMs / 1000);
+      this.onShown();
+    }
     this.schedule();
   }
 

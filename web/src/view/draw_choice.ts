@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Decides whether the browser or the daemon draws the picture. Pure, so every case has a test.
+import { text } from '../text';
 
 /** 'auto': the browser, once it has proved faster than the daemon. */
 export type DrawnBy = 'auto' | 'browser' | 'daemon';
@@ -41,27 +42,28 @@ export function isSoftware(gpu: string): boolean {
   return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(gpu);
 }
 
-const byDaemon = (why: string): DrawDecision => ({ step: 'daemon', why });
+const { why } = text;
+const byDaemon = (reason: string): DrawDecision => ({ step: 'daemon', why: reason });
 
 export function decide(at: DrawSituation): DrawDecision {
   const isAuto = at.choice === 'auto';
-  if (at.choice === 'daemon') return byDaemon('you chose the daemon');
-  if (!at.isConnected) return byDaemon('there is no connection');
-  if (at.gpu === '') return byDaemon('this browser has no WebGL 2');
-  if (isAuto && isSoftware(at.gpu)) return byDaemon('this browser draws in software');
-  if (at.character === 'none') return byDaemon('the daemon has no character for browsers');
-  if (at.character === 'failed') return byDaemon('this browser cannot draw the character');
-  if (at.isSpecial) return byDaemon('only the daemon draws this view and these settings');
-  if (at.hasNeutral) return byDaemon('the subject has a neutral pose of its own');
-  if (at.character === 'unknown') return { step: isAuto && at.daemonHz === 0 ? 'daemon' : 'load', why: 'the character is not loaded yet' };
-  if (at.character === 'loading') return byDaemon('the character is loading');
-  if (at.fits === null) return byDaemon('no pose has arrived yet');
-  if (!at.fits) return byDaemon("the subject's skeleton or weights are not those of the character");
-  if (at.whyNoSkin !== '') return byDaemon(`no skin shading here: ${at.whyNoSkin}`);
-  if (isAuto && at.daemonHz === 0) return byDaemon("the daemon's rate is not known yet");
-  if (at.browserHz === null) return { step: 'measure', why: 'measuring this browser' };
+  if (at.choice === 'daemon') return byDaemon(why.chosen);
+  if (!at.isConnected) return byDaemon(why.noConnection);
+  if (at.gpu === '') return byDaemon(why.noWebGl);
+  if (isAuto && isSoftware(at.gpu)) return byDaemon(why.software);
+  if (at.character === 'none') return byDaemon(why.noCharacter);
+  if (at.character === 'failed') return byDaemon(why.failed);
+  if (at.isSpecial) return byDaemon(why.special);
+  if (at.hasNeutral) return byDaemon(why.neutral);
+  if (at.character === 'unknown') return { step: isAuto && at.daemonHz === 0 ? 'daemon' : 'load', why: why.notLoaded };
+  if (at.character === 'loading') return byDaemon(why.loading);
+  if (at.fits === null) return byDaemon(why.noPose);
+  if (!at.fits) return byDaemon(why.otherSkeleton);
+  if (at.whyNoSkin !== '') return byDaemon(why.noSkin(at.whyNoSkin));
+  if (isAuto && at.daemonHz === 0) return byDaemon(why.noRate);
+  if (at.browserHz === null) return { step: 'measure', why: why.measuring };
   if (isAuto && at.browserHz < Math.max(LEAST_HZ, ADVANTAGE * at.daemonHz)) {
-    return byDaemon(`the daemon is faster: ${at.daemonHz.toFixed(0)} pictures per second, and ${at.browserHz.toFixed(0)} here`);
+    return byDaemon(why.slower(at.daemonHz.toFixed(0), at.browserHz.toFixed(0)));
   }
   return { step: 'browser', why: '' };
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Statistics of the pictures: rate, latency and losses.
+// Statistics of the pictures: rate, latency, age and losses.
 
 export interface PictureFacts {
   sequence: number;
@@ -8,22 +8,49 @@ export interface PictureFacts {
   tier: number;
   dropped: number;
   receivedUs: number;
+  width: number;
+  height: number;
+  /** Time that this browser took to decode the picture. */
+  decodeMs: number;
+}
+
+/** What is on the screen, whoever drew it. */
+export interface ShownPicture {
+  /** Of its pose. */
+  sequence: number;
+  width: number;
+  height: number;
+  isStill: boolean;
+  /** Time since the pose reached the daemon; null: unknown. */
+  ageMs: number | null;
 }
 
 const WINDOW_S = 2;
 /** After this many pictures in a row without a still, the pose or the camera counts as moving. */
 const MOVES = 3;
+const MOST_SAMPLES = 60;
+
+interface Sample {
+  atS: number;
+  dropped: number;
+  decodeMs: number;
+}
 
 export class PictureStats {
-  private times: number[] = [];
+  private samples: Sample[] = [];
   private latencies: number[] = [];
-  private lastSequence = -1;
   private lastDropped = 0;
-  /** Pictures so far. A pose at rest gets no pictures, so a low rate is not a fault. */
+  /** Pictures of the current connection. A pose at rest gets no pictures, so a low rate is not a fault. */
   shown = 0;
   dropped = 0;
   tier = 0;
   still = false;
+  /** Sequence of the pose on the screen; null: there is no picture. */
+  sequence: number | null = null;
+  width = 0;
+  height = 0;
+  /** When the pose on the screen reached the daemon, on the daemon's clock; 0: unknown. */
+  private receivedUs = 0;
   private sinceStill = Infinity;
 
   /**
@@ -38,24 +65,50 @@ export class PictureStats {
   add(picture: PictureFacts, nowUs: number, offsetUs: number | null): void {
     const nowS = nowUs / 1e6;
     ++this.shown;
-    this.times.push(nowS);
+    // The daemon counts per subscription, so a smaller number means a new subscription.
+    const dropped = picture.dropped >= this.lastDropped ? picture.dropped - this.lastDropped : picture.dropped;
+    this.lastDropped = picture.dropped;
+    this.dropped += dropped;
+    this.samples.push({ atS: nowS, dropped, decodeMs: picture.decodeMs });
     this.prune(nowS);
     this.tier = picture.tier;
     this.still = picture.still;
+    this.width = picture.width;
+    this.height = picture.height;
+    this.receivedUs = picture.receivedUs;
     this.sinceStill = picture.still ? 0 : this.sinceStill + 1;
-    // The daemon counts per subscription, so a smaller number means a new subscription.
-    this.dropped += picture.dropped >= this.lastDropped ? picture.dropped - this.lastDropped : picture.dropped;
-    this.lastDropped = picture.dropped;
-    const isFresh = picture.ageUs === 0 && !picture.still && picture.sequence !== this.lastSequence;
-    this.lastSequence = picture.sequence;
+    const isFresh = picture.ageUs === 0 && !picture.still && picture.sequence !== this.sequence;
+    this.sequence = picture.sequence;
     if (!isFresh || offsetUs === null || picture.receivedUs === 0) return;
     this.latencies.push(Math.max(0, (nowUs + offsetUs - picture.receivedUs) / 1000));
-    if (this.latencies.length > 60) this.latencies.shift();
+    if (this.latencies.length > MOST_SAMPLES) this.latencies.shift();
+  }
+
+  /** Forgets the pictures of a daemon or a subject that has gone. */
+  reset(): void {
+    this.samples = [];
+    this.latencies = [];
+    this.shown = this.lastDropped = this.receivedUs = 0;
+    this.sequence = null;
+    this.still = false;
+    this.sinceStill = Infinity;
   }
 
   rateHz(nowS: number): number {
     this.prune(nowS);
-    return this.times.length / WINDOW_S;
+    return this.samples.length / WINDOW_S;
+  }
+
+  /** Poses per second that were skipped because this viewer or its network was slow. */
+  waitedHz(nowS: number): number {
+    this.prune(nowS);
+    return this.samples.reduce((sum, { dropped }) => sum + dropped, 0) / WINDOW_S;
+  }
+
+  /** Mean time to decode a picture; 0 if there is none in the last two seconds. */
+  decodeMs(): number {
+    const { samples } = this;
+    return samples.length === 0 ? 0 : samples.reduce((sum, { decodeMs }) => sum + decodeMs, 0) / samples.length;
   }
 
   /** Median, from the pose's arrival at the daemon to the screen; null: no moving pictures yet. */
@@ -65,7 +118,13 @@ export class PictureStats {
     return sorted[Math.floor(sorted.length / 2)]!;
   }
 
+  /** Time since the pose on the screen reached the daemon; null: unknown. */
+  ageMs(nowUs: number, offsetUs: number | null): number | null {
+    if (this.sequence === null || this.receivedUs === 0 || offsetUs === null) return null;
+    return Math.max(0, (nowUs + offsetUs - this.receivedUs) / 1000);
+  }
+
   private prune(nowS: number): void {
-    while (this.times.length > 0 && this.times[0]! < nowS - WINDOW_S) this.times.shift();
+    while (this.samples.length > 0 && this.samples[0]!.atS < nowS - WINDOW_S) this.samples.shift();
   }
 }

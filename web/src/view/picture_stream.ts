@@ -8,8 +8,11 @@ import type { Connection } from '../wire/connection';
 /** A decoded picture. The receiver must close the bitmap. */
 export interface Picture extends Omit<PictureMessage, 'bytes'> {
   bitmap: ImageBitmap;
+  /** Of the pose. */
   sequence: number;
   numBytes: number;
+  /** Time that decoding took. */
+  decodeMs: number;
 }
 
 export interface PictureEvents {
@@ -127,6 +130,7 @@ export class PictureStream implements Subscriber {
     const { bytes, ...rest } = picture;
     const { subscription } = this;
     let bitmap: ImageBitmap | null = null;
+    const beganMs = performance.now();
     try {
       bitmap = await createImageBitmap(new Blob([bytes], { type: picture.mimeType }));
     } catch {
@@ -142,6 +146,6 @@ export class PictureStream implements Subscriber {
     this.newestShown = picture.number;
     const behind = (this.wanted - picture.viewRequest) | 0;
     if (this.answered && behind <= 0 && this.timer === null) this.pending.set(false);
-    this.events.onPicture({ ...rest, bitmap, sequence, numBytes: bytes.length });
+    this.events.onPicture({ ...rest, bitmap, sequence, numBytes: bytes.length, decodeMs: performance.now() - beganMs });
   }
 }

@@ -4,7 +4,7 @@
 
 export type Sharpness = 'auto' | 'sharp' | 'fast';
 
-const STEPS = [1, 0.75, 0.5, 0.35] as const;
+const STEPS = [1, 0.75, 0.5, 0.35, 0.25] as const;
 const TOO_SLOW_HZ = 14;
 const FAST_HZ = 27;
 /** If a larger size turns out too slow within this time, the next attempt waits longer. */
@@ -20,6 +20,12 @@ export class AdaptiveScale {
 
   get scale(): number {
     return STEPS[this.step]!;
+  }
+
+  /** Chooses the first scale: the largest one with at most `affordable` of `pixels`. */
+  begin(pixels: number, affordable: number): void {
+    const fits = STEPS.findIndex((scale) => pixels * scale * scale <= affordable);
+    this.step = fits < 0 ? STEPS.length - 1 : fits;
   }
 
   /** Called once per second with pictures and poses per second. Returns true if the scale changed. */

@@ -1,27 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
 // The picture on the screen, or two pictures with a draggable divider.
+import { text } from '../text';
 import { h } from '../ui/dom';
 import type { Picture } from './picture_stream';
 
 export type Side = 'right' | 'left';
 
-const HELP = 'Live picture. Drag or arrow keys orbit the camera, w a s d move it, plus and minus zoom. ' +
-  'Question mark lists all keys.';
+/** Shown while a change takes longer than this, so that quick changes do not flicker. */
+const BUSY_MS = 250;
 
 export class Stage {
   readonly canvas = h('canvas', { class: 'picture', 'aria-hidden': 'true' });
   private readonly divider = h('div', { class: 'divider' });
   private readonly labels = { left: h('span', { class: 'wipe-label left' }), right: h('span', { class: 'wipe-label right' }) };
   private readonly slider = h('input', {
-    type: 'range', min: 0, max: 1000, value: 500, class: 'wipe-slider', 'aria-label': 'Position of the divider',
+    type: 'range', min: 0, max: 1000, value: 500, class: 'wipe-slider', 'aria-label': text.stage.divider,
   });
   private readonly wipe = h('div', { class: 'wipe', hidden: true }, this.divider, this.labels.left, this.labels.right, this.slider);
+  private readonly busy = h('p', { class: 'busy', hidden: true });
+  /** A face in the colours of the picture, until there is one. index.html holds it, so that it is seen at once. */
+  private readonly placeholder = document.querySelector('.placeholder') ?? h('div', { class: 'placeholder' });
   /** Receives the keys and pointers for the camera. */
-  readonly surface = h('div', { class: 'surface', tabindex: 0, role: 'application', 'aria-label': HELP }, this.canvas);
-  readonly element = h('div', { class: 'stage' }, this.surface, this.wipe);
+  readonly surface = h('div', { class: 'surface', tabindex: 0, role: 'application', 'aria-label': text.stage.help }, this.canvas);
+  readonly element = h('div', { class: 'stage', 'aria-busy': 'true' }, this.placeholder, this.surface, this.wipe, this.busy);
   private readonly bitmaps: Record<Side, ImageBitmap | null> = { left: null, right: null };
   private split = false;
   private drawScheduled = false;
+  private busyTimer: ReturnType<typeof setTimeout> | null = null;
+  /** What the user has just chosen, for the label while it is drawn. */
+  private wanted = '';
 
   constructor() {
     this.slider.addEventListener('input', () => this.place());
@@ -34,6 +41,32 @@ export class Stage {
     this.bitmaps[side]?.close();
     this.bitmaps[side] = picture.bitmap;
     this.schedule();
+  }
+
+  /** True if there is a picture on the canvas. */
+  get hasPicture(): boolean {
+    return this.bitmaps.right !== null;
+  }
+
+  /** Names what is drawn next. */
+  announce(name: string): void {
+    this.wanted = name;
+  }
+
+  /** `isBusy`: the picture does not show the last change yet. */
+  setBusy(isBusy: boolean): void {
+    this.element.setAttribute('aria-busy', String(isBusy));
+    if (!isBusy) {
+      if (this.busyTimer !== null) clearTimeout(this.busyTimer);
+      this.busyTimer = null;
+      this.busy.hidden = true;
+      this.wanted = '';
+      return;
+    }
+    this.busyTimer ??= setTimeout(() => {
+      this.busy.textContent = this.wanted === '' ? text.stage.drawing : text.stage.drawingView(this.wanted);
+      this.busy.hidden = !this.hasPicture;
+    }, BUSY_MS);
   }
 
   /** Sets the labels of both sides. Null: one picture without a divider. */
@@ -78,10 +111,12 @@ export class Stage {
       this.canvas.width = width;
       this.canvas.height = height;
     }
-    const context = this.canvas.getContext('2d', { alpha: false })!;
-    context.imageSmoothingQuality = 'high';
     const { left, right } = this.bitmaps;
-    if (right !== null) cover(context, right);
+    this.element.classList.toggle('has-picture', right !== null);
+    if (right === null) return; // the canvas stays transparent above the placeholder
+    const context = this.canvas.getContext('2d')!;
+    context.imageSmoothingQuality = 'high';
+    cover(context, right);
     if (!this.split || left === null) return;
     context.save();
     context.beginPath();

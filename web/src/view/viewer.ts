@@ -5,11 +5,13 @@ import { ERROR, type PictureRequest } from 'furrow/protocol';
 import type { Wipe } from '../state/address';
 import type { AppState } from '../state/app_state';
 import { assignments, type Values } from '../state/settings';
+import { text } from '../text';
+import { readable } from '../ui/dom';
 import { Signal } from '../ui/signal';
 import type { Connection } from '../wire/connection';
 import { BrowserView } from './browser_view';
 import { type Picture, PictureStream } from './picture_stream';
-import { PictureStats } from './picture_stats';
+import { PictureStats, type ShownPicture } from './picture_stats';
 import { AdaptiveScale, pictureSize } from './resolution';
 import { type Side, Stage } from './stage';
 
@@ -21,9 +23,14 @@ interface WipeSides {
 }
 
 const WIPES: Record<Exclude<Wipe, 'none'>, WipeSides> = {
-  wrinkles: { setting: 'wrinkles', left: 'off', right: 'on', labels: { left: 'Wrinkles off', right: 'Wrinkles on' } },
-  shading: { setting: 'shading', left: 'diffuse', right: 'skin', labels: { left: 'Diffuse', right: 'Skin' } },
+  wrinkles: { setting: 'wrinkles', left: 'off', right: 'on', labels: text.wipe.wrinkles },
+  shading: { setting: 'shading', left: 'diffuse', right: 'skin', labels: text.wipe.shading },
 };
+
+/** Pixels that a renderer on the processor draws within a fraction of a second. */
+const SOFTWARE_PIXELS = 130_000;
+/** Nobody minds waiting this long for a full picture. */
+const LONG_MS = 500;
 
 export class Viewer {
   readonly stage = new Stage();
@@ -36,18 +43,34 @@ export class Viewer {
   private main: PictureStream | null = null;
   private other: PictureStream | null = null;
   private accepted: Values = new Map();
+  /** A change of a resting picture is drawn small first where a full picture takes long. */
+  private isHasty = false;
+  /** Time that the last full picture took, and when the one under way was requested. */
+  private fullMs = 0;
+  private fullAskedMs: number | null = null;
 
   constructor(
     private readonly connection: Connection,
     private readonly state: AppState,
     private readonly say: (text: string) => void,
+    /** Another picture is on the screen. */
+    private readonly onShown: () => void,
   ) {
     const { settings, camera, subject, wipe, comparing, sharpness } = state;
-    for (const signal of [settings.changed, camera, subject, wipe, comparing, sharpness]) {
-      (signal as Signal<unknown>).watch(() => this.refresh());
+    for (const signal of [settings.changed, camera, wipe, comparing]) {
+      (signal as Signal<unknown>).watch(() => {
+        this.isHasty = this.stats.resting && this.fullMs > LONG_MS;
+        this.refresh();
+      });
     }
+    sharpness.watch(() => this.refresh());
+    subject.watch(() => {
+      this.stats.reset();
+      this.refresh();
+    });
+    camera.watch(() => this.stage.announce(readable(state.presetName() ?? '')));
     new ResizeObserver(() => this.refresh()).observe(this.stage.surface);
-    this.drawing = new BrowserView(connection, state);
+    this.drawing = new BrowserView(connection, state, () => this.onShown());
     this.stage.surface.append(this.drawing.element);
     this.drawing.active.watch((active) => this.onDrawing(active));
     connection.link.watch(() => this.onLink());
@@ -58,13 +81,13 @@ export class Viewer {
     this.stage.element.dataset.drawnBy = active ? 'browser' : 'daemon';
     if (active) {
       this.main?.stop();
-      this.stage.element.setAttribute('aria-busy', 'false');
+      this.stage.setBusy(false);
     } else {
       this.refresh();
       this.main?.start();
       // The picture on the stage is from before.
       this.stage.element.dataset.still = 'false';
-      this.stage.element.setAttribute('aria-busy', 'true');
+      this.stage.setBusy(true);
     }
   }
 
@@ -75,9 +98,38 @@ export class Viewer {
     if (this.scale.observe(this.stats.rateHz(nowS), posesHz, nowS)) this.refresh();
   }
 
+  /** Called when it is known how the daemon draws, so that the first picture comes quickly. */
+  setRenderer(isSoftware: boolean): void {
+    const { clientWidth, clientHeight } = this.stage.surface;
+    if (isSoftware) this.scale.begin(clientWidth * clientHeight * devicePixelRatio ** 2, SOFTWARE_PIXELS);
+  }
+
+  /** True until the picture shows the last change of the page. */
+  get isChanging(): boolean {
+    return !this.drawing.active.value && this.main?.pending.value === true;
+  }
+
+  /** What is on the screen, whoever drew it; null: nothing. */
+  canvas(): HTMLCanvasElement | null {
+    if (this.drawing.active.value) return this.drawing.canvas();
+    return this.stage.hasPicture ? this.stage.canvas : null;
+  }
+
+  /** The pose on the screen. Null: there is no picture of this connection. */
+  picture(): ShownPicture | null {
+    const { stats, drawing } = this;
+    if (drawing.active.value) return drawing.shown();
+    if (stats.sequence === null) return null;
+    const { sequence, width, height, still } = stats;
+    return { sequence, width, height, isStill: still, ageMs: stats.ageMs(this.connection.nowUs(), this.connection.clock.offsetUs()) };
+  }
+
   private onLink(): void {
-    this.stage.setDimmed(this.connection.link.value === 'lost');
-    if (this.connection.link.value === 'open') this.notDrawn.set('');
+    const link = this.connection.link.value;
+    if (link === 'open') this.notDrawn.set('');
+    // The picture on the screen belongs to a daemon that has gone. The next one begins again.
+    if (link === 'lost') this.stats.reset();
+    if (link !== 'open') this.stage.element.dataset.still = 'false';
   }
 
   private wantedValues(): Values {
@@ -92,7 +144,7 @@ export class Viewer {
       case 'fast':
         return 0.5 / Math.max(1, devicePixelRatio);
       default:
-        return this.stats.resting ? 1 : this.scale.scale;
+        return this.stats.resting && !this.isHasty ? 1 : this.scale.scale;
     }
   }
 
@@ -120,9 +172,11 @@ export class Viewer {
     if (request === null) return;
     if (this.main === null) {
       this.main = this.open(request, 'right');
-      this.main.pending.bind((busy) => this.stage.element.setAttribute('aria-busy', String(busy)));
+      this.main.pending.bind((busy) => this.stage.setBusy(busy));
     } else {
+      const former = this.main.view;
       this.main.update(request);
+      if (this.main.view !== former) this.fullAskedMs = this.pixelScale() === 1 ? performance.now() : null;
     }
     this.refreshOther(values);
   }
@@ -156,11 +210,20 @@ export class Viewer {
     const wasResting = this.stats.resting;
     this.stats.add(picture, this.connection.nowUs(), this.connection.clock.offsetUs());
     this.notDrawn.set('');
-    if (!this.main!.pending.value) this.accepted = this.state.settings.overrides;
-    // A slow machine draws motion smaller; the first picture at rest may still be small.
-    const resizes = wasResting !== this.stats.resting && this.scale.scale < 1;
-    this.stage.element.dataset.still = String(picture.still && !resizes);
-    if (resizes) this.refresh();
+    const isShown = !this.main!.pending.value;
+    if (isShown && this.fullAskedMs !== null) {
+      this.fullMs = performance.now() - this.fullAskedMs;
+      this.fullAskedMs = null;
+    }
+    if (isShown) this.accepted = this.state.settings.overrides;
+    // A slow machine draws motion and changes smaller; the first picture at rest may still be small.
+    const main = this.main!;
+    const former = main.view;
+    const mayResize = wasResting !== this.stats.resting || (this.isHasty && isShown);
+    if (isShown) this.isHasty = false;
+    if (mayResize) this.refresh();
+    this.stage.element.dataset.still = String(picture.still && main.view === former);
+    this.onShown();
   }
 
   private onRefused(code: number, message: string): void {

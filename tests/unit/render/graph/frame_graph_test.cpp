@@ -193,6 +193,29 @@ TEST_F(FrameGraphTest, AnObserverSeesEveryPassAndItsOutput) {
                                                    "before sink 1", "after sink 2"}));
 }
 
+TEST_F(FrameGraphTest, AnObserverCanEndTheFrame) {
+  class Impatient : public FrameGraphObserver {
+   public:
+    void BeginFrame(int number) override { passes = number; }
+    bool Continues() override { return asked++ < 1; }
+    void BeforePass(std::string_view) override {}
+    void AfterPass(std::string_view, const std::vector<Written>&) override {}
+    int passes = 0;
+    int asked = 0;
+  };
+  (void)AddStep("culled", {});
+  AddSink(AddStep("b", AddStep("a", {})));
+  ASSERT_TRUE(graph_.Compile().ok());
+  Impatient observer;
+  const Status status = graph_.Execute(&pool_, &observer);
+  EXPECT_EQ(status.code(), StatusCode::kUnavailable);
+  EXPECT_EQ(status.where(), "b");
+  EXPECT_EQ(observer.passes, 3) << "without the culled one";
+  EXPECT_EQ(ran_, (std::vector<std::string>{"a"}));
+  for (int frame = 0; frame <= TransientPool::kKeepFrames; ++frame) pool_.EndFrame();
+  EXPECT_EQ(device_.num_alive(), 0);
+}
+
 TEST_F(FrameGraphTest, ReadingAnUnwrittenTextureIsAnError) {
   graph_.AddPass<PassData>(
       "early",

@@ -126,6 +126,45 @@ TEST(RenderMailbox, AWaitingStillCanBeWithdrawn) {
   EXPECT_FALSE(mailbox.Take(false).has_value());  // the job is gone, too
 }
 
+TEST(RenderMailbox, AStillThatIsBeingDrawnCanBeWithdrawn) {
+  RenderMailbox mailbox(8);
+  mailbox.Put(Still(1, 1, 100));
+  mailbox.Put(Job(2, 1, 101));
+  auto moving = mailbox.Take(false);
+  auto still = mailbox.Take(false);
+  EXPECT_TRUE(mailbox.IsWanted(*still));
+  EXPECT_TRUE(mailbox.WithdrawStill(100));
+  EXPECT_FALSE(mailbox.WithdrawStill(100));
+  EXPECT_FALSE(mailbox.IsWanted(*still));
+  EXPECT_EQ(mailbox.Complete(&*still), 1u);
+  // A moving picture stays: its viewer would see none while it turns the camera.
+  EXPECT_FALSE(mailbox.WithdrawStill(101));
+  EXPECT_TRUE(mailbox.IsWanted(*moving));
+}
+
+TEST(RenderMailbox, PreparationsComeLastAndGiveWay) {
+  RenderMailbox mailbox(8);
+  RenderJob preparation = Job(0, 7, 0);
+  preparation.tickets.clear();
+  preparation.prepares = true;
+  mailbox.PutPreparation(preparation);
+  EXPECT_FALSE(mailbox.Take(false).has_value()) << "only if the thread has nothing else to do";
+  mailbox.Put(Job(1, 1, 100));
+  EXPECT_EQ(mailbox.Take(true)->subject, 1u);
+  auto taken = mailbox.Take(true);
+  ASSERT_TRUE(taken->prepares);
+  EXPECT_TRUE(mailbox.IsWanted(*taken));
+  mailbox.Put(Job(2, 1, 100));
+  EXPECT_FALSE(mailbox.IsWanted(*taken));
+  mailbox.PutPreparation(*std::move(taken), /*first=*/true);
+  EXPECT_EQ(mailbox.Take(true)->subject, 2u);
+  EXPECT_TRUE(mailbox.Take(true)->prepares);
+  mailbox.PutPreparation(preparation);
+  mailbox.Close();
+  EXPECT_FALSE(mailbox.Take(true).has_value());
+  EXPECT_FALSE(mailbox.IsWanted(preparation));
+}
+
 // A job of a viewer at a host; the subscription has the viewer's number.
 RenderJob JobOf(std::uint64_t host, std::uint64_t viewer, int width = 64) {
   RenderJob job = Job(/*subject=*/1, 1, viewer, width);

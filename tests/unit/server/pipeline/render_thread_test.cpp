@@ -4,10 +4,12 @@
 
 #include <condition_variable>
 #include <deque>
+#include <functional>
 #include <latch>
 #include <memory>
 #include <mutex>
 #include <new>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -29,6 +31,8 @@ struct Script {
   std::deque<Status> poll;
   std::latch* hold_first_submit = nullptr;
   std::latch* in_first_submit = nullptr;  // counted down when it holds
+  int passes = 0;                         // of each picture, for the observer
+  std::function<void(int)> on_pass;       // called in each pass
   int out_of_memory_submits = 0;          // the next calls throw
   int out_of_memory_polls = 0;
   std::deque<int> samples;                 // of the rendered requests
@@ -53,6 +57,7 @@ class ScriptedRenderer : public render::Renderer {
       --script_->out_of_memory_submits;
       throw std::bad_alloc();
     }
+    FURROW_RETURN_IF_ERROR(DrawPasses());
     Status status = Script::Next(&script_->submit);
     if (status.ok()) ++in_flight_;
     if (status.ok()) script_->samples.push_back(request.settings.anti_aliasing.samples);
@@ -70,12 +75,25 @@ class ScriptedRenderer : public render::Renderer {
     return render::Image{16, 16, std::vector<std::uint8_t>(16 * 16 * 3), 0};
   }
   int in_flight() const override { return in_flight_; }
-  void SetObserver(render::FrameGraphObserver*) override {}
+  void SetObserver(render::FrameGraphObserver* observer) override { observer_ = observer; }
   std::string description() const override { return "scripted"; }
   Result<render::Camera> Preset(std::string_view) const override { return render::Camera(); }
 
  private:
+  Status DrawPasses() {
+    if (script_->passes == 0) return {};
+    observer_->BeginFrame(script_->passes);
+    for (int pass = 0; pass < script_->passes; ++pass) {
+      if (!observer_->Continues()) return {StatusCode::kUnavailable, "abandoned"};
+      observer_->BeforePass("pass");
+      if (script_->on_pass) script_->on_pass(pass);
+      observer_->AfterPass("pass", {});
+    }
+    return {};
+  }
+
   Script* script_;
+  render::FrameGraphObserver* observer_ = nullptr;
   int in_flight_ = 0;
 };
 
@@ -276,6 +294,56 @@ TEST_F(RenderThreadTest, APictureWhoseViewerHasLeftIsNotEncoded) {
   EXPECT_EQ(Count(Counter::kPicturesWithdrawn), 2u);
 }
 
+TEST_F(RenderThreadTest, APictureThatNobodyWantsAnyMoreIsAbandoned) {
+  script.passes = 3;
+  bool is_first = true;
+  std::optional<PictureSource::Drawing> seen;
+  script.on_pass = [&](int pass) {
+    if (pass != 1 || !std::exchange(is_first, false)) return;
+    seen = thread->drawing();
+    EXPECT_TRUE(thread->WithdrawStill(1));
+  };
+  Start();
+  Submit(1, {.subscription = 1, .still = true}, {});
+  Submit(2);
+  EXPECT_EQ(pictures.Take().sequence, 2u);
+  ASSERT_TRUE(seen.has_value());
+  EXPECT_EQ(seen->done, 1);
+  EXPECT_EQ(seen->passes, 3);
+  EXPECT_FALSE(thread->drawing().has_value());
+  EXPECT_EQ(Count(Counter::kPicturesRendered), 1u);
+  EXPECT_EQ(Count(Counter::kPicturesFailed), 0u);
+  EXPECT_EQ(script.num_created, 1) << "the context is not lost";
+}
+
+TEST_F(RenderThreadTest, PreparationsAreDrawnForNobodyAndGoOnAfterAPicture) {
+  script.passes = 2;
+  std::latch prepared(1);
+  int passes = 0;
+  script.on_pass = [&](int pass) {
+    // The first pass of the first preparation: a viewer comes.
+    if (++passes == 1) Submit(1);
+    // Preparation, abandoned; picture; preparation, complete.
+    if (passes == 5 && pass == 1) prepared.count_down();
+  };
+  Start();
+  auto snapshot = std::make_shared<Snapshot>();
+  snapshot->retarget =
+      std::make_shared<const wrinkle::Retarget>(wrinkle::Retarget::Create(skeleton, skeleton));
+  snapshot->blend_shape_pose = std::make_shared<const wrinkle::BlendShapePose>();
+  snapshot->joints.assign(skeleton.rest_pose().begin(), skeleton.rest_pose().end());
+  RenderJob job;
+  job.spec = {.width = 16, .height = 16};
+  job.snapshot = std::move(snapshot);
+  thread->Prepare({std::move(job)});
+  EXPECT_EQ(pictures.Take().sequence, 1u);
+  prepared.wait();
+  thread.reset();
+  EXPECT_EQ(script.samples.size(), 2u) << "the picture, and the preparation";
+  EXPECT_EQ(Count(Counter::kPicturesRendered), 1u);
+  EXPECT_EQ(pictures.num_failed_tickets(), 0u);
+}
+
 TEST_F(RenderThreadTest, TheEncodingsOfAPictureAreLimited) {
   Start();
   auto snapshot = std::make_shared<Snapshot>();
@@ -331,6 +399,20 @@ TEST_F(RenderThreadTest, ARendererThatDoesNotRespondTurnsPicturesOff) {
   EXPECT_NE(log.text().find("the renderer responds again"), std::string::npos);
   Submit(4);
   EXPECT_EQ(pictures.Take().sequence, 4u);
+}
+
+TEST_F(RenderThreadTest, ALongFrameIsNotARendererThatHangs) {
+  script.passes = 3;
+  const Time begun = FromSeconds(100);
+  script.on_pass = [&](int pass) {
+    // Each pass takes almost as long as a renderer may be silent.
+    thread->Watch(begun + pass * (RenderThread::kStuckAfter - FromSeconds(1)));
+    EXPECT_FALSE(thread->is_stuck()) << "in pass " << pass;
+  };
+  Start();
+  Submit(1);
+  EXPECT_EQ(pictures.Take().sequence, 1u);
+  EXPECT_EQ(Count(Counter::kRendererStuck), 0u);
 }
 
 TEST_F(RenderThreadTest, AfterStopNothingIsDrawn) {

@@ -112,6 +112,11 @@ export class Connection {
     this.connect();
   }
 
+  /** Time since the daemon's last message, milliseconds; 0 unless the connection is open. */
+  get silentMs(): number {
+    return this.isUp ? Math.max(0, this.environment.nowMs() - this.heardMs) : 0;
+  }
+
   get state(): LinkState {
     return this.current;
   }

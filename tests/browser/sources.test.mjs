@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// Phones and trackers: where they send to, what has arrived, and what blocks it.
+import assert from 'node:assert/strict';
+import { createSocket } from 'node:dgram';
+import { networkInterfaces } from 'node:os';
+import { after, before, test } from 'node:test';
+import { keep, launch, openPage } from './browser.mjs';
+import { Daemon } from './daemon.mjs';
+
+let browser;
+before(async () => (browser = await launch()));
+after(() => browser?.close());
+
+const NUM_CURVES = 61;
+
+/** One datagram of Live Link Face, version 6. */
+function liveLinkFace(subject, frame) {
+  const text = (words) => Buffer.concat([Buffer.from([0, 0, 0, words.length]), Buffer.from(words)]);
+  const rest = Buffer.alloc(17 + 4 * NUM_CURVES);
+  rest.writeInt32BE(frame, 0);
+  rest.writeInt32BE(60, 8);
+  rest.writeInt32BE(1, 12);
+  rest.writeUInt8(NUM_CURVES, 16);
+  return Buffer.concat([Buffer.from([6]), text('12345678-1234-1234-1234-123456789ABC'), text(subject), rest]);
+}
+
+/** A daemon without pictures has no cameras, which the browser reports. */
+const errorsOf = (page) => page.errors.filter((error) => !error.includes('503'));
+const card = (page, state) => page.locator(`[data-source=livelink_face][data-state=${state}]`);
+
+test('on loopback, the page says why no phone gets through', async () => {
+  const daemon = await Daemon.start(['--no-render', '--livelink-face', '0']);
+  try {
+    assert.match(daemon.log, /--livelink-face listens on 127\.0\.0\.1 only/);
+    const page = await openPage(browser, `${daemon.address}#panel=sources`);
+    await card(page, 'blocked').getByText('No phone can reach it').waitFor();
+    await page.locator('[data-source=vmc][data-state=off]', { hasText: '--vmc 39539' }).waitFor();
+    assert.equal(await page.locator('.source-code').isVisible(), false);
+    await keep(page, 'sources-loopback');
+    assert.deepEqual(errorsOf(page), []);
+    await page.context().close();
+  } finally {
+    await daemon.stop();
+  }
+});
+
+test('in a network, the page shows the address, what arrives and what is refused', async () => {
+  const daemon = await Daemon.start(['--no-render', '--bind', '0.0.0.0', '--open', '--livelink-face', '0']);
+  const socket = createSocket('udp4');
+  let timer;
+  try {
+    const page = await openPage(browser, `${daemon.address}#panel=sources`);
+    await card(page, 'waiting').getByText('Nothing has arrived yet').waitFor();
+    const addresses = Object.values(networkInterfaces()).flat().filter(({ family, internal }) => family === 'IPv4' && !internal);
+    assert.equal(await page.locator('.target code').count() > 0, addresses.length > 0);
+    if (addresses.length > 0) {
+      await card(page, 'waiting').getByText(String(daemon.ports.livelink_face)).waitFor();
+      await page.locator('.qr').waitFor();
+      assert.match(await page.locator('.qr').getAttribute('aria-label'), new RegExp(`http://.*:${daemon.ports.http}/#panel=sources`));
+    }
+    const send = (message) => socket.send(message, daemon.ports.livelink_face, '127.0.0.1');
+    timer = setInterval(() => send(Buffer.from('GET / HTTP/1.1')), 100);
+    await card(page, 'blocked').getByText('not understood').first().waitFor();
+    clearInterval(timer);
+    let frame = 0;
+    timer = setInterval(() => send(liveLinkFace('phone', frame++)), 16);
+    await card(page, 'receiving').getByText('Receiving from 127.0.0.1').waitFor();
+    await keep(page, 'sources-receiving');
+    clearInterval(timer);
+    await card(page, 'waiting').getByText('has stopped sending').waitFor();
+    assert.deepEqual(errorsOf(page), []);
+    await page.context().close();
+  } finally {
+    clearInterval(timer);
+    socket.close();
+    await daemon.stop();
+  }
+});
+
+test('senders that are not allowed are named', async () => {
+  const daemon = await Daemon.start(['--no-render', '--livelink-face', '0', '--mocap-allow', '127.0.0.9']);
+  const socket = createSocket('udp4');
+  const timer = setInterval(() => socket.send(liveLinkFace('phone', 1), daemon.ports.livelink_face, '127.0.0.1'), 50);
+  try {
+    const page = await openPage(browser, `${daemon.address}#panel=sources`);
+    await card(page, 'blocked').getByText('--mocap-allow does not list it').waitFor();
+    await card(page, 'blocked').getByText('--mocap-allow 127.0.0.1').waitFor();
+    await page.context().close();
+  } finally {
+    clearInterval(timer);
+    socket.close();
+    await daemon.stop();
+  }
+});

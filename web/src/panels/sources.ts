@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where phones and trackers send to, what has arrived from them, and what blocks them.
+import { api, type MocapInputInfo, type SourcesInfo, wordsOf } from '../api';
+import { text } from '../text';
+import { h } from '../ui/dom';
+import { qrCode } from '../ui/qr';
+import { adviseOn } from './source_advice';
+
+const REFRESH_MS = 1000;
+
+export class SourcesPanel {
+  private readonly cards = h('div', { class: 'source-cards' });
+  private readonly code = h('figure', { class: 'source-code', hidden: true });
+  private readonly error = h('p', { class: 'error', role: 'alert' });
+  readonly element = h('div', { class: 'sources' }, h('p', {}, text.sources.intro), this.error, this.cards, this.code);
+  private shown = '';
+  private codeOf = '';
+
+  private isVisible = false;
+
+  constructor() {
+    new IntersectionObserver((entries) => {
+      this.isVisible = entries.at(-1)!.isIntersecting;
+      if (this.isVisible) void this.refresh();
+    }).observe(this.element);
+    setInterval(() => this.isVisible && !document.hidden && void this.refresh(), REFRESH_MS);
+  }
+
+  private async refresh(): Promise<void> {
+    try {
+      this.show(await api.sources());
+      this.error.textContent = '';
+    } catch (error) {
+      this.error.textContent = wordsOf(error);
+    }
+  }
+
+  private show(sources: SourcesInfo): void {
+    const addresses = sources.loopback ? [] : sources.addresses;
+    const now = JSON.stringify(sources.inputs.map((input) => [adviseOn(input, sources), input.port, addresses]));
+    if (now !== this.shown) {
+      this.shown = now;
+      this.cards.replaceChildren(...sources.inputs.map((input) => card(input, sources, addresses)));
+    }
+    void this.showCode(addresses[0] ?? '');
+  }
+
+  /** The page's address, for the phone: it shows the address and the port to enter there. */
+  private async showCode(address: string): Promise<void> {
+    const host = address.includes(':') ? `[${address}]` : address;
+    const url = address === '' ? '' : `${location.protocol}//${host}:${location.port || (location.protocol === 'https:' ? '443' : '80')}/#panel=sources`;
+    if (url === this.codeOf) return;
+    this.codeOf = url;
+    this.code.hidden = url === '';
+    if (url === '') return;
+    this.code.replaceChildren(await qrCode(url, text.sources.code(url)), h('figcaption', {}, text.sources.codeHelp, h('code', {}, url)));
+  }
+}
+
+function card(input: MocapInputInfo, sources: SourcesInfo, addresses: readonly string[]): HTMLElement {
+  const t = text.sources;
+  const { state, words, todo, command } = adviseOn(input, sources);
+  const target = input.port === null || addresses.length === 0 ? null : h('dl', { class: 'facts target' },
+    h('dt', {}, t.address), h('dd', {}, ...addresses.map((address) => h('code', {}, address))),
+    h('dt', {}, t.port), h('dd', {}, h('code', {}, String(input.port))));
+  return h('section', { class: `source ${state}`, 'data-source': input.name, 'data-state': state, 'aria-label': t.names[input.name] },
+    h('h3', {}, t.names[input.name]),
+    h('p', { class: 'source-state' }, words),
+    target,
+    todo === '' ? null : h('p', { class: 'fine' }, todo),
+    command === '' ? null : h('code', { class: 'source-command' }, command),
+    state === 'off' || input.packets === 0 ? null : h('p', { class: 'fine' }, t.counts(input.packets, input.malformed, input.rejected)));
+}
