@@ -9,7 +9,7 @@
 #include "server/config/config.h"
 #include "server/core/exit_code.h"
 #include "server/core/metrics.h"
-#include "server/core/service_manager.h"
+#include "server/machine/service_manager.h"
 
 namespace furrow::server {
 

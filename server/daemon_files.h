@@ -2,7 +2,7 @@
 #pragma once
 
 #include "server/config/config.h"
-#include "server/core/confine.h"
+#include "server/machine/confine.h"
 
 namespace furrow::server {
 

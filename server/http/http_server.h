@@ -10,8 +10,8 @@
 #include "base/status.h"
 #include "server/config/http_config.h"
 #include "server/core/network_address.h"
-#include "server/core/service_manager.h"
 #include "server/http/request/web_context.h"
+#include "server/machine/service_manager.h"
 
 namespace furrow::server {
 

@@ -16,7 +16,7 @@
 #include "server/core/lobby.h"
 #include "server/core/metrics.h"
 #include "server/core/network_address.h"
-#include "server/core/service_manager.h"
+#include "server/machine/service_manager.h"
 #include "server/net/tcp/stream_socket.h"
 #include "server/net/tcp/tcp_session.h"
 #include "server/session/hub.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/core/syscall_filter.h"
+#include "server/machine/syscall_filter.h"
 
 #include <algorithm>
 #include <cerrno>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/core/confine.h"
+#include "server/machine/confine.h"
 
 #include <cerrno>
 #include <cstdint>
@@ -14,7 +14,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-#include "server/core/syscall_filter.h"
+#include "server/machine/syscall_filter.h"
 
 namespace furrow::server {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Confinement cannot be undone, so every test confines a child process.
-#include "server/core/confine.h"
+#include "server/machine/confine.h"
 
 #include <cerrno>
 #include <csignal>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/core/service_manager.h"
+#include "server/machine/service_manager.h"
 
 #include <cstdlib>
 #include <string_view>
