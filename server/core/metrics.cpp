@@ -144,6 +144,8 @@ constexpr CounterInfo kCounters[] = {
      "Skeleton offers refused because another sender is sending the subject."},
     {Counter::kSubjectsLost, "furrow_subjects_lost_total",
      "Subjects that stopped sending and decayed to neutral."},
+    {Counter::kStalls, "furrow_stalls_total",
+     "Times that the daemon did not run for 100 ms or longer."},
     {Counter::kSubscriptionsAccepted, "furrow_subscriptions_accepted_total",
      "Subscriptions accepted."},
     {Counter::kSubscriptionsRefused, "furrow_subscriptions_refused_total",

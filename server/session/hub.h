@@ -145,8 +145,10 @@ class Hub {
   // Sends a finished picture to its viewers.
   void OnPicture(const FinishedPicture& picture);
   // Handles lost and decaying subjects, leases, and frames held back by rates. Call it about every
-  // 10 ms.
-  void Tick(Time now);
+  // 10 ms. `late`: how long after its time the call comes. From kStall on, the daemon did not run,
+  // and that time does not count as silence of subjects and peers.
+  void Tick(Time now, Time late = Time{0});
+  static constexpr Time kStall = std::chrono::milliseconds(100);
   // Says goodbye to all peers and refuses new subscriptions. Call it on SIGTERM.
   void Drain();
 
@@ -183,6 +185,7 @@ class Hub {
 
  private:
   [[nodiscard]] static bool HasNoUse(const Peer& peer, Time now);
+  void OnStall(Time now, Time length);
   void AgeSubjects(Time now);
   void RemoveSubject(Subject& subject);
   void RenewConsent(Peer& peer, Time now);

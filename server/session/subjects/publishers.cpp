@@ -153,7 +153,7 @@ bool Publishers::IsContested(const Subject& subject, const Peer& peer, const Str
   const bool has_moved =
       subject.owner.session == key.session && subject.can_move && HasSecretSession(peer);
   if (has_moved || peer.id == subject.owner.peer) return false;
-  const Time heard = std::max(subject.last_pose, subject.last_no_face);
+  const Time heard = std::max({subject.last_pose, subject.last_no_face, awake_since_});
   // Not sooner than kTakeOver: a quick decay must not give subjects away on a bad network.
   return now - heard < std::max(FromSeconds(limits_.loss_seconds), kTakeOver);
 }
@@ -281,9 +281,9 @@ void Publishers::EndForbidden(const Peer& peer, Time now) {
 }
 
 Publishers::Change Publishers::AgeSubject(Subject& subject, Time now) {
-  const Time silence = now - subject.last_pose;
+  const Time silence = now - std::max(subject.last_pose, awake_since_);
   // Also ends a subject that never sent a pose. One without a face is still there.
-  const Time heard = std::max(subject.last_pose, subject.last_no_face);
+  const Time heard = std::max({subject.last_pose, subject.last_no_face, awake_since_});
   if (now - heard > FromSeconds(limits_.idle_seconds)) return Change::kGone;
   if (subject.no_face && now - subject.last_no_face >= FromSeconds(limits_.loss_seconds)) {
     subject.no_face = subject.lost = false;  // now it is lost, which is reported below
@@ -299,9 +299,10 @@ Publishers::Change Publishers::AgeSubject(Subject& subject, Time now) {
   // A lost subject stays until idle_seconds, because its sender may return. One that said goodbye
   // leaves as soon as nothing is visible of it.
   if (pipeline.neutral()) return subject.ended ? Change::kGone : Change::kNone;
-  if (now - subject.last_update < kDecayInterval) return Change::kNone;
-  const bool decayed =
-      pipeline.Decay(ToSeconds(now - subject.last_update)) == wrinkle::JobStatus::kOk;
+  // The decay goes on from where it was before a stall, so that weights do not jump.
+  const Time step = now - std::max(subject.last_update, awake_since_);
+  if (step < kDecayInterval) return Change::kNone;
+  const bool decayed = pipeline.Decay(ToSeconds(step)) == wrinkle::JobStatus::kOk;
   subject.last_update = now;
   return decayed ? Change::kDecayed : Change::kNone;
 }

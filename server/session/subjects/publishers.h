@@ -71,6 +71,10 @@ class Publishers {
   // Ends the peer's subjects that its access does not allow (any more).
   void EndForbidden(const Peer& peer, Time now);
 
+  // The daemon runs again after a stall that ended at `now`. Nobody could be heard during it, so
+  // silence counts from here: the poses of the stall still wait in the sockets.
+  void OnStall(Time now) { awake_since_ = now; }
+
   enum class Change { kNone, kDecayed, kGone };
   // Decays a subject without poses. kDecayed: its weights have changed. kGone: its publisher
   // has left and it is neutral, or it has been idle for Limits::idle_seconds; the caller notifies
@@ -99,6 +103,7 @@ class Publishers {
   std::map<std::uint64_t, std::weak_ptr<const protocol::SkeletonOffer>> offers_;
   std::map<std::string, TokenBucket, std::less<>> new_skeletons_of_;  // by host
   TokenBucket new_skeletons_{kNewSkeletonsPerSecond, kNewSkeletonsBurst};
+  Time awake_since_{0};               // end of the last stall
   TokenBucket log_bucket_{2.0, 20.0};  // repeated bad offers must not flood the log
 };
 
