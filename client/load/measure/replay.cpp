@@ -12,8 +12,6 @@ namespace {
 constexpr std::size_t kMaxBranches = 1024;
 // After this time without poses a server may hold and decay the weights (furrowd: after 0.5 s).
 constexpr std::int64_t kDecayUs = 400'000;
-// Time after which the filter no longer depends on the decay.
-constexpr std::int64_t kForgottenUs = 2'000'000;
 // Branches that differ by at most this are merged.
 constexpr float kSame = 1e-6f;
 

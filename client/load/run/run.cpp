@@ -267,9 +267,13 @@ bool Runner::ReadReady(net::Poller* poller, std::int64_t timeout_ns) {
 IoStatus Runner::ReadWatcher(std::size_t socket) {
   return watchers_->Read(socket, [this](const Watchers::Arrival& arrival) {
     // The arrival at this machine, not the moment at which this loop got round to reading.
+    const std::int64_t arrived_us = (arrival.arrived_ns - start_ns_) / 1000;
+    if (arrival.aged) {
+      return checker_->OnAged(arrival.watcher, arrival.subject, arrival.sequence, arrived_us);
+    }
     last_arrival_ns_ = arrival.arrived_ns;
     checker_->OnWeights(arrival.watcher, arrival.subject, arrival.sequence, arrival.values,
-                        arrival.readable, (last_arrival_ns_ - start_ns_) / 1000);
+                        arrival.readable, arrived_us);
   });
 }
 

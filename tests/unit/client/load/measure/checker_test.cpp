@@ -32,6 +32,10 @@ class Server {
     const auto weights = subject.solver.wrinkle_weights();
     return {weights.begin(), weights.end()};
   }
+  // The server's clock says that a second has passed without poses.
+  void Decay(std::uint32_t subject) {
+    EXPECT_EQ(subjects_[subject].solver.Decay(1.0), wrinkle::JobStatus::kOk);
+  }
 
  private:
   struct Subject {
@@ -172,6 +176,53 @@ TEST_F(CheckerTest, AfterALongGapWeightsAreUnchecked) {
   EXPECT_EQ(tally.lost(), 40u);
   EXPECT_EQ(tally.wrong, 0u);
   EXPECT_GT(tally.unchecked, 0u);
+}
+
+// The load generator, or the network, paused: no pose is missing, but the server decayed.
+TEST_F(CheckerTest, AfterADecayThatTheServerReportsWeightsAreUnchecked) {
+  const Tally& tally = Run([&](std::size_t, const auto& slot) {
+    if (slot.subject == 2 && slot.pose == 100) {
+      server_.Decay(2);
+      checker_.OnAged(0, 2, 99, slot.due_us - 2);
+      checker_.OnAged(0, 2, 99, slot.due_us - 1);
+    }
+    Arrive(slot, server_.Use(slot));
+  });
+  EXPECT_EQ(tally.lost(), 0u);
+  EXPECT_EQ(tally.wrong, 0u);
+  EXPECT_GT(tally.unchecked, 0u);
+  EXPECT_EQ(tally.aged, 2u);
+}
+
+TEST_F(CheckerTest, ADecayThatTheServerDoesNotReportIsWrong) {
+  const Tally& tally = Run([&](std::size_t, const auto& slot) {
+    if (slot.subject == 2 && slot.pose == 100) server_.Decay(2);
+    Arrive(slot, server_.Use(slot));
+  });
+  EXPECT_GT(tally.wrong, 0u);
+  EXPECT_EQ(tally.aged, 0u);
+}
+
+TEST_F(CheckerTest, ADecayExcusesNoOtherWeights) {
+  const Tally& tally = Run([&](std::size_t, const auto& slot) {
+    if (slot.subject == 2 && slot.pose == 100) checker_.OnAged(0, 2, 99, slot.due_us - 1);
+    auto values = server_.Use(slot);
+    // Another subject, a pose before the decay, and one two seconds after it.
+    const bool is_wrong = (slot.subject == 1 && slot.pose == 100) ||
+                          (slot.subject == 2 && (slot.pose == 99 || slot.pose == 200));
+    if (is_wrong) values[1] += values[1] < 0.5f ? 0.5f : -0.5f;
+    Arrive(slot, values);
+  });
+  EXPECT_EQ(tally.wrong, 3u);
+  EXPECT_EQ(tally.unchecked, 0u);
+}
+
+TEST_F(CheckerTest, TheSilenceAfterTheLastPoseIsNoDecay) {
+  const Plan::Slot last = SlotsOf(plan_).back();
+  checker_.OnAged(0, last.subject, last.pose, last.due_us + 600'000);
+  checker_.OnAged(0, 5, 0, 100);          // no such subject
+  checker_.OnAged(0, 0, 1'000'000, 100);  // nor pose
+  EXPECT_EQ(checker_.tally().aged, 0u);
 }
 
 TEST_F(CheckerTest, CountsLateDuplicateReorderedAndNeverSent) {
