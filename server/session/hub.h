@@ -139,6 +139,11 @@ class Hub {
   // every few milliseconds, which publishes the poses that have waited long enough.
   [[nodiscard]] bool HoldsPoses() const { return holds_poses_; }
   void ReleaseHeld(int shard, Time now);
+  // When the thread of the shard must call ReleaseHeld() next because a pose waits for an earlier
+  // one; nothing if none waits. Only datagrams make poses wait. Requires the shard's lock.
+  [[nodiscard]] std::optional<Time> NextAhead(int shard) {
+    return shards_.at(shard).held.NextAhead();
+  }
 
   // Only the thread of shard 0 calls the functions from here on.
 

@@ -130,6 +130,8 @@ Subject* Publishers::Accept(Peer& peer, const StreamKey& key, const protocol::Sk
   if (subject->owner.session != key.session) subject->run = random_();
   subjects_->SetOwner(*subject, key);
   subject->can_move = HasSecretSession(peer);
+  subject->reorders = peer.transport == Transport::kUdp;
+  subject->reorders_until = Time{0};
   const bool has_neutral =
       subject->pipeline != nullptr && subject->skeleton_hash == offer.skeleton_hash;
   const auto former = std::exchange(subject->pipeline, std::move(pipeline));
@@ -190,7 +192,7 @@ Subject* Publishers::FindSubject(const Peer& peer, const protocol::Header& heade
 }
 
 bool Publishers::AcceptPose(Subject& subject, const protocol::Header& header,
-                            const protocol::PoseFrame& pose) {
+                            const protocol::PoseFrame& pose, Time now) {
   if (subject.ended) {  // the goodbye has overtaken this pose
     metrics_->Add(Counter::kPosesLate);
     return false;
@@ -201,7 +203,7 @@ bool Publishers::AcceptPose(Subject& subject, const protocol::Header& header,
     return false;
   }
   // After the check of the contents: an invalid pose must not use up its sequence number.
-  if (!IsNew(subject, header)) return false;
+  if (!IsNew(subject, header, now)) return false;
   ApplyPose(pose, pipeline.stream(), pipeline.mutable_pose());
   return true;
 }
@@ -238,12 +240,21 @@ void Publishers::OnNoFace(const Peer& peer, const protocol::Header& header, Time
   subject->last_no_face = now;
 }
 
-bool Publishers::IsNew(Subject& subject, const protocol::Header& header) {
+bool Publishers::IsNew(Subject& subject, const protocol::Header& header, Time now) {
+  const std::uint32_t next = subject.window.newest() + 1;
   switch (subject.window.Accept(header.session, header.sequence)) {
     case protocol::SequenceStatus::kNewest:
+      if (header.sequence != next) subject.skipped_at = now;
+      return true;
     case protocol::SequenceStatus::kRestart: return true;
     case protocol::SequenceStatus::kDuplicate: metrics_->Add(Counter::kPosesDuplicate); break;
     case protocol::SequenceStatus::kLate:
+      // The pose that overtook this one could have waited for it.
+      if (subject.reorders && now - subject.skipped_at <= kEarlierPatience) {
+        subject.reorders_until = now + kReorderMemory;
+      }
+      metrics_->Add(Counter::kPosesLate);
+      break;
     case protocol::SequenceStatus::kOldSession: metrics_->Add(Counter::kPosesLate); break;
   }
   subject.stats.OnLate();
