@@ -58,7 +58,8 @@ nlohmann::json SettingsOf(const LoadFlags& flags) {
   const load::RunOptions& run = flags.run;
   nlohmann::json json{
       {"version", FURROW_VERSION},
-      {"host", flags.host},
+      {"host", flags.host.substr(0, flags.host.find('?'))},  // what follows may be a token
+      {"tls", flags.security.tls},
       {"file", flags.input.file},
       {"rig", TextOrNull(flags.input.rig)},
       {"skeleton_map", TextOrNull(flags.input.skeleton_map)},

@@ -33,7 +33,7 @@ SocketOpener Opener(const Target& target, Path path) {
   return [target, path](int i) -> Result<std::unique_ptr<net::Socket>> {
     const bool tcp = path == Path::kTcp || (path == Path::kBoth && i % 2 == 1);
     return net::OpenSocket(tcp ? TransportKind::kTcp : TransportKind::kUdp, target.host,
-                           tcp ? target.tcp : target.udp, target.token ? &*target.token : nullptr);
+                           tcp ? target.tcp : target.udp, target.security, target.certificate_host);
   };
 }
 
@@ -42,6 +42,7 @@ SocketOpener ResolvedOpener(Target target, Path path) {
   return [target = std::move(target), path](int i) mutable -> Result<std::unique_ptr<net::Socket>> {
     auto socket = Opener(target, path)(i);
     FURROW_RETURN_IF_ERROR(socket);
+    if (target.certificate_host.empty()) target.certificate_host = target.host;
     if (const std::string host = net::PeerHost((*socket)->descriptor()); !host.empty())
       target.host = host;
     return socket;
