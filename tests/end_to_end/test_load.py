@@ -121,6 +121,12 @@ class LoadTest(unittest.TestCase):
             result = furrow(*args, check=2)
             self.assertIn(message, result.stderr.decode(), args)
 
+    def test_jumps_of_the_capture_clocks_are_no_fault(self):
+        with Daemon("--no-render") as daemon:
+            run, _ = self.load(daemon.udp, "--subjects", "4", "--rate", "50", "--duration", "3", "--clock-step", "2.5",
+                               "--clock-every", "0.7", "--strict")
+        self.assertEqual(run["checked"], 600)
+
     def test_a_daemon_that_stood_still_decays_nobody(self):
         # The poses of the stall wait in the daemon's socket. Only the length of the stall matters, not any speed.
         figures = self.folder / "figures.json"

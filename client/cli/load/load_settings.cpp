@@ -72,6 +72,8 @@ nlohmann::json SettingsOf(const LoadFlags& flags) {
       {"subjects", run.plan.subjects},
       {"rate", run.plan.rate > 0.0 ? nlohmann::json(run.plan.rate) : nlohmann::json()},
       {"duration_seconds", run.plan.seconds},
+      {"clock_step_seconds", run.plan.clock_step},
+      {"clock_every_seconds", run.plan.clock_every},
       {"subscribers", run.watchers},
       {"slow", run.misbehavior.slow},
       {"stalled", run.misbehavior.stalled},

@@ -234,7 +234,8 @@ void Runner::SendDue(std::int64_t now_ns) {
     last_due_ns_ = NextDueNs();
     const int phase = plan_.phase_of(slot.subject);
     const IoStatus status = senders_->Send(slot.subject, slot.pose, plan_.Frame(phase, slot.pose),
-                                           capture_start_us_ + plan_.CaptureUs(phase, slot.pose));
+                                           capture_start_us_ + plan_.CaptureUs(phase, slot.pose) +
+                                               plan_.ClockOffsetUs(slot.subject, slot.pose));
     // Read again: a send may take long, and poses may have become due in the meantime.
     now_ns = net::SteadyNanoseconds();
     result_.send_delay_ns.Record(now_ns - last_due_ns_);
