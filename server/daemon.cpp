@@ -474,9 +474,9 @@ asio::awaitable<void> Daemon::TickLoop() {
     due = std::max(due + kTick, std::chrono::steady_clock::now());  // skip missed ticks
     timer.expires_at(due);
     co_await timer.async_wait(kAwaitTuple);
-    WithinMemory(metrics_, [this] {
+    WithinMemory(metrics_, [&] {
       const Time now = ReadClock();
-      hub_->Tick(now);
+      hub_->Tick(now, now - due.time_since_epoch());
       if (osc_->limits_rates()) {
         const Hub::ExclusiveLock lock(*hub_, 0);
         osc_->SendOwed(hub_->subjects(), now);

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import threading
 import time
+import urllib.request
 
 # A bad network: lost, late, early and repeated datagrams, and up to 50 ms of jitter.
 FAULTS = ("--loss", "0.1", "--reorder", "0.2", "--duplicate", "0.05", "--jitter", "50")
@@ -61,6 +62,7 @@ class Daemon:
             if ready == "":
                 raise RuntimeError(self.process.stderr.read())
         self.ready_at = time.monotonic()
+        self.draws = "render=on" in ready
         self.ports = {name: int(port) for name, port in re.findall(r"(\w+)=[^ ]*?:(\d+)", ready)}
         self.log = Lines(self.process.stderr)
         self.out = Lines(self.process.stdout)
@@ -77,11 +79,55 @@ class Daemon:
         return self.process.wait(timeout=30)
 
 
+class Stalls:
+    """Moments at which this process did not run, because the machine was busy or paused. A thread sleeps and looks."""
+
+    PERIOD = 0.05
+    LONG = 0.3  # s; shorter ones are usual
+
+    def __init__(self):
+        self.found = []  # (end, length)
+        threading.Thread(target=self._watch, daemon=True).start()
+
+    def _watch(self):
+        while True:
+            began = time.monotonic()
+            time.sleep(self.PERIOD)
+            late = time.monotonic() - began - self.PERIOD
+            if late > self.LONG:
+                self.found.append((began + self.PERIOD + late, late))
+
+    def since(self, moment):
+        return any(end >= moment for end, _ in list(self.found))
+
+
+def make_certificate(folder):
+    """A certificate for localhost and 127.0.0.1 that signs itself: its file and that of its key. None: no openssl."""
+    certificate, key = pathlib.Path(folder) / "daemon.crt", pathlib.Path(folder) / "daemon.key"
+    command = ["openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256", "-nodes", "-days", "2",
+               "-subj", "/CN=furrow", "-addext", "subjectAltName=DNS:localhost,IP:127.0.0.1", "-keyout", key, "-out", certificate]
+    try:
+        subprocess.run(command, check=True, capture_output=True)
+    except (OSError, subprocess.CalledProcessError):
+        return None
+    return certificate, key
+
+
 @dataclasses.dataclass
 class Usage:
     """What a process takes: resident memory in KiB, and open files."""
     resident_kib: int
     files: int
+
+
+def heap_in_use(host):
+    """The KiB of a daemon's heap that are in use, as its /metrics states them; None: no answer."""
+    try:
+        with urllib.request.urlopen(f"http://{host}/metrics", timeout=2) as answer:
+            found = re.search(r"^furrow_heap_used_bytes (\S+)", answer.read().decode(), re.M)
+    except OSError:
+        return None
+    return float(found.group(1)) / 1024 if found else None
 
 
 def usage_of(pid):

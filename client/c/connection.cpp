@@ -51,11 +51,8 @@ class Mark {
 
 }  // namespace
 
-Connection::Connection(client::Address address, std::string program,
-                       client::Security security)
-    : address_(std::move(address)),
-      program_(std::move(program)),
-      security_(std::move(security)) {}
+Connection::Connection(client::Address address, std::string program, client::Security security)
+    : address_(std::move(address)), program_(std::move(program)), security_(std::move(security)) {}
 
 Connection::~Connection() {
   // Without these, the daemon would notice after some seconds.
@@ -177,6 +174,7 @@ const PoseFeed* Connection::FindPoses(const char* subject, furrow_status* status
     return nullptr;
   }
   *status = feed->poses()->skeleton_status();
+  if (*status == FURROW_NO_DATA) *status = feed->obstacle();
   return *status == FURROW_OK ? feed->poses() : nullptr;
 }
 
@@ -278,7 +276,7 @@ bool Connection::Step(std::int64_t now_us, milliseconds wait, bool* idle) {
     case Receiver::Step::kNoConnection:
       *idle = true;
       NoteNetworkFailure();
-      NoteRefusal();
+      NoteObstacle();
       if (state_ != FURROW_CONNECTED) break;
       SetState(FURROW_DISCONNECTED);
       return true;
@@ -290,7 +288,7 @@ bool Connection::Step(std::int64_t now_us, milliseconds wait, bool* idle) {
     case Receiver::Step::kNews: news = true; break;
   }
   if (!error.empty()) last_error_ = error;
-  NoteRefusal();
+  NoteObstacle();
   return news;
 }
 
@@ -317,10 +315,13 @@ void Connection::NoteNetworkFailure() {
                                " (is furrowd running there?)";
 }
 
-void Connection::NoteRefusal() {
+void Connection::NoteObstacle() {
   const std::string why = client::RefusedTokenText(receiving_->refusal());
   if (!why.empty()) last_error_ = why;
-  receiver_->SetRefused(!why.empty() || receiver_->needs_token());
+  const bool refused = !why.empty() || receiver_->needs_token();
+  receiver_->SetObstacle(refused                    ? FURROW_UNAUTHENTICATED
+                         : receiving_->tls_failed() ? FURROW_TLS_FAILED
+                                                    : FURROW_NO_DATA);
 }
 
 void Connection::SetState(furrow_state state) {
@@ -355,6 +356,7 @@ furrow_status Connection::StreamStatus(std::uint32_t stream) {
     return Fail(FURROW_UNAUTHENTICATED, std::move(why));
   }
   if (sender_->needs_token()) return Fail(FURROW_UNAUTHENTICATED, sender_->last_error());
+  if (sending_->tls_failed()) return Fail(FURROW_TLS_FAILED, sending_->failure());
   return FURROW_NO_DATA;
 }
 

@@ -64,7 +64,7 @@ class Connection {
   void PollSender(std::int64_t now_us, std::chrono::milliseconds wait, bool* news);
   void SetState(furrow_state state);
   void NoteNetworkFailure();
-  void NoteRefusal();
+  void NoteObstacle();
 
   client::Address address_;
   std::string program_;

@@ -65,7 +65,7 @@ void Feed::OnError(furrow_status status, std::int64_t retry_us) {
 furrow_status Feed::status() const {
   if (error_ != FURROW_OK) return error_;
   if (!values_.empty()) return FURROW_OK;
-  return refused_ ? FURROW_UNAUTHENTICATED : FURROW_NO_DATA;
+  return obstacle_;
 }
 
 furrow_frame Feed::Frame(std::int64_t now_us) const {

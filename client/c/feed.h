@@ -37,9 +37,10 @@ class Feed {
   }
   // The daemon rejected the request, which is to be repeated at `retry_us`.
   void OnError(furrow_status status, std::int64_t retry_us);
-  // Whether the daemon refuses the token of the connection: status() says so while there are no
-  // weights.
-  void SetRefused(bool refused) { refused_ = refused; }
+  // Why the connection brings no weights, which status() says while there are none:
+  // FURROW_UNAUTHENTICATED, FURROW_TLS_FAILED, or FURROW_NO_DATA if nothing is wrong.
+  void SetObstacle(furrow_status obstacle) { obstacle_ = obstacle; }
+  [[nodiscard]] furrow_status obstacle() const { return obstacle_; }
   // The number of the request that was sent last.
   void SetRequest(std::uint32_t number) { request_number_ = number; }
 
@@ -73,7 +74,7 @@ class Feed {
   std::uint32_t request_number_ = 0;
   std::uint16_t subscription_ = 0;
   furrow_status error_ = FURROW_OK;
-  bool refused_ = false;
+  furrow_status obstacle_ = FURROW_NO_DATA;
   Retry retry_;
 
   std::string subject_;

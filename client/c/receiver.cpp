@@ -114,8 +114,8 @@ Receiver::Step Receiver::Next(std::int64_t now_us, std::chrono::milliseconds wai
   }
 }
 
-void Receiver::SetRefused(bool refused) {
-  for (const auto& feed : feeds_) feed->SetRefused(refused);
+void Receiver::SetObstacle(furrow_status obstacle) {
+  for (const auto& feed : feeds_) feed->SetObstacle(obstacle);
 }
 
 Receiver::Step Receiver::OnReply(const Event& event, const Listener& listener) {

@@ -42,8 +42,8 @@ class Receiver {
 
   // True if the daemon wants a token, or another one.
   [[nodiscard]] bool needs_token() const { return needs_token_; }
-  // Tells all feeds whether the daemon refuses the token of this connection.
-  void SetRefused(bool refused);
+  // Feed::SetObstacle() of all feeds.
+  void SetObstacle(furrow_status obstacle);
 
   // The feed of a subject: by the requested name, or by the daemon's name. Null: the first one.
   // Returns null if there is none.

@@ -50,6 +50,7 @@ bool ReconnectingTransport::Open(std::int64_t now_us) {
   auto opened = open_();
   if (!opened.ok()) {
     failure_ = opened.status().what();
+    tls_failed_ = false;
     const std::int64_t after_us = now_us_();
     backoff_.Failed(after_us);
     backoff_.NotBefore(after_us + kRestPerWork * (after_us - now_us));
@@ -111,6 +112,7 @@ IoStatus ReconnectingTransport::Receive(std::span<const std::uint8_t>& message,
       // An open port alone proves nothing: it may close each connection at once.
       backoff_.Succeeded();
       failing_since_us_.reset();
+      tls_failed_ = false;
       return status;
     case IoStatus::kTimeout:
       if (!up_ && now_us_() - opened_us_ > kConnectTimeoutUs) return OnFailure(now_us_());
@@ -123,6 +125,7 @@ IoStatus ReconnectingTransport::OnFailure(std::int64_t now_us) {
   if (!failing_since_us_) failing_since_us_ = now_us;
   if (const std::string why = inner_->failure(); !why.empty()) failure_ = why;
   refusal_ = inner_->refusal();
+  tls_failed_ = inner_->tls_failed();
   const bool keep = kind() == TransportKind::kUdp && up_ && now_us - *failing_since_us_ < kReopenUs;
   if (!keep) Lose(now_us);
   return IoStatus::kNoConnection;

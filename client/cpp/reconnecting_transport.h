@@ -49,6 +49,7 @@ class ReconnectingTransport : public Transport {
   void Abandon() override { abandoned_ = true; }
   [[nodiscard]] std::string failure() const override { return failure_; }
   [[nodiscard]] protocol::secure::Refusal refusal() const override { return refusal_; }
+  [[nodiscard]] bool tls_failed() const override { return tls_failed_; }
 
  private:
   bool Open(std::int64_t now_us);
@@ -68,6 +69,7 @@ class ReconnectingTransport : public Transport {
   std::int64_t opened_us_ = 0;                    // when inner_ was opened
   std::optional<std::int64_t> failing_since_us_;  // UDP: first failure without a message since
   std::string failure_;
+  bool tls_failed_ = false;
 };
 
 }  // namespace furrow::client

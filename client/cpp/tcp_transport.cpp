@@ -16,6 +16,8 @@ namespace {
 
 using asio::ip::tcp;
 
+constexpr char kNoHandshake[] = "the TLS handshake took too long (does it speak TLS at this port?)";
+
 bool IsLoopback(const asio::ip::address& address) {
   if (!address.is_v6()) return address.is_loopback();
   const auto v6 = address.to_v6();
@@ -65,9 +67,7 @@ void TcpTransport::OnConnected(const asio::error_code& error) {
   stream_.lower().set_option(tcp::no_delay(true), ignored);
   if (security_.tls == nullptr) return Finish({});
   SSL* const ssl = NewTlsClient(security_.tls.get(), host_);
-  if (ssl == nullptr) {
-    return Finish({StatusCode::kInvalidArgument, "TLS cannot check the name " + host_});
-  }
+  if (ssl == nullptr) return FailTls("TLS cannot check the name " + host_);
   stream_.AddUpper(ssl);  // takes the SSL object over
   stream_.upper()->async_handshake(asio::ssl::stream_base::client,
                                    [this](const asio::error_code& result) { OnHandshake(result); });
@@ -75,9 +75,13 @@ void TcpTransport::OnConnected(const asio::error_code& error) {
 
 void TcpTransport::OnHandshake(const asio::error_code& error) {
   if (!error) return Finish({});
-  Finish({StatusCode::kInvalidArgument,
-          "no connection to " + AddressText(host_, port_) +
-              " over TLS: " + TlsFailureText(stream_.upper()->native_handle(), TlsCode(error))});
+  FailTls("no connection to " + AddressText(host_, port_) +
+          " over TLS: " + TlsFailureText(stream_.upper()->native_handle(), TlsCode(error)));
+}
+
+void TcpTransport::FailTls(std::string reason) {
+  tls_failed_ = true;
+  Finish({StatusCode::kInvalidArgument, std::move(reason)});
 }
 
 void TcpTransport::Finish(Status result) {
@@ -92,13 +96,14 @@ void TcpTransport::Fail(const std::string& reason) {
 
 Status TcpTransport::Await(Clock::time_point deadline) {
   if (!AwaitConnect(deadline)) {
+    tls_failed_ = shakes_hands();
     Close();
-    Fail(stream_.upper() != nullptr
-             ? "the TLS handshake took too long (does it speak TLS at this port?)"
-             : asio::error_code(asio::error::timed_out).message());
+    Fail(tls_failed_ ? kNoHandshake : asio::error_code(asio::error::timed_out).message());
   }
   return *result_;
 }
+
+std::string TcpTransport::failure() const { return shakes_hands() ? kNoHandshake : failure_; }
 
 IoStatus TcpTransport::Send(std::span<const std::uint8_t> message) {
   if (message.size() > protocol::kMaxRequestBytes) return IoStatus::kTooLarge;
@@ -154,6 +159,7 @@ IoStatus TcpTransport::Receive(std::span<const std::uint8_t>& message,
 IoStatus TcpTransport::OnReadError() {
   if (const unsigned long code = TlsCode(read_error_); code != 0) {
     failure_ = TlsFailureText(stream_.upper()->native_handle(), code);
+    tls_failed_ = true;
   }
   return IoStatus::kClosed;
 }

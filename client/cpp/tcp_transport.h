@@ -37,7 +37,9 @@ class TcpTransport : public Transport {
   [[nodiscard]] Status Await(Clock::time_point deadline);
 
   [[nodiscard]] bool connected() const override { return result_ && result_->ok(); }
-  [[nodiscard]] std::string failure() const override { return failure_; }
+  // Both also count a handshake that is not complete: who asks has given up waiting for it.
+  [[nodiscard]] std::string failure() const override;
+  [[nodiscard]] bool tls_failed() const override { return tls_failed_ || shakes_hands(); }
 
   [[nodiscard]] IoStatus Send(std::span<const std::uint8_t> message) override;
   [[nodiscard]] IoStatus Receive(std::span<const std::uint8_t>& message,
@@ -47,9 +49,11 @@ class TcpTransport : public Transport {
   using Socket = asio::ip::tcp::socket;
   using Stream = LayeredStream<Socket, asio::ssl::stream<Socket&>>;
 
+  [[nodiscard]] bool shakes_hands() const { return !result_ && stream_.upper() != nullptr; }
   void OnConnected(const asio::error_code& error);
   void OnHandshake(const asio::error_code& error);
   void Finish(Status result);
+  void FailTls(std::string reason);
   void Fail(const std::string& reason);
   void StartRead();
   template <class Done>
@@ -68,6 +72,7 @@ class TcpTransport : public Transport {
   Stream stream_{context_};
   std::optional<Status> result_;  // of the connect; nothing: not known yet
   std::string failure_;
+  bool tls_failed_ = false;
   // One read is always pending, so a timeout never loses data.
   bool read_pending_ = false;
   bool read_done_ = false;

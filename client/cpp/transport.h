@@ -64,6 +64,10 @@ class Transport {
     return protocol::secure::Refusal::kNone;
   }
 
+  // True if the newest attempt to connect, or the connection itself, failed in TLS: the certificate
+  // is not trusted, or the daemon does not speak TLS or wants a certificate of the client.
+  [[nodiscard]] virtual bool tls_failed() const { return false; }
+
   // True for transports that connect again after a loss (client/cpp/reconnecting_transport.h).
   [[nodiscard]] virtual bool reconnects() const { return false; }
   // Number of connections so far. A peer knows nothing of an earlier connection.

@@ -70,11 +70,22 @@ Result<Descriptor> OpenDescriptor(TransportKind kind, const std::string& host, s
 }
 
 Result<std::unique_ptr<Socket>> OpenSocket(TransportKind kind, const std::string& host,
-                                           std::uint16_t port, const client::Token* token) {
+                                           std::uint16_t port, const client::Security& security,
+                                           const std::string& certificate_host) {
+  const client::Token* const token = security.token ? &*security.token : nullptr;
   auto descriptor = OpenDescriptor(kind, host, port);
   FURROW_RETURN_IF_ERROR(descriptor);
   if (kind == TransportKind::kTcp) {
     auto socket = std::make_unique<TcpSocket>(*std::move(descriptor));
+    if (security.tls != nullptr) {
+      const std::string why =
+          socket->StartTls(security.tls.get(), certificate_host.empty() ? host : certificate_host,
+                           std::chrono::steady_clock::now() + kConnectTimeout);
+      if (!why.empty()) {
+        return Status(StatusCode::kInvalidArgument,
+                      "no connection to " + client::AddressText(host, port) + " over TLS: " + why);
+      }
+    }
     if (token != nullptr) (void)socket->Send(client::TokenGreeting(*token));
     return std::unique_ptr<Socket>(std::move(socket));
   }

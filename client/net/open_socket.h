@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/status.h"
+#include "client/cpp/tls/security.h"
 #include "client/net/descriptor.h"
 #include "client/net/socket.h"
 
@@ -19,12 +20,16 @@ namespace furrow::net {
 [[nodiscard]] Result<Descriptor> OpenDescriptor(client::TransportKind kind, const std::string& host,
                                                 std::uint16_t port);
 
-// Connects a TcpSocket or a UdpSocket. `token`: shown to the daemon, or null; over UDP the session
-// begins within 3 seconds. Errors: those of OpenDescriptor(); kInvalidArgument (the daemon refuses
-// the token).
+// Connects a TcpSocket or a UdpSocket. `security`: the token is shown to the daemon, over UDP in a
+// session that begins within 3 seconds, and so does TLS over TCP. `certificate_host`: whom the
+// daemon's certificate must be for; empty: `host`.
+//
+// Errors: those of OpenDescriptor(); kInvalidArgument (the daemon refuses the token, or TLS
+// failed).
 [[nodiscard]] Result<std::unique_ptr<Socket>> OpenSocket(client::TransportKind kind,
                                                          const std::string& host,
                                                          std::uint16_t port,
-                                                         const client::Token* token = nullptr);
+                                                         const client::Security& security = {},
+                                                         const std::string& certificate_host = {});
 
 }  // namespace furrow::net

@@ -28,17 +28,48 @@ TcpSocket::TcpSocket(Descriptor descriptor)
   setsockopt(descriptor_.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
 }
 
+std::string TcpSocket::StartTls(SSL_CTX* context, const std::string& host,
+                                std::chrono::steady_clock::time_point deadline) {
+  tls_ = std::make_unique<client::TlsSession>(context, host);
+  for (;;) {
+    const client::TlsSession::Progress progress = tls_->Handshake();
+    // Also after a failure: the alert tells the peer.
+    tls_->TakeOutgoing(&sealed_);
+    const bool is_closed = SendAll(sealed_) != IoStatus::kOk;
+    if (progress == client::TlsSession::Progress::kFailed) return tls_->failure();
+    if (progress == client::TlsSession::Progress::kDone) return {};
+    const auto left =
+        std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
+    if (left.count() <= 0 || !WaitFor(descriptor_.get(), POLLIN, left)) {
+      return "the TLS handshake took too long (does it speak TLS at this port?)";
+    }
+    const ssize_t received = recv(descriptor_.get(), buffer_.data(), buffer_.size(), 0);
+    if (received < 0 && (errno == EAGAIN || errno == EINTR)) continue;
+    if (received <= 0 || is_closed) {
+      return "it closed the connection during the TLS handshake (does it speak TLS at this port?)";
+    }
+    tls_->Feed(std::span(buffer_).first(static_cast<std::size_t>(received)));
+  }
+}
+
 IoStatus TcpSocket::Send(std::span<const std::uint8_t> message) {
   if (message.size() > protocol::kMaxRequestBytes) return IoStatus::kTooLarge;
   const auto prefix = protocol::FramePrefix(message.size());
   // Prefix and message in one buffer, so that they leave in one segment.
   outgoing_.assign(prefix.begin(), prefix.end());
   outgoing_.insert(outgoing_.end(), message.begin(), message.end());
+  if (tls_ == nullptr) return SendAll(outgoing_);
+  tls_->Encrypt(outgoing_);
+  tls_->TakeOutgoing(&sealed_);
+  return SendAll(sealed_);
+}
+
+IoStatus TcpSocket::SendAll(std::span<const std::uint8_t> bytes) {
   std::size_t sent = 0;
   // MSG_NOSIGNAL: a closed connection is a result, not a SIGPIPE that kills the load test.
-  while (sent < outgoing_.size()) {
+  while (sent < bytes.size()) {
     const ssize_t taken =
-        send(descriptor_.get(), outgoing_.data() + sent, outgoing_.size() - sent, MSG_NOSIGNAL);
+        send(descriptor_.get(), bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
     if (taken >= 0) {
       sent += static_cast<std::size_t>(taken);
     } else if (errno != EAGAIN && errno != EINTR) {
@@ -78,7 +109,14 @@ IoStatus TcpSocket::Fill(std::chrono::milliseconds timeout) {
   const auto bytes = static_cast<std::size_t>(received);
   unread_ = std::span<const std::uint8_t>(buffer_).first(bytes);
   drained_ = bytes < buffer_.size();
-  return IoStatus::kOk;
+  if (tls_ == nullptr) return IoStatus::kOk;
+  tls_->Feed(unread_);
+  const bool goes_on = tls_->Decrypt(&plain_);
+  unread_ = plain_;
+  // What came before the end is still handed out, and the next read finds the end.
+  if (!goes_on && plain_.empty()) return IoStatus::kClosed;
+  tls_->TakeOutgoing(&sealed_);  // the answer to a change of keys
+  return SendAll(sealed_);
 }
 
 }  // namespace furrow::net

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <cstdint>
+#include <memory>
+#include <string>
 #include <vector>
 
+#include "client/cpp/tls/tls_session.h"
 #include "client/net/descriptor.h"
 #include "client/net/socket.h"
 #include "protocol/framing/tcp_framing.h"
@@ -11,11 +15,15 @@
 
 namespace furrow::net {
 
-// A connected TCP socket. Send() blocks while the peer's buffer is full, for 5 seconds at most, and
-// then returns kClosed.
+// A connected TCP socket, with or without TLS. Send() blocks while the peer's buffer is full, for 5
+// seconds at most, and then returns kClosed.
 class TcpSocket : public Socket {
  public:
   explicit TcpSocket(Descriptor descriptor);
+  // Speaks TLS from now on, and waits until `deadline` for the end of the handshake. Returns why it
+  // failed, as part of a sentence; empty: done. Call it before the first message.
+  [[nodiscard]] std::string StartTls(SSL_CTX* context, const std::string& host,
+                                     std::chrono::steady_clock::time_point deadline);
 
   [[nodiscard]] client::IoStatus Send(std::span<const std::uint8_t> message) override;
   [[nodiscard]] client::IoStatus Receive(std::span<const std::uint8_t>& message,
@@ -26,9 +34,13 @@ class TcpSocket : public Socket {
 
  private:
   [[nodiscard]] client::IoStatus Fill(std::chrono::milliseconds timeout);
+  [[nodiscard]] client::IoStatus SendAll(std::span<const std::uint8_t> bytes);
 
   Descriptor descriptor_;
+  std::unique_ptr<client::TlsSession> tls_;  // null: plain TCP
   std::vector<std::uint8_t> outgoing_;
+  std::vector<std::uint8_t> sealed_;  // outgoing_ in TLS
+  std::vector<std::uint8_t> plain_;   // what TLS has decrypted
   std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(64 * 1024);
   std::span<const std::uint8_t> unread_;
   std::int64_t read_ns_ = 0;  // time of the last read

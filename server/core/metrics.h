@@ -81,6 +81,7 @@ enum class Counter {
   kSubjectsRestarted,
   kSubjectsContested,
   kSubjectsLost,
+  kStalls,
   kSubscriptionsAccepted,
   kSubscriptionsRefused,
   kWeightsSent,

@@ -233,11 +233,12 @@ void Hub::OnPicture(const FinishedPicture& picture) {
   if (!draining_) subscribers_.OnPicture(picture);
 }
 
-void Hub::Tick(Time now) {
+void Hub::Tick(Time now, Time late) {
   // The order matters. Subjects age first, so that owed frames carry the decayed weights. `stuck`
   // is read by all shards, so it changes only here, under the exclusive lock. Owed frames come
   // after that, so that a peer that reads again gets its newest pose in this tick.
   const ExclusiveLock lock(*this, 0);
+  if (late >= kStall) OnStall(now, late);
   AgeSubjects(now);
   mocap_.ForgetRejected(now);
   shards_.ForEachPeer([&](Peer& peer) {
@@ -249,6 +250,20 @@ void Hub::Tick(Time now) {
   });
   if (!draining_) subscribers_.fan_out().SendOwed(now);
   shards_.ForEachPeer([&](Peer& peer) { dispatcher_.UpdateSubjectList(peer); });
+}
+
+void Hub::OnStall(Time now, Time length) {
+  metrics_->Add(Counter::kStalls);
+  // Rare, since it takes as long itself: no limit is needed.
+  if (length >= FromSeconds(limits_.loss_seconds)) {
+    spdlog::warn("did not run for {:.1f} s, because this computer was busy or paused it",
+                 ToSeconds(length));
+  }
+  publishers_.OnStall(now);
+  shards_.ForEachPeer([&](Peer& peer) {
+    peer.last_heard += length;
+    peer.consent.OnStall(length);
+  });
 }
 
 void Hub::AgeSubjects(Time now) {

@@ -139,14 +139,21 @@ class Hub {
   // every few milliseconds, which publishes the poses that have waited long enough.
   [[nodiscard]] bool HoldsPoses() const { return holds_poses_; }
   void ReleaseHeld(int shard, Time now);
+  // When the thread of the shard must call ReleaseHeld() next because a pose waits for an earlier
+  // one; nothing if none waits. Only datagrams make poses wait. Requires the shard's lock.
+  [[nodiscard]] std::optional<Time> NextAhead(int shard) {
+    return shards_.at(shard).held.NextAhead();
+  }
 
   // Only the thread of shard 0 calls the functions from here on.
 
   // Sends a finished picture to its viewers.
   void OnPicture(const FinishedPicture& picture);
   // Handles lost and decaying subjects, leases, and frames held back by rates. Call it about every
-  // 10 ms.
-  void Tick(Time now);
+  // 10 ms. `late`: how long after its time the call comes. From kStall on, the daemon did not run,
+  // and that time does not count as silence of subjects and peers.
+  void Tick(Time now, Time late = Time{0});
+  static constexpr Time kStall = std::chrono::milliseconds(100);
   // Says goodbye to all peers and refuses new subscriptions. Call it on SIGTERM.
   void Drain();
 
@@ -183,6 +190,7 @@ class Hub {
 
  private:
   [[nodiscard]] static bool HasNoUse(const Peer& peer, Time now);
+  void OnStall(Time now, Time length);
   void AgeSubjects(Time now);
   void RemoveSubject(Subject& subject);
   void RenewConsent(Peer& peer, Time now);

@@ -40,7 +40,7 @@ bool StreamRouter::MissesPrevious(Shard& shard, const Peer& peer, const protocol
   const protocol::SequenceWindow& window = subject->window;
   const bool follows = window.started() && window.session() == header.session;
   if (follows && !protocol::IsNewer(sequence, window.newest())) return false;
-  return subject->hold == Time{0} || shard.held.Misses(stream, sequence);
+  return shard.held.Misses(stream, sequence);
 }
 
 void StreamRouter::AcceptPrevious(Shard& shard, const Peer& peer, protocol::Header header,
@@ -58,21 +58,47 @@ void StreamRouter::AcceptPrevious(Shard& shard, const Peer& peer, protocol::Head
 void StreamRouter::HoldOrUse(Shard& shard, Subject& subject, const protocol::Header& header,
                              const protocol::PoseFrame& pose, std::span<const std::uint8_t> payload,
                              Time now) {
-  const bool held = subject.hold != Time{0} && Hold(shard, subject, header, pose, payload, now);
-  if (!held) Use(shard, subject, header, pose, payload, now);
+  if (subject.hold != Time{0}) {
+    if (!Hold(shard, subject, header, pose, payload, now)) {
+      Use(shard, subject, header, pose, payload, now);
+    }
+  } else if (IsAhead(shard, subject, header, now)) {
+    CountHeld(subject,
+              shard.held.AddAhead(subject.owner, header, pose, payload, kEarlierPatience, now));
+  } else {
+    Use(shard, subject, header, pose, payload, now);
+    if (!shard.held.WaitsAhead(subject.owner)) return;
+    subject.reorders_until = now + kReorderMemory;  // the wait was worth while
+    UseReleased(shard, shard.held.TakeFollowing(subject.owner, subject.window.newest()), now);
+  }
+}
+
+// True if the pose waits for an earlier one. Only streams wait in which poses have overtaken each
+// other lately, so that loss alone, or a sender that leaves out numbers, costs no time.
+bool StreamRouter::IsAhead(Shard& shard, const Subject& subject, const protocol::Header& header,
+                           Time now) {
+  const protocol::SequenceWindow& window = subject.window;
+  if (now >= subject.reorders_until && !shard.held.WaitsAhead(subject.owner)) return false;
+  if (subject.ended || !window.started() || window.session() != header.session) return false;
+  return protocol::IsNewer(header.sequence, window.newest() + 1);
 }
 
 // Puts a pose into the jitter buffer. False: it is too late for that.
 bool StreamRouter::Hold(Shard& shard, Subject& subject, const protocol::Header& header,
                         const protocol::PoseFrame& pose, std::span<const std::uint8_t> payload,
                         Time now) {
-  switch (shard.held.Add(subject.owner, header, pose, payload, subject.hold, now)) {
-    case JitterBuffers::Place::kLate: return false;
-    case JitterBuffers::Place::kDuplicate: parts_.publishers->OnDuplicate(subject); return true;
-    case JitterBuffers::Place::kFull: parts_.publishers->OnHeld(/*full=*/true); return true;
-    case JitterBuffers::Place::kHeld: parts_.publishers->OnHeld(/*full=*/false); return true;
+  const auto place = shard.held.Add(subject.owner, header, pose, payload, subject.hold, now);
+  CountHeld(subject, place);
+  return place != JitterBuffers::Place::kLate;
+}
+
+void StreamRouter::CountHeld(Subject& subject, JitterBuffers::Place place) {
+  switch (place) {
+    case JitterBuffers::Place::kLate: break;  // it is used, which counts it
+    case JitterBuffers::Place::kDuplicate: parts_.publishers->OnDuplicate(subject); break;
+    case JitterBuffers::Place::kFull: parts_.publishers->OnHeld(/*full=*/true); break;
+    case JitterBuffers::Place::kHeld: parts_.publishers->OnHeld(/*full=*/false); break;
   }
-  return false;
 }
 
 void StreamRouter::Use(Shard& shard, Subject& subject, const protocol::Header& header,
@@ -81,7 +107,7 @@ void StreamRouter::Use(Shard& shard, Subject& subject, const protocol::Header& h
   // The next pose of a subject builds on the last one. `waits` is true if a pose of this subject is
   // already in the batch.
   if (subject.pipeline->waits() || shard.gathered.full()) PublishGathered(shard);
-  if (parts_.publishers->AcceptPose(subject, header, pose)) {
+  if (parts_.publishers->AcceptPose(subject, header, pose, now)) {
     shard.gathered.Add({.subject = &subject, .header = header, .payload = payload, .now = now});
   }
 }

@@ -42,6 +42,7 @@ class StreamRouter {
 
   // Copies a pose into its subject's pipeline and adds it to the shard's batch, where it waits for
   // PublishGathered(). If the subject has a jitter buffer, the pose waits there for ReleaseHeld().
+  // Without one, a pose may wait for an earlier one, for kEarlierPatience at most.
   // `payload`: the FlatBuffers buffer of the pose, valid until then; empty if the pose is partial.
   // Requires the lock of `shard`.
   void AcceptPose(Shard& shard, Peer& peer, const protocol::Header& header,
@@ -53,8 +54,8 @@ class StreamRouter {
   // `header`: of the other one; `age_us`: PoseFrame::previous_age_us.
   void AcceptPrevious(Shard& shard, const Peer& peer, protocol::Header header, std::uint32_t age_us,
                       const protocol::PoseFrame& previous, Time now);
-  // Accepts the poses of the shard's jitter buffers that have waited long enough, and publishes
-  // them. Requires the lock of `shard`.
+  // Accepts the poses of the shard that have waited long enough, and publishes them. Requires the
+  // lock of `shard`.
   void ReleaseHeld(Shard& shard, Time now);
   // The same for all poses of one stream, due or not, before the stream ends. Requires the
   // exclusive lock.
@@ -82,6 +83,9 @@ class StreamRouter {
  private:
   void HoldOrUse(Shard& shard, Subject& subject, const protocol::Header& header,
                  const protocol::PoseFrame& pose, std::span<const std::uint8_t> payload, Time now);
+  [[nodiscard]] static bool IsAhead(Shard& shard, const Subject& subject,
+                                    const protocol::Header& header, Time now);
+  void CountHeld(Subject& subject, JitterBuffers::Place place);
   [[nodiscard]] bool Hold(Shard& shard, Subject& subject, const protocol::Header& header,
                           const protocol::PoseFrame& pose, std::span<const std::uint8_t> payload,
                           Time now);

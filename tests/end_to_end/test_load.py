@@ -6,11 +6,13 @@ import pathlib
 import re
 import signal
 import socket
+import subprocess
 import tempfile
+import time
 import unittest
 import xml.etree.ElementTree
 
-from furrow_testing import SHARE, Daemon, commands, finish, furrow, spawn
+from furrow_testing import GUARD, SHARE, Daemon, commands, finish, furrow, spawn, spawn_watch
 
 PERFORMANCE = SHARE / "recordings" / "performance.bvh"
 # Keeps the tests independent of the speed of the machine: only minutes count as late.
@@ -20,9 +22,10 @@ PATIENT = ["--late", "60000", "--drain", "5"]
 class Chaos:
     """Runs `furrow chaos` in front of a daemon in a with-block; `injected` holds its final counts."""
 
-    def __init__(self, daemon, *args):
+    def __init__(self, daemon=None, *args, to=None):
         listen = [] if "--listen" in args else ["--listen", "0"]
-        self.args = ["chaos", *listen, "--to", daemon.udp, "--to-tcp", str(daemon.ports["tcp"]), *map(str, args)]
+        target = [to] if to else [daemon.udp, "--to-tcp", str(daemon.ports["tcp"])]
+        self.args = ["chaos", *listen, "--to", *target, *map(str, args)]
 
     def __enter__(self):
         self.process = spawn(*self.args)
@@ -72,6 +75,82 @@ class LoadTest(unittest.TestCase):
                 self.assertGreater(run["resident_bytes"], 1 << 20, path)
                 self.assertLess(run["largest_difference"], 1e-5)
                 self.assertIn("| offered | sent | expected | received | lost | late | wrong", text)
+
+    def certificate(self):
+        """A certificate for localhost that signs itself; the files of it and of its key."""
+        files = self.folder / "daemon.crt", self.folder / "daemon.key"
+        subprocess.run(["openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256", "-nodes", "-days",
+                        "2", "-subj", "/CN=furrow", "-addext", "subjectAltName=DNS:localhost", "-keyout", files[1], "-out",
+                        files[0]], check=True, capture_output=True)
+        return files
+
+    def test_tls_reaches_the_daemon_directly_and_through_proxies(self):
+        certificate, key = self.certificate()
+        short = ("--subjects", "4", "--rate", "50", "--duration", "1", "--strict")
+        with Daemon("--no-render", "--tls-certificate", certificate, "--tls-key", key) as daemon:
+            port = daemon.ports["tcp"]
+            address = f"furrow://localhost:{port}?tls-authority={certificate}"
+            other = ("--other-port", daemon.ports["udp"])
+            run, _ = self.load(address, *short, *other)
+            self.assertEqual(run["received"], 200)
+            # Half of the connections over UDP, and subscribers that stall and churn over TLS.
+            run, _ = self.load(address, *short, *other, "--both", "--stalled", "1", "--churn", "1")
+            self.assertEqual(run["checked"], 200)
+            # The proxy has another address than the certificate.
+            run, _ = self.load(address, *short, *other, "--jitter", "2")
+            self.assertEqual(run["received"], 200)
+            with Chaos(to=f"furrow://localhost:{port}?tls=1") as chaos:
+                through = f"furrow://localhost:{chaos.ports['tcp']}?tls-authority={certificate}"
+                run, _ = self.load(through, *short)
+                self.assertEqual(run["wrong"] + run["lost"], 0)
+            self.assertRegex(chaos.said, r"up over TCP: \d+ connections")
+            # Without the authority, and without TLS.
+            result = furrow("load", f"furrow://localhost:{port}?tls=1", PERFORMANCE, "--duration", "1")
+            self.assertEqual(result.returncode, 3, result.stderr)
+            self.assertIn("no known authority", result.stderr.decode())
+            result = furrow("load", f"localhost:{port}", PERFORMANCE, "--tcp", "--duration", "1")
+            self.assertNotEqual(result.returncode, 0)
+            self.assertIn("speaks TLS only", result.stderr.decode())
+
+    def test_contradictions_about_tls_are_usage_errors(self):
+        for args, message in ((("load", "furrow://a?tls=1", PERFORMANCE, "--udp"), "--udp: TLS needs TCP"),
+                              (("load", "furrow://a?subject=b", PERFORMANCE), "names its subjects"),
+                              (("chaos", "--listen", "0", "--to", "furrow://a?token=b"), "needs no token"),
+                              (("chaos", "--listen", "0", "--to", "furrow://a?tls-authority=b"), "needs no files of TLS"),
+                              (("chaos", "--listen", "0", "--to", "furrow://a?tls=1", "--to-tcp", "1"), "use one of both")):
+            result = furrow(*args, check=2)
+            self.assertIn(message, result.stderr.decode(), args)
+
+    def test_jumps_of_the_capture_clocks_are_no_fault(self):
+        with Daemon("--no-render") as daemon:
+            run, _ = self.load(daemon.udp, "--subjects", "4", "--rate", "50", "--duration", "3", "--clock-step", "2.5",
+                               "--clock-every", "0.7", "--strict")
+        self.assertEqual(run["checked"], 600)
+
+    def test_a_daemon_that_stood_still_decays_nobody(self):
+        # The poses of the stall wait in the daemon's socket. Only the length of the stall matters, not any speed.
+        figures = self.folder / "figures.json"
+        with Daemon("--no-render") as daemon:
+            watcher = spawn_watch(daemon.tcp, "load-000000", "--pattern", "brow_l.*")
+            loader = spawn("load", daemon.udp, PERFORMANCE, *PATIENT, "--subjects", "4", "--rate", "50", "--duration", "4",
+                           "--json", figures)
+            for _ in range(3):  # the names, and two rows: poses flow
+                self.assertTrue(watcher.stdout.readline())
+            try:
+                daemon.process.send_signal(signal.SIGSTOP)
+                time.sleep(1.0)  # twice the time after which a silent subject decays
+            finally:
+                daemon.process.send_signal(signal.SIGCONT)
+            code, _, err = finish(loader)
+            self.assertEqual(code, 0, err)
+            watcher.kill()
+            watcher.communicate(timeout=GUARD)
+        run = json.loads(figures.read_text())["run"]
+        self.assertEqual(run["wrong"] + run["lost"], 0, run)
+        self.assertIn("did not run for", daemon.stderr)
+        if run["send_delay_max_us"] > 300_000:
+            self.skipTest("the load generator stood still, too")
+        self.assertEqual(run["aged"] + run["unchecked"], 0, run)
 
     def test_quantised_poses_are_checked_with_the_same_tolerance(self):
         with Daemon("--no-render") as daemon:

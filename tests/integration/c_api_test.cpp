@@ -6,10 +6,12 @@
 #include <csignal>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <regex>
 #include <string>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "client/c/include/furrow/furrow.h"
@@ -22,6 +24,7 @@ namespace furrow::testing_net {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+using testing::HasSubstr;
 
 struct Closer {
   void operator()(furrow_connection* connection) const { furrow_close(connection); }
@@ -292,15 +295,43 @@ TEST(CApiTls, ConnectsWithTheAuthorityOfTheOptions) {
   const Handle strange = Open(address + "?tls=1");
   furrow_connection_info info{};
   info.struct_size = sizeof info;
+  const auto weights = [](const Handle& handle) {
+    return furrow_weights(handle.get(), nullptr, nullptr, 0, nullptr);
+  };
+  EXPECT_EQ(weights(strange), FURROW_NO_DATA) << "not tried yet";
   EXPECT_TRUE(Until({trusting.get(), strange.get()},
                     [&] {
                       EXPECT_EQ(furrow_get_info(trusting.get(), &info), FURROW_OK);
                       return info.state == FURROW_CONNECTED &&
-                             LastError(strange.get()).find("no known authority") !=
-                                 std::string::npos;
+                             weights(strange) == FURROW_TLS_FAILED;
                     }))
       << LastError(trusting.get()) << "; " << LastError(strange.get());
+  EXPECT_THAT(LastError(strange.get()), HasSubstr("no known authority"));
+  EXPECT_EQ(weights(trusting), FURROW_NO_DATA) << "it has only no subject";
 }
+
+// A daemon without a certificate. `subscribes`: by a subscription, or by a published subject.
+class CApiPlain : public testing::TestWithParam<bool> {};
+
+TEST_P(CApiPlain, ADaemonThatSpeaksNoTlsIsAFailureOfTls) {
+  const DaemonThread daemon(WeightsConfig("arkit.json"));
+  ASSERT_TRUE(daemon.serves());
+  const std::string address = "furrow://127.0.0.1:" + std::to_string(daemon.ready().tcp) + "?tls=1";
+  const Handle handle = Open(address, GetParam() ? 0u : FURROW_OPEN_WITHOUT_SUBSCRIPTION);
+  const motion::Clip clip = ArkitClip(1);
+  std::optional<Face> face;
+  if (!GetParam()) face.emplace(handle.get(), "ada", clip);
+  const auto status = [&] {
+    return GetParam() ? furrow_weights(handle.get(), nullptr, nullptr, 0, nullptr)
+                      : face->Send(0, 1);
+  };
+  EXPECT_TRUE(Until({handle.get()}, [&] { return status() == FURROW_TLS_FAILED; }))
+      << LastError(handle.get());
+  EXPECT_EQ(status(), FURROW_TLS_FAILED);
+  EXPECT_THAT(LastError(handle.get()), HasSubstr("TLS"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Subscribes, CApiPlain, testing::Bool());
 
 INSTANTIATE_TEST_SUITE_P(Transports, CApi, testing::Values("udp", "tcp"),
                          [](const auto& info) { return std::string(info.param); });

@@ -85,6 +85,8 @@ TEST_F(Http, RoutesAnswerOnOneConnection) {
   const auto metrics = client.Ask("GET", "/metrics");
   EXPECT_NE(metrics.body.find("\nfurrow_poses_received_total 0"), std::string::npos);
   EXPECT_NE(metrics.body.find("# TYPE furrow_subjects gauge"), std::string::npos);
+  EXPECT_NE(metrics.body.find("# TYPE furrow_heap_used_bytes gauge"), std::string::npos);
+  EXPECT_NE(metrics.body.find("# TYPE furrow_heap_bytes gauge"), std::string::npos);
   EXPECT_EQ(Json::parse(client.Ask("GET", "/api/status").body)["render"], false);
 }
 

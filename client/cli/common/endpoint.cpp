@@ -36,17 +36,6 @@ Status TakeOver(const SecurityFlags& flags, client::Address* address) {
 
 }  // namespace
 
-bool ParseEndpoint(const std::string& text, client::TransportKind kind, Endpoint* endpoint) {
-  const auto address = client::ParseAddress(text);
-  if (!address.ok()) return false;
-  const bool more = !address->subjects.empty() || !address->pattern.empty() ||
-                    address->max_rate_hz != 0.0f || address->transport.value_or(kind) != kind ||
-                    address->tls;
-  if (more) return false;
-  *endpoint = {address->host, address->PortFor(kind), address->token};
-  return true;
-}
-
 std::optional<client::Address> ParseHost(const std::string& text, const HostKeys& keys) {
   auto address = client::ParseAddress(text);
   if (!address.ok()) {

@@ -12,19 +12,6 @@
 
 namespace furrow::cli {
 
-// The address of a daemon.
-struct Endpoint {
-  std::string host;
-  std::uint16_t port = 0;
-  std::string token;  // as in client::Address
-};
-
-// Parses an address (client/cpp/address.h) that states a host, a port and perhaps the transport
-// `kind` and a token. Without a port, uses the protocol's port for `kind`. Returns false for every
-// other text.
-[[nodiscard]] bool ParseEndpoint(const std::string& text, client::TransportKind kind,
-                                 Endpoint* endpoint);
-
 // The flags that state what the keys token, tls, tls-... and token-in-clear of an address do.
 struct SecurityFlags {
   std::string token;

@@ -21,23 +21,36 @@ struct ChaosCommand {
   ChaosFlags flags;
 };
 
+// Reads --to and --to-tcp. Prints the error and returns false if they are invalid. TLS passes the
+// proxy as it is, so an address that states it means its TCP port.
+bool ReadDaemon(const ChaosCommand& command, chaos::ProxyOptions* options) {
+  const auto address = ParseHost(command.to, {.udp = true});
+  if (!address) return false;
+  const client::ClientTlsFiles& files = address->tls_files;
+  const char* unused = nullptr;
+  if (!address->subjects.empty()) unused = "subject";
+  if (!address->token.empty()) unused = "token";
+  if (!files.authority.empty() || !files.certificate.empty()) unused = "files of TLS";
+  if (unused != nullptr) {
+    std::fprintf(stderr, "furrow: --to: the proxy needs no %s (give it to the clients)\n", unused);
+    return false;
+  }
+  const bool tcp = address->transport == client::TransportKind::kTcp;
+  if (tcp && command.to_tcp != 0) {
+    std::fprintf(stderr, "furrow: --to-tcp: --to names the TCP port, too (use one of both)\n");
+    return false;
+  }
+  options->to_host = address->host;
+  options->to_udp = tcp ? client::Address().PortFor(client::TransportKind::kUdp)
+                        : address->PortFor(client::TransportKind::kUdp);
+  options->to_tcp = tcp ? address->PortFor(client::TransportKind::kTcp) : command.to_tcp;
+  return true;
+}
+
 int RunChaos(const ChaosCommand& command) {
   chaos::ProxyOptions options = command.proxy;
   ReadChaosFlags(command.flags, &options.up, &options.down);
-  Endpoint endpoint;
-  if (!ParseEndpoint(command.to, client::TransportKind::kUdp, &endpoint)) {
-    std::fprintf(stderr,
-                 "furrow: --to: '%s' is not HOST, HOST:PORT, [IPV6]:PORT or furrow://HOST:PORT\n",
-                 command.to.substr(0, command.to.find('?')).c_str());
-    return kUsage;
-  }
-  if (!endpoint.token.empty()) {
-    std::fprintf(stderr, "furrow: --to: the proxy needs no token (give it to the clients)\n");
-    return kUsage;
-  }
-  options.to_host = endpoint.host;
-  options.to_udp = endpoint.port;
-  options.to_tcp = command.to_tcp;
+  if (!ReadDaemon(command, &options)) return kUsage;
   const auto proxy = chaos::Proxy::Open(options);
   if (!proxy.ok()) {
     const int code = Fail(proxy.status());
@@ -77,7 +90,7 @@ void AddChaos(CLI::App& app, Action& action) {
   command
       ->add_option("--to", options->to,
                    "UDP address of furrowd: HOST, HOST:PORT or [IPV6]:PORT; the port defaults to "
-                   "7401")
+                   "7401. furrow://HOST:PORT?tls=1 names the TCP port; TLS passes unchanged")
       ->required();
   auto* to_tcp =
       command->add_option("--to-tcp", options->to_tcp,

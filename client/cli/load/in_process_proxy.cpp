@@ -18,6 +18,7 @@ Status InProcessProxy::Start(const chaos::Faults& up, const chaos::Faults& down,
   auto proxy = chaos::Proxy::Open(options);
   FURROW_RETURN_IF_ERROR(proxy);
   proxy_ = *std::move(proxy);
+  if (target->certificate_host.empty()) target->certificate_host = target->host;
   target->host = options.listen_host;
   target->udp = proxy_->udp_port();
   target->tcp = proxy_->tcp_port();

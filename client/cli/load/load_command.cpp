@@ -41,29 +41,49 @@ int FailLoad(const Status& status) {
   return status.code() == StatusCode::kUnavailable ? kNoConnection : code;
 }
 
-// HOST:PORT names the port of the chosen transport; --other-port names the other one. `token`: only
-// its token is set.
-bool MakeTarget(const LoadFlags& flags, Target* target, client::Address* token) {
-  const bool tcp = flags.run.path == Path::kTcp;
-  Endpoint named;
-  Endpoint other;
-  const auto kind = tcp ? TransportKind::kTcp : TransportKind::kUdp;
-  const auto other_kind = tcp ? TransportKind::kUdp : TransportKind::kTcp;
-  if (!ParseEndpoint(flags.host, kind, &named)) return false;
-  (void)ParseEndpoint("localhost", other_kind, &other);  // for the default port
-  if (flags.other_port != 0) other.port = flags.other_port;
-  token->token = named.token;
-  target->host = named.host;
-  target->udp = tcp ? other.port : named.port;
-  target->tcp = tcp ? named.port : other.port;
-  target->loopback =
-      named.host == "localhost" || named.host.starts_with("127.") || named.host == "::1";
-  if (flags.pid != 0) {
-    target->pid = flags.pid;
-  } else if (target->loopback) {
-    target->pid = load::FindPortOwner(tcp ? "tcp" : "udp", named.port);
+// The address that the options state. Prints the error and returns nothing if they contradict it.
+std::optional<client::Address> AddressOf(const LoadFlags& flags) {
+  auto address = ParseHost(flags.host, {.udp = true, .security = flags.security});
+  if (!address) return std::nullopt;
+  if (!address->subjects.empty()) {
+    std::fprintf(stderr, "furrow: address: the load tester names its subjects (leave it out)\n");
+    return std::nullopt;
   }
-  return true;
+  if (flags.udp && address->tls) {
+    std::fprintf(stderr, "furrow: --udp: TLS needs TCP (over UDP, a token encrypts)\n");
+    return std::nullopt;
+  }
+  return address;
+}
+
+// The transport that the options choose, or else the address.
+Path PathOf(const LoadFlags& flags, const client::Address& address) {
+  if (flags.both) return Path::kBoth;
+  if (flags.tcp) return Path::kTcp;
+  return !flags.udp && address.transport == TransportKind::kTcp ? Path::kTcp : Path::kUdp;
+}
+
+// HOST:PORT names the port of the chosen transport, with --both that of UDP unless the address
+// states TCP; --other-port names the other one.
+Target TargetOf(const LoadFlags& flags, const client::Address& address) {
+  const bool tcp = flags.run.path == Path::kTcp ||
+                   (flags.run.path == Path::kBoth && address.transport == TransportKind::kTcp);
+  const client::Address nowhere;  // for the default port
+  const std::uint16_t named = address.PortFor(tcp ? TransportKind::kTcp : TransportKind::kUdp);
+  const std::uint16_t other =
+      flags.other_port != 0 ? flags.other_port
+                            : nowhere.PortFor(tcp ? TransportKind::kUdp : TransportKind::kTcp);
+  const std::string& host = address.host;
+  Target target{.host = host,
+                .udp = tcp ? other : named,
+                .tcp = tcp ? named : other,
+                .loopback = host == "localhost" || host.starts_with("127.") || host == "::1"};
+  if (flags.pid != 0) {
+    target.pid = flags.pid;
+  } else if (target.loopback) {
+    target.pid = load::FindPortOwner(tcp ? "tcp" : "udp", named);
+  }
+  return target;
 }
 
 // Replaces the status line. Does nothing unless standard error is a terminal.
@@ -200,27 +220,26 @@ Status RunComparison(const LoadFlags& flags, const load::Workload& workload, con
 }
 
 int RunLoad(LoadFlags flags) {
-  flags.run.path = flags.tcp ? Path::kTcp : flags.both ? Path::kBoth : Path::kUdp;
+  const auto address = AddressOf(flags);
+  if (!address) return kUsage;
+  flags.run.path = PathOf(flags, *address);
+  flags.tcp = flags.run.path == Path::kTcp;  // TLS implies it
+  flags.security.tls = address->tls;
   flags.input.packing = PackingOf(flags);
   flags.run.late_us = static_cast<std::int64_t>(flags.late_ms * 1e3);
   flags.run.plan.subjects = flags.subjects != 0 ? flags.subjects : flags.find_max ? 256 : 1;
   flags.run.plan.phases = 16;
-  Target target;
-  client::Address stated;
-  if (!MakeTarget(flags, &target, &stated)) {
-    // Without the part that may hold a token.
-    std::fprintf(stderr, "furrow: '%s' is not HOST, HOST:PORT, [IPV6]:PORT or furrow://HOST:PORT\n",
-                 flags.host.substr(0, flags.host.find('?')).c_str());
-    return kUsage;
-  }
-  if (!flags.token.empty()) stated.token = flags.token;
-  const auto token = client::LoadTokenOf(stated);
-  if (!token.ok()) return Fail(token.status().Within("token"));
-  target.token = *token;
-  if (target.token && flags.run.path != Path::kUdp && !target.loopback) {
+  Target target = TargetOf(flags, *address);
+  const auto security = client::LoadSecurityOf(*address);
+  if (!security.ok()) return Fail(security.status());
+  target.security = *security;
+  const bool in_clear =
+      target.security.token && target.security.tls == nullptr && !target.security.token_in_clear;
+  if (in_clear && flags.run.path != Path::kUdp && !target.loopback) {
     std::fprintf(stderr,
-                 "furrow: --token: the load tester speaks no TLS, so over TCP it sends a token to "
-                 "this computer only (use --udp)\n");
+                 "furrow: --token: it would travel to %s unencrypted (use --udp or --tls; "
+                 "--token-in-clear sends it anyway)\n",
+                 target.host.c_str());
     return kUsage;
   }
   if (const int code = CheckFlags(flags); code != kDone) return code;

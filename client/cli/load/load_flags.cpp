@@ -10,10 +10,10 @@ namespace {
 
 void AddTrafficOptions(CLI::App& command, LoadFlags& options) {
   command
-      .add_option(
-          "HOST", options.host,
-          "Address of furrowd: HOST, HOST:PORT or [IPV6]:PORT; PORT is the UDP port, or the "
-          "TCP port with --tcp")
+      .add_option("HOST", options.host,
+                  "Address of furrowd: HOST, HOST:PORT, [IPV6]:PORT or "
+                  "furrow://HOST:PORT?KEY=VALUE; PORT is "
+                  "the UDP port, or the TCP port with --tcp or TLS")
       ->required();
   command
       .add_option("FILE", options.input.file,
@@ -33,12 +33,24 @@ void AddTrafficOptions(CLI::App& command, LoadFlags& options) {
   command.add_option("--duration", options.run.plan.seconds, "Length of the run, in seconds")
       ->check(Within(0.01, 1e6))
       ->capture_default_str();
-  auto* udp = command.add_flag("--udp", options.udp, "Use UDP (default)");
+  auto* step =
+      command
+          .add_option("--clock-step", options.run.plan.clock_step,
+                      "Let the clocks of the poses jump by this time, in seconds, forwards "
+                      "and backwards in turn (default: never)")
+          ->check(Within(0.0, 1e6));
+  command
+      .add_option("--clock-every", options.run.plan.clock_every,
+                  "Time between two jumps of the clocks, in seconds")
+      ->check(Within(0.01, 1e6))
+      ->needs(step)
+      ->capture_default_str();
+  auto* udp = command.add_flag("--udp", options.udp, "Use UDP (default without TLS)");
   auto* tcp = command.add_flag("--tcp", options.tcp, "Use TCP")->excludes(udp);
   command.add_flag("--both", options.both, "Use UDP for half of the connections and TCP for half")
       ->excludes(udp)
       ->excludes(tcp);
-  AddTokenFile(command, options.token);
+  AddSecurityOptions(command, options.security);
   command.add_option(
       "--other-port", options.other_port,
       "furrowd's port for the other transport, which PORT does not give (default: 7400 for "
@@ -55,6 +67,7 @@ void AddTrafficOptions(CLI::App& command, LoadFlags& options) {
                 "Repeat the previous pose in each datagram where both fit, as 'furrow play "
                 "--redundant' does; implies --quantise")
       ->excludes("--floats")
+      ->excludes(step)  // a repeated pose states its age, not its time
       ->excludes(tcp);
   command.add_option("--scale", options.input.scale, "Metres per unit of the recording's lengths")
       ->check(Within(1e-6, 1e6))

@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "client/cli/common/endpoint.h"
 #include "client/cli/load/chaos_flags.h"
 #include "client/cli/load/load_input.h"
 #include "client/load/compare/comparison.h"
@@ -16,7 +17,7 @@ namespace furrow::cli {
 // The parsed options of `furrow load`.
 struct LoadFlags {
   std::string host;
-  std::string token;  // argument of --token
+  SecurityFlags security;
   LoadInput input;
   load::RunOptions run;
   int subjects = 0;  // 0: 1, or 256 with --find-max

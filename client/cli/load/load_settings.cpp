@@ -58,7 +58,8 @@ nlohmann::json SettingsOf(const LoadFlags& flags) {
   const load::RunOptions& run = flags.run;
   nlohmann::json json{
       {"version", FURROW_VERSION},
-      {"host", flags.host},
+      {"host", flags.host.substr(0, flags.host.find('?'))},  // what follows may be a token
+      {"tls", flags.security.tls},
       {"file", flags.input.file},
       {"rig", TextOrNull(flags.input.rig)},
       {"skeleton_map", TextOrNull(flags.input.skeleton_map)},
@@ -71,6 +72,8 @@ nlohmann::json SettingsOf(const LoadFlags& flags) {
       {"subjects", run.plan.subjects},
       {"rate", run.plan.rate > 0.0 ? nlohmann::json(run.plan.rate) : nlohmann::json()},
       {"duration_seconds", run.plan.seconds},
+      {"clock_step_seconds", run.plan.clock_step},
+      {"clock_every_seconds", run.plan.clock_every},
       {"subscribers", run.watchers},
       {"slow", run.misbehavior.slow},
       {"stalled", run.misbehavior.stalled},

@@ -77,6 +77,18 @@ void Checker::OnWeights(int watcher, std::uint32_t subject, std::uint32_t sequen
   }
 }
 
+void Checker::OnAged(int watcher, std::uint32_t subject, std::uint32_t sequence,
+                     std::int64_t now_us) {
+  if (subject >= sent_.size() || sequence >= sent_[subject].size()) return;
+  // Every subject is silent after its last pose.
+  const std::uint32_t last = plan_.count(subject) - 1;
+  if (now_us >= plan_.DueUs(subject, last)) return;
+  ++tally_.aged;
+  Track& track = tracks_[static_cast<std::size_t>(watcher) * sent_.size() + subject];
+  // A decay takes many messages.
+  if (track.decayed.empty() || track.decayed.back() != sequence) track.decayed.push_back(sequence);
+}
+
 void Checker::Compare(Track& track, std::uint32_t subject, std::uint32_t pose,
                       std::span<const float> values) {
   const auto row = expected_->Row(plan_.phase_of(subject), pose);
@@ -123,7 +135,14 @@ class Checker::MismatchResolver {
         workload_(workload),
         track_(track),
         phase_(checker.plan_.phase_of(track.subject)),
-        replay_(Begin(0)) {}
+        replay_(Begin(0)) {
+    for (const std::uint32_t pose : track.decayed) {
+      const auto count = static_cast<std::uint32_t>(track.seen.size());
+      std::uint32_t first = pose + 1;
+      while (first < count && !track.seen[first]) ++first;
+      if (first < count) resumed_us_.push_back(checker.plan_.CaptureUs(phase_, first));
+    }
+  }
 
   // Distance of the values of a mismatch from the possible weights, as Replay::Mismatched(). Call
   // it in the order of the poses.
@@ -135,7 +154,9 @@ class Checker::MismatchResolver {
         replay_->Missing(next_++);
       }
     }
-    return replay_->Mismatched(next_++, values);
+    const std::optional<float> distance = replay_->Mismatched(next_++, values);
+    const bool is_wrong = distance && *distance > checker_.options_.tolerance;
+    return is_wrong && FollowsDecay(mismatch.pose) ? std::nullopt : distance;
   }
 
  private:
@@ -144,6 +165,13 @@ class Checker::MismatchResolver {
     return {
         workload_, checker_.plan_, track_.subject, *checker_.expected_, checker_.options_.tolerance,
         first};
+  }
+  // True if the filter of the server still depends on a decay before this pose.
+  [[nodiscard]] bool FollowsDecay(std::uint32_t pose) const {
+    const std::int64_t at_us = checker_.plan_.CaptureUs(phase_, pose);
+    return std::ranges::any_of(resumed_us_, [at_us](std::int64_t resumed_us) {
+      return at_us >= resumed_us && at_us < resumed_us + kForgottenUs;
+    });
   }
   // The first pose in [next_, end) whose weights did not arrive; `end` if there is none.
   [[nodiscard]] std::uint32_t NextGap(std::uint32_t end) const {
@@ -185,6 +213,7 @@ class Checker::MismatchResolver {
   const Track& track_;
   int phase_;
   std::optional<Replay> replay_;
+  std::vector<std::int64_t> resumed_us_;  // capture times of the first poses after decays
   std::uint32_t next_ = 0;
   bool forgets_ = true;
 };

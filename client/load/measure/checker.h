@@ -26,6 +26,7 @@ struct Tally {
   std::uint64_t checked = 0;     // messages compared with the solver's weights
   std::uint64_t unchecked = 0;   // received, but not predictable: after a long gap, or another rig
   std::uint64_t unfollowed = 0;  // unchecked because too many messages differed
+  std::uint64_t aged = 0;        // messages without a new pose: the server held or decayed weights
   std::uint64_t wrong = 0;       // checked messages beyond the tolerance
   std::uint64_t swapped = 0;     // wrong messages that equal those of another pose or subject
   std::uint64_t unclassified =
@@ -64,6 +65,10 @@ class Checker {
   // [0, CheckOptions::watchers). `readable`: the names of the weights equal the solver's.
   void OnWeights(int watcher, std::uint32_t subject, std::uint32_t sequence,
                  std::span<const float> values, bool readable, std::int64_t now_us);
+  // Records weights with an age, which belong to no new pose: the server has received none after
+  // `sequence` for so long that it holds and decays the weights by its own clock. Weights of the
+  // next kForgottenUs depend on that decay, so mismatches among them are unchecked.
+  void OnAged(int watcher, std::uint32_t subject, std::uint32_t sequence, std::int64_t now_us);
 
   // Decides which mismatches are wrong, by replaying the solver. Call it once, at the end, with the
   // workload of the expected table. `progress` receives the completed share in [0, 1] several times
@@ -92,6 +97,7 @@ class Checker {
     std::int64_t newest = -1;
     std::vector<Mismatch> mismatches;
     std::vector<std::uint32_t> unfollowed;  // poses whose mismatch was not kept
+    std::vector<std::uint32_t> decayed;     // poses after which the server decayed the weights
   };
   class MismatchResolver;  // works on one track
 

@@ -21,6 +21,8 @@ namespace furrow::load {
 // Time without gaps, microseconds, after which the state of a filter no longer depends on its
 // start, unless the filter is very slow.
 inline constexpr std::int64_t kFilterMemoryUs = 5'000'000;
+// Time after which it no longer depends on a decay without poses, microseconds.
+inline constexpr std::int64_t kForgottenUs = 2'000'000;
 
 // The weights of a server that receives every pose of a plan. They are solved before the run, so
 // that a check during the run costs one comparison.

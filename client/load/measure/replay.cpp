@@ -12,8 +12,6 @@ namespace {
 constexpr std::size_t kMaxBranches = 1024;
 // After this time without poses a server may hold and decay the weights (furrowd: after 0.5 s).
 constexpr std::int64_t kDecayUs = 400'000;
-// Time after which the filter no longer depends on the decay.
-constexpr std::int64_t kForgottenUs = 2'000'000;
 // Branches that differ by at most this are merged.
 constexpr float kSame = 1e-6f;
 
@@ -24,16 +22,22 @@ Replay::Replay(const Workload& workload, const Plan& plan, std::uint32_t subject
     : workload_(workload),
       plan_(plan),
       expected_(expected),
+      subject_(subject),
       phase_(plan.phase_of(subject)),
       tolerance_(tolerance),
       last_seen_us_(plan.CaptureUs(phase_, first)) {
-  branches_.push_back({wrinkle::SubjectSolver(workload.binding), -1});
+  branches_.push_back({wrinkle::SubjectSolver(workload.binding)});
 }
 
 // The branch's server solves this pose. Its time step runs from the last pose that reached it.
 void Replay::Use(Branch& branch, std::uint32_t pose) {
-  const std::int64_t now = plan_.CaptureUs(phase_, pose);
-  const std::int64_t step = branch.last_us < 0 ? 0 : now - branch.last_us;
+  const std::int64_t now = plan_.CaptureUs(phase_, pose) + plan_.ClockOffsetUs(subject_, pose);
+  // As furrowd does when time goes back.
+  if (branch.last_us && now < *branch.last_us) {
+    branch.solver.Reset();
+    branch.last_us.reset();
+  }
+  const std::int64_t step = now - branch.last_us.value_or(now);
   branch.last_us = now;
   workload_.pose(plan_.Frame(phase_, pose), &pose_);
   (void)branch.solver.Update(pose_, static_cast<double>(step) * 1e-6);

@@ -40,7 +40,7 @@ class Replay {
  private:
   struct Branch {
     wrinkle::SubjectSolver solver;
-    std::int64_t last_us = -1;  // capture time of the last solved pose; -1: none
+    std::optional<std::int64_t> last_us = {};  // capture time of the last solved pose
   };
 
   void Use(Branch& branch, std::uint32_t pose);
@@ -52,6 +52,7 @@ class Replay {
   const Workload& workload_;
   const Plan& plan_;
   const ExpectedWeights& expected_;
+  std::uint32_t subject_;
   int phase_;
   float tolerance_;
   std::vector<Branch> branches_;

@@ -45,6 +45,12 @@ std::string RunRemarks(const RunResult& result, const RunOptions& options) {
            " had weights that differ from the solver's, too many to analyse; they count as "
            "unchecked.");
   }
+  if (result.tally.aged > 0) {
+    remark("The daemon sent " + Counted(result.tally.aged, "message") +
+           " of decaying weights, because it received no pose of a subject for half a second. "
+           "Poses were sent up to " +
+           Fixed(static_cast<double>(result.send_delay_ns.max()) * 1e-9, 1) + " s late.");
+  }
   if (result.overrun > 0) {
     remark("The load generator's own buffers lost " + Counted(result.overrun, "datagram") +
            "; it is too slow for this rate.");
@@ -97,6 +103,7 @@ nlohmann::json CountsOf(const RunResult& result) {
           {"checked", tally.checked},
           {"unchecked", tally.unchecked},
           {"unfollowed", tally.unfollowed},
+          {"aged", tally.aged},
           {"overrun", result.overrun},
           {"churn_returns", result.churn_returns},
           {"burdens_cut", result.subscribers_cut}};
@@ -170,6 +177,7 @@ nlohmann::json ToJson(const RunResult& result) {
                         {"p99.9", result.p(99.9)},
                         {"max", result.p(100.0)}};
   json["send_delay_p99_us"] = static_cast<double>(result.send_delay_ns.Percentile(99.0)) * 1e-3;
+  json["send_delay_max_us"] = static_cast<double>(result.send_delay_ns.max()) * 1e-3;
   if (result.cpu_seconds) {
     json["cpu_seconds"] = *result.cpu_seconds;
     json["cpu_us_per_pose"] = result.cpu_us_per_pose().value_or(0.0);

@@ -33,7 +33,7 @@ SocketOpener Opener(const Target& target, Path path) {
   return [target, path](int i) -> Result<std::unique_ptr<net::Socket>> {
     const bool tcp = path == Path::kTcp || (path == Path::kBoth && i % 2 == 1);
     return net::OpenSocket(tcp ? TransportKind::kTcp : TransportKind::kUdp, target.host,
-                           tcp ? target.tcp : target.udp, target.token ? &*target.token : nullptr);
+                           tcp ? target.tcp : target.udp, target.security, target.certificate_host);
   };
 }
 
@@ -42,6 +42,7 @@ SocketOpener ResolvedOpener(Target target, Path path) {
   return [target = std::move(target), path](int i) mutable -> Result<std::unique_ptr<net::Socket>> {
     auto socket = Opener(target, path)(i);
     FURROW_RETURN_IF_ERROR(socket);
+    if (target.certificate_host.empty()) target.certificate_host = target.host;
     if (const std::string host = net::PeerHost((*socket)->descriptor()); !host.empty())
       target.host = host;
     return socket;
@@ -233,7 +234,8 @@ void Runner::SendDue(std::int64_t now_ns) {
     last_due_ns_ = NextDueNs();
     const int phase = plan_.phase_of(slot.subject);
     const IoStatus status = senders_->Send(slot.subject, slot.pose, plan_.Frame(phase, slot.pose),
-                                           capture_start_us_ + plan_.CaptureUs(phase, slot.pose));
+                                           capture_start_us_ + plan_.CaptureUs(phase, slot.pose) +
+                                               plan_.ClockOffsetUs(slot.subject, slot.pose));
     // Read again: a send may take long, and poses may have become due in the meantime.
     now_ns = net::SteadyNanoseconds();
     result_.send_delay_ns.Record(now_ns - last_due_ns_);
@@ -267,9 +269,13 @@ bool Runner::ReadReady(net::Poller* poller, std::int64_t timeout_ns) {
 IoStatus Runner::ReadWatcher(std::size_t socket) {
   return watchers_->Read(socket, [this](const Watchers::Arrival& arrival) {
     // The arrival at this machine, not the moment at which this loop got round to reading.
+    const std::int64_t arrived_us = (arrival.arrived_ns - start_ns_) / 1000;
+    if (arrival.aged) {
+      return checker_->OnAged(arrival.watcher, arrival.subject, arrival.sequence, arrived_us);
+    }
     last_arrival_ns_ = arrival.arrived_ns;
     checker_->OnWeights(arrival.watcher, arrival.subject, arrival.sequence, arrival.values,
-                        arrival.readable, (last_arrival_ns_ - start_ns_) / 1000);
+                        arrival.readable, arrived_us);
   });
 }
 

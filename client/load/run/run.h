@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/status.h"
+#include "client/cpp/tls/security.h"
 #include "client/load/measure/checker.h"
 #include "client/load/measure/histogram.h"
 #include "client/load/measure/process_usage.h"
@@ -25,10 +26,11 @@ struct Target {
   std::string host;
   std::uint16_t udp = 0;
   std::uint16_t tcp = 0;
-  bool echo = false;                   // a raw echo, which returns the poses themselves
-  bool loopback = true;                // `host` is a loopback address
-  std::optional<client::Token> token;  // shown by every socket
-  std::optional<int> pid;              // process of the server, if it is known and on this machine
+  bool echo = false;             // a raw echo, which returns the poses themselves
+  bool loopback = true;          // `host` is a loopback address
+  client::Security security;     // of every socket
+  std::string certificate_host;  // TLS: whom the certificate is for; empty: `host`
+  std::optional<int> pid;        // process of the server, if it is known and on this machine
 };
 
 // The options of a run.

@@ -93,14 +93,14 @@ void Watchers::OnWeights(Link& link, const protocol::Header& header,
                          const std::function<void(const Arrival&)>& use) {
   const auto subject = link.subscriptions.find(header.stream);
   const protocol::WeightFrame& frame = link.subscriber->weights();
-  // Frames with an age belong to no pose: the daemon sends them while it holds or decays weights.
-  if (subject == link.subscriptions.end() || frame.age_us > 0) return;
+  if (subject == link.subscriptions.end()) return;
   use({.watcher = link.watcher,
        .subject = subject->second,
        .sequence = header.sequence,
        .arrived_ns = link.socket->arrived_ns(),
        .values = frame.values,
-       .readable = frame.names_hash == names_hash_});
+       .readable = frame.names_hash == names_hash_,
+       .aged = frame.age_us > 0});
 }
 
 IoStatus Watchers::Read(std::size_t i, const std::function<void(const Arrival&)>& use) {

@@ -21,6 +21,7 @@ namespace furrow::load {
 class Watchers {
  public:
   // Weights of one subject that arrived for one watcher. `readable`: they have the expected names.
+  // `aged`: they belong to no new pose; the daemon holds or decays weights without one.
   struct Arrival {
     int watcher = 0;
     std::uint32_t subject = 0;
@@ -28,6 +29,7 @@ class Watchers {
     std::int64_t arrived_ns = 0;  // as net::Socket::arrived_ns()
     std::span<const float> values;
     bool readable = false;
+    bool aged = false;
   };
 
   // Opens the sockets of `watchers` watchers, each for all of `subjects` subjects. `names`: the

@@ -21,7 +21,9 @@ bool IsLater(const Plan::Slot& a, const Plan::Slot& b) {
 
 Plan::Plan(std::span<const double> times, const PlanOptions& options)
     : phases_(std::clamp(options.phases, 1, static_cast<int>(times.size()))),
-      seconds_(options.seconds) {
+      seconds_(options.seconds),
+      clock_step_us_(std::llround(options.clock_step * 1e6)),
+      clock_every_us_(std::max<std::int64_t>(std::llround(options.clock_every * 1e6), 1)) {
   const auto frames = static_cast<double>(times.size());
   // The average interval of the recording, which also separates two rounds.
   const double own =
@@ -78,6 +80,11 @@ std::int64_t Plan::CaptureUs(int phase, std::uint32_t pose) const {
 
 std::int64_t Plan::DueUs(std::uint32_t subject, std::uint32_t pose) const {
   return offset_us_[subject] + CaptureUs(phase_of(subject), pose);
+}
+
+std::int64_t Plan::ClockOffsetUs(std::uint32_t subject, std::uint32_t pose) const {
+  const std::int64_t jumps = DueUs(subject, pose) / clock_every_us_;
+  return jumps % 2 == 1 ? clock_step_us_ : 0;
 }
 
 double Plan::poses_per_second() const { return static_cast<double>(num_slots_) / seconds_; }

@@ -13,6 +13,10 @@ struct PlanOptions {
   int phases = 1;         // number of different start frames, >= 1
   double rate = 0.0;      // poses per second and subject; 0: the recording's own spacing
   double seconds = 10.0;  // length of the run
+  // The capture clocks jump by `clock_step` seconds after each `clock_every` seconds, forwards and
+  // backwards in turn. 0: never.
+  double clock_step = 0.0;
+  double clock_every = 5.0;  // > 0
 };
 
 // The due times of all poses of all subjects, fixed before the first pose is sent. A slow server
@@ -47,8 +51,11 @@ class Plan {
   // The frame that is sent as pose `pose` of a subject with start `phase`.
   [[nodiscard]] int Frame(int phase, std::uint32_t pose) const;
   // Capture time of pose `pose` of a subject with start `phase`, in microseconds since the
-  // subject's first pose.
+  // subject's first pose, on a clock that does not jump.
   [[nodiscard]] std::int64_t CaptureUs(int phase, std::uint32_t pose) const;
+  // How far the capture clock has jumped before a pose is due, microseconds. Its capture time is
+  // CaptureUs() plus this.
+  [[nodiscard]] std::int64_t ClockOffsetUs(std::uint32_t subject, std::uint32_t pose) const;
   // Due time in microseconds since the start of the run.
   [[nodiscard]] std::int64_t DueUs(std::uint32_t subject, std::uint32_t pose) const;
   // Average rate of all subjects together, poses per second.
@@ -60,6 +67,8 @@ class Plan {
 
   int phases_;
   double seconds_;
+  std::int64_t clock_step_us_;
+  std::int64_t clock_every_us_;
   std::vector<std::int64_t> frame_us_;  // time of each frame within a round
   std::int64_t round_us_;
   std::vector<std::int64_t> offset_us_;  // start time of each subject

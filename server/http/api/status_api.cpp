@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include <malloc.h>
 #include <nlohmann/json.hpp>
 #include <prometheus/metric_family.h>
 #include <prometheus/text_serializer.h>
@@ -143,6 +144,12 @@ ApiReply StatusApi::MetricsText(const Hub& hub) const {
             static_cast<double>(parts_.connections()));
   add_gauge("furrow_http_viewers", "Open WebSockets and picture streams.",
             static_cast<double>(parts_.viewers()));
+  // What the process holds beyond its needs is the allocator's: peaks of the past, and gaps.
+  const struct mallinfo2 heap = mallinfo2();
+  add_gauge("furrow_heap_used_bytes", "Allocated memory in use.",
+            static_cast<double>(heap.uordblks + heap.hblkhd));
+  add_gauge("furrow_heap_bytes", "Memory that the allocator has taken from the system.",
+            static_cast<double>(heap.arena + heap.hblkhd));
   if (parts_.recording_is_paused) {
     add_gauge("furrow_recording_paused", "1 while the disk has no room for the recording.",
               parts_.recording_is_paused() ? 1.0 : 0.0);

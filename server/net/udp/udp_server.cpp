@@ -107,7 +107,8 @@ UdpServer::UdpServer(asio::io_context& io, const Limits& limits, Hub* hub, Metri
       by_shard_(static_cast<std::size_t>(shard) + 1, this),
       secure_(secure),
       reception_(hub->session(), &hub->address_proof(), metrics, requires_token),
-      shares_(static_cast<std::size_t>(limits.max_udp_peers)) {
+      shares_(static_cast<std::size_t>(limits.max_udp_peers)),
+      release_(io) {
   hub_->SetBufferedSender(shard_, this);
   sender_.SetSealer(secure);
 }
@@ -155,6 +156,7 @@ void UdpServer::DropWaiting() {
 void UdpServer::Close() {
   asio::error_code error;
   socket_.close(error);
+  release_.cancel();
   sender_.Close();
 }
 
@@ -177,11 +179,28 @@ asio::awaitable<void> UdpServer::Read() {
         WithinMemory(metrics_, [&] { OnDatagram(batch_.bytes(i), batch_.sender(i), now); });
       }
       ForgetClosed();
+      ReleaseInTime();
       is_drained = count < UdpBatch::kSize;
     }
     // Lets timers and TCP run while datagrams keep arriving.
     if (!is_drained) co_await asio::post(io_, asio::use_awaitable);
   }
+}
+
+// Requires the shard's lock. An own timer, because few streams need one, and those to the
+// millisecond.
+void UdpServer::ReleaseInTime() {
+  const std::optional<Time> due = hub_->NextAhead(shard_);
+  if (!due || (release_at_ && *release_at_ <= *due)) return;
+  release_at_ = due;
+  release_.expires_at(asio::steady_timer::time_point(*due));
+  release_.async_wait([this](const asio::error_code& error) {
+    if (error) return;  // an earlier time has replaced this one, or the server has closed
+    release_at_.reset();
+    const Hub::ShardLock lock(*hub_, shard_);
+    hub_->ReleaseHeld(shard_, ReadClock());
+    ReleaseInTime();
+  });
 }
 
 void UdpServer::Flush() {
@@ -296,6 +315,7 @@ void UdpServer::PassOn(int shard, SessionPacket packet) {
     owner->num_passed_.fetch_sub(1, std::memory_order_relaxed);
     const Hub::ShardLock lock(*owner->hub_, owner->shard_);
     owner->OnSessionPacket(packet, ReadClock());
+    owner->ReleaseInTime();
   });
 }
 

@@ -15,6 +15,7 @@
 #include <asio/awaitable.hpp>
 #include <asio/io_context.hpp>
 #include <asio/ip/udp.hpp>
+#include <asio/steady_timer.hpp>
 
 #include "base/status.h"
 #include "protocol/framing/fragment.h"
@@ -116,6 +117,7 @@ class UdpServer : public BufferedSender {
   UdpPeer* Add(const Address& address, const asio::ip::udp::endpoint& sender, std::uint64_t session,
                Time now);
   void Forget(const UdpPeer& peer);
+  void ReleaseInTime();
 
   asio::io_context& io_;
   asio::ip::udp::socket socket_;
@@ -133,6 +135,9 @@ class UdpServer : public BufferedSender {
   protocol::Reassembler reassembler_;
   std::unordered_map<Address, std::unique_ptr<UdpPeer>, AddressHash> peers_;
   std::unordered_map<std::uint32_t, std::unique_ptr<UdpPeer>> sealed_;  // by secure session
+  // Wakes up for poses that wait for an earlier one.
+  asio::steady_timer release_;
+  std::optional<Time> release_at_;  // none: not armed
   // Packets that other shards have passed on and that wait for this shard's thread.
   std::atomic<int> num_passed_ = 0;
 };

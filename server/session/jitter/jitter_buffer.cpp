@@ -19,6 +19,16 @@ JitterBuffer::Place JitterBuffer::Look(const protocol::Header& header, Time dela
   return Misses(header.sequence) ? Place::kHeld : Place::kDuplicate;
 }
 
+JitterBuffer::Place JitterBuffer::LookAhead(const protocol::Header& header, Time wait, Time now,
+                                            Time* due) {
+  last_arrival_ = now;
+  *due = now + wait;
+  const auto behind = std::ranges::find_if(
+      held_, [&](const auto& pose) { return IsNewer(pose->header.sequence, header.sequence); });
+  if (behind != held_.end()) *due = std::min(*due, (*behind)->due);
+  return Misses(header.sequence) ? Place::kHeld : Place::kDuplicate;
+}
+
 bool JitterBuffer::Misses(std::uint32_t sequence) const {
   const auto same = [=](const auto& pose) { return pose->header.sequence == sequence; };
   return (!has_left_ || IsNewer(sequence, newest_left_)) && std::ranges::none_of(held_, same);
@@ -33,6 +43,11 @@ void JitterBuffer::Hold(std::unique_ptr<HeldPose> pose) {
 
 std::unique_ptr<HeldPose> JitterBuffer::TakeDue(Time now) {
   return held_.empty() || held_.front()->due > now ? nullptr : TakeOldest();
+}
+
+std::unique_ptr<HeldPose> JitterBuffer::TakeIf(std::uint32_t sequence) {
+  const bool is_it = !held_.empty() && held_.front()->header.sequence == sequence;
+  return is_it ? TakeOldest() : nullptr;
 }
 
 std::unique_ptr<HeldPose> JitterBuffer::TakeOldest() {

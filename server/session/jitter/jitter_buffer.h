@@ -22,17 +22,26 @@ class JitterBuffer {
 
   // Decides about a pose that arrived. For kHeld, `due` receives when it leaves; pass it to Hold().
   [[nodiscard]] Place Look(const protocol::Header& header, Time delay, Time now, Time* due);
+  // The same for a pose that arrived before an earlier one, for which it waits until `due`: for
+  // `wait`, or as long as the poses behind it. Whether it is late is up to the caller.
+  [[nodiscard]] Place LookAhead(const protocol::Header& header, Time wait, Time now, Time* due);
   // True if the pose with this sequence neither waits nor came too late.
   [[nodiscard]] bool Misses(std::uint32_t sequence) const;
   // Adds a pose that Look() would hold.
   void Hold(std::unique_ptr<HeldPose> pose);
   // Takes the oldest pose if its time has come, else returns null.
   [[nodiscard]] std::unique_ptr<HeldPose> TakeDue(Time now);
+  // Takes the oldest pose if it has this sequence, else returns null.
+  [[nodiscard]] std::unique_ptr<HeldPose> TakeIf(std::uint32_t sequence);
   // Takes the oldest pose. Precondition: not empty().
   [[nodiscard]] std::unique_ptr<HeldPose> TakeOldest();
 
   [[nodiscard]] bool empty() const { return held_.empty(); }
   [[nodiscard]] std::size_t size() const { return held_.size(); }
+  // When the oldest pose leaves. Precondition: not empty().
+  [[nodiscard]] Time due() const { return held_.front()->due; }
+  // Of the newest pose that was taken.
+  [[nodiscard]] std::uint32_t newest_left() const { return newest_left_; }
   [[nodiscard]] Time last_arrival() const { return last_arrival_; }
 
  private:

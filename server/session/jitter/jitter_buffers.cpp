@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/session/jitter/jitter_buffers.h"
 
+#include <algorithm>
 #include <iterator>
 #include <utility>
 
@@ -24,6 +25,26 @@ JitterBuffers::Place JitterBuffers::Add(const StreamKey& stream, const protocol:
     case JitterBuffer::Place::kDuplicate: return Place::kDuplicate;
     case JitterBuffer::Place::kHeld: break;
   }
+  return Hold(stream, buffer, header, pose, payload, due);
+}
+
+JitterBuffers::Place JitterBuffers::AddAhead(const StreamKey& stream,
+                                             const protocol::Header& header,
+                                             const protocol::PoseFrame& pose,
+                                             std::span<const std::uint8_t> payload, Time wait,
+                                             Time now) {
+  JitterBuffer& buffer = ahead_[stream];
+  Time due{0};
+  if (buffer.LookAhead(header, wait, now, &due) != JitterBuffer::Place::kHeld) {
+    return Place::kDuplicate;
+  }
+  return Hold(stream, buffer, header, pose, payload, due);
+}
+
+JitterBuffers::Place JitterBuffers::Hold(const StreamKey& stream, JitterBuffer& buffer,
+                                         const protocol::Header& header,
+                                         const protocol::PoseFrame& pose,
+                                         std::span<const std::uint8_t> payload, Time due) {
   std::unique_ptr<HeldPose> held = NewPose();
   held->header = header;
   held->pose = pose;
@@ -57,13 +78,52 @@ std::span<const JitterBuffers::Released> JitterBuffers::TakeDue(Time now) {
     const bool forgotten = buffer.empty() && now - buffer.last_arrival() > kForget;
     entry = forgotten ? streams_.erase(entry) : std::next(entry);
   }
+  TakeAhead(now);
+  return released_;
+}
+
+// A pose that has waited as long as allowed leaves, and with it those that follow it directly.
+void JitterBuffers::TakeAhead(Time now) {
+  for (auto entry = ahead_.begin(); entry != ahead_.end();) {
+    auto& [stream, buffer] = *entry;
+    while (auto pose = buffer.TakeDue(now)) {
+      do {
+        Release(stream, std::move(pose));
+        pose = buffer.TakeIf(buffer.newest_left() + 1);
+      } while (pose != nullptr);
+    }
+    entry = buffer.empty() ? ahead_.erase(entry) : std::next(entry);
+  }
+}
+
+std::optional<Time> JitterBuffers::NextAhead() const {
+  // A pose that left early because there was no room for it.
+  if (!released_.empty()) return Time{0};
+  std::optional<Time> next;
+  for (const auto& [stream, buffer] : ahead_) {
+    if (!buffer.empty()) next = std::min(next.value_or(buffer.due()), buffer.due());
+  }
+  return next;
+}
+
+std::span<const JitterBuffers::Released> JitterBuffers::TakeFollowing(const StreamKey& stream,
+                                                                      std::uint32_t newest) {
+  const auto found = ahead_.find(stream);
+  if (found == ahead_.end()) return released_;
+  JitterBuffer& buffer = found->second;
+  while (auto pose = buffer.TakeIf(++newest)) Release(stream, std::move(pose));
+  if (buffer.empty()) ahead_.erase(found);
   return released_;
 }
 
 std::span<const JitterBuffers::Released> JitterBuffers::TakeAll(const StreamKey& stream) {
-  const auto found = streams_.find(stream);
-  while (found != streams_.end() && !found->second.empty()) {
-    Release(stream, found->second.TakeOldest());
+  const auto take = [&](JitterBuffer& buffer) {
+    while (!buffer.empty()) Release(stream, buffer.TakeOldest());
+  };
+  if (const auto found = streams_.find(stream); found != streams_.end()) take(found->second);
+  if (const auto found = ahead_.find(stream); found != ahead_.end()) {
+    take(found->second);
+    ahead_.erase(found);
   }
   return released_;
 }

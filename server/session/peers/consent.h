@@ -65,6 +65,12 @@ class Consent {
     }
   }
 
+  // The daemon did not run for this long, and could neither send challenges nor read answers.
+  void OnStall(Time length) {
+    answered_ += length;
+    for (Challenge& challenge : challenges_) challenge.sent += length;
+  }
+
   // True if frames may be sent.
   [[nodiscard]] bool Holds(Time now) const { return now - answered_ <= kPause; }
   // When the last challenge that was answered was sent, or when the address was proven.

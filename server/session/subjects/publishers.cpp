@@ -130,6 +130,8 @@ Subject* Publishers::Accept(Peer& peer, const StreamKey& key, const protocol::Sk
   if (subject->owner.session != key.session) subject->run = random_();
   subjects_->SetOwner(*subject, key);
   subject->can_move = HasSecretSession(peer);
+  subject->reorders = peer.transport == Transport::kUdp;
+  subject->reorders_until = Time{0};
   const bool has_neutral =
       subject->pipeline != nullptr && subject->skeleton_hash == offer.skeleton_hash;
   const auto former = std::exchange(subject->pipeline, std::move(pipeline));
@@ -153,7 +155,7 @@ bool Publishers::IsContested(const Subject& subject, const Peer& peer, const Str
   const bool has_moved =
       subject.owner.session == key.session && subject.can_move && HasSecretSession(peer);
   if (has_moved || peer.id == subject.owner.peer) return false;
-  const Time heard = std::max(subject.last_pose, subject.last_no_face);
+  const Time heard = std::max({subject.last_pose, subject.last_no_face, awake_since_});
   // Not sooner than kTakeOver: a quick decay must not give subjects away on a bad network.
   return now - heard < std::max(FromSeconds(limits_.loss_seconds), kTakeOver);
 }
@@ -190,7 +192,7 @@ Subject* Publishers::FindSubject(const Peer& peer, const protocol::Header& heade
 }
 
 bool Publishers::AcceptPose(Subject& subject, const protocol::Header& header,
-                            const protocol::PoseFrame& pose) {
+                            const protocol::PoseFrame& pose, Time now) {
   if (subject.ended) {  // the goodbye has overtaken this pose
     metrics_->Add(Counter::kPosesLate);
     return false;
@@ -201,7 +203,7 @@ bool Publishers::AcceptPose(Subject& subject, const protocol::Header& header,
     return false;
   }
   // After the check of the contents: an invalid pose must not use up its sequence number.
-  if (!IsNew(subject, header)) return false;
+  if (!IsNew(subject, header, now)) return false;
   ApplyPose(pose, pipeline.stream(), pipeline.mutable_pose());
   return true;
 }
@@ -238,12 +240,21 @@ void Publishers::OnNoFace(const Peer& peer, const protocol::Header& header, Time
   subject->last_no_face = now;
 }
 
-bool Publishers::IsNew(Subject& subject, const protocol::Header& header) {
+bool Publishers::IsNew(Subject& subject, const protocol::Header& header, Time now) {
+  const std::uint32_t next = subject.window.newest() + 1;
   switch (subject.window.Accept(header.session, header.sequence)) {
     case protocol::SequenceStatus::kNewest:
+      if (header.sequence != next) subject.skipped_at = now;
+      return true;
     case protocol::SequenceStatus::kRestart: return true;
     case protocol::SequenceStatus::kDuplicate: metrics_->Add(Counter::kPosesDuplicate); break;
     case protocol::SequenceStatus::kLate:
+      // The pose that overtook this one could have waited for it.
+      if (subject.reorders && now - subject.skipped_at <= kEarlierPatience) {
+        subject.reorders_until = now + kReorderMemory;
+      }
+      metrics_->Add(Counter::kPosesLate);
+      break;
     case protocol::SequenceStatus::kOldSession: metrics_->Add(Counter::kPosesLate); break;
   }
   subject.stats.OnLate();
@@ -281,9 +292,9 @@ void Publishers::EndForbidden(const Peer& peer, Time now) {
 }
 
 Publishers::Change Publishers::AgeSubject(Subject& subject, Time now) {
-  const Time silence = now - subject.last_pose;
+  const Time silence = now - std::max(subject.last_pose, awake_since_);
   // Also ends a subject that never sent a pose. One without a face is still there.
-  const Time heard = std::max(subject.last_pose, subject.last_no_face);
+  const Time heard = std::max({subject.last_pose, subject.last_no_face, awake_since_});
   if (now - heard > FromSeconds(limits_.idle_seconds)) return Change::kGone;
   if (subject.no_face && now - subject.last_no_face >= FromSeconds(limits_.loss_seconds)) {
     subject.no_face = subject.lost = false;  // now it is lost, which is reported below
@@ -299,9 +310,10 @@ Publishers::Change Publishers::AgeSubject(Subject& subject, Time now) {
   // A lost subject stays until idle_seconds, because its sender may return. One that said goodbye
   // leaves as soon as nothing is visible of it.
   if (pipeline.neutral()) return subject.ended ? Change::kGone : Change::kNone;
-  if (now - subject.last_update < kDecayInterval) return Change::kNone;
-  const bool decayed =
-      pipeline.Decay(ToSeconds(now - subject.last_update)) == wrinkle::JobStatus::kOk;
+  // The decay goes on from where it was before a stall, so that weights do not jump.
+  const Time step = now - std::max(subject.last_update, awake_since_);
+  if (step < kDecayInterval) return Change::kNone;
+  const bool decayed = pipeline.Decay(ToSeconds(step)) == wrinkle::JobStatus::kOk;
   subject.last_update = now;
   return decayed ? Change::kDecayed : Change::kNone;
 }

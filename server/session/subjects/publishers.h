@@ -20,6 +20,13 @@
 
 namespace furrow::server {
 
+// How long a pose waits for earlier ones in a stream in which datagrams overtake each other.
+// Networks that reorder deliver the earlier datagram soon after the later one, or after a time that
+// is not worth waiting for.
+inline constexpr Time kEarlierPatience = std::chrono::milliseconds(2);
+// For this long after such a case, the poses of the stream wait.
+inline constexpr Time kReorderMemory = std::chrono::seconds(5);
+
 // The publishing half of a session: offers become subjects, poses become wrinkle weights, and
 // silent subjects decay (STANDARD.md sections 6 and 7). Knows no subscribers; the caller passes
 // results on.
@@ -50,12 +57,12 @@ class Publishers {
   // Copies the pose into the subject's pipeline. False: the pose was dropped and counted, because
   // it is late, duplicate or does not fit the skeleton.
   [[nodiscard]] bool AcceptPose(Subject& subject, const protocol::Header& header,
-                                const protocol::PoseFrame& pose);
+                                const protocol::PoseFrame& pose, Time now);
   // Counts a pose that was taken from the next one.
   void OnRecovered();
-  // Counts a pose that waits in a jitter buffer already.
+  // Counts a pose that waits already.
   void OnDuplicate(Subject& subject);
-  // Counts a pose that went into a jitter buffer. `full`: another one left it early.
+  // Counts a pose that waits. `full`: another one left early.
   void OnHeld(bool full);
   // Completes a solved pose. False: the solver rejected the pose, which is counted.
   [[nodiscard]] bool OnSolved(const GatheredPose& pose);
@@ -71,6 +78,10 @@ class Publishers {
   // Ends the peer's subjects that its access does not allow (any more).
   void EndForbidden(const Peer& peer, Time now);
 
+  // The daemon runs again after a stall that ended at `now`. Nobody could be heard during it, so
+  // silence counts from here: the poses of the stall still wait in the sockets.
+  void OnStall(Time now) { awake_since_ = now; }
+
   enum class Change { kNone, kDecayed, kGone };
   // Decays a subject without poses. kDecayed: its weights have changed. kGone: its publisher
   // has left and it is neutral, or it has been idle for Limits::idle_seconds; the caller notifies
@@ -85,7 +96,7 @@ class Publishers {
   [[nodiscard]] bool IsContested(const Subject& subject, const Peer& peer, const StreamKey& key,
                                  Time now) const;
   bool TakeNewSkeleton(const std::string& host, Time now);
-  bool IsNew(Subject& subject, const protocol::Header& header);
+  bool IsNew(Subject& subject, const protocol::Header& header, Time now);
   std::shared_ptr<const protocol::SkeletonOffer> ShareOffer(const protocol::SkeletonOffer& offer);
 
   const Limits limits_;
@@ -99,6 +110,7 @@ class Publishers {
   std::map<std::uint64_t, std::weak_ptr<const protocol::SkeletonOffer>> offers_;
   std::map<std::string, TokenBucket, std::less<>> new_skeletons_of_;  // by host
   TokenBucket new_skeletons_{kNewSkeletonsPerSecond, kNewSkeletonsBurst};
+  Time awake_since_{0};                // end of the last stall
   TokenBucket log_bucket_{2.0, 20.0};  // repeated bad offers must not flood the log
 };
 

@@ -58,6 +58,9 @@ struct Subject {
   Time last_pose{0};               // arrival, or release from the jitter buffer
   Time last_update{0};             // arrival or decay
   Time last_no_face{0};            // arrival of the last frame without a face
+  Time skipped_at{0};              // when a pose was used before an earlier one
+  Time reorders_until{0};          // until then, poses wait for earlier ones
+  bool reorders = false;           // its transport may deliver poses in another order
   bool no_face = false;            // the publisher sends, but its tracker sees no face
   bool ended = false;              // the publisher said goodbye: the subject decays, then leaves
   bool lost = false;               // no pose for Limits::loss_seconds: the subject decays

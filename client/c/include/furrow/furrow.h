@@ -86,10 +86,12 @@ typedef enum furrow_status {
   FURROW_UNAUTHENTICATED = -20, /* the daemon asks for a token, or rejects the given one */
   FURROW_FORBIDDEN = -21,       /* the token does not permit this */
 
-  /* Reserved: this version never returns them, later versions will. Treat them as errors. */
-  FURROW_WRONG_SERVER_KEY = -22, /* the daemon does not own the expected key */
-  FURROW_TLS_FAILED = -23,
-  FURROW_REDIRECTED = -24, /* the subject lives on another daemon, which cannot be reached */
+  /* This version never returns the two that are reserved, later versions will. Treat them as
+     errors. */
+  FURROW_WRONG_SERVER_KEY = -22, /* reserved: the daemon does not own the expected key */
+  FURROW_TLS_FAILED = -23, /* the daemon's certificate is not trusted, or it does not speak TLS, or
+                              it wants a certificate of yours; the library keeps trying */
+  FURROW_REDIRECTED = -24, /* reserved: the subject lives on another daemon, out of reach */
 
   FURROW_STATUS_IS_32_BITS = 0x7fffffff /* never returned */
 } furrow_status;

@@ -8,47 +8,6 @@
 namespace furrow::cli {
 namespace {
 
-using client::TransportKind;
-
-TEST(ParseEndpointTest, AcceptsHostsWithAndWithoutPorts) {
-  struct Case {
-    const char* text;
-    const char* host;
-    int port;
-  };
-  for (const Case& c :
-       {Case{"localhost", "localhost", 7400}, Case{"10.0.0.1:80", "10.0.0.1", 80},
-        Case{"::1", "::1", 7400}, Case{"[::1]", "::1", 7400}, Case{"[::1]:9", "::1", 9}}) {
-    Endpoint endpoint;
-    ASSERT_TRUE(ParseEndpoint(c.text, TransportKind::kTcp, &endpoint)) << c.text;
-    EXPECT_EQ(endpoint.host, c.host);
-    EXPECT_EQ(endpoint.port, c.port);
-  }
-  Endpoint endpoint;
-  ASSERT_TRUE(ParseEndpoint("a", TransportKind::kUdp, &endpoint));
-  EXPECT_EQ(endpoint.port, 7401);
-}
-
-TEST(ParseEndpointTest, RejectsInvalidText) {
-  for (const char* text :
-       {"", ":80", "a:", "a:0", "a:65536", "a:80x", "a:-1", "[::1", "[::1]9", "[::1]:"}) {
-    Endpoint endpoint;
-    EXPECT_FALSE(ParseEndpoint(text, TransportKind::kTcp, &endpoint)) << text;
-  }
-}
-
-TEST(ParseEndpointTest, AcceptsAnAddressThatStatesNoMore) {
-  Endpoint endpoint;
-  ASSERT_TRUE(ParseEndpoint("furrow://a", TransportKind::kUdp, &endpoint));
-  EXPECT_EQ(endpoint.port, 7401);
-  ASSERT_TRUE(ParseEndpoint("furrow://a:9?transport=tcp", TransportKind::kTcp, &endpoint));
-  EXPECT_EQ(endpoint.port, 9);
-  for (const char* text : {"furrow://a?subject=b", "furrow://a?pattern=*", "furrow://a?rate=5",
-                           "furrow://a?transport=udp"}) {
-    EXPECT_FALSE(ParseEndpoint(text, TransportKind::kTcp, &endpoint)) << text;
-  }
-}
-
 TEST(ParseHostTest, RejectsWhatACommandCannotUse) {
   const HostKeys all{.several_subjects = true, .pattern = true, .rate = true, .udp = true};
   const char* const several = "furrow://a?subject=b&subject=c";

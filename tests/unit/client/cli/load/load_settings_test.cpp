@@ -43,6 +43,17 @@ TEST(LoadSettings, ContainAllSettingsOfTheFigures) {
   EXPECT_EQ(settings["chaos"]["down"]["black_holes"][0]["every"], 4.0);
 }
 
+TEST(LoadSettings, ContainNoToken) {
+  CLI::App app;
+  LoadFlags flags;
+  AddLoadFlags(app, flags);
+  app.parse("furrow://localhost:7400?token=furrow1-secret performance.bvh --tls --clock-step 3");
+  const nlohmann::json settings = cli::SettingsOf(flags);
+  EXPECT_EQ(settings["host"], "furrow://localhost:7400");
+  EXPECT_EQ(settings["tls"], true);
+  EXPECT_EQ(settings["clock_step_seconds"], 3.0);
+}
+
 TEST(LoadSettings, PosesArePackedToFitDatagramsOnlyOverUdp) {
   EXPECT_EQ(SettingsOf("--both")["packing"], "to fit");
   EXPECT_EQ(SettingsOf("--tcp")["packing"], "never");

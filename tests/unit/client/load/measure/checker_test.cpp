@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/load/measure/checker.h"
 
+#include <algorithm>
+#include <optional>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -17,14 +19,17 @@ class Server {
  public:
   Server(const Workload& workload, const Plan& plan) : workload_(workload), plan_(plan) {
     for (int i = 0; i < plan.num_subjects(); ++i)
-      subjects_.push_back({wrinkle::SubjectSolver(workload.binding), -1});
+      subjects_.push_back({wrinkle::SubjectSolver(workload.binding), {}});
   }
 
   std::vector<float> Use(const Plan::Slot& slot) {
     Subject& subject = subjects_[slot.subject];
     const int phase = plan_.phase_of(slot.subject);
-    const std::int64_t now = plan_.CaptureUs(phase, slot.pose);
-    const double dt = subject.last_us < 0 ? 0.0 : static_cast<double>(now - subject.last_us) * 1e-6;
+    const std::int64_t now =
+        plan_.CaptureUs(phase, slot.pose) + plan_.ClockOffsetUs(slot.subject, slot.pose);
+    const std::int64_t step = now - subject.last_us.value_or(now);
+    if (step < 0) subject.solver.Reset();
+    const double dt = std::max(0.0, static_cast<double>(step) * 1e-6);
     subject.last_us = now;
     wrinkle::LocalPose pose;
     workload_.pose(plan_.Frame(phase, slot.pose), &pose);
@@ -32,11 +37,15 @@ class Server {
     const auto weights = subject.solver.wrinkle_weights();
     return {weights.begin(), weights.end()};
   }
+  // The server's clock says that a second has passed without poses.
+  void Decay(std::uint32_t subject) {
+    EXPECT_EQ(subjects_[subject].solver.Decay(1.0), wrinkle::JobStatus::kOk);
+  }
 
  private:
   struct Subject {
     wrinkle::SubjectSolver solver;
-    std::int64_t last_us;
+    std::optional<std::int64_t> last_us;
   };
   const Workload& workload_;
   const Plan& plan_;
@@ -172,6 +181,80 @@ TEST_F(CheckerTest, AfterALongGapWeightsAreUnchecked) {
   EXPECT_EQ(tally.lost(), 40u);
   EXPECT_EQ(tally.wrong, 0u);
   EXPECT_GT(tally.unchecked, 0u);
+}
+
+// The load generator, or the network, paused: no pose is missing, but the server decayed.
+TEST_F(CheckerTest, AfterADecayThatTheServerReportsWeightsAreUnchecked) {
+  const Tally& tally = Run([&](std::size_t, const auto& slot) {
+    if (slot.subject == 2 && slot.pose == 100) {
+      server_.Decay(2);
+      checker_.OnAged(0, 2, 99, slot.due_us - 2);
+      checker_.OnAged(0, 2, 99, slot.due_us - 1);
+    }
+    Arrive(slot, server_.Use(slot));
+  });
+  EXPECT_EQ(tally.lost(), 0u);
+  EXPECT_EQ(tally.wrong, 0u);
+  EXPECT_GT(tally.unchecked, 0u);
+  EXPECT_EQ(tally.aged, 2u);
+}
+
+TEST_F(CheckerTest, ADecayThatTheServerDoesNotReportIsWrong) {
+  const Tally& tally = Run([&](std::size_t, const auto& slot) {
+    if (slot.subject == 2 && slot.pose == 100) server_.Decay(2);
+    Arrive(slot, server_.Use(slot));
+  });
+  EXPECT_GT(tally.wrong, 0u);
+  EXPECT_EQ(tally.aged, 0u);
+}
+
+TEST_F(CheckerTest, ADecayExcusesNoOtherWeights) {
+  const Tally& tally = Run([&](std::size_t, const auto& slot) {
+    if (slot.subject == 2 && slot.pose == 100) checker_.OnAged(0, 2, 99, slot.due_us - 1);
+    auto values = server_.Use(slot);
+    // Another subject, a pose before the decay, and one two seconds after it.
+    const bool is_wrong = (slot.subject == 1 && slot.pose == 100) ||
+                          (slot.subject == 2 && (slot.pose == 99 || slot.pose == 200));
+    if (is_wrong) values[1] += values[1] < 0.5f ? 0.5f : -0.5f;
+    Arrive(slot, values);
+  });
+  EXPECT_EQ(tally.wrong, 3u);
+  EXPECT_EQ(tally.unchecked, 0u);
+}
+
+TEST_F(CheckerTest, TheSilenceAfterTheLastPoseIsNoDecay) {
+  const Plan::Slot last = SlotsOf(plan_).back();
+  checker_.OnAged(0, last.subject, last.pose, last.due_us + 600'000);
+  checker_.OnAged(0, 5, 0, 100);          // no such subject
+  checker_.OnAged(0, 0, 1'000'000, 100);  // nor pose
+  EXPECT_EQ(checker_.tally().aged, 0u);
+}
+
+// The filter restarts when a clock jumps back, and sees a long step when it jumps forward.
+TEST(Checker, JumpsOfTheCaptureClockMakeNothingWrong) {
+  const Workload workload = MakePerformance();
+  const Plan plan(workload.times, {.subjects = 3,
+                                   .phases = 3,
+                                   .rate = 50.0,
+                                   .seconds = 12.0,
+                                   .clock_step = 3.0,
+                                   .clock_every = 2.0});
+  const ExpectedWeights expected(workload, plan, [](double) { return true; });
+  Checker checker(plan, &expected, {.late_us = 1000, .seconds = 12.0});
+  Server server(workload, plan);
+  std::size_t i = 0;
+  for (const Plan::Slot& slot : SlotsOf(plan)) {
+    checker.OnDue(slot.subject, slot.pose, true);
+    if (++i % 41 == 0) continue;  // lost on the way in, some of them at a jump
+    auto values = server.Use(slot);
+    if (i == 1000) values[1] += values[1] < 0.5f ? 0.5f : -0.5f;
+    if (i % 43 == 0) continue;  // lost on the way out
+    checker.OnWeights(0, slot.subject, slot.pose, values, true, slot.due_us + kLatencyUs);
+  }
+  EXPECT_TRUE(checker.ResolveMismatches(workload, [](double) { return true; }));
+  EXPECT_EQ(checker.tally().wrong, 1u);
+  EXPECT_EQ(checker.tally().unchecked, 0u);
+  EXPECT_GT(checker.tally().largest_difference, 0.0f);
 }
 
 TEST_F(CheckerTest, CountsLateDuplicateReorderedAndNeverSent) {

@@ -42,6 +42,12 @@ TEST(Report, EveryDefectOfARunGivesARemark) {
               HasSubstr("The load generator's own buffers lost 3 datagrams"));
   EXPECT_THAT(TextOf([](RunResult& run) { run.tally.unfollowed = 12; }),
               HasSubstr("12 poses had weights that differ from the solver's, too many"));
+  EXPECT_THAT(TextOf([](RunResult& run) {
+                run.tally.aged = 80;
+                run.send_delay_ns.Record(2'800'000'000);
+              }),
+              HasSubstr("80 messages of decaying weights, because it received no pose of a "
+                        "subject for half a second. Poses were sent up to 2.8 s late."));
   EXPECT_THAT(TextOf([](RunResult& run) { run.subscribers_cut = 4; }), HasSubstr("4 times"));
   EXPECT_THAT(TextOf([](RunResult& run) { run.tally.early = 6; }),
               HasSubstr("The weights of 6 poses arrived before the pose was due"));

@@ -103,6 +103,17 @@ TEST(Plan, PhasesStartAtDifferentFramesAtCaptureTimeZero) {
   EXPECT_EQ(first, (std::set<int>{0, 15, 30, 45}));
 }
 
+TEST(Plan, CaptureClocksJumpForwardsAndBackInTurn) {
+  const std::vector<double> times = {0.0, 0.1};
+  const Plan plan(times, {.subjects = 1, .seconds = 1.0, .clock_step = 2.5, .clock_every = 0.3});
+  std::vector<std::int64_t> offsets;
+  for (std::uint32_t pose = 0; pose < 10; ++pose) offsets.push_back(plan.ClockOffsetUs(0, pose));
+  constexpr std::int64_t kOn = 2'500'000;
+  EXPECT_EQ(offsets, (std::vector<std::int64_t>{0, 0, 0, kOn, kOn, kOn, 0, 0, 0, kOn}));
+  const Plan steady(times, {.subjects = 1, .seconds = 1.0});
+  EXPECT_EQ(steady.ClockOffsetUs(0, 9), 0);
+}
+
 TEST(Plan, ARecordingWithOneFrameIsSentAt60Hz) {
   const std::vector<double> times = {3.0};
   const Plan plan(times, {.subjects = 1, .phases = 16, .rate = 0.0, .seconds = 1.0});

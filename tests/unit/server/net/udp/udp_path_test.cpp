@@ -145,6 +145,31 @@ TEST_P(UdpPathTest, PosesDoNotAllocate) {
   EXPECT_EQ(Count(Counter::kDatagramsUnsendable), 0u);
 }
 
+// After one pose has overtaken another, poses wait for earlier ones, and a timer ends the wait.
+TEST_P(UdpPathTest, ALostPoseDelaysTheNextOneByATimer) {
+  Meet();
+  const auto send = [this](std::initializer_list<std::uint32_t> numbers) {
+    // One batch, so that all arrive at the same time.
+    for (const std::uint32_t number : numbers) {
+      encoder.Encode({.session = 77, .sequence = number}, pose, bytes);
+      senders[0].send(asio::buffer(bytes));
+    }
+    io.restart();
+    io.poll();
+  };
+  send({0, 2, 1});
+  EXPECT_EQ(TakeWeights(), 2) << "the first time nobody waits";
+  send({3, 5, 4});
+  EXPECT_EQ(TakeWeights(), 3);
+  send({6, 8});
+  EXPECT_EQ(Count(Counter::kPosesHeld), 2u);
+  for (int weights_left = 2; weights_left > 0; weights_left -= TakeWeights()) {
+    io.restart();
+    io.run_one();
+  }
+  EXPECT_EQ(weights.values.size(), 2u);
+}
+
 INSTANTIATE_TEST_SUITE_P(Shards, UdpPathTest, testing::Values(1, 3));
 
 }  // namespace

@@ -23,6 +23,18 @@ TEST(Consent, HoldsForTwoSecondsAfterTheChallengeThatWasAnswered) {
   EXPECT_FALSE(consent.Holds(kStart + FromSeconds(3.001)));
 }
 
+TEST(Consent, DoesNotRunOutWhileTheDaemonStandsStill) {
+  Consent consent;
+  consent.Begin(kStart);
+  consent.Sent(5, kStart + FromSeconds(1));
+  consent.OnStall(FromSeconds(60));
+  EXPECT_TRUE(consent.Holds(kStart + FromSeconds(62)));
+  EXPECT_FALSE(consent.Holds(kStart + FromSeconds(62.001)));
+  consent.Answered(5);
+  EXPECT_TRUE(consent.Holds(kStart + FromSeconds(63)));
+  EXPECT_FALSE(consent.Holds(kStart + FromSeconds(63.001)));
+}
+
 TEST(Consent, IsRenewedOnlyByTheNumberOfAChallenge) {
   Consent consent;
   consent.Begin(kStart);

@@ -305,6 +305,67 @@ TEST_F(PublishersTest, ASilentSubjectHoldsThenDecays) {
   EXPECT_EQ(viewer.inbox.size(), 1u);
 }
 
+// The poses of the stall wait in the socket, so weights go on as if nothing had happened.
+TEST_F(PublishersTest, AStallOfTheDaemonIsNoSilenceOfItsSubjects) {
+  const auto weights_with_stall = [this](double seconds) {
+    Make({}, /*filter=*/true);
+    Connect(&sender);
+    Connect(&viewer);
+    Publish(sender, "ann");
+    Watch(viewer, {.subject = "ann"});
+    Send(sender, Pose(0.9f), 1, 0, 1'000'000);
+    Advance(seconds);
+    hub->Tick(now, FromSeconds(seconds));
+    Send(sender, Pose(0.5f), 1, 1, 1'016'667);
+    std::vector<float> values;
+    while (!viewer.inbox.empty()) {
+      const auto frame = viewer.Take<protocol::WeightFrame>();
+      EXPECT_EQ(frame->message.age_us, 0) << "the subject counts as silent";
+      values.push_back(frame->message.values[0]);
+    }
+    return values;
+  };
+  const std::vector<float> wanted = weights_with_stall(0.016667);
+  ASSERT_EQ(wanted.size(), 2u);
+  EXPECT_EQ(weights_with_stall(3.0), wanted);
+  EXPECT_EQ(weights_with_stall(100.0), wanted) << "longer than idle_seconds";
+  EXPECT_EQ(Count(Counter::kSubjectsLost), 0u);
+  EXPECT_EQ(Count(Counter::kStalls), 2u);
+}
+
+TEST_F(PublishersTest, SilenceAfterAStallDecaysWithoutAJump) {
+  Make({}, /*filter=*/true);
+  Connect(&sender);
+  Connect(&viewer);
+  Publish(sender, "ann");
+  Watch(viewer, {.subject = "ann"});
+  Send(sender, Pose(1), 1, 0);
+  viewer.Take<protocol::WeightFrame>();
+  Advance(5.0);
+  hub->Tick(now, FromSeconds(5.0));
+  Advance(0.49);
+  hub->Tick(now);
+  EXPECT_TRUE(viewer.inbox.empty()) << "the sender has half a second again";
+  Advance(0.02);
+  hub->Tick(now);
+  const auto frame = viewer.Take<protocol::WeightFrame>();
+  ASSERT_TRUE(frame.has_value());
+  EXPECT_GT(frame->message.values[0], 0.5f) << "not as far as after five seconds of silence";
+  EXPECT_EQ(frame->message.age_us, 5'510'000);
+}
+
+TEST_F(PublishersTest, AStallOfTheDaemonGivesNoSubjectAway) {
+  FakePeer other;
+  other.session = 78;
+  Connect(&other);
+  Publish(sender, "ann");
+  Send(sender, Pose(1), 1, 0);
+  Advance(3.0);
+  hub->Tick(now, FromSeconds(3.0));
+  Send(other, Offer("ann"), 1);
+  ExpectError(other, protocol::ErrorCode::kSubjectTaken);
+}
+
 TEST_F(PublishersTest, AGoodbyeDecaysTheSubjectThenInformsSubscribers) {
   Make({}, /*filter=*/true);
   Connect(&sender);
