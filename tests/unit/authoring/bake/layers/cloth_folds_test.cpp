@@ -37,7 +37,7 @@ class Garment : public testing::Test {
     }
     return pose;
   }
-  [[nodiscard]] ClothFolds Folds() const { return {*fine_, 0.05f, 1.0f, 1}; }
+  [[nodiscard]] ClothFolds Folds() const { return {*fine_, *fine_, 0.05f, 1.0f, 1}; }
   // The root of the mean square of the heights, metres.
   [[nodiscard]] double Depth(const ClothFolds& folds) const {
     double sum = 0.0, count = 0.0;
