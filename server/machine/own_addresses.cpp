@@ -45,8 +45,10 @@ std::vector<std::string> ReachableAddresses(const std::string& bind) {
     std::string text = TextOf(*each->ifa_addr);
     if (!text.empty()) found.push_back(std::move(text));
   }
-  std::ranges::stable_partition(
-      found, [](const std::string& address) { return address.find(':') == std::string::npos; });
+  // Not of std::ranges, whose subranges clang 14 does not compile; the fuzzers need it.
+  std::stable_partition(found.begin(), found.end(), [](const std::string& address) {
+    return address.find(':') == std::string::npos;
+  });
   return found;
 }
 
