@@ -67,7 +67,7 @@ void ServiceManager::Alive(const std::string& status) { Send("WATCHDOG=1\n", sta
 
 void ServiceManager::Stopping() { Send("STOPPING=1\n", "shutting down"); }
 
-// A message that gets lost is no reason to stop serving, so errors are ignored.
+// Errors are ignored: the daemon serves without the manager, too.
 void ServiceManager::Send(const std::string& state, const std::string& status) {
   const bool is_new = status != std::exchange(status_, status);
   (void)sd_notify(/*unset_environment=*/0, (state + (is_new ? "STATUS=" + status : "")).c_str());
