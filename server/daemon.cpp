@@ -396,13 +396,11 @@ void Daemon::Announce() const {
   ready.render = render_ != nullptr;
   ready.vmc = mocap_.vmc_port();
   ready.livelink_face = mocap_.livelink_face_port();
-  // IPv6 addresses need brackets, as in a URL.
-  const std::string host =
-      (config_.bind.find(':') == std::string::npos ? config_.bind : "[" + config_.bind + "]") + ":";
-  std::string line = "furrowd ready tcp=" + HostPortText(tcp_->address()) + " udp=" + host +
-                     std::to_string(ready.udp) + " render=" + (ready.render ? "on" : "off");
-  if (ready.vmc) line += " vmc=" + host + std::to_string(*ready.vmc);
-  if (ready.livelink_face) line += " livelink_face=" + host + std::to_string(*ready.livelink_face);
+  const auto bound = [this](std::uint16_t port) { return HostPortText({config_.bind, port}); };
+  std::string line = "furrowd ready tcp=" + HostPortText(tcp_->address()) +
+                     " udp=" + bound(ready.udp) + " render=" + (ready.render ? "on" : "off");
+  if (ready.vmc) line += " vmc=" + bound(*ready.vmc);
+  if (ready.livelink_face) line += " livelink_face=" + bound(*ready.livelink_face);
   if (http_) {
     ready.http = http_->address().port;
     line += " http=" + HostPortText(http_->address());
