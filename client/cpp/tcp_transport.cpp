@@ -16,8 +16,6 @@ namespace {
 
 using asio::ip::tcp;
 
-constexpr char kNoHandshake[] = "the TLS handshake took too long (does it speak TLS at this port?)";
-
 bool IsLoopback(const asio::ip::address& address) {
   if (!address.is_v6()) return address.is_loopback();
   const auto v6 = address.to_v6();
@@ -98,12 +96,12 @@ Status TcpTransport::Await(Clock::time_point deadline) {
   if (!AwaitConnect(deadline)) {
     tls_failed_ = shakes_hands();
     Close();
-    Fail(tls_failed_ ? kNoHandshake : asio::error_code(asio::error::timed_out).message());
+    Fail(tls_failed_ ? kSlowHandshakeText : asio::error_code(asio::error::timed_out).message());
   }
   return *result_;
 }
 
-std::string TcpTransport::failure() const { return shakes_hands() ? kNoHandshake : failure_; }
+std::string TcpTransport::failure() const { return shakes_hands() ? kSlowHandshakeText : failure_; }
 
 IoStatus TcpTransport::Send(std::span<const std::uint8_t> message) {
   if (message.size() > protocol::kMaxRequestBytes) return IoStatus::kTooLarge;

@@ -9,6 +9,7 @@
 #include <poll.h>
 #include <sys/socket.h>
 
+#include "client/cpp/tls/client_tls.h"
 #include "client/net/clock.h"
 
 namespace furrow::net {
@@ -41,7 +42,7 @@ std::string TcpSocket::StartTls(SSL_CTX* context, const std::string& host,
     const auto left =
         std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
     if (left.count() <= 0 || !WaitFor(descriptor_.get(), POLLIN, left)) {
-      return "the TLS handshake took too long (does it speak TLS at this port?)";
+      return client::kSlowHandshakeText;
     }
     const ssize_t received = recv(descriptor_.get(), buffer_.data(), buffer_.size(), 0);
     if (received < 0 && (errno == EAGAIN || errno == EINTR)) continue;

@@ -29,6 +29,10 @@ struct ClientTlsFiles {
 // The caller owns the result; null: out of memory.
 [[nodiscard]] SSL* NewTlsClient(SSL_CTX* context, const std::string& host);
 
+// Why a handshake has not ended in time.
+inline constexpr char kSlowHandshakeText[] =
+    "the TLS handshake took too long (does it speak TLS at this port?)";
+
 // Why a connection failed, and what to do, as part of a sentence: "its certificate has expired
 // (...)". `code`: of OpenSSL, or 0 if the connection ended.
 [[nodiscard]] std::string TlsFailureText(const SSL* ssl, unsigned long code);
