@@ -114,7 +114,7 @@ test('without a stream, the page says what to do, and nothing is cut off', async
   }
 });
 
-test('compiled shaders are kept in the cache folder, and the start is told', async () => {
+test('compiled shaders are kept in the cache folder, and furrowd says what it loads', async () => {
   const folder = mkdtempSync(join(tmpdir(), 'furrow-cache-'));
   const former = process.env.CACHE_DIRECTORY;
   process.env.CACHE_DIRECTORY = join(folder, 'furrow');
