@@ -118,6 +118,7 @@ class Daemon {
   asio::awaitable<void> PlayLoop();
   asio::awaitable<void> Drain();
   void RequestDrain();
+  void MakeVideo();
   void PrepareRendering();
   void StopRendering();
 
@@ -131,6 +132,7 @@ class Daemon {
   asio::io_context io_{1};  // run by the calling thread, which owns shard 0
   asio::signal_set signals_;
   std::unique_ptr<Recorder> recorder_;
+  std::unique_ptr<VideoEncoders> video_;  // used by the render thread
   std::unique_ptr<RenderThread> render_;
   std::unique_ptr<Player> player_;   // a peer of the hub, so it outlives the hub
   std::unique_ptr<OscTargets> osc_;  // called by the hub, so it outlives the hub
@@ -150,8 +152,27 @@ class Daemon {
   Time drain_deadline_{0};
 };
 
+// Loads the module before the daemon is confined.
+void Daemon::MakeVideo() {
+  if (config_.max_video_encoders == 0) {
+    video_ = std::make_unique<VideoEncoders>(nullptr, 0, "render.max_video_encoders is 0");
+    return;
+  }
+  const auto codec = render::GetVideoCodec();
+  if (codec.ok()) {
+    spdlog::info("H.264 by {}, for at most {} viewers", (*codec)->library,
+                 config_.max_video_encoders);
+    video_ = std::make_unique<VideoEncoders>(*codec, config_.max_video_encoders);
+    return;
+  }
+  spdlog::warn("pictures are sent as JPEG only: {}", codec.status().ToString());
+  // Without the paths of this machine, because viewers read it.
+  video_ = std::make_unique<VideoEncoders>(nullptr, 0, "its library cannot be loaded; see its log");
+}
+
 Status Daemon::StartRendering() {
   if (!config_.render || assets_.character == nullptr) return {};
+  MakeVideo();
   spdlog::info("starting the renderer");
   auto started = RenderThread::Start(
       &assets_.character->skeleton,
@@ -171,8 +192,10 @@ Status Daemon::StartRendering() {
         // Called on the render thread. The picture crosses to shard 0's thread by value, because
         // only that thread may call OnPicture(). `hub_` does not exist yet while the renderer
         // starts, but no picture is requested before.
-        asio::post(io_, [this, picture = std::move(picture)] { hub_->OnPicture(picture); });
-      });
+        asio::post(io_,
+                   [this, picture = std::move(picture)] { hub_->OnPicture(picture, ReadClock()); });
+      },
+      video_.get());
   if (started.ok()) {
     render_ = *std::move(started);
     spdlog::info("rendering on {}", render_->description());
@@ -345,6 +368,7 @@ Status Daemon::StartWeb() {
   parts.started = ReadClock();
   parts.metrics = metrics_;
   parts.pictures = render_.get();
+  parts.video = video_.get();
   parts.wants_pictures = config_.render && assets_.character != nullptr;
   if (render_ != nullptr) parts.renderer = render_->description();
   parts.player = player_.get();

@@ -62,7 +62,7 @@ PreviewServer::PreviewServer(render::Image picture)
       &metrics_,
       [this](server::FinishedPicture finished) {
         Post([shared = std::make_shared<server::FinishedPicture>(std::move(finished))](
-                 server::Hub& hub, Time) { hub.OnPicture(*shared); });
+                 server::Hub& hub, Time now) { hub.OnPicture(*shared, now); });
       }));
   server::Hub::Parts parts;
   // One wrinkle weight: a subject with almost no cost.

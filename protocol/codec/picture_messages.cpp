@@ -31,6 +31,17 @@ DecodeStatus CheckPicture(const wire::SubscribePictures& table) {
   return CheckRate(table.max_rate_hz());
 }
 
+// A name twice is harmless, so only the text is checked.
+DecodeStatus ReadCodecs(const TextVector* codecs, std::vector<std::string>& out) {
+  if (SizeOf(codecs) > kMaxPictureCodecs) return DecodeStatus::kLimit;
+  out.resize(SizeOf(codecs));
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    FURROW_CHECK_DECODE(ReadText(codecs->Get(static_cast<flatbuffers::uoffset_t>(i)),
+                                 kMaxCodecBytes, out[i], Presence::kRequired));
+  }
+  return DecodeStatus::kOk;
+}
+
 DecodeStatus ReadSettings(const TextVector* settings, std::vector<std::string>& out) {
   if (SizeOf(settings) > kMaxPictureSettings) return DecodeStatus::kLimit;
   out.resize(SizeOf(settings));
@@ -50,6 +61,7 @@ DecodeStatus ReadTable(const wire::SubscribePictures& table, SubscribePictures& 
   if (table.view() == nullptr) message.view = "final";
   FURROW_CHECK_DECODE(ReadText(table.camera_preset(), kMaxNameBytes, message.camera_preset));
   FURROW_CHECK_DECODE(ReadSettings(table.settings(), message.settings));
+  FURROW_CHECK_DECODE(ReadCodecs(table.codecs(), message.codecs));
   message.has_camera = table.camera() != nullptr;
   if (message.has_camera) {
     // A camera and a preset contradict each other.
@@ -73,13 +85,14 @@ flatbuffers::Offset<wire::SubscribePictures> WriteTable(PayloadBuilder& payload,
   const auto view = WriteText(payload, message.view);
   const auto preset = WriteText(payload, message.camera_preset);
   const auto settings = WriteNames(payload, message.settings);
+  const auto codecs = WriteNames(payload, message.codecs);
   const wire::Camera camera(ToWire(message.camera.eye), ToWire(message.camera.target),
                             message.camera.vertical_fov_degrees);
   return wire::CreateSubscribePictures(
       payload.builder, subject, message.wait, message.width, message.height, message.max_rate_hz,
       static_cast<wire::ImageFormat>(message.format), message.quality, view, preset,
       message.has_camera ? &camera : nullptr, message.acknowledged, settings,
-      message.camera_follows);
+      message.camera_follows, codecs);
 }
 
 DecodeStatus ReadTable(const wire::UpdatePictures& table, UpdatePictures& message) {
@@ -111,24 +124,33 @@ DecodeStatus ReadTable(const wire::Image& table, ImageFrame& message) {
   message.dropped = table.dropped();
   message.received_us = table.received_us();
   message.view_request = table.view_request();
+  FURROW_CHECK_DECODE(ReadText(table.codec(), kMaxCodecBytes, message.codec));
+  // A file needs no other picture, and a refined picture is always a file.
+  const bool is_video = !message.codec.empty();
+  if (!is_video && table.key()) return DecodeStatus::kBadValue;
+  if (is_video && message.still) return DecodeStatus::kBadValue;
+  message.key = table.key();
   return DecodeStatus::kOk;
 }
 
 flatbuffers::Offset<wire::Image> WriteTable(PayloadBuilder& payload, const ImageFrame& message) {
   const auto bytes = payload.builder.CreateVector(message.bytes);
+  const auto codec = WriteText(payload, message.codec);
   return wire::CreateImage(payload.builder, message.width, message.height,
                            static_cast<wire::ImageFormat>(message.format), message.age_us, bytes,
                            message.number, message.tier, message.still, message.dropped,
-                           message.received_us, message.view_request);
+                           message.received_us, message.view_request, codec, message.key);
 }
 
 DecodeStatus ReadTable(const wire::FrameAck& table, FrameAck& message) {
   message.number = table.number();
+  message.needs_key = table.needs_key();
+  message.held_us = table.held_us();
   return message.number > 0 ? DecodeStatus::kOk : DecodeStatus::kBadValue;
 }
 
 flatbuffers::Offset<wire::FrameAck> WriteTable(PayloadBuilder& payload, const FrameAck& message) {
-  return wire::CreateFrameAck(payload.builder, message.number);
+  return wire::CreateFrameAck(payload.builder, message.number, message.needs_key, message.held_us);
 }
 
 }  // namespace furrow::protocol::internal

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "protocol/messages/limits.h"
@@ -239,7 +240,14 @@ struct SubscribePictures {
   // The explicit camera moves with the subject, and its field of view applies to the shorter side
   // of the picture, as with camera presets.
   bool camera_follows = false;
+  // The video codecs that the client decodes (kH264). With `acknowledged`, the server may send
+  // moving pictures in one of them instead of `format`. Unknown names are ignored.
+  std::vector<std::string> codecs;
 };
+
+// The name of H.264 in SubscribePictures::codecs: constrained baseline, Annex B, every picture
+// shown at once.
+inline constexpr std::string_view kH264 = "h264";
 
 // Replaces the complete view of the picture subscription in header.stream. The server replies only
 // on failure. Ignores subject, wait and acknowledged.
@@ -251,6 +259,11 @@ struct UpdatePictures {
 // subscription.
 struct FrameAck {
   std::uint32_t number = 0;  // ImageFrame::number, from 1
+  // The client cannot decode the pictures that follow until one with ImageFrame::key.
+  bool needs_key = false;
+  // Time between the arrival of the picture and this message, in microseconds, so that the server
+  // does not mistake a slow client for a slow network.
+  std::uint32_t held_us = 0;
 };
 
 // Ends the subscription in header.stream.
@@ -306,6 +319,10 @@ struct ImageFrame {
   std::uint32_t dropped = 0;        // poses not drawn so far because acknowledgements were missing
   std::int64_t received_us = 0;     // arrival of the pose, on the clock of Pong::server_time_us
   std::uint32_t view_request = 0;   // sequence of the SubscribePictures or UpdatePictures it obeys
+  // RFC 6381, such as "avc1.42c01f": `bytes` are one access unit of this video. Empty: `bytes` are
+  // a file of `format`.
+  std::string codec;
+  bool key = false;  // a video picture that needs no earlier one
 };
 
 }  // namespace furrow::protocol

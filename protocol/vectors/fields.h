@@ -100,11 +100,14 @@ inline Fields FieldsOf(const SubscribePictures& m) {
   fields.emplace_back("acknowledged", Json(m.acknowledged));
   fields.emplace_back("settings", Json(m.settings));
   fields.emplace_back("camera_follows", Json(m.camera_follows));
+  fields.emplace_back("codecs", Json(m.codecs));
   return fields;
 }
 inline Fields FieldsOf(const UpdatePictures& m) { return FieldsOf(m.pictures); }
 inline Fields FieldsOf(const FrameAck& m) {
-  return {{"number", Json(static_cast<std::int64_t>(m.number))}};
+  return {{"number", Json(static_cast<std::int64_t>(m.number))},
+          {"needs_key", Json(m.needs_key)},
+          {"held_us", Json(static_cast<std::int64_t>(m.held_us))}};
 }
 inline Fields FieldsOf(const SubscribePoses& m) {
   return {{"subject", Json(m.subject)},
@@ -143,7 +146,9 @@ inline Fields FieldsOf(const ImageFrame& m) {
           {"still", Json(m.still)},
           {"dropped", Json(static_cast<std::int64_t>(m.dropped))},
           {"received_us", Json(m.received_us)},
-          {"view_request", Json(static_cast<std::int64_t>(m.view_request))}};
+          {"view_request", Json(static_cast<std::int64_t>(m.view_request))},
+          {"codec", Json(m.codec)},
+          {"key", Json(m.key)}};
 }
 
 }  // namespace furrow::protocol::vectors

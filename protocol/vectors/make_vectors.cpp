@@ -223,10 +223,25 @@ void AddSubscribing(Files& files) {
   Add(files, "image", ImageFrame{640, 480, ImageFormat::kJpeg, 0, {0xFF, 0xD8, 0xFF, 0xD9}});
 }
 
+ImageFrame VideoPicture() {
+  ImageFrame image{640, 480, ImageFormat::kJpeg, 0, {0, 0, 0, 1, 0x65, 0x88}};
+  image.number = 13;
+  image.received_us = 1'700'000'000'123'999;
+  image.view_request = 5;
+  image.codec = "avc1.42c01e";
+  image.key = true;
+  return image;
+}
+
 void AddViewing(Files& files) {
   Add(files, "subscribe_pictures_viewer", ViewersPictures());
   Add(files, "update_pictures", UpdatePictures{ViewersPictures()});
+  SubscribePictures video = ViewersPictures();
+  video.codecs = {std::string(kH264)};
+  Add(files, "subscribe_pictures_video", video);
   Add(files, "frame_ack", FrameAck{12});
+  Add(files, "frame_ack_video", FrameAck{13, true, 4200});
+  Add(files, "image_video", VideoPicture());
   Add(files, "image_viewer",
       ImageFrame{640,
                  480,

@@ -168,6 +168,10 @@ Status ValidateConfig(const Config& config) {
   if (config.require_render && !config.render) {
     return Invalid("--require-render and --no-render cannot be combined");
   }
+  if (config.max_video_encoders < 0 || config.max_video_encoders > 1000) {
+    return Invalid("render.max_video_encoders is " + std::to_string(config.max_video_encoders) +
+                   "; it must be 0 to 1000");
+  }
   if (Status status = CheckOscTarget({.prefix = config.osc_prefix}); !status.ok()) {
     return Invalid("osc." + status.where() + " " + status.what());
   }

@@ -53,6 +53,7 @@ struct Config {
   bool require_render = false;                 // fail if OpenGL is unavailable
   std::string render_device;                   // see render::RendererOptions::device
   std::filesystem::path render_settings;       // TOML (render::LoadSettings); empty: the defaults
+  int max_video_encoders = 8;                  // viewers with H.264 at a time, [0, 1000]; 0: none
   std::optional<std::uint16_t> vmc;            // UDP port; absent: off
   std::optional<std::uint16_t> livelink_face;  // UDP port; absent: off
   std::vector<std::string> mocap_allow;        // numeric sender addresses; empty: any sender

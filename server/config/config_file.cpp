@@ -140,8 +140,8 @@ Tables OutputTables(Config* config, const std::filesystem::path& folder) {
   return {
       {"render",
        {Flag("enabled", &config->render), Flag("required", &config->require_render),
-        Text("device", &config->render_device),
-        Path("settings", &config->render_settings, folder)}},
+        Text("device", &config->render_device), Path("settings", &config->render_settings, folder),
+        Count("max_video_encoders", &config->max_video_encoders)}},
       {"osc",
        {Destination("out", &config->osc_out), Text("prefix", &config->osc_prefix),
         OscTargets("target", &config->osc.targets, folder), Texts("allow", &config->osc.allow)}},

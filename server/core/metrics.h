@@ -91,6 +91,8 @@ enum class Counter {
   kPosesDroppedSlow,
   kPicturesRendered,
   kPicturesEncoded,
+  kVideoPictures,
+  kVideoKeyPictures,
   kPicturesSent,
   kPicturesDroppedSlow,
   kPicturesFailed,

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -23,6 +24,8 @@ struct FinishedPicture {
   int height = 0;
   Encoding encoding;
   std::vector<std::uint8_t> bytes;     // the encoded picture; empty: rendering failed
+  std::string codec;                   // of a video (VideoCodecName()); empty: a file of `encoding`
+  bool key = false;                    // of a video: needs no earlier picture
   std::vector<PictureTicket> tickets;  // the recipients
 };
 
@@ -36,8 +39,16 @@ class PictureSource {
   virtual void Submit(RenderJob job) = 0;
   // Cancels a still of this subscription that waits or is being drawn. False: there is none.
   virtual bool WithdrawStill(std::uint64_t subscription) = 0;
-  // Cancels everything that the subscription waits for, because it has ended.
+  // Cancels everything that the subscription waits for, because it has ended, and closes its video.
   virtual void Withdraw(std::uint64_t subscription) = 0;
+  // Gives the subscription a video encoder, or keeps the one that it has. False: there is none for
+  // it (VideoEncoders); its pictures are files. May be called from any thread.
+  [[nodiscard]] virtual bool OpenVideo(std::uint64_t /*subscription*/, const std::string& /*host*/,
+                                       const render::VideoFormat& /*format*/) {
+    return false;
+  }
+  // The viewer wants no video any more.
+  virtual void CloseVideo(std::uint64_t /*subscription*/) {}
   // The passes of the picture that is being drawn.
   struct Drawing {
     int done = 0;

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "render/renderer.h"
+#include "render/video/video_codec.h"
 #include "server/core/time.h"
 #include "server/pipeline/fair_order.h"
 #include "server/pipeline/snapshot.h"
@@ -51,6 +52,9 @@ struct PictureTicket {
   bool still = false;              // the refined picture of a pose at rest
   std::uint64_t viewer = 0;        // Peer::id
   std::uint64_t host = 0;          // HostKey() of the viewer's host
+  // Set: the viewer has a video encoder (PictureSource::OpenVideo()). A still is a file all the
+  // same, and so is a picture that the encoder does not take.
+  std::optional<render::VideoTarget> video;
 };
 
 // A number for a host, by which tickets name it.

@@ -50,9 +50,9 @@ class Step {
 
 Result<std::unique_ptr<RenderThread>> RenderThread::Start(const wrinkle::Skeleton* skeleton,
                                                           Factory make_renderer, Metrics* metrics,
-                                                          OnPicture deliver) {
+                                                          OnPicture deliver, VideoEncoders* video) {
   std::unique_ptr<RenderThread> self(
-      new RenderThread(skeleton, std::move(make_renderer), metrics, std::move(deliver)));
+      new RenderThread(skeleton, std::move(make_renderer), metrics, std::move(deliver), video));
   // EGL binds a context to the thread that makes it current, so the render thread creates the
   // renderer and reports back.
   std::promise<Status> started;
@@ -64,10 +64,11 @@ Result<std::unique_ptr<RenderThread>> RenderThread::Start(const wrinkle::Skeleto
 }
 
 RenderThread::RenderThread(const wrinkle::Skeleton* skeleton, Factory make_renderer,
-                           Metrics* metrics, OnPicture deliver)
+                           Metrics* metrics, OnPicture deliver, VideoEncoders* video)
     : make_renderer_(std::move(make_renderer)),
       metrics_(metrics),
       deliver_(std::move(deliver)),
+      video_(video),
       mailbox_(kMaxWaitingJobs),
       progress_(&mailbox_, &steps_),
       drawn_(skeleton) {}
@@ -123,6 +124,7 @@ void RenderThread::Submit(RenderJob job) {
 
 void RenderThread::Withdraw(std::uint64_t subscription) {
   metrics_->Add(Counter::kPicturesWithdrawn, mailbox_.Withdraw(subscription));
+  CloseVideo(subscription);
 }
 
 Result<render::Camera> RenderThread::Preset(std::string_view name) const {
@@ -293,6 +295,7 @@ void RenderThread::Deliver(FinishedPicture picture) {
 // Viewers with equal encodings share the bytes.
 void RenderThread::Finish(const render::Image& image, RenderJob job) {
   (void)mailbox_.Complete(&job);
+  EncodeVideos(image, &job);
   std::vector<std::pair<Encoding, std::vector<PictureTicket>>> groups;
   for (const PictureTicket& ticket : job.tickets) {
     const Encoding wanted = EncodingOf(ticket);
@@ -310,6 +313,48 @@ void RenderThread::Finish(const render::Image& image, RenderJob job) {
     group->second.push_back(ticket);
   }
   for (auto& [encoding, tickets] : groups) Encode(image, job, encoding, std::move(tickets));
+}
+
+// Delivers the picture to the viewers with video. The others stay in `job`.
+void RenderThread::EncodeVideos(const render::Image& image, RenderJob* job) {
+  const auto wants_video = [](const PictureTicket& ticket) {
+    return ticket.video && !ticket.still;
+  };
+  if (video_ == nullptr || std::ranges::none_of(job->tickets, wants_video)) return;
+  // Once for all of them.
+  const Status status = OrOutOfMemory(metrics_, [&] { return render::ToPlanes(image, &planes_); });
+  if (!status.ok()) return;
+  std::erase_if(job->tickets, [&](const PictureTicket& ticket) {
+    return wants_video(ticket) && EncodeVideo(image, *job, ticket);
+  });
+}
+
+// False: the viewer gets a file.
+bool RenderThread::EncodeVideo(const render::Image& image, const RenderJob& job,
+                               const PictureTicket& ticket) {
+  auto picture = OrOutOfMemory(
+      metrics_, [&] { return video_->Encode(ticket.subscription, planes_, *ticket.video); });
+  if (!picture.ok()) {
+    if (picture.status().code() != StatusCode::kNotFound) {
+      spdlog::warn("a viewer gets JPEG instead of H.264: {}", picture.status().ToString());
+    }
+    return false;
+  }
+  metrics_->Add(Counter::kPicturesEncoded);
+  metrics_->Add(Counter::kVideoPictures);
+  if (picture->key) metrics_->Add(Counter::kVideoKeyPictures);
+  picture->bytes.shrink_to_fit();  // they may wait in queues
+  Deliver({.sequence = job.snapshot->sequence,
+           .capture_time_us = job.snapshot->capture_time_us,
+           .age_us = job.snapshot->age_us,
+           .received_us = job.snapshot->received_us,
+           .width = image.width,
+           .height = image.height,
+           .bytes = std::move(picture->bytes),
+           .codec = std::move(picture->codec),
+           .key = picture->key,
+           .tickets = {ticket}});
+  return true;
 }
 
 void RenderThread::Encode(const render::Image& image, const RenderJob& job,

@@ -22,6 +22,7 @@
 #include "server/core/time.h"
 #include "server/pipeline/picture_source.h"
 #include "server/pipeline/render_mailbox.h"
+#include "server/pipeline/video_encoders.h"
 #include "wrinkle/shapes/character_pose.h"
 #include "wrinkle/skeleton/skeleton.h"
 
@@ -29,7 +30,7 @@ namespace furrow::server {
 
 // The thread that owns the EGL context. It takes jobs from the mailbox, renders with two read-backs
 // in flight, encodes each picture once per encoding, and passes the results to `deliver`. Without
-// viewers it sleeps.
+// viewers it sleeps. Viewers with a video encoder get each picture from their own encoder.
 //
 // Stills (refined pictures of a subject at rest) use kStillSamples samples per pixel if the
 // settings leave the number to the device: with one sample, hair and lashes show specks that are
@@ -58,11 +59,11 @@ class RenderThread : public PictureSource {
   // Creates the renderer, at the start and after each loss. Called on the render thread.
   using Factory = std::function<Result<std::unique_ptr<render::Renderer>>()>;
 
-  // Starts the thread and waits for the first renderer. `skeleton`: the character's; outlives this
-  // object. Errors: those of `make_renderer`.
+  // Starts the thread and waits for the first renderer. `skeleton`: the character's. `video`: null
+  // means that all pictures are files. Both outlive this object. Errors: those of `make_renderer`.
   [[nodiscard]] static Result<std::unique_ptr<RenderThread>> Start(
-      const wrinkle::Skeleton* skeleton, Factory make_renderer, Metrics* metrics,
-      OnPicture deliver);
+      const wrinkle::Skeleton* skeleton, Factory make_renderer, Metrics* metrics, OnPicture deliver,
+      VideoEncoders* video = nullptr);
   ~RenderThread() override;  // drops waiting jobs and joins the thread
   RenderThread(const RenderThread&) = delete;
   RenderThread& operator=(const RenderThread&) = delete;
@@ -74,6 +75,13 @@ class RenderThread : public PictureSource {
     return mailbox_.WithdrawStill(subscription);
   }
   void Withdraw(std::uint64_t subscription) override;
+  [[nodiscard]] bool OpenVideo(std::uint64_t subscription, const std::string& host,
+                               const render::VideoFormat& format) override {
+    return video_ != nullptr && video_->Open(subscription, host, format);
+  }
+  void CloseVideo(std::uint64_t subscription) override {
+    if (video_ != nullptr) video_->Close(subscription);
+  }
   [[nodiscard]] std::optional<Drawing> drawing() const override { return progress_.drawing(); }
   [[nodiscard]] bool is_software() const override { return is_software_; }
   [[nodiscard]] bool is_stuck() const override { return stuck_; }
@@ -120,7 +128,7 @@ class RenderThread : public PictureSource {
   };
 
   RenderThread(const wrinkle::Skeleton* skeleton, Factory make_renderer, Metrics* metrics,
-               OnPicture deliver);
+               OnPicture deliver, VideoEncoders* video);
 
   Status CreateRenderer();
   bool Revive();
@@ -131,6 +139,8 @@ class RenderThread : public PictureSource {
   Status Render(const RenderJob& job);
   void Collect(bool wait);
   void Finish(const render::Image& image, RenderJob job);
+  void EncodeVideos(const render::Image& image, RenderJob* job);
+  bool EncodeVideo(const render::Image& image, const RenderJob& job, const PictureTicket& ticket);
   void Encode(const render::Image& image, const RenderJob& job, const Encoding& encoding,
               std::vector<PictureTicket> tickets);
   void Abandon(RenderJob job);
@@ -142,6 +152,7 @@ class RenderThread : public PictureSource {
   const Factory make_renderer_;
   Metrics* const metrics_;
   const OnPicture deliver_;
+  VideoEncoders* const video_;  // may be null
   RenderMailbox mailbox_;
   std::vector<std::pair<std::string, render::Camera>> presets_;  // written before Start() returns
   std::string description_;
@@ -161,6 +172,7 @@ class RenderThread : public PictureSource {
   int next_skip_ = 0;                           // doubles until a picture succeeds
   std::deque<RenderJob> in_flight_;             // oldest first, in the order of the read-backs
   wrinkle::CharacterPose drawn_;
+  render::Planes planes_;  // of the picture that is being encoded; its memory is reused
 
   std::thread thread_;
 };

@@ -191,7 +191,7 @@ void Dispatcher::DispatchRequest(Shard& shard, Peer& peer, const protocol::Messa
       });
     case MessageKind::kFrameAck:
       return Decode(shard, peer, view, in.frame_ack,
-                    [&] { subscribers.Acknowledge(peer, header, in.frame_ack.number, now); });
+                    [&] { subscribers.Acknowledge(peer, header, in.frame_ack, now); });
     default:
       parts_.messages->SendError(peer, header, ErrorCode::kUnsupported,
                                  "only a daemon sends " + std::string(MessageKindName(view.kind)));

@@ -228,9 +228,9 @@ bool Hub::IsIdle(PeerId id, Time now) {
   return peer->num_subscriptions == 0 && now - peer->last_heard > patience;
 }
 
-void Hub::OnPicture(const FinishedPicture& picture) {
+void Hub::OnPicture(const FinishedPicture& picture, Time now) {
   const ExclusiveLock lock(*this, 0);
-  if (!draining_) subscribers_.OnPicture(picture);
+  if (!draining_) subscribers_.OnPicture(picture, now);
 }
 
 void Hub::Tick(Time now, Time late) {

@@ -148,7 +148,7 @@ class Hub {
   // Only the thread of shard 0 calls the functions from here on.
 
   // Sends a finished picture to its viewers.
-  void OnPicture(const FinishedPicture& picture);
+  void OnPicture(const FinishedPicture& picture, Time now);
   // Handles lost and decaying subjects, leases, and frames held back by rates. Call it about every
   // 10 ms. `late`: how long after its time the call comes. From kStall on, the daemon did not run,
   // and that time does not count as silence of subjects and peers.

@@ -201,7 +201,10 @@ def subscribe_pictures(t):
         message.update(eye=camera[0:3], target=camera[3:6], vertical_fov_degrees=camera[6])
     settings = t.texts(11, unique=False)
     require(len(settings) <= 128 and "" not in settings, "too many settings or an empty setting")
-    message.update(acknowledged=t.flag(10), settings=settings, camera_follows=t.flag(12))
+    codecs = t.texts(13, unique=False)
+    require(len(codecs) <= 8 and "" not in codecs, "too many codecs or an empty codec")
+    require(all(len(c.encode()) <= 32 for c in codecs), "a codec is too long")
+    message.update(acknowledged=t.flag(10), settings=settings, camera_follows=t.flag(12), codecs=codecs)
     return message
 
 
@@ -213,7 +216,7 @@ def update_pictures(t):
 
 def frame_ack(t):
     require(t.scalar(0, "I") > 0, "number is 0")
-    return {"number": t.scalar(0, "I")}
+    return {"number": t.scalar(0, "I"), "needs_key": t.flag(1), "held_us": t.scalar(2, "I")}
 
 
 def unsubscribe(_):
@@ -261,10 +264,13 @@ def image(t):
     require(data, "no bytes")
     width, height = t.scalar(0, "H"), t.scalar(1, "H")
     require(1 <= width <= 4096 and 1 <= height <= 4096, "size out of range")
+    codec, key = t.text(11, limit=32), t.flag(12)
+    require(not (key and codec == ""), "a key picture without a codec")
+    require(not (t.flag(7) and codec != ""), "a still in a video codec")
     return {"width": width, "height": height, "format": one_of(t.scalar(2, "B"), 2),
             "age_us": age(t.scalar(3, "q")), "bytes": data, "number": t.scalar(5, "I"),
             "tier": one_of(t.scalar(6, "B"), 3), "still": t.flag(7), "dropped": t.scalar(8, "I"),
-            "received_us": t.scalar(9, "q"), "view_request": t.scalar(10, "I")}
+            "received_us": t.scalar(9, "q"), "view_request": t.scalar(10, "I"), "codec": codec, "key": key}
 
 
 KINDS = {b"FHEL": hello, b"FWEL": welcome, b"FPIN": ping, b"FPON": pong, b"FBYE": goodbye,

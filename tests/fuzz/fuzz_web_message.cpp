@@ -19,6 +19,9 @@ class Pictures : public PictureSource {
   void Submit(RenderJob job) override { last = std::move(job); }
   bool WithdrawStill(std::uint64_t) override { return true; }
   void Withdraw(std::uint64_t) override {}
+  bool OpenVideo(std::uint64_t, const std::string&, const render::VideoFormat&) override {
+    return true;
+  }
   Result<render::Camera> Preset(std::string_view) const override { return render::Camera(); }
   RenderJob last;
 };
@@ -43,7 +46,14 @@ void Feed(std::span<const std::uint8_t> bytes) {
     if (IsWebMessage(message)) hub.OnMessage(peer, message, now);
     now += FromSeconds(0.02);
     hub.Tick(now);
-    hub.OnPicture({.bytes = {1}, .tickets = std::move(pictures.last.tickets)});
+    // As video where the viewer gets one, and each third one as a key picture.
+    const auto& tickets = pictures.last.tickets;
+    const bool is_video = !tickets.empty() && tickets.front().video.has_value();
+    hub.OnPicture({.bytes = {1},
+                   .codec = is_video ? "avc1.42c01e" : "",
+                   .key = is_video && size % 3 == 0,
+                   .tickets = tickets},
+                  now);
     pictures.last = {};
   }
 }

@@ -54,6 +54,8 @@ export interface DaemonStatus {
   software: boolean;
   /** Null: nothing is being drawn. */
   drawing: Drawing | null;
+  /** H.264; null: the daemon draws nothing. */
+  video: { library: string; encoders: number; max_encoders: number; why: string } | null;
   viewers: number;
   subjects: number;
   pictures_rendered: number;

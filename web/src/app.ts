@@ -306,8 +306,21 @@ export class App {
     const isAtRest = this.isAtRest();
     this.header.showFigures({
       picturesHz, posesHz, isAtRest, ageMs: picture.ageMs, width: picture.width, height: picture.height,
+      ...(isHere ? { stream: '', streamTitle: '' } : this.streamFigures(nowS)),
       limit: limitOf({ posesHz, picturesHz, waitedHz: stats.waitedHz(nowS), decodeMs: stats.decodeMs(), isAtRest, isHere }),
     });
+  }
+
+  private streamFigures(nowS: number): { stream: string; streamTitle: string } {
+    const { stats, video } = this.viewer;
+    const t = text.stream;
+    const isVideo = stats.codec !== '';
+    const daemon = this.status?.video ?? null;
+    const whyDaemon = daemon === null || daemon.why === '' ? t.why.full : t.why.daemon(daemon.why);
+    return {
+      stream: t.rate(isVideo ? t.h264 : t.jpeg, stats.mbitPerS(nowS).toFixed(2)),
+      streamTitle: isVideo ? t.isVideo : t.isFiles(video.why || whyDaemon),
+    };
   }
 
   private async askDaemon(): Promise<void> {

@@ -40,6 +40,7 @@ export const text = {
     rate: ['Pictures', 'Pictures drawn per second, of the poses received per second'],
     age: ['Age', 'Time since the pose on the screen reached the daemon'],
     size: ['Size', 'Pixels of the picture on the screen'],
+    stream: ['Stream', 'How the pictures come, and how much they take'],
     limit: ['Limit', 'What keeps the pictures from following the poses'],
     atRest: 'at rest',
     none: '–',
@@ -128,6 +129,26 @@ export const text = {
     drawers: { auto: 'Drawn by the faster', browser: 'Drawn by this browser', daemon: 'Drawn by the daemon' },
     drawnHere: 'This browser draws the picture',
     drawnThere: (why: string) => `The daemon draws the picture: ${why}`,
+  },
+  stream: {
+    label: 'Picture stream',
+    kinds: { auto: 'Auto stream', h264: 'H.264 stream', jpeg: 'JPEG stream' },
+    isVideo: 'The pictures come as H.264 video',
+    isFiles: (why: string) => `The pictures come as JPEG: ${why}`,
+    rate: (codec: string, mbit: string) => `${codec} ${mbit} Mbit/s`,
+    h264: 'H.264',
+    jpeg: 'JPEG',
+    /** Why there is no video. */
+    why: {
+      chosen: 'you chose JPEG',
+      insecure: 'browsers decode video only over HTTPS, or on the daemon’s computer',
+      noDecoder: 'this browser has no video decoder for pages',
+      unsupported: 'this browser does not decode H.264',
+      failed: 'this browser failed to decode the video',
+      slow: 'the video decoder of this browser was late',
+      daemon: (reason: string) => `the daemon has no H.264: ${reason}`,
+      full: 'all video encoders of the daemon are in use',
+    },
   },
   /** Why the daemon draws. */
   why: {

@@ -46,7 +46,8 @@ test('the CSV equals the output of furrow watch', () => {
   assert.equal(weights.toCsv(), 'frame,time,a,b,c\n41,0.000000,0.000000,0.500000,1.000000\n42,0.250000,0.000000,0.250000,1.000000\n');
 });
 
-const FACTS = { sequence: 1, ageUs: 0, still: false, tier: 0, dropped: 0, receivedUs: 990_000, width: 640, height: 480, decodeMs: 4 };
+const FACTS = { sequence: 1, ageUs: 0, still: false, tier: 0, dropped: 0, receivedUs: 990_000, width: 640, height: 480, decodeMs: 4,
+  codec: '', numBytes: 1000 };
 
 test('latency is the median of fresh pictures on the daemon’s clock', () => {
   const stats = new PictureStats();
@@ -88,6 +89,18 @@ test('poses that waited for this page, and the time to decode', () => {
   for (let i = 0; i < 10; ++i) stats.add({ ...FACTS, sequence: i, dropped: 3 * i, decodeMs: i % 2 === 0 ? 2 : 4 }, i * 100_000, null);
   assert.equal(stats.waitedHz(0.9), 13.5);
   assert.equal(stats.decodeMs(), 3);
+});
+
+test('how the pictures come, and how much they take', () => {
+  const stats = new PictureStats();
+  for (let i = 0; i < 10; ++i) stats.add({ ...FACTS, sequence: i, codec: 'avc1.42c01e', numBytes: 25_000 }, i * 100_000, null);
+  assert.equal(stats.mbitPerS(0.9), 1);
+  assert.equal(stats.mbitPerS(10), 0);
+  assert.equal(stats.codec, 'avc1.42c01e');
+  stats.add({ ...FACTS, sequence: 10, still: true }, 1e6, null);
+  assert.equal(stats.codec, 'avc1.42c01e'); // a still is always a file
+  stats.add({ ...FACTS, sequence: 11 }, 1.1e6, null);
+  assert.equal(stats.codec, '');
 });
 
 const PACE = { posesHz: 60, picturesHz: 20, waitedHz: 0, decodeMs: 5, isAtRest: false, isHere: false };

@@ -12,6 +12,7 @@ Api::Api(Parts parts)
                .metrics = parts.metrics,
                .wants_pictures = parts.wants_pictures,
                .pictures = parts.pictures,
+               .video = parts.video,
                .plays = parts.player != nullptr,
                .renderer = std::move(parts.renderer),
                .connections = std::move(parts.connections),

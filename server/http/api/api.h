@@ -20,6 +20,7 @@
 #include "server/http/request/api_types.h"
 #include "server/osc/osc_control.h"
 #include "server/pipeline/picture_source.h"
+#include "server/pipeline/video_encoders.h"
 #include "server/playback/player.h"
 #include "server/session/hub.h"
 
@@ -35,6 +36,7 @@ class Api {
     Time started{0};                            // when the daemon started
     Metrics* metrics = nullptr;                 // not null
     PictureSource* pictures = nullptr;          // null: the daemon renders nothing
+    const VideoEncoders* video = nullptr;       // null: the daemon renders nothing
     bool wants_pictures = false;                // the configuration asks for pictures
     std::string renderer;                       // description of the renderer, for people
     Player* player = nullptr;                   // null: started without --play

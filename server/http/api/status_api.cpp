@@ -37,6 +37,16 @@ Json DrawingJson(const PictureSource* pictures) {
   return drawing ? Json{{"done", drawing->done}, {"passes", drawing->passes}} : Json();
 }
 
+// Null: the daemon draws nothing.
+Json VideoJson(const VideoEncoders* video) {
+  if (video == nullptr) return Json();
+  const VideoEncoders::State state = video->state();
+  return {{"library", state.library},
+          {"encoders", state.encoders},
+          {"max_encoders", state.max_encoders},
+          {"why", state.why}};
+}
+
 using prometheus::MetricType;
 
 // A family with one metric and no labels. Labels for subjects or peers would let senders create
@@ -90,6 +100,7 @@ ApiReply StatusApi::ShowStatus(const ApiRequest& request, const Hub& hub, Time n
                     {"renderer", parts_.renderer},
                     {"software", parts_.pictures != nullptr && parts_.pictures->is_software()},
                     {"drawing", DrawingJson(parts_.pictures)},
+                    {"video", VideoJson(parts_.video)},
                     {"viewers", parts_.viewers()},
                     {"subscriptions", hub.num_subscriptions()},
                     {"subjects", hub.num_subjects()},
@@ -144,6 +155,10 @@ ApiReply StatusApi::MetricsText(const Hub& hub) const {
             static_cast<double>(parts_.connections()));
   add_gauge("furrow_http_viewers", "Open WebSockets and picture streams.",
             static_cast<double>(parts_.viewers()));
+  if (parts_.video != nullptr) {
+    add_gauge("furrow_video_encoders", "Viewers that have an H.264 encoder.",
+              static_cast<double>(parts_.video->state().encoders));
+  }
   // What the process holds beyond its needs is the allocator's: peaks of the past, and gaps.
   const struct mallinfo2 heap = mallinfo2();
   add_gauge("furrow_heap_used_bytes", "Allocated memory in use.",

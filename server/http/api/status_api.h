@@ -9,6 +9,7 @@
 #include "server/core/metrics.h"
 #include "server/core/time.h"
 #include "server/http/request/api_types.h"
+#include "server/pipeline/video_encoders.h"
 #include "server/session/hub.h"
 
 namespace furrow::server {
@@ -22,6 +23,7 @@ class StatusApi {
     const Metrics* metrics = nullptr;
     bool wants_pictures = false;                // the configuration asks for pictures
     const PictureSource* pictures = nullptr;    // the renderer; null: none is running
+    const VideoEncoders* video = nullptr;       // null: the daemon renders nothing
     bool plays = false;                         // started with --play
     std::string renderer;                       // description of the renderer, for people
     std::function<int()> connections;           // HTTP connections

@@ -59,6 +59,14 @@ bool IsAtRest(const Subscription& subscription, const PictureRequest& request, T
   return now - UnchangedSince(subscription, request) >= kAtRestAfter;
 }
 
+// Encoders want even sizes. The picture gets another column or row, which the viewer leaves out.
+render::VideoFormat VideoFormatOf(const PictureRequest& request) {
+  const auto even = [](int pixels) { return pixels + pixels % 2; };
+  return {.width = even(request.spec.width),
+          .height = even(request.spec.height),
+          .quality = request.encoding.quality};
+}
+
 // The job of this spec, added if it is absent. All jobs of a list share one snapshot.
 RenderJob& FindOrAddJob(const Subscription& subscription, const PictureSpec& spec,
                         std::int64_t age_us, std::vector<RenderJob>* jobs) {
@@ -109,6 +117,8 @@ Result<PictureRequest> PictureViews::MakeRequest(const protocol::SubscribePictur
   result.encoding.format = png ? render::ImageFormat::kPng : render::ImageFormat::kJpeg;
   // PNG has no quality. One value for all makes equal encodings compare equal.
   result.encoding.quality = png ? 0 : request.quality;
+  result.wants_video =
+      !png && std::ranges::find(request.codecs, protocol::kH264) != request.codecs.end();
   return result;
 }
 
@@ -116,7 +126,13 @@ void PictureViews::SetView(Subscription& subscription, PictureRequest view, Time
   auto& request = std::get<PictureRequest>(subscription.request);
   // The numbers of pictures and acknowledgements continue across a change of the view.
   view.flow = std::move(request.flow);
+  view.video = std::move(request.video);
+  if (!view.wants_video && view.video) {
+    view.video.reset();
+    pictures_->CloseVideo(subscription.uid);
+  }
   request = std::move(view);
+  BeginVideo(request);
   MarkChanged(subscription, request, now);
 }
 
@@ -135,6 +151,10 @@ std::vector<Subscription*> PictureViews::SetOwnSettings(const render::Settings& 
     changed.push_back(&subscription);
   });
   return changed;
+}
+
+void PictureViews::BeginVideo(PictureRequest& request) {
+  if (request.flow && request.wants_video && !request.video) request.video.emplace();
 }
 
 // A still of the old view that is not rendered yet would only delay the new view.
@@ -203,6 +223,11 @@ void PictureViews::AddFlowControlledJob(Subscription& subscription, PictureReque
   if (request.encoding.format == render::ImageFormat::kJpeg) {
     ticket.encoding.quality = kTierQualities[flow.tier()];
   }
+  // Also for a still, which becomes a moving picture if its subject moves before it is drawn.
+  if (request.video &&
+      pictures_->OpenVideo(subscription.uid, subscription.peer->host, VideoFormatOf(request))) {
+    ticket.video = request.video->Target();
+  }
   FindOrAddJob(subscription, request.spec, age_us, jobs).tickets.push_back(ticket);
 }
 
@@ -212,7 +237,7 @@ void PictureViews::Submit(std::vector<RenderJob>* jobs) {
   jobs->clear();
 }
 
-void PictureViews::OnPicture(const FinishedPicture& picture) {
+void PictureViews::OnPicture(const FinishedPicture& picture, Time now) {
   // A large PNG may exceed protocol::kMaxReplyBytes, which clients refuse.
   const bool too_large = picture.bytes.size() > kMaxPictureBytes;
   if (too_large) {
@@ -230,10 +255,11 @@ void PictureViews::OnPicture(const FinishedPicture& picture) {
     Subscription* subscription = table_->Find(ticket.subscription);
     if (subscription == nullptr) continue;  // it ended while the picture was rendered
     if (!failed) {
-      SendPicture(*subscription, picture, ticket);
+      SendPicture(*subscription, picture, ticket, now);
     } else if (PictureRequest* viewer = FlowControlled(*subscription); viewer != nullptr) {
       // Ends the request; the tick asks again after ViewerFlow::kRetry.
       viewer->flow->Fail();
+      if (viewer->video) viewer->video->Lose();
       subscription->owed = subscription->subject != nullptr;
     }
   }
@@ -248,24 +274,31 @@ void PictureViews::FillImage(const FinishedPicture& picture) {
   image_.age_us = picture.age_us;
   image_.received_us = picture.received_us;
   image_.bytes = picture.bytes;
+  image_.codec = picture.codec;
+  image_.key = picture.key;
 }
 
 void PictureViews::SendPicture(Subscription& subscription, const FinishedPicture& picture,
-                               const PictureTicket& ticket) {
+                               const PictureTicket& ticket, Time now) {
   // `view_request` comes from the ticket: the viewer may have changed its view since, and tells by
   // this number which view the picture shows.
   auto& request = std::get<PictureRequest>(subscription.request);
   image_.view_request = ticket.view_request;
-  image_.tier = ticket.still ? 0 : ticket.tier;
+  image_.tier = ticket.still || !picture.codec.empty() ? 0 : ticket.tier;
   image_.still = ticket.still;
   image_.number = request.flow ? request.flow->Send() : 0;
   image_.dropped = request.flow ? request.flow->dropped() : 0;
-  messages_->SendFrame(*subscription.peer, subscription.uid,
-                       {.stream = subscription.id,
-                        .sequence = picture.sequence,
-                        .capture_time_us = picture.capture_time_us},
-                       image_, Counter::kPicturesSent, Counter::kPicturesDroppedSlow,
-                       request.flow ? ViewerFlow::kMaxUnderWay : kMaxQueuedPictures);
+  const std::uint64_t displaced =
+      messages_->SendFrame(*subscription.peer, subscription.uid,
+                           {.stream = subscription.id,
+                            .sequence = picture.sequence,
+                            .capture_time_us = picture.capture_time_us},
+                           image_, Counter::kPicturesSent, Counter::kPicturesDroppedSlow,
+                           request.flow ? ViewerFlow::kMaxUnderWay : kMaxQueuedPictures);
+  if (!request.video) return;
+  request.video->Sent(image_.number, picture.bytes.size(), picture.key, now);
+  // Which picture of the viewer made room is not known. It may be one of this video.
+  if (displaced > 0) request.video->Lose();
 }
 
 }  // namespace furrow::server

@@ -69,7 +69,9 @@ class PictureViews {
   void Submit(std::vector<RenderJob>* jobs);
   // Sends a finished picture to those of its viewers that are still subscribed. A picture without
   // bytes reports a failure.
-  void OnPicture(const FinishedPicture& picture);
+  void OnPicture(const FinishedPicture& picture, Time now);
+  // Starts the video of a viewer that wants one and acknowledges. Call it for new requests.
+  static void BeginVideo(PictureRequest& request);
 
  private:
   void MarkChanged(const Subscription& subscription, PictureRequest& request, Time now);
@@ -77,7 +79,7 @@ class PictureViews {
                             std::int64_t age_us, Time now, std::vector<RenderJob>* jobs);
   void FillImage(const FinishedPicture& picture);
   void SendPicture(Subscription& subscription, const FinishedPicture& picture,
-                   const PictureTicket& ticket);
+                   const PictureTicket& ticket, Time now);
 
   const SubscriptionTable* const table_;
   PictureSource* const pictures_;

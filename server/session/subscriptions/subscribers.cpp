@@ -104,6 +104,7 @@ void Subscribers::Subscribe(Peer& peer, const protocol::Header& header,
   pictures->view_request = header.sequence;
   // A client that never acknowledges must not wait for its own acknowledgements.
   if (request.acknowledged) pictures->flow.emplace();
+  PictureViews::BeginVideo(*pictures);
   subscription->request = *std::move(pictures);
   Add(peer, header, std::move(subscription));
 }
@@ -267,16 +268,17 @@ void Subscribers::SetOwnSettings(const render::Settings& settings, Time now) {
   for (Subscription* changed : pictures_.SetOwnSettings(settings, now)) SendNow(*changed, now);
 }
 
-void Subscribers::Acknowledge(Peer& peer, const protocol::Header& header, std::uint32_t number,
-                              Time now) {
+void Subscribers::Acknowledge(Peer& peer, const protocol::Header& header,
+                              const protocol::FrameAck& ack, Time now) {
   Subscription* subscription = table_.Find(peer, header.stream);
   PictureRequest* viewer =
       subscription == nullptr ? nullptr : PictureViews::FlowControlled(*subscription);
   if (viewer == nullptr) return;  // the subscription ended in the meantime
-  if (!viewer->flow->Acknowledge(number)) {
+  if (!viewer->flow->Acknowledge(ack.number)) {
     return messages_->SendError(peer, header, ErrorCode::kMalformed,
-                                "picture " + std::to_string(number) + " was never sent");
+                                "picture " + std::to_string(ack.number) + " was never sent");
   }
+  if (viewer->video) viewer->video->Acknowledge(ack, now);
   if (subscription->owed) SendNow(*subscription, now);
 }
 

@@ -49,8 +49,9 @@ class Subscribers {
   // request, with an error.
   void UpdatePictures(Peer& peer, const protocol::Header& header,
                       const protocol::SubscribePictures& request, Time now);
-  // Handles the acknowledgement that the viewer has shown picture `number`.
-  void Acknowledge(Peer& peer, const protocol::Header& header, std::uint32_t number, Time now);
+  // Handles the acknowledgement that the viewer has shown a picture.
+  void Acknowledge(Peer& peer, const protocol::Header& header, const protocol::FrameAck& ack,
+                   Time now);
   // False: the peer has no such subscription.
   bool Unsubscribe(Peer& peer, std::uint16_t id);
 
@@ -70,7 +71,7 @@ class Subscribers {
   void BindWaiting();
 
   // Sends a finished picture to its viewers.
-  void OnPicture(const FinishedPicture& picture) { pictures_.OnPicture(picture); }
+  void OnPicture(const FinishedPicture& picture, Time now) { pictures_.OnPicture(picture, now); }
 
   // The daemon's settings for pictures; a view may override some of them.
   [[nodiscard]] const render::Settings& own_settings() const { return pictures_.own_settings(); }

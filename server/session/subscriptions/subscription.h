@@ -14,6 +14,7 @@
 #include "server/session/peers/peer.h"
 #include "server/session/subjects/subject_registry.h"
 #include "server/session/subscriptions/rate_gate.h"
+#include "server/session/subscriptions/video_flow.h"
 #include "server/session/subscriptions/viewer_flow.h"
 
 namespace furrow::server {
@@ -42,6 +43,8 @@ struct PictureRequest {
   std::uint32_t view_request = 0;      // sequence of the message that set this view
   Time changed{0};                     // when the view was set
   std::optional<ViewerFlow> flow;      // flow control; only for viewers that acknowledge
+  bool wants_video = false;            // the viewer decodes H.264 and asks for JPEG
+  std::optional<VideoFlow> video;      // with flow control and wants_video
 };
 
 // A subscription to the skeleton and poses of a subject.

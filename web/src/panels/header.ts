@@ -16,6 +16,10 @@ export interface Figures {
   width: number;
   height: number;
   limit: Limit;
+  /** How the pictures come; empty: this browser draws them. */
+  stream: string;
+  /** Why they come that way. */
+  streamTitle: string;
 }
 
 const LEVELS: Record<PictureState, 'ok' | 'wait' | 'bad'> = {
@@ -41,13 +45,13 @@ export class Header {
     this.element = h('header', {},
       h('h1', {}, 'Furrow'), this.subject, this.status, this.open, h('span', { class: 'space' }),
       h('div', { class: 'numbers', 'aria-label': text.figures.group, role: 'group' },
-        this.figure('rate'), this.figure('age'), this.figure('size'), this.figure('limit')),
+        this.figure('rate'), this.figure('age'), this.figure('size'), this.figure('stream'), this.figure('limit')),
       button(t.curves, commands.dock, { title: t.curvesTitle, class: 'wide-only' }),
       button(t.panel, commands.panel, { title: t.panelTitle, class: 'wide-only' }),
       button('?', commands.help, { title: t.helpTitle, 'aria-label': t.help, class: 'help-button' }));
   }
 
-  private figure(id: 'rate' | 'age' | 'size' | 'limit'): HTMLElement {
+  private figure(id: 'rate' | 'age' | 'size' | 'stream' | 'limit'): HTMLElement {
     const [label, title] = text.figures[id];
     const output = h('output', { 'data-number': id }, text.figures.none);
     this.figures.set(id, output);
@@ -82,11 +86,13 @@ export class Header {
       for (const id of this.figures.keys()) this.put(id, t.none);
       return;
     }
-    const { picturesHz, posesHz, ageMs, isAtRest, width, height, limit } = figures;
+    const { picturesHz, posesHz, ageMs, isAtRest, width, height, limit, stream, streamTitle } = figures;
     // Pictures of a pose at rest say nothing about the speed.
     this.put('rate', posesHz < 0.5 ? t.none : `${picturesHz.toFixed(0)} of ${posesHz.toFixed(0)} /s`);
     this.put('age', isAtRest ? t.atRest : ageMs === null ? t.none : ageWords(ageMs));
     this.put('size', width === 0 ? t.none : `${width} × ${height}`);
+    this.put('stream', stream || t.none);
+    this.figures.get('stream')!.title = streamTitle;
     this.put('limit', t.limits[limit]);
   }
 

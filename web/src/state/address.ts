@@ -3,6 +3,7 @@
 // have their own names; everything else has short names.
 import type { Camera, Vec3 } from '../view/camera';
 import type { DrawnBy } from '../view/draw_choice';
+import type { StreamKind } from '../view/video_choice';
 
 export type Wipe = 'none' | 'wrinkles' | 'shading';
 
@@ -19,11 +20,12 @@ export interface PageState {
   /** The open tab of the side panel. Empty: the panel is closed. Null: as usual on this screen. */
   panel: string | null;
   drawnBy: DrawnBy;
+  stream: StreamKind;
   /** The picture alone. */
   kiosk: boolean;
 }
 
-const RESERVED = ['subject', 'camera', 'wipe', 'debug', 'curves', 'panel', 'drawn', 'kiosk'] as const;
+const RESERVED = ['subject', 'camera', 'wipe', 'debug', 'curves', 'panel', 'drawn', 'stream', 'kiosk'] as const;
 
 function writeCamera(camera: Camera): string {
   const numbers = [...camera.eye, ...camera.target, camera.fovDegrees];
@@ -52,6 +54,7 @@ export function readAddress(hash: string): PageState {
   const parameters = new URLSearchParams(hash.replace(/^#/, ''));
   const wipe = parameters.get('wipe');
   const drawn = parameters.get('drawn');
+  const stream = parameters.get('stream');
   const state: PageState = {
     subject: parameters.get('subject') ?? '',
     camera: readCamera(parameters.get('camera') ?? ''),
@@ -61,6 +64,7 @@ export function readAddress(hash: string): PageState {
     curves: words(parameters.get('curves')),
     panel: parameters.get('panel'),
     drawnBy: drawn === 'browser' || drawn === 'daemon' ? drawn : 'auto',
+    stream: stream === 'h264' || stream === 'jpeg' ? stream : 'auto',
     kiosk: parameters.get('kiosk') === '1',
   };
   for (const [name, value] of parameters) {
@@ -82,6 +86,7 @@ export function writeAddress(state: PageState): string {
   if (state.curves.length > 0) pairs.push(['curves', state.curves.join(',')]);
   if (state.panel !== null) pairs.push(['panel', state.panel]);
   if (state.drawnBy !== 'auto') pairs.push(['drawn', state.drawnBy]);
+  if (state.stream !== 'auto') pairs.push(['stream', state.stream]);
   if (state.kiosk) pairs.push(['kiosk', '1']);
   pairs.push(...state.settings);
   const encode = (text: string): string => encodeURIComponent(text).replaceAll('%2C', ',');

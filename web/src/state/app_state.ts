@@ -4,6 +4,7 @@ import { Signal } from '../ui/signal';
 import { type Camera, type CameraPreset, fromPreset, sameCamera } from '../view/camera';
 import type { DrawnBy } from '../view/draw_choice';
 import type { Sharpness } from '../view/resolution';
+import type { StreamKind } from '../view/video_choice';
 import { type PageState, readAddress, type Wipe, writeAddress } from './address';
 import { isCompact } from './layout';
 import { SettingsModel } from './settings';
@@ -28,6 +29,7 @@ export class AppState {
   readonly panel: Signal<string>;
   readonly sharpness = new Signal<Sharpness>('auto');
   readonly drawnBy: Signal<DrawnBy>;
+  readonly stream: Signal<StreamKind>;
   /** The picture alone. */
   readonly kiosk: Signal<boolean>;
   /** True while the user compares: the picture is drawn without the last change. */
@@ -47,6 +49,7 @@ export class AppState {
       if (this.panel.value === usualPanel(!compact)) this.panel.set(usualPanel());
     });
     this.drawnBy = new Signal(this.wishes.drawnBy);
+    this.stream = new Signal(this.wishes.stream);
     this.kiosk = new Signal(this.wishes.kiosk);
   }
 
@@ -54,7 +57,7 @@ export class AppState {
   begin(presets: readonly CameraPreset[]): string[] {
     const unknown = this.settings.begin(this.wishes.settings);
     this.setPresets(presets);
-    for (const signal of [this.subject, this.wipe, this.strip, this.curves, this.panel, this.drawnBy, this.kiosk, this.camera, this.settings.changed]) {
+    for (const signal of [this.subject, this.wipe, this.strip, this.curves, this.panel, this.drawnBy, this.stream, this.kiosk, this.camera, this.settings.changed]) {
       (signal as Signal<unknown>).watch(() => this.writeSoon());
     }
     return unknown;
@@ -94,6 +97,7 @@ export class AppState {
       curves: [...this.curves.value],
       panel: this.panel.value === usualPanel() ? null : this.panel.value,
       drawnBy: this.drawnBy.value,
+      stream: this.stream.value,
       kiosk: this.kiosk.value,
     };
   }

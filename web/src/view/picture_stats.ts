@@ -12,6 +12,9 @@ export interface PictureFacts {
   height: number;
   /** Time that this browser took to decode the picture. */
   decodeMs: number;
+  /** Of a video (RFC 6381); empty: the picture came as a file. */
+  codec: string;
+  numBytes: number;
 }
 
 /** What is on the screen, whoever drew it. */
@@ -34,6 +37,7 @@ interface Sample {
   atS: number;
   dropped: number;
   decodeMs: number;
+  numBytes: number;
 }
 
 export class PictureStats {
@@ -45,6 +49,8 @@ export class PictureStats {
   dropped = 0;
   tier = 0;
   still = false;
+  /** Of the last picture that was no still, which is always a file. */
+  codec = '';
   /** Sequence of the pose on the screen; null: there is no picture. */
   sequence: number | null = null;
   width = 0;
@@ -69,10 +75,11 @@ export class PictureStats {
     const dropped = picture.dropped >= this.lastDropped ? picture.dropped - this.lastDropped : picture.dropped;
     this.lastDropped = picture.dropped;
     this.dropped += dropped;
-    this.samples.push({ atS: nowS, dropped, decodeMs: picture.decodeMs });
+    this.samples.push({ atS: nowS, dropped, decodeMs: picture.decodeMs, numBytes: picture.numBytes });
     this.prune(nowS);
     this.tier = picture.tier;
     this.still = picture.still;
+    if (!picture.still) this.codec = picture.codec;
     this.width = picture.width;
     this.height = picture.height;
     this.receivedUs = picture.receivedUs;
@@ -91,6 +98,7 @@ export class PictureStats {
     this.shown = this.lastDropped = this.receivedUs = 0;
     this.sequence = null;
     this.still = false;
+    this.codec = '';
     this.sinceStill = Infinity;
   }
 
@@ -103,6 +111,12 @@ export class PictureStats {
   waitedHz(nowS: number): number {
     this.prune(nowS);
     return this.samples.reduce((sum, { dropped }) => sum + dropped, 0) / WINDOW_S;
+  }
+
+  /** Megabits per second that the pictures took. */
+  mbitPerS(nowS: number): number {
+    this.prune(nowS);
+    return (this.samples.reduce((sum, { numBytes }) => sum + numBytes, 0) * 8) / 1e6 / WINDOW_S;
   }
 
   /** Mean time to decode a picture; 0 if there is none in the last two seconds. */

@@ -4,10 +4,11 @@ import { type Envelope, frameAck, type PictureMessage, type PictureRequest, read
   type Subscriber, subscribePictures, type Subscription, updatePictures } from 'furrow/protocol';
 import { Signal } from '../ui/signal';
 import type { Connection } from '../wire/connection';
+import { VideoReader, type VideoReaderEvents } from './video_reader';
 
-/** A decoded picture. The receiver must close the bitmap. */
+/** A decoded picture. The receiver must close the bitmap, which may have a column or row more than the picture. */
 export interface Picture extends Omit<PictureMessage, 'bytes'> {
-  bitmap: ImageBitmap;
+  bitmap: ImageBitmap | VideoFrame;
   /** Of the pose. */
   sequence: number;
   numBytes: number;
@@ -19,6 +20,8 @@ export interface PictureEvents {
   onPicture(picture: Picture): void;
   /** The daemon rejected the request. `error` is its sentence. */
   onRefused(code: number, error: string): void;
+  /** For requests that list codecs. A decoder that was lost is replaced without a call of onFailed(). */
+  video?: VideoReaderEvents;
 }
 
 function sameView(a: PictureRequest | null, b: PictureRequest): boolean {
@@ -39,6 +42,11 @@ export class PictureStream implements Subscriber {
   private lastUpdateMs = -Infinity;
   /** The last request sent to the daemon. */
   private asked: PictureRequest | null = null;
+  /** The number of the last picture, to notice a lost one. */
+  private last = 0;
+  private reader: VideoReader | null = null;
+  /** The pictures of the video cannot be decoded until there is a key picture. */
+  private needsKey = false;
 
   constructor(
     private readonly connection: Connection,
@@ -57,6 +65,7 @@ export class PictureStream implements Subscriber {
     this.subscription?.close();
     this.subscription = null;
     this.answered = false;
+    this.closeReader();
   }
 
   get view(): PictureRequest {
@@ -100,9 +109,16 @@ export class PictureStream implements Subscriber {
     this.wanted = this.subscription?.send(updatePictures(this.wantedView)) ?? this.wanted;
   }
 
+  private closeReader(): void {
+    this.reader?.close();
+    this.reader = null;
+  }
+
   request(): Uint8Array {
     this.answered = false;
-    this.newestShown = 0;
+    this.newestShown = this.last = 0;
+    this.needsKey = false;
+    this.closeReader();
     this.asked = this.wantedView;
     return subscribePictures(this.wantedView);
   }
@@ -123,20 +139,16 @@ export class PictureStream implements Subscriber {
 
   onMessage(message: Envelope): void {
     if (message.identifier !== 'FIMG') return;
-    void this.decode(message.sequence, readPicture(message.payload));
+    void this.show(message.sequence, readPicture(message.payload));
   }
 
-  private async decode(sequence: number, picture: PictureMessage): Promise<void> {
-    const { bytes, ...rest } = picture;
+  private async show(sequence: number, picture: PictureMessage): Promise<void> {
     const { subscription } = this;
-    let bitmap: ImageBitmap | null = null;
     const beganMs = performance.now();
-    try {
-      bitmap = await createImageBitmap(new Blob([bytes], { type: picture.mimeType }));
-    } catch {
-      // Undecodable pictures are acknowledged too, because the next picture may be valid.
-    }
-    subscription?.send(frameAck(picture.number));
+    const bitmap = await this.decode(picture);
+    const decodeMs = performance.now() - beganMs;
+    // Undecodable pictures are acknowledged too, because the next picture may be valid.
+    subscription?.send(frameAck(picture.number, { needsKey: this.needsKey, heldUs: 1000 * decodeMs }));
     if (bitmap === null) return;
     // A newer picture was shown while this one was decoded, or the subscription has ended; another one counts from 1.
     if (subscription === null || this.subscription !== subscription || picture.number <= this.newestShown) {
@@ -146,6 +158,38 @@ export class PictureStream implements Subscriber {
     this.newestShown = picture.number;
     const behind = (this.wanted - picture.viewRequest) | 0;
     if (this.answered && behind <= 0 && this.timer === null) this.pending.set(false);
-    this.events.onPicture({ ...rest, bitmap, sequence, numBytes: bytes.length, decodeMs: performance.now() - beganMs });
+    const { bytes, ...rest } = picture;
+    this.events.onPicture({ ...rest, bitmap, sequence, numBytes: bytes.length, decodeMs });
+  }
+
+  /** Null: it cannot be shown. */
+  private async decode(picture: PictureMessage): Promise<ImageBitmap | VideoFrame | null> {
+    const follows = picture.number === (this.last + 1) >>> 0;
+    this.last = picture.number;
+    if (!follows) this.needsKey = true;
+    if (picture.codec === '') {
+      try {
+        return await createImageBitmap(new Blob([picture.bytes], { type: picture.mimeType }));
+      } catch {
+        return null;
+      }
+    }
+    const { video } = this.events;
+    if (video === undefined) return null; // not asked for
+    this.reader ??= this.makeReader(video);
+    if (picture.key) this.needsKey = false;
+    else if (!this.reader.isReady) this.needsKey = true;
+    return this.needsKey ? null : this.reader.decode(picture);
+  }
+
+  private makeReader(video: VideoReaderEvents): VideoReader {
+    return new VideoReader({
+      isImpatient: video.isImpatient,
+      onFailed: (failure) => {
+        this.reader = null;
+        this.needsKey = true;
+        if (failure !== 'lost') video.onFailed(failure);
+      },
+    });
   }
 }

@@ -6,6 +6,9 @@ import type { Picture } from './picture_stream';
 
 export type Side = 'right' | 'left';
 
+/** What a side shows. */
+type Shown = Pick<Picture, 'bitmap' | 'width' | 'height'>;
+
 /** Shown while a change takes longer than this, so that quick changes do not flicker. */
 const BUSY_MS = 250;
 
@@ -23,7 +26,7 @@ export class Stage {
   /** Receives the keys and pointers for the camera. */
   readonly surface = h('div', { class: 'surface', tabindex: 0, role: 'application', 'aria-label': text.stage.help }, this.canvas);
   readonly element = h('div', { class: 'stage', 'aria-busy': 'true' }, this.placeholder, this.surface, this.wipe, this.busy);
-  private readonly bitmaps: Record<Side, ImageBitmap | null> = { left: null, right: null };
+  private readonly shown: Record<Side, Shown | null> = { left: null, right: null };
   private split = false;
   private drawScheduled = false;
   private busyTimer: ReturnType<typeof setTimeout> | null = null;
@@ -38,14 +41,14 @@ export class Stage {
 
   /** Takes ownership of the bitmap. */
   show(side: Side, picture: Picture): void {
-    this.bitmaps[side]?.close();
-    this.bitmaps[side] = picture.bitmap;
+    this.shown[side]?.bitmap.close();
+    this.shown[side] = picture;
     this.schedule();
   }
 
   /** True if there is a picture on the canvas. */
   get hasPicture(): boolean {
-    return this.bitmaps.right !== null;
+    return this.shown.right !== null;
   }
 
   /** Names what is drawn next. */
@@ -77,8 +80,8 @@ export class Stage {
       this.labels.left.textContent = labels.left;
       this.labels.right.textContent = labels.right;
     } else {
-      this.bitmaps.left?.close();
-      this.bitmaps.left = null;
+      this.shown.left?.bitmap.close();
+      this.shown.left = null;
     }
     this.schedule();
   }
@@ -111,7 +114,7 @@ export class Stage {
       this.canvas.width = width;
       this.canvas.height = height;
     }
-    const { left, right } = this.bitmaps;
+    const { left, right } = this.shown;
     this.element.classList.toggle('has-picture', right !== null);
     if (right === null) return; // the canvas stays transparent above the placeholder
     const context = this.canvas.getContext('2d')!;
@@ -128,10 +131,10 @@ export class Stage {
 }
 
 /** Fills the canvas. Crops a picture of another aspect ratio, such as just after a resize, to its middle. */
-function cover(context: CanvasRenderingContext2D, bitmap: ImageBitmap): void {
+function cover(context: CanvasRenderingContext2D, shown: Shown): void {
   const { width, height } = context.canvas;
-  const scale = Math.max(width / bitmap.width, height / bitmap.height);
-  const w = bitmap.width * scale;
-  const h2 = bitmap.height * scale;
-  context.drawImage(bitmap, (width - w) / 2, (height - h2) / 2, w, h2);
+  const scale = Math.max(width / shown.width, height / shown.height);
+  const w = shown.width * scale;
+  const h2 = shown.height * scale;
+  context.drawImage(shown.bitmap, 0, 0, shown.width, shown.height, (width - w) / 2, (height - h2) / 2, w, h2);
 }

@@ -14,6 +14,7 @@ import { type Picture, PictureStream } from './picture_stream';
 import { PictureStats, type ShownPicture } from './picture_stats';
 import { AdaptiveScale, pictureSize } from './resolution';
 import { type Side, Stage } from './stage';
+import { VideoChoice } from './video_choice';
 
 interface WipeSides {
   setting: string;
@@ -39,6 +40,7 @@ export class Viewer {
   readonly drawing: BrowserView;
   /** The daemon's reason for not rendering; empty if it renders. */
   readonly notDrawn = new Signal('');
+  readonly video: VideoChoice;
   private readonly scale = new AdaptiveScale();
   private main: PictureStream | null = null;
   private other: PictureStream | null = null;
@@ -64,6 +66,8 @@ export class Viewer {
       });
     }
     sharpness.watch(() => this.refresh());
+    this.video = new VideoChoice(state.stream);
+    this.video.codecs.watch(() => this.refresh());
     subject.watch(() => {
       this.stats.reset();
       this.refresh();
@@ -162,6 +166,7 @@ export class Viewer {
       view: sided.get('view') ?? this.state.settings.info('view')?.value ?? 'final',
       camera,
       settings: assignments(sided),
+      codecs: this.video.codecs.value,
     };
   }
 
@@ -199,6 +204,10 @@ export class Viewer {
     const stream = new PictureStream(this.connection, request, {
       onPicture: (picture) => this.onPicture(side, picture),
       onRefused: (code, message) => this.onRefused(code, message),
+      video: {
+        onFailed: (failure) => this.video.fail(failure === 'slow' ? text.stream.why.slow : text.stream.why.failed),
+        isImpatient: () => this.video.isImpatient,
+      },
     });
     stream.start();
     return stream;

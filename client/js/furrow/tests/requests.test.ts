@@ -3,6 +3,7 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 import { Builder, ByteBuffer } from 'flatbuffers';
 import { Error as WireError } from '@wire/error';
+import { FrameAck } from '@wire/frame-ack';
 import { Hello } from '@wire/hello';
 import { Image } from '@wire/image';
 import { SubscribePictures } from '@wire/subscribe-pictures';
@@ -85,6 +86,42 @@ test('a picture request has all its fields', () => {
   assert.deepEqual([camera.eye()!.x(), camera.eye()!.y(), camera.target()!.y(), camera.verticalFovDegrees()], [0.5, 1.5, 1.5, 24]);
   const update = UpdatePictures.getRootAsUpdatePictures(new ByteBuffer(updatePictures(REQUEST)));
   assert.equal(update.pictures()!.settings(1), 'wrinkles=off');
+  assert.equal(wanted.codecsLength(), 0);
+  const video = SubscribePictures.getRootAsSubscribePictures(
+    new ByteBuffer(subscribePictures({ ...REQUEST, codecs: ['h264'] })));
+  assert.deepEqual([video.codecsLength(), video.codecs(0)], [1, 'h264']);
+});
+
+test('an acknowledgement tells how long it took and whether a key picture is needed', () => {
+  const read = (bytes: Uint8Array): unknown[] => {
+    const ack = FrameAck.getRootAsFrameAck(new ByteBuffer(bytes));
+    return [ack.number(), ack.needsKey(), ack.heldUs()];
+  };
+  assert.deepEqual(read(frameAck(12)), [12, false, 0]);
+  assert.deepEqual(read(frameAck(13, { needsKey: true, heldUs: 4200.4 })), [13, true, 4200]);
+  assert.deepEqual(read(frameAck(14, { heldUs: 1e15 })), [14, false, 0xffffffff]);
+});
+
+test('contradictory pictures are refused', () => {
+  const payload = (codec: string, key: boolean, still: boolean): Uint8Array => {
+    const builder = new Builder(64);
+    const bytes = Image.createBytesVector(builder, [0, 0, 1, 0x65]);
+    const name = codec === '' ? 0 : builder.createString(codec);
+    Image.startImage(builder);
+    Image.addWidth(builder, 64);
+    Image.addHeight(builder, 64);
+    Image.addBytes(builder, bytes);
+    Image.addStill(builder, still);
+    if (name !== 0) Image.addCodec(builder, name);
+    Image.addKey(builder, key);
+    Image.finishImageBuffer(builder, Image.endImage(builder));
+    return builder.asUint8Array();
+  };
+  const { codec, key } = readPicture(payload('avc1.42c01f', true, false));
+  assert.deepEqual([codec, key], ['avc1.42c01f', true]);
+  assert.throws(() => readPicture(payload('', true, false)), Malformed);
+  assert.throws(() => readPicture(payload('avc1.42c01f', false, true)), Malformed);
+  assert.throws(() => readPicture(payload('a'.repeat(33), true, false)), Malformed);
 });
 
 test('a picture is copied out of its message', () => {

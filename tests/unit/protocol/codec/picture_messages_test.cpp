@@ -147,6 +147,101 @@ TEST(PictureMessages, ImageStatesItsDelivery) {
   EXPECT_EQ(OpenAndDecode(Encoded(bad), out), DecodeStatus::kBadValue);
 }
 
+TEST(PictureMessages, CodecsAreListed) {
+  SubscribePictures sent;
+  sent.codecs = {std::string(kH264), "av1"};
+  SubscribePictures out;
+  ASSERT_EQ(OpenAndDecode(Encoded(sent), out), DecodeStatus::kOk);
+  EXPECT_EQ(out.codecs, sent.codecs);
+  ASSERT_EQ(OpenAndDecode(Encoded(SubscribePictures{}), out), DecodeStatus::kOk);
+  EXPECT_TRUE(out.codecs.empty());
+  sent.codecs.assign(kMaxPictureCodecs, "a");
+  EXPECT_EQ(OpenAndDecode(Encoded(sent), out), DecodeStatus::kOk);
+  sent.codecs.emplace_back("a");
+  EXPECT_EQ(OpenAndDecode(Encoded(sent), out), DecodeStatus::kLimit);
+  sent.codecs = {std::string(kMaxCodecBytes + 1, 'a')};
+  EXPECT_EQ(OpenAndDecode(Encoded(sent), out), DecodeStatus::kLimit);
+  sent.codecs = {""};
+  EXPECT_EQ(OpenAndDecode(Encoded(sent), out), DecodeStatus::kMissingField);
+  sent.codecs = {"h264\n"};
+  EXPECT_EQ(OpenAndDecode(Encoded(sent), out), DecodeStatus::kBadText);
+}
+
+TEST(PictureMessages, ImagesOfAVideo) {
+  ImageFrame sent{64, 48, ImageFormat::kJpeg, 0, {0, 0, 1, 0x65}, 9};
+  sent.codec = "avc1.42c01e";
+  sent.key = true;
+  ImageFrame out;
+  ASSERT_EQ(OpenAndDecode(Encoded(sent), out), DecodeStatus::kOk);
+  EXPECT_EQ(out.codec, "avc1.42c01e");
+  EXPECT_TRUE(out.key);
+  sent.key = false;
+  ASSERT_EQ(OpenAndDecode(Encoded(sent), out), DecodeStatus::kOk);
+  EXPECT_FALSE(out.key);
+  ImageFrame bad = sent;
+  bad.still = true;
+  EXPECT_EQ(OpenAndDecode(Encoded(bad), out), DecodeStatus::kBadValue);
+  bad = sent;
+  bad.codec.clear();
+  bad.key = true;
+  EXPECT_EQ(OpenAndDecode(Encoded(bad), out), DecodeStatus::kBadValue);
+  bad.codec = std::string(kMaxCodecBytes + 1, 'a');
+  EXPECT_EQ(OpenAndDecode(Encoded(bad), out), DecodeStatus::kLimit);
+  bad.codec = "avc1\x01";
+  EXPECT_EQ(OpenAndDecode(Encoded(bad), out), DecodeStatus::kBadText);
+}
+
+TEST(PictureMessages, AcknowledgementsTellTimeAndNeeds) {
+  FrameAck out;
+  ASSERT_EQ(OpenAndDecode(Encoded(FrameAck{3, true, 0xFFFFFFFFu}), out), DecodeStatus::kOk);
+  EXPECT_TRUE(out.needs_key);
+  EXPECT_EQ(out.held_us, 0xFFFFFFFFu);
+  ASSERT_EQ(OpenAndDecode(Encoded(FrameAck{4}), out), DecodeStatus::kOk);
+  EXPECT_FALSE(out.needs_key);
+  EXPECT_EQ(out.held_us, 0u);
+}
+
+// Truncated and flipped bytes: every message decodes or is refused, and what decodes keeps the
+// rules.
+TEST(PictureMessages, HostileVideoMessages) {
+  ImageFrame image{64, 48, ImageFormat::kJpeg, 0, {0, 0, 1, 0x65}, 9};
+  image.codec = "avc1.42c01e";
+  image.key = true;
+  SubscribePictures request = ViewersPictures();
+  request.codecs = {std::string(kH264)};
+  const auto check = [](const std::vector<std::uint8_t>& bytes) {
+    MessageView view;
+    if (OpenMessage(bytes, view, kMaxReplyBytes) != DecodeStatus::kOk) return;
+    ImageFrame out;
+    if (Decode(view, out) == DecodeStatus::kOk) {
+      EXPECT_LE(out.codec.size(), std::size_t{kMaxCodecBytes});
+      EXPECT_FALSE(out.codec.empty() && out.key);
+      EXPECT_FALSE(!out.codec.empty() && out.still);
+    }
+    SubscribePictures wish;
+    if (Decode(view, wish) == DecodeStatus::kOk) {
+      EXPECT_LE(wish.codecs.size(), std::size_t{kMaxPictureCodecs});
+    }
+    FrameAck ack;
+    if (Decode(view, ack) == DecodeStatus::kOk) {
+      EXPECT_GT(ack.number, 0u);
+    }
+  };
+  for (const auto& whole : {Encoded(image), Encoded(request), Encoded(FrameAck{12, true, 4200})}) {
+    for (std::size_t size = 0; size < whole.size(); ++size) {
+      check(std::vector<std::uint8_t>(whole.begin(),
+                                      whole.begin() + static_cast<std::ptrdiff_t>(size)));
+    }
+    for (std::size_t at = 0; at < whole.size(); ++at) {
+      for (const std::uint8_t flip : {0x01, 0x80, 0xFF}) {
+        auto bytes = whole;
+        bytes[at] ^= flip;
+        check(bytes);
+      }
+    }
+  }
+}
+
 TEST(PictureMessages, ImageRoundTripAndChecks) {
   const ImageFrame sent{1280, 720, ImageFormat::kPng, 5, std::vector<std::uint8_t>(300'000, 7)};
   ImageFrame out;

@@ -235,7 +235,7 @@ TEST(ParseConfig, ReadsEveryTable) {
       "rest_frame = 7\nup_axis = 'y'\n"
       "[listen]\nbind = '0.0.0.0'\nopen = true\ntcp = 0\nudp = 1\nthreads = 3\n"
       "[security]\nmode = 'required'\nkeys = '/abs/a.keys'\nname = 'n'\ntokens_in_clear = true\n"
-      "[render]\nenabled = true\nrequired = true\ndevice = '1'\n"
+      "[render]\nenabled = true\nrequired = true\ndevice = '1'\nmax_video_encoders = 3\n"
       "[mocap]\nvmc = 39539\nlivelink_face = 11111\n"
       "[osc]\nout = '[::1]:9000'\nprefix = 'x'\nallow = ['10.0.0.7']\n"
       "[[osc.target]]\nto = '10.0.0.8:39539'\nprofile = 'vmc'\nsubject = 'ada'\n"
@@ -255,6 +255,7 @@ TEST(ParseConfig, ReadsEveryTable) {
   EXPECT_EQ(config.rest_frame, 7);
   EXPECT_EQ(config.up_axis, "y");
   EXPECT_TRUE(config.require_render);
+  EXPECT_EQ(config.max_video_encoders, 3);
   EXPECT_EQ(config.osc_out->host, "::1");
   EXPECT_THAT(config.osc.allow, testing::ElementsAre("10.0.0.7"));
   ASSERT_EQ(config.osc.targets.size(), 2u);
@@ -276,6 +277,15 @@ TEST(ParseConfig, TheExampleShowsTheDefaults) {
   const Status status = LoadConfigFile(FURROW_SOURCE_DIR "/server/furrow.example.toml", &config);
   ASSERT_TRUE(status.ok()) << status.ToString();
   EXPECT_EQ(config, Config());
+}
+
+TEST(ParseConfig, VideoEncodersAreLimited) {
+  Config config;
+  for (const auto& [number, good] :
+       {std::pair{-1, false}, {0, true}, {1000, true}, {1001, false}}) {
+    config.max_video_encoders = number;
+    EXPECT_EQ(ValidateConfig(config).ok(), good) << number;
+  }
 }
 
 TEST(ParseConfig, RotationLimitsMustNotBeNegative) {

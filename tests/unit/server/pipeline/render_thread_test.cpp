@@ -6,6 +6,7 @@
 #include <deque>
 #include <functional>
 #include <latch>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <new>
@@ -17,6 +18,7 @@
 
 #include "base/status.h"
 #include "tests/log_capture.h"
+#include "tests/unit/server/pipeline/fake_video.h"
 
 namespace furrow::server {
 namespace {
@@ -131,10 +133,10 @@ class Pictures {
 
 class RenderThreadTest : public testing::Test {
  protected:
-  void Start() {
+  void Start(VideoEncoders* video = nullptr) {
     auto started = RenderThread::Start(
         &skeleton, [this] { return Create(); }, &metrics,
-        [this](FinishedPicture picture) { pictures.Put(std::move(picture)); });
+        [this](FinishedPicture picture) { pictures.Put(std::move(picture)); }, video);
     ASSERT_TRUE(started.ok()) << started.status().ToString();
     thread = *std::move(started);
   }
@@ -147,6 +149,13 @@ class RenderThreadTest : public testing::Test {
   // number.
   void Submit(std::uint32_t number) { Submit(number, {.subscription = number}, {}); }
   void Submit(std::uint32_t number, const PictureTicket& ticket, const render::Settings& settings) {
+    RenderJob job = JobOf(number);
+    job.spec.settings = std::make_shared<const render::Settings>(settings);
+    job.tickets = {ticket};
+    thread->Submit(std::move(job));
+  }
+  // A job without tickets.
+  RenderJob JobOf(std::uint32_t number) {
     auto snapshot = std::make_shared<Snapshot>();
     snapshot->sequence = number;
     snapshot->retarget =
@@ -155,9 +164,7 @@ class RenderThreadTest : public testing::Test {
     snapshot->shape_program = shape_program;
     snapshot->blend_shapes = {0.25f};
     snapshot->joints.assign(skeleton.rest_pose().begin(), skeleton.rest_pose().end());
-    PictureSpec spec{
-        .width = 16, .height = 16, .settings = std::make_shared<const render::Settings>(settings)};
-    thread->Submit({number, std::move(spec), std::move(snapshot), {ticket}});
+    return {number, {.width = 16, .height = 16}, std::move(snapshot), {}};
   }
   std::uint64_t Count(Counter counter) const { return metrics.Get(counter); }
 
@@ -369,6 +376,65 @@ TEST_F(RenderThreadTest, TheEncodingsOfAPictureAreLimited) {
     }
   }
   EXPECT_EQ(encodings, RenderThread::kMaxEncodings + 1) << "and one PNG";
+}
+
+// Two viewers with video, one of a still and one without: one picture, three encodings.
+TEST_F(RenderThreadTest, ViewersWithVideoHaveTheirOwnEncoders) {
+  test::fake_video = {};
+  VideoEncoders encoders(test::FakeVideoCodec(), 8);
+  Start(&encoders);
+  const render::VideoFormat format{16, 16, 80};
+  for (const std::uint64_t viewer : {1, 2, 3}) {
+    ASSERT_TRUE(thread->OpenVideo(viewer, std::to_string(viewer), format));
+  }
+  for (int picture = 0; picture < 2; ++picture) {
+    RenderJob job = JobOf(1);
+    const render::VideoTarget target{.key = picture == 1};
+    job.tickets = {{.subscription = 1, .video = target},
+                   {.subscription = 2, .video = render::VideoTarget()},
+                   {.subscription = 3, .still = true, .video = target},
+                   {.subscription = 4},
+                   {.subscription = 5, .video = target}};  // its encoder has gone
+    thread->Submit(std::move(job));
+    std::map<std::uint64_t, FinishedPicture> got;
+    while (got.size() < 5) {
+      const FinishedPicture taken = pictures.Take();
+      for (const PictureTicket& ticket : taken.tickets) got.emplace(ticket.subscription, taken);
+    }
+    EXPECT_EQ(got[1].codec, "avc1.42c01e");
+    EXPECT_TRUE(got[1].key);
+    EXPECT_EQ(got[2].codec, "avc1.42c01e");
+    EXPECT_EQ(got[2].key, picture == 0);
+    for (const std::uint64_t viewer : {3, 4, 5}) {
+      EXPECT_EQ(got[viewer].codec, "") << viewer;
+      EXPECT_EQ(got[viewer].bytes.at(0), 0xFF) << "JPEG";
+    }
+  }
+  EXPECT_EQ(Count(Counter::kPicturesRendered), 2u);
+  EXPECT_EQ(Count(Counter::kVideoPictures), 4u);
+  EXPECT_EQ(Count(Counter::kVideoKeyPictures), 3u);
+  thread->Withdraw(1);
+  EXPECT_EQ(encoders.state().encoders, 2);
+  thread.reset();
+}
+
+TEST_F(RenderThreadTest, AnEncoderThatFailsLeavesJpeg) {
+  test::fake_video = {.fails_after = 1};
+  VideoEncoders encoders(test::FakeVideoCodec(), 8);
+  const LogCapture log;
+  Start(&encoders);
+  ASSERT_TRUE(thread->OpenVideo(1, "a", {16, 16, 80}));
+  std::vector<std::string> codecs;
+  for (int picture = 0; picture < 3; ++picture) {
+    RenderJob job = JobOf(1);
+    job.tickets = {{.subscription = 1, .video = render::VideoTarget()}};
+    thread->Submit(std::move(job));
+    codecs.push_back(pictures.Take().codec);
+  }
+  EXPECT_EQ(codecs, (std::vector<std::string>{"avc1.42c01e", "", ""}));
+  EXPECT_NE(log.text().find("the fake encoder failed"), std::string::npos) << log.text();
+  EXPECT_FALSE(thread->OpenVideo(1, "a", {16, 16, 80}));
+  thread.reset();
 }
 
 TEST_F(RenderThreadTest, ARendererThatDoesNotRespondTurnsPicturesOff) {

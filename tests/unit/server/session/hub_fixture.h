@@ -80,7 +80,21 @@ class FakePictures : public PictureSource {
     return withdraws;
   }
   void Withdraw(std::uint64_t subscription) override { ended.push_back(subscription); }
+  bool OpenVideo(std::uint64_t subscription, const std::string& host,
+                 const render::VideoFormat& format) override {
+    opened.push_back({subscription, host, format});
+    return has_video;
+  }
+  void CloseVideo(std::uint64_t subscription) override { closed.push_back(subscription); }
   bool is_stuck() const override { return stuck; }
+  struct Opened {
+    std::uint64_t subscription;
+    std::string host;
+    render::VideoFormat format;
+  };
+  std::vector<Opened> opened;         // by OpenVideo()
+  std::vector<std::uint64_t> closed;  // by CloseVideo()
+  bool has_video = true;              // the result of OpenVideo()
   std::vector<RenderJob> jobs;
   std::vector<std::uint64_t> withdrawn;
   std::vector<std::uint64_t> ended;  // by Withdraw()

@@ -8,11 +8,17 @@ export const MAX_NAMES = 2048;
 const MAX_ERROR_BYTES = 1024;
 const MAX_SERVER_BYTES = 64;
 const NUM_ERROR_CODES = 16;
+const MAX_CODEC_BYTES = 32;
 
 export interface PictureMessage {
   width: number;
   height: number;
+  /** Of a file; without meaning for a picture of a video. */
   mimeType: string;
+  /** The codec of a video (RFC 6381), 'avc1.42c01f'. Empty: the bytes are a file. */
+  codec: string;
+  /** A picture of a video that needs no earlier one. */
+  key: boolean;
   /** A copy, which outlives the message. */
   bytes: Uint8Array<ArrayBuffer>;
   ageUs: number;
@@ -49,6 +55,8 @@ export function readPicture(payload: Uint8Array): PictureMessage {
   require(format <= 1 && tier <= 2, 'an unknown enumeration value');
   const bytes = table.bytes(4);
   require(bytes !== null, 'a picture without bytes');
+  const [codec, still, key] = [table.text(11, MAX_CODEC_BYTES), table.flag(7), table.flag(12)];
+  require(codec === '' ? !key : !still, 'a contradictory picture');
   return {
     width,
     height,
@@ -57,7 +65,9 @@ export function readPicture(payload: Uint8Array): PictureMessage {
     ageUs: Number(table.i64(3)),
     number: table.u32(5),
     tier,
-    still: table.flag(7),
+    still,
+    codec,
+    key,
     dropped: table.u32(8),
     receivedUs: Number(table.i64(9)),
     viewRequest: table.u32(10),

@@ -33,6 +33,16 @@ export interface PictureRequest {
   camera: PictureCamera;
   /** "name=value", override the daemon's settings. */
   settings: string[];
+  /** The video codecs that the caller decodes, 'h264'. Default: none, so every picture is a file. */
+  codecs?: readonly string[];
+}
+
+/** What a viewer says about the picture that it acknowledges. */
+export interface AckDetails {
+  /** The pictures that follow cannot be decoded until one has `key`. */
+  needsKey?: boolean;
+  /** Time between the arrival of the picture and this message. */
+  heldUs?: number;
 }
 
 /** The content of FSUW. All subscriptions of this library wait for their subject. */
@@ -80,6 +90,10 @@ function writePictures(builder: Builder, request: PictureRequest): number {
     builder,
     request.settings.map((setting) => builder.createString(setting)),
   );
+  const { codecs } = request;
+  const names = codecs && codecs.length > 0
+    ? SubscribePictures.createCodecsVector(builder, codecs.map((codec) => builder.createString(codec)))
+    : 0;
   SubscribePictures.startSubscribePictures(builder);
   SubscribePictures.addSubject(builder, subject);
   SubscribePictures.addWait(builder, true);
@@ -92,6 +106,7 @@ function writePictures(builder: Builder, request: PictureRequest): number {
   SubscribePictures.addAcknowledged(builder, true);
   SubscribePictures.addSettings(builder, settings);
   SubscribePictures.addCameraFollows(builder, follows);
+  if (names !== 0) SubscribePictures.addCodecs(builder, names);
   return SubscribePictures.endSubscribePictures(builder);
 }
 
@@ -143,9 +158,12 @@ export function unsubscribe(): Uint8Array {
   return builder.asUint8Array();
 }
 
-export function frameAck(number: number): Uint8Array {
+const MAX_U32 = 0xffffffff;
+
+export function frameAck(number: number, details: AckDetails = {}): Uint8Array {
   const builder = new Builder(32);
-  FrameAck.finishFrameAckBuffer(builder, FrameAck.createFrameAck(builder, number));
+  const heldUs = Math.min(MAX_U32, Math.max(0, Math.round(details.heldUs ?? 0)));
+  FrameAck.finishFrameAckBuffer(builder, FrameAck.createFrameAck(builder, number, details.needsKey ?? false, heldUs));
   return builder.asUint8Array();
 }
 

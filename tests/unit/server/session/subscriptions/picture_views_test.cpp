@@ -34,7 +34,8 @@ class PictureViewsFlowTest : public HubPeersTest {
                       .height = job.spec.height,
                       .encoding = job.tickets.front().encoding,
                       .bytes = {1, 2, 3},
-                      .tickets = job.tickets});
+                      .tickets = job.tickets},
+                     now);
     }
   }
   std::size_t Tickets() const {
@@ -219,7 +220,7 @@ TEST_F(PictureViewsFlowTest, AFailedPictureIsRequestedAgain) {
   View(viewer);
   Pose1(0.5f);
   ASSERT_EQ(Tickets(), 1u);
-  hub->OnPicture({.tickets = pictures.jobs[0].tickets});
+  hub->OnPicture({.tickets = pictures.jobs[0].tickets}, now);
   pictures.jobs.clear();
   hub->Tick(now);
   EXPECT_EQ(Tickets(), 0u);
@@ -252,6 +253,183 @@ TEST_F(PictureViewsFlowTest, ANeutralAndANewRigChangeTheLiveWeights) {
   EXPECT_NEAR(subject.pipeline->wrinkle_weights()[0], 1.0f, 1e-6f);
 }
 
+// Viewers that list H.264.
+class PictureViewsVideoTest : public PictureViewsFlowTest {
+ protected:
+  static protocol::SubscribePictures Wish() {
+    return {.subject = "ann",
+            .width = 321,
+            .height = 200,
+            .quality = 70,
+            .acknowledged = true,
+            .codecs = {"vp9", "h264"}};
+  }
+  std::uint16_t ViewVideo(const protocol::SubscribePictures& wish = Wish()) {
+    Send(viewer, wish, 0, 1);
+    const auto reply = viewer.Take<protocol::SubscribeReply>();
+    return reply ? reply->header.stream : 0;
+  }
+  // Draws the waiting picture as the render thread does, and returns what the viewer receives.
+  protocol::ImageFrame Draw(bool key, std::size_t bytes = 4) {
+    EXPECT_EQ(Tickets(), 1u);
+    const RenderJob job = pictures.jobs.back();
+    pictures.jobs.clear();
+    const PictureTicket& ticket = job.tickets.front();
+    const bool is_video = ticket.video.has_value() && !ticket.still;
+    hub->OnPicture({.sequence = job.snapshot->sequence,
+                    .width = job.spec.width,
+                    .height = job.spec.height,
+                    .encoding = ticket.encoding,
+                    .bytes = std::vector<std::uint8_t>(bytes, 1),
+                    .codec = is_video ? "avc1.42c01e" : "",
+                    .key = is_video && key,
+                    .tickets = job.tickets},
+                   now);
+    const auto image = viewer.Take<protocol::ImageFrame>();
+    return image ? image->message : protocol::ImageFrame();
+  }
+  std::optional<render::VideoTarget> Target() const {
+    return pictures.jobs.back().tickets.front().video;
+  }
+  void NextPose() {
+    Advance(0.033);
+    Pose1(0.01f * static_cast<float>(sequence));
+  }
+};
+
+TEST_F(PictureViewsVideoTest, MovingPicturesAreVideoAndStillsAreFiles) {
+  Publish(sender, "ann");
+  const std::uint16_t stream = ViewVideo();
+  NextPose();
+  ASSERT_EQ(pictures.opened.size(), 1u);
+  EXPECT_EQ(pictures.opened[0].host, "") << "of the peers of this test";
+  EXPECT_EQ(pictures.opened[0].format, (render::VideoFormat{322, 200, 70})) << "even";
+  ASSERT_TRUE(Target().has_value());
+  EXPECT_FALSE(Target()->key);
+  EXPECT_EQ(pictures.jobs.back().spec.width, 321);
+  const auto first = Draw(true);
+  EXPECT_EQ(first.codec, "avc1.42c01e");
+  EXPECT_TRUE(first.key);
+  EXPECT_EQ(first.tier, 0);
+  Send(viewer, protocol::FrameAck{1}, stream);
+  Advance(0.2);
+  hub->Tick(now);
+  ASSERT_EQ(Tickets(), 1u);
+  EXPECT_TRUE(pictures.jobs.back().tickets.front().still);
+  EXPECT_TRUE(Target().has_value()) << "in case that it moves before it is drawn";
+  const auto still = Draw(false);
+  EXPECT_EQ(still.codec, "");
+  EXPECT_TRUE(still.still);
+  Send(viewer, protocol::FrameAck{2}, stream);
+  NextPose();
+  ASSERT_TRUE(Target().has_value());
+  EXPECT_FALSE(Target()->key) << "a file changes nothing for the decoder";
+}
+
+TEST_F(PictureViewsVideoTest, OnlyViewersThatAskAndAcknowledgeGetVideo) {
+  Publish(sender, "ann");
+  const auto ticket_of = [&](const auto& change) {
+    protocol::SubscribePictures wish = Wish();
+    change(wish);
+    const std::uint16_t stream = ViewVideo(wish);
+    NextPose();
+    const bool has_video = Target().has_value();
+    pictures.jobs.clear();
+    Send(viewer, protocol::Unsubscribe{}, stream);
+    return has_video;
+  };
+  EXPECT_TRUE(ticket_of([](auto&) {}));
+  EXPECT_FALSE(ticket_of([](auto& wish) { wish.acknowledged = false; }));
+  EXPECT_FALSE(ticket_of([](auto& wish) { wish.codecs = {"vp9"}; }));
+  EXPECT_FALSE(ticket_of([](auto& wish) { wish.format = protocol::ImageFormat::kPng; }));
+  pictures.has_video = false;
+  EXPECT_FALSE(ticket_of([](auto&) {})) << "there is no encoder to spare";
+}
+
+TEST_F(PictureViewsVideoTest, AnEncoderThatIsFreeLaterIsUsed) {
+  Publish(sender, "ann");
+  const std::uint16_t stream = ViewVideo();
+  pictures.has_video = false;
+  NextPose();
+  EXPECT_FALSE(Target().has_value());
+  EXPECT_EQ(Draw(false).codec, "");
+  Send(viewer, protocol::FrameAck{1}, stream);
+  pictures.has_video = true;
+  NextPose();
+  EXPECT_TRUE(Target().has_value());
+}
+
+TEST_F(PictureViewsVideoTest, AViewerMayAskForAKey) {
+  Publish(sender, "ann");
+  const std::uint16_t stream = ViewVideo();
+  NextPose();
+  Draw(true);
+  Send(viewer, protocol::FrameAck{.number = 1, .needs_key = true}, stream);
+  NextPose();
+  ASSERT_TRUE(Target().has_value());
+  EXPECT_TRUE(Target()->key);
+  Draw(true);
+  Send(viewer, protocol::FrameAck{2}, stream);
+  NextPose();
+  EXPECT_FALSE(Target()->key);
+}
+
+TEST_F(PictureViewsVideoTest, AFailedPictureIsFollowedByAKey) {
+  Publish(sender, "ann");
+  const std::uint16_t stream = ViewVideo();
+  NextPose();
+  Draw(true);
+  Send(viewer, protocol::FrameAck{1}, stream);
+  NextPose();
+  Draw(false, protocol::kMaxReplyBytes);  // too large to be sent
+  Advance(0.3);
+  NextPose();
+  EXPECT_TRUE(Target()->key);
+}
+
+TEST_F(PictureViewsVideoTest, AnUpdateEndsAndBeginsTheVideo) {
+  Publish(sender, "ann");
+  const std::uint16_t stream = ViewVideo();
+  NextPose();
+  Draw(true);
+  Send(viewer, protocol::FrameAck{1}, stream);
+  const std::uint64_t subscription = pictures.opened.front().subscription;
+  protocol::UpdatePictures update{Wish()};
+  update.pictures.codecs.clear();
+  Send(viewer, update, stream, 2);
+  EXPECT_EQ(pictures.closed, std::vector<std::uint64_t>{subscription});
+  ASSERT_EQ(Tickets(), 1u);
+  EXPECT_FALSE(Target().has_value());
+  Draw(false);
+  Send(viewer, protocol::FrameAck{2}, stream);
+  Send(viewer, protocol::UpdatePictures{Wish()}, stream, 3);
+  ASSERT_EQ(Tickets(), 1u);
+  EXPECT_TRUE(Target().has_value());
+}
+
+TEST_F(PictureViewsVideoTest, ASlowLinkGetsFewerBits) {
+  Publish(sender, "ann");
+  const std::uint16_t stream = ViewVideo();
+  std::vector<int> bits;
+  double free_s = 0.0;
+  double time_s = 0.0;
+  for (std::uint32_t number = 1; number <= 60; ++number) {
+    NextPose();
+    time_s += 0.033;
+    ASSERT_EQ(Tickets(), 1u);
+    bits.push_back(Target()->bits);
+    const std::size_t bytes = static_cast<std::size_t>(bits.back()) / 8;
+    Draw(number == 1, bytes);
+    // 400 kbit/s.
+    free_s = std::max(free_s, time_s) + static_cast<double>(bytes) * 8.0 / 400e3;
+    Advance(std::max(0.0, free_s - time_s));
+    time_s = std::max(time_s, free_s);
+    Send(viewer, protocol::FrameAck{number}, stream);
+    pictures.jobs.clear();
+  }
+  EXPECT_LT(bits.back(), bits.front() / 2);
+}
+
 class PictureViewsTest : public HubPeersTest {};
 
 TEST_F(PictureViewsTest, EqualPicturesAreRenderedOnce) {
@@ -281,7 +459,7 @@ TEST_F(PictureViewsTest, EqualPicturesAreRenderedOnce) {
   picture.height = 200;
   picture.bytes = {1, 2, 3};
   picture.tickets = job.tickets;
-  hub->OnPicture(picture);
+  hub->OnPicture(picture, now);
   EXPECT_TRUE(viewer.inbox.empty());
   const auto image = second.Take<protocol::ImageFrame>();
   ASSERT_TRUE(image.has_value());
@@ -289,7 +467,7 @@ TEST_F(PictureViewsTest, EqualPicturesAreRenderedOnce) {
   EXPECT_EQ(image->header.capture_time_us, 777);
   EXPECT_THAT(image->message.bytes, ElementsAre(1, 2, 3));
   hub->RemovePeer(second.id);
-  hub->OnPicture(picture);  // after the viewer has left, nothing happens
+  hub->OnPicture(picture, now);  // after the viewer has left, nothing happens
 }
 
 TEST_F(PictureViewsTest, AnOversizedPictureIsCountedAndNotSent) {
@@ -302,7 +480,7 @@ TEST_F(PictureViewsTest, AnOversizedPictureIsCountedAndNotSent) {
   picture.width = picture.height = 4096;
   picture.bytes.resize(protocol::kMaxReplyBytes);
   picture.tickets = pictures.jobs[0].tickets;
-  hub->OnPicture(picture);
+  hub->OnPicture(picture, now);
   EXPECT_TRUE(viewer.inbox.empty());
   EXPECT_EQ(Count(Counter::kPicturesFailed), 1u);
   EXPECT_EQ(Count(Counter::kPicturesSent), 0u);
