@@ -5,7 +5,8 @@
 export type Sharpness = 'auto' | 'sharp' | 'fast';
 
 const STEPS = [1, 0.75, 0.5, 0.35, 0.25] as const;
-const TOO_SLOW_HZ = 14;
+/** Below this, the eye sees single pictures rather than motion. */
+const TOO_SLOW_HZ = 20;
 const FAST_HZ = 27;
 /** If a larger size turns out too slow within this time, the next attempt waits longer. */
 const SOON_S = 10;
