@@ -50,9 +50,9 @@ class Step {
 
 Result<std::unique_ptr<RenderThread>> RenderThread::Start(const wrinkle::Skeleton* skeleton,
                                                           Factory make_renderer, Metrics* metrics,
-                                                          OnPicture deliver) {
+                                                          Clock clock, OnPicture deliver) {
   std::unique_ptr<RenderThread> self(
-      new RenderThread(skeleton, std::move(make_renderer), metrics, std::move(deliver)));
+      new RenderThread(skeleton, std::move(make_renderer), metrics, clock, std::move(deliver)));
   // EGL binds a context to the thread that makes it current, so the render thread creates the
   // renderer and reports back.
   std::promise<Status> started;
@@ -64,9 +64,10 @@ Result<std::unique_ptr<RenderThread>> RenderThread::Start(const wrinkle::Skeleto
 }
 
 RenderThread::RenderThread(const wrinkle::Skeleton* skeleton, Factory make_renderer,
-                           Metrics* metrics, OnPicture deliver)
+                           Metrics* metrics, Clock clock, OnPicture deliver)
     : make_renderer_(std::move(make_renderer)),
       metrics_(metrics),
+      clock_(clock),
       deliver_(std::move(deliver)),
       mailbox_(kMaxWaitingJobs),
       progress_(&mailbox_, &steps_),
@@ -108,6 +109,7 @@ void RenderThread::Prepare(std::vector<RenderJob> jobs) {
 
 void RenderThread::Submit(RenderJob job) {
   if (stuck_) return Refuse(std::move(job));
+  job.submitted = clock_();
   switch (mailbox_.Put(std::move(job))) {
     case RenderMailbox::PutResult::kQueued:
     case RenderMailbox::PutResult::kNotWanted: break;
@@ -173,6 +175,8 @@ void RenderThread::DrawAndCollect() {
          (in_flight_.empty() || in_flight_.back().Work() < kLargeWork)) {
     std::optional<RenderJob> job = mailbox_.Take(/*wait=*/in_flight_.empty());
     if (!job) break;
+    job->taken = clock_();
+    if (!job->prepares) metrics_->Observe(Timing::kPictureWait, job->taken - job->submitted);
     Draw(*std::move(job));
   }
   if (!in_flight_.empty()) Collect(/*wait=*/true);
@@ -243,6 +247,7 @@ void RenderThread::Collect(bool wait) {
   in_flight_.pop_front();
   if (job.prepares) return;
   metrics_->Add(Counter::kPicturesRendered);
+  metrics_->Observe(Timing::kPictureDraw, clock_() - job.taken);
   Finish(*image, std::move(job));
 }
 
@@ -314,8 +319,10 @@ void RenderThread::Finish(const render::Image& image, RenderJob job) {
 
 void RenderThread::Encode(const render::Image& image, const RenderJob& job,
                           const Encoding& encoding, std::vector<PictureTicket> tickets) {
+  const Time begun = clock_();
   auto bytes = OrOutOfMemory(
       metrics_, [&] { return render::EncodeImage(image, encoding.format, encoding.quality); });
+  metrics_->Observe(Timing::kPictureEncode, clock_() - begun);
   metrics_->Add(bytes.ok() ? Counter::kPicturesEncoded : Counter::kPicturesFailed);
   if (!bytes.ok()) {
     spdlog::warn("cannot encode a picture: {}", bytes.status().ToString());
@@ -327,6 +334,7 @@ void RenderThread::Encode(const render::Image& image, const RenderJob& job,
            .capture_time_us = job.snapshot->capture_time_us,
            .age_us = job.snapshot->age_us,
            .received_us = job.snapshot->received_us,
+           .submitted = job.submitted,
            .width = image.width,
            .height = image.height,
            .encoding = encoding,

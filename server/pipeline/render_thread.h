@@ -55,13 +55,16 @@ class RenderThread : public PictureSource {
   // or, after a failure, without.
   using OnPicture = std::function<void(FinishedPicture)>;
 
+  using Clock = Time (*)();
+
   // Creates the renderer, at the start and after each loss. Called on the render thread.
   using Factory = std::function<Result<std::unique_ptr<render::Renderer>>()>;
 
   // Starts the thread and waits for the first renderer. `skeleton`: the character's; outlives this
-  // object. Errors: those of `make_renderer`.
+  // object. `clock`: for the histograms of the stages; called on any thread. Errors: those of
+  // `make_renderer`.
   [[nodiscard]] static Result<std::unique_ptr<RenderThread>> Start(
-      const wrinkle::Skeleton* skeleton, Factory make_renderer, Metrics* metrics,
+      const wrinkle::Skeleton* skeleton, Factory make_renderer, Metrics* metrics, Clock clock,
       OnPicture deliver);
   ~RenderThread() override;  // drops waiting jobs and joins the thread
   RenderThread(const RenderThread&) = delete;
@@ -120,7 +123,7 @@ class RenderThread : public PictureSource {
   };
 
   RenderThread(const wrinkle::Skeleton* skeleton, Factory make_renderer, Metrics* metrics,
-               OnPicture deliver);
+               Clock clock, OnPicture deliver);
 
   Status CreateRenderer();
   bool Revive();
@@ -141,6 +144,7 @@ class RenderThread : public PictureSource {
 
   const Factory make_renderer_;
   Metrics* const metrics_;
+  const Clock clock_;
   const OnPicture deliver_;
   RenderMailbox mailbox_;
   std::vector<std::pair<std::string, render::Camera>> presets_;  // written before Start() returns
