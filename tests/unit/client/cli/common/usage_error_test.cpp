@@ -36,8 +36,8 @@ class UsageMessageTest : public testing::Test {
 };
 
 TEST_F(UsageMessageTest, NamesTheCommandThatWasMeant) {
-  EXPECT_EQ(MessageOf("wacht localhost"),
-            "unknown command 'wacht'; did you mean 'watch'? ('furrow --help' lists the commands)");
+  EXPECT_EQ(MessageOf("wathc localhost"),
+            "unknown command 'wathc'; did you mean 'watch'? ('furrow --help' lists the commands)");
   EXPECT_EQ(MessageOf("rig chekc"),
             "unknown command 'chekc'; did you mean 'check'? ('furrow rig --help' lists the "
             "commands)");
