@@ -19,8 +19,10 @@ fail() { echo "check_container: $*" >&2; exit 1; }
 work=$(mktemp -d)
 daemon=''
 cleanup() {
-  [[ -z $daemon ]] || kill "$daemon" 2>/dev/null || true
-  wait
+  if [[ -n $daemon ]]; then
+    podman rm --force --all >/dev/null 2>&1 || true
+    wait "$daemon" || true
+  fi
   rm -rf "$work"
 }
 trap cleanup EXIT
@@ -44,7 +46,7 @@ podman "${run[@]}" "$image" --version >"$work/version" 2>"$work/error" || {
 grep '^furrowd [0-9]' "$work/version"
 podman "${run[@]}" "$image" --tcp 0 --udp 0 --http 0 >"$work/ready" 2>"$work/log" &
 daemon=$!
-tail -n +1 -f --pid=$daemon "$work/ready" | grep -m 1 '^furrowd ready' >"$work/line" ||
+grep -m 1 '^furrowd ready' < <(tail -n +1 -f --pid=$daemon "$work/ready") >"$work/line" ||
   fail "the daemon is not ready: $(cat "$work/log")"
 port() { sed -n "s/.* $1=[^ ]*:\([0-9]*\).*/\1/p" "$work/line"; }
 furrow=$build_dir/bin/furrow
