@@ -44,7 +44,7 @@ podman "${run[@]}" "$image" --version >"$work/version" 2>"$work/error" || {
   exit 77
 }
 grep '^furrowd [0-9]' "$work/version"
-podman "${run[@]}" "$image" --tcp 0 --udp 0 --http 0 >"$work/ready" 2>"$work/log" &
+podman "${run[@]}" --name daemon "$image" --tcp 0 --udp 0 --http 0 >"$work/ready" 2>"$work/log" &
 daemon=$!
 grep -m 1 '^furrowd ready' < <(tail -n +1 -f --pid=$daemon "$work/ready") >"$work/line" ||
   fail "the daemon is not ready: $(cat "$work/log")"
@@ -57,7 +57,7 @@ player=$!
 wait $watcher || fail "no weights: $(cat "$work/log")"
 kill $player
 [[ $(wc -l <"$work/weights.csv") -eq 21 ]] || fail 'expected a header and 20 lines of weights'
-kill -TERM $daemon
+podman stop --time 20 daemon >/dev/null  # by SIGTERM
 wait $daemon || fail 'SIGTERM did not end the daemon with 0'
 daemon=''
 echo "check_container: pose in, weights out of an image with $bytes bytes"
