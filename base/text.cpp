@@ -2,6 +2,9 @@
 #include "base/text.h"
 
 #include <algorithm>
+#include <vector>
+
+#include "base/ascii.h"
 
 namespace furrow {
 namespace {
@@ -16,7 +19,52 @@ int HexDigit(char c) {
   return -1;
 }
 
+// The insertions, deletions, replacements and exchanges of neighbours that make `b` of `a` (optimal
+// string alignment).
+std::size_t Differences(std::string_view a, std::string_view b) {
+  const std::size_t width = b.size() + 1;
+  std::vector<std::size_t> table((a.size() + 1) * width);
+  const auto at = [&](std::size_t i, std::size_t j) -> std::size_t& {
+    return table[i * width + j];
+  };
+  for (std::size_t i = 0; i <= a.size(); ++i) at(i, 0) = i;
+  for (std::size_t j = 0; j <= b.size(); ++j) at(0, j) = j;
+  const auto equal = [&](std::size_t i, std::size_t j) {
+    return AsciiLower(a[i - 1]) == AsciiLower(b[j - 1]);
+  };
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      at(i, j) =
+          std::min({at(i - 1, j) + 1, at(i, j - 1) + 1, at(i - 1, j - 1) + (equal(i, j) ? 0 : 1)});
+      if (i > 1 && j > 1 && equal(i, j - 1) && equal(i - 1, j)) {
+        at(i, j) = std::min(at(i, j), at(i - 2, j - 2) + 1);
+      }
+    }
+  }
+  return table.back();
+}
+
 }  // namespace
+
+std::string ClosestWord(std::string_view word, std::span<const std::string> known) {
+  constexpr std::size_t kMostLetters = 64;  // longer words are not typing mistakes
+  if (word.empty() || word.size() > kMostLetters) return {};
+  const std::string* closest = nullptr;
+  std::size_t least = word.size() / 3 + 1;
+  for (const std::string& candidate : known) {
+    if (candidate.size() > kMostLetters) continue;
+    const std::size_t differences = Differences(word, candidate);
+    if (differences < least) {
+      least = differences;
+      closest = &candidate;
+    }
+  }
+  if (closest != nullptr) return *closest;
+  const auto begun = std::ranges::find_if(known, [&](const std::string& candidate) {
+    return EqualsIgnoreCase(std::string_view(candidate).substr(0, word.size()), word);
+  });
+  return begun == known.end() ? std::string() : *begun;
+}
 
 // For messages about hostile input: short, on one line, without control sequences for the terminal.
 std::string Quoted(std::string_view text) {

@@ -26,6 +26,11 @@ namespace furrow {
 [[nodiscard]] std::string Counted(std::uint64_t count, const std::string& one,
                                   const std::string& many = {});
 
+// The word of `known` that was probably meant by `word`: at most a third of its letters differ, or
+// it begins with `word`, whatever the case. Empty if there is none. Two letters that changed places
+// count as one difference.
+[[nodiscard]] std::string ClosestWord(std::string_view word, std::span<const std::string> known);
+
 // Bytes seen as text; no copy is made.
 [[nodiscard]] inline std::string_view AsText(std::span<const std::uint8_t> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};

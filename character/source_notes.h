@@ -39,6 +39,9 @@ struct ReadOptions {
   // skin weights of the nearest skinned vertex along the mesh's edges, or the skin's first joint.
   // Materials lose pictures that are missing or cannot be decoded.
   bool lenient = false;
+  // False: no picture is decoded, and materials have none. Weights need no pictures, and a daemon
+  // without the module that decodes them still has weights.
+  bool pictures = true;
   SourceNotes* notes = nullptr;               // receives the notes, unless null; the caller owns it
   const gltf::DracoDecoder* draco = nullptr;  // null: files that require Draco are refused
 };

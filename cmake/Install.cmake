@@ -42,8 +42,9 @@ install(TARGETS furrow-load furrow-author furrow-assimp furrow-draco
 install(TARGETS furrow_pictures furrow_video LIBRARY DESTINATION lib/furrow COMPONENT runtime)
 install(DIRECTORY "${PROJECT_BINARY_DIR}/share/furrow" DESTINATION share COMPONENT runtime)
 install(FILES "${PROJECT_SOURCE_DIR}/server/furrow.example.toml" DESTINATION share/doc/furrow COMPONENT runtime)
-install(DIRECTORY "${PROJECT_SOURCE_DIR}/deploy/systemd" DESTINATION share/doc/furrow COMPONENT runtime
-        FILES_MATCHING PATTERN "furrowd*")
+foreach(folder systemd grafana prometheus)
+  install(DIRECTORY "${PROJECT_SOURCE_DIR}/deploy/${folder}" DESTINATION share/doc/furrow COMPONENT runtime)
+endforeach()
 # docs/CMakeLists.txt generates these from --help, if Python is there.
 foreach(folder man bash-completion zsh fish)
   install(DIRECTORY "${PROJECT_BINARY_DIR}/share/${folder}" DESTINATION share COMPONENT runtime OPTIONAL)

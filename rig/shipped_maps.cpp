@@ -4,6 +4,8 @@
 #include <algorithm>
 
 #include "base/data_dir.h"
+#include "base/joined.h"
+#include "base/text.h"
 
 namespace furrow::rig {
 
@@ -28,7 +30,23 @@ Result<std::filesystem::path> FindMap(const std::string& folder, const std::stri
       name_or_file.find('/') != std::string::npos) {
     return std::filesystem::path(name_or_file);
   }
-  return FindDataFile(folder + "/" + name_or_file + ".json");
+  auto shipped = FindDataFile(folder + "/" + name_or_file + ".json");
+  return shipped.ok() ? shipped : NotShipped("map", folder, name_or_file);
+}
+
+Status NotShipped(const std::string& kind, const std::string& folder, const std::string& name) {
+  const auto files = ListShippedMaps(folder);
+  if (!files.ok()) return Status(StatusCode::kNotFound, "no such file", name);
+  std::vector<std::string> names;
+  for (const auto& file : *files) {
+    // "default.strokes.json" belongs to the rig "default".
+    if (!file.stem().has_extension()) names.push_back(file.stem().string());
+  }
+  const std::string meant = ClosestWord(name, names);
+  return Status(StatusCode::kNotFound, "no such file, and no shipped " + kind + " of this name",
+                name,
+                (meant.empty() ? "" : "did you mean '" + meant + "'? ") + "shipped " + kind +
+                    "s: " + Joined(names));
 }
 
 }  // namespace furrow::rig

@@ -132,7 +132,9 @@ Result<Assets> LoadAssets(const Config& config) {
     }
   }
   spdlog::info("loading the character {}", glb.string());
-  auto loaded = character::LoadCharacter(glb, chosen_rig, poses);
+  auto loaded = character::LoadCharacter(
+      glb, chosen_rig, poses,
+      config.render ? character::Pictures::kLoad : character::Pictures::kLeaveOut);
   FURROW_RETURN_IF_ERROR(loaded);
   assets.skeletons.SetCharacterRoles(loaded->skeleton, loaded->roles);
   assets.shapes = ShapesOf(*loaded, config.render);

@@ -12,6 +12,7 @@
 #include <memory>
 #include <random>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -20,12 +21,16 @@
 #include <asio/signal_set.hpp>
 #include <asio/steady_timer.hpp>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
+#include "base/joined.h"
 #include "base/status.h"
+#include "character/pictures/picture_codec.h"
 #include "motion/find_recording.h"
 #include "protocol/secure/token/key_ring.h"
 #include "rig/rig_file.h"
 #include "server/assets.h"
+#include "server/config/log.h"
 #include "server/config/osc_profile_file.h"
 #include "server/core/network_address.h"
 #include "server/core/status_line.h"
@@ -47,6 +52,7 @@
 #include "server/pipeline/render_thread.h"
 #include "server/playback/player.h"
 #include "server/recording/recorder.h"
+#include "server/reload.h"
 #include "server/session/access/key_file.h"
 #include "server/session/access/token_gate.h"
 #include "server/session/hub.h"
@@ -70,13 +76,19 @@ std::uint64_t RandomNumber() {
   return number;
 }
 
+// An installation without the module of pictures sends weights alone.
+Config WithoutMissingParts(Config config) {
+  config.render = config.render && (config.require_render || character::IsPictureCodecInstalled());
+  return config;
+}
+
 // The OSC targets of the configuration, each with its profile.
 using OscOutputs = std::vector<std::pair<OscTargetConfig, protocol::mocap::OscProfile>>;
 
 // The parts of one daemon. Members are declared in the order of their dependencies.
 class Daemon {
  public:
-  // Keeps references to `config` and `options`, which outlive it.
+  // Keeps a reference to `options`, which outlives it.
   Daemon(const Config& config, const RunOptions& options, Assets assets, OscOutputs osc_outputs)
       : config_(config),
         options_(options),
@@ -91,7 +103,9 @@ class Daemon {
         secure_(&gate_, &UnixSeconds, std::min(config.limits.max_udp_peers, 0xFFFF), config.threads,
                 metrics_),
         keys_file_(config.security.keys),
-        tls_(config.security.tls) {}
+        tls_(config.security.tls),
+        rig_files_(config),
+        confines_(options.confine && config.security.confine) {}
 
   // Call these in this order. Each leaves out what the configuration does not ask for.
   Status LoadPlayer();
@@ -104,7 +118,6 @@ class Daemon {
   void Serve();
 
  private:
-  [[nodiscard]] bool confines() const { return options_.confine && config_.security.confine; }
   void MakeHub();
   void SetKeys(protocol::secure::KeyRing keys);
   Status CheckListener(const ServiceManager::Listener& listener);
@@ -119,10 +132,15 @@ class Daemon {
   asio::awaitable<void> Drain();
   void RequestDrain();
   void MakeVideo();
+  asio::awaitable<void> HangupLoop();
+  void BeginReload();
+  void EndReload(Result<Reload> reload);
+  Status TakeOver(Reload* reload);
+  void DeliverPicture(const FinishedPicture& picture);
   void PrepareRendering();
   void StopRendering();
 
-  const Config& config_;
+  Config config_;  // TakeOver() changes it; only the main thread uses it after the start
   const RunOptions& options_;
   Assets assets_;
   OscOutputs osc_outputs_;
@@ -131,6 +149,7 @@ class Daemon {
   std::uint64_t session_ = 0;
   asio::io_context io_{1};  // run by the calling thread, which owns shard 0
   asio::signal_set signals_;
+  asio::signal_set hangups_{io_};
   std::unique_ptr<Recorder> recorder_;
   std::unique_ptr<VideoEncoders> video_;  // used by the render thread
   std::unique_ptr<RenderThread> render_;
@@ -140,16 +159,22 @@ class Daemon {
   SecureSessions secure_;
   KeyFile keys_file_;
   TlsIdentity tls_;
+  RigFiles rig_files_;
   std::unique_ptr<Hub> hub_;
   std::unique_ptr<TcpServer> tcp_;
   std::unique_ptr<UdpPort> udp_;
   MocapInputs mocap_;
   std::unique_ptr<Api> api_;
   std::unique_ptr<HttpServer> http_;
+  const bool has_terminal_ = isatty(STDIN_FILENO) != 0;
+  const bool confines_;
   bool render_is_confined_ = false;  // used by the render thread
   bool on_network_ = false;          // a socket of the service manager is
   bool draining_ = false;
   Time drain_deadline_{0};
+  std::jthread reloading_;  // posts to io_; ends before the members above
+  bool is_reloading_ = false;
+  bool reload_again_ = false;  // SIGHUP came while a reload was under way
 };
 
 // Loads the module before the daemon is confined.
@@ -182,18 +207,17 @@ Status Daemon::StartRendering() {
             {.device = config_.render_device, .max_texture_bytes = PictureViews::kMaxTextureBytes});
         // After the first one: drivers may run helper programs to prepare their devices. Threads
         // confine themselves, so this one does, too.
-        if (confines() && !std::exchange(render_is_confined_, true)) {
+        if (confines_ && !std::exchange(render_is_confined_, true)) {
           (void)server::Confine(FilesOf(config_));
         }
         return renderer;
       },
-      metrics_,
+      metrics_, &ReadClock,
       [this](FinishedPicture picture) {
         // Called on the render thread. The picture crosses to shard 0's thread by value, because
         // only that thread may call OnPicture(). `hub_` does not exist yet while the renderer
         // starts, but no picture is requested before.
-        asio::post(io_,
-                   [this, picture = std::move(picture)] { hub_->OnPicture(picture, ReadClock()); });
+        asio::post(io_, [this, picture = std::move(picture)] { DeliverPicture(picture); });
       },
       video_.get());
   if (started.ok()) {
@@ -207,10 +231,16 @@ Status Daemon::StartRendering() {
   return {};
 }
 
+void Daemon::DeliverPicture(const FinishedPicture& picture) {
+  hub_->OnPicture(picture, ReadClock());
+  if (picture.bytes.empty()) return;
+  metrics_->Observe(Timing::kPictureRequestToSend, ReadClock() - picture.submitted);
+}
+
 // Before the threads that serve strangers start, because they inherit it.
 void Daemon::Confine() {
   if (!options_.confine) return;
-  if (!confines()) {
+  if (!confines_) {
     spdlog::info("not confined: security.confine is off");
     return;
   }
@@ -382,7 +412,7 @@ Status Daemon::StartWeb() {
   parts.open_to_network = (ListensToNetwork(config_) || on_network_) && !gate_.required();
   parts.gate = &gate_;
   parts.sources = {.bind = config_.bind,
-                   .allow = config_.mocap_allow,
+                   .allow = [this] { return config_.mocap_allow; },
                    .livelink_face = [this](Time now) { return mocap_.ReportLiveLinkFace(now); },
                    .vmc = [this](Time now) { return mocap_.ReportVmc(now); }};
   api_ = std::make_unique<Api>(std::move(parts));
@@ -457,6 +487,10 @@ void Daemon::Serve() {
     signals_.async_wait([this](const asio::error_code& error, int) {
       if (!error) RequestDrain();
     });
+    if (options_.reload) {
+      hangups_.add(SIGHUP);
+      StartCriticalTask(io_, HangupLoop());
+    }
   }
   // Another thread may request the stop; only the event loop's thread may drain.
   const std::stop_callback on_stop(options_.stop,
@@ -579,6 +613,90 @@ asio::awaitable<void> Daemon::Drain() {
   io_.stop();
 }
 
+asio::awaitable<void> Daemon::HangupLoop() {
+  while (true) {
+    const auto [error, signal] = co_await hangups_.async_wait(kAwaitTuple);
+    if (error) co_return;
+    if (draining_) continue;
+    // The terminal has closed, and with it the program that the user had started in it.
+    if (has_terminal_ && isatty(STDIN_FILENO) == 0) {
+      RequestDrain();
+    } else {
+      BeginReload();
+    }
+  }
+}
+
+// Files are read on a thread of their own, because poses must not wait for them.
+void Daemon::BeginReload() {
+  reload_again_ = is_reloading_;
+  if (std::exchange(is_reloading_, true)) return;
+  if (options_.manager != nullptr) options_.manager->Reloading();
+  ReloadRequest request{.running = config_,
+                        .read = [this]() -> Result<Config> {
+                          auto read = options_.reload();
+                          FURROW_RETURN_IF_ERROR(read);
+                          return WithoutMissingParts(*std::move(read));
+                        },
+                        .drawn = render_ != nullptr ? assets_.character : nullptr,
+                        .files_changed = rig_files_.Changed()};
+  reloading_ = std::jthread([this, request = std::move(request)] {
+    Result<Reload> reload = Status(StatusCode::kLimit, "out of memory");
+    (void)WithinMemory(metrics_, [&] { reload = PrepareReload(request); });
+    // Shared, because a handler must be copyable.
+    auto shared = std::make_shared<Result<Reload>>(std::move(reload));
+    asio::post(io_, [this, shared] { EndReload(std::move(*shared)); });
+  });
+}
+
+void Daemon::EndReload(Result<Reload> reload) {
+  is_reloading_ = false;
+  if (draining_) return;
+  const Status status = reload.ok() ? TakeOver(&*reload) : reload.status();
+  if (!status.ok()) spdlog::error("the configuration stays as it was: {}", status.ToString());
+  if (options_.manager != nullptr) {
+    options_.manager->Ready(status.ok() ? "the configuration was read again"
+                                        : "the configuration stays as it was; see the log");
+  }
+  if (reload_again_) BeginReload();
+}
+
+// The rig first, because it alone can fail, and then nothing has changed.
+Status Daemon::TakeOver(Reload* reload) {
+  const ReloadPlan& plan = reload->plan;
+  const Config& config = plan.config;
+  {
+    const Hub::ExclusiveLock lock(*hub_, 0);
+    if (reload->files) {
+      const auto& rig = reload->files->rig;
+      const Status status = hub_->SetRigAndMaps(rig != nullptr ? rig : hub_->shared_rig(),
+                                                std::move(reload->files->maps), ReadClock());
+      if (!status.ok()) return status.Within("rig");
+      if (rig == nullptr && rig_files_.rig_changed()) {
+        spdlog::warn("the file of the rig changed: takes effect after a restart");
+      }
+    }
+    hub_->SetLimits(config.limits);
+    osc_->SetAllowed(config.osc.allow);
+  }
+  keys_file_ = std::move(reload->keys_file);
+  SetKeys(std::move(reload->keys));
+  if (reload->tls) tls_.Replace(config.security.tls, *std::move(reload->tls));
+  tcp_->SetLimits(config.limits);
+  if (http_) http_->Reload(config.http);
+  // A new gate lets the holder of a port go.
+  if (config.mocap_allow != config_.mocap_allow) mocap_.SetAllowed(config.mocap_allow);
+  if (config.log_level != config_.log_level) Log::SetLevel(config.log_level);
+  config_ = config;
+  rig_files_ = RigFiles(config_);
+  spdlog::info("read the configuration, keys and certificates again; changed: {}",
+               plan.applied.empty() ? "nothing" : Joined(plan.applied));
+  for (const std::string& key : plan.needs_restart) {
+    spdlog::warn("{} changed: takes effect after a restart", key);
+  }
+  return {};
+}
+
 ExitCode Fail(ExitCode code, const Status& status) {
   spdlog::error("{}", status.ToString());
   return code;
@@ -617,9 +735,13 @@ void WarnAboutSecurity(const Config& config) {
   }
 }
 
-ExitCode LoadAndServe(const Config& config, const RunOptions& options) {
+ExitCode LoadAndServe(const Config& asked, const RunOptions& options) {
   // Tests and embedders call Run() without ParseCommandLine(), which has validated already.
-  if (Status status = ValidateConfig(config); !status.ok()) return Fail(ExitCode::kUsage, status);
+  if (Status status = ValidateConfig(asked); !status.ok()) return Fail(ExitCode::kUsage, status);
+  const Config config = WithoutMissingParts(asked);
+  if (asked.render && !config.render) {
+    spdlog::warn("no pictures: the package furrow-pictures is not installed; weights go on");
+  }
   Result<Assets> assets = LoadAssets(config);
   if (!assets.ok()) return Fail(ExitCode::kBadInput, assets.status());
   if (assets->rig->regions.empty()) {

@@ -10,6 +10,7 @@
 #include "server/core/exit_code.h"
 #include "server/core/metrics.h"
 #include "server/machine/service_manager.h"
+#include "server/reload.h"
 
 namespace furrow::server {
 
@@ -26,7 +27,8 @@ struct Ready {
 // The options of Run() that are not part of the configuration.
 struct RunOptions {
   std::stop_token stop;         // requests a shutdown, as SIGTERM does
-  bool handle_signals = false;  // shut down on SIGTERM and SIGINT
+  bool handle_signals = false;  // shut down on SIGTERM and SIGINT, reload on SIGHUP
+  ReadConfig reload;            // how SIGHUP reads the configuration again; empty: not at all
   bool confine = false;         // the process is the daemon's own: SecurityConfig::confine applies
   std::function<void(const Ready&)>
       on_ready;                         // called on the calling thread once the daemon serves

@@ -1,16 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
+#include "base/utc_time.h"
+#include "character/pictures/picture_codec.h"
 #include "server/config/config.h"
+#include "server/config/config_entries.h"
 #include "server/config/log.h"
 #include "server/daemon.h"
 #include "server/machine/cache_folder.h"
+#include "server/machine/journal.h"
 
 namespace {
 
@@ -25,6 +32,23 @@ void PrepareCaches() {
   furrow::server::LetDriversCache(folder);
 }
 
+// The first line of the log: what has started, when, and how it is configured.
+void LogStart(const furrow::server::Config& config) {
+  const auto now = std::chrono::duration_cast<std::chrono::seconds>(
+      std::chrono::system_clock::now().time_since_epoch());
+  spdlog::info("furrowd {} started at {}, process {}, configuration {}: {}", FURROW_VERSION,
+               furrow::FormatUtc(static_cast<std::uint64_t>(now.count())), getpid(),
+               config.source.empty() ? "of the command line" : config.source.string(),
+               furrow::server::ConfigSummary(config));
+}
+
+furrow::Result<furrow::server::Config> ReadConfigAgain(const std::vector<std::string>& args) {
+  furrow::server::CommandLine line = furrow::server::ParseCommandLine(args);
+  if (line.config) return *std::move(line.config);
+  while (line.text.ends_with('\n')) line.text.pop_back();
+  return furrow::Status(furrow::StatusCode::kInvalidArgument, line.text);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -37,11 +61,15 @@ int main(int argc, char** argv) {
   }
   // The readers of the log and of the ready line may close their pipes. The daemon continues.
   std::signal(SIGPIPE, SIG_IGN);
-  const furrow::server::Log log(line.config->log_json);
-  if (line.config->render) PrepareCaches();
+  const furrow::server::Log log({.json = line.config->log_json,
+                                 .level = line.config->log_level,
+                                 .journal = furrow::server::StderrIsJournal()});
+  LogStart(*line.config);
+  if (line.config->render && furrow::character::IsPictureCodecInstalled()) PrepareCaches();
   furrow::server::RunOptions options;
   options.handle_signals = true;
   options.confine = true;
+  options.reload = [&args] { return ReadConfigAgain(args); };
   furrow::server::ServiceManager manager;
   if (furrow::server::ServiceManager::IsPresent()) options.manager = &manager;
   options.listeners = furrow::server::ServiceManager::TakeListeners();

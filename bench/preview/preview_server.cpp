@@ -59,7 +59,7 @@ PreviewServer::PreviewServer(render::Image picture)
       [this]() -> Result<std::unique_ptr<render::Renderer>> {
         return std::unique_ptr<render::Renderer>(std::make_unique<ReadyRenderer>(this));
       },
-      &metrics_,
+      &metrics_, &server::ReadClock,
       [this](server::FinishedPicture finished) {
         Post([shared = std::make_shared<server::FinishedPicture>(std::move(finished))](
                  server::Hub& hub, Time now) { hub.OnPicture(*shared, now); });

@@ -80,6 +80,10 @@ Result<std::vector<Picture>> ReadGltfPictures(const gltf::Document& document,
     const std::string where = "images[" + std::to_string(i) + "]";
     const std::string name =
         image.name.empty() && !gltf::IsDataUri(image.uri) ? image.uri : image.name;
+    if (!options.pictures) {
+      pictures.push_back({.name = name, .pixels = {}, .pixels16 = {}});
+      continue;
+    }
     Result<Picture> picture = ReadPicture(document, i, name);
     if (!picture.ok() && options.lenient && picture.status().code() != StatusCode::kLimit) {
       if (options.notes != nullptr) {

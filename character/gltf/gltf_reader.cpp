@@ -22,7 +22,7 @@
 namespace furrow::character {
 namespace {
 
-// Removes the pictures without pixels, which ReadGltfPictures() leaves for unreadable images, and
+// Removes the pictures without pixels, which ReadGltfPictures() leaves for images not decoded, and
 // the references to them.
 void DropMissingPictures(Character* character) {
   std::vector<Picture> kept;
@@ -94,7 +94,7 @@ Status ReadGltfCharacter(std::string_view bytes, const std::filesystem::path& fo
   character->materials = MakeGltfMaterials(*materials);
   character->pictures = std::move(*pictures);
   character->warnings = document->warnings();
-  if (options.lenient) DropMissingPictures(character);
+  if (options.lenient || !options.pictures) DropMissingPictures(character);
   return {};
 }
 

@@ -82,10 +82,11 @@ Result<Character> ParseCharacter(std::string_view bytes, const fs::path& folder,
 fs::path RigBeside(const fs::path& glb) { return fs::path(glb).replace_extension(".rig.json"); }
 
 Result<Character> LoadCharacter(const fs::path& glb, const fs::path& rig,
-                                const wrinkle::PoseSource& poses) {
+                                const wrinkle::PoseSource& poses, Pictures pictures) {
   const Result<std::string> bytes = ReadFile(glb, gltf::kMaxFileBytes);
   FURROW_RETURN_IF_ERROR(bytes);
-  Result<Character> character = ParseCharacter(*bytes, glb.parent_path());
+  const bool loads = pictures == Pictures::kLoad;
+  Result<Character> character = ParseCharacter(*bytes, glb.parent_path(), {.pictures = loads});
   if (!character.ok()) return character.status().Within(glb.string());
   if (character->name.empty()) character->name = glb.stem().string();
 
@@ -97,6 +98,10 @@ Result<Character> LoadCharacter(const fs::path& glb, const fs::path& rig,
   }
   Result<wrinkle::Rig> loaded = rig::LoadRig(rig_path, poses);
   FURROW_RETURN_IF_ERROR(loaded);
+  if (!loads) {
+    character->rig = std::move(*loaded);
+    return character;
+  }
   if (Status status = AttachRig(std::move(*loaded), rig_path.parent_path(), &*character);
       !status.ok()) {
     return status.At(rig_path.string());

@@ -2,6 +2,7 @@
 #include "character/pictures/picture_codec.h"
 
 #include <filesystem>
+#include <system_error>
 
 #include <dlfcn.h>
 
@@ -23,7 +24,8 @@ Result<const PictureCodec*> LoadModule() {
     const char* why = dlerror();
     return Status(StatusCode::kUnavailable,
                   std::string("pictures cannot be read or written: ") + (why ? why : "no codec"),
-                  path.string(), "build the target furrow_pictures, or install it with furrow");
+                  path.string(),
+                  "install the package furrow-pictures, or build the target furrow_pictures");
   }
   return reinterpret_cast<const PictureCodec* (*)()>(make)();
 }
@@ -35,6 +37,11 @@ Result<const PictureCodec*> GetPictureCodec() {
   // it.
   static const Result<const PictureCodec*> codec = LoadModule();
   return codec;
+}
+
+bool IsPictureCodecInstalled() {
+  std::error_code error;
+  return std::filesystem::exists(ModulePath(), error);
 }
 
 }  // namespace furrow::character

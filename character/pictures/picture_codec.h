@@ -37,4 +37,7 @@ struct PictureCodec {
 // thread. Error: kUnavailable, with the module's path.
 [[nodiscard]] Result<const PictureCodec*> GetPictureCodec();
 
+// True if the module is installed. Does not load it.
+[[nodiscard]] bool IsPictureCodecInstalled();
+
 }  // namespace furrow::character

@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "base/text.h"
 #include "server/config/config.h"
 
 namespace furrow::server {
@@ -39,6 +40,48 @@ std::string NumberOfMode(std::string& text) {
   if (!mode) return "'" + text + "' is not one of open|required";
   text = std::to_string(static_cast<int>(*mode));
   return {};
+}
+
+// The same for --log-level.
+std::string NumberOfLevel(std::string& text) {
+  const auto level = ParseLogLevel(text);
+  if (!level) return "'" + text + "' is not one of error|warning|info";
+  text = std::to_string(static_cast<int>(*level));
+  return {};
+}
+
+// For numbers: the error names the range.
+CLI::Validator Within(double least, double most, const std::string& what) {
+  return CLI::Validator(
+      [least, most, what](std::string& text) {
+        double number = 0.0;
+        // NaN fails both comparisons.
+        const bool is_number = CLI::detail::lexical_cast(text, number);
+        if (is_number && number >= least && number <= most) return std::string();
+        std::ostringstream fault;
+        fault << "'" << text << "' is not a " << what << " from " << least << " to " << most;
+        return fault.str();
+      },
+      "");
+}
+CLI::Validator IsPort() { return Within(0, 65535, "port"); }
+
+// The message about words that furrowd does not know; empty if it knows all.
+std::string UnknownWord(const CLI::App& app) {
+  const std::vector<std::string> extra = app.remaining();
+  if (extra.empty()) return {};
+  const std::string word = extra.front().substr(0, extra.front().find('='));
+  if (!word.starts_with('-')) {
+    return "unexpected argument " + Quoted(word) + " ('furrowd --help' lists the options)\n";
+  }
+  std::vector<std::string> known;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+  }
+  const std::string meant = ClosestWord(word, known);
+  return "unknown option " + Quoted(word) +
+         (meant.empty() ? "" : "; did you mean '" + meant + "'?") +
+         " ('furrowd --help' lists the options)\n";
 }
 
 // Declares every flag on `config`. Parsing writes only the flags that are present.
@@ -91,12 +134,15 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
   app->add_flag("!--no-confine", config->security.confine,
                 "Keep all privileges and the access to all files (default: give up what the\n"
                 "daemon does not need; see docs/SECURITY.md)");
-  app->add_option("--tcp", config->tcp, "TCP port for poses, weights and pictures (default: 7400)");
-  app->add_option("--udp", config->udp, "UDP port for poses and weights (default: 7401)");
+  app->add_option("--tcp", config->tcp, "TCP port for poses, weights and pictures (default: 7400)")
+      ->check(IsPort());
+  app->add_option("--udp", config->udp, "UDP port for poses and weights (default: 7401)")
+      ->check(IsPort());
   app->add_option(
          "--threads", config->threads,
          "Number of threads that receive UDP, 1 to 64; each sender is served by one of them\n"
          "(default: 1)")
+      ->check(Within(1, kMaxThreads, "number of threads"))
       ->type_name("N");
   app->add_option(
          "--jitter-buffer", flags->jitter,
@@ -106,7 +152,13 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
       ->type_name("[SUBJECTS=]MS")
       ->allow_extra_args(false);
   app->add_option("--http", config->http.port,
-                  "Port of the web page (default: 7480, or any free port if it is in use)");
+                  "Port of the web page (default: 7480, or any free port if it is in use)")
+      ->check(IsPort());
+  app->add_option("--allow-host", config->http.allow_hosts,
+                  "Name by which browsers and scrapers may address the web port, such as\n"
+                  "furrow.example (repeatable; default: localhost and numeric addresses)")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
   app->add_flag("--no-http", flags->no_http, "Disable the web page, WebSocket and HTTP API");
   app->add_option("--play", config->play,
                   "Play this recording as a subject, with a timeline on the web page: a file, or\n"
@@ -119,6 +171,7 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
   app->add_option("--rest-frame", config->rest_frame,
                   "Frame of the --play recording to take as its rest pose, counted from 0;\n"
                   "the performer stands upright and faces +Z there (default: the file's own)")
+      ->check(Within(0, 1e9, "frame"))
       ->type_name("N");
   app->add_flag("--no-render", flags->no_render, "Send weights only; do not use OpenGL");
   app->add_flag("--require-render", config->require_render, "Exit with 1 if OpenGL is unavailable");
@@ -128,9 +181,11 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
                   "Read picture settings from a TOML file, as written by\n"
                   "'furrow render --print-settings'");
   app->add_option("--vmc", config->vmc,
-                  "Receive VMC (OSC) on this UDP port, usually 39539 (default: off)");
+                  "Receive VMC (OSC) on this UDP port, usually 39539 (default: off)")
+      ->check(IsPort());
   app->add_option("--livelink-face", config->livelink_face,
-                  "Receive Live Link Face on this UDP port, usually 11111 (default: off)");
+                  "Receive Live Link Face on this UDP port, usually 11111 (default: off)")
+      ->check(IsPort());
   app->add_option(
          "--mocap-allow", config->mocap_allow,
          "Accept --vmc and --livelink-face from this address only (repeatable). Each port\n"
@@ -145,9 +200,15 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
   app->add_option("--record", config->record.folder,
                   "Record all streams to MCAP files in this folder (default: off)");
   app->add_option("--record-rotate-megabytes", config->record.rotate_megabytes,
-                  "Start a new file at this size in MB (default: 1024; 0: never)");
+                  "Start a new file at this size in MB (default: 1024; 0: never)")
+      ->check(Within(0, 1e9, "size"));
   app->add_option("--record-rotate-seconds", config->record.rotate_seconds,
-                  "Start a new file after this time in seconds (default: 3600; 0: never)");
+                  "Start a new file after this time in seconds (default: 3600; 0: never)")
+      ->check(Within(0, 1e9, "time"));
+  app->add_option("--log-level", config->log_level,
+                  "Log these lines and more important ones (default: info)")
+      ->transform(CLI::Validator(NumberOfLevel, ""))
+      ->type_name("error|warning|info");
   app->add_flag("--verbose", config->verbose, "Print a status line every second");
   app->add_flag("--log-json", config->log_json, "Write log lines as JSON");
 }
@@ -176,6 +237,9 @@ CommandLine ParseCommandLine(std::span<const std::string> args) {
     // CLI11 reports --help and --version as exceptions, too; exit() writes their text and returns
     // 0.
     const bool failed = first.exit(error, out, out) != 0;
+    if (std::string unknown = UnknownWord(first); failed && !unknown.empty()) {
+      return Fail(ExitCode::kUsage, unknown);
+    }
     return Fail(failed ? ExitCode::kUsage : ExitCode::kOk, out.str());
   }
   if (!flags.config_file.empty()) {
@@ -184,6 +248,7 @@ CommandLine ParseCommandLine(std::span<const std::string> args) {
     if (Status status = LoadConfigFile(flags.config_file, &config); !status.ok()) {
       return Fail(ExitCode::kBadInput, status.ToString() + "\n");
     }
+    config.source = flags.config_file;
     CLI::App second;
     Declare(&second, &config, &flags);
     // Does not throw: the first pass has accepted the same arguments.

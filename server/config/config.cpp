@@ -194,6 +194,12 @@ Status ValidateConfig(const Config& config) {
     if (!std::isfinite(limit) || limit < 0.0 || limit > 1e9)
       return Invalid(std::string(name) + " is " + NumberText(limit) + "; it must be 0 to 1e9");
   }
+  for (const std::string& host : config.http.allow_hosts) {
+    if (host.empty() || host.find_first_of(":/ ") != std::string::npos) {
+      return Status(StatusCode::kInvalidArgument, "--allow-host: '" + host + "' is not a host name",
+                    "", "give the name alone, without scheme and port: furrow.example");
+    }
+  }
   if (config.http.max_connections < 1 || config.http.max_connections > 1'000'000) {
     return Invalid("http.max_connections is " + std::to_string(config.http.max_connections) +
                    "; it must be 1 to 1000000");

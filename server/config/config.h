@@ -17,6 +17,7 @@
 #include "server/core/exit_code.h"
 #include "server/core/jitter_rule.h"
 #include "server/core/limits.h"
+#include "server/core/log_level.h"
 #include "server/core/network_address.h"
 
 namespace furrow::server {
@@ -36,6 +37,7 @@ inline constexpr int kMaxThreads = 64;
 // The whole configuration of furrowd, from flags or a TOML file (furrow.example.toml lists every
 // key).
 struct Config {
+  std::filesystem::path source;  // the file of --config that was read into this; empty: none
   // If both the character and the rig are empty, the default character is used.
   std::filesystem::path character;  // .glb
   std::string skeleton_map;         // name or file; empty: the best match of the shipped maps
@@ -67,8 +69,9 @@ struct Config {
   std::string bvh_positions = "auto";  // motion::ParseBvhPositions()
   std::string up_axis = "auto";        // motion::ParseUpAxis()
   int rest_frame = -1;                 // frame of `play` that is its rest pose; -1: the file's own
-  bool verbose = false;                // print a status line every second
-  bool log_json = false;               // log JSON objects instead of text
+  LogLevel log_level = LogLevel::kInfo;
+  bool verbose = false;   // print a status line every second
+  bool log_json = false;  // log JSON objects instead of text
   Limits limits;
   friend bool operator==(const Config&, const Config&) = default;
 };

@@ -82,6 +82,16 @@ Key Mode(std::string_view name, Security* mode) {
           }};
 }
 
+// "error", "warning" or "info".
+Key Level(std::string_view name, LogLevel* level) {
+  return {name, [level](const toml::node& node) -> std::string {
+            const auto value = ParseLogLevel(node.value_exact<std::string>().value_or(""));
+            if (!value) return "must be \"error\", \"warning\" or \"info\"";
+            *level = *value;
+            return {};
+          }};
+}
+
 // [[osc.target]]
 Key OscTargets(std::string_view name, std::vector<OscTargetConfig>* targets,
                const std::filesystem::path& folder) {
@@ -154,7 +164,9 @@ Tables OutputTables(Config* config, const std::filesystem::path& folder) {
         Count("max_connections", &http.max_connections), Path("page", &http.page, folder),
         Number("api_share", &http.api_share),
         Count("requests_per_second", &http.requests_per_second)}},
-      {"log", {Flag("verbose", &config->verbose), Flag("json", &config->log_json)}}};
+      {"log",
+       {Level("level", &config->log_level), Flag("verbose", &config->verbose),
+        Flag("json", &config->log_json)}}};
 }
 
 Tables LimitTables(Limits* limits) {

@@ -42,26 +42,60 @@ class JsonText : public spdlog::custom_flag_formatter {
   }
 };
 
+// The priority of a line for the journal: "<6>".
+class JournalPriority : public spdlog::custom_flag_formatter {
+ public:
+  void format(const spdlog::details::log_msg& message, const std::tm&,
+              spdlog::memory_buf_t& out) override {
+    constexpr char kPriorities[] = {'7', '7', '6', '4', '3', '2', '6'};  // by spdlog's levels
+    static_assert(sizeof(kPriorities) == spdlog::level::n_levels);
+    const char text[] = {'<', kPriorities[message.level], '>'};
+    out.append(text, text + sizeof(text));
+  }
+  std::unique_ptr<custom_flag_formatter> clone() const override {
+    return std::make_unique<JournalPriority>();
+  }
+};
+
+spdlog::level::level_enum LevelOf(LogLevel level) {
+  switch (level) {
+    case LogLevel::kError: return spdlog::level::err;
+    case LogLevel::kWarning: return spdlog::level::warn;
+    case LogLevel::kInfo: break;
+  }
+  return spdlog::level::info;
+}
+
+// '*': the text in JSON, '@': the priority.
+std::string PatternOf(const Log::Settings& settings) {
+  const std::string priority = settings.journal ? "%@" : "";
+  if (settings.json) {
+    return priority + R"({"time":"%Y-%m-%dT%H:%M:%S.%eZ","level":"%l","message":"%*"})";
+  }
+  return settings.journal ? priority + "%v" : "%H:%M:%S.%e %^%l%$ %v";
+}
+
 }  // namespace
 
-Log::Log(bool json) {
+Log::Log(const Settings& settings) {
   // One writer keeps the order of the lines.
   spdlog::init_thread_pool(kMaxWaitingLines, /*threads=*/1);
   auto logger = std::make_shared<spdlog::async_logger>(
       "furrowd",
       std::make_shared<LimitedSink>(std::make_shared<spdlog::sinks::stderr_color_sink_mt>()),
       spdlog::thread_pool(), spdlog::async_overflow_policy::overrun_oldest);
-  if (json) {
-    auto formatter = std::make_unique<spdlog::pattern_formatter>(spdlog::pattern_time_type::utc);
-    formatter->add_flag<JsonText>('*').set_pattern(
-        R"({"time":"%Y-%m-%dT%H:%M:%S.%eZ","level":"%l","message":"%*"})");
-    logger->set_formatter(std::move(formatter));
-  } else {
-    logger->set_pattern("%H:%M:%S.%e %^%l%$ %v");
-  }
+  const auto time =
+      settings.json ? spdlog::pattern_time_type::utc : spdlog::pattern_time_type::local;
+  auto formatter = std::make_unique<spdlog::pattern_formatter>(time);
+  formatter->add_flag<JsonText>('*').add_flag<JournalPriority>('@').set_pattern(
+      PatternOf(settings));
+  logger->set_formatter(std::move(formatter));
+  logger->set_level(LevelOf(settings.level));
   logger_ = logger;
   spdlog::set_default_logger(std::move(logger));
 }
+
+void Log::SetLevel(LogLevel level) { spdlog::set_level(LevelOf(level)); }
 
 // Writes what is queued and joins the background thread.
 Log::~Log() { spdlog::shutdown(); }

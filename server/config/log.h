@@ -3,6 +3,8 @@
 
 #include <memory>
 
+#include "server/core/log_level.h"
+
 namespace furrow::server {
 
 // The log of furrowd on stderr, one line per message. The constructor makes it the target of all
@@ -13,9 +15,18 @@ namespace furrow::server {
 // destructor writes the remaining lines.
 class Log {
  public:
-  // `json`: each line is a JSON object with "time", "level" and "message"; else plain text.
-  explicit Log(bool json);
+  struct Settings {
+    bool json = false;  // each line is a JSON object with "time", "level" and "message"
+    LogLevel level = LogLevel::kInfo;
+    // The journal of systemd reads the lines: they begin with their priority (sd-daemon(3)), and
+    // plain text has no time, which the journal adds. A prefix instead of its socket, because one
+    // stream stays in order, and passes LimitedSink and every sandbox.
+    bool journal = false;
+  };
+  explicit Log(const Settings& settings);
   ~Log();
+  // Changes the level while the daemon runs.
+  static void SetLevel(LogLevel level);
   Log(const Log&) = delete;
   Log& operator=(const Log&) = delete;
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "base/text.h"
+
 namespace furrow::server::toml_file {
 namespace {
 
@@ -58,12 +60,23 @@ class Reader {
           return Error(StatusCode::kSchema, node, name + " " + fault);
         }
       } else if (subtable == subtables.end()) {
-        return Error(StatusCode::kSchema, node, "unknown key '" + name + "'");
+        return Error(StatusCode::kSchema, node,
+                     "unknown key '" + name + "'" + Meant(key.str(), prefix, keys, subtables));
       } else if (!node.is_table()) {
         return Error(StatusCode::kSchema, node, name + " must be a table");
       }
     }
     return {};
+  }
+
+  // "; did you mean 'listen.tcp'?", or nothing.
+  static std::string Meant(std::string_view key, std::string_view prefix, std::span<const Key> keys,
+                           std::span<const NamedKeys> subtables) {
+    std::vector<std::string> known;
+    for (const Key& each : keys) known.emplace_back(each.name);
+    for (const NamedKeys& table : subtables) known.emplace_back(table.first);
+    const std::string closest = ClosestWord(key, known);
+    return closest.empty() ? "" : "; did you mean '" + std::string(prefix) + closest + "'?";
   }
 
   // `where` is file and line, as compilers write it.

@@ -20,7 +20,7 @@ class FairShare {
 
   // False: the host has its share, or there is no place left.
   [[nodiscard]] bool HasRoomFor(const std::string& host) const {
-    return held(host) < places_ - taken_;
+    return held(host) + taken_ < places_;
   }
   // Takes a place. False: HasRoomFor() is.
   [[nodiscard]] bool Enter(const std::string& host) {
@@ -36,6 +36,9 @@ class FairShare {
     --taken_;
   }
 
+  // Changes the number of places. Those that are taken stay taken, even if they are more.
+  void SetPlaces(std::size_t places) { places_ = places; }
+
   // The places that a host holds.
   [[nodiscard]] std::size_t held(const std::string& host) const {
     const auto held = held_.find(host);
@@ -44,7 +47,7 @@ class FairShare {
   [[nodiscard]] std::size_t taken() const { return taken_; }
 
  private:
-  const std::size_t places_;
+  std::size_t places_;
   std::size_t taken_ = 0;
   std::unordered_map<std::string, std::size_t> held_;  // by host; none is 0
 };

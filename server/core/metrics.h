@@ -7,6 +7,10 @@
 #include <cstdint>
 #include <string_view>
 
+#include "server/core/thread_slot.h"
+#include "server/core/time.h"
+#include "server/core/timings.h"
+
 namespace furrow::server {
 
 // The counters of a daemon, in particular one for every kind of drop. CounterHelp() describes each
@@ -130,10 +134,9 @@ enum class Counter {
 // One sentence for Prometheus' HELP line.
 [[nodiscard]] std::string_view CounterHelp(Counter counter);
 
-// The counters of one daemon. Any thread may add and read at any time.
+// The counters and histograms of one daemon. Any thread may add and read at any time.
 //
-// Up to kSlots threads each add to a separate slot, and Get() sums the slots: one shared counter
-// would move between processor caches at every pose. Further threads share slots.
+// Each thread adds to its slot (thread_slot.h), and Get() sums the slots.
 class Metrics {
  public:
   // Adds `count` to a counter. Never blocks.
@@ -150,18 +153,17 @@ class Metrics {
     return sum;
   }
 
+  // Counts a duration.
+  void Observe(Timing timing, Time duration) { timings_.Observe(timing, duration); }
+  [[nodiscard]] const Timings& timings() const { return timings_; }
+
  private:
-  static constexpr std::size_t kSlots = 16;
   struct alignas(64) Slot {
     std::array<std::atomic<std::uint64_t>, static_cast<std::size_t>(Counter::kCount)> values{};
   };
-  static std::size_t SlotOfThread() {
-    static std::atomic<std::size_t> next = 0;
-    thread_local const std::size_t slot = next.fetch_add(1, std::memory_order_relaxed) % kSlots;
-    return slot;
-  }
 
-  std::array<Slot, kSlots> slots_;
+  std::array<Slot, kThreadSlots> slots_;
+  Timings timings_;
 };
 
 }  // namespace furrow::server

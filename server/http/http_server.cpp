@@ -25,6 +25,7 @@
 #include "server/core/network_address.h"
 #include "server/http/http_session.h"
 #include "server/http/request/web_stream.h"
+#include "server/machine/listen_error.h"
 #include "server/net/clock.h"
 #include "server/net/run_loop.h"
 #include "server/session/hub.h"
@@ -158,9 +159,7 @@ Status HttpServer::Impl::Listen(const std::string& bind, std::uint16_t wanted) {
     beast::error_code ignored;
     // Start() may call this again with another port.
     acceptor.close(ignored);
-    return Status(StatusCode::kIo, "cannot listen: " + error.message(),
-                  "http " + bind + " port " + std::to_string(wanted),
-                  "set another port with --http, or use --no-http");
+    return ListenError("TCP", {bind, wanted}, error.value(), "--http (or use --no-http)");
   }
   address = {bind, acceptor.local_endpoint().port()};
   return {};
@@ -324,7 +323,7 @@ Result<std::unique_ptr<HttpServer>> HttpServer::Start(Parts parts) {
   // Only the default port may be replaced. A port that the user asked for is an error if it is
   // taken.
   if (!status.ok() && !asked && !listener) {
-    spdlog::warn("{}: {}; using any free port", status.where(), status.what());
+    spdlog::warn("{}; using any free port", status.what());
     status = impl->Listen(bind, 0);
   }
   if (!status.ok()) return status;
@@ -349,6 +348,25 @@ HttpServer::~HttpServer() {
 const HostPort& HttpServer::address() const { return impl_->address; }
 int HttpServer::connections() const { return impl_->context.connections; }
 int HttpServer::viewers() const { return impl_->context.viewers; }
+
+// The context belongs to the web thread.
+void HttpServer::Reload(const HttpConfig& config) {
+  net::post(*impl_->loop, [this, config] {
+    WebContext& context = impl_->context;
+    context.guard = RequestGuard(config);
+    context.config.allow_origins = config.allow_origins;  // of pages that may frame /embed
+    impl_->shares.SetPlaces(static_cast<std::size_t>(config.max_connections));
+    // What hosts have used up is forgotten, so only changes count.
+    if (config.api_share != context.config.api_share) {
+      context.budget = std::make_shared<RequestBudget>(config.api_share);
+    }
+    if (config.requests_per_second != context.config.requests_per_second) {
+      context.pace = HostRates(static_cast<std::uint32_t>(config.requests_per_second));
+    }
+    context.config.api_share = config.api_share;
+    context.config.requests_per_second = config.requests_per_second;
+  });
+}
 
 void HttpServer::Drain() {
   // An acceptor is not thread-safe, and Accept() uses it on the web thread.

@@ -47,6 +47,9 @@ class HttpServer {
   // The open connections, and those of them that are WebSockets or picture streams. Thread-safe.
   [[nodiscard]] int connections() const;
   [[nodiscard]] int viewers() const;
+  // Takes over the lists of allowed names and the limits of `config`, soon. Its other values do not
+  // count.
+  void Reload(const HttpConfig& config);
   // Stops accepting connections; open ones continue.
   void Drain();
 

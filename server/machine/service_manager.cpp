@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/machine/service_manager.h"
 
+#include <cstdint>
 #include <cstdlib>
+#include <ctime>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -64,6 +67,16 @@ ServiceManager::Listeners ServiceManager::TakeListeners() {
 void ServiceManager::Ready(const std::string& status) { Send("READY=1\n", status); }
 
 void ServiceManager::Alive(const std::string& status) { Send("WATCHDOG=1\n", status); }
+
+// systemd takes READY=1 for the end of this reload if it knows when the reload began
+// (sd_notify(3)).
+void ServiceManager::Reloading() {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  const std::int64_t microseconds = std::int64_t{now.tv_sec} * 1'000'000 + now.tv_nsec / 1'000;
+  Send("RELOADING=1\nMONOTONIC_USEC=" + std::to_string(microseconds) + "\n",
+       "reading the configuration again");
+}
 
 void ServiceManager::Stopping() { Send("STOPPING=1\n", "shutting down"); }
 

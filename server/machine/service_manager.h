@@ -31,6 +31,8 @@ class ServiceManager {
   void Ready(const std::string& status);
   // The daemon is alive: feeds the watchdog of the unit. Call it about once per second.
   void Alive(const std::string& status);
+  // The daemon has begun to read its configuration again; Ready() ends this.
+  void Reloading();
   // The daemon has begun to shut down.
   void Stopping();
 

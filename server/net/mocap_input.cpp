@@ -6,6 +6,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "server/machine/listen_error.h"
 #include "server/net/await_tuple.h"
 #include "server/net/clock.h"
 #include "server/net/critical_task.h"
@@ -37,10 +38,8 @@ Status MocapInput::Open(const udp::endpoint& endpoint) {
   socket_.open(endpoint.protocol(), error);
   if (!error) socket_.bind(endpoint, error);
   if (!error) return {};
-  return Status(StatusCode::kUnavailable,
-                "cannot listen on UDP " + endpoint.address().to_string() + " port " +
-                    std::to_string(endpoint.port()) + ": " + error.message(),
-                "", "stop the program that uses the port, or set another one with " + flag_);
+  return ListenError("UDP", {endpoint.address().to_string(), endpoint.port()}, error.value(),
+                     flag_);
 }
 
 std::uint16_t MocapInput::port() const {

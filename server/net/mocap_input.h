@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 
 #include <asio/awaitable.hpp>
 #include <asio/io_context.hpp>
@@ -38,6 +39,11 @@ class MocapInput {
   [[nodiscard]] Status Open(const asio::ip::udp::endpoint& endpoint);
   [[nodiscard]] std::uint16_t port() const;
   [[nodiscard]] MocapReport Report(Time now) const;
+  // Asks another gate from now on. Nobody holds the port then.
+  void SetGate(SenderGate gate) {
+    gate_ = std::move(gate);
+    has_logged_rejected_ = false;
+  }
   // Starts reading. Precondition: Open() succeeded.
   void Start();
   // Stops reading and closes the port.

@@ -6,28 +6,43 @@
 
 namespace furrow::server {
 
+namespace {
+
+// ValidateConfig() has checked that all addresses are numeric, so make_address() does not throw.
+std::vector<asio::ip::address> Addresses(const std::vector<std::string>& texts) {
+  std::vector<asio::ip::address> addresses;
+  for (const std::string& text : texts) addresses.push_back(asio::ip::make_address(text));
+  return addresses;
+}
+
+// VMC does not name its sender, so only one may hold the port. Live Link Face names the device in
+// each packet, so several may send at once.
+constexpr auto kOfVmc = SenderGate::Policy::kOne;
+constexpr auto kOfLiveLinkFace = SenderGate::Policy::kAllAllowed;
+
+}  // namespace
+
 Status MocapInputs::Open(const Options& options, asio::io_context& io, Hub* hub, Metrics* metrics) {
-  // ValidateConfig() has checked that all addresses are numeric, so make_address() does not throw.
-  const auto address = asio::ip::make_address(options.bind);
-  std::vector<asio::ip::address> allowed;
-  for (const std::string& text : options.allow) {
-    allowed.push_back(asio::ip::make_address(text));
-  }
+  const auto address = Addresses({options.bind}).front();
+  const std::vector<asio::ip::address> allowed = Addresses(options.allow);
   if (options.vmc) {
-    // VMC does not name its sender, so only one may hold the port.
-    vmc_ =
-        std::make_unique<MocapInput>(io, "--vmc", protocol::mocap::MakeVmcAdapter(),
-                                     SenderGate(allowed, SenderGate::Policy::kOne), hub, metrics);
+    vmc_ = std::make_unique<MocapInput>(io, "--vmc", protocol::mocap::MakeVmcAdapter(),
+                                        SenderGate(allowed, kOfVmc), hub, metrics);
     FURROW_RETURN_IF_ERROR(vmc_->Open({address, *options.vmc}));
   }
   if (options.livelink_face) {
-    // Live Link Face names the device in each packet, so several may send at once.
     livelink_face_ = std::make_unique<MocapInput>(
         io, "--livelink-face", protocol::mocap::MakeLiveLinkFaceAdapter(),
-        SenderGate(allowed, SenderGate::Policy::kAllAllowed), hub, metrics);
+        SenderGate(allowed, kOfLiveLinkFace), hub, metrics);
     return livelink_face_->Open({address, *options.livelink_face});
   }
   return {};
+}
+
+void MocapInputs::SetAllowed(const std::vector<std::string>& allow) {
+  const std::vector<asio::ip::address> allowed = Addresses(allow);
+  if (vmc_) vmc_->SetGate(SenderGate(allowed, kOfVmc));
+  if (livelink_face_) livelink_face_->SetGate(SenderGate(allowed, kOfLiveLinkFace));
 }
 
 void MocapInputs::Start() {

@@ -30,6 +30,8 @@ class MocapInputs {
   // of MocapInput::Open().
   [[nodiscard]] Status Open(const Options& options, asio::io_context& io, Hub* hub,
                             Metrics* metrics);
+  // Admits only these senders from now on; empty: any sender. Numeric addresses.
+  void SetAllowed(const std::vector<std::string>& allow);
   // Starts reading all open ports.
   void Start();
   // Completes frames without an end-of-frame mark. Call it about every 10 ms.

@@ -50,6 +50,9 @@ class OscTargets : public OscControl {
   [[nodiscard]] std::vector<View> List() const override;
   [[nodiscard]] const std::vector<std::string>& allowed() const override { return parts_.allow; }
 
+  // Replaces the addresses that HTTP clients may add. Their targets stay.
+  void SetAllowed(std::vector<std::string> allow) { parts_.allow = std::move(allow); }
+
   // Sends the current weights of a subject, or remembers that it owes them because of a rate. Never
   // blocks.
   void Send(const Subject& subject, int shard, Time now);
@@ -94,7 +97,7 @@ class OscTargets : public OscControl {
   void Write(Lane& lane, Stream& stream, const Subject& subject);
 
   asio::io_context& io_;
-  const Parts parts_;
+  Parts parts_;
   std::vector<std::unique_ptr<Target>> targets_;
   int last_id_ = 0;
 };

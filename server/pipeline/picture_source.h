@@ -20,6 +20,7 @@ struct FinishedPicture {
   std::int64_t capture_time_us = 0;  // of the pose, on the sender's clock
   std::int64_t age_us = 0;           // > 0: time since the pose, while weights decay
   std::int64_t received_us = 0;      // arrival of the pose, on the daemon's clock
+  Time submitted{0};                 // when it was requested, on the daemon's clock
   int width = 0;                     // pixels
   int height = 0;
   Encoding encoding;

@@ -73,6 +73,8 @@ struct RenderJob {
   std::shared_ptr<const Snapshot> snapshot;
   std::vector<PictureTicket> tickets;
   Time moved_at{0};        // when the subject last moved; set if a viewer uses flow control
+  Time submitted{0};       // to the renderer
+  Time taken{0};           // by the render thread
   bool prepares = false;   // nobody sees the picture: it compiles what later pictures need
   FairOrder::Entry entry;  // set by the mailbox
 

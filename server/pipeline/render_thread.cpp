@@ -50,9 +50,10 @@ class Step {
 
 Result<std::unique_ptr<RenderThread>> RenderThread::Start(const wrinkle::Skeleton* skeleton,
                                                           Factory make_renderer, Metrics* metrics,
-                                                          OnPicture deliver, VideoEncoders* video) {
-  std::unique_ptr<RenderThread> self(
-      new RenderThread(skeleton, std::move(make_renderer), metrics, std::move(deliver), video));
+                                                          Clock clock, OnPicture deliver,
+                                                          VideoEncoders* video) {
+  std::unique_ptr<RenderThread> self(new RenderThread(skeleton, std::move(make_renderer), metrics,
+                                                      clock, std::move(deliver), video));
   // EGL binds a context to the thread that makes it current, so the render thread creates the
   // renderer and reports back.
   std::promise<Status> started;
@@ -64,9 +65,10 @@ Result<std::unique_ptr<RenderThread>> RenderThread::Start(const wrinkle::Skeleto
 }
 
 RenderThread::RenderThread(const wrinkle::Skeleton* skeleton, Factory make_renderer,
-                           Metrics* metrics, OnPicture deliver, VideoEncoders* video)
+                           Metrics* metrics, Clock clock, OnPicture deliver, VideoEncoders* video)
     : make_renderer_(std::move(make_renderer)),
       metrics_(metrics),
+      clock_(clock),
       deliver_(std::move(deliver)),
       video_(video),
       mailbox_(kMaxWaitingJobs),
@@ -109,6 +111,7 @@ void RenderThread::Prepare(std::vector<RenderJob> jobs) {
 
 void RenderThread::Submit(RenderJob job) {
   if (stuck_) return Refuse(std::move(job));
+  job.submitted = clock_();
   switch (mailbox_.Put(std::move(job))) {
     case RenderMailbox::PutResult::kQueued:
     case RenderMailbox::PutResult::kNotWanted: break;
@@ -175,6 +178,8 @@ void RenderThread::DrawAndCollect() {
          (in_flight_.empty() || in_flight_.back().Work() < kLargeWork)) {
     std::optional<RenderJob> job = mailbox_.Take(/*wait=*/in_flight_.empty());
     if (!job) break;
+    job->taken = clock_();
+    if (!job->prepares) metrics_->Observe(Timing::kPictureWait, job->taken - job->submitted);
     Draw(*std::move(job));
   }
   if (!in_flight_.empty()) Collect(/*wait=*/true);
@@ -245,6 +250,7 @@ void RenderThread::Collect(bool wait) {
   in_flight_.pop_front();
   if (job.prepares) return;
   metrics_->Add(Counter::kPicturesRendered);
+  metrics_->Observe(Timing::kPictureDraw, clock_() - job.taken);
   Finish(*image, std::move(job));
 }
 
@@ -332,8 +338,10 @@ void RenderThread::EncodeVideos(const render::Image& image, RenderJob* job) {
 // False: the viewer gets a file.
 bool RenderThread::EncodeVideo(const render::Image& image, const RenderJob& job,
                                const PictureTicket& ticket) {
+  const Time begun = clock_();
   auto picture = OrOutOfMemory(
       metrics_, [&] { return video_->Encode(ticket.subscription, planes_, *ticket.video); });
+  metrics_->Observe(Timing::kPictureEncode, clock_() - begun);
   if (!picture.ok()) {
     if (picture.status().code() != StatusCode::kNotFound) {
       spdlog::warn("a viewer gets JPEG instead of H.264: {}", picture.status().ToString());
@@ -348,6 +356,7 @@ bool RenderThread::EncodeVideo(const render::Image& image, const RenderJob& job,
            .capture_time_us = job.snapshot->capture_time_us,
            .age_us = job.snapshot->age_us,
            .received_us = job.snapshot->received_us,
+           .submitted = job.submitted,
            .width = image.width,
            .height = image.height,
            .bytes = std::move(picture->bytes),
@@ -359,8 +368,10 @@ bool RenderThread::EncodeVideo(const render::Image& image, const RenderJob& job,
 
 void RenderThread::Encode(const render::Image& image, const RenderJob& job,
                           const Encoding& encoding, std::vector<PictureTicket> tickets) {
+  const Time begun = clock_();
   auto bytes = OrOutOfMemory(
       metrics_, [&] { return render::EncodeImage(image, encoding.format, encoding.quality); });
+  metrics_->Observe(Timing::kPictureEncode, clock_() - begun);
   metrics_->Add(bytes.ok() ? Counter::kPicturesEncoded : Counter::kPicturesFailed);
   if (!bytes.ok()) {
     spdlog::warn("cannot encode a picture: {}", bytes.status().ToString());
@@ -372,6 +383,7 @@ void RenderThread::Encode(const render::Image& image, const RenderJob& job,
            .capture_time_us = job.snapshot->capture_time_us,
            .age_us = job.snapshot->age_us,
            .received_us = job.snapshot->received_us,
+           .submitted = job.submitted,
            .width = image.width,
            .height = image.height,
            .encoding = encoding,

@@ -56,14 +56,17 @@ class RenderThread : public PictureSource {
   // or, after a failure, without.
   using OnPicture = std::function<void(FinishedPicture)>;
 
+  using Clock = Time (*)();
+
   // Creates the renderer, at the start and after each loss. Called on the render thread.
   using Factory = std::function<Result<std::unique_ptr<render::Renderer>>()>;
 
-  // Starts the thread and waits for the first renderer. `skeleton`: the character's. `video`: null
-  // means that all pictures are files. Both outlive this object. Errors: those of `make_renderer`.
+  // Starts the thread and waits for the first renderer. `skeleton`: the character's. `clock`: for
+  // the histograms of the stages; called on any thread. `video`: null means that all pictures are
+  // files. `skeleton` and `video` outlive this object. Errors: those of `make_renderer`.
   [[nodiscard]] static Result<std::unique_ptr<RenderThread>> Start(
-      const wrinkle::Skeleton* skeleton, Factory make_renderer, Metrics* metrics, OnPicture deliver,
-      VideoEncoders* video = nullptr);
+      const wrinkle::Skeleton* skeleton, Factory make_renderer, Metrics* metrics, Clock clock,
+      OnPicture deliver, VideoEncoders* video = nullptr);
   ~RenderThread() override;  // drops waiting jobs and joins the thread
   RenderThread(const RenderThread&) = delete;
   RenderThread& operator=(const RenderThread&) = delete;
@@ -128,7 +131,7 @@ class RenderThread : public PictureSource {
   };
 
   RenderThread(const wrinkle::Skeleton* skeleton, Factory make_renderer, Metrics* metrics,
-               OnPicture deliver, VideoEncoders* video);
+               Clock clock, OnPicture deliver, VideoEncoders* video);
 
   Status CreateRenderer();
   bool Revive();
@@ -151,6 +154,7 @@ class RenderThread : public PictureSource {
 
   const Factory make_renderer_;
   Metrics* const metrics_;
+  const Clock clock_;
   const OnPicture deliver_;
   VideoEncoders* const video_;  // may be null
   RenderMailbox mailbox_;

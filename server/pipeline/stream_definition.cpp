@@ -51,6 +51,16 @@ void StreamDefinitions::SetRig(std::shared_ptr<const wrinkle::Rig> rig) {
   known_.clear();
 }
 
+StreamMaps StreamDefinitions::SetMaps(StreamMaps maps) {
+  known_.clear();  // those of the old maps
+  return std::exchange(maps_, std::move(maps));
+}
+
+void StreamDefinitions::SetCapacity(std::size_t capacity) {
+  capacity_ = capacity;
+  while (known_.size() > capacity_) known_.pop_back();
+}
+
 Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Rebind(
     const StreamDefinition& stream) {
   // Not limited: the number of subjects bounds the work, and SetRig() must reach all of them.
@@ -81,7 +91,7 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::FindOrMake(
 Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Make(
     wrinkle::Skeleton skeleton, std::vector<std::string> blend_shapes) {
   // Finds the skeleton map whose joint names fit, and by it the joints of the rig.
-  rig::SkeletonMatch match = matcher_.Match(skeleton, *rig_, character_.skeleton);
+  rig::SkeletonMatch match = maps_.skeletons.Match(skeleton, *rig_, character_.skeleton);
   auto definition = std::make_shared<StreamDefinition>();
   // The character has its own skeleton: the pose is carried over joint by joint.
   if (character_.skeleton != nullptr) {
@@ -90,7 +100,7 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Make(
     definition->joint_shapes = MatchJointShapes(skeleton, blend_shapes, match, *definition);
   }
   // The same for the names of blend shapes.
-  rig::RigShapes shapes(shape_matcher_, blend_shapes, *rig_,
+  rig::RigShapes shapes(maps_.shapes, blend_shapes, *rig_,
                         {definition->joint_shapes, character_.shapes});
   // Live streams may lack joints and blend shapes. Their drivers rest, and Report() names them.
   auto binding = wrinkle::RigBinding::Create(*rig_, skeleton, shapes.driver_names(),
@@ -106,10 +116,10 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Make(
   if (character_.skeleton != nullptr) {
     definition->blend_shape_pose = std::make_shared<const wrinkle::BlendShapePose>(
         wrinkle::BlendShapePose::Create(*rig_, *character_.skeleton, shapes.pose_names(),
-                                        shape_matcher_.AllNamesOf(character_.shapes)));
+                                        maps_.shapes.AllNamesOf(character_.shapes)));
     rig::ShapeMatch face =
-        shape_matcher_.MatchFace(shapes.source_names(), character_.shapes, character_.shape_rules,
-                                 /*is_solved=*/definition->joint_shapes != nullptr);
+        maps_.shapes.MatchFace(shapes.source_names(), character_.shapes, character_.shape_rules,
+                               /*is_solved=*/definition->joint_shapes != nullptr);
     definition->face_match = rig::Describe(face);
     definition->shape_program =
         std::make_shared<const wrinkle::ShapeProgram>(std::move(face.program));
@@ -133,14 +143,14 @@ std::shared_ptr<const wrinkle::JointShapes> StreamDefinitions::MatchJointShapes(
     const wrinkle::Skeleton& skeleton, std::span<const std::string> blend_shapes,
     const rig::SkeletonMatch& match, const StreamDefinition& stream) const {
   if (character_.surface == nullptr ||
-      !rig::MatchShapes(shape_matcher_, blend_shapes, character_.shapes).empty()) {
+      !rig::MatchShapes(maps_.shapes, blend_shapes, character_.shapes).empty()) {
     return nullptr;
   }
   auto found = rig::MatchFaceJoints(
       {skeleton, match.stream.roles, match.turn(), stream.retarget->unmatched_source()},
       {*character_.skeleton, match.character.roles, *character_.surface, character_.shapes,
        character_.shape_rules},
-      shape_matcher_);
+      maps_.shapes);
   if (found.empty()) return nullptr;
   return std::make_shared<const wrinkle::JointShapes>(std::move(found));
 }

@@ -59,20 +59,23 @@ struct StreamCharacter {
   const wrinkle::MovedSurface* surface = nullptr;  // null: joints move no shapes
 };
 
+// Finds the joints and the blend shapes of streams that have other names than those of the rig and
+// of the character.
+struct StreamMaps {
+  rig::SkeletonMatcher skeletons;
+  rig::ShapeMatcher shapes;
+};
+
 // Creates stream definitions and keeps the `capacity` most recently used ones, so that a sender
 // that restarts, or several senders with equal skeletons, share one.
 class StreamDefinitions {
  public:
-  // `matcher` finds the joints of skeletons with other joint names than the rig and the character,
-  // `shape_matcher` blend shapes with other names than theirs.
   StreamDefinitions(std::shared_ptr<const wrinkle::Rig> rig, const StreamCharacter& character,
-                    std::size_t capacity, rig::SkeletonMatcher matcher = {},
-                    rig::ShapeMatcher shape_matcher = {})
+                    std::size_t capacity, StreamMaps maps = {})
       : rig_(std::move(rig)),
         character_(character),
         capacity_(capacity),
-        matcher_(std::move(matcher)),
-        shape_matcher_(std::move(shape_matcher)),
+        maps_(std::move(maps)),
         rig_joints_(wrinkle::JointsOf(*rig_)) {}
 
   // Returns the definition of a stream, creating it if needed. `may_make` is called before a new
@@ -89,6 +92,10 @@ class StreamDefinitions {
   [[nodiscard]] const std::shared_ptr<const wrinkle::Rig>& shared_rig() const { return rig_; }
   // Uses another rig for definitions created from now on.
   void SetRig(std::shared_ptr<const wrinkle::Rig> rig);
+  // Uses other maps for definitions created from now on. Returns the ones before.
+  [[nodiscard]] StreamMaps SetMaps(StreamMaps maps);
+  // Limits the number of definitions that are kept for reuse.
+  void SetCapacity(std::size_t capacity);
   // Binds the stream of an old definition to the current rig. Errors: those of Get().
   [[nodiscard]] Result<std::shared_ptr<const StreamDefinition>> Rebind(
       const StreamDefinition& stream);
@@ -107,8 +114,7 @@ class StreamDefinitions {
   std::shared_ptr<const wrinkle::Rig> rig_;
   StreamCharacter character_;
   std::size_t capacity_;
-  rig::SkeletonMatcher matcher_;
-  rig::ShapeMatcher shape_matcher_;
+  StreamMaps maps_;
   std::set<std::string> rig_joints_;                          // all joints that the rig reads
   std::list<std::shared_ptr<const StreamDefinition>> known_;  // most recently used first
 };

@@ -233,7 +233,7 @@ bool Dispatcher::OnToken(Peer& peer, const protocol::Header& header, const std::
       RefuseStranger(shard, peer, header, access.status().what());
       return false;
     }
-    Permit(peer, *std::move(access), parts_.limits);
+    Permit(peer, *std::move(access), *parts_.limits);
     peer.link->OnAdmitted();
     parts_.subscribers->EndForbidden(peer);
     parts_.publishers->EndForbidden(peer, now);

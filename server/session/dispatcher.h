@@ -38,7 +38,7 @@ class Dispatcher {
     MessageSender* messages = nullptr;  // used under the exclusive lock
     Metrics* metrics = nullptr;
     const TokenGate* gate = nullptr;  // null: everybody may do everything
-    Limits limits;
+    const Limits* limits = nullptr;
   };
   explicit Dispatcher(Parts parts) : parts_(std::move(parts)) {}
 

@@ -41,8 +41,8 @@ Hub::Hub(Parts parts)
       gate_(parts.gate),
       exclusive_context_(parts.session, metrics_, Link::kExclusive),
       definitions_(std::move(parts.rig), parts.character,
-                   static_cast<std::size_t>(parts.limits.max_skeletons), std::move(parts.skeletons),
-                   std::move(parts.shape_matcher)),
+                   static_cast<std::size_t>(parts.limits.max_skeletons),
+                   {std::move(parts.skeletons), std::move(parts.shape_matcher)}),
       subjects_(static_cast<std::size_t>(limits_.max_subjects)),
       publishers_(limits_, JitterDelays(parts.jitter), &definitions_, &subjects_,
                   &exclusive_context_.messages, random_, metrics_),
@@ -62,8 +62,8 @@ Hub::Hub(Parts parts)
                    .messages = &exclusive_context_.messages,
                    .metrics = metrics_,
                    .gate = gate_,
-                   .limits = limits_}),
-      mocap_(limits_.idle_seconds, &shards_, &router_, metrics_),
+                   .limits = &limits_}),
+      mocap_(limits_, &shards_, &router_, metrics_),
       holds_poses_(JitterDelays(std::move(parts.jitter)).any()) {}
 
 PeerId Hub::AddPeer(Transport transport, PeerLabel name, Link* link, Time now, int shard,
@@ -359,6 +359,19 @@ Status Hub::SetRig(std::shared_ptr<const wrinkle::Rig> rig, Time now) {
     RepublishWeights(subject, now);
   }
   return {};
+}
+
+Status Hub::SetRigAndMaps(std::shared_ptr<const wrinkle::Rig> rig, StreamMaps maps, Time now) {
+  StreamMaps former = definitions_.SetMaps(std::move(maps));
+  Status status = SetRig(std::move(rig), now);
+  if (!status.ok()) (void)definitions_.SetMaps(std::move(former));
+  return status;
+}
+
+void Hub::SetLimits(const Limits& limits) {
+  limits_ = limits;
+  subjects_.SetMaxSubjects(static_cast<std::size_t>(limits.max_subjects));
+  definitions_.SetCapacity(static_cast<std::size_t>(limits.max_skeletons));
 }
 
 void Hub::SetNeutral(Subject& subject, std::optional<wrinkle::LocalPose> neutral, Time now) {

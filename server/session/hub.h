@@ -87,6 +87,12 @@ class Hub {
     shards_.at(shard).buffered_sender = sender;
   }
 
+  // The poses whose weights the shard's sender has got since the last call, for its Flush(), which
+  // empties the list.
+  [[nodiscard]] std::vector<Shard::Published>& published(int shard) {
+    return shards_.at(shard).published;
+  }
+
   // Called by the shard's thread, like all functions with a PeerId. `link` outlives the peer.
   // A UDP peer must have proved its address (Reception), or its token by a secure session.
   // `access`: what the peer may do; none: what those may do who have shown nothing
@@ -177,6 +183,15 @@ class Hub {
   // RigBinding::Create() for a subject's skeleton, with the subject's name as `where`; the old rig
   // then stays in use.
   [[nodiscard]] Status SetRig(std::shared_ptr<const wrinkle::Rig> rig, Time now);
+  // The same, and replaces the maps that find the rig's joints and blend shapes.
+  [[nodiscard]] Status SetRigAndMaps(std::shared_ptr<const wrinkle::Rig> rig, StreamMaps maps,
+                                     Time now);
+  [[nodiscard]] const std::shared_ptr<const wrinkle::Rig>& shared_rig() const {
+    return definitions_.shared_rig();
+  }
+  // Replaces the limits. Whatever exceeds them already stays. The rate of messages counts for peers
+  // that come from now on; max_udp_peers is not the hub's.
+  void SetLimits(const Limits& limits);
   // Measures the subject's weights from this pose instead of the rest pose; nullopt: from the rest
   // pose. A pose with other joint or blend-shape counts is ignored.
   void SetNeutral(Subject& subject, std::optional<wrinkle::LocalPose> neutral, Time now);
@@ -197,7 +212,7 @@ class Hub {
   void EndIfTokenEnded(Peer& peer, Time now);
   void RepublishWeights(Subject& subject, Time now);
 
-  const Limits limits_;
+  Limits limits_;  // the parts refer to it; changes under the exclusive lock
   const std::uint64_t session_;
   Metrics* const metrics_;
   const std::function<std::uint64_t()> random_;

@@ -77,7 +77,8 @@ void MocapStreams::ForgetSubject(const std::string& name) {
 
 void MocapStreams::ForgetRejected(Time now) {
   std::erase_if(streams_, [&](const auto& entry) {
-    return entry.second.rejected && now - entry.second.last_frame > FromSeconds(idle_seconds_);
+    return entry.second.rejected &&
+           now - entry.second.last_frame > FromSeconds(limits_.idle_seconds);
   });
 }
 

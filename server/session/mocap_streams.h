@@ -23,9 +23,10 @@ namespace furrow::server {
 // All mocap peers belong to shard 0, so shard 0's lock guards this object.
 class MocapStreams {
  public:
-  // A stream without poses is forgotten after `idle_seconds` if its offer was rejected.
-  MocapStreams(double idle_seconds, Shards* shards, StreamRouter* router, Metrics* metrics)
-      : idle_seconds_(idle_seconds), shards_(shards), router_(router), metrics_(metrics) {}
+  // A stream without poses is forgotten after `limits.idle_seconds` if its offer was rejected.
+  // `limits` outlives this object.
+  MocapStreams(const Limits& limits, Shards* shards, StreamRouter* router, Metrics* metrics)
+      : limits_(limits), shards_(shards), router_(router), metrics_(metrics) {}
 
   // Handles one frame. Requires the lock of `shard`. Frames of a rejected subject, and of subjects
   // beyond the first 64, are dropped and counted as Counter::kMocapRefused.
@@ -51,7 +52,7 @@ class MocapStreams {
   void Offer(Shard& shard, Peer& peer, const protocol::Header& header, Stream& stream,
              const protocol::mocap::NeutralFrame& frame, Time now);
 
-  const double idle_seconds_;
+  const Limits& limits_;
   Shards* const shards_;
   StreamRouter* const router_;
   Metrics* const metrics_;

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <vector>
 
 #include "protocol/messages/messages.h"
 #include "server/core/metrics.h"
+#include "server/core/time.h"
 #include "server/session/delivery/publish_context.h"
 #include "server/session/jitter/jitter_buffers.h"
 #include "server/session/peers/peer_table.h"
@@ -32,6 +35,12 @@ struct Shard {
   JitterBuffers held;  // poses that wait for their time
   PoseBatch gathered;  // poses accepted but not solved yet
   PublishContext context;
+  // The poses whose weights wait in `buffered_sender`.
+  struct Published {
+    Time received{0};          // or released from a jitter buffer
+    std::optional<Time> late;  // beyond the fastest poses of the stream; absent: no capture time
+  };
+  std::vector<Published> published;
   BufferedSender* buffered_sender = nullptr;  // null: messages leave at once
   // Nesting depth of the locks that the shard's thread holds.
   int shard_locks = 0;

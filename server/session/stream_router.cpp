@@ -144,7 +144,17 @@ void StreamRouter::PublishGathered(Shard& shard) {
       parts_.recording->OnPose(*pose.subject, pose.payload, pose.now);
     }
     Publish(shard, *pose.subject, pose.payload, /*age_us=*/0, pose.now);
+    NotePublished(shard, pose);
   }
+}
+
+// For the histograms of latency, when the weights leave.
+void StreamRouter::NotePublished(Shard& shard, const GatheredPose& pose) {
+  if (shard.buffered_sender == nullptr) return;
+  const std::int64_t captured = pose.header.capture_time_us;
+  std::optional<Time> late;
+  if (captured != 0) late = pose.now - pose.subject->capture_clock.Arrival(captured, pose.now);
+  shard.published.push_back({pose.now, late});
 }
 
 void StreamRouter::PublishAged(Shard& shard, Subject& subject, std::int64_t age_us, Time now) {

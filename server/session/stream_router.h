@@ -92,6 +92,7 @@ class StreamRouter {
   void Use(Shard& shard, Subject& subject, const protocol::Header& header,
            const protocol::PoseFrame& pose, std::span<const std::uint8_t> payload, Time now);
   void UseReleased(Shard& shard, std::span<const JitterBuffers::Released> released, Time now);
+  static void NotePublished(Shard& shard, const GatheredPose& pose);
   void Publish(Shard& shard, Subject& subject, std::span<const std::uint8_t> payload,
                std::int64_t age_us, Time now);
 

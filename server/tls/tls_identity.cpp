@@ -6,11 +6,27 @@
 #include <spdlog/spdlog.h>
 
 namespace furrow::server {
+namespace {
+
+std::vector<FileWatch> WatchesOf(const TlsFiles& files) {
+  return {FileWatch(files.certificate), FileWatch(files.key), FileWatch(files.client_authority)};
+}
+
+}  // namespace
 
 TlsIdentity::TlsIdentity(TlsFiles files)
     : files_(std::move(files)),
-      watches_{FileWatch(files_.certificate), FileWatch(files_.key),
-               FileWatch(files_.client_authority)} {}
+      enabled_(files_.enabled()),
+      asks_clients_(!files_.client_authority.empty()),
+      watches_(WatchesOf(files_)) {}
+
+void TlsIdentity::Replace(TlsFiles files, TlsContexts contexts) {
+  files_ = std::move(files);
+  watches_ = WatchesOf(files_);
+  (void)FilesChanged();
+  changed_ = false;
+  Use(std::move(contexts));
+}
 
 bool TlsIdentity::FilesChanged() {
   bool changed = false;

@@ -12,7 +12,8 @@
 namespace furrow::server {
 
 // The certificate and key of a running daemon, read again when the files change. Connections that
-// are open keep what they began with. Load() and ReadIfChanged() belong to one thread; the other
+// are open keep what they began with. Load(), Replace() and ReadIfChanged() belong to one
+// thread; the other
 // functions are thread-safe.
 class TlsIdentity {
  public:
@@ -20,15 +21,18 @@ class TlsIdentity {
 
   // Reads the files, if there are any. Errors: those of LoadTlsContexts().
   [[nodiscard]] Status Load();
+  // Uses these contexts, which were read from `files`, for connections from now on. Precondition:
+  // the files are for the same kind of service: enabled() and asks_clients() do not change.
+  void Replace(TlsFiles files, TlsContexts contexts);
   // Reads files that have changed. Call it about once per second. A change counts when a second
   // passes without another one, because certificate and key are written one after the other.
   // Files that cannot be used change nothing; the fault is logged once per change.
   void ReadIfChanged();
 
   // False: the ports speak plain TCP and HTTP.
-  [[nodiscard]] bool enabled() const { return files_.enabled(); }
+  [[nodiscard]] bool enabled() const { return enabled_; }
   // True: clients must show a certificate.
-  [[nodiscard]] bool asks_clients() const { return !files_.client_authority.empty(); }
+  [[nodiscard]] bool asks_clients() const { return asks_clients_; }
   // The present contexts, with which new connections begin. Only if enabled().
   [[nodiscard]] TlsContext for_messages() const;
   [[nodiscard]] TlsContext for_web() const;
@@ -37,7 +41,9 @@ class TlsIdentity {
   [[nodiscard]] bool FilesChanged();
   void Use(TlsContexts contexts);
 
-  const TlsFiles files_;
+  TlsFiles files_;  // of the thread of Load()
+  const bool enabled_;
+  const bool asks_clients_;
   std::vector<FileWatch> watches_;
   bool changed_ = false;  // and not read yet
   mutable std::mutex mutex_;

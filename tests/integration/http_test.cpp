@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // The web server over real sockets: replies, errors and closed connections (docs/HTTP-API.md).
 #include <fstream>
+#include <map>
 #include <memory>
 #include <optional>
+#include <set>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "base/ascii.h"
 #include "daemon_fixture.h"
 #include "tests/temporary_folder.h"
 #include "web_client.h"
@@ -19,6 +24,8 @@ namespace {
 
 using Json = nlohmann::json;
 using server::Counter;
+using testing::ContainsRegex;
+using testing::HasSubstr;
 
 // Two joints and four frames of 0.25 s.
 constexpr char kNod[] = R"(HIERARCHY
@@ -88,6 +95,49 @@ TEST_F(Http, RoutesAnswerOnOneConnection) {
   EXPECT_NE(metrics.body.find("# TYPE furrow_heap_used_bytes gauge"), std::string::npos);
   EXPECT_NE(metrics.body.find("# TYPE furrow_heap_bytes gauge"), std::string::npos);
   EXPECT_EQ(Json::parse(client.Ask("GET", "/api/status").body)["render"], false);
+}
+
+// HELP says more than the name, and every family has one.
+TEST_F(Http, EveryMetricIsExplained) {
+  std::istringstream text(Get("/metrics").body);
+  std::map<std::string, std::string> help;
+  std::set<std::string> typed;
+  for (std::string line; std::getline(text, line);) {
+    std::istringstream words(line);
+    std::string mark;
+    std::string kind;
+    std::string name;
+    words >> mark >> kind >> name;
+    if (mark != "#") continue;
+    std::string rest;
+    std::getline(words >> std::ws, rest);
+    if (kind == "HELP") help[name] = rest;
+    if (kind == "TYPE") typed.insert(name);
+  }
+  EXPECT_GT(typed.size(), 100u);
+  for (const std::string& name : typed) {
+    const std::string& sentence = help[name];
+    EXPECT_TRUE(sentence.ends_with('.')) << name << ": " << sentence;
+    // "Poses received." says no more than furrow_poses_received_total unless a word is added.
+    std::istringstream words(sentence);
+    int added = 0;
+    for (std::string word; words >> word;) {
+      word = AsciiLower(word.substr(0, word.find_last_not_of(".,:;") + 1));
+      if (name.find(word) == std::string::npos) ++added;
+    }
+    EXPECT_GT(added, 0) << name << ": " << sentence;
+  }
+}
+
+TEST_F(Http, LatencyIsCountedWhenWeightsLeave) {
+  PublishAnn();
+  const std::string body = Get("/metrics").body;
+  EXPECT_THAT(body, HasSubstr("furrow_receive_to_send_seconds_count 1\n"));
+  EXPECT_THAT(body, HasSubstr("furrow_receive_to_send_seconds_bucket{le=\"+Inf\"} 1\n"));
+  EXPECT_THAT(body, HasSubstr("furrow_picture_stage_seconds_count{stage=\"draw\"} 0\n"));
+  EXPECT_THAT(body, HasSubstr("furrow_build_info{version=\""));
+  EXPECT_THAT(body, HasSubstr("furrow_ready 1\n"));
+  EXPECT_THAT(body, ContainsRegex("process_resident_memory_bytes [1-9]"));
 }
 
 TEST_F(Http, AWrongMethodGetsAllow) {

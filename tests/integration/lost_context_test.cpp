@@ -14,6 +14,7 @@
 
 #include "character/package/package.h"
 #include "motion/pose_source.h"
+#include "server/net/clock.h"
 #include "server/pipeline/render_thread.h"
 #include "tests/log_capture.h"
 
@@ -53,7 +54,7 @@ class LostContext : public testing::Test {
     ASSERT_TRUE(loaded.ok()) << loaded.status().ToString();
     character = *std::move(loaded);
     auto started = server::RenderThread::Start(
-        &character.skeleton, [this] { return Create(); }, &metrics,
+        &character.skeleton, [this] { return Create(); }, &metrics, &server::ReadClock,
         [this](server::FinishedPicture picture) {
           drawn.at(num_drawn++).set_value(std::move(picture));
         });

@@ -9,19 +9,18 @@
 #include <gtest/gtest.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
-#include <sys/time.h>
-#include <sys/un.h>
 #include <unistd.h>
 
+#include "notify_socket.h"
 #include "process.h"
 #include "raw_client.h"
-#include "tests/temporary_folder.h"
 #include "web_client.h"
 
 namespace furrow::testing_net {
 namespace {
 
 using testing::HasSubstr;
+using testing::MatchesRegex;
 using testing::StartsWith;
 
 std::vector<std::string> Command(std::vector<std::string> more = {}) {
@@ -38,34 +37,6 @@ std::vector<std::string> Command(std::vector<std::string> more = {}) {
   command.insert(command.end(), more.begin(), more.end());
   return command;
 }
-
-// The socket that receives what the daemon says.
-class NotifySocket {
- public:
-  NotifySocket() : socket_(socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    path().copy(address.sun_path, sizeof(address.sun_path) - 1);
-    EXPECT_EQ(bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)), 0);
-    const timeval deadline{20, 0};
-    setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &deadline, sizeof(deadline));
-  }
-  ~NotifySocket() { close(socket_); }
-  NotifySocket(const NotifySocket&) = delete;
-  NotifySocket& operator=(const NotifySocket&) = delete;
-
-  [[nodiscard]] std::string path() const { return (folder_.path() / "notify").string(); }
-  // The next message; empty after 20 s without one.
-  [[nodiscard]] std::string Next() const {
-    char text[4096];
-    const ssize_t size = recv(socket_, text, sizeof(text), 0);
-    return size > 0 ? std::string(text, static_cast<std::size_t>(size)) : std::string();
-  }
-
- private:
-  TemporaryFolder folder_;
-  int socket_;
-};
 
 // A TCP socket that listens on a free port.
 class Listener {
@@ -102,9 +73,7 @@ TEST(Service, TheManagerHearsThatTheDaemonServesLivesAndEnds) {
   EXPECT_THAT(ready, HasSubstr("STATUS=furrowd ready tcp=127.0.0.1:"));
   EXPECT_THAT(manager.Next(), StartsWith("WATCHDOG=1"));
   daemon.Signal(SIGTERM);
-  std::string last = manager.Next();
-  while (last.starts_with("WATCHDOG=1")) last = manager.Next();
-  EXPECT_THAT(last, StartsWith("STOPPING=1"));
+  EXPECT_THAT(manager.NextBut("WATCHDOG=1"), StartsWith("STOPPING=1"));
   EXPECT_EQ(daemon.Wait(), 0);
 }
 
@@ -131,6 +100,17 @@ TEST(Service, AnOpenDaemonTakesNoSocketOnTheNetwork) {
   EXPECT_THAT(daemon.ReadErrors(), HasSubstr("listens on 0.0.0.0"));
   Process open(Command({"--open"}), {.sockets = {tcp.socket_number()}, .names = "tcp"});
   EXPECT_THAT(open.ReadLine().value_or(""), HasSubstr("tcp=0.0.0.0:"));
+}
+
+// sd_notify(3) describes the messages of a reload.
+TEST(Service, TheManagerHearsWhenAReloadBeginsAndEnds) {
+  const NotifySocket manager;
+  Process daemon(Command(), {.notify_socket = manager.path()});
+  EXPECT_THAT(manager.Next(), StartsWith("READY=1\n"));
+  daemon.Signal(SIGHUP);
+  EXPECT_THAT(manager.NextBut("WATCHDOG=1"),
+              MatchesRegex("RELOADING=1\nMONOTONIC_USEC=[0-9]+\nSTATUS=.*"));
+  EXPECT_EQ(manager.NextBut("WATCHDOG=1"), "READY=1\nSTATUS=the configuration was read again");
 }
 
 TEST(Service, OtherSocketsAreNamedAndClosed) {

@@ -286,6 +286,7 @@ class Proposer {
     auto& remarks = proposal_.remarks;
     const std::string& map = target_.joints->map;
     if (map.empty()) {
+      proposal_.joints_are_guessed = true;
       remarks.emplace_back(
           "joint roles were guessed from the hierarchy; check the joints of each driver");
     } else if (map != rig::kFromPackage) {

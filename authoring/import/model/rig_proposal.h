@@ -23,6 +23,7 @@ struct RigProposal {
   wrinkle::Rig rig;
   // One sentence each: what was transferred to which joint, what was not, and what to edit.
   std::vector<std::string> remarks;
+  bool joints_are_guessed = false;  // from the hierarchy, because no map fits
 };
 
 // Proposes a wrinkle rig for the skeleton `target` from `rig`, which works on the skeleton `model`.

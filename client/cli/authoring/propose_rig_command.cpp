@@ -16,6 +16,7 @@
 #include "client/cli/common/command.h"
 #include "client/cli/common/exit_code.h"
 #include "client/cli/common/inputs.h"
+#include "rig/near_names.h"
 #include "rig/rig_file.h"
 
 namespace furrow::cli {
@@ -98,11 +99,32 @@ Result<authoring::RigProposal> ProposeFor(const ProposeArguments& arguments, Rig
   return proposal;
 }
 
+// The way out where no map fits the joints, if their names nearly match one.
+Result<std::string> OfferMap(const std::string& file, const wrinkle::Skeleton& skeleton) {
+  const auto maps = rig::SkeletonMaps::LoadShipped();
+  FURROW_RETURN_IF_ERROR(maps);
+  const rig::SkeletonRoles near = rig::RolesOfNearNames(maps->maps(), skeleton.joint_names());
+  if (near.map.empty()) return std::string();
+  return "the joint names nearly match '" + near.map + "' (" + Counted(near.num_roles, "role") +
+         "); 'furrow rig propose-map " + file +
+         " --out MAP.json' writes a map of them, for --map MAP.json";
+}
+
 int Propose(const ProposeArguments& arguments) {
   auto subject = LoadRigSubject(arguments.file, arguments.read);
   if (!subject.ok()) return Fail(subject.status());
-  const auto proposal = ProposeFor(arguments, std::move(*subject));
-  if (!proposal.ok()) return Fail(proposal.status().At(arguments.file));
+  const wrinkle::Skeleton skeleton = subject->skeleton;
+  auto proposal = ProposeFor(arguments, std::move(*subject));
+  if (!proposal.ok() || proposal->joints_are_guessed) {
+    const auto offer = OfferMap(arguments.file, skeleton);
+    if (!offer.ok()) return Fail(offer.status());
+    if (!proposal.ok()) {
+      const Status& why = proposal.status();
+      return Fail(
+          Status(why.code(), why.what(), arguments.file, offer->empty() ? why.todo() : *offer));
+    }
+    if (!offer->empty()) proposal->remarks.push_back(*offer);
+  }
   if (Status s = rig::SaveRig(proposal->rig, arguments.out); !s.ok()) return Fail(s);
   PrintNotes(proposal->remarks);
   std::fprintf(stderr, "furrow: %s: %s, %s, %s; edit it, then run 'furrow rig check'\n",

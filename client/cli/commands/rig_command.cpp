@@ -15,6 +15,7 @@
 #include "client/cli/output/explanation_text.h"
 #include "motion/clip/clip.h"
 #include "rig/exports/export_profile.h"
+#include "rig/near_names.h"
 #include "rig/rig_file.h"
 #include "wrinkle/solver/solver.h"
 
@@ -139,7 +140,13 @@ int ProposeMap(const RigOptions& options) {
   if (!clip.ok()) return Fail(clip.status());
   const auto matcher = LoadSkeletonMatcher({});
   if (!matcher.ok()) return Fail(matcher.status());
-  const rig::SkeletonRoles roles = matcher->RolesOf(clip->skeleton);
+  rig::SkeletonRoles roles = matcher->RolesOf(clip->skeleton);
+  if (roles.map.empty() || roles.map == rig::kFromHierarchy) {
+    const auto shipped = rig::SkeletonMaps::LoadShipped();
+    if (!shipped.ok()) return Fail(shipped.status());
+    auto near = rig::RolesOfNearNames(shipped->maps(), clip->skeleton.joint_names());
+    if (near.num_roles > roles.num_roles) roles = std::move(near);
+  }
   if (clip->skeleton.num_joints() == 0 || roles.roles.empty()) {
     return Fail({StatusCode::kUnsupported,
                  "no roles were found: no skeleton map fits, and the hierarchy is not that of an "
@@ -199,7 +206,7 @@ void AddExplain(CLI::App& group, Action& action) {
   AddShapeMap(*command, options->shape_map);
   AddReadOptions(*command, options->read);
   command->add_option("--frame", options->frame, "Frame number, counted from 0")
-      ->check(CLI::NonNegativeNumber)
+      ->check(Within(0, 1e9))
       ->capture_default_str();
   command
       ->add_option("--threshold", options->threshold,

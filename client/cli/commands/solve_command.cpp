@@ -107,7 +107,7 @@ void AddSolve(CLI::App& app, Action& action) {
   command
       ->add_option("--level", options->level,
                    "Level of detail: use only the first N drivers of the rig (default: all)")
-      ->check(CLI::PositiveNumber);
+      ->check(Within(1, 1e9));
   command->add_flag("--no-filter", options->no_filter, "Do not filter the weights");
   command->add_flag("--allow-missing", options->allow_missing,
                     "Accept missing joints and blend shapes; their drivers stay at 0");

@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <map>
+#include <sstream>
 
 namespace furrow::cli {
 
@@ -55,7 +56,7 @@ void AddReadOptions(CLI::App& command, motion::LoadOptions& options) {
           "--rest-frame", options.rest_frame,
           "Frame to take as the rest pose, counted from 0; the performer stands upright and "
           "faces +Z there (default: the rest pose of the file)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(Within(0, 1e9));
   AddBvhOptions(command, options);
 }
 
@@ -81,12 +82,14 @@ CLI::Validator SizeValidator() {
 
 CLI::Validator Within(double least, double most) {
   const std::string range = CLI::Range(least, most).get_description();
-  return {[=](std::string& text) {
+  std::ostringstream words;
+  words << least << " to " << most;
+  return {[least, most, said = words.str()](std::string& text) {
             double number = 0.0;
             // NaN fails both comparisons; CLI::Range would accept it.
             const bool is_number = CLI::detail::lexical_cast(text, number);
             if (is_number && number >= least && number <= most) return std::string();
-            return "'" + text + "' is not in " + range;
+            return "'" + text + "' is not a number from " + said;
           },
           range};
 }

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "client/cli/common/exit_code.h"
+#include "client/cli/common/usage_error.h"
 
 namespace furrow::cli {
 namespace {
@@ -44,7 +45,10 @@ int ParseAndRun(int argc, const char* const* argv,
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kDone : kUsage;
+    // --help and --version are exceptions, too; exit() writes their text.
+    if (error.get_exit_code() == 0) return app.exit(error);
+    std::fprintf(stderr, "furrow: %s\n", UsageMessage(app, error).c_str());
+    return kUsage;
   }
   return action();
 }

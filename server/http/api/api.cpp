@@ -79,8 +79,9 @@ Api::Api(Parts parts)
                [this](const ApiRequest&, Hub&, Time) { return status_.Health(); }},
               {"GET", "/readyz", Need::kNothing,
                [this](const ApiRequest&, Hub& hub, Time) { return status_.Ready(hub); }},
-              {"GET", "/metrics", Need::kOperate,
-               [this](const ApiRequest&, Hub& hub, Time) { return status_.MetricsText(hub); }}} {}
+              {"GET", "/metrics", Need::kOperate, [this](const ApiRequest&, Hub& hub, Time now) {
+                 return status_.MetricsText(hub, now);
+               }}} {}
 
 bool Api::Permits(Need need, const Access& access) {
   switch (need) {

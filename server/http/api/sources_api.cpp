@@ -54,7 +54,7 @@ ApiReply SourcesApi::Show(Time now) const {
   return JsonReply({{"bind", parts_.bind},
                     {"loopback", IsLoopback(parts_.bind)},
                     {"addresses", ReachableAddresses(parts_.bind)},
-                    {"allow", parts_.allow},
+                    {"allow", parts_.allow()},
                     {"inputs", std::move(list)}});
 }
 

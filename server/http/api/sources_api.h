@@ -17,8 +17,9 @@ namespace furrow::server {
 class SourcesApi {
  public:
   struct Parts {
-    std::string bind;                // the numeric address that the daemon listens on
-    std::vector<std::string> allow;  // numeric addresses of senders; empty: any sender
+    std::string bind;  // the numeric address that the daemon listens on
+    // The numeric addresses of senders; empty: any sender. Called on the hub's thread.
+    std::function<std::vector<std::string>()> allow;
     // What has arrived at the port; empty, or absent: it is off. Called on the hub's thread.
     std::function<std::optional<MocapReport>(Time)> livelink_face;
     std::function<std::optional<MocapReport>(Time)> vmc;

@@ -6,15 +6,19 @@
 #include <utility>
 #include <vector>
 
-#include <malloc.h>
 #include <nlohmann/json.hpp>
 #include <prometheus/metric_family.h>
 #include <prometheus/text_serializer.h>
 #include <spdlog/fmt/fmt.h>
 
 #include "server/http/api/json_reply.h"
+#include "server/http/api/metric_families.h"
 
 namespace furrow::server {
+
+using prometheus::MetricFamily;
+using prometheus::MetricType;
+
 namespace {
 
 // In order of precedence: a subject that said goodbye may be lost, too.
@@ -45,22 +49,6 @@ Json VideoJson(const VideoEncoders* video) {
           {"encoders", state.encoders},
           {"max_encoders", state.max_encoders},
           {"why", state.why}};
-}
-
-using prometheus::MetricType;
-
-// A family with one metric and no labels. Labels for subjects or peers would let senders create
-// series without end.
-prometheus::MetricFamily Family(std::string_view name, std::string_view help, MetricType type,
-                                double value) {
-  prometheus::MetricFamily family;
-  family.name = name;
-  family.help = help;
-  family.type = type;
-  prometheus::ClientMetric metric;
-  (type == MetricType::Counter ? metric.counter.value : metric.gauge.value) = value;
-  family.metric.push_back(metric);
-  return family;
 }
 
 }  // namespace
@@ -136,22 +124,19 @@ ApiReply StatusApi::Ready(const Hub& hub) const {
   return JsonReply({{"ok", true}});
 }
 
-ApiReply StatusApi::MetricsText(const Hub& hub) const {
-  std::vector<prometheus::MetricFamily> families;
-  // Counters are read one by one while other threads add; each is right, but they are not from one
-  // moment.
-  for (int i = 0; i < static_cast<int>(Counter::kCount); ++i) {
-    const auto counter = static_cast<Counter>(i);
-    families.push_back(Family(CounterName(counter), CounterHelp(counter), MetricType::Counter,
-                              static_cast<double>(parts_.metrics->Get(counter))));
-  }
+ApiReply StatusApi::MetricsText(const Hub& hub, Time now) const {
+  std::vector<MetricFamily> families;
+  AddCounters(*parts_.metrics, &families);
+  AddTimings(parts_.metrics->timings(), &families);
+  AddProcess(ToSeconds(now - parts_.started), &families);
   const auto add_gauge = [&families](std::string_view name, std::string_view help, double value) {
     families.push_back(Family(name, help, MetricType::Gauge, value));
   };
-  add_gauge("furrow_subjects", "Connected subjects.", static_cast<double>(hub.num_subjects()));
-  add_gauge("furrow_subscriptions", "Active subscriptions.",
+  add_gauge("furrow_subjects", "Subjects that stream, or have stopped and decay.",
+            static_cast<double>(hub.num_subjects()));
+  add_gauge("furrow_subscriptions", "Active subscriptions of all peers.",
             static_cast<double>(hub.num_subscriptions()));
-  add_gauge("furrow_http_connections", "Open HTTP connections.",
+  add_gauge("furrow_http_connections", "Open connections of the web port.",
             static_cast<double>(parts_.connections()));
   add_gauge("furrow_http_viewers", "Open WebSockets and picture streams.",
             static_cast<double>(parts_.viewers()));
@@ -159,16 +144,15 @@ ApiReply StatusApi::MetricsText(const Hub& hub) const {
     add_gauge("furrow_video_encoders", "Viewers that have an H.264 encoder.",
               static_cast<double>(parts_.video->state().encoders));
   }
-  // What the process holds beyond its needs is the allocator's: peaks of the past, and gaps.
-  const struct mallinfo2 heap = mallinfo2();
-  add_gauge("furrow_heap_used_bytes", "Allocated memory in use.",
-            static_cast<double>(heap.uordblks + heap.hblkhd));
-  add_gauge("furrow_heap_bytes", "Memory that the allocator has taken from the system.",
-            static_cast<double>(heap.arena + heap.hblkhd));
-  if (parts_.recording_is_paused) {
-    add_gauge("furrow_recording_paused", "1 while the disk has no room for the recording.",
-              parts_.recording_is_paused() ? 1.0 : 0.0);
-  }
+  add_gauge("furrow_ready", "1 while /readyz replies with 200, otherwise 0.",
+            Ready(hub).status == 200 ? 1.0 : 0.0);
+  add_gauge("furrow_renderer_running", "1 while a renderer runs and responds, otherwise 0.",
+            parts_.pictures != nullptr && !parts_.pictures->is_stuck() ? 1.0 : 0.0);
+  add_gauge("furrow_renderer_wanted", "1 if the configuration asks for pictures, otherwise 0.",
+            parts_.wants_pictures ? 1.0 : 0.0);
+  add_gauge("furrow_recording_paused",
+            "1 while the disk has no room for the recording, otherwise 0.",
+            parts_.recording_is_paused && parts_.recording_is_paused() ? 1.0 : 0.0);
   return {.type = "text/plain; version=0.0.4; charset=utf-8",
           .body = prometheus::TextSerializer().Serialize(families)};
 }

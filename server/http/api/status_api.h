@@ -43,8 +43,8 @@ class StatusApi {
   // 200, or 503 while the daemon shuts down, lacks the renderer that its configuration asks for,
   // has one that does not respond, or cannot record.
   [[nodiscard]] ApiReply Ready(const Hub& hub) const;
-  // All counters in Prometheus' text format.
-  [[nodiscard]] ApiReply MetricsText(const Hub& hub) const;
+  // Counters, histograms and gauges of the daemon and of its process, in Prometheus' text format.
+  [[nodiscard]] ApiReply MetricsText(const Hub& hub, Time now) const;
 
  private:
   const Parts parts_;

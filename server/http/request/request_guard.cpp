@@ -29,7 +29,7 @@ std::string RequestGuard::Check(std::string_view host, std::string_view origin) 
   // A numeric address cannot be rebound by DNS, and browsers resolve "localhost" to loopback.
   const std::string name(HostName(host));
   if (!IsNumericAddress(name) && !EqualsIgnoreCase(name, "localhost") && !Contains(hosts_, name)) {
-    return "Host '" + name + "' is not allowed; add it to http.allow_hosts";
+    return "Host '" + name + "' is not allowed; add it with --allow-host or http.allow_hosts";
   }
   if (origin.empty() || Contains(origins_, origin)) return {};
   // The page of this daemon: its Origin is the Host with a scheme in front.

@@ -19,6 +19,7 @@
 
 #include "protocol/framing/tcp_framing.h"
 #include "server/core/network_address.h"
+#include "server/machine/listen_error.h"
 #include "server/net/await_tuple.h"
 #include "server/net/clock.h"
 #include "server/net/critical_task.h"
@@ -97,16 +98,19 @@ Status TcpServer::Open(const tcp::endpoint& endpoint) {
   if (!error) acceptor_.bind(endpoint, error);
   if (!error) acceptor_.listen(tcp::acceptor::max_listen_connections, error);
   if (!error) return {};
-  return Status(StatusCode::kUnavailable,
-                "cannot listen on TCP " + endpoint.address().to_string() + " port " +
-                    std::to_string(endpoint.port()) + ": " + error.message(),
-                "", "stop the program that uses the port, or set another one with --tcp");
+  return ListenError("TCP", {endpoint.address().to_string(), endpoint.port()}, error.value(),
+                     "--tcp");
 }
 
 HostPort TcpServer::address() const {
   asio::error_code error;
   const tcp::endpoint local = acceptor_.local_endpoint(error);
   return {local.address().to_string(), local.port()};
+}
+
+void TcpServer::SetLimits(const Limits& limits) {
+  limits_ = limits;
+  shares_.SetPlaces(static_cast<std::size_t>(limits.max_connections));
 }
 
 void TcpServer::Start() { StartCriticalTask(io_, Accept()); }

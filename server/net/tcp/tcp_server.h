@@ -44,6 +44,9 @@ class TcpServer {
   // Starts accepting.
   void Start();
 
+  // Uses other limits for connections from now on.
+  void SetLimits(const Limits& limits);
+
   // Stops accepting. Open connections send what is queued and close.
   void Drain();
   // Closes all connections immediately.
@@ -62,7 +65,7 @@ class TcpServer {
 
   asio::io_context& io_;
   asio::ip::tcp::acceptor acceptor_;
-  const Limits limits_;
+  Limits limits_;
   Hub* const hub_;
   Metrics* const metrics_;
   const TlsIdentity* const tls_;

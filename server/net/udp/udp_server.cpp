@@ -14,6 +14,7 @@
 #include "protocol/framing/envelope.h"
 #include "server/core/network_address.h"
 #include "server/core/within_memory.h"
+#include "server/machine/listen_error.h"
 #include "server/net/await_tuple.h"
 #include "server/net/clock.h"
 #include "server/net/critical_task.h"
@@ -122,10 +123,8 @@ Status UdpServer::Open(const udp::endpoint& endpoint, Port port) {
   if (!error) socket_.bind(endpoint, error);
   if (!error) socket_.non_blocking(true, error);
   if (error) {
-    return Status(StatusCode::kUnavailable,
-                  "cannot listen on UDP " + endpoint.address().to_string() + " port " +
-                      std::to_string(endpoint.port()) + ": " + error.message(),
-                  "", "stop the program that uses the port, or set another one with --udp");
+    return ListenError("UDP", {endpoint.address().to_string(), endpoint.port()}, error.value(),
+                       "--udp");
   }
   UdpBatch::CountDropped(socket_.native_handle());
   sender_.Open(socket_.native_handle());
@@ -209,6 +208,14 @@ void UdpServer::Flush() {
   metrics_->Add(Counter::kDatagramsSent, counts.sent);
   metrics_->Add(Counter::kDatagramsUnsendable, counts.lost);
   metrics_->Add(Counter::kMessagesBundled, counts.bundled);
+  auto& published = hub_->published(shard_);
+  if (published.empty()) return;
+  const Time now = ReadClock();
+  for (const Shard::Published& pose : published) {
+    metrics_->Observe(Timing::kReceiveToSend, now - pose.received);
+    if (pose.late) metrics_->Observe(Timing::kCaptureToSend, now - pose.received + *pose.late);
+  }
+  published.clear();
 }
 
 void UdpServer::OnDatagram(std::span<std::uint8_t> bytes, const udp::endpoint& sender, Time now) {

@@ -6,8 +6,8 @@
 #include <memory>
 #include <vector>
 
+#include "server/core/capture_clock.h"
 #include "server/core/time.h"
-#include "server/session/jitter/capture_clock.h"
 #include "server/session/jitter/held_pose.h"
 
 namespace furrow::server {

@@ -99,7 +99,7 @@ class Publishers {
   bool IsNew(Subject& subject, const protocol::Header& header, Time now);
   std::shared_ptr<const protocol::SkeletonOffer> ShareOffer(const protocol::SkeletonOffer& offer);
 
-  const Limits limits_;
+  const Limits& limits_;  // of the hub, which may change them
   const JitterDelays delays_;
   StreamDefinitions* const definitions_;
   SubjectRegistry* const subjects_;

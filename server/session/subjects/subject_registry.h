@@ -14,6 +14,7 @@
 
 #include "protocol/framing/sequence.h"
 #include "protocol/messages/messages.h"
+#include "server/core/capture_clock.h"
 #include "server/core/fair_share.h"
 #include "server/core/time.h"
 #include "server/pipeline/subject_pipeline.h"
@@ -68,7 +69,8 @@ struct Subject {
   bool orphaned = false;           // its publisher's connection has closed
   bool needs_all_drivers = false;  // evaluate all drivers, not only subscribed ones
   SubjectStats stats;
-  RestDetector rest;  // updated only while a viewer uses flow control
+  CaptureClock capture_clock;  // for the lateness of its poses
+  RestDetector rest;           // updated only while a viewer uses flow control
 };
 
 // All subjects of a daemon, by name and by the stream that feeds them, in order of arrival.
@@ -84,6 +86,8 @@ class SubjectRegistry {
   // The oldest subject that `access` is for; null if there is none.
   [[nodiscard]] Subject* First(const Access& access) const;
 
+  // Subjects that are there stay, even if they are more.
+  void SetMaxSubjects(std::size_t max_subjects) { shares_.SetPlaces(max_subjects); }
   // True if Add() may be called for the host (FairShare).
   [[nodiscard]] bool HasRoomFor(const std::string& host) const { return shares_.HasRoomFor(host); }
   // Preconditions: there is no subject of this name, and HasRoomFor(host).

@@ -97,7 +97,7 @@ class Subscribers {
   void RefuseAndErase(Subscription& subscription, protocol::ErrorCode code, std::string why);
   void Erase(Subscription& subscription);
 
-  const Limits limits_;
+  const Limits& limits_;  // of the hub, which may change them
   SubjectRegistry* const subjects_;
   bool all_drivers_;
   MessageSender* const messages_;

@@ -29,6 +29,26 @@ TEST(Counted, OnlyOneIsSingular) {
   EXPECT_EQ(Counted(2, "search", "searches"), "2 searches");
 }
 
+TEST(ClosestWord, FindsTypingMistakes) {
+  const std::vector<std::string> known = {"play", "watch", "frames", "record", "rig"};
+  EXPECT_EQ(ClosestWord("plya", known), "play");   // exchanged
+  EXPECT_EQ(ClosestWord("wach", known), "watch");  // left out
+  EXPECT_EQ(ClosestWord("Frame", known), "frames");
+  EXPECT_EQ(ClosestWord("recodr", known), "record");
+  EXPECT_EQ(ClosestWord("rec", known), "record");  // begins so
+  EXPECT_EQ(ClosestWord("rug", known), "rig");
+}
+
+TEST(ClosestWord, LeavesOutWhatIsNotClose) {
+  const std::vector<std::string> known = {"play", "--tcp", std::string(80, 'a')};
+  EXPECT_EQ(ClosestWord("solve", known), "");
+  EXPECT_EQ(ClosestWord("", known), "");
+  EXPECT_EQ(ClosestWord("xx", known), "");
+  EXPECT_EQ(ClosestWord(std::string(80, 'a'), known), "");
+  EXPECT_EQ(ClosestWord("play", {}), "");
+  EXPECT_EQ(ClosestWord("--tpc", known), "--tcp");
+}
+
 TEST(LineOf, CountsFromOne) {
   constexpr std::string_view kText = "a\nbc\n\nd";
   EXPECT_EQ(LineOf(kText, 0), 1u);

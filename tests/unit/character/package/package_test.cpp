@@ -416,6 +416,13 @@ TEST(Character, FindsThePicturesOfTheRig) {
   const Status damaged = LoadCharacter(folder / "square.glb").status();
   EXPECT_EQ(damaged.code(), StatusCode::kParse);
   EXPECT_EQ(damaged.where(), (folder / "beside.png").string());
+
+  const auto alone = LoadCharacter(folder / "square.glb", {}, {}, Pictures::kLeaveOut);
+  ASSERT_TRUE(alone.ok()) << alone.status().ToString();
+  EXPECT_EQ(alone->rig.name, "r");
+  EXPECT_EQ(alone->meshes.size(), character->meshes.size());
+  EXPECT_TRUE(alone->pictures.empty());
+  EXPECT_EQ(alone->materials.front().base_colour_texture, -1);
   fs::remove_all(folder);
 }
 

@@ -72,6 +72,10 @@ TEST(CommandLine, EveryFlagReachesTheConfig) {
                                   "10.0.0.1",
                                   "--mocap-allow",
                                   "::2",
+                                  "--allow-host",
+                                  "furrow.example",
+                                  "--allow-host",
+                                  "stage",
                                   "--osc-out",
                                   "127.0.0.1:9000",
                                   "--osc-prefix",
@@ -103,6 +107,7 @@ TEST(CommandLine, EveryFlagReachesTheConfig) {
   EXPECT_EQ(config.vmc, 3);
   EXPECT_EQ(config.livelink_face, 4);
   EXPECT_THAT(config.mocap_allow, testing::ElementsAre("10.0.0.1", "::2"));
+  EXPECT_THAT(config.http.allow_hosts, testing::ElementsAre("furrow.example", "stage"));
   ASSERT_TRUE(config.osc_out.has_value());
   EXPECT_EQ(config.osc_out->host, "127.0.0.1");
   EXPECT_EQ(config.osc_out->port, 9000);
@@ -132,6 +137,8 @@ TEST(CommandLine, InvalidUsageExitsWithTwo) {
                                              {"--osc-out", "nowhere"},
                                              {"--mocap-allow", "stage-pc"},
                                              {"--vmc", "7401"},
+                                             {"--allow-host", "http://stage"},
+                                             {"--allow-host", "stage:7480"},
                                              {"--threads", "0"},
                                              {"--threads", "65"},
                                              {"--require-render", "--no-render"}}) {
@@ -140,6 +147,21 @@ TEST(CommandLine, InvalidUsageExitsWithTwo) {
     EXPECT_EQ(line.exit_code, ExitCode::kUsage) << args[0];
     EXPECT_FALSE(line.text.empty()) << args[0];
   }
+}
+
+TEST(CommandLine, ErrorsNameWhatWasMeantAndTheRange) {
+  EXPECT_EQ(Parse({"--tpc", "7400"}).text,
+            "unknown option '--tpc'; did you mean '--tcp'? ('furrowd --help' lists the options)\n");
+  EXPECT_EQ(Parse({"--no-rendr"}).text,
+            "unknown option '--no-rendr'; did you mean '--no-render'? ('furrowd --help' lists the "
+            "options)\n");
+  EXPECT_EQ(Parse({"serve"}).text,
+            "unexpected argument 'serve' ('furrowd --help' lists the options)\n");
+  EXPECT_THAT(Parse({"--tcp", "70000"}).text,
+              HasSubstr("--tcp: '70000' is not a port from 0 to 65535"));
+  EXPECT_THAT(Parse({"--threads", "65"}).text,
+              HasSubstr("--threads: '65' is not a number of threads from 1 to 64"));
+  EXPECT_THAT(Parse({"--record-rotate-seconds", "nan"}).text, HasSubstr("from 0 to 1e+09"));
 }
 
 TEST(CommandLine, OnlyOpenListensBeyondThisComputer) {
@@ -318,6 +340,9 @@ TEST(ParseConfig, AnErrorLeavesTheConfigUnchanged) {
   for (const Case& fault :
        {Case{"[listen\n", StatusCode::kParse, ":1", ""},
         Case{"a = 1", StatusCode::kSchema, ":1", "unknown key 'a'"},
+        Case{"[listen]\ntpc = 1", StatusCode::kSchema, ":2",
+             "unknown key 'listen.tpc'; did you mean 'listen.tcp'?"},
+        Case{"[recrod]\ndir = 'x'", StatusCode::kSchema, ":", "did you mean 'record'?"},
         Case{"listen = 3", StatusCode::kSchema, ":1", "listen"},
         Case{"[listen]\n\ntcp = -1", StatusCode::kSchema, ":3", "listen.tcp"},
         Case{"[listen]\nudp = 65536", StatusCode::kSchema, ":2", "listen.udp"},

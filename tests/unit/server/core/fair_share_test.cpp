@@ -50,5 +50,18 @@ TEST(FairShare, APlaceThatIsGivenBackIsFree) {
   EXPECT_EQ(TakeAll(share, "b"), 2);
 }
 
+TEST(FairShare, FewerPlacesTakeNoneAway) {
+  FairShare share(8);
+  for (int i = 0; i < 4; ++i) ASSERT_TRUE(share.Enter("a"));
+  share.SetPlaces(2);
+  EXPECT_FALSE(share.HasRoomFor("b"));
+  EXPECT_FALSE(share.Enter("a"));
+  EXPECT_EQ(share.held("a"), 4u);
+  for (int i = 0; i < 3; ++i) share.Leave("a");
+  EXPECT_TRUE(share.Enter("b")) << "one of two is taken";
+  share.SetPlaces(8);
+  EXPECT_TRUE(share.Enter("a"));
+}
+
 }  // namespace
 }  // namespace furrow::server

@@ -2,7 +2,10 @@
 // The render thread with a fake renderer that fails on demand.
 #include "server/pipeline/render_thread.h"
 
+#include <atomic>
+#include <chrono>
 #include <condition_variable>
+#include <cstdint>
 #include <deque>
 #include <functional>
 #include <latch>
@@ -131,11 +134,17 @@ class Pictures {
   std::deque<FinishedPicture> pictures_;
 };
 
+// Each look at the clock is a millisecond later.
+Time Now() {
+  static std::atomic<std::int64_t> looks = 0;
+  return std::chrono::milliseconds(++looks);
+}
+
 class RenderThreadTest : public testing::Test {
  protected:
   void Start(VideoEncoders* video = nullptr) {
     auto started = RenderThread::Start(
-        &skeleton, [this] { return Create(); }, &metrics,
+        &skeleton, [this] { return Create(); }, &metrics, &Now,
         [this](FinishedPicture picture) { pictures.Put(std::move(picture)); }, video);
     ASSERT_TRUE(started.ok()) << started.status().ToString();
     thread = *std::move(started);
@@ -492,7 +501,7 @@ TEST_F(RenderThreadTest, AfterStopNothingIsDrawn) {
 TEST_F(RenderThreadTest, StartFailsWithoutARenderer) {
   script.create = {kLost};
   const auto started = RenderThread::Start(
-      &skeleton, [this] { return Create(); }, &metrics, [](FinishedPicture) {});
+      &skeleton, [this] { return Create(); }, &metrics, &Now, [](FinishedPicture) {});
   EXPECT_EQ(started.status().code(), StatusCode::kUnavailable);
 }
 

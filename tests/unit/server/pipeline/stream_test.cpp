@@ -236,7 +236,7 @@ TEST(StreamDefinitions, FallbacksOfTheFaceAreLogged) {
   const std::vector<std::string> shapes = {"browInnerUp", "mouthSmileLeft", "mouthSmileRight",
                                            "viseme_aa"};
   StreamDefinitions definitions(KneeRig(), {.skeleton = &character, .shapes = shapes}, 4,
-                                rig::SkeletonMatcher(), rig::ShippedShapeMatcher());
+                                {{}, rig::ShippedShapeMatcher()});
   LogCapture log;
   ASSERT_TRUE(
       definitions
@@ -327,7 +327,7 @@ TEST(StreamDefinitions, AForeignStreamFeedsTheRigAndMovesTheCharacter) {
     offer.joints.push_back(
         {stream.joint_names()[i], stream.joint_parents()[i], stream.rest_pose()[i], {}});
   }
-  StreamDefinitions definitions(rig, {.skeleton = &character}, 4, *matcher);
+  StreamDefinitions definitions(rig, {.skeleton = &character}, 4, {*matcher, {}});
   LogCapture log;
   const auto definition = definitions.Get(offer);
   ASSERT_TRUE(definition.ok()) << definition.status().ToString();
@@ -365,7 +365,7 @@ std::shared_ptr<const wrinkle::Rig> FaceRig(const char* blend_shape) {
 }
 
 TEST(SubjectPipeline, PresetsMoveARigOfArkit) {
-  StreamDefinitions definitions(FaceRig("mouthSmileLeft"), {}, 4, {}, rig::ShippedShapeMatcher());
+  StreamDefinitions definitions(FaceRig("mouthSmileLeft"), {}, 4, {{}, rig::ShippedShapeMatcher()});
   LogCapture log;
   const auto definition = definitions.Get({.joints = {}, .blend_shapes = {"Joy", "A", "Blink"}});
   ASSERT_TRUE(definition.ok()) << definition.status().ToString();

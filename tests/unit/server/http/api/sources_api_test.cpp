@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/http/api/sources_api.h"
 
+#include <string>
+#include <vector>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -19,7 +22,7 @@ TEST(SourcesApi, SaysWhereToSendAndWhatHasArrived) {
       .last = MocapReport::Arrival{"192.0.2.20", kNow - std::chrono::milliseconds(250)},
       .last_rejected = MocapReport::Arrival{"192.0.2.66", kNow - std::chrono::seconds(2)}};
   const SourcesApi api({.bind = "192.0.2.7",
-                        .allow = {"192.0.2.20"},
+                        .allow = [] { return std::vector<std::string>{"192.0.2.20"}; },
                         .livelink_face = [&report](Time) { return std::optional(report); },
                         .vmc = {}});
   const auto body = nlohmann::json::parse(api.Show(kNow).body);
@@ -45,7 +48,10 @@ TEST(SourcesApi, SaysWhereToSendAndWhatHasArrived) {
 }
 
 TEST(SourcesApi, LoopbackReachesNobodyElse) {
-  const SourcesApi api({.bind = "127.0.0.1", .allow = {}, .livelink_face = {}, .vmc = {}});
+  const SourcesApi api({.bind = "127.0.0.1",
+                        .allow = [] { return std::vector<std::string>(); },
+                        .livelink_face = {},
+                        .vmc = {}});
   const auto body = nlohmann::json::parse(api.Show(kNow).body);
   EXPECT_EQ(body["loopback"], true);
   EXPECT_TRUE(body["addresses"].empty());

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/reload.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <string_view>
+#include <utility>
+
+#include "character/package/package.h"
+
+namespace furrow::server {
+namespace {
+
+bool Contains(const std::vector<std::string>& keys, std::string_view key) {
+  return std::ranges::find(keys, key) != keys.end();
+}
+
+// What a daemon that draws may take over: its pictures belong to the rig that it has.
+Result<Reload::Files> LoadMapsOnly(const Config& config, const character::Character& drawn) {
+  auto skeletons = rig::SkeletonMatcher::Create(config.skeleton_map);
+  if (!skeletons.ok()) return skeletons.status().At("skeleton_map");
+  auto shapes = rig::ShapeMatcher::Create(config.shape_map);
+  if (!shapes.ok()) return shapes.status().At("shape_map");
+  skeletons->SetCharacterRoles(drawn.skeleton, drawn.roles);
+  return Reload::Files{nullptr, {*std::move(skeletons), *std::move(shapes)}};
+}
+
+Result<Reload::Files> LoadFiles(const Config& config) {
+  Config weights_only = config;
+  weights_only.render = false;
+  auto assets = LoadAssets(weights_only);
+  FURROW_RETURN_IF_ERROR(assets);
+  return Reload::Files{std::move(assets->rig),
+                       {std::move(assets->skeletons), std::move(assets->shape_matcher)}};
+}
+
+// A shipped rig has a name instead, and belongs to the installation.
+std::filesystem::path RigFileOf(const Config& config) {
+  if (!config.rig.empty() || config.character.empty()) return config.rig;
+  return character::RigBeside(config.character);
+}
+
+}  // namespace
+
+RigFiles::RigFiles(const Config& config)
+    : rig_(RigFileOf(config)), skeleton_map_(config.skeleton_map), shape_map_(config.shape_map) {
+  (void)Changed();
+  rig_changed_ = maps_changed_ = false;
+}
+
+bool RigFiles::Changed() {
+  rig_changed_ |= rig_.Changed();
+  maps_changed_ |= skeleton_map_.Changed();
+  maps_changed_ |= shape_map_.Changed();
+  return rig_changed_ || maps_changed_;
+}
+
+Result<Reload> PrepareReload(const ReloadRequest& request) {
+  const auto wanted = request.read();
+  FURROW_RETURN_IF_ERROR(wanted);
+  const bool draws = request.drawn != nullptr;
+  Reload reload{.plan = PlanReload(request.running, *wanted, draws),
+                .keys_file = KeyFile(wanted->security.keys),
+                .keys = {},
+                .tls = {},
+                .files = {}};
+  const Config& config = reload.plan.config;
+  auto keys = reload.keys_file.Load();
+  if (!keys.ok()) return keys.status().Within("keys");
+  reload.keys = *std::move(keys);
+  if (config.security.tls.enabled()) {
+    auto contexts = LoadTlsContexts(config.security.tls);
+    if (!contexts.ok()) return contexts.status().Within("tls");
+    reload.tls = *std::move(contexts);
+  }
+  const auto& applied = reload.plan.applied;
+  const bool maps_change = Contains(applied, "skeleton_map") || Contains(applied, "shape_map");
+  if (!request.files_changed && !maps_change && !Contains(applied, "rig")) return reload;
+  auto files = draws ? LoadMapsOnly(config, *request.drawn) : LoadFiles(config);
+  FURROW_RETURN_IF_ERROR(files);
+  reload.files = *std::move(files);
+  return reload;
+}
+
+}  // namespace furrow::server

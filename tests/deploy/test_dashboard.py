@@ -1,0 +1,181 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The Grafana dashboard and the alert rules against a real Prometheus that scrapes a real daemon: every query has a
+result, and alerts fire. Exit code 77 means skipped (prometheus or promtool is missing).
+"""
+import json
+import math
+import pathlib
+import re
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+import urllib.error
+import urllib.parse
+import urllib.request
+
+from furrow_testing import GUARD, SOURCE, Daemon, spawn
+
+PROMETHEUS = shutil.which("prometheus")
+PROMTOOL = shutil.which("promtool")
+DASHBOARD = SOURCE / "deploy" / "grafana" / "furrow.json"
+RULES = SOURCE / "deploy" / "prometheus" / "furrow.rules.yml"
+
+
+def free_port():
+    with socket.socket() as one:
+        one.bind(("127.0.0.1", 0))
+        return one.getsockname()[1]
+
+
+def panels():
+    """(title, query) of every panel."""
+    for panel in json.loads(DASHBOARD.read_text())["panels"]:
+        for target in panel.get("targets", []):
+            yield panel["title"], target["expr"]
+
+
+def alerts():
+    """(name, quantity, whole expression) of every alert."""
+    text = RULES.read_text()
+    for name, expr in re.findall(r"- alert: (\w+)\n +expr: (?:>-\n)?(.*?)\n +(?:for|labels):", text, re.S):
+        expr = " ".join(expr.split())
+        quantity = re.fullmatch(r"(.+) (?:==|>) [\d.]+", expr)
+        assert quantity, f"{name}: expected a quantity, a comparison and a number: {expr}"
+        yield name, quantity[1], expr
+
+
+class Prometheus:
+    """A server in a with-block that scrapes a daemon by its host name, every second."""
+
+    def __init__(self, target):
+        self.folder = tempfile.TemporaryDirectory()
+        self.address = f"127.0.0.1:{free_port()}"
+        config = pathlib.Path(self.folder.name) / "prometheus.yml"
+        example = (RULES.parent / "prometheus.yml").read_text()
+        example = example.replace("10s", "1s").replace("127.0.0.1:7480", target)
+        config.write_text(example.replace("furrow.rules.yml", str(RULES)))
+        self.command = [PROMETHEUS, f"--config.file={config}", f"--storage.tsdb.path={self.folder.name}/data",
+                        f"--web.listen-address={self.address}", "--query.lookback-delta=10s"]
+
+    def __enter__(self):
+        self.log = open(pathlib.Path(self.folder.name) / "log", "w+")  # pylint: disable=consider-using-with
+        self.process = subprocess.Popen(self.command, stdout=self.log, stderr=self.log)
+        return self
+
+    def __exit__(self, *_):
+        self.process.terminate()
+        self.process.wait(GUARD)
+        self.log.close()
+        self.folder.cleanup()
+
+    def query(self, expr):
+        """The values of an instant query; None if Prometheus does not answer yet."""
+        address = f"http://{self.address}/api/v1/query?" + urllib.parse.urlencode({"query": expr})
+        try:
+            with urllib.request.urlopen(address, timeout=GUARD) as answer:
+                result = json.load(answer)["data"]["result"]
+        except urllib.error.HTTPError as error:
+            if error.code == 503:  # it starts
+                return None
+            raise AssertionError(f"{expr}: {error.read().decode()}") from error
+        except OSError:
+            return None
+        return [float(series["value"][1]) for series in result]
+
+    def await_values(self, expr):
+        """Waits until the query has results that are numbers."""
+        deadline = time.monotonic() + 60
+        while True:
+            values = self.query(expr)
+            if values and all(map(math.isfinite, values)):
+                return values
+            if time.monotonic() > deadline:
+                self.log.seek(0)
+                raise AssertionError(f"no values after 60 s: {expr}: {values}\n{self.log.read()[-2000:]}")
+            time.sleep(0.2)  # between two looks at another program
+
+
+class DashboardTest(unittest.TestCase):
+    def test_every_query_has_a_result_and_alerts_fire(self):
+        software = {"LIBGL_ALWAYS_SOFTWARE": "1"}
+        takes = self.enterContext(tempfile.TemporaryDirectory())
+        with Daemon("--http", "0", "--allow-host", "localhost.furrow.example", "--record", takes, env=software) as daemon:
+            if "render=on" not in daemon.ready:
+                self.skipTest("no OpenGL 4.5 here, so pictures take no time")
+            clients = [spawn("play", "performance", "--to", daemon.udp, "--udp", "--loop"),
+                       spawn("watch", daemon.tcp, "--format", "csv"),
+                       spawn("frames", daemon.tcp, "--out", takes + "/frames", "--size", "64x64", "--wait")]
+            try:
+                with Prometheus(f"localhost:{daemon.ports['http']}") as prometheus:
+                    prometheus.await_values("furrow_pictures_sent_total > 3")
+                    self.check_queries(prometheus)
+                    self.check_drill(prometheus, daemon)
+            finally:
+                for client in clients:
+                    client.kill()
+                    client.communicate()
+
+    def check_queries(self, prometheus):
+        seen = 0
+        for title, query in panels():
+            query = query.replace("$__rate_interval", "10s").replace("$instance", ".*")
+            self.assertNotIn("$", query)
+            with self.subTest(panel=title, query=query):
+                prometheus.await_values(query)
+            seen += 1
+        self.assertGreater(seen, 40)
+        for name, quantity, _ in alerts():
+            with self.subTest(alert=name):
+                prometheus.await_values(quantity.replace("[5m]", "[10s]"))
+
+    def check_drill(self, prometheus, daemon):
+        """A daemon that stands still does not answer; then its stalls are counted."""
+        rules = {name: expr for name, _, expr in alerts()}
+        for _ in range(4):
+            daemon.process.send_signal(signal.SIGSTOP)
+            time.sleep(0.3)  # what the alert is about
+            daemon.process.send_signal(signal.SIGCONT)
+            stalls = prometheus.query("furrow_stalls_total")[0]
+            prometheus.await_values(f"furrow_stalls_total > {stalls}")
+        prometheus.await_values(rules["FurrowStalls"])
+        daemon.process.send_signal(signal.SIGSTOP)
+        try:
+            # A scrape fails after 1 s.
+            prometheus.await_values(rules["FurrowDown"])
+        finally:
+            daemon.process.send_signal(signal.SIGCONT)
+
+
+class RulesTest(unittest.TestCase):
+    def test_every_alert_is_valid_and_fires(self):
+        for command in (["check", "rules", RULES.name], ["test", "rules", "furrow.rules.test.yml"],
+                        ["check", "config", "prometheus.yml"]):
+            done = subprocess.run([PROMTOOL, *command], cwd=RULES.parent, capture_output=True, text=True, check=False)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        tested = (RULES.parent / "furrow.rules.test.yml").read_text()
+        for name, _, _ in alerts():
+            self.assertIn(f'alertname="{name}"', tested)
+
+    def test_the_dashboard_is_complete(self):
+        dashboard = json.loads(DASHBOARD.read_text())
+        variables = {variable["name"]: variable for variable in dashboard["templating"]["list"]}
+        self.assertEqual(variables["datasource"]["type"], "datasource")
+        numbers = [panel["id"] for panel in dashboard["panels"]]
+        self.assertEqual(len(numbers), len(set(numbers)))
+        for panel in dashboard["panels"]:
+            if panel["type"] != "row":
+                self.assertEqual(panel["datasource"]["uid"], "${datasource}", panel["title"])
+                self.assertTrue(panel["targets"], panel["title"])
+
+
+if __name__ == "__main__":
+    if not PROMETHEUS or not PROMTOOL:
+        print("skipped: prometheus is not installed")
+        sys.exit(77)
+    unittest.main()

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/machine/journal.h"
+
+#include <string>
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace furrow::server {
+namespace {
+
+TEST(IsJournal, ComparesTheStreamWithTheDescriptor) {
+  int pipes[2];
+  ASSERT_EQ(pipe(pipes), 0);
+  struct stat info {};
+  ASSERT_EQ(fstat(pipes[1], &info), 0);
+  const std::string stream = std::to_string(info.st_dev) + ":" + std::to_string(info.st_ino);
+  EXPECT_TRUE(IsJournal(pipes[1], stream));
+  EXPECT_FALSE(IsJournal(pipes[1], stream + "0")) << "redirected since";
+  EXPECT_FALSE(IsJournal(pipes[1], ""));
+  EXPECT_FALSE(IsJournal(-1, stream));
+  close(pipes[0]);
+  close(pipes[1]);
+}
+
+}  // namespace
+}  // namespace furrow::server
