@@ -73,7 +73,7 @@ needed() {
 # A driver is loaded by its name.
 loaded=("$root/usr/bin/furrowd")
 if [[ $name == furrowd-pictures ]]; then
-  loaded+=("$root"/usr/lib/furrow/*.so "$root"/usr/lib/*/libEGL*.so.? "$root"/usr/lib/*/libGL*.so.?
+  loaded+=("$root"/usr/lib/furrow/*.so "$root"/usr/lib/*/libEGL*.so.? "$root"/usr/lib/*/lib{,Open}GL*.so.?
            "$root"/usr/lib/*/dri/swrast_dri.so)
 fi
 needed "${loaded[@]}"
