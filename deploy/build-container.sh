@@ -47,13 +47,15 @@ mmdebstrap --quiet --variant=extract --include="$include" --aptopt='APT::Install
   --dpkgopt='path-exclude=/usr/share/locale/*' --dpkgopt='path-exclude=/usr/share/lintian/*' \
   bookworm "$root" 'deb http://deb.debian.org/debian bookworm main' "deb [trusted=yes] copy:$work/packages ./"
 
-# needed PROGRAM...: the libraries that programs in the root load, their links, and the libraries of those.
+# The folders in which the loader finds libraries.
 libraries() {
   local folder
+  echo "$root/usr/lib" "$root/lib"
   for folder in "$root"/usr/lib/*-linux-gnu "$root"/lib/*-linux-gnu; do
     echo "$folder" "$folder/blas" "$folder/lapack" "$folder/dri"
   done
 }
+# needed FILE...: notes programs and libraries, their links, and the libraries that they load.
 declare -A seen=()
 needed() {
   local file library folder
@@ -71,7 +73,7 @@ needed() {
 # A driver is loaded by its name.
 loaded=("$root/usr/bin/furrowd")
 if [[ $name == furrowd-pictures ]]; then
-  loaded+=("$root"/usr/lib/furrow/*.so "$root"/usr/lib/*/libEGL*.so.? "$root"/usr/lib/*/libGL*.so.?
+  loaded+=("$root"/usr/lib/furrow/*.so "$root"/usr/lib/*/libEGL*.so.? "$root"/usr/lib/*/lib{,Open}GL*.so.?
            "$root"/usr/lib/*/dri/swrast_dri.so)
 fi
 needed "${loaded[@]}"

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/session/stream_router.h"
 
+#include <cstddef>
+#include <optional>
+
 #include "protocol/framing/sequence.h"
 
 namespace furrow::server {
@@ -150,7 +153,9 @@ void StreamRouter::PublishGathered(Shard& shard) {
 
 // For the histograms of latency, when the weights leave.
 void StreamRouter::NotePublished(Shard& shard, const GatheredPose& pose) {
-  if (shard.buffered_sender == nullptr) return;
+  // Far above what one flush sends.
+  constexpr std::size_t kMost = 16 * PoseBatch::kCapacity;
+  if (shard.buffered_sender == nullptr || shard.published.size() == kMost) return;
   const std::int64_t captured = pose.header.capture_time_us;
   std::optional<Time> late;
   if (captured != 0) late = pose.now - pose.subject->capture_clock.Arrival(captured, pose.now);

@@ -51,6 +51,8 @@ sh /srv/pose-in-weights-out
 install /srv/old/*.deb
 sh /srv/pose-in-weights-out
 sh /srv/library
+furrow render /usr/share/furrow/recordings/performance.bvh --frames 30:30 --size 64x64 --shading diffuse --out /srv/pictures
+[ -s /srv/pictures/000030.png ]
 [ -L /etc/systemd/system/multi-user.target.wants/furrowd.service ]  # starts at boot
 [ ! -e /etc/systemd/system/sockets.target.wants/furrowd-tcp.socket ]
 echo '# of the operator' >>/etc/furrow/furrow.toml

@@ -113,6 +113,15 @@ TEST(Service, TheManagerHearsWhenAReloadBeginsAndEnds) {
   EXPECT_EQ(manager.NextBut("WATCHDOG=1"), "READY=1\nSTATUS=the configuration was read again");
 }
 
+// systemd.exec(5): JOURNAL_STREAM names the pipe to the journal.
+TEST(Service, LinesForTheJournalBeginWithTheirPriority) {
+  const std::string journal = "JOURNAL_STREAM=$(stat -L -c %d:%i /proc/self/fd/2) exec \"$0\" ";
+  Process daemon(
+      {"/bin/sh", "-c", journal + "--rig nosuch --no-render", FURROW_BINARY_DIR "/bin/furrowd"});
+  EXPECT_EQ(daemon.Wait(), 3);
+  EXPECT_THAT(daemon.ReadErrors(), MatchesRegex("<6>furrowd .*started at [^\n]*\n<3>nosuch: .*"));
+}
+
 TEST(Service, OtherSocketsAreNamedAndClosed) {
   const Listener other(INADDR_LOOPBACK);
   Process daemon(Command(), {.sockets = {other.socket_number()}, .names = "telnet"});
