@@ -20,6 +20,7 @@
 #include <asio/post.hpp>
 #include <asio/signal_set.hpp>
 #include <asio/steady_timer.hpp>
+#include <fcntl.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
@@ -74,6 +75,13 @@ std::uint64_t RandomNumber() {
   std::uint64_t number = 0;
   while (number == 0) number = (static_cast<std::uint64_t>(source()) << 32) | source();
   return number;
+}
+
+// True if the process has a controlling terminal, whatever its standard input is.
+bool HasTerminal() {
+  const int terminal = open("/dev/tty", O_RDWR | O_NOCTTY | O_CLOEXEC);
+  if (terminal >= 0) close(terminal);
+  return terminal >= 0;
 }
 
 // An installation without the module of pictures sends weights alone.
@@ -134,6 +142,7 @@ class Daemon {
   void MakeVideo();
   asio::awaitable<void> HangupLoop();
   void BeginReload();
+  void StartReload();
   void EndReload(Result<Reload> reload);
   Status TakeOver(Reload* reload);
   void DeliverPicture(const FinishedPicture& picture);
@@ -166,7 +175,7 @@ class Daemon {
   MocapInputs mocap_;
   std::unique_ptr<Api> api_;
   std::unique_ptr<HttpServer> http_;
-  const bool has_terminal_ = isatty(STDIN_FILENO) != 0;
+  bool has_terminal_ = HasTerminal();  // at the last look, about a second ago
   const bool confines_;
   bool render_is_confined_ = false;  // used by the render thread
   bool on_network_ = false;          // a socket of the service manager is
@@ -201,14 +210,14 @@ Status Daemon::StartRendering() {
   spdlog::info("starting the renderer");
   auto started = RenderThread::Start(
       &assets_.character->skeleton,
-      [this] {
+      [this, device = config_.render_device, files = FilesOf(config_)] {
         auto renderer = render::Renderer::Create(
             *assets_.character,
-            {.device = config_.render_device, .max_texture_bytes = PictureViews::kMaxTextureBytes});
+            {.device = device, .max_texture_bytes = PictureViews::kMaxTextureBytes});
         // After the first one: drivers may run helper programs to prepare their devices. Threads
         // confine themselves, so this one does, too.
         if (confines_ && !std::exchange(render_is_confined_, true)) {
-          (void)server::Confine(FilesOf(config_));
+          (void)server::Confine(files);
         }
         return renderer;
       },
@@ -557,6 +566,7 @@ void Daemon::EverySecond(StatusLine* status_line) {
   if (render_) render_->Watch(now);
   if (auto keys = keys_file_.ReadIfChanged()) SetKeys(*std::move(keys));
   tls_.ReadIfChanged();
+  has_terminal_ = HasTerminal();
   if (!config_.verbose && options_.manager == nullptr) return;
   std::string line;
   {
@@ -618,8 +628,8 @@ asio::awaitable<void> Daemon::HangupLoop() {
     const auto [error, signal] = co_await hangups_.async_wait(kAwaitTuple);
     if (error) co_return;
     if (draining_) continue;
-    // The terminal has closed, and with it the program that the user had started in it.
-    if (has_terminal_ && isatty(STDIN_FILENO) == 0) {
+    // The terminal has just closed, and with it the program that the user had started in it.
+    if (has_terminal_ && !HasTerminal()) {
       RequestDrain();
     } else {
       BeginReload();
@@ -632,6 +642,15 @@ void Daemon::BeginReload() {
   reload_again_ = is_reloading_;
   if (std::exchange(is_reloading_, true)) return;
   if (options_.manager != nullptr) options_.manager->Reloading();
+  try {
+    StartReload();
+  } catch (const std::exception& fault) {  // no memory, or no thread
+    EndReload(Status(StatusCode::kLimit, fault.what()));
+  }
+}
+
+void Daemon::StartReload() {
+  (void)rig_files_.Changed();
   ReloadRequest request{.running = config_,
                         .read = [this]() -> Result<Config> {
                           auto read = options_.reload();
@@ -639,13 +658,21 @@ void Daemon::BeginReload() {
                           return WithoutMissingParts(*std::move(read));
                         },
                         .drawn = render_ != nullptr ? assets_.character : nullptr,
-                        .files_changed = rig_files_.Changed()};
-  reloading_ = std::jthread([this, request = std::move(request)] {
-    Result<Reload> reload = Status(StatusCode::kLimit, "out of memory");
-    (void)WithinMemory(metrics_, [&] { reload = PrepareReload(request); });
-    // Shared, because a handler must be copyable.
-    auto shared = std::make_shared<Result<Reload>>(std::move(reload));
-    asio::post(io_, [this, shared] { EndReload(std::move(*shared)); });
+                        .rig_changed = rig_files_.rig_changed(),
+                        .maps_changed = rig_files_.maps_changed()};
+  // Shared, because a handler must be copyable.
+  auto reload = std::make_shared<Result<Reload>>(Status(StatusCode::kLimit, "out of memory"));
+  reloading_ = std::jthread([this, reload, request = std::move(request)] {
+    try {
+      *reload = PrepareReload(request);
+    } catch (const std::bad_alloc&) {
+      metrics_->Add(Counter::kAllocationsFailed);
+    } catch (const std::exception& fault) {
+      *reload = Status(StatusCode::kInternal, fault.what());
+    }
+    const auto post = [&] { asio::post(io_, [this, reload] { EndReload(std::move(*reload)); }); };
+    // Without an end, no other reload would begin.
+    while (!WithinMemory(metrics_, post)) std::this_thread::yield();
   });
 }
 
@@ -672,23 +699,25 @@ Status Daemon::TakeOver(Reload* reload) {
       const Status status = hub_->SetRigAndMaps(rig != nullptr ? rig : hub_->shared_rig(),
                                                 std::move(reload->files->maps), ReadClock());
       if (!status.ok()) return status.Within("rig");
-      if (rig == nullptr && rig_files_.rig_changed()) {
-        spdlog::warn("the file of the rig changed: takes effect after a restart");
-      }
+    }
+    if (render_ != nullptr && rig_files_.rig_changed()) {
+      spdlog::warn("the file of the rig changed: takes effect after a restart");
     }
     hub_->SetLimits(config.limits);
     osc_->SetAllowed(config.osc.allow);
   }
   keys_file_ = std::move(reload->keys_file);
   SetKeys(std::move(reload->keys));
-  if (reload->tls) tls_.Replace(config.security.tls, *std::move(reload->tls));
+  if (reload->tls) {
+    tls_.Replace(config.security.tls, std::move(reload->tls_watches), *std::move(reload->tls));
+  }
   tcp_->SetLimits(config.limits);
   if (http_) http_->Reload(config.http);
   // A new gate lets the holder of a port go.
   if (config.mocap_allow != config_.mocap_allow) mocap_.SetAllowed(config.mocap_allow);
   if (config.log_level != config_.log_level) Log::SetLevel(config.log_level);
   config_ = config;
-  rig_files_ = RigFiles(config_);
+  rig_files_ = std::move(reload->rig_files);
   spdlog::info("read the configuration, keys and certificates again; changed: {}",
                plan.applied.empty() ? "nothing" : Joined(plan.applied));
   for (const std::string& key : plan.needs_restart) {

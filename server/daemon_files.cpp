@@ -39,8 +39,9 @@ Confinement FilesOf(const Config& config) {
   AppendPaths(FromEnvironment("__EGL_VENDOR_LIBRARY_DIRS").string(), &files.read);
   const TlsFiles& tls = config.security.tls;
   for (const fs::path& file :
-       {config.source, config.character, config.rig, config.security.keys, config.play,
-        config.render_settings, config.http.page, tls.certificate, tls.key, tls.client_authority}) {
+       {config.source, config.character, config.rig, fs::path(config.skeleton_map),
+        fs::path(config.shape_map), config.security.keys, config.play, config.render_settings,
+        config.http.page, tls.certificate, tls.key, tls.client_authority}) {
     if (!file.empty()) files.read.push_back(FolderOf(file));
   }
   if (!config.http.page.empty()) files.read.push_back(config.http.page);

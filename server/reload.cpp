@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "base/joined.h"
 #include "character/package/package.h"
 
 namespace furrow::server {
@@ -59,10 +60,19 @@ Result<Reload> PrepareReload(const ReloadRequest& request) {
   const auto wanted = request.read();
   FURROW_RETURN_IF_ERROR(wanted);
   const bool draws = request.drawn != nullptr;
-  Reload reload{.plan = PlanReload(request.running, *wanted, draws),
+  ReloadPlan plan = PlanReload(request.running, *wanted, draws);
+  // A setting that waits may be what makes another one safe.
+  if (const Status status = ValidateConfig(plan.config); !status.ok()) {
+    return Status(status.code(), status.what(), status.where(),
+                  "restart the daemon, because these changes take effect only then: " +
+                      Joined(plan.needs_restart));
+  }
+  Reload reload{.plan = std::move(plan),
                 .keys_file = KeyFile(wanted->security.keys),
                 .keys = {},
                 .tls = {},
+                .tls_watches = WatchTlsFiles(wanted->security.tls),
+                .rig_files = RigFiles(*wanted),
                 .files = {}};
   const Config& config = reload.plan.config;
   auto keys = reload.keys_file.Load();
@@ -74,8 +84,11 @@ Result<Reload> PrepareReload(const ReloadRequest& request) {
     reload.tls = *std::move(contexts);
   }
   const auto& applied = reload.plan.applied;
-  const bool maps_change = Contains(applied, "skeleton_map") || Contains(applied, "shape_map");
-  if (!request.files_changed && !maps_change && !Contains(applied, "rig")) return reload;
+  const bool maps_change =
+      request.maps_changed || Contains(applied, "skeleton_map") || Contains(applied, "shape_map");
+  // The rig of a daemon that draws waits for a restart.
+  const bool rig_changes = !draws && (request.rig_changed || Contains(applied, "rig"));
+  if (!maps_change && !rig_changes) return reload;
   auto files = draws ? LoadMapsOnly(config, *request.drawn) : LoadFiles(config);
   FURROW_RETURN_IF_ERROR(files);
   reload.files = *std::move(files);

@@ -15,6 +15,7 @@
 #include "server/pipeline/stream_definition.h"
 #include "server/session/access/key_file.h"
 #include "server/tls/tls_context.h"
+#include "server/tls/tls_identity.h"
 
 namespace furrow::server {
 
@@ -28,8 +29,9 @@ class RigFiles {
   explicit RigFiles(const Config& config);
   // Looks at the files. True if one of them has changed since the construction.
   [[nodiscard]] bool Changed();
-  // True if the rig is among those that Changed() has found.
+  // Whether the rig and the maps are among those that Changed() has found.
   [[nodiscard]] bool rig_changed() const { return rig_changed_; }
+  [[nodiscard]] bool maps_changed() const { return maps_changed_; }
 
  private:
   FileWatch rig_;
@@ -45,6 +47,9 @@ struct Reload {
   KeyFile keys_file;
   protocol::secure::KeyRing keys;
   std::optional<TlsContexts> tls;  // absent: the ports are plain
+  // Both from before the files were read, so that no change is missed.
+  TlsWatches tls_watches;
+  RigFiles rig_files;
   // Absent: rig and maps stay. Without a rig, the maps alone change.
   struct Files {
     std::shared_ptr<const wrinkle::Rig> rig;
@@ -58,11 +63,13 @@ struct ReloadRequest {
   ReadConfig read;
   // The character that is drawn, with its rig; null: none, and the rig may change.
   std::shared_ptr<const character::Character> drawn;
-  bool files_changed = false;  // RigFiles::Changed()
+  bool rig_changed = false;   // RigFiles::rig_changed()
+  bool maps_changed = false;  // RigFiles::maps_changed()
 };
 
 // Reads the configuration again, and the files that it names. Changes nothing, and may take a
-// while: call it on a thread without other duties. Errors: those of `read` and of the files.
+// while: call it on a thread without other duties. Errors: those of `read` and of the files, and
+// those of ValidateConfig() if what can change now does not fit what needs a restart.
 [[nodiscard]] Result<Reload> PrepareReload(const ReloadRequest& request);
 
 }  // namespace furrow::server

@@ -17,7 +17,7 @@ std::string Text(const std::string& value) { return value; }
 std::string Text(const std::filesystem::path& value) { return value.string(); }
 std::string Text(bool value) { return value ? "true" : "false"; }
 std::string Text(int value) { return std::to_string(value); }
-std::string Text(double value) { return fmt::format("{:g}", value); }
+std::string Text(double value) { return fmt::format("{}", value); }
 std::string Text(std::uint16_t value) { return std::to_string(value); }
 std::string Text(Security value) { return value == Security::kRequired ? "required" : "open"; }
 std::string Text(LogLevel value) { return std::string(LogLevelText(value)); }
@@ -25,12 +25,12 @@ std::string Text(const HostPort& value) { return HostPortText(value); }
 std::string Text(const std::vector<std::string>& value) { return Joined(value); }
 std::string Text(const std::vector<JitterRule>& rules) {
   return Joined(rules, [](const JitterRule& rule) {
-    return rule.subjects + "=" + fmt::format("{:g}", rule.delay_ms);
+    return rule.subjects + "=" + fmt::format("{}", rule.delay_ms);
   });
 }
 std::string Text(const std::vector<OscTargetConfig>& targets) {
   return Joined(targets, [](const OscTargetConfig& target) {
-    return fmt::format("{} {} {} '{}' '{}' {:g}", HostPortText(target.to), target.profile,
+    return fmt::format("{} {} {} '{}' '{}' {}", HostPortText(target.to), target.profile,
                        target.prefix, target.subject, target.pattern, target.rate_hz);
   });
 }

@@ -32,15 +32,16 @@ Status ListenError(const std::string& transport, const HostPort& where, int erro
               "set --bind to one of its addresses (" + OwnAddresses() +
                   "), or to 0.0.0.0 or :: for all of them"};
     case EACCES:
+      if (where.port >= 1024) break;
       return {StatusCode::kUnavailable, what + reason, "",
               "ports below 1024 need privileges; set another one with " + flag};
     case EADDRINUSE:
       return {StatusCode::kUnavailable, what + reason, "",
               "stop the program that uses the port, or set another one with " + flag};
-    default:
-      return {StatusCode::kUnavailable, what + reason, "",
-              "set another address with --bind, or another port with " + flag};
+    default: break;
   }
+  return {StatusCode::kUnavailable, what + reason, "",
+          "set another address with --bind, or another port with " + flag};
 }
 
 }  // namespace furrow::server

@@ -42,6 +42,7 @@ class MocapInput {
   // Asks another gate from now on. Nobody holds the port then.
   void SetGate(SenderGate gate) {
     gate_ = std::move(gate);
+    adapter_->Forget();  // half a frame of the former sender must not mix with the next one
     has_logged_rejected_ = false;
   }
   // Starts reading. Precondition: Open() succeeded.

@@ -6,24 +6,23 @@
 #include <spdlog/spdlog.h>
 
 namespace furrow::server {
-namespace {
 
-std::vector<FileWatch> WatchesOf(const TlsFiles& files) {
-  return {FileWatch(files.certificate), FileWatch(files.key), FileWatch(files.client_authority)};
+TlsWatches WatchTlsFiles(const TlsFiles& files) {
+  TlsWatches watches = {FileWatch(files.certificate), FileWatch(files.key),
+                        FileWatch(files.client_authority)};
+  for (FileWatch& watch : watches) (void)watch.Changed();  // notes the file as it is now
+  return watches;
 }
-
-}  // namespace
 
 TlsIdentity::TlsIdentity(TlsFiles files)
     : files_(std::move(files)),
       enabled_(files_.enabled()),
       asks_clients_(!files_.client_authority.empty()),
-      watches_(WatchesOf(files_)) {}
+      watches_(WatchTlsFiles(files_)) {}
 
-void TlsIdentity::Replace(TlsFiles files, TlsContexts contexts) {
+void TlsIdentity::Replace(TlsFiles files, TlsWatches watches, TlsContexts contexts) {
   files_ = std::move(files);
-  watches_ = WatchesOf(files_);
-  (void)FilesChanged();
+  watches_ = std::move(watches);
   changed_ = false;
   Use(std::move(contexts));
 }

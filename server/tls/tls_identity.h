@@ -11,10 +11,13 @@
 
 namespace furrow::server {
 
+// Notice changes of the files. Made before the files are read, they miss none.
+using TlsWatches = std::vector<FileWatch>;
+[[nodiscard]] TlsWatches WatchTlsFiles(const TlsFiles& files);
+
 // The certificate and key of a running daemon, read again when the files change. Connections that
-// are open keep what they began with. Load(), Replace() and ReadIfChanged() belong to one
-// thread; the other
-// functions are thread-safe.
+// are open keep what they began with. Load(), Replace() and ReadIfChanged() belong to one thread;
+// the other functions are thread-safe.
 class TlsIdentity {
  public:
   explicit TlsIdentity(TlsFiles files);
@@ -23,7 +26,8 @@ class TlsIdentity {
   [[nodiscard]] Status Load();
   // Uses these contexts, which were read from `files`, for connections from now on. Precondition:
   // the files are for the same kind of service: enabled() and asks_clients() do not change.
-  void Replace(TlsFiles files, TlsContexts contexts);
+  // `watches`: WatchTlsFiles(files), from before they were read.
+  void Replace(TlsFiles files, TlsWatches watches, TlsContexts contexts);
   // Reads files that have changed. Call it about once per second. A change counts when a second
   // passes without another one, because certificate and key are written one after the other.
   // Files that cannot be used change nothing; the fault is logged once per change.
@@ -44,7 +48,7 @@ class TlsIdentity {
   TlsFiles files_;  // of the thread of Load()
   const bool enabled_;
   const bool asks_clients_;
-  std::vector<FileWatch> watches_;
+  TlsWatches watches_;
   bool changed_ = false;  // and not read yet
   mutable std::mutex mutex_;
   TlsContexts contexts_;  // guarded by mutex_

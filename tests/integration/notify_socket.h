@@ -35,11 +35,14 @@ class NotifySocket {
     const ssize_t size = recv(socket_, text, sizeof(text), 0);
     return size > 0 ? std::string(text, static_cast<std::size_t>(size)) : std::string();
   }
-  // The next message that does not begin with `left_out`.
+  // The next message that does not begin with `left_out`; empty after 60 that do, which come about
+  // once per second.
   [[nodiscard]] std::string NextBut(const std::string& left_out) const {
-    std::string text = Next();
-    while (text.starts_with(left_out)) text = Next();
-    return text;
+    for (int i = 0; i < 60; ++i) {
+      std::string text = Next();
+      if (!text.starts_with(left_out)) return text;
+    }
+    return {};
   }
 
  private:
