@@ -87,6 +87,7 @@ RenderMailbox::PutResult RenderMailbox::Put(RenderJob&& job) {
     // time would never be rendered.
     MergeTickets(*waiting, &job);
     job.entry = waiting->entry;
+    job.submitted = waiting->submitted;  // the picture waits since then, whatever its pose
     *waiting = std::move(job);
     return PutResult::kReplaced;
   }

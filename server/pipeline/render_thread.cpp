@@ -294,8 +294,8 @@ void RenderThread::Refuse(RenderJob job) {
 
 // If memory is so short that not even a failure can be reported, the viewers ask again after
 // ViewerFlow::kGiveUp.
-void RenderThread::Deliver(FinishedPicture picture) {
-  WithinMemory(metrics_, [&] { deliver_(std::move(picture)); });
+bool RenderThread::Deliver(FinishedPicture picture) {
+  return WithinMemory(metrics_, [&] { deliver_(std::move(picture)); });
 }
 
 // Viewers with equal encodings share the bytes.
@@ -352,17 +352,20 @@ bool RenderThread::EncodeVideo(const render::Image& image, const RenderJob& job,
   metrics_->Add(Counter::kVideoPictures);
   if (picture->key) metrics_->Add(Counter::kVideoKeyPictures);
   picture->bytes.shrink_to_fit();  // they may wait in queues
-  Deliver({.sequence = job.snapshot->sequence,
-           .capture_time_us = job.snapshot->capture_time_us,
-           .age_us = job.snapshot->age_us,
-           .received_us = job.snapshot->received_us,
-           .submitted = job.submitted,
-           .width = image.width,
-           .height = image.height,
-           .bytes = std::move(picture->bytes),
-           .codec = std::move(picture->codec),
-           .key = picture->key,
-           .tickets = {ticket}});
+  // No decoder could follow a video whose picture was lost without a gap in the numbers.
+  if (!Deliver({.sequence = job.snapshot->sequence,
+                .capture_time_us = job.snapshot->capture_time_us,
+                .age_us = job.snapshot->age_us,
+                .received_us = job.snapshot->received_us,
+                .submitted = job.submitted,
+                .width = image.width,
+                .height = image.height,
+                .bytes = std::move(picture->bytes),
+                .codec = std::move(picture->codec),
+                .key = picture->key,
+                .tickets = {ticket}})) {
+    video_->Restart(ticket.subscription);
+  }
   return true;
 }
 

@@ -2,6 +2,7 @@
 #include "server/pipeline/video_encoders.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace furrow::server {
@@ -22,41 +23,54 @@ VideoEncoders::VideoEncoders(const render::VideoCodec* codec, int max_encoders, 
       why_(std::move(why)),
       shares_(static_cast<std::size_t>(max_encoders_)) {}
 
-// `others`: the bytes of all encoders beside this one.
-bool VideoEncoders::Fits(const render::VideoFormat& format, std::size_t others) const {
-  return std::min(format.width, format.height) >= kMinSize && others + BytesOf(format) <= kMaxBytes;
+// The rule of FairShare, for bytes: a host gets more only while it holds fewer than are free.
+bool VideoEncoders::Fits(const std::string& host, const render::VideoFormat& format) const {
+  std::size_t of_host = 0, of_all = 0;
+  for (const auto& [subscription, held] : held_) {
+    of_all += held.bytes;
+    if (held.host == host) of_host += held.bytes;
+  }
+  return std::min(format.width, format.height) >= kMinSize &&
+         of_host + of_all + BytesOf(format) <= kMaxBytes;
 }
 
 bool VideoEncoders::Open(std::uint64_t subscription, const std::string& host,
                          const render::VideoFormat& format) {
-  std::shared_ptr<Place> former;  // destroyed after the lock, because that frees its memory
   const std::lock_guard lock(mutex_);
   const auto known = held_.find(subscription);
-  if (known == held_.end()) {
-    if (!Fits(format, bytes_) || !shares_.Enter(host)) return false;
-    bytes_ += BytesOf(format);
-    held_.emplace(subscription,
-                  Held{host, BytesOf(format), std::make_shared<Place>(Place{.format = format})});
-    return true;
+  if (known != held_.end() && known->second.place->format == format) {
+    return !known->second.place->failed;
   }
-  Held& held = known->second;
-  if (held.place->format == format) return !held.place->failed;
-  if (!Fits(format, bytes_ - held.bytes)) return false;
-  bytes_ += BytesOf(format) - held.bytes;
-  held.bytes = BytesOf(format);
-  former = std::exchange(held.place, std::make_shared<Place>(Place{.format = format}));
+  // Memory first: after it, nothing fails halfway.
+  Held held{host, BytesOf(format), std::make_shared<Place>(Place{.format = format})};
+  former_.reserve(held_.size() + former_.size() + 1);
+  if (known != held_.end()) Erase(known);
+  if (!Fits(host, format) || !shares_.Enter(host)) return false;
+  try {
+    held_.emplace(subscription, std::move(held));
+  } catch (...) {
+    shares_.Leave(host);
+    throw;
+  }
   return true;
 }
 
 void VideoEncoders::Close(std::uint64_t subscription) {
-  std::shared_ptr<Place> former;
   const std::lock_guard lock(mutex_);
-  const auto held = held_.find(subscription);
-  if (held == held_.end()) return;
-  bytes_ -= held->second.bytes;
+  const auto known = held_.find(subscription);
+  if (known != held_.end()) Erase(known);
+}
+
+void VideoEncoders::Erase(std::unordered_map<std::uint64_t, Held>::iterator held) {
   shares_.Leave(held->second.host);
-  former = std::move(held->second.place);
+  former_.push_back(std::move(held->second.place));
   held_.erase(held);
+  // Nobody may encode any more.
+  if (held_.empty()) former_.clear();
+}
+
+void VideoEncoders::Restart(std::uint64_t subscription) {
+  if (const std::shared_ptr<Place> place = Find(subscription)) place->encoder.reset();
 }
 
 std::shared_ptr<VideoEncoders::Place> VideoEncoders::Find(std::uint64_t subscription) const {
@@ -68,6 +82,13 @@ std::shared_ptr<VideoEncoders::Place> VideoEncoders::Find(std::uint64_t subscrip
 Result<render::VideoPicture> VideoEncoders::Encode(std::uint64_t subscription,
                                                    const render::Planes& planes,
                                                    const render::VideoTarget& target) {
+  std::vector<std::shared_ptr<Place>> former;  // freed here, where nobody waits for the lock
+  {
+    const std::lock_guard lock(mutex_);
+    former.assign(std::make_move_iterator(former_.begin()), std::make_move_iterator(former_.end()));
+    former_.clear();  // keeps its memory, which Erase() relies on
+  }
+  former.clear();
   const std::shared_ptr<Place> place = Find(subscription);
   // The viewer has left, or has asked for another size since.
   if (place == nullptr || place->format.width != planes.width ||

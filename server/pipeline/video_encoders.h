@@ -7,6 +7,7 @@
 #include <mutex>
 #include <string>
 #include <unordered_map>
+#include <vector>
 
 #include "base/status.h"
 #include "render/video/video_codec.h"
@@ -15,8 +16,8 @@
 namespace furrow::server {
 
 // The video encoders of the viewers, one for each picture subscription that gets video. Their
-// number and memory are bounded, and one host gets at most half of the places (FairShare); other
-// viewers get JPEG until an encoder is free. Thread-safe; only Encode() takes long, and it must not
+// number and memory are bounded, and one host gets at most half of both (FairShare); other viewers
+// get JPEG until an encoder is free. Thread-safe; only Encode() takes long, and it must not
 // run on two threads at a time.
 class VideoEncoders {
  public:
@@ -27,7 +28,8 @@ class VideoEncoders {
   VideoEncoders(const render::VideoCodec* codec, int max_encoders, std::string why = {});
 
   // Gives the subscription a place, or keeps the one that it has. Another format means a new
-  // encoder. False: no place is free, or its encoder has failed; the viewer gets JPEG.
+  // encoder. False: there is no place for it (one that it had is free again), or its encoder has
+  // failed; the viewer gets JPEG.
   [[nodiscard]] bool Open(std::uint64_t subscription, const std::string& host,
                           const render::VideoFormat& format);
   // Frees the place, if the subscription has one.
@@ -38,6 +40,10 @@ class VideoEncoders {
   [[nodiscard]] Result<render::VideoPicture> Encode(std::uint64_t subscription,
                                                     const render::Planes& planes,
                                                     const render::VideoTarget& target);
+
+  // The next picture of the subscription begins the video again, because the last one was lost. Not
+  // while Encode() runs.
+  void Restart(std::uint64_t subscription);
 
   struct State {
     std::string library;  // empty: there is no video
@@ -60,7 +66,8 @@ class VideoEncoders {
     std::shared_ptr<Place> place;  // Encode() may still use it when it is closed
   };
 
-  [[nodiscard]] bool Fits(const render::VideoFormat& format, std::size_t others) const;
+  [[nodiscard]] bool Fits(const std::string& host, const render::VideoFormat& format) const;
+  void Erase(std::unordered_map<std::uint64_t, Held>::iterator held);
   std::shared_ptr<Place> Find(std::uint64_t subscription) const;
 
   const render::VideoCodec* const codec_;
@@ -69,7 +76,9 @@ class VideoEncoders {
   mutable std::mutex mutex_;
   std::unordered_map<std::uint64_t, Held> held_;  // by subscription
   FairShare shares_;
-  std::size_t bytes_ = 0;
+  // Of viewers that have left or have another format. Encode() frees them: Open() and Close() run
+  // where poses wait.
+  std::vector<std::shared_ptr<Place>> former_;
 };
 
 }  // namespace furrow::server

@@ -170,9 +170,9 @@ TEST_F(OneEncoder, FurtherViewersGetJpeg) {
   const std::uint16_t first_stream = View(first);
   ASSERT_EQ(Move(first, first_stream, 1).at(0).codec.substr(0, 4), "avc1");
   const std::uint16_t second_stream = View(second);
-  for (const protocol::ImageFrame& image : Move(second, second_stream, 2)) {
-    EXPECT_EQ(image.codec, "");
-  }
+  const auto files = Move(second, second_stream, 2);
+  ASSERT_EQ(files.size(), 2u);
+  for (const protocol::ImageFrame& image : files) EXPECT_EQ(image.codec, "");
   first.Send(protocol::Unsubscribe{}, first_stream);
   AwaitEncoders(0);
   const auto moving = Move(second, second_stream, 2);

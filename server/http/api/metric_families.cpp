@@ -74,6 +74,12 @@ void AddTimings(const Timings& timings, std::vector<MetricFamily>* families) {
   }
 }
 
+// Seconds since 1970. Always the same number, because a change of it means a restart.
+double StartTime(double uptime) {
+  static const double start = static_cast<double>(UnixSeconds()) - uptime;
+  return start;
+}
+
 // The names without "furrow_" are those of Prometheus' client libraries.
 void AddProcess(double uptime, std::vector<MetricFamily>* families) {
   families->push_back(Family("furrow_build_info", "Always 1; the labels say what was built.",
@@ -87,7 +93,7 @@ void AddProcess(double uptime, std::vector<MetricFamily>* families) {
     families->push_back(Family(name, help, MetricType::Gauge, static_cast<double>(value)));
   };
   add("process_start_time_seconds", "Start of the daemon, in seconds since 1970.",
-      static_cast<double>(UnixSeconds()) - uptime);
+      StartTime(uptime));
   add("process_resident_memory_bytes", "Memory of the daemon in RAM.", stats.resident_bytes);
   add("process_virtual_memory_bytes", "Address space of the daemon.", stats.virtual_bytes);
   add("process_threads", "Threads of the daemon.", stats.threads);

@@ -259,7 +259,8 @@ void PictureViews::OnPicture(const FinishedPicture& picture, Time now) {
     } else if (PictureRequest* viewer = FlowControlled(*subscription); viewer != nullptr) {
       // Ends the request; the tick asks again after ViewerFlow::kRetry.
       viewer->flow->Fail();
-      if (viewer->video) viewer->video->Lose();
+      // Pictures that were never encoded leave no gap in the video.
+      if (viewer->video && !picture.codec.empty()) viewer->video->Lose();
       subscription->owed = subscription->subject != nullptr;
     }
   }

@@ -45,7 +45,7 @@ TEST_F(VideoEncodersTest, AnEncoderGoesWithItsViewer) {
   ASSERT_TRUE(encoders.Encode(1, PlanesOf(64, 32), {}).ok());
   EXPECT_EQ(fake_video.alive, 1);
   encoders.Close(1);
-  EXPECT_EQ(fake_video.alive, 0);
+  EXPECT_EQ(fake_video.alive, 0) << "nobody else encodes";
   EXPECT_EQ(encoders.state().encoders, 0);
   EXPECT_EQ(encoders.Encode(1, PlanesOf(64, 32), {}).status().code(), StatusCode::kNotFound);
   EXPECT_EQ(fake_video.made, 1) << "a picture that comes late makes no encoder";
@@ -78,18 +78,41 @@ TEST_F(VideoEncodersTest, TheirNumberIsLimitedAndShared) {
   EXPECT_EQ(none.state().max_encoders, 0);
 }
 
-TEST_F(VideoEncodersTest, TheirMemoryIsLimited) {
+TEST_F(VideoEncodersTest, TheirMemoryIsLimitedAndShared) {
   VideoEncoders many(test::FakeVideoCodec(), 1000);
-  constexpr render::VideoFormat kLarge{2048, 2048, 80};
-  const std::size_t fits = VideoEncoders::kMaxBytes / render::VideoEncoderBytes(2048, 2048);
+  constexpr render::VideoFormat kLarge{1024, 1024, 80};
+  const std::size_t fits = VideoEncoders::kMaxBytes / render::VideoEncoderBytes(1024, 1024);
   std::size_t opened = 0;
   for (std::uint64_t i = 0; i < 100; ++i) opened += many.Open(i, "a", kLarge) ? 1 : 0;
-  EXPECT_EQ(opened, fits);
+  EXPECT_EQ(opened, (fits + 1) / 2) << "half of it, as of the places";
+  EXPECT_TRUE(many.Open(200, "b", kLarge)) << "a newcomer finds room";
   EXPECT_TRUE(many.Open(0, "a", kFormat)) << "a smaller one takes its own place";
+  const int held = many.state().encoders;
   EXPECT_FALSE(many.Open(0, "a", {4096, 4096, 80}));
-  EXPECT_TRUE(many.Open(0, "a", kLarge));
-  many.Close(0);
+  EXPECT_EQ(many.state().encoders, held - 1) << "a viewer without video holds no place";
+  many.Close(1);
   EXPECT_TRUE(many.Open(100, "a", kLarge)) << "memory is given back";
+}
+
+// Freeing an encoder takes milliseconds, in which no pose could be handled.
+TEST_F(VideoEncodersTest, EncodersOfViewersThatLeftAreFreedWhereOthersEncode) {
+  for (const std::uint64_t viewer : {1, 2}) {
+    ASSERT_TRUE(encoders.Open(viewer, "a", kFormat));
+    ASSERT_TRUE(encoders.Encode(viewer, PlanesOf(64, 32), {}).ok());
+  }
+  encoders.Close(1);
+  EXPECT_EQ(fake_video.alive, 2);
+  ASSERT_TRUE(encoders.Encode(2, PlanesOf(64, 32), {}).ok());
+  EXPECT_EQ(fake_video.alive, 1);
+}
+
+TEST_F(VideoEncodersTest, AVideoBeginsAgainAfterALostPicture) {
+  ASSERT_TRUE(encoders.Open(1, "a", kFormat));
+  ASSERT_TRUE(encoders.Encode(1, PlanesOf(64, 32), {})->key);
+  EXPECT_FALSE(encoders.Encode(1, PlanesOf(64, 32), {})->key);
+  encoders.Restart(1);
+  EXPECT_TRUE(encoders.Encode(1, PlanesOf(64, 32), {})->key);
+  encoders.Restart(7);  // nothing to do
 }
 
 TEST_F(VideoEncodersTest, AFailedEncoderGetsNoMorePictures) {
