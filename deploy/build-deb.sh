@@ -106,9 +106,10 @@ case "$mode" in
       { tail -n 40 "$work/log" >&2; fail 'dpkg-buildpackage failed (output above)'; }
     ;;
 esac
-rm -rf "$output"/*.deb "$output/debug"
 mkdir -p "$output/debug"
+# Of former builds.
+rm -f "$output"/furrow*_*.deb "$output"/libfurrow-client*_*.deb "$output"/debug/{furrow,libfurrow-client}*-dbgsym_*.deb
 mv "$work"/packages/*-dbgsym_*.deb "$output/debug/"
 mv "$work"/packages/*.deb "$output/"
 say "packages in $output:"
-(cd "$output" && du -h ./*.deb)
+(cd "$output" && du -h ./furrow*_*.deb ./libfurrow-client*_*.deb)

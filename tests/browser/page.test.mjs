@@ -57,6 +57,18 @@ test('a drag orbits the camera, a framing resets it', async () => {
   await closePage(page);
 });
 
+test('the bar below the picture fits one row', async () => {
+  const page = await openPage(browser, daemon.address, { viewport: { width: 1440, height: 900 } });
+  await page.waitForSelector('.view-bar [data-preset]');
+  const middles = await page.evaluate(() => [...document.querySelectorAll('.view-bar :is(button, select)')].map((element) => {
+    const { top, bottom } = element.getBoundingClientRect();
+    return Math.round((top + bottom) / 2);
+  }));
+  assert(middles.length > 8);
+  assert(Math.max(...middles) - Math.min(...middles) < 5, middles.join());
+  await closePage(page);
+});
+
 test('touch orbits, pans, zooms and taps', async () => {
   await daemon.hold(SMILE_S);
   const page = await openPage(browser, daemon.address, { hasTouch: true, viewport: { width: 1180, height: 820 } });

@@ -25,6 +25,9 @@ test('a moving picture comes as H.264, and the page says so', async () => {
   assert.equal(await streamOf(page).getAttribute('title'), 'The pictures come as H.264 video');
   assert(kinds.has('h264'));
   assert.equal((await daemon.get('api/status')).video.encoders, 1);
+  await page.click('#tab-session');
+  const facts = page.locator('#panel-session .facts').first();
+  await eventually('the session', async () => /H\.264, follows the network.*H\.264 \d+\.\d\d Mbit\/s/s.test(await facts.textContent()));
   await keep(page, 'video-h264');
   noErrors(page);
   await page.context().close();
@@ -77,7 +80,7 @@ for (const [what, script, reason] of [
   }, /failed to decode/],
   ['with a decoder that keeps its pictures', () => {
     VideoDecoder.prototype.decode = () => {};
-  }, /was late/],
+  }, /too slow/],
 ]) {
   test(`the page falls back to JPEG ${what}`, async () => {
     await daemon.patch('api/playback', { playing: true });
@@ -111,10 +114,12 @@ test('the user chooses the stream, and the address keeps it', async () => {
   await daemon.patch('api/playback', { playing: true });
   const page = await openChanged(() => {});
   await eventually('H.264', async () => /^H\.264/.test(await streamOf(page).textContent()));
+  await page.click('#tab-session');
   await page.selectOption('select[aria-label="Picture stream"]', 'jpeg');
   await eventually('JPEG', async () => /^JPEG/.test(await streamOf(page).textContent()));
   await eventually('the address', () => page.url().includes('stream=jpeg'));
   assert.match(await streamOf(page).getAttribute('title'), /you chose JPEG/);
+  await eventually('the reason', () => page.getByText('The pictures come as JPEG: you chose JPEG').isVisible());
   await eventually('the encoder has gone', async () => (await daemon.get('api/status')).video.encoders === 0);
   await page.selectOption('select[aria-label="Picture stream"]', 'auto');
   await eventually('H.264', async () => /^H\.264/.test(await streamOf(page).textContent()));

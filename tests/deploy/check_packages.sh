@@ -19,7 +19,7 @@ fail() { echo "check_packages: $*" >&2; exit 1; }
 mkdir -p "$build_dir/deploy"
 base=$build_dir/deploy/root.tar
 if [[ ! -f $base ]]; then
-  mmdebstrap --quiet --variant=minbase bookworm "$base.new" || { echo 'skipped: no Debian mirror'; exit 77; }
+  mmdebstrap --quiet --variant=minbase --format=tar bookworm "$base.new" || { echo 'skipped: no Debian mirror'; exit 77; }
   mv "$base.new" "$base"
 fi
 work=$(mktemp -d)

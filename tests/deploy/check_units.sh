@@ -16,6 +16,6 @@ for unit in furrowd.service furrowd@.service furrowd-tcp.socket furrowd-http.soc
   sed 's|/usr/bin/furrowd|/bin/true|' "$unit" >"$copy/$unit"
 done
 mkdir "$copy/furrowd.service.d"
-cp furrowd-gpu.conf "$copy/furrowd.service.d/"
+cp furrowd-*.conf "$copy/furrowd.service.d/"
 SYSTEMD_UNIT_PATH="$copy:" systemd-analyze verify --man=no "$copy"/furrowd.service "$copy/furrowd@a.service" "$copy"/*.socket 2>&1 | tee "$copy/log"
 ! grep -q furrowd "$copy/log"

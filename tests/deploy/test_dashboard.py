@@ -172,6 +172,9 @@ class RulesTest(unittest.TestCase):
             if panel["type"] != "row":
                 self.assertEqual(panel["datasource"]["uid"], "${datasource}", panel["title"])
                 self.assertTrue(panel["targets"], panel["title"])
+                for target in panel["targets"]:  # of several daemons
+                    if "by (" in target["expr"]:
+                        self.assertIn("{{instance}}", target["legendFormat"], panel["title"])
 
 
 if __name__ == "__main__":

@@ -93,7 +93,7 @@ export class App {
     this.actions = new PictureActions(() => this.viewer.canvas(), this.root, toasts);
     this.notice = new Notice(toasts, () => this.tabs.choose('sources'));
     this.capture = new CapturePanel(subject, toasts, () => void this.readRig());
-    this.session = new SessionPanel((name) => state.subject.set(name));
+    this.session = new SessionPanel((name) => state.subject.set(name), state.stream);
     const settingsText = new SettingsText(state, toasts);
     this.menu = new SettingsMenu(state, toasts, () => settingsText.open());
     this.timeline = new Timeline(toasts);
@@ -306,14 +306,15 @@ export class App {
     const isAtRest = this.isAtRest();
     this.header.showFigures({
       picturesHz, posesHz, isAtRest, ageMs: picture.ageMs, width: picture.width, height: picture.height,
-      ...(isHere ? { stream: '', streamTitle: '' } : this.streamFigures(nowS)),
+      ...this.streamFigures(nowS),
       limit: limitOf({ posesHz, picturesHz, waitedHz: stats.waitedHz(nowS), decodeMs: stats.decodeMs(), isAtRest, isHere }),
     });
   }
 
   private streamFigures(nowS: number): { stream: string; streamTitle: string } {
-    const { stats, video } = this.viewer;
+    const { stats, video, drawing } = this.viewer;
     const t = text.stream;
+    if (drawing.active.value || this.viewer.picture() === null) return { stream: '', streamTitle: '' };
     const isVideo = stats.codec !== '';
     const daemon = this.status?.video ?? null;
     const whyDaemon = daemon === null || daemon.why === '' ? t.why.full : t.why.daemon(daemon.why);
@@ -321,6 +322,14 @@ export class App {
       stream: t.rate(isVideo ? t.h264 : t.jpeg, stats.mbitPerS(nowS).toFixed(2)),
       streamTitle: isVideo ? t.isVideo : t.isFiles(video.why || whyDaemon),
     };
+  }
+
+  private quality(): string {
+    const { stats, drawing } = this.viewer;
+    const t = text.session;
+    if (drawing.active.value) return t.here;
+    if (stats.still) return t.still;
+    return stats.codec === '' ? (t.tiers[stats.tier] ?? text.figures.none) : t.video;
   }
 
   private async askDaemon(): Promise<void> {
@@ -358,7 +367,8 @@ export class App {
     this.session.show(subjects, status, this.weights.subject.value, {
       latencyMs: isHere ? null : stats.latencyMs(),
       skipped: stats.dropped,
-      quality: isHere ? text.session.here : stats.still ? text.session.still : (text.session.tiers[stats.tier] ?? text.figures.none),
+      quality: this.quality(),
+      ...this.streamFigures(performance.now() / 1000),
     });
     this.header.showOpen(status.open);
     this.header.showSubjects(subjects.map(({ name }) => name));

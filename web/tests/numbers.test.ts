@@ -91,10 +91,13 @@ test('poses that waited for this page, and the time to decode', () => {
   assert.equal(stats.decodeMs(), 3);
 });
 
-test('how the pictures come, and how much they take', () => {
+test('format and data rate of the pictures', () => {
   const stats = new PictureStats();
   for (let i = 0; i < 10; ++i) stats.add({ ...FACTS, sequence: i, codec: 'avc1.42c01e', numBytes: 25_000 }, i * 100_000, null);
   assert.equal(stats.mbitPerS(0.9), 1);
+  stats.addLoad(125_000, 900_000); // the left picture of a wipe
+  assert.equal(stats.mbitPerS(0.9), 1.5);
+  assert.equal(stats.rateHz(0.9), 5);
   assert.equal(stats.mbitPerS(10), 0);
   assert.equal(stats.codec, 'avc1.42c01e');
   stats.add({ ...FACTS, sequence: 10, still: true }, 1e6, null);

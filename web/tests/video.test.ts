@@ -73,6 +73,7 @@ function install(): void {
         Object.assign(this, init);
       }
     },
+    document: { hidden: false },
     createImageBitmap: () => Promise.resolve({ close: () => {} }),
     isSecureContext: true,
   });
@@ -128,6 +129,16 @@ test('a decoder that worked and was taken away is lost, not broken', async () =>
   assert.deepEqual(failures, ['lost']);
 });
 
+test('a decoder that the browser takes away at once is lost, too', async () => {
+  install();
+  const failures: VideoFailure[] = [];
+  FakeDecoder.keeps = true;
+  const waiting = reader(failures).decode(picture(1, true));
+  FakeDecoder.all[0]!.init.error(Object.assign(new Error('reclaimed'), { name: 'QuotaExceededError' }));
+  assert.equal(await waiting, null);
+  assert.deepEqual(failures, ['lost']);
+});
+
 test('a decoder that keeps two pictures back is slow', async () => {
   install();
   const timers: (() => void)[] = [];
@@ -144,6 +155,26 @@ test('a decoder that keeps two pictures back is slow', async () => {
   assert.deepEqual(failures, []);
   timers[1]!();
   assert.deepEqual([await first, await second], [null, null]);
+  assert.deepEqual(failures, ['slow']);
+});
+
+test('a decoder is not late while the page is hidden', async () => {
+  install();
+  const timers: (() => void)[] = [];
+  const { setTimeout } = globalThis;
+  Object.assign(globalThis, { setTimeout: (call: () => void) => timers.push(call), document: { hidden: true } });
+  const failures: VideoFailure[] = [];
+  const video = reader(failures);
+  FakeDecoder.keeps = true;
+  const pictures = [video.decode(picture(1, true)), video.decode(picture(2, false))];
+  for (let i = 0; i < 4; ++i) timers[i]!();
+  assert.deepEqual(failures, []);
+  assert.equal(timers.length, 6);
+  Object.assign(globalThis, { document: { hidden: false } });
+  timers[4]!();
+  timers[5]!();
+  Object.assign(globalThis, { setTimeout });
+  assert.deepEqual(await Promise.all(pictures), [null, null]);
   assert.deepEqual(failures, ['slow']);
 });
 
@@ -252,6 +283,21 @@ test('a lost decoder is replaced, a broken one reported', async () => {
   stream.stop();
 });
 
+test('a browser that takes every decoder away is given up', async () => {
+  install();
+  const failures: VideoFailure[] = [];
+  const { receive, stream } = makeStream(failures);
+  for (let number = 1; number <= 3; ++number) {
+    assert.deepEqual(failures, []);
+    receive(number, 'avc1.42c01e', true);
+    await settled();
+    FakeDecoder.all.at(-1)!.init.error(Object.assign(new Error('reclaimed'), { name: 'QuotaExceededError' }));
+  }
+  assert.equal(FakeDecoder.all.length, 3);
+  assert.deepEqual(failures, ['broken']);
+  stream.stop();
+});
+
 test('the choice follows the user, the browser and the decoder', async () => {
   install();
   const kind = new Signal<StreamKind>('auto');
@@ -261,6 +307,9 @@ test('the choice follows the user, the browser and the decoder', async () => {
   assert.deepEqual(choice.codecs.value, ['h264']);
   choice.fail('it was late');
   assert.deepEqual([choice.codecs.value, choice.why], [[], 'it was late']);
+  choice.retry();
+  assert.deepEqual([choice.codecs.value, choice.why], [['h264'], '']);
+  choice.fail('it was late');
   kind.set('h264'); // try again
   assert.deepEqual(choice.codecs.value, ['h264']);
   assert.equal(choice.isImpatient, false);

@@ -53,7 +53,8 @@ export class Header {
 
   private figure(id: 'rate' | 'age' | 'size' | 'stream' | 'limit'): HTMLElement {
     const [label, title] = text.figures[id];
-    const output = h('output', { 'data-number': id }, text.figures.none);
+    // It changes several times per second, which a screen reader would read out.
+    const output = h('output', { 'data-number': id, 'aria-live': 'off' }, text.figures.none);
     this.figures.set(id, output);
     return h('span', { class: 'figure', title }, h('span', {}, label), output);
   }

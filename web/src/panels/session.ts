@@ -1,28 +1,46 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lists the streaming subjects with their statistics, and facts about the daemon.
+// Lists the streaming subjects with their statistics, and facts about the picture and the daemon.
 import type { DaemonStatus, SubjectInfo } from '../api';
 import { text } from '../text';
-import { h } from '../ui/dom';
+import type { Signal } from '../ui/signal';
+import { h, select } from '../ui/dom';
+import type { StreamKind } from '../view/video_choice';
 
 /** Of the picture on the screen. */
 export interface PictureFigures {
   latencyMs: number | null;
   skipped: number;
   quality: string;
+  /** Format and data rate; empty: this browser draws. */
+  stream: string;
+  /** Why the pictures come that way. */
+  streamTitle: string;
 }
+
+const { kinds } = text.stream;
+const STREAMS: readonly (readonly [StreamKind, string])[] = [
+  ['auto', kinds.auto], ['h264', kinds.h264], ['jpeg', kinds.jpeg],
+];
 
 export class SessionPanel {
   private readonly rows = h('tbody', {});
   private readonly empty = h('p', { class: 'empty' }, text.session.nobody);
   private readonly picture = h('dl', { class: 'facts' });
+  private readonly stream: HTMLSelectElement;
+  private readonly streamWhy = h('p', { class: 'fine' });
   private readonly facts = h('dl', { class: 'facts' });
-  readonly element = h('div', { class: 'session' },
-    h('h3', {}, text.session.subjects),
-    h('table', { class: 'subjects' },
-      h('thead', {}, h('tr', {}, ...text.session.headings.map(([word, title]) => h('th', { scope: 'col', title }, word)))), this.rows),
-    this.empty, h('h3', {}, text.session.picture), this.picture, h('h3', {}, text.session.daemon), this.facts);
+  readonly element: HTMLElement;
 
-  constructor(private readonly onChoose: (subject: string) => void) {}
+  constructor(private readonly onChoose: (subject: string) => void, stream: Signal<StreamKind>) {
+    const t = text.session;
+    this.stream = select(text.stream.label, STREAMS, (value) => stream.set(value as StreamKind));
+    stream.bind((kind) => (this.stream.value = kind));
+    this.element = h('div', { class: 'session' },
+      h('h3', {}, t.subjects),
+      h('table', { class: 'subjects' },
+        h('thead', {}, h('tr', {}, ...t.headings.map(([word, title]) => h('th', { scope: 'col', title }, word)))), this.rows),
+      this.empty, h('h3', {}, t.picture), this.picture, this.stream, this.streamWhy, h('h3', {}, t.daemon), this.facts);
+  }
 
   show(subjects: readonly SubjectInfo[], status: DaemonStatus, chosen: string, picture: PictureFigures): void {
     const t = text.session;
@@ -30,7 +48,10 @@ export class SessionPanel {
       [t.latency, picture.latencyMs === null ? text.figures.none : `${picture.latencyMs.toFixed(0)} ms`],
       [t.dropped, t.steps(picture.skipped)],
       [t.quality, picture.quality],
+      [text.figures.stream, picture.stream || text.figures.none],
     ]);
+    this.stream.title = this.streamWhy.textContent = picture.streamTitle;
+    this.streamWhy.hidden = picture.streamTitle === '';
     this.empty.hidden = subjects.length > 0;
     const focused = document.activeElement?.closest('tr')?.dataset.subject;
     this.rows.replaceChildren(...subjects.map((subject) => this.row(subject, subject.name === chosen)));

@@ -7,7 +7,6 @@ import { button, h, readable, select } from '../ui/dom';
 import type { BrowserView } from '../view/browser_view';
 import type { DrawnBy } from '../view/draw_choice';
 import type { Sharpness } from '../view/resolution';
-import type { StreamKind } from '../view/video_choice';
 
 const t = text.viewBar;
 const WIPES: readonly (readonly [Wipe, string])[] = [
@@ -19,11 +18,6 @@ const SHARPNESS: readonly (readonly [Sharpness, string])[] = [
 
 const DRAWN_BY: readonly (readonly [DrawnBy, string])[] = [
   ['auto', t.drawers.auto], ['browser', t.drawers.browser], ['daemon', t.drawers.daemon],
-];
-
-const { kinds } = text.stream;
-const STREAMS: readonly (readonly [StreamKind, string])[] = [
-  ['auto', kinds.auto], ['h264', kinds.h264], ['jpeg', kinds.jpeg],
 ];
 
 /** A short label, because all framings share one row. */
@@ -41,10 +35,8 @@ export class ViewBar {
     this.wipe = select(t.split, WIPES, (value) => state.wipe.set(value as Wipe));
     const sharpness = select(t.sharpness, SHARPNESS, (value) => state.sharpness.set(value as Sharpness));
     this.drawnBy = select(t.drawnBy, DRAWN_BY, (value) => state.drawnBy.set(value as DrawnBy));
-    const stream = select(text.stream.label, STREAMS, (value) => state.stream.set(value as StreamKind));
-    state.stream.bind((kind) => (stream.value = kind));
     this.element = h('div', { class: 'view-bar', role: 'toolbar', 'aria-label': t.group },
-      this.framings, h('span', { class: 'space' }), h('div', { class: 'choices' }, debugViews, this.wipe, sharpness, this.drawnBy, stream));
+      this.framings, h('span', { class: 'space' }), h('div', { class: 'choices' }, debugViews, this.wipe, sharpness, this.drawnBy));
     state.presets.bind(() => this.fill());
     state.camera.watch(() => this.mark());
     state.wipe.bind((wipe) => (this.wipe.value = wipe));

@@ -37,11 +37,16 @@ interface Sample {
   atS: number;
   dropped: number;
   decodeMs: number;
+}
+
+interface Load {
+  atS: number;
   numBytes: number;
 }
 
 export class PictureStats {
   private samples: Sample[] = [];
+  private loads: Load[] = [];
   private latencies: number[] = [];
   private lastDropped = 0;
   /** Pictures of the current connection. A pose at rest gets no pictures, so a low rate is not a fault. */
@@ -75,7 +80,8 @@ export class PictureStats {
     const dropped = picture.dropped >= this.lastDropped ? picture.dropped - this.lastDropped : picture.dropped;
     this.lastDropped = picture.dropped;
     this.dropped += dropped;
-    this.samples.push({ atS: nowS, dropped, decodeMs: picture.decodeMs, numBytes: picture.numBytes });
+    this.samples.push({ atS: nowS, dropped, decodeMs: picture.decodeMs });
+    this.addLoad(picture.numBytes, nowUs);
     this.prune(nowS);
     this.tier = picture.tier;
     this.still = picture.still;
@@ -91,9 +97,16 @@ export class PictureStats {
     if (this.latencies.length > MOST_SAMPLES) this.latencies.shift();
   }
 
+  /** Also for the left picture of a wipe, which add() must not count. */
+  addLoad(numBytes: number, nowUs: number): void {
+    this.loads.push({ atS: nowUs / 1e6, numBytes });
+    this.prune(nowUs / 1e6);
+  }
+
   /** Forgets the pictures of a daemon or a subject that has gone. */
   reset(): void {
     this.samples = [];
+    this.loads = [];
     this.latencies = [];
     this.shown = this.lastDropped = this.receivedUs = 0;
     this.sequence = null;
@@ -113,10 +126,10 @@ export class PictureStats {
     return this.samples.reduce((sum, { dropped }) => sum + dropped, 0) / WINDOW_S;
   }
 
-  /** Megabits per second that the pictures took. */
+  /** Megabits per second that the pictures took, both of a wipe. */
   mbitPerS(nowS: number): number {
     this.prune(nowS);
-    return (this.samples.reduce((sum, { numBytes }) => sum + numBytes, 0) * 8) / 1e6 / WINDOW_S;
+    return (this.loads.reduce((sum, { numBytes }) => sum + numBytes, 0) * 8) / 1e6 / WINDOW_S;
   }
 
   /** Mean time to decode a picture; 0 if there is none in the last two seconds. */
@@ -139,6 +152,8 @@ export class PictureStats {
   }
 
   private prune(nowS: number): void {
-    while (this.samples.length > 0 && this.samples[0]!.atS < nowS - WINDOW_S) this.samples.shift();
+    for (const list of [this.samples, this.loads]) {
+      while (list.length > 0 && list[0]!.atS < nowS - WINDOW_S) list.shift();
+    }
   }
 }

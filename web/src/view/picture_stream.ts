@@ -20,7 +20,7 @@ export interface PictureEvents {
   onPicture(picture: Picture): void;
   /** The daemon rejected the request. `error` is its sentence. */
   onRefused(code: number, error: string): void;
-  /** For requests that list codecs. A decoder that was lost is replaced without a call of onFailed(). */
+  /** For requests that list codecs. Lost decoders are replaced; after too many, onFailed() reports 'broken'. */
   video?: VideoReaderEvents;
 }
 
@@ -30,6 +30,10 @@ function sameView(a: PictureRequest | null, b: PictureRequest): boolean {
 
 /** Minimum time between two updates of the view. A drag makes about 100 changes per second. */
 const UPDATE_MS = 33;
+
+/** A browser that loses this many decoders within a minute would lose the next one, too. */
+const MOST_LOSSES = 3;
+const LOSSES_MS = 60_000;
 
 export class PictureStream implements Subscriber {
   /** True until a picture shows the last requested change. */
@@ -47,6 +51,8 @@ export class PictureStream implements Subscriber {
   private reader: VideoReader | null = null;
   /** The pictures of the video cannot be decoded until there is a key picture. */
   private needsKey = false;
+  /** When decoders were lost. */
+  private lossesMs: number[] = [];
 
   constructor(
     private readonly connection: Connection,
@@ -182,6 +188,15 @@ export class PictureStream implements Subscriber {
     return this.needsKey ? null : this.reader.decode(picture);
   }
 
+  /** Counts a lost decoder. */
+  private losesTooMany(): boolean {
+    const nowMs = performance.now();
+    this.lossesMs = [...this.lossesMs.filter((atMs) => atMs > nowMs - LOSSES_MS), nowMs];
+    if (this.lossesMs.length < MOST_LOSSES) return false;
+    this.lossesMs = [];
+    return true;
+  }
+
   private makeReader(video: VideoReaderEvents): VideoReader {
     return new VideoReader({
       isImpatient: video.isImpatient,
@@ -189,6 +204,7 @@ export class PictureStream implements Subscriber {
         this.reader = null;
         this.needsKey = true;
         if (failure !== 'lost') video.onFailed(failure);
+        else if (this.losesTooMany()) video.onFailed('broken');
       },
     });
   }

@@ -41,10 +41,7 @@ export class VideoChoice {
   private failure = '';
 
   constructor(private readonly kind: Signal<StreamKind>) {
-    kind.bind(() => {
-      this.failure = ''; // the user wants to try again
-      this.decide();
-    });
+    kind.bind(() => this.retry());
     void this.ask();
   }
 
@@ -56,6 +53,12 @@ export class VideoChoice {
   /** Asks for JPEG from now on. */
   fail(why: string): void {
     this.failure = why;
+    this.decide();
+  }
+
+  /** Asks for video again after a failure. */
+  retry(): void {
+    this.failure = '';
     this.decide();
   }
 

@@ -10,6 +10,8 @@ const MOST_LATE = 2;
 
 /** A decoder that has shown this many pictures works. If it fails then, the browser has taken it away. */
 const WORKS = 30;
+/** The name of the error of a browser that takes a decoder away, or has no more of them. */
+const TAKEN_AWAY = 'QuotaExceededError';
 
 /** 'lost': another decoder may go on. 'broken': this browser cannot decode the video. 'slow': it stays behind. */
 export type VideoFailure = 'lost' | 'broken' | 'slow';
@@ -55,9 +57,9 @@ export class VideoReader {
         this.decoder!.decode(new EncodedVideoChunk({
           type: picture.key ? 'key' : 'delta', timestamp: picture.number, data: picture.bytes,
         }));
-      } catch {
+      } catch (error) {
         resolve(null);
-        this.fail();
+        this.fail(this.failureOf(error));
       }
     });
   }
@@ -76,7 +78,7 @@ export class VideoReader {
 
   private configure(codec: string): void {
     if (this.decoder !== null && codec === this.codec) return; // another size needs no configuration
-    this.decoder ??= new VideoDecoder({ output: (frame) => this.onFrame(frame), error: () => this.fail() });
+    this.decoder ??= new VideoDecoder({ output: (frame) => this.onFrame(frame), error: (error) => this.fail(this.failureOf(error)) });
     this.codec = codec;
     this.decoder.configure({
       codec,
@@ -92,8 +94,8 @@ export class VideoReader {
     return setTimeout(() => {
       const found = this.waiting.get(number);
       if (found === undefined) return;
-      // The page itself was busy, or in the background. The picture may be waiting behind this call.
-      if (performance.now() > dueMs + delayMs / 2) found.timer = this.watch(number);
+      // The page itself was busy, or is in the background, where browsers decode late or not at all.
+      if (document.hidden || performance.now() > dueMs + delayMs / 2) found.timer = this.watch(number);
       else if (++this.numLate >= MOST_LATE) this.fail('slow');
     }, delayMs);
   }
@@ -111,7 +113,11 @@ export class VideoReader {
     found.resolve(frame);
   }
 
-  private fail(failure: VideoFailure = this.numShown < WORKS ? 'broken' : 'lost'): void {
+  private failureOf(error: unknown): VideoFailure {
+    return (error as Error | undefined)?.name === TAKEN_AWAY || this.numShown >= WORKS ? 'lost' : 'broken';
+  }
+
+  private fail(failure: VideoFailure): void {
     if (this.isOver) return;
     this.close();
     this.events.onFailed(failure);

@@ -132,7 +132,10 @@ export class Viewer {
     const link = this.connection.link.value;
     if (link === 'open') this.notDrawn.set('');
     // The picture on the screen belongs to a daemon that has gone. The next one begins again.
-    if (link === 'lost') this.stats.reset();
+    if (link === 'lost') {
+      this.stats.reset();
+      this.video.retry();
+    }
     if (link !== 'open') this.stage.element.dataset.still = 'false';
   }
 
@@ -215,7 +218,10 @@ export class Viewer {
 
   private onPicture(side: Side, picture: Picture): void {
     this.stage.show(side, picture);
-    if (side === 'left') return;
+    if (side === 'left') {
+      this.stats.addLoad(picture.numBytes, this.connection.nowUs());
+      return;
+    }
     const wasResting = this.stats.resting;
     this.stats.add(picture, this.connection.nowUs(), this.connection.clock.offsetUs());
     this.notDrawn.set('');
