@@ -124,7 +124,7 @@ class Spread {
     lost = Diffused(lost, flows_, steps(slip.pressed));
     for (std::size_t i = 0; i < vertices_.size(); ++i) {
       const mat3 given = PositiveAcross(fed[i] - pulled[i], normals_[i]);
-      strain.lost[vertices_[i]] = PositiveAcross(lost[i] + kFed * given, normals_[i]);
+      strain.lost[vertices_[i]] = PositiveAcross(lost[i] + kFed * slip.feeds * given, normals_[i]);
       strain.pulled[vertices_[i]] = PositiveAcross(pulled[i], normals_[i]);
     }
     return strain;

@@ -16,6 +16,7 @@ struct ClothSlip {
   float pressed = 0.0f;  // away from where a bend presses it together, along the compression
   float pulled = 0.0f;   // around a pull
   float fed = 0.0f;      // to where it is pulled
+  float feeds = 1.0f;    // share of the length that a pull needs and gets from around, [0, 1]
 };
 
 // How a pose changes the lengths of the surface below cloth, spread over the cloth.

@@ -156,6 +156,7 @@ void ClothFolds::Add(const BakePose& pose, std::span<const float> mask, float wa
                                   .own = {},
                                   .laid = {}});
   }
+  found->feeds = std::min(found->feeds, ease.feeds);
   for (std::size_t v = 0; v < mesh_.vertices().size(); ++v) {
     const float inside = mesh_.vertices()[v].Interpolate(mask);
     found->room[v] = std::max(found->room[v], inside);
@@ -187,8 +188,10 @@ ClothFolds::Effect ClothFolds::EffectOf(const Pose& pose, const SkinMatrices& be
       PoseSurface(surface, bent, morphed.empty() ? surface.positions() : std::span(morphed));
   const std::vector<vec3> cut =
       PlacesOn(mesh_, PoseSurface(surface, pose.cut, surface.positions()));
+  ClothSlip slip = kSlip;
+  slip.feeds = pose.feeds;
   const ClothStrain strain =
-      MeasureClothStrain(mesh_, cut, PlacesOn(mesh_, posed), pose.room, kSlip);
+      MeasureClothStrain(mesh_, cut, PlacesOn(mesh_, posed), pose.room, slip);
   const std::vector<vec3> normals = NormalsOf(mesh_);
   const std::size_t count = mesh_.vertices().size();
   Effect effect{std::vector<mat3>(count, mat3(0.0f)), std::vector<float>(count, 0.0f),

@@ -79,6 +79,7 @@ class ClothFolds {
     std::vector<float> shares;  // the mask times the weight
     std::vector<ClothEase> eases;
     float wavelength = 0.0f;
+    float feeds = 1.0f;  // ClothEase::feeds, the least of the regions
     Effect own;
     Effect laid;  // of `further` if there is one, else empty
   };

@@ -95,9 +95,9 @@ TEST_F(Strain, TellsPullFromCompression) {
 
 TEST_F(Strain, ClothBesideAPullFeedsIt) {
   const std::vector<vec3> posed = Pressed(-0.2f);
-  const auto lost = [&](float fed, float from, float to) {
+  const auto lost = [&](float fed, float from, float to, float feeds = 1.0f) {
     return Mean(MeasureClothStrain(*fine_, cut_, posed, Room(),
-                                   {.pressed = kReach, .pulled = 0.01f, .fed = fed})
+                                   {.pressed = kReach, .pulled = 0.01f, .fed = fed, .feeds = feeds})
                     .lost,
                 kX, from, to);
   };
@@ -105,6 +105,8 @@ TEST_F(Strain, ClothBesideAPullFeedsIt) {
   EXPECT_GT(lost(0.05f, kLast + 0.02f, kLast + 0.06f),
             5.0 * lost(0.05f, kFirst + 0.015f, kLast - 0.015f));
   EXPECT_LT(lost(0.0f, kLast + 0.02f, kLast + 0.06f), 1e-3);
+  EXPECT_NEAR(lost(0.05f, kLast + 0.02f, kLast + 0.06f, 0.5f),
+              0.5 * lost(0.05f, kLast + 0.02f, kLast + 0.06f), 1e-3);
 }
 
 TEST_F(Strain, IsZeroWithoutDeformationOrRoom) {
