@@ -5,6 +5,8 @@
 #include <memory>
 #include <utility>
 
+#include <glm/geometric.hpp>
+
 #include "authoring/bake/layers/map_baker.h"
 #include "authoring/bake/request/bake_progress.h"
 #include "authoring/bake/request/request_check.h"
@@ -25,6 +27,36 @@ bool IsFed(const std::string& map, std::span<const BakePose> poses,
            std::span<const BakeStroke> strokes) {
   return std::any_of(poses.begin(), poses.end(), [&](const auto& p) { return p.map == map; }) ||
          std::any_of(strokes.begin(), strokes.end(), [&](const auto& s) { return Names(s, map); });
+}
+
+// The largest difference between the rotations of two poses: 2 sin(angle / 2) of the joint that
+// turns most.
+float TurnBetween(std::span<const glm::mat4> a, std::span<const glm::mat4> b) {
+  float most = 0.0f;
+  for (std::size_t j = 0; j < std::min(a.size(), b.size()); ++j) {
+    for (int k = 0; k < 3; ++k) {
+      most = std::max(most, glm::distance(glm::vec3(a[j][k]), glm::vec3(b[j][k])));
+    }
+  }
+  return most;
+}
+
+// The pose of another map of the same region that goes furthest through the end of `pose`; null if
+// there is none, or if `pose` itself hardly moves.
+const BakePose* PoseBeyond(const BakePose& pose, std::span<const BakePose> poses) {
+  constexpr float kStill = 0.2f, kOnTheWay = 0.1f;
+  if (pose.path.empty() || TurnBetween(pose.path.front(), pose.path.back()) < kStill)
+    return nullptr;
+  const BakePose* beyond = nullptr;
+  for (const BakePose& other : poses) {
+    if (other.region != pose.region || other.map == pose.map) continue;
+    if (other.path.size() <= (beyond == nullptr ? pose : *beyond).path.size()) continue;
+    const bool passes = std::any_of(other.path.begin(), other.path.end(), [&](const auto& step) {
+      return TurnBetween(step, pose.path.back()) < kOnTheWay;
+    });
+    if (passes) beyond = &other;
+  }
+  return beyond;
 }
 
 }  // namespace
@@ -58,7 +90,7 @@ Result<BakedMaps> Bake(const character::Character& character, std::span<const Ba
     MapBaker baker(character, *surface, options, map->name, cloth);
     for (const BakePose& pose : poses) {
       if (pose.map != map->name) continue;
-      baker.AddPose(pose);
+      baker.AddPose(pose, cloth ? PoseBeyond(pose, poses) : nullptr);
       if (!progress.Report(1.0f)) return BakeProgress::CancelledStatus();
     }
     for (const BakeStroke& stroke : strokes) {

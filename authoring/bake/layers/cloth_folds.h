@@ -6,11 +6,12 @@
 #include <utility>
 #include <vector>
 
+#include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
+#include "authoring/bake/cloth/crease_lines.h"
 #include "authoring/bake/layers/stroke_layer.h"
-#include "authoring/bake/layers/wrinkle_mesh.h"
 #include "authoring/bake/request/bake_progress.h"
 #include "authoring/bake/request/bake_request.h"
 #include "authoring/bake/surface/fine_mesh.h"
@@ -18,24 +19,35 @@
 namespace furrow::authoring {
 
 // The folds that the poses of one wrinkle map press into cloth.
+//
+// - Each pose gives the excess of every place: the share of its length that cloth must hide, and
+// the
+//   direction of it. It is the length that the pose takes from the surface (MeasureClothStrain()),
+//   the ease of the cloth, and what cloth is too wide across a pull.
+// - The poses are joined to one field, in which creases are laid (LayCreases()): large forms where
+//   a pose deforms the cloth, folds of the fabric's wavelength, and small ones in sharp bends.
+// - The creases are drawn as crests (DrawCreases()).
 class ClothFolds {
  public:
-  // `mesh` must outlive the folds. `ease`: how much longer cloth is than the surface at rest.
-  // `depth`: multiplier for the heights.
-  ClothFolds(const FineMesh& mesh, float ease, float depth, std::uint32_t seed)
-      : mesh_(mesh), ease_(ease), depth_(depth), seed_(seed) {}
+  // `mesh`: where strain is measured and creases are laid. `drawn`: where their relief is drawn, at
+  // least as fine. Both are of one surface and must outlive the folds. `ease`: how much longer
+  // cloth is than the surface at rest. `depth`: multiplier for the heights.
+  ClothFolds(const FineMesh& mesh, const FineMesh& drawn, float ease, float depth,
+             std::uint32_t seed)
+      : mesh_(mesh), drawn_(drawn), ease_(ease), depth_(depth), seed_(seed) {}
 
-  // Adds a pose (BakePose::path, shape_weights and weight count). `mask`: where it counts, one per
-  // welded vertex, [0, 1]. `wavelength`: from fold to fold where the pose deforms cloth, metres, >
-  // 0. Where cloth hangs, it is wider, by HangingWidth(). Masks of one pose with one wavelength
-  // are joined, so that its folds cross the borders of regions. `ease`: inside the mask; where
-  // masks of one pose overlap, the loosest counts.
+  // Adds a pose: the ends of BakePose::path, shape_weights and weight count. `mask`: where it
+  // counts, one per welded vertex, [0, 1]. `wavelength`: from fold to fold where the pose deforms
+  // cloth, metres, > 0. Where cloth hangs, it is wider, by HangingWidth(). Masks of one pose with
+  // one wavelength are joined, so that its folds cross the borders of regions. `ease`: inside the
+  // mask; where masks of one pose overlap, the loosest counts. `further`: a pose that goes on where
+  // this one ends, or null. Creases are laid for that one, so that both poses have the same creases
+  // at other depths.
   void Add(const BakePose& pose, std::span<const float> mask, float wavelength,
-           const ClothEase& ease = {});
+           const ClothEase& ease = {}, const BakePose* further = nullptr);
 
-  // Simulates all poses. Where several poses meet, the deepest folds of them prevail, in
-  // proportion to mask times weight: the mean of folds at different places would be flat. The
-  // result does not depend on `threads`. Returns false if `progress` cancels.
+  // Measures all poses and draws their folds. Where several poses meet, the strongest excess
+  // prevails. The result does not depend on `threads`. Returns false if `progress` cancels.
   [[nodiscard]] bool Solve(int threads, BakeProgress* progress);
 
   // The folds at a point, after Solve(). `tangent`, `bitangent`: unit vectors along which the slope
@@ -48,36 +60,56 @@ class ClothFolds {
 
  private:
   using SkinMatrices = std::vector<glm::mat4>;  // one per joint of the skeleton
-  struct Pose {
-    std::vector<SkinMatrices> path;
-    std::vector<float> shape_weights;
-    std::vector<float> room;    // per vertex of the mesh: the mask
-    std::vector<float> shares;  // the same, times the weight
-    float wavelength = 0.0f;
-    std::vector<ClothEase> eases;  // per vertex of the mesh
-    std::vector<float> wider;      // per vertex of the mesh: multiplier for the wavelength
-    std::vector<WrinkleMesh::Fold> folds;
+  // What a pose does to cloth, per vertex of the mesh.
+  struct Effect {
+    // Symmetric tensors across the normal at rest: cloth along the unit vector d hides the share
+    // dot(d, slack d) of its length; less than 0 where it is pulled.
+    std::vector<glm::mat3> slack;
+    std::vector<float> pressed;  // 1 where the pose presses cloth together, 0 where it pulls or not
+    std::vector<float> width;    // from crease to crease, in wavelengths
+    std::vector<float> height;   // of creases, multiplier
   };
-  // Calls `step` after every step of the path; it returns false to stop.
-  template <class Step>
-  void SolvePose(Pose* pose, const Step& step) const;
-  [[nodiscard]] std::vector<glm::vec3> LastPlaces(const Pose& pose) const;
-  [[nodiscard]] std::vector<float> WiderWhereHanging(std::span<const glm::vec3> cut,
-                                                     std::span<const glm::vec3> bent,
-                                                     std::span<const glm::mat3> slipped) const;
-  [[nodiscard]] std::vector<float> Prominence(const Pose& pose) const;
-  void Mix();
-  template <class T>
-  void Smooth(std::vector<T>* values, int passes) const;
-  void MeasureCavities(const std::vector<float>& wavelengths);
+  struct Pose {
+    SkinMatrices cut;
+    SkinMatrices bent;
+    SkinMatrices further;  // empty: none
+    std::vector<float> shape_weights;
+    // Per vertex of the mesh.
+    std::vector<float> room;    // the mask
+    std::vector<float> shares;  // the mask times the weight
+    std::vector<ClothEase> eases;
+    float wavelength = 0.0f;
+    float feeds = 1.0f;  // ClothEase::feeds, the least of the regions
+    Effect own;
+    Effect laid;  // of `further` if there is one, else empty
+  };
+  // A size of creases.
+  struct Size;
+
+  [[nodiscard]] Effect EffectOf(const Pose& pose, const SkinMatrices& bent) const;
+  [[nodiscard]] float LoosenessAt(std::uint32_t vertex, const glm::vec3& down, float wavelength,
+                                  float least) const;
+  void Join();
+  void Steer();
+  void Add(const Size& size);
+  [[nodiscard]] bool Draw(BakeProgress* progress);
+  void LimitSlopes();
+  void MeasureCavities();
 
   const FineMesh& mesh_;
+  const FineMesh& drawn_;
   float ease_;
   float depth_;
   std::uint32_t seed_;
   std::vector<Pose> poses_;
-  // Per vertex of the mesh.
-  std::vector<float> heights_;
+  std::vector<float> mask_;  // per welded vertex of the surface: the largest of all poses
+  // Per vertex of the mesh, by Join().
+  CreaseField field_;          // for which creases are laid
+  std::vector<float> excess_;  // for which they are drawn
+  std::vector<float> pressed_;
+  std::vector<float> deep_;  // multiplier for the heights
+  // Per vertex of the drawn mesh.
+  std::vector<float> heights_;  // metres
   std::vector<glm::vec3> gradients_;
   std::vector<float> cavities_;
 };

@@ -20,7 +20,7 @@ namespace {
 constexpr float kFineLines = 1.0f / 3.0f;  // wavelength relative to the main folds
 constexpr int kGutter = 16;                // texels to grow planes beyond UV borders
 constexpr float kFoldedMillimetres = 0.01f;
-constexpr float kEdgesPerFold = 4.0f;  // of the simulation of cloth
+constexpr float kEdgesPerFold = 4.0f;  // of the mesh on which cloth is measured
 
 const wrinkle::Region* FindRegion(const wrinkle::Rig& rig, const std::string& name) {
   const auto found =
@@ -82,8 +82,8 @@ MapBaker::MapBaker(const character::Character& character, const BakeSurface& sur
       sum_(surface.surface().positions().size()),
       blood_(surface.surface().positions().size()) {
   if (surface.fine_mesh() != nullptr) {
-    cloth_folds_ =
-        std::make_unique<ClothFolds>(*surface.fine_mesh(), options.ease, Depth(), options.seed);
+    cloth_folds_ = std::make_unique<ClothFolds>(*surface.fine_mesh(), *surface.relief_mesh(),
+                                                options.ease, Depth(), options.seed);
   }
 }
 
@@ -96,7 +96,7 @@ std::vector<float> MapBaker::MaskOf(const std::string& region) const {
   return mask;
 }
 
-void MapBaker::AddPose(const BakePose& pose) {
+void MapBaker::AddPose(const BakePose& pose, const BakePose* further) {
   const CompressionSolver::Field field =
       surface_.solver().Solve(pose.skin_matrices, pose.shape_weights, material_.max_compression);
   worst_ = std::max(worst_, field.worst);
@@ -105,7 +105,7 @@ void MapBaker::AddPose(const BakePose& pose) {
   if (weights.empty()) weights.assign(field.tensors.size(), 1.0f);
   if (cloth_folds_ != nullptr) {
     cloth_folds_->Add(pose, ClothMask(pose.region, weights), ClothWavelength(pose.region),
-                      EaseOf(pose.region));
+                      EaseOf(pose.region), further);
   }
   for (float& weight : weights) weight *= pose.weight;
   sum_.Add(field.tensors, weights);
@@ -144,7 +144,7 @@ std::vector<float> MapBaker::ClothMask(const std::string& name, std::vector<floa
   return painted;
 }
 
-// Metres. Folds that the simulation's edges or the texels cannot hold are wider.
+// Metres. Folds that the mesh's edges or the texels cannot hold are wider.
 float MapBaker::ClothWavelength(const std::string& region) const {
   const auto entry = std::ranges::find_if(
       options_.fabrics, [&](const RegionFabric& one) { return one.Covers(region); });
@@ -387,8 +387,8 @@ BakedMask MapBaker::SuggestMask(const RegionFolds& folds) const {
 }
 
 Result<std::unique_ptr<BakedMap>> MapBaker::Bake(float from, float to, BakeProgress* progress) {
-  // Completed share of the time after each part. Cloth is simulated, which takes most of the time.
-  constexpr float kStrokes = 0.1f, kFolds = 0.35f, kClothFolds = 0.85f;
+  // Completed share of the time after each part.
+  constexpr float kStrokes = 0.1f, kFolds = 0.35f, kClothFolds = 0.7f;
   const auto at = [&](float share) { return from + (to - from) * share; };
   progress->BeginPart(from, at(kStrokes));
   std::vector<std::vector<float>> masks;

@@ -30,8 +30,8 @@ class MapBaker {
   MapBaker(const character::Character& character, const BakeSurface& surface,
            const BakeOptions& options, std::string map, bool cloth);
 
-  // Adds the strain of a pose.
-  void AddPose(const BakePose& pose);
+  // Adds the strain of a pose. `further`: see ClothFolds::Add().
+  void AddPose(const BakePose& pose, const BakePose* further = nullptr);
   // Adds a stroke, which must outlive the baker.
   void AddStroke(const BakeStroke& stroke);
 

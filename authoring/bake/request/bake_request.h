@@ -26,8 +26,8 @@ struct BakePose {
   // space).
   std::vector<glm::mat4> skin_matrices;
   // For cloth: skin matrices from the pose that the clothes were cut for to this pose, both
-  // included, in small steps. Folds depend on the way: they travel, merge and stay. Joints that the
-  // pose does not name stay as the clothes were cut. Empty: from rest.
+  // included, in small steps. They tell whether a pose of another map is further on the same way.
+  // Joints that the pose does not name stay as the clothes were cut. Empty: from rest.
   std::vector<std::vector<glm::mat4>> path = {};
   // One per shape of the character, applied before skinning; shapes beyond the end rest.
   std::vector<float> shape_weights = {};
@@ -98,10 +98,12 @@ struct BakeOptions {
   Fabric fabric = kFabrics[0];  // of all cloth but that of these regions
   std::vector<RegionFabric> fabrics = {{"knee", kFabrics[1]}, {"hip", kFabrics[1]}};
   float ease = 0.15f;  // how much wider cloth is than the surface that it lies on, [0, 0.3]
-  // Where clothes are cut otherwise. Sleeves are long and wide for their arm, and have no tight
-  // places; no trousers are tight all over the hips.
-  std::vector<RegionEase> eases = {{"elbow", {.looser = 1.6f, .least = 0.6f}},
-                                   {"hip", {.least = 0.3f}}};
+  // Where clothes are cut otherwise. Sleeves are long and wide for their arm, have no tight places,
+  // and a cuff holds them up; no trousers are tight all over the hips; below a bent knee, they are
+  // drawn up smoothly.
+  std::vector<RegionEase> eases = {{"elbow", {.looser = 1.6f, .least = 0.6f, .along = 0.8f}},
+                                   {"hip", {.least = 0.3f}},
+                                   {"knee", {.feeds = 0.45f}}};
   std::vector<BakeRegionWavelength> wavelengths = {
       {"brow", 8.0f}, {"glabella", 6.5f}, {"nose", 3.5f}, {"eye", 3.5f}, {"mouth", 5.5f}};
   float depth = 1.0f;      // multiplier for every height of both materials, [0, 4]

@@ -51,6 +51,11 @@ struct RegionFabric {
 struct ClothEase {
   float looser = 1.0f;  // multiplier for the mean ease, [1, 4]
   float least = 0.0f;   // the least ease of any place, as a share of this mean, [0, 1]
+  // Share of the ease that is left along gravity, [0, 1]: a cuff at the wrist holds up a sleeve.
+  float along = 0.0f;
+  // How much of the length that a pull needs comes from the cloth around it, [0, 1]: a tight leg
+  // slips as a whole instead.
+  float feeds = 1.0f;
 };
 
 // The ease of a region's cloth.

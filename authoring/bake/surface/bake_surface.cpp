@@ -131,7 +131,11 @@ Result<std::unique_ptr<BakeSurface>> BakeSurface::Create(const character::Charac
     return Status(StatusCode::kInvalidArgument, "no triangle of the " + kind + " has any area",
                   character.name, "check that the mesh and its UVs are not collapsed to a point");
   }
-  if (cloth) made->fine_mesh_ = std::make_unique<FineMesh>(made->surface_, made->ClothEdge());
+  if (cloth) {
+    const float edge = made->ClothEdge();
+    made->fine_mesh_ = std::make_unique<FineMesh>(made->surface_, edge);
+    made->relief_mesh_ = std::make_unique<FineMesh>(made->surface_, 0.5f * edge);
+  }
   return made;
 }
 

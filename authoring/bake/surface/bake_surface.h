@@ -27,8 +27,10 @@ class BakeSurface {
 
   [[nodiscard]] const Surface& surface() const { return surface_; }
   [[nodiscard]] const CompressionSolver& solver() const { return solver_; }
-  // Cloth only, else null: the mesh that folds.
+  // Cloth only, else null: the mesh on which its strain is measured and its creases are laid.
   [[nodiscard]] const FineMesh* fine_mesh() const { return fine_mesh_.get(); }
+  // Cloth only, else null: the mesh on which their relief is drawn, with edges half as long.
+  [[nodiscard]] const FineMesh* relief_mesh() const { return relief_mesh_.get(); }
   // The texels that the surface covers.
   [[nodiscard]] const std::vector<SurfaceTexel>& texels() const { return texels_; }
   // The number of texels inside several triangles.
@@ -51,6 +53,7 @@ class BakeSurface {
   Surface surface_;
   CompressionSolver solver_;
   std::unique_ptr<FineMesh> fine_mesh_;
+  std::unique_ptr<FineMesh> relief_mesh_;
   std::int64_t overlaps_ = 0;
   std::vector<SurfaceTexel> texels_;
   std::vector<float> texel_metres_;

@@ -175,6 +175,13 @@ float KeptCreases(const ClothPlace& at) {
   return 0.0f;
 }
 
+// Trousers break over the shoe, in slanted folds that never leave.
+float Break(const ClothPlace& at) {
+  const float round = std::atan2(std::abs(at.p.x) - 0.097f, at.p.z) * 0.06f;
+  return 0.0030f * Bump(at.p.y - 0.13f, 0.05f) *
+         Gathers(at.p.y + 0.45f * std::abs(round), round, 0.042f);
+}
+
 // Threads: warp and weft of the shirt, diagonal twill of the trousers. About [-1, 1].
 float Weave(const ClothPlace& at) {
   if (IsTrousers(at.panel)) {
@@ -198,6 +205,7 @@ float Height(const ClothPlace& at) {  // metres
               0.0007f * Smoothstep(0.0036f, 0.0026f, button);
   }
   if (IsTrousers(at.panel)) {  // pressed
+    height += Break(at);
     const float middle = std::abs(std::abs(at.p.x) - 0.096f);
     height += 0.0012f * Bump(middle, 0.006f) * Smoothstep(0.02f, 0.045f, std::abs(at.p.z)) *
               Smoothstep(0.86f, 0.72f, at.p.y);

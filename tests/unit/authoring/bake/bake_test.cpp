@@ -67,6 +67,12 @@ TEST(Bake, RejectsInvalidRequests) {
       [](Request* r) {
         r->options.eases = {{"elbow", {.least = 1.1f}}};
       },
+      [](Request* r) {
+        r->options.eases = {{"elbow", {.along = -0.1f}}};
+      },
+      [](Request* r) {
+        r->options.eases = {{"knee", {.feeds = 1.1f}}};
+      },
       [](Request* r) { r->options.depth = -1.0f; },
       [](Request* r) { r->options.skin.wavelength_mm = 0.0f; },
       [](Request* r) { r->options.skin.share = 1.1f; },

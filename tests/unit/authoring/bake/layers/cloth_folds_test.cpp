@@ -37,7 +37,7 @@ class Garment : public testing::Test {
     }
     return pose;
   }
-  [[nodiscard]] ClothFolds Folds() const { return {*fine_, 0.05f, 1.0f, 1}; }
+  [[nodiscard]] ClothFolds Folds() const { return {*fine_, *fine_, 0.05f, 1.0f, 1}; }
   // The root of the mean square of the heights, metres.
   [[nodiscard]] double Depth(const ClothFolds& folds) const {
     double sum = 0.0, count = 0.0;
@@ -88,6 +88,27 @@ TEST_F(Garment, WeakPosesHaveShallowFolds) {
   half.Add(Pressed(0.5f), Everywhere(), 0.03f);
   ASSERT_TRUE(full.Solve(1, &progress_) && half.Solve(1, &progress_));
   EXPECT_NEAR(Depth(half), 0.5 * Depth(full), 1e-6);
+}
+
+// However much cloth a pose presses together, it creases instead of gaping.
+TEST_F(Garment, SlopesAreLimited) {
+  for (const float pressed : {0.2f, 0.5f, 0.9f}) {
+    BakePose pose = toys::Pose(toys::Squeeze(pressed, 0.0f));
+    pose.path.emplace_back(2, toys::Squeeze(0.0f, 0.0f));
+    pose.path.emplace_back(2, toys::Squeeze(pressed, 0.0f));
+    ClothFolds folds = Folds();
+    folds.Add(pose, Everywhere(), 0.03f);
+    ASSERT_TRUE(folds.Solve(1, &progress_));
+    float steepest = 0.0f;
+    for (std::uint32_t t = 0; t < surface_->triangles().size(); ++t) {
+      for (const vec3& corners : {vec3(0.2f, 0.3f, 0.5f), vec3(0.6f, 0.2f, 0.2f)}) {
+        const FoldSample sample = folds.At({t, corners, vec3(0.0f)}, vec3(1, 0, 0), vec3(0, 1, 0));
+        steepest = std::max(steepest, std::hypot(sample.slope.x, sample.slope.y));
+      }
+    }
+    EXPECT_GT(steepest, 0.3f) << pressed;
+    EXPECT_LT(steepest, 2.0f) << pressed;
+  }
 }
 
 // Two regions of one pose are one piece of cloth.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "authoring/bake/surface/cloth_slip.h"
+#include "authoring/bake/cloth/cloth_strain.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +7,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "authoring/bake/cloth/sheet_math.h"
 #include "authoring/bake/surface/compression.h"
 #include "wrinkle/drivers/strain/strain.h"
 
@@ -22,12 +23,13 @@ constexpr float kMostStretch = 0.5f;
 constexpr float kFlow = 1.0f / 12.0f;
 // The variance that a step adds along the compression, in squared edges, for six even edges.
 constexpr float kSpreadPerStep = 0.1875f;
+// How much length the cloth around a pull loses, per stretch that reaches it by diffusion, which
+// leaves less at the sides of a limb than there is on its outside.
+constexpr float kFed = 1.5f;
 // Edges shorter than this times the mean conduct less than they should.
 constexpr float kEvenEdge = 0.7f;
 constexpr float kMostSteps = 1e4f;
 constexpr float kTiny = 1e-6f;
-
-float TraceOf(const mat3& m) { return m[0][0] + m[1][1] + m[2][2]; }
 
 // The part of a symmetric tensor across `normal` that has positive eigenvalues.
 mat3 PositiveAcross(const mat3& tensor, const vec3& normal) {
@@ -78,10 +80,10 @@ std::vector<mat3> Diffused(const std::vector<mat3>& values, std::span<const Flow
   return now;
 }
 
-// Spreads the compression of the cloth with room.
-class Slip {
+// Spreads the changes of length of the cloth with room.
+class Spread {
  public:
-  Slip(const FineMesh& mesh, std::span<const float> room) : mesh_(mesh), index_(room.size(), 0) {
+  Spread(const FineMesh& mesh, std::span<const float> room) : mesh_(mesh), index_(room.size(), 0) {
     std::vector<vec3> normals;
     for (const wrinkle::SurfaceAxes& axes : mesh.surface().axes()) normals.push_back(axes.normal);
     for (std::uint32_t v = 0; v < room.size(); ++v) {
@@ -94,34 +96,45 @@ class Slip {
     }
   }
 
-  [[nodiscard]] std::vector<mat3> Gained(std::span<const vec3> cut, std::span<const vec3> posed,
-                                         float reach) {
-    std::vector<mat3> gained(mesh_.vertices().size(), mat3(0.0f));
-    const std::vector<mat3> lost = Lost(cut, posed);
-    if (flows_.empty()) return gained;
+  [[nodiscard]] ClothStrain Measure(std::span<const vec3> cut, std::span<const vec3> posed,
+                                    const ClothSlip& slip) {
+    ClothStrain strain{std::vector<mat3>(mesh_.vertices().size(), mat3(0.0f)),
+                       std::vector<mat3>(mesh_.vertices().size(), mat3(0.0f))};
+    std::vector<mat3> lost = Changes(cut, posed), pulled = lost;
+    if (flows_.empty()) return strain;
+    for (std::size_t i = 0; i < lost.size(); ++i) {
+      pulled[i] = PositiveAcross(-1.0f * lost[i], normals_[i]);
+      lost[i] = PositiveAcross(lost[i], normals_[i]);
+    }
     const float edge = kEvenEdge * mean_edge_;
     for (Flow& flow : flows_) flow.share = kFlow * std::min(edge * edge / flow.share, 1.0f);
-    const float steps = std::min(reach * reach / (kSpreadPerStep * edge * edge), kMostSteps);
+    const auto steps = [&](float length) {
+      return std::min(length * length / (kSpreadPerStep * edge * edge), kMostSteps);
+    };
+    const std::vector<mat3> fed = Diffused(pulled, flows_, steps(slip.fed));
+    pulled = Diffused(pulled, flows_, steps(slip.pulled));
     // Cloth slips along the direction in which it is compressed nearby.
-    const std::vector<mat3> nearby = Diffused(lost, flows_, 0.5f * steps);
+    const std::vector<mat3> nearby = Diffused(lost, flows_, 0.5f * steps(slip.pressed));
     for (Flow& flow : flows_) {
       const mat3 sum = nearby[flow.a] + nearby[flow.b];
       const float trace = TraceOf(sum);
       const float along = glm::dot(flow.along, sum * flow.along);
       flow.share *= trace < kTiny ? 0.0f : std::clamp(along / trace, 0.0f, 1.0f);
     }
-    const std::vector<mat3> spread = Diffused(lost, flows_, steps);
+    lost = Diffused(lost, flows_, steps(slip.pressed));
     for (std::size_t i = 0; i < vertices_.size(); ++i) {
-      gained[vertices_[i]] = PositiveAcross(spread[i] - lost[i], normals_[i]);
+      const mat3 given = PositiveAcross(fed[i] - pulled[i], normals_[i]);
+      strain.lost[vertices_[i]] = PositiveAcross(lost[i] + kFed * slip.feeds * given, normals_[i]);
+      strain.pulled[vertices_[i]] = PositiveAcross(pulled[i], normals_[i]);
     }
-    return gained;
+    return strain;
   }
 
  private:
-  // The shares of length that the pose takes from the cut, per vertex with room. Lists the flows,
-  // with their squared lengths as shares.
-  std::vector<mat3> Lost(std::span<const vec3> cut, std::span<const vec3> posed) {
-    std::vector<mat3> lost(vertices_.size(), mat3(0.0f));
+  // The shares of length that the pose takes from the cut, per vertex with room; negative where it
+  // stretches. Lists the flows, with their squared lengths as shares.
+  std::vector<mat3> Changes(std::span<const vec3> cut, std::span<const vec3> posed) {
+    std::vector<mat3> changes(vertices_.size(), mat3(0.0f));
     std::vector<float> edges(vertices_.size(), 0.0f);
     double length = 0.0;
     for (const auto& [a, b] : mesh_.edges()) {
@@ -134,7 +147,7 @@ class Slip {
       const float share =
           std::max(1.0f - glm::distance(posed[a], posed[b]) / before, -kMostStretch);
       for (const std::uint32_t end : {flow.a, flow.b}) {
-        lost[end] += share * glm::outerProduct(flow.along, flow.along);
+        changes[end] += share * glm::outerProduct(flow.along, flow.along);
         edges[end] += 1.0f;
       }
       flows_.push_back(flow);
@@ -144,11 +157,13 @@ class Slip {
         static_cast<float>(length / static_cast<double>(std::max<std::size_t>(flows_.size(), 1)));
     // Over all directions d across the normal, the mean of (d T d) d d^T is (2 T + tr T) / 8. This
     // inverts it.
-    for (std::size_t i = 0; i < lost.size(); ++i) {
-      const mat3 mean = lost[i] * (1.0f / std::max(edges[i], 1.0f));
-      lost[i] = PositiveAcross(4.0f * mean - TraceOf(mean) * mat3(1.0f), normals_[i]);
+    for (std::size_t i = 0; i < changes.size(); ++i) {
+      const mat3 mean = changes[i] * (1.0f / std::max(edges[i], 1.0f));
+      const vec3& n = normals_[i];
+      const mat3 plane = mat3(1.0f) - glm::outerProduct(n, n);
+      changes[i] = plane * (4.0f * mean - TraceOf(mean) * mat3(1.0f)) * plane;
     }
-    return lost;
+    return changes;
   }
 
   const FineMesh& mesh_;
@@ -161,10 +176,10 @@ class Slip {
 
 }  // namespace
 
-std::vector<mat3> SlippedLength(const FineMesh& mesh, std::span<const vec3> cut,
-                                std::span<const vec3> posed, std::span<const float> room,
-                                float reach) {
-  return Slip(mesh, room).Gained(cut, posed, reach);
+ClothStrain MeasureClothStrain(const FineMesh& mesh, std::span<const vec3> cut,
+                               std::span<const vec3> posed, std::span<const float> room,
+                               const ClothSlip& slip) {
+  return Spread(mesh, room).Measure(cut, posed, slip);
 }
 
 }  // namespace furrow::authoring
