@@ -55,7 +55,7 @@ class ShapeMapsTest(unittest.TestCase):
     def test_a_chosen_map_must_exist(self):
         message = furrow("solve", self.recording(PRESETS), "--rig", "arkit", "--shape-map", "nobody",
                          check=BAD_INPUT).stderr.decode()
-        self.assertIn("nobody.json", message)
+        self.assertIn("nobody: no such file, and no shipped map of this name", message)
 
     def test_info_names_the_vocabulary(self):
         text = furrow("info", self.recording(PRESETS), check=DONE).stdout.decode()
