@@ -60,21 +60,22 @@ Result<Reload> PrepareReload(const ReloadRequest& request) {
   const auto wanted = request.read();
   FURROW_RETURN_IF_ERROR(wanted);
   const bool draws = request.drawn != nullptr;
-  ReloadPlan plan = PlanReload(request.running, *wanted, draws);
+  const ReloadPlan plan = PlanReload(request.running, *wanted, draws);
   // A setting that waits may be what makes another one safe.
   if (const Status status = ValidateConfig(plan.config); !status.ok()) {
     return Status(status.code(), status.what(), status.where(),
                   "restart the daemon, because these changes take effect only then: " +
                       Joined(plan.needs_restart));
   }
-  Reload reload{.plan = std::move(plan),
-                .keys_file = KeyFile(wanted->security.keys),
+  const Config& config = plan.config;
+  // Of the files that count from now on, not of those that wait for a restart.
+  Reload reload{.plan = plan,
+                .keys_file = KeyFile(config.security.keys),
                 .keys = {},
                 .tls = {},
-                .tls_watches = WatchTlsFiles(wanted->security.tls),
-                .rig_files = RigFiles(*wanted),
+                .tls_watches = WatchTlsFiles(config.security.tls),
+                .rig_files = RigFiles(config),
                 .files = {}};
-  const Config& config = reload.plan.config;
   auto keys = reload.keys_file.Load();
   if (!keys.ok()) return keys.status().Within("keys");
   reload.keys = *std::move(keys);
@@ -83,7 +84,7 @@ Result<Reload> PrepareReload(const ReloadRequest& request) {
     if (!contexts.ok()) return contexts.status().Within("tls");
     reload.tls = *std::move(contexts);
   }
-  const auto& applied = reload.plan.applied;
+  const auto& applied = plan.applied;
   const bool maps_change =
       request.maps_changed || Contains(applied, "skeleton_map") || Contains(applied, "shape_map");
   // The rig of a daemon that draws waits for a restart.
