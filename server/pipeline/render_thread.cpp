@@ -34,6 +34,23 @@ auto OrOutOfMemory(Metrics* metrics, const Work& work) -> decltype(work()) {
   }
 }
 
+// The picture of a job without what an encoding adds.
+FinishedPicture FinishedOf(const render::Image& image, const RenderJob& job,
+                           std::vector<PictureTicket> tickets) {
+  return {.sequence = job.snapshot->sequence,
+          .capture_time_us = job.snapshot->capture_time_us,
+          .age_us = job.snapshot->age_us,
+          .received_us = job.snapshot->received_us,
+          .submitted = job.submitted,
+          .width = image.width,
+          .height = image.height,
+          .encoding = {},
+          .bytes = {},
+          .codec = {},
+          .key = false,
+          .tickets = std::move(tickets)};
+}
+
 // Counts the steps of the renderer for Watch(): odd within a step.
 class Step {
  public:
@@ -294,8 +311,8 @@ void RenderThread::Refuse(RenderJob job) {
 
 // If memory is so short that not even a failure can be reported, the viewers ask again after
 // ViewerFlow::kGiveUp.
-bool RenderThread::Deliver(FinishedPicture picture) {
-  return WithinMemory(metrics_, [&] { deliver_(std::move(picture)); });
+void RenderThread::Deliver(FinishedPicture picture) {
+  WithinMemory(metrics_, [&] { deliver_(std::move(picture)); });
 }
 
 // Viewers with equal encodings share the bytes.
@@ -353,19 +370,14 @@ bool RenderThread::EncodeVideo(const render::Image& image, const RenderJob& job,
   if (picture->key) metrics_->Add(Counter::kVideoKeyPictures);
   picture->bytes.shrink_to_fit();  // they may wait in queues
   // No decoder could follow a video whose picture was lost without a gap in the numbers.
-  if (!Deliver({.sequence = job.snapshot->sequence,
-                .capture_time_us = job.snapshot->capture_time_us,
-                .age_us = job.snapshot->age_us,
-                .received_us = job.snapshot->received_us,
-                .submitted = job.submitted,
-                .width = image.width,
-                .height = image.height,
-                .bytes = std::move(picture->bytes),
-                .codec = std::move(picture->codec),
-                .key = picture->key,
-                .tickets = {ticket}})) {
-    video_->Restart(ticket.subscription);
-  }
+  const bool delivered = WithinMemory(metrics_, [&] {
+    FinishedPicture finished = FinishedOf(image, job, {ticket});
+    finished.bytes = std::move(picture->bytes);
+    finished.codec = std::move(picture->codec);
+    finished.key = picture->key;
+    deliver_(std::move(finished));
+  });
+  if (!delivered) video_->Restart(ticket.subscription);
   return true;
 }
 
@@ -382,16 +394,10 @@ void RenderThread::Encode(const render::Image& image, const RenderJob& job,
     bytes = std::vector<std::uint8_t>();
   }
   bytes->shrink_to_fit();  // they may wait in queues
-  Deliver({.sequence = job.snapshot->sequence,
-           .capture_time_us = job.snapshot->capture_time_us,
-           .age_us = job.snapshot->age_us,
-           .received_us = job.snapshot->received_us,
-           .submitted = job.submitted,
-           .width = image.width,
-           .height = image.height,
-           .encoding = encoding,
-           .bytes = *std::move(bytes),
-           .tickets = std::move(tickets)});
+  FinishedPicture finished = FinishedOf(image, job, std::move(tickets));
+  finished.encoding = encoding;
+  finished.bytes = *std::move(bytes);
+  Deliver(std::move(finished));
 }
 
 // Drops the context with everything in flight. The next job that may try creates it again.

@@ -149,7 +149,7 @@ class RenderThread : public PictureSource {
   void Abandon(RenderJob job);
   void Fail(RenderJob job);
   void Refuse(RenderJob job);
-  bool Deliver(FinishedPicture picture);  // false: no memory
+  void Deliver(FinishedPicture picture);
   void Rebuild(const Status& reason);
 
   const Factory make_renderer_;

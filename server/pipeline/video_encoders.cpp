@@ -27,8 +27,9 @@ VideoEncoders::VideoEncoders(const render::VideoCodec* codec, int max_encoders, 
 bool VideoEncoders::Fits(const std::string& host, const render::VideoFormat& format) const {
   std::size_t of_host = 0, of_all = 0;
   for (const auto& [subscription, held] : held_) {
-    of_all += held.bytes;
-    if (held.host == host) of_host += held.bytes;
+    const std::size_t bytes = BytesOf(held.place->format);
+    of_all += bytes;
+    if (held.host == host) of_host += bytes;
   }
   return std::min(format.width, format.height) >= kMinSize &&
          of_host + of_all + BytesOf(format) <= kMaxBytes;
@@ -42,7 +43,7 @@ bool VideoEncoders::Open(std::uint64_t subscription, const std::string& host,
     return !known->second.place->failed;
   }
   // Memory first: after it, nothing fails halfway.
-  Held held{host, BytesOf(format), std::make_shared<Place>(Place{.format = format})};
+  Held held{host, std::make_shared<Place>(Place{.format = format})};
   former_.reserve(held_.size() + former_.size() + 1);
   if (known != held_.end()) Erase(known);
   if (!Fits(host, format) || !shares_.Enter(host)) return false;

@@ -62,7 +62,6 @@ class VideoEncoders {
   };
   struct Held {
     std::string host;
-    std::size_t bytes = 0;
     std::shared_ptr<Place> place;  // Encode() may still use it when it is closed
   };
 
