@@ -2,28 +2,24 @@
 #include "character/pictures/picture_codec.h"
 
 #include <filesystem>
+#include <string>
 #include <system_error>
 
-#include <dlfcn.h>
-
-#include "base/data_dir.h"
+#include "base/process/module.h"
 
 namespace furrow::character {
 namespace {
 
-std::filesystem::path ModulePath() {
-  return InstallPrefix() / "lib" / "furrow" / "furrow-pictures.so";
-}
+constexpr char kModule[] = "furrow-pictures.so";
 
 // The module is never unloaded: some of OpenImageIO's libraries do not support that.
 Result<const PictureCodec*> LoadModule() {
-  const std::filesystem::path path = ModulePath();
-  void* module = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-  void* make = module == nullptr ? nullptr : dlsym(module, "FurrowPictureCodec");
+  const std::filesystem::path path = ModulePath(kModule);
+  std::string why;
+  void* make = LoadFromModule(path, "FurrowPictureCodec", &why);
   if (make == nullptr) {
-    const char* why = dlerror();
     return Status(StatusCode::kUnavailable,
-                  std::string("pictures cannot be read or written: ") + (why ? why : "no codec"),
+                  "pictures cannot be read or written: " + (why.empty() ? "no codec" : why),
                   path.string(),
                   "install the package furrow-pictures, or build the target furrow_pictures");
   }
@@ -41,7 +37,7 @@ Result<const PictureCodec*> GetPictureCodec() {
 
 bool IsPictureCodecInstalled() {
   std::error_code error;
-  return std::filesystem::exists(ModulePath(), error);
+  return std::filesystem::exists(ModulePath(kModule), error);
 }
 
 }  // namespace furrow::character

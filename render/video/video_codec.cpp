@@ -4,9 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 
-#include <dlfcn.h>
-
-#include "base/data_dir.h"
+#include "base/process/module.h"
 
 namespace furrow::render {
 namespace {
@@ -14,12 +12,11 @@ namespace {
 constexpr int kSequenceParameterSet = 7;  // nal_unit_type, ITU-T H.264 table 7-1
 
 Result<const VideoCodec*> LoadModule() {
-  const std::filesystem::path path = InstallPrefix() / "lib" / "furrow" / "furrow-video.so";
-  void* module = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-  void* make = module == nullptr ? nullptr : dlsym(module, "FurrowVideoCodec");
+  const std::filesystem::path path = ModulePath("furrow-video.so");
+  std::string why;  // names the file that is missing
+  void* make = LoadFromModule(path, "FurrowVideoCodec", &why);
   if (make == nullptr) {
-    const char* why = dlerror();  // names the file that is missing
-    return Status(StatusCode::kUnavailable, why ? why : path.string() + " has no codec", "",
+    return Status(StatusCode::kUnavailable, why.empty() ? path.string() + " has no codec" : why, "",
                   "install furrow with libopenh264");
   }
   return reinterpret_cast<const VideoCodec* (*)()>(make)();
