@@ -66,6 +66,19 @@ std::string ClosestWord(std::string_view word, std::span<const std::string> know
   return begun == known.end() ? std::string() : *begun;
 }
 
+std::string DidYouMean(std::string_view word, std::span<const std::string> known,
+                       std::string_view prefix) {
+  const std::string meant = ClosestWord(word, known);
+  return meant.empty() ? "" : "did you mean '" + std::string(prefix) + meant + "'?";
+}
+
+std::string UnknownWord(const std::string& kind, std::string_view word,
+                        std::span<const std::string> known, const std::string& program) {
+  const std::string meant = DidYouMean(word, known);
+  return "unknown " + kind + " " + Quoted(word) + (meant.empty() ? "" : "; " + meant) + " ('" +
+         program + " --help' lists the " + kind + "s)";
+}
+
 // For messages about hostile input: short, on one line, without control sequences for the terminal.
 std::string Quoted(std::string_view text) {
   constexpr std::size_t kShown = 40;

@@ -30,6 +30,16 @@ namespace furrow {
 // it begins with `word`, whatever the case. Empty if there is none. Two letters that changed places
 // count as one difference.
 [[nodiscard]] std::string ClosestWord(std::string_view word, std::span<const std::string> known);
+// "did you mean 'listen.tcp'?" for an unknown `word` if ClosestWord() finds one, else empty.
+// `prefix`: stands before the word that was found, such as "listen.".
+[[nodiscard]] std::string DidYouMean(std::string_view word, std::span<const std::string> known,
+                                     std::string_view prefix = {});
+// The message about an unknown word of a command line: "unknown option '--tpc'; did you mean
+// '--tcp'? ('furrowd --help' lists the options)". `kind`: "option" or "command"; `program`: what
+// takes --help.
+[[nodiscard]] std::string UnknownWord(const std::string& kind, std::string_view word,
+                                      std::span<const std::string> known,
+                                      const std::string& program);
 
 // Bytes seen as text; no copy is made.
 [[nodiscard]] inline std::string_view AsText(std::span<const std::uint8_t> bytes) {

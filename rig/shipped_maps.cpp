@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "base/data_dir.h"
-#include "base/joined.h"
 #include "base/text.h"
+#include "base/joined.h"
 
 namespace furrow::rig {
 
@@ -42,11 +42,10 @@ Status NotShipped(const std::string& kind, const std::string& folder, const std:
     // "default.strokes.json" belongs to the rig "default".
     if (!file.stem().has_extension()) names.push_back(file.stem().string());
   }
-  const std::string meant = ClosestWord(name, names);
+  const std::string meant = DidYouMean(name, names);
   return Status(StatusCode::kNotFound, "no such file, and no shipped " + kind + " of this name",
                 name,
-                (meant.empty() ? "" : "did you mean '" + meant + "'? ") + "shipped " + kind +
-                    "s: " + Joined(names));
+                (meant.empty() ? "" : meant + " ") + "shipped " + kind + "s: " + Joined(names));
 }
 
 }  // namespace furrow::rig

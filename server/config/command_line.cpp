@@ -67,7 +67,7 @@ CLI::Validator Within(double least, double most, const std::string& what) {
 CLI::Validator IsPort() { return Within(0, 65535, "port"); }
 
 // The message about words that furrowd does not know; empty if it knows all.
-std::string UnknownWord(const CLI::App& app) {
+std::string UnknownWords(const CLI::App& app) {
   const std::vector<std::string> extra = app.remaining();
   if (extra.empty()) return {};
   const std::string word = extra.front().substr(0, extra.front().find('='));
@@ -78,10 +78,7 @@ std::string UnknownWord(const CLI::App& app) {
   for (const CLI::Option* option : app.get_options()) {
     for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
   }
-  const std::string meant = ClosestWord(word, known);
-  return "unknown option " + Quoted(word) +
-         (meant.empty() ? "" : "; did you mean '" + meant + "'?") +
-         " ('furrowd --help' lists the options)\n";
+  return UnknownWord("option", word, known, "furrowd") + "\n";
 }
 
 // Declares every flag on `config`. Parsing writes only the flags that are present.
@@ -237,7 +234,7 @@ CommandLine ParseCommandLine(std::span<const std::string> args) {
     // CLI11 reports --help and --version as exceptions, too; exit() writes their text and returns
     // 0.
     const bool failed = first.exit(error, out, out) != 0;
-    if (std::string unknown = UnknownWord(first); failed && !unknown.empty()) {
+    if (std::string unknown = UnknownWords(first); failed && !unknown.empty()) {
       return Fail(ExitCode::kUsage, unknown);
     }
     return Fail(failed ? ExitCode::kUsage : ExitCode::kOk, out.str());

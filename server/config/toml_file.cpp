@@ -75,8 +75,8 @@ class Reader {
     std::vector<std::string> known;
     for (const Key& each : keys) known.emplace_back(each.name);
     for (const NamedKeys& table : subtables) known.emplace_back(table.first);
-    const std::string closest = ClosestWord(key, known);
-    return closest.empty() ? "" : "; did you mean '" + std::string(prefix) + closest + "'?";
+    const std::string meant = DidYouMean(key, known, prefix);
+    return meant.empty() ? "" : "; " + meant;
   }
 
   // `where` is file and line, as compilers write it.

@@ -38,14 +38,6 @@ Words OptionsOf(const CLI::App& app) {
   return names;
 }
 
-std::string Unknown(const std::string& kind, const std::string& word, const Words& known,
-                    const std::string& words) {
-  const std::string meant = ClosestWord(word, known);
-  return "unknown " + kind + " " + Quoted(word) +
-         (meant.empty() ? "" : "; did you mean '" + meant + "'?") + " ('" + words +
-         " --help' lists the " + kind + "s)";
-}
-
 }  // namespace
 
 std::string UsageMessage(const CLI::App& app, const CLI::ParseError& error) {
@@ -58,11 +50,11 @@ std::string UsageMessage(const CLI::App& app, const CLI::ParseError& error) {
   });
   if (option != extra.end()) {
     // An option may have its value behind it: --rate=30.
-    return Unknown("option", option->substr(0, option->find('=')), OptionsOf(chosen), words);
+    return UnknownWord("option", option->substr(0, option->find('=')), OptionsOf(chosen), words);
   }
   const Words commands = CommandsOf(chosen);
   if (!extra.empty() && !commands.empty()) {
-    return Unknown("command", extra.front(), commands, words);
+    return UnknownWord("command", extra.front(), commands, words);
   }
   if (!extra.empty()) {
     return "unexpected argument " + Quoted(extra.front()) + " ('" + words +

@@ -39,6 +39,22 @@ TEST(ClosestWord, FindsTypingMistakes) {
   EXPECT_EQ(ClosestWord("rug", known), "rig");
 }
 
+const std::vector<std::string> kKnown = {"--tcp", "--udp"};
+
+TEST(DidYouMean, AsksForTheClosestWord) {
+  EXPECT_EQ(DidYouMean("--tpc", kKnown), "did you mean '--tcp'?");
+  EXPECT_EQ(DidYouMean("bnid", std::vector<std::string>{"bind"}, "listen."),
+            "did you mean 'listen.bind'?");
+  EXPECT_EQ(DidYouMean("--colour", kKnown), "");
+}
+
+TEST(UnknownWord, NamesTheWordAndWhereToLook) {
+  EXPECT_EQ(UnknownWord("option", "--tpc", kKnown, "furrowd"),
+            "unknown option '--tpc'; did you mean '--tcp'? ('furrowd --help' lists the options)");
+  EXPECT_EQ(UnknownWord("command", "sing", {}, "furrow rig"),
+            "unknown command 'sing' ('furrow rig --help' lists the commands)");
+}
+
 TEST(ClosestWord, LeavesOutWhatIsNotClose) {
   const std::vector<std::string> known = {"play", "--tcp", std::string(80, 'a')};
   EXPECT_EQ(ClosestWord("solve", known), "");
