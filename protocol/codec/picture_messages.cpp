@@ -31,23 +31,14 @@ DecodeStatus CheckPicture(const wire::SubscribePictures& table) {
   return CheckRate(table.max_rate_hz());
 }
 
-// A name twice is harmless, so only the text is checked.
-DecodeStatus ReadCodecs(const TextVector* codecs, std::vector<std::string>& out) {
-  if (SizeOf(codecs) > kMaxPictureCodecs) return DecodeStatus::kLimit;
-  out.resize(SizeOf(codecs));
+// Reads a list of texts. One that comes twice is harmless, so only the texts are checked.
+DecodeStatus ReadTexts(const TextVector* texts, std::size_t max_texts, int max_bytes,
+                       std::vector<std::string>& out) {
+  if (SizeOf(texts) > max_texts) return DecodeStatus::kLimit;
+  out.resize(SizeOf(texts));
   for (std::size_t i = 0; i < out.size(); ++i) {
-    FURROW_CHECK_DECODE(ReadText(codecs->Get(static_cast<flatbuffers::uoffset_t>(i)),
-                                 kMaxCodecBytes, out[i], Presence::kRequired));
-  }
-  return DecodeStatus::kOk;
-}
-
-DecodeStatus ReadSettings(const TextVector* settings, std::vector<std::string>& out) {
-  if (SizeOf(settings) > kMaxPictureSettings) return DecodeStatus::kLimit;
-  out.resize(SizeOf(settings));
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    FURROW_CHECK_DECODE(ReadText(settings->Get(static_cast<flatbuffers::uoffset_t>(i)),
-                                 kMaxNameBytes, out[i], Presence::kRequired));
+    FURROW_CHECK_DECODE(ReadText(texts->Get(static_cast<flatbuffers::uoffset_t>(i)), max_bytes,
+                                 out[i], Presence::kRequired));
   }
   return DecodeStatus::kOk;
 }
@@ -60,8 +51,9 @@ DecodeStatus ReadTable(const wire::SubscribePictures& table, SubscribePictures& 
   FURROW_CHECK_DECODE(ReadText(table.view(), kMaxNameBytes, message.view));
   if (table.view() == nullptr) message.view = "final";
   FURROW_CHECK_DECODE(ReadText(table.camera_preset(), kMaxNameBytes, message.camera_preset));
-  FURROW_CHECK_DECODE(ReadSettings(table.settings(), message.settings));
-  FURROW_CHECK_DECODE(ReadCodecs(table.codecs(), message.codecs));
+  FURROW_CHECK_DECODE(
+      ReadTexts(table.settings(), kMaxPictureSettings, kMaxNameBytes, message.settings));
+  FURROW_CHECK_DECODE(ReadTexts(table.codecs(), kMaxPictureCodecs, kMaxCodecBytes, message.codecs));
   message.has_camera = table.camera() != nullptr;
   if (message.has_camera) {
     // A camera and a preset contradict each other.
