@@ -5,11 +5,11 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-#include <unordered_map>
 #include <utility>
 
 #include <glm/geometric.hpp>
 
+#include "authoring/bake/cloth/cell_grid.h"
 #include "authoring/bake/cloth/sheet_math.h"
 #include "authoring/paint/noise.h"
 #include "base/scalar.h"
@@ -62,44 +62,25 @@ std::vector<std::array<std::uint32_t, 3>> NeighboursOf(const FineMesh& mesh) {
   return neighbours;
 }
 
-// Finds points within a distance.
+// Finds points of creases within a distance.
 class PointGrid {
  public:
-  explicit PointGrid(float cell) : cell_(cell) {}
+  explicit PointGrid(float cell) : grid_(cell) {}
   struct Entry {
     vec3 place, normal, along;
     std::uint32_t crease;
     float length;  // from the start of the crease
   };
-  void Add(const Entry& entry) { cells_[KeyOf(CellOf(entry.place))].push_back(entry); }
+  void Add(const Entry& entry) { grid_.Add(entry.place, entry); }
   template <class Visit>
   void Near(const vec3& place, float radius, const Visit& visit) const {
-    const glm::ivec3 low = CellOf(place - vec3(radius)), high = CellOf(place + vec3(radius));
-    for (int z = low.z; z <= high.z; ++z) {
-      for (int y = low.y; y <= high.y; ++y) {
-        for (int x = low.x; x <= high.x; ++x) {
-          const auto found = cells_.find(KeyOf({x, y, z}));
-          if (found == cells_.end()) continue;
-          for (const Entry& entry : found->second) {
-            if (glm::distance(entry.place, place) <= radius) visit(entry);
-          }
-        }
-      }
-    }
+    grid_.Within(place - vec3(radius), place + vec3(radius), [&](const Entry& entry) {
+      if (glm::distance(entry.place, place) <= radius) visit(entry);
+    });
   }
 
  private:
-  [[nodiscard]] glm::ivec3 CellOf(const vec3& place) const {
-    return glm::ivec3(glm::floor(place / cell_));
-  }
-  static std::uint64_t KeyOf(const glm::ivec3& cell) {
-    constexpr int kBias = 1 << 20;
-    return (static_cast<std::uint64_t>(cell.x + kBias) << 42) ^
-           (static_cast<std::uint64_t>(cell.y + kBias) << 21) ^
-           static_cast<std::uint64_t>(cell.z + kBias);
-  }
-  float cell_;
-  std::unordered_map<std::uint64_t, std::vector<Entry>> cells_;
+  CellGrid<Entry> grid_;
 };
 
 class Layer {

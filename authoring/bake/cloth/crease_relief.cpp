@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <unordered_map>
 
 #include <glm/geometric.hpp>
 
+#include "authoring/bake/cloth/cell_grid.h"
 #include "authoring/bake/cloth/sheet_math.h"
 #include "base/scalar.h"
 
@@ -16,43 +16,10 @@ namespace {
 
 using glm::vec3;
 
-constexpr float kCell = 0.02f;
+constexpr float kCell = 0.02f;  // metres
 // Excess from which on crests are broad instead of round.
 constexpr float kRound = 0.08f;
 constexpr float kBroad = 0.22f;
-
-class VertexGrid {
- public:
-  explicit VertexGrid(const FineMesh& mesh) {
-    for (std::uint32_t v = 0; v < mesh.positions().size(); ++v) {
-      cells_[KeyOf(CellOf(mesh.positions()[v]))].push_back(v);
-    }
-  }
-  template <class Visit>
-  void Near(const vec3& a, const vec3& b, float radius, const Visit& visit) const {
-    const glm::ivec3 low = CellOf(glm::min(a, b) - vec3(radius)),
-                     high = CellOf(glm::max(a, b) + vec3(radius));
-    for (int z = low.z; z <= high.z; ++z) {
-      for (int y = low.y; y <= high.y; ++y) {
-        for (int x = low.x; x <= high.x; ++x) {
-          const auto found = cells_.find(KeyOf({x, y, z}));
-          if (found == cells_.end()) continue;
-          for (const std::uint32_t v : found->second) visit(v);
-        }
-      }
-    }
-  }
-
- private:
-  static glm::ivec3 CellOf(const vec3& place) { return glm::ivec3(glm::floor(place / kCell)); }
-  static std::uint64_t KeyOf(const glm::ivec3& cell) {
-    constexpr int kBias = 1 << 20;
-    return (static_cast<std::uint64_t>(cell.x + kBias) << 42) ^
-           (static_cast<std::uint64_t>(cell.y + kBias) << 21) ^
-           static_cast<std::uint64_t>(cell.z + kBias);
-  }
-  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_;
-};
 
 // The nearest point of a crease to a vertex.
 struct Nearest {
@@ -84,7 +51,8 @@ std::vector<float> DrawCreases(const FineMesh& mesh, std::span<const Crease> cre
                                const ReliefOptions& options) {
   const std::size_t count = mesh.positions().size();
   const std::vector<vec3> normals = NormalsOf(mesh);
-  const VertexGrid grid(mesh);
+  CellGrid<std::uint32_t> grid(kCell);
+  for (std::uint32_t v = 0; v < count; ++v) grid.Add(mesh.positions()[v], v);
   std::vector<float> fourths(count, 0.0f);
   std::vector<Nearest> nearest(count);
   std::vector<std::uint32_t> touched;
@@ -97,7 +65,9 @@ std::vector<float> DrawCreases(const FineMesh& mesh, std::span<const Crease> cre
       const float square = glm::dot(step, step);
       if (!(square > 1e-12f)) continue;
       const float reach = std::max({a.left, a.right, b.left, b.right});
-      grid.Near(a.place, b.place, reach, [&](std::uint32_t v) {
+      const vec3 low = glm::min(a.place, b.place) - vec3(reach);
+      const vec3 high = glm::max(a.place, b.place) + vec3(reach);
+      grid.Within(low, high, [&](std::uint32_t v) {
         if (glm::dot(normals[v], a.normal) < kSameSide) return;
         const vec3 offset = mesh.positions()[v] - a.place;
         const float t = glm::dot(offset, step) / square;
