@@ -12,7 +12,6 @@
 #include <memory>
 #include <random>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -20,9 +19,7 @@
 #include <asio/post.hpp>
 #include <asio/signal_set.hpp>
 #include <asio/steady_timer.hpp>
-#include <fcntl.h>
 #include <spdlog/spdlog.h>
-#include <unistd.h>
 
 #include "base/joined.h"
 #include "base/status.h"
@@ -54,6 +51,7 @@
 #include "server/playback/player.h"
 #include "server/recording/recorder.h"
 #include "server/reload.h"
+#include "server/reload_loop.h"
 #include "server/session/access/key_file.h"
 #include "server/session/access/token_gate.h"
 #include "server/session/hub.h"
@@ -75,13 +73,6 @@ std::uint64_t RandomNumber() {
   std::uint64_t number = 0;
   while (number == 0) number = (static_cast<std::uint64_t>(source()) << 32) | source();
   return number;
-}
-
-// True if the process has a controlling terminal, whatever its standard input is.
-bool HasTerminal() {
-  const int terminal = open("/dev/tty", O_RDWR | O_NOCTTY | O_CLOEXEC);
-  if (terminal >= 0) close(terminal);
-  return terminal >= 0;
 }
 
 // An installation without the module of pictures sends weights alone.
@@ -140,10 +131,7 @@ class Daemon {
   asio::awaitable<void> Drain();
   void RequestDrain();
   void MakeVideo();
-  asio::awaitable<void> HangupLoop();
-  void BeginReload();
-  void StartReload();
-  void EndReload(Result<Reload> reload);
+  ReloadRequest MakeReloadRequest();
   Status TakeOver(Reload* reload);
   void DeliverPicture(const FinishedPicture& picture);
   void PrepareRendering();
@@ -158,7 +146,6 @@ class Daemon {
   std::uint64_t session_ = 0;
   asio::io_context io_{1};  // run by the calling thread, which owns shard 0
   asio::signal_set signals_;
-  asio::signal_set hangups_{io_};
   std::unique_ptr<Recorder> recorder_;
   std::unique_ptr<VideoEncoders> video_;  // used by the render thread
   std::unique_ptr<RenderThread> render_;
@@ -175,15 +162,12 @@ class Daemon {
   MocapInputs mocap_;
   std::unique_ptr<Api> api_;
   std::unique_ptr<HttpServer> http_;
-  bool has_terminal_ = HasTerminal();  // at the last look, about a second ago
   const bool confines_;
   bool render_is_confined_ = false;  // used by the render thread
   bool on_network_ = false;          // a socket of the service manager is
   bool draining_ = false;
   Time drain_deadline_{0};
-  std::jthread reloading_;  // posts to io_; ends before the members above
-  bool is_reloading_ = false;
-  bool reload_again_ = false;  // SIGHUP came while a reload was under way
+  std::unique_ptr<ReloadLoop> reload_;  // its thread ends before the members above
 };
 
 // Loads the module before the daemon is confined.
@@ -497,8 +481,15 @@ void Daemon::Serve() {
       if (!error) RequestDrain();
     });
     if (options_.reload) {
-      hangups_.add(SIGHUP);
-      StartCriticalTask(io_, HangupLoop());
+      reload_ = std::make_unique<ReloadLoop>(
+          ReloadLoop::Parts{.io = &io_,
+                            .metrics = metrics_,
+                            .manager = options_.manager,
+                            .request = [this] { return MakeReloadRequest(); },
+                            .take_over = [this](Reload* reload) { return TakeOver(reload); },
+                            .is_draining = [this] { return draining_; },
+                            .shut_down = [this] { RequestDrain(); }});
+      reload_->Start();
     }
   }
   // Another thread may request the stop; only the event loop's thread may drain.
@@ -566,7 +557,7 @@ void Daemon::EverySecond(StatusLine* status_line) {
   if (render_) render_->Watch(now);
   if (auto keys = keys_file_.ReadIfChanged()) SetKeys(*std::move(keys));
   tls_.ReadIfChanged();
-  has_terminal_ = HasTerminal();
+  if (reload_) reload_->LookAtTerminal();
   if (!config_.verbose && options_.manager == nullptr) return;
   std::string line;
   {
@@ -623,69 +614,17 @@ asio::awaitable<void> Daemon::Drain() {
   io_.stop();
 }
 
-asio::awaitable<void> Daemon::HangupLoop() {
-  while (true) {
-    const auto [error, signal] = co_await hangups_.async_wait(kAwaitTuple);
-    if (error) co_return;
-    if (draining_) continue;
-    // The terminal has just closed, and with it the program that the user had started in it.
-    if (has_terminal_ && !HasTerminal()) {
-      RequestDrain();
-    } else {
-      BeginReload();
-    }
-  }
-}
-
-// Files are read on a thread of their own, because poses must not wait for them.
-void Daemon::BeginReload() {
-  reload_again_ = is_reloading_;
-  if (std::exchange(is_reloading_, true)) return;
-  if (options_.manager != nullptr) options_.manager->Reloading();
-  try {
-    StartReload();
-  } catch (const std::exception& fault) {  // no memory, or no thread
-    EndReload(Status(StatusCode::kLimit, fault.what()));
-  }
-}
-
-void Daemon::StartReload() {
+ReloadRequest Daemon::MakeReloadRequest() {
   (void)rig_files_.Changed();
-  ReloadRequest request{.running = config_,
-                        .read = [this]() -> Result<Config> {
-                          auto read = options_.reload();
-                          FURROW_RETURN_IF_ERROR(read);
-                          return WithoutMissingParts(*std::move(read));
-                        },
-                        .drawn = render_ != nullptr ? assets_.character : nullptr,
-                        .rig_changed = rig_files_.rig_changed(),
-                        .maps_changed = rig_files_.maps_changed()};
-  // Shared, because a handler must be copyable.
-  auto reload = std::make_shared<Result<Reload>>(Status(StatusCode::kLimit, "out of memory"));
-  reloading_ = std::jthread([this, reload, request = std::move(request)] {
-    try {
-      *reload = PrepareReload(request);
-    } catch (const std::bad_alloc&) {
-      metrics_->Add(Counter::kAllocationsFailed);
-    } catch (const std::exception& fault) {
-      *reload = Status(StatusCode::kInternal, fault.what());
-    }
-    const auto post = [&] { asio::post(io_, [this, reload] { EndReload(std::move(*reload)); }); };
-    // Without an end, no other reload would begin.
-    while (!WithinMemory(metrics_, post)) std::this_thread::yield();
-  });
-}
-
-void Daemon::EndReload(Result<Reload> reload) {
-  is_reloading_ = false;
-  if (draining_) return;
-  const Status status = reload.ok() ? TakeOver(&*reload) : reload.status();
-  if (!status.ok()) spdlog::error("the configuration stays as it was: {}", status.ToString());
-  if (options_.manager != nullptr) {
-    options_.manager->Ready(status.ok() ? "the configuration was read again"
-                                        : "the configuration stays as it was; see the log");
-  }
-  if (reload_again_) BeginReload();
+  return {.running = config_,
+          .read = [this]() -> Result<Config> {
+            auto read = options_.reload();
+            FURROW_RETURN_IF_ERROR(read);
+            return WithoutMissingParts(*std::move(read));
+          },
+          .drawn = render_ != nullptr ? assets_.character : nullptr,
+          .rig_changed = rig_files_.rig_changed(),
+          .maps_changed = rig_files_.maps_changed()};
 }
 
 // The rig first, because it alone can fail, and then nothing has changed.
