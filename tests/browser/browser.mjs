@@ -42,12 +42,16 @@ export function envelopeOf(message) {
   return { kind: message.toString('latin1', 36, 40), sequence: message.readUInt32LE(16) };
 }
 
-/** Holds back the daemon's messages for which `passes` is false. The rest reaches the page as it is. */
+/**
+ * Holds back the daemon's messages for which `passes(message, send)` is false. The rest reaches the page as it is.
+ * `send()` delivers the message later.
+ */
 export async function filterMessages(page, passes) {
   await page.routeWebSocket(/\/ws$/, (socket) => {
     const server = socket.connectToServer();
     socket.onMessage((message) => server.send(message));
-    server.onMessage((message) => passes(message) && socket.send(message));
+    const send = (message) => socket.send(message);
+    server.onMessage((message) => passes(message, () => send(message)) && send(message));
     server.onClose((code, reason) => socket.close({ code: code === 1006 ? 1001 : code, reason }));
   });
 }

@@ -19,12 +19,18 @@ test('the picture of a dead daemon is never live', async () => {
   let second;
   try {
     let holds = false;
-    const page = await openPage(browser, first.address, {}, (opened) => filterMessages(opened, (message) => !(holds && isPicture(message))));
+    let held = [];
+    const page = await openPage(browser, first.address, {}, (opened) => filterMessages(opened, (message, send) => {
+      if (!holds || !isPicture(message)) return true;
+      held.push(send);
+      return false;
+    }));
     await inState(page, 'live');
     await shown(page);
-    holds = true; // the next daemon's pictures do not arrive yet
+    holds = true;
     await first.stop('SIGKILL');
     await inState(page, 'lost');
+    held = []; // only the pictures of the next daemon arrive later
     assert(await isDimmed(page));
     assert.equal(await figure(page, 'age'), '–');
     await keep(page, 'state-lost');
@@ -38,6 +44,7 @@ test('the picture of a dead daemon is never live', async () => {
       await page.evaluate(() => new Promise((resolve) => setTimeout(resolve, 100)));
     }
     holds = false;
+    for (const send of held) send();
     await inState(page, 'live');
     assert(!await isDimmed(page));
     await page.context().close();
