@@ -16,6 +16,7 @@ void AddCommands(CLI::App& app, Action& action) {
   AddRecord(app, action);
   AddHelperEntry(app, "load");
   AddHelperEntry(app, "chaos");
+  AddHelperEntry(app, "plan");
   AddSolve(app, action);
   AddRender(app, action);
   AddRig(app, action);

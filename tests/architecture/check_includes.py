@@ -41,8 +41,9 @@ DIRECT = {
     "client/net": {"protocol", "client/cpp"},
     "client/chaos": {"protocol", "report", "client/cpp", "client/net"},
     "client/load": {"wrinkle", "protocol", "report", "client/cpp", "client/net"},
+    "client/plan": {"protocol", "report"},
     "client/cli": {"wrinkle", "protocol", "gltf", "report", "rig", "motion", "character", "recording", "render",
-                   "authoring", "client/cpp", "client/load", "client/chaos", "client/net"},
+                   "authoring", "client/cpp", "client/load", "client/plan", "client/chaos", "client/net"},
 }
 # Exceptions from "whatever those may include": never, even though a permitted folder may.
 NEVER = {("authoring", "protocol")}

@@ -434,5 +434,27 @@ class LoadTest(unittest.TestCase):
             self.assertIn(words, result.stderr.decode(), command)
 
 
+class PlanTest(unittest.TestCase):
+    def test_text_and_json_agree_and_costs_come_from_a_file(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            figures = folder / "plan.json"
+            asked = ["plan", "--performers", "10000", "--subscribers", "3", "--json", figures]
+            result = furrow(*asked, check=0)
+            plan = json.loads(figures.read_text())
+            self.assertIn(f"{plan['machines']:.0f} machines serve them", result.stdout.decode())
+            # On a machine that needs ten times as long for a pose.
+            run = {"cpu_us_per_pose": 300.0, "poses_per_second": 60.0, "resident_bytes": 1e7}
+            points = [{"x": x, "run": run} for x in (1, 2)]
+            costs = {curve: {"points": points} for curve in ("subjects", "subscribers", "joints", "regions")}
+            (folder / "load.json").write_text(json.dumps(costs))
+            furrow(*asked, "--costs", folder / "load.json", check=0)
+            self.assertEqual(json.loads(figures.read_text())["us_per_pose"], 300.0)
+            (folder / "load.json").write_text("{}")
+            refused = furrow(*asked, "--costs", folder / "load.json")
+            self.assertEqual(refused.returncode, 3)
+            self.assertIn("subjects: is missing", refused.stderr.decode())
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -23,6 +23,8 @@ constexpr std::array kHelperCommands = {
                   kLoadProgram},
     HelperCommand{"chaos", "Run a proxy that injects network faults, repeatable by a seed",
                   kLoadProgram},
+    HelperCommand{"plan", "Estimate the cores, bandwidth and machines for a number of performers",
+                  kLoadProgram},
     HelperCommand{"character", "Import and check character packages (.glb with a wrinkle rig)",
                   kAuthorProgram},
     HelperCommand{"bake", "Bake wrinkle maps from the strain of a character's own poses",

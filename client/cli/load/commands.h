@@ -9,5 +9,6 @@ namespace furrow::cli {
 // command line names the subcommand, parsing sets `action`.
 void AddLoad(CLI::App& app, Action& action);
 void AddChaos(CLI::App& app, Action& action);
+void AddPlan(CLI::App& app, Action& action);
 
 }  // namespace furrow::cli

@@ -6,5 +6,6 @@ int main(int argc, char** argv) {
   return furrow::cli::RunProgram(argc, argv, [](CLI::App& app, furrow::cli::Action& action) {
     furrow::cli::AddLoad(app, action);
     furrow::cli::AddChaos(app, action);
+    furrow::cli::AddPlan(app, action);
   });
 }
