@@ -255,8 +255,7 @@ Status Daemon::StartRecording() {
   options.datagrams = record.datagrams;
   // Read once, so that setting the system clock during a recording does not move its time back.
   const Time now = ReadClock();
-  options.wall_offset =
-      std::chrono::duration_cast<Time>(std::chrono::system_clock::now().time_since_epoch()) - now;
+  options.wall_offset = ReadUnixClock() - now;
   auto started = Recorder::Start(std::move(options), now, metrics_);
   if (!started.ok()) return started.status().At("--record");
   recorder_ = *std::move(started);
@@ -286,6 +285,7 @@ void Daemon::MakeHub() {
   parts.settings = assets_.settings;
   parts.metrics = metrics_;
   parts.random = RandomNumber;
+  parts.clock = ReadClock;
   // The recorder is declared before the hub and therefore outlives it.
   parts.recording = recorder_.get();
   parts.shards = config_.threads;

@@ -14,10 +14,15 @@ namespace furrow::server {
   return std::chrono::duration_cast<Time>(std::chrono::steady_clock::now().time_since_epoch());
 }
 
-// Returns the time of the system clock, seconds since 1970, which the expiry of tokens counts in.
+// Returns the time of the system clock since 1970. It jumps when somebody sets the clock.
+[[nodiscard]] inline Time ReadUnixClock() {
+  return std::chrono::duration_cast<Time>(std::chrono::system_clock::now().time_since_epoch());
+}
+
+// The same in seconds, which the expiry of tokens counts in.
 [[nodiscard]] inline std::uint64_t UnixSeconds() {
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::seconds>(now).count());
+  return static_cast<std::uint64_t>(
+      std::chrono::duration_cast<std::chrono::seconds>(ReadUnixClock()).count());
 }
 
 }  // namespace furrow::server

@@ -16,11 +16,16 @@ namespace furrow::server {
 
 // A rendered and encoded picture with its recipients.
 struct FinishedPicture {
+  std::uint64_t subject = 0;
   std::uint32_t sequence = 0;        // of the pose
   std::int64_t capture_time_us = 0;  // of the pose, on the sender's clock
   std::int64_t age_us = 0;           // > 0: time since the pose, while weights decay
   std::int64_t received_us = 0;      // arrival of the pose, on the daemon's clock
-  Time submitted{0};                 // when it was requested, on the daemon's clock
+  // On the daemon's clock: when it was requested, taken by the render thread, drawn and encoded.
+  Time submitted{0};
+  Time taken{0};
+  Time drawn{0};
+  Time encoded{0};
   int width = 0;                     // pixels
   int height = 0;
   Encoding encoding;

@@ -75,6 +75,7 @@ struct RenderJob {
   Time moved_at{0};        // when the subject last moved; set if a viewer uses flow control
   Time submitted{0};       // to the renderer
   Time taken{0};           // by the render thread
+  Time drawn{0};           // by the renderer
   bool prepares = false;   // nobody sees the picture: it compiles what later pictures need
   FairOrder::Entry entry;  // set by the mailbox
 

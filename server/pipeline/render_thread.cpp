@@ -35,13 +35,17 @@ auto OrOutOfMemory(Metrics* metrics, const Work& work) -> decltype(work()) {
 }
 
 // The picture of a job without what an encoding adds.
-FinishedPicture FinishedOf(const render::Image& image, const RenderJob& job,
+FinishedPicture FinishedOf(const render::Image& image, const RenderJob& job, Time encoded,
                            std::vector<PictureTicket> tickets) {
-  return {.sequence = job.snapshot->sequence,
+  return {.subject = job.subject,
+          .sequence = job.snapshot->sequence,
           .capture_time_us = job.snapshot->capture_time_us,
           .age_us = job.snapshot->age_us,
           .received_us = job.snapshot->received_us,
           .submitted = job.submitted,
+          .taken = job.taken,
+          .drawn = job.drawn,
+          .encoded = encoded,
           .width = image.width,
           .height = image.height,
           .encoding = {},
@@ -267,7 +271,8 @@ void RenderThread::Collect(bool wait) {
   in_flight_.pop_front();
   if (job.prepares) return;
   metrics_->Add(Counter::kPicturesRendered);
-  metrics_->Observe(Timing::kPictureDraw, clock_() - job.taken);
+  job.drawn = clock_();
+  metrics_->Observe(Timing::kPictureDraw, job.drawn - job.taken);
   Finish(*image, std::move(job));
 }
 
@@ -358,7 +363,8 @@ bool RenderThread::EncodeVideo(const render::Image& image, const RenderJob& job,
   const Time begun = clock_();
   auto picture = OrOutOfMemory(
       metrics_, [&] { return video_->Encode(ticket.subscription, planes_, *ticket.video); });
-  metrics_->Observe(Timing::kPictureEncode, clock_() - begun);
+  const Time encoded = clock_();
+  metrics_->Observe(Timing::kPictureEncode, encoded - begun);
   if (!picture.ok()) {
     if (picture.status().code() != StatusCode::kNotFound) {
       spdlog::warn("a viewer gets JPEG instead of H.264: {}", picture.status().ToString());
@@ -371,7 +377,7 @@ bool RenderThread::EncodeVideo(const render::Image& image, const RenderJob& job,
   picture->bytes.shrink_to_fit();  // they may wait in queues
   // No decoder could follow a video whose picture was lost without a gap in the numbers.
   const bool delivered = WithinMemory(metrics_, [&] {
-    FinishedPicture finished = FinishedOf(image, job, {ticket});
+    FinishedPicture finished = FinishedOf(image, job, encoded, {ticket});
     finished.bytes = std::move(picture->bytes);
     finished.codec = std::move(picture->codec);
     finished.key = picture->key;
@@ -386,7 +392,8 @@ void RenderThread::Encode(const render::Image& image, const RenderJob& job,
   const Time begun = clock_();
   auto bytes = OrOutOfMemory(
       metrics_, [&] { return render::EncodeImage(image, encoding.format, encoding.quality); });
-  metrics_->Observe(Timing::kPictureEncode, clock_() - begun);
+  const Time encoded = clock_();
+  metrics_->Observe(Timing::kPictureEncode, encoded - begun);
   metrics_->Add(bytes.ok() ? Counter::kPicturesEncoded : Counter::kPicturesFailed);
   if (!bytes.ok()) {
     spdlog::warn("cannot encode a picture: {}", bytes.status().ToString());
@@ -394,7 +401,7 @@ void RenderThread::Encode(const render::Image& image, const RenderJob& job,
     bytes = std::vector<std::uint8_t>();
   }
   bytes->shrink_to_fit();  // they may wait in queues
-  FinishedPicture finished = FinishedOf(image, job, std::move(tickets));
+  FinishedPicture finished = FinishedOf(image, job, encoded, std::move(tickets));
   finished.encoding = encoding;
   finished.bytes = *std::move(bytes);
   Deliver(std::move(finished));

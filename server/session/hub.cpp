@@ -39,6 +39,7 @@ Hub::Hub(Parts parts)
       address_proof_(MakeKey(random_)),
       recording_(parts.recording),
       gate_(parts.gate),
+      tracer_(parts.clock ? std::make_unique<PoseTracer>(std::move(parts.clock)) : nullptr),
       exclusive_context_(parts.session, metrics_, Link::kExclusive),
       definitions_(std::move(parts.rig), parts.character,
                    static_cast<std::size_t>(parts.limits.max_skeletons),
@@ -52,7 +53,8 @@ Hub::Hub(Parts parts)
                .subscribers = &subscribers_,
                .subjects = &subjects_,
                .exclusive_context = &exclusive_context_,
-               .recording = recording_}),
+               .recording = recording_,
+               .tracer = tracer_.get()}),
       shards_(parts.shards, parts.session, metrics_, &router_),
       dispatcher_({.shards = &shards_,
                    .router = &router_,
@@ -230,7 +232,9 @@ bool Hub::IsIdle(PeerId id, Time now) {
 
 void Hub::OnPicture(const FinishedPicture& picture, Time now) {
   const ExclusiveLock lock(*this, 0);
-  if (!draining_) subscribers_.OnPicture(picture, now);
+  if (draining_) return;
+  subscribers_.OnPicture(picture, now);
+  if (tracer_) tracer_->OnPicture(picture);
 }
 
 void Hub::Tick(Time now, Time late) {
@@ -321,13 +325,25 @@ void Hub::Drain() {
   });
 }
 
-Subject* Hub::RequireAllDrivers(std::string_view name, const Access& access) {
+// An empty name: the oldest subject.
+Subject* Hub::FindFor(std::string_view name, const Access& access) {
   Subject* subject = name.empty() ? subjects_.First(access) : subjects_.Find(name);
-  if (subject == nullptr || !access.Concerns(subject->name)) return nullptr;
+  return subject != nullptr && access.Concerns(subject->name) ? subject : nullptr;
+}
+
+Subject* Hub::RequireAllDrivers(std::string_view name, const Access& access) {
+  Subject* subject = FindFor(name, access);
+  if (subject == nullptr) return nullptr;
   // Stays set, since clients of the API poll: a driver that is switched off and on again starts
   // without the history of its filter.
   subject->needs_all_drivers = true;
   subject->pipeline->SetLevel(wrinkle::kAllDrivers);
+  return subject;
+}
+
+const Subject* Hub::Trace(std::string_view name, const Access& access) {
+  const Subject* subject = FindFor(name, access);
+  if (subject != nullptr && tracer_) tracer_->Request(subject->id, subject->name);
   return subject;
 }
 

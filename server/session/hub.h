@@ -33,6 +33,7 @@
 #include "server/session/subjects/publishers.h"
 #include "server/session/subjects/subject_registry.h"
 #include "server/session/subscriptions/subscribers.h"
+#include "server/session/trace/pose_tracer.h"
 
 namespace furrow::server {
 
@@ -61,6 +62,7 @@ class Hub {
     std::function<std::uint64_t()> random;  // returns unpredictable numbers, never 0
     RecordingTap* recording = nullptr;      // optional; outlives the hub
     const TokenGate* gate = nullptr;        // outlives the hub; null: everybody may do everything
+    std::function<Time()> clock;            // read for traced poses alone; empty: traces nothing
     int shards = 1;                         // one per network thread
   };
   explicit Hub(Parts parts);
@@ -171,6 +173,11 @@ class Hub {
   // its drivers from now on. Null: no such subject.
   [[nodiscard]] Subject* RequireAllDrivers(std::string_view name,
                                            const Access& access = Access::Everything());
+  // Follows the next pose of a subject, found as by RequireAllDrivers(). Replaces the trace before.
+  // Null: no such subject.
+  const Subject* Trace(std::string_view name, const Access& access = Access::Everything());
+  // The last trace that was asked for; null: the hub has no clock.
+  [[nodiscard]] const PoseTracer* tracer() const { return tracer_.get(); }
   // The name of the peer that publishes the subject, for people; empty if the peer has left.
   [[nodiscard]] std::string_view SourceOf(const Subject& subject);
   [[nodiscard]] const render::Settings& own_settings() const { return subscribers_.own_settings(); }
@@ -208,6 +215,7 @@ class Hub {
   void OnStall(Time now, Time length);
   void AgeSubjects(Time now);
   void RemoveSubject(Subject& subject);
+  [[nodiscard]] Subject* FindFor(std::string_view name, const Access& access);
   void RenewConsent(Peer& peer, Time now);
   void EndIfTokenEnded(Peer& peer, Time now);
   void RepublishWeights(Subject& subject, Time now);
@@ -219,6 +227,7 @@ class Hub {
   const AddressProof address_proof_;
   RecordingTap* const recording_;
   const TokenGate* const gate_;
+  const std::unique_ptr<PoseTracer> tracer_;  // null: traces nothing
   PublishContext exclusive_context_;
   StreamDefinitions definitions_;
   SubjectRegistry subjects_;

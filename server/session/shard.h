@@ -42,6 +42,9 @@ struct Shard {
   };
   std::vector<Published> published;
   BufferedSender* buffered_sender = nullptr;  // null: messages leave at once
+  // The pose that PoseTracer follows is in `gathered`, or in `buffered_sender`.
+  enum class Followed : std::uint8_t { kNone, kGathered, kPublished };
+  Followed followed = Followed::kNone;
   // Nesting depth of the locks that the shard's thread holds.
   int shard_locks = 0;
   int exclusive_locks = 0;

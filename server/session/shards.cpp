@@ -18,6 +18,7 @@ void Shards::Flush(Shard& shard) noexcept {
   WithinMemory(metrics_, [&shard] {
     if (shard.buffered_sender != nullptr) shard.buffered_sender->Flush();
   });
+  router_->OnFlushed(shard);
 }
 
 void Shards::PublishGathered(Shard& shard) noexcept {

@@ -7,6 +7,16 @@
 #include "protocol/framing/sequence.h"
 
 namespace furrow::server {
+namespace {
+
+// How much later than the fastest poses of its stream a pose arrived. Absent: it has no capture
+// time.
+std::optional<Time> LateOf(Subject& subject, std::int64_t captured_us, Time now) {
+  if (captured_us == 0) return std::nullopt;
+  return now - subject.capture_clock.Arrival(captured_us, now);
+}
+
+}  // namespace
 
 // Requires the exclusive lock: an offer adds or rebinds a subject.
 bool StreamRouter::OnOffer(Peer& peer, const protocol::Header& header,
@@ -112,7 +122,19 @@ void StreamRouter::Use(Shard& shard, Subject& subject, const protocol::Header& h
   if (subject.pipeline->waits() || shard.gathered.full()) PublishGathered(shard);
   if (parts_.publishers->AcceptPose(subject, header, pose, now)) {
     shard.gathered.Add({.subject = &subject, .header = header, .payload = payload, .now = now});
+    if (parts_.tracer != nullptr && parts_.tracer->Wants(subject.id)) {
+      BeginTrace(shard, subject, header, now);
+    }
   }
+}
+
+void StreamRouter::BeginTrace(Shard& shard, Subject& subject, const protocol::Header& header,
+                              Time now) {
+  shard.followed = Shard::Followed::kGathered;
+  parts_.tracer->OnAccepted({.sequence = header.sequence,
+                             .late = LateOf(subject, header.capture_time_us, now),
+                             .buffered = subject.hold,
+                             .received = now});
 }
 
 void StreamRouter::ReleaseHeld(Shard& shard, Time now) {
@@ -136,18 +158,41 @@ void StreamRouter::UseReleased(Shard& shard, std::span<const JitterBuffers::Rele
   shard.held.Recycle();
 }
 
+// The solver has refused the pose that was followed. The next one is followed instead.
+void StreamRouter::RetryTrace(Shard& shard) {
+  shard.followed = Shard::Followed::kNone;
+  parts_.tracer->OnRefused();
+}
+
+void StreamRouter::EndTrace(Shard& shard) {
+  shard.followed = Shard::Followed::kNone;
+  parts_.tracer->OnSent();
+}
+
 // Solves together, then publishes in the order of arrival. So output does not depend on how many
 // poses a batch holds.
 void StreamRouter::PublishGathered(Shard& shard) {
   if (shard.gathered.empty()) return;
-  for (const GatheredPose& pose : shard.gathered.Solve()) {
-    if (!parts_.publishers->OnSolved(pose)) continue;
+  PoseTracer* const tracer = shard.followed == Shard::Followed::kGathered ? parts_.tracer : nullptr;
+  if (tracer != nullptr) tracer->OnSolving(shard.gathered.size());
+  const std::span<const GatheredPose> poses = shard.gathered.Solve();
+  if (tracer != nullptr) tracer->OnSolved();
+  for (const GatheredPose& pose : poses) {
+    const bool is_followed = tracer != nullptr && tracer->Follows(pose.subject->id);
+    if (!parts_.publishers->OnSolved(pose)) {
+      if (is_followed) RetryTrace(shard);
+      continue;
+    }
     // The recording receives a pose before the weights that it caused.
     if (parts_.recording != nullptr) {
       parts_.recording->OnPose(*pose.subject, pose.payload, pose.now);
     }
     Publish(shard, *pose.subject, pose.payload, /*age_us=*/0, pose.now);
     NotePublished(shard, pose);
+    if (is_followed) {
+      tracer->OnPublished();
+      shard.followed = Shard::Followed::kPublished;
+    }
   }
 }
 
@@ -156,10 +201,8 @@ void StreamRouter::NotePublished(Shard& shard, const GatheredPose& pose) {
   // Far above what one flush sends.
   constexpr std::size_t kMost = 16 * PoseBatch::kCapacity;
   if (shard.buffered_sender == nullptr || shard.published.size() == kMost) return;
-  const std::int64_t captured = pose.header.capture_time_us;
-  std::optional<Time> late;
-  if (captured != 0) late = pose.now - pose.subject->capture_clock.Arrival(captured, pose.now);
-  shard.published.push_back({pose.now, late});
+  shard.published.push_back(
+      {pose.now, LateOf(*pose.subject, pose.header.capture_time_us, pose.now)});
 }
 
 void StreamRouter::PublishAged(Shard& shard, Subject& subject, std::int64_t age_us, Time now) {

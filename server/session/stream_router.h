@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -15,6 +16,7 @@
 #include "server/session/subjects/publishers.h"
 #include "server/session/subjects/subject_registry.h"
 #include "server/session/subscriptions/subscribers.h"
+#include "server/session/trace/pose_tracer.h"
 
 namespace furrow::server {
 
@@ -32,6 +34,7 @@ class StreamRouter {
     SubjectRegistry* subjects = nullptr;
     PublishContext* exclusive_context = nullptr;  // used under the exclusive lock
     RecordingTap* recording = nullptr;            // optional
+    PoseTracer* tracer = nullptr;                 // optional
   };
   explicit StreamRouter(const Parts& parts) : parts_(parts) {}
 
@@ -68,6 +71,10 @@ class StreamRouter {
   // Solves the waiting poses of a shard together and publishes them in order of arrival. Requires
   // the lock of `shard`.
   void PublishGathered(Shard& shard);
+  // The messages of the shard have left. Requires the lock of `shard`.
+  void OnFlushed(Shard& shard) {
+    if (shard.followed == Shard::Followed::kPublished) EndTrace(shard);
+  }
 
   // Publishes weights that changed without a new pose. `age_us`: time since the last pose, > 0.
   // Requires the exclusive lock.
@@ -93,6 +100,9 @@ class StreamRouter {
            const protocol::PoseFrame& pose, std::span<const std::uint8_t> payload, Time now);
   void UseReleased(Shard& shard, std::span<const JitterBuffers::Released> released, Time now);
   static void NotePublished(Shard& shard, const GatheredPose& pose);
+  void BeginTrace(Shard& shard, Subject& subject, const protocol::Header& header, Time now);
+  void RetryTrace(Shard& shard);
+  void EndTrace(Shard& shard);
   void Publish(Shard& shard, Subject& subject, std::span<const std::uint8_t> payload,
                std::int64_t age_us, Time now);
 

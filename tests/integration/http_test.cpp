@@ -97,6 +97,27 @@ TEST_F(Http, RoutesAnswerOnOneConnection) {
   EXPECT_EQ(Json::parse(client.Ask("GET", "/api/status").body)["render"], false);
 }
 
+TEST_F(Http, APoseIsTraced) {
+  WebClient client(port());
+  EXPECT_EQ(client.Ask("GET", "/api/trace").status, 404);
+  EXPECT_EQ(client.Ask("POST", "/api/trace?subject=ann").status, 404);
+  PublishAnn();
+  EXPECT_EQ(client.Ask("POST", "/api/trace?subject=ann").status, 202);
+  EXPECT_EQ(client.Ask("GET", "/api/trace").status, 503) << "no pose has come since";
+  const motion::Clip clip = ArkitClip(kFrame + 1);
+  sender->Send(PoseOf(clip, kFrame, OfferOf(clip, "ann")), 1, 1, 2000);
+  sender->Send(protocol::Ping{2});
+  ASSERT_TRUE(sender->Await<protocol::Pong>().has_value());
+  const auto answer = client.Ask("GET", "/api/trace");
+  ASSERT_EQ(answer.status, 200);
+  const Json spans = Json::parse(answer.body)["resourceSpans"][0]["scopeSpans"][0]["spans"];
+  ASSERT_EQ(spans.size(), 6u);
+  EXPECT_EQ(spans[0]["name"], "pose");
+  // Within this hour, so the two clocks are put together rightly.
+  const double begun_s = std::stod(spans[0]["startTimeUnixNano"].get<std::string>()) * 1e-9;
+  EXPECT_NEAR(begun_s, static_cast<double>(std::time(nullptr)), 3600.0);
+}
+
 // HELP says more than the name, and every family has one.
 TEST_F(Http, EveryMetricIsExplained) {
   std::istringstream text(Get("/metrics").body);

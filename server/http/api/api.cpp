@@ -25,6 +25,7 @@ Api::Api(Parts parts)
       osc_(parts.osc),
       tokens_(parts.gate, parts.metrics),
       sources_(std::move(parts.sources)),
+      traces_(parts.session),
       routes_{{"GET", "/api/subjects", Need::kToken,
                [this](const ApiRequest& request, Hub& hub, Time now) {
                  return status_.Subjects(request, hub, now);
@@ -74,6 +75,14 @@ Api::Api(Parts parts)
               {"POST", "/api/token", Need::kOperate,
                [this](const ApiRequest& request, Hub&, Time now) {
                  return tokens_.Make(request, now);
+               }},
+              {"POST", "/api/trace", Need::kOperate,
+               [this](const ApiRequest& request, Hub& hub, Time) {
+                 return traces_.Request(request, hub);
+               }},
+              {"GET", "/api/trace", Need::kOperate,
+               [this](const ApiRequest& request, Hub& hub, Time now) {
+                 return traces_.Show(request, hub, now);
                }},
               {"GET", "/healthz", Need::kNothing,
                [this](const ApiRequest&, Hub&, Time) { return status_.Health(); }},

@@ -17,6 +17,7 @@
 #include "server/http/api/sources_api.h"
 #include "server/http/api/status_api.h"
 #include "server/http/api/token_api.h"
+#include "server/http/api/trace_api.h"
 #include "server/http/request/api_types.h"
 #include "server/osc/osc_control.h"
 #include "server/pipeline/picture_source.h"
@@ -78,6 +79,7 @@ class Api {
   OscApi osc_;
   TokenApi tokens_;
   SourcesApi sources_;
+  TraceApi traces_;
   const std::vector<Route> routes_;
 };
 

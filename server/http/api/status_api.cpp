@@ -12,7 +12,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "server/http/api/json_reply.h"
-#include "server/http/api/metric_families.h"
+#include "server/http/metrics/metric_families.h"
 
 namespace furrow::server {
 

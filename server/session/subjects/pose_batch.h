@@ -29,6 +29,7 @@ class PoseBatch {
   static constexpr std::size_t kCapacity = 128;
 
   [[nodiscard]] bool empty() const { return size_ == 0; }
+  [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] bool full() const { return size_ == kCapacity; }
   // Preconditions: not full(), and no other pose of the subject is in the batch. The subject's
   // pipeline and the bytes of `pose.payload` must not change until Solve().

@@ -126,6 +126,7 @@ class HubTest : public testing::Test {
     parts.metrics = &metrics;
     parts.gate = gate;
     parts.random = [this] { return ++last_token; };
+    parts.clock = [this] { return now + ++clock_reads * FromSeconds(0.001); };
     hub = std::make_unique<Hub>(std::move(parts));
   }
 
@@ -181,6 +182,7 @@ class HubTest : public testing::Test {
   protocol::Encoder encoder;
   Time now = FromSeconds(1000);
   std::uint64_t last_token = 900;
+  int clock_reads = 0;  // each shows a millisecond more
 };
 
 // A hub with two peers.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/http/api/metric_families.h"
+#include "server/http/metrics/metric_families.h"
 
 #include <cstddef>
 #include <limits>
