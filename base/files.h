@@ -47,8 +47,8 @@ struct FileToWrite {
 [[nodiscard]] Status WriteFilesAtomically(std::span<const FileToWrite> files,
                                           Flush flush = Flush::kDisk);
 
-// Reads a file that holds a key or a password. Errors: as ReadFile(), and kInvalidArgument if other
-// users than its owner have any rights on the file; the message says how to fix that.
+// Reads a key or a password. Errors: as ReadFile(), and kInvalidArgument if others than the owner
+// have rights on the file, unless root hands it to a group of this program (0440), as systemd does.
 [[nodiscard]] Result<std::string> ReadSecretFile(const std::filesystem::path& path,
                                                  std::uint64_t max_bytes);
 

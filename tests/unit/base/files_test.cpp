@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "tests/temporary_folder.h"
 
@@ -67,6 +68,36 @@ TEST_F(Files, OnlyTheOwnerReadsASecretFile) {
     fs::permissions(path, right, fs::perm_options::remove);
   }
   EXPECT_TRUE(ReadSecretFile(path, 3).ok());
+}
+
+// As systemd (from version 254) and Kubernetes (fsGroup) do.
+TEST_F(Files, RootHandsASecretToAGroup) {
+  if (::geteuid() != 0) GTEST_SKIP() << "needs root";
+  constexpr int kNobody = 65534;
+  const fs::path path = root_ / "secret";
+  ASSERT_TRUE(WriteSecretFile(path, "key").ok());
+  ASSERT_EQ(::chown(path.c_str(), 0, kNobody), 0);
+  ASSERT_EQ(::chmod(path.c_str(), 0440), 0);
+  fs::permissions(root_.path(), fs::perms::others_exec, fs::perm_options::add);
+  EXPECT_EQ(ReadSecretFile(path, 3).status().code(), StatusCode::kInvalidArgument)
+      << "root has other ways";
+  const auto read_as_nobody = [&path] {
+    EXPECT_EQ(::setegid(kNobody), 0);
+    EXPECT_EQ(::seteuid(kNobody), 0);
+    auto secret = ReadSecretFile(path, 3);
+    EXPECT_EQ(::seteuid(0), 0);
+    EXPECT_EQ(::setegid(0), 0);
+    return secret;
+  };
+  EXPECT_EQ(*read_as_nobody(), "key");
+  for (const mode_t mode : {0444u, 0460u, 0450u, 0441u}) {
+    ASSERT_EQ(::chmod(path.c_str(), mode), 0);
+    EXPECT_EQ(read_as_nobody().status().code(), StatusCode::kInvalidArgument) << mode;
+  }
+  // Somebody else's file is no hand-over.
+  ASSERT_EQ(::chown(path.c_str(), 1, kNobody), 0);
+  ASSERT_EQ(::chmod(path.c_str(), 0440), 0);
+  EXPECT_EQ(read_as_nobody().status().code(), StatusCode::kInvalidArgument);
 }
 
 TEST_F(Files, OneFailureKeepsAllFilesOfAGroup) {
