@@ -56,6 +56,7 @@ install_npm_packages() {
   [[ $want != build ]] || return 0
   npm_ci tests/mcap_interop 'the tests that need @mcap/core will be skipped'
   npm_ci tests/browser 'the browser tests will be skipped'
+  npm_ci tests/deploy/kubernetes 'the test of the Kubernetes manifests will be skipped'
 }
 if [[ ${#missing[@]} -eq 0 ]]; then
   install_npm_packages
