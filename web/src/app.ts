@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Assembles the page and feeds it with the state of the daemon.
 import { api, ApiError, type DaemonStatus, type SubjectInfo, wordsOf } from './api';
+import { Against } from './grid/against';
+import { SubjectGrid } from './grid/subject_grid';
 import { CapturePanel } from './panels/capture';
-import { assess, isDimmed, type PictureState } from './panels/condition';
+import { assess, type Condition, isDimmed, type PictureState } from './panels/condition';
 import { CurvesPanel } from './panels/curves';
 import { ExplainPanel } from './panels/explain';
 import { FaceMap } from './panels/face_map';
@@ -29,6 +31,8 @@ import { Toasts } from './ui/toast';
 import { TokenDialog } from './ui/token_dialog';
 import { CameraInput } from './view/camera_input';
 import { limitOf } from './view/limit';
+import type { ShownPicture } from './view/picture_stats';
+import { isAtRest } from './view/rest';
 import { Viewer } from './view/viewer';
 import { Connection } from './wire/connection';
 import { WeightStream } from './wire/weight_stream';
@@ -38,8 +42,6 @@ const POLL_MS = 1000;
 const SHOW_MS = 250;
 /** While the first picture is prepared. */
 const LOADING_POLL_MS = 250;
-/** Clocks of the daemon and the page, and the time of a request. */
-const REST_TOLERANCE_MS = 300;
 /** While the browser draws: polls until the page notices that another viewer changed the daemon's settings. */
 const POLLS_PER_SETTINGS = 3;
 
@@ -62,6 +64,8 @@ export class App {
   private readonly timeline: Timeline;
   private readonly tabs: Tabs;
   private readonly notice: Notice;
+  private readonly grid: SubjectGrid;
+  private readonly against: Against;
   private readonly actions: PictureActions;
   private readonly viewHolder = h('div', { class: 'view-holder' });
   private readonly curvesHolder = h('div', { class: 'curves-holder' });
@@ -90,6 +94,8 @@ export class App {
     this.faceMap = new FaceMap(this.history, (region, weights) => this.explainRegion(region, weights));
     this.weights = new WeightStream(this.connection, state.subject.value, this.history, () => this.onWeights());
     this.viewer = new Viewer(this.connection, state, (words) => toasts.say(words, 'error'), () => this.onPicture());
+    this.grid = new SubjectGrid(this.connection, state, this.viewer);
+    this.against = new Against(this.connection, state, this.viewer);
     this.actions = new PictureActions(() => this.viewer.canvas(), this.root, toasts);
     this.notice = new Notice(toasts, () => this.tabs.choose('sources'));
     this.capture = new CapturePanel(subject, toasts, () => void this.readRig());
@@ -129,8 +135,9 @@ export class App {
 
   private buildLayout(parent: HTMLElement, dialog: HTMLElement): void {
     const { stage } = this.viewer;
-    stage.element.append(this.notice.element, this.actions.element);
-    this.main.append(stage.element);
+    stage.element.append(this.notice.element, this.actions.element, this.against.nameOfFocus);
+    const pair = h('div', { class: 'pair' }, stage.element, this.against.element);
+    this.main.append(h('div', { class: 'panes' }, pair, this.grid.element));
     this.root.append(
       this.header.element, this.strip.element, this.main, this.dock,
       h('aside', { class: 'side', 'aria-label': text.tabs.list }, this.tabs.list, this.tabs.panels),
@@ -163,6 +170,7 @@ export class App {
       camera: () => state.camera.value, move: (camera) => state.camera.set(camera),
     });
     state.subject.watch((subject) => this.weights.choose(subject));
+    state.grid.watch((on) => on && void this.askDaemon().then(() => this.showCondition()));
     this.weights.subject.watch(() => void this.readRig());
     this.connection.link.watch((link) => {
       if (link === 'open') {
@@ -197,6 +205,7 @@ export class App {
       command('ctrl+y', k.redo, () => state.settings.redo()),
       command('p', k.panel, () => this.togglePanel()),
       command('g', k.curves, () => this.toggleDock()),
+      command('v', k.grid, () => state.grid.set(!state.grid.value)),
       command('?', k.help, () => this.help.showModal()),
     ];
   }
@@ -275,7 +284,9 @@ export class App {
     const shown = this.shownSubject();
     this.viewer.observeRate(shown?.rate_hz ?? 0, nowS);
     this.viewer.drawing.observe(shown, this.viewer.stats.rateHz(nowS));
-    if (this.viewer.drawing.active.value && this.numPolls++ % POLLS_PER_SETTINGS === 0) void this.readSettings();
+    const isHere = this.viewer.drawing.active.value;
+    this.grid.observe(this.pictureState, isHere ? this.viewer.drawing.rateHz(nowS) : this.viewer.stats.rateHz(nowS), shown?.rate_hz ?? 0, this.isAtRest());
+    if (isHere && this.numPolls++ % POLLS_PER_SETTINGS === 0) void this.readSettings();
     setTimeout(() => void this.poll(), this.pictureState === 'loading' ? LOADING_POLL_MS : POLL_MS);
   }
 
@@ -285,12 +296,7 @@ export class App {
 
   /** True if the subject has not moved since the pose on the screen. */
   private isAtRest(): boolean {
-    const picture = this.viewer.picture();
-    const subject = this.shownSubject();
-    const movedMs = subject?.moved_ms ?? null;
-    const isSlow = picture?.isStill === true || (subject?.rate_hz ?? 0) < 1; // else the answer is too old to tell
-    return picture !== null && isSlow && picture.ageMs !== null && movedMs !== null &&
-      picture.ageMs <= movedMs + performance.now() - this.askedMs + REST_TOLERANCE_MS;
+    return isAtRest(this.viewer.picture(), this.shownSubject(), performance.now() - this.askedMs);
   }
 
   private showFigures(nowS: number): void {
@@ -372,16 +378,17 @@ export class App {
     });
     this.header.showOpen(status.open);
     this.header.showSubjects(subjects.map(({ name }) => name));
+    this.grid.setSubjects(subjects, this.weights.subject.value || this.state.subject.value);
     if (this.daemonSession !== '' && status.session !== this.daemonSession) {
       this.toasts.say(text.app.restarted);
     }
     this.daemonSession = status.session;
   }
 
-  private showCondition(): void {
-    const picture = this.viewer.picture();
-    const subject = this.weights.subject.value;
-    const condition = assess({
+  /** How a picture is. `wanted`: the subject that was asked for; `subject`: the one that is drawn. */
+  private conditionOf(wanted: string, subject: string, picture: ShownPicture | null, isChanging: boolean): Condition {
+    const info = this.subjects?.find(({ name }) => name === subject);
+    return assess({
       link: this.connection.link.value,
       silentMs: document.hidden ? 0 : this.connection.silentMs,
       everConnected: this.everConnected,
@@ -389,13 +396,23 @@ export class App {
       renders: this.status?.render ?? true,
       drawing: this.status?.drawing ?? null,
       subjects: this.subjects,
-      wanted: this.state.subject.value,
+      wanted,
       hasPicture: picture !== null,
       pictureMs: picture?.ageMs ?? null,
-      isChanging: this.viewer.isChanging,
-      isAtRest: this.isAtRest(),
+      isChanging,
+      isAtRest: isAtRest(picture, info, performance.now() - this.askedMs),
       isPaused: subject !== '' && this.timeline.pausedSubject === subject,
     });
+  }
+
+  private showCondition(): void {
+    const picture = this.viewer.picture();
+    const subject = this.weights.subject.value;
+    const condition = this.conditionOf(this.state.subject.value, subject, picture, this.viewer.isChanging);
+    const against = this.state.against.value;
+    const beside = against === '' ? null : this.conditionOf(against, against, this.against.live.picture(), this.against.live.isChanging);
+    if (beside !== null) this.against.show(beside, subject);
+    this.grid.show((name, shown) => (name === subject ? condition : name === against ? beside! : this.conditionOf(name, name, shown, false)));
     this.pictureState = condition.state;
     const { stage } = this.viewer;
     const hasPicture = picture !== null || stage.hasPicture;

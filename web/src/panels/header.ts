@@ -41,9 +41,11 @@ export class Header {
 
   constructor(private readonly state: AppState, commands: { help: () => void; panel: () => void; dock: () => void }) {
     const t = text.header;
+    const grid = button(t.grid, () => state.grid.set(!state.grid.value), { title: t.gridTitle });
+    state.grid.bind((on) => grid.setAttribute('aria-pressed', String(on)));
     this.subject = select(t.subject, [['', t.anySubject]], (name) => state.subject.set(name));
     this.element = h('header', {},
-      h('h1', {}, 'Furrow'), this.subject, this.status, this.open, h('span', { class: 'space' }),
+      h('h1', {}, 'Furrow'), this.subject, grid, this.status, this.open, h('span', { class: 'space' }),
       h('div', { class: 'numbers', 'aria-label': text.figures.group, role: 'group' },
         this.figure('rate'), this.figure('age'), this.figure('size'), this.figure('stream'), this.figure('limit')),
       button(t.curves, commands.dock, { title: t.curvesTitle, class: 'wide-only' }),

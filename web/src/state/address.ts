@@ -23,9 +23,15 @@ export interface PageState {
   stream: StreamKind;
   /** The picture alone. */
   kiosk: boolean;
+  /** All subjects as tiles. */
+  grid: boolean;
+  /** The focus goes to the subject that moves. */
+  follows: boolean;
+  /** The subject beside the one in focus; empty: none. */
+  against: string;
 }
 
-const RESERVED = ['subject', 'camera', 'wipe', 'debug', 'curves', 'panel', 'drawn', 'stream', 'kiosk'] as const;
+const RESERVED = ['subject', 'camera', 'wipe', 'debug', 'curves', 'panel', 'drawn', 'stream', 'kiosk', 'grid', 'follow', 'against'] as const;
 
 function writeCamera(camera: Camera): string {
   const numbers = [...camera.eye, ...camera.target, camera.fovDegrees];
@@ -66,6 +72,9 @@ export function readAddress(hash: string): PageState {
     drawnBy: drawn === 'browser' || drawn === 'daemon' ? drawn : 'auto',
     stream: stream === 'h264' || stream === 'jpeg' ? stream : 'auto',
     kiosk: parameters.get('kiosk') === '1',
+    grid: parameters.get('grid') === '1',
+    follows: parameters.get('follow') === '1',
+    against: parameters.get('against') ?? '',
   };
   for (const [name, value] of parameters) {
     if (!(RESERVED as readonly string[]).includes(name)) state.settings.set(name, value);
@@ -88,6 +97,9 @@ export function writeAddress(state: PageState): string {
   if (state.drawnBy !== 'auto') pairs.push(['drawn', state.drawnBy]);
   if (state.stream !== 'auto') pairs.push(['stream', state.stream]);
   if (state.kiosk) pairs.push(['kiosk', '1']);
+  if (state.grid) pairs.push(['grid', '1']);
+  if (state.follows) pairs.push(['follow', '1']);
+  if (state.against !== '') pairs.push(['against', state.against]);
   pairs.push(...state.settings);
   const encode = (text: string): string => encodeURIComponent(text).replaceAll('%2C', ',');
   return pairs.length === 0 ? '' : `#${pairs.map(([k, v]) => `${encode(k)}=${encode(v)}`).join('&')}`;

@@ -32,6 +32,12 @@ export class AppState {
   readonly stream: Signal<StreamKind>;
   /** The picture alone. */
   readonly kiosk: Signal<boolean>;
+  /** All subjects as tiles. */
+  readonly grid: Signal<boolean>;
+  /** The focus goes to the subject that moves, while there are tiles. */
+  readonly follows: Signal<boolean>;
+  /** The subject beside the one in focus; empty: none. */
+  readonly against: Signal<string>;
   /** True while the user compares: the picture is drawn without the last change. */
   readonly comparing = new Signal(false);
   private readonly wishes: PageState;
@@ -51,13 +57,17 @@ export class AppState {
     this.drawnBy = new Signal(this.wishes.drawnBy);
     this.stream = new Signal(this.wishes.stream);
     this.kiosk = new Signal(this.wishes.kiosk);
+    this.grid = new Signal(this.wishes.grid);
+    this.follows = new Signal(this.wishes.follows);
+    this.against = new Signal(this.wishes.against);
   }
 
   /** Applies the URL once the daemon has replied. Returns names in the URL that the daemon does not know. */
   begin(presets: readonly CameraPreset[]): string[] {
     const unknown = this.settings.begin(this.wishes.settings);
     this.setPresets(presets);
-    for (const signal of [this.subject, this.wipe, this.strip, this.curves, this.panel, this.drawnBy, this.stream, this.kiosk, this.camera, this.settings.changed]) {
+    for (const signal of [this.subject, this.wipe, this.strip, this.curves, this.panel, this.drawnBy, this.stream, this.kiosk,
+      this.grid, this.follows, this.against, this.camera, this.settings.changed]) {
       (signal as Signal<unknown>).watch(() => this.writeSoon());
     }
     return unknown;
@@ -99,6 +109,9 @@ export class AppState {
       drawnBy: this.drawnBy.value,
       stream: this.stream.value,
       kiosk: this.kiosk.value,
+      grid: this.grid.value,
+      follows: this.follows.value,
+      against: this.against.value,
     };
   }
 
