@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tools for daily work on the page: several subjects, guided capture, curves, layouts, light.
 import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
 import { after, test } from 'node:test';
 import { eventually, openPage, shown } from './browser.mjs';
 import { furrow, recording } from './daemon.mjs';
@@ -51,5 +52,62 @@ test('the focus follows the one who moves', async () => {
   await page.locator('.tile[data-subject=ada][aria-pressed=true]').waitFor();
   await shown(page);
   assert.match(page.url(), /subject=ada/);
+  await closePage(page);
+});
+
+test('guided capture: get ready, hold, good; then a summary and one undo', async () => {
+  const captures = async () => (await daemon.get('api/rig?subject=performance')).captures.map(({ pose }) => pose);
+  await daemon.hold(0);
+  const page = await openPage(browser, `${daemon.address}#panel=capture&subject=performance`);
+  await page.getByRole('button', { name: 'Guided capture' }).click();
+  await page.locator('.guide-card', { hasText: 'Relax your face' }).waitFor();
+  await page.locator('.guide h3', { hasText: 'Raise your brows' }).waitFor(); // the pose rests, so it was captured
+  assert.deepEqual(await captures(), ['neutral']);
+  await page.locator('.guide[data-phase=move]').waitFor(); // the face is still neutral
+  await page.getByRole('button', { name: 'Skip' }).click();
+  await page.locator('.guide h3', { hasText: 'Frown' }).waitFor();
+  await daemon.hold(2);
+  await page.locator('.guide[data-phase=good]').waitFor();
+  await eventually('both sides', async () => (await captures()).length === 3);
+  assert.deepEqual(await captures(), ['neutral', 'brow_lower_l', 'brow_lower_r']);
+  await page.locator('.guide h3', { hasText: 'Open your eyes wide' }).waitFor();
+  await page.getByRole('button', { name: 'Finish' }).click();
+  const row = page.locator('.guide-summary tr[data-taken=true]', { hasText: 'Frown' });
+  assert.match(await row.innerText(), /\d mm\s+± 0\.0 mm/);
+  assert.equal(await page.locator('.guide-summary tr[data-taken=true]').count(), 2);
+  await page.getByRole('button', { name: 'Undo all' }).click();
+  await page.getByText('3 captures undone').waitFor();
+  assert.deepEqual(await captures(), []);
+  await closePage(page);
+});
+
+test('curves are moved in time, marked, read and saved', async () => {
+  await daemon.patch('api/playback', { playing: true, position_s: 0 });
+  const page = await openPage(browser, `${daemon.address}#subject=performance&curves=brow_l.squash`);
+  const span = () => page.evaluate(() => document.querySelector('.plot').dataset.span);
+  await page.locator('.chip[data-name="brow_l.squash"] output', { hasText: /\d/ }).waitFor();
+  await page.focus('.plot');
+  for (let i = 0; i < 6; ++i) await page.keyboard.press('+');
+  assert.equal(await span(), '0.9');
+  await eventually('enough to move in', async () => {
+    await page.keyboard.press('ArrowLeft');
+    return await page.getByRole('button', { name: 'Freeze' }).getAttribute('aria-pressed') === 'true';
+  });
+  await page.keyboard.press('m');
+  const marker = await page.locator('.mark button').first().getAttribute('title');
+  const [file] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'CSV' }).click()]);
+  const rows = readFileSync(await file.path(), 'utf8').trim().split('\n').slice(1).map((row) => row.split(',').map(Number));
+  assert(rows.at(-1)[1] <= 0.9, `${rows.at(-1)[1]} s`);
+  assert.equal(marker, `Show marker 1, pose ${rows.at(-1)[0]}`); // the last pose shown
+  const box = await page.locator('.plot .u-over').boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  const read = /^-?[\d.]+ s, pose (\d+)$/.exec(await page.locator('.moment').innerText());
+  const row = rows.find(([sequence]) => sequence === Number(read[1]));
+  const column = (await daemon.get('api/rig')).regions.flatMap(({ weights }) => weights.map(({ name }) => name)).indexOf('brow_l.squash');
+  assert.equal(await page.locator('.chip output').innerText(), row[2 + column].toFixed(2));
+  await page.focus('.plot');
+  await page.keyboard.press('End');
+  assert.equal(await page.getByRole('button', { name: 'Freeze' }).getAttribute('aria-pressed'), 'false');
+  await daemon.hold(2);
   await closePage(page);
 });

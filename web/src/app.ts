@@ -3,6 +3,7 @@
 import { api, ApiError, type DaemonStatus, type SubjectInfo, wordsOf } from './api';
 import { Against } from './grid/against';
 import { SubjectGrid } from './grid/subject_grid';
+import { GuidePanel } from './guide/guide_panel';
 import { CapturePanel } from './panels/capture';
 import { assess, type Condition, isDimmed, type PictureState } from './panels/condition';
 import { CurvesPanel } from './panels/curves';
@@ -56,6 +57,7 @@ export class App {
   private readonly faceMap: FaceMap;
   private readonly explain: ExplainPanel;
   private readonly capture: CapturePanel;
+  private readonly guide: GuidePanel;
   private readonly session: SessionPanel;
   private readonly header: Header;
   private readonly viewBar: ViewBar;
@@ -99,6 +101,12 @@ export class App {
     this.actions = new PictureActions(() => this.viewer.canvas(), this.root, toasts);
     this.notice = new Notice(toasts, () => this.tabs.choose('sources'));
     this.capture = new CapturePanel(subject, toasts, () => void this.readRig());
+    this.guide = new GuidePanel(this.connection, subject, {
+      onChanged: () => void this.readRig(),
+      onOpen: (isOpen) => (this.capture.element.hidden = isOpen),
+      say: (words) => toasts.say(words),
+      saveRig: () => void this.capture.saveRig(),
+    });
     this.session = new SessionPanel((name) => state.subject.set(name), state.stream);
     const settingsText = new SettingsText(state, toasts);
     this.menu = new SettingsMenu(state, toasts, () => settingsText.open());
@@ -116,7 +124,7 @@ export class App {
       { id: 'look', label: text.tabs.look, icon: 'look', content: this.menu.element },
       { id: 'wrinkles', label: text.tabs.wrinkles, icon: 'wrinkles', content: wrinkles },
       { id: 'curves', label: text.tabs.curves, icon: 'curves', content: this.curvesHolder, isForSheets: true },
-      { id: 'capture', label: text.tabs.capture, icon: 'capture', content: this.capture.element },
+      { id: 'capture', label: text.tabs.capture, icon: 'capture', content: h('div', {}, this.guide.element, this.capture.element) },
       { id: 'sources', label: text.tabs.sources, icon: 'sources', content: new SourcesPanel().element },
       { id: 'session', label: text.tabs.session, icon: 'session', content: this.session.element },
     ], (id) => state.panel.set(id));
@@ -135,7 +143,7 @@ export class App {
 
   private buildLayout(parent: HTMLElement, dialog: HTMLElement): void {
     const { stage } = this.viewer;
-    stage.element.append(this.notice.element, this.actions.element, this.against.nameOfFocus);
+    stage.element.append(this.notice.element, this.guide.card, this.actions.element, this.against.nameOfFocus);
     const pair = h('div', { class: 'pair' }, stage.element, this.against.element);
     this.main.append(h('div', { class: 'panes' }, pair, this.grid.element));
     this.root.append(
@@ -171,7 +179,10 @@ export class App {
     });
     state.subject.watch((subject) => this.weights.choose(subject));
     state.grid.watch((on) => on && void this.askDaemon().then(() => this.showCondition()));
-    this.weights.subject.watch(() => void this.readRig());
+    this.weights.subject.watch(() => {
+      this.curves.reset();
+      void this.readRig();
+    });
     this.connection.link.watch((link) => {
       if (link === 'open') {
         this.everConnected = true;
@@ -205,6 +216,7 @@ export class App {
       command('ctrl+y', k.redo, () => state.settings.redo()),
       command('p', k.panel, () => this.togglePanel()),
       command('g', k.curves, () => this.toggleDock()),
+      command('m', k.mark, () => this.curves.mark()),
       command('v', k.grid, () => state.grid.set(!state.grid.value)),
       command('?', k.help, () => this.help.showModal()),
     ];

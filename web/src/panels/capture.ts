@@ -40,7 +40,7 @@ export class CapturePanel {
       h('p', { class: 'fine' }, t.note));
   }
 
-  private async saveRig(): Promise<void> {
+  async saveRig(): Promise<void> {
     try {
       download('rig.json', 'application/json', await api.rigFile());
     } catch (error) {
