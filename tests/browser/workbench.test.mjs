@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, test } from 'node:test';
-import { eventually, openPage, shown } from './browser.mjs';
+import { changedShare, eventually, openPage, pixels, shown, still } from './browser.mjs';
 import { furrow, recording } from './daemon.mjs';
 import { browser, daemon } from './played.mjs';
 
@@ -17,11 +17,14 @@ async function closePage(page) {
   await page.context().close();
 }
 
+/** Wide enough for bars beside the picture, and quick to draw. */
+const SMALL = { viewport: { width: 920, height: 540 } };
+
 const tile = (page, name) => page.locator(`.tile[data-subject="${name}"]`);
 const subscriptions = async () => (await daemon.get('api/status')).subscriptions;
 
 test('tiles show all subjects; keys choose one, and two are compared', async () => {
-  const page = await openPage(browser, `${daemon.address}#grid=1&subject=performance`);
+  const page = await openPage(browser, `${daemon.address}#grid=1&panel=&dock=0&subject=performance`, SMALL);
   await page.locator('.tile.has-picture[data-subject=ada][data-state=live]').waitFor();
   await page.locator('.tile.large[data-subject=performance][data-state=paused][aria-pressed=true]').waitFor();
   await page.getByText('2 subjects').waitFor();
@@ -48,7 +51,7 @@ test('tiles show all subjects; keys choose one, and two are compared', async () 
 });
 
 test('the focus follows the one who moves', async () => {
-  const page = await openPage(browser, `${daemon.address}#grid=1&subject=performance&follow=1`);
+  const page = await openPage(browser, `${daemon.address}#grid=1&panel=&dock=0&subject=performance&follow=1`, SMALL);
   await page.locator('.tile[data-subject=ada][aria-pressed=true]').waitFor();
   await shown(page);
   assert.match(page.url(), /subject=ada/);
@@ -58,7 +61,7 @@ test('the focus follows the one who moves', async () => {
 test('guided capture: get ready, hold, good; then a summary and one undo', async () => {
   const captures = async () => (await daemon.get('api/rig?subject=performance')).captures.map(({ pose }) => pose);
   await daemon.hold(0);
-  const page = await openPage(browser, `${daemon.address}#panel=capture&subject=performance`);
+  const page = await openPage(browser, `${daemon.address}#panel=capture&subject=performance`, SMALL);
   await page.getByRole('button', { name: 'Guided capture' }).click();
   await page.locator('.guide-card', { hasText: 'Relax your face' }).waitFor();
   await page.locator('.guide h3', { hasText: 'Raise your brows' }).waitFor(); // the pose rests, so it was captured
@@ -83,7 +86,7 @@ test('guided capture: get ready, hold, good; then a summary and one undo', async
 
 test('curves are moved in time, marked, read and saved', async () => {
   await daemon.patch('api/playback', { playing: true, position_s: 0 });
-  const page = await openPage(browser, `${daemon.address}#subject=performance&curves=brow_l.squash`);
+  const page = await openPage(browser, `${daemon.address}#subject=performance&curves=brow_l.squash`, SMALL);
   const span = () => page.evaluate(() => document.querySelector('.plot').dataset.span);
   await page.locator('.chip[data-name="brow_l.squash"] output', { hasText: /\d/ }).waitFor();
   await page.focus('.plot');
@@ -109,5 +112,68 @@ test('curves are moved in time, marked, read and saved', async () => {
   await page.keyboard.press('End');
   assert.equal(await page.getByRole('button', { name: 'Freeze' }).getAttribute('aria-pressed'), 'false');
   await daemon.hold(2);
+  await closePage(page);
+});
+
+/** The mean sRGB luma of the middle of the picture. */
+async function middleOf(page) {
+  const { width, height, data } = await pixels(page);
+  let sum = 0;
+  for (let dy = -2; dy <= 2; ++dy) {
+    for (let dx = -2; dx <= 2; ++dx) {
+      const at = 4 * (((height >> 1) + dy) * width + (width >> 1) + dx);
+      sum += (0.2126 * data[at] + 0.7152 * data[at + 1] + 0.0722 * data[at + 2]) / 25;
+    }
+  }
+  return sum;
+}
+
+test('a drag moves the lamps; exposure is measured; layouts are kept', async () => {
+  await daemon.hold(2);
+  const page = await openPage(browser, `${daemon.address}#subject=performance&camera=mouth`, SMALL);
+  await still(page);
+  const former = await pixels(page);
+  await page.focus('.surface');
+  await page.keyboard.press('Shift+L');
+  const { x, y, width, height } = await page.locator('.surface').first().boundingBox();
+  await page.mouse.move(x + width / 2, y + height / 2);
+  await page.mouse.down();
+  await page.mouse.move(x + width / 2 + height / 4, y + height / 2);
+  await page.mouse.up();
+  await page.keyboard.press('ArrowUp');
+  await page.locator('.light-figures', { hasText: 'Turn 45°, tilt 5°' }).waitFor();
+  await eventually('another light', async () => changedShare(former, await pixels(page)) > 0.1);
+  assert.match(page.url(), /camera=mouth.*lights\.turn_degrees=45/);
+  await still(page);
+  await page.focus('.light-bar button:has-text("Measure")');
+  await page.keyboard.press('Enter');
+  await eventually('the exposure', () => page.url().includes('exposure='));
+  await still(page);
+  assert(Math.abs(await middleOf(page) - 118) < 12, `${await middleOf(page)} of 255`);
+  await page.keyboard.press('Control+z');
+  await page.keyboard.press('Control+z');
+  await eventually('the light as it was', () => !page.url().includes('lights'));
+  await page.focus('.surface');
+  await page.keyboard.press('l');
+  await page.keyboard.press('t');
+  await page.getByRole('button', { name: 'Turntable' }).waitFor({ state: 'hidden' });
+  await page.keyboard.press('t');
+  await eventually('another camera', () => /camera=[-\d.]+,/.test(page.url()));
+
+  await page.keyboard.press('o');
+  await page.getByRole('button', { name: 'All subjects' }).click();
+  await page.locator('.grid').waitFor();
+  assert.equal(await page.locator('.curves').isVisible() || await page.locator('.side').isVisible(), false);
+  await page.keyboard.press('o');
+  await page.fill('#layout-name', 'wall');
+  await page.getByRole('button', { name: 'Save this layout' }).click();
+  await page.getByRole('button', { name: 'Usual' }).click();
+  await page.locator('.curves').waitFor();
+  await page.reload();
+  await page.locator('.view-bar [data-preset]').first().waitFor();
+  await page.keyboard.press('o');
+  await page.getByRole('button', { name: 'wall', exact: true }).click();
+  await page.locator('.grid').waitFor();
+  await eventually('the address', () => /panel=&.*grid=1&dock=0/.test(page.url()));
   await closePage(page);
 });

@@ -4,12 +4,14 @@ import { api, ApiError, type DaemonStatus, type SubjectInfo, wordsOf } from './a
 import { Against } from './grid/against';
 import { SubjectGrid } from './grid/subject_grid';
 import { GuidePanel } from './guide/guide_panel';
+import { LightBar } from './light/light_bar';
 import { CapturePanel } from './panels/capture';
 import { assess, type Condition, isDimmed, type PictureState } from './panels/condition';
 import { CurvesPanel } from './panels/curves';
 import { ExplainPanel } from './panels/explain';
 import { FaceMap } from './panels/face_map';
 import { Header } from './panels/header';
+import { LayoutDialog } from './panels/layouts';
 import { SettingsMenu } from './panels/menu';
 import { Notice } from './panels/notice';
 import { PictureActions } from './panels/picture_actions';
@@ -21,12 +23,14 @@ import { Timeline } from './panels/timeline';
 import { ViewBar } from './panels/view_bar';
 import { AppState } from './state/app_state';
 import { isAcross, isCompact } from './state/layout';
+import { browserStore } from './state/presets';
 import { setToken } from './state/token';
 import { WeightHistory } from './state/weight_history';
 import { text } from './text';
-import { h } from './ui/dom';
+import { button, h } from './ui/dom';
 import { returnFocus } from './ui/focus';
 import { type Command, helpDialog, installKeys } from './ui/keys';
+import { kioskButton } from './ui/kiosk';
 import { Tabs } from './ui/tabs';
 import { Toasts } from './ui/toast';
 import { TokenDialog } from './ui/token_dialog';
@@ -68,6 +72,8 @@ export class App {
   private readonly notice: Notice;
   private readonly grid: SubjectGrid;
   private readonly against: Against;
+  private readonly light: LightBar;
+  private readonly layouts: LayoutDialog;
   private readonly actions: PictureActions;
   private readonly viewHolder = h('div', { class: 'view-holder' });
   private readonly curvesHolder = h('div', { class: 'curves-holder' });
@@ -98,6 +104,8 @@ export class App {
     this.viewer = new Viewer(this.connection, state, (words) => toasts.say(words, 'error'), () => this.onPicture());
     this.grid = new SubjectGrid(this.connection, state, this.viewer);
     this.against = new Against(this.connection, state, this.viewer);
+    this.light = new LightBar(state, this.viewer, toasts);
+    this.layouts = new LayoutDialog(state, toasts, browserStore());
     this.actions = new PictureActions(() => this.viewer.canvas(), this.root, toasts);
     this.notice = new Notice(toasts, () => this.tabs.choose('sources'));
     this.capture = new CapturePanel(subject, toasts, () => void this.readRig());
@@ -117,6 +125,7 @@ export class App {
     this.help = helpDialog(commands);
     this.header = new Header(state, {
       help: () => this.help.showModal(), panel: () => this.togglePanel(), dock: () => this.toggleDock(),
+      layout: () => this.layouts.open(),
     });
     const wrinkles = h('div', { class: 'wrinkles' }, this.faceMap.map, this.explain.element, this.faceMap.list);
     this.tabs = new Tabs([
@@ -143,13 +152,15 @@ export class App {
 
   private buildLayout(parent: HTMLElement, dialog: HTMLElement): void {
     const { stage } = this.viewer;
-    stage.element.append(this.notice.element, this.guide.card, this.actions.element, this.against.nameOfFocus);
+    stage.element.append(this.notice.element, this.guide.card, this.light.element, this.actions.element, this.against.nameOfFocus);
+    this.actions.element.prepend(this.light.toggleButton);
+    this.viewHolder.append(button(text.header.layout, () => this.layouts.open(), { title: text.header.layoutTitle }));
     const pair = h('div', { class: 'pair' }, stage.element, this.against.element);
     this.main.append(h('div', { class: 'panes' }, pair, this.grid.element));
     this.root.append(
       this.header.element, this.strip.element, this.main, this.dock,
       h('aside', { class: 'side', 'aria-label': text.tabs.list }, this.tabs.list, this.tabs.panels),
-      dialog, this.help, this.token.element, this.toasts.element);
+      dialog, this.help, this.layouts.element, this.token.element, this.toasts.element, kioskButton(this.root, this.state.kiosk));
     parent.replaceChildren(this.root);
     isCompact.bind((compact) => this.arrange(compact));
     isAcross.bind((across) => this.header.element.classList.toggle('on-picture', across));
@@ -159,6 +170,7 @@ export class App {
       this.tabs.setOpen(panel !== '');
     });
     // /embed is the page in a frame of another page.
+    this.state.dock.bind((shown) => this.root.classList.toggle('no-curves', !shown));
     const isEmbedded = location.pathname.endsWith('/embed');
     this.state.kiosk.bind((kiosk) => this.root.classList.toggle('bare', kiosk || isEmbedded));
     returnFocus(this.root, stage.surface);
@@ -167,7 +179,8 @@ export class App {
   /** On small screens, the bars around the picture become sheets. */
   private arrange(compact: boolean): void {
     this.root.classList.toggle('compact', compact);
-    (compact ? this.viewHolder : this.main).append(this.viewBar.element);
+    if (compact) this.viewHolder.prepend(this.viewBar.element);
+    else this.main.append(this.viewBar.element);
     (compact ? this.curvesHolder : this.dock).prepend(this.curves.element);
     this.dock.append(this.timeline.element);
   }
@@ -175,7 +188,12 @@ export class App {
   private connectSignals(): void {
     const { state } = this;
     new CameraInput(this.viewer.stage.surface, {
-      camera: () => state.camera.value, move: (camera) => state.camera.set(camera),
+      camera: () => state.camera.value,
+      move: (camera) => {
+        state.turning.set(false);
+        state.camera.set(camera);
+      },
+      drag: (right, up) => this.light.drag(right, up),
     });
     state.subject.watch((subject) => this.weights.choose(subject));
     state.grid.watch((on) => on && void this.askDaemon().then(() => this.showCondition()));
@@ -216,6 +234,9 @@ export class App {
       command('ctrl+y', k.redo, () => state.settings.redo()),
       command('p', k.panel, () => this.togglePanel()),
       command('g', k.curves, () => this.toggleDock()),
+      command('o', k.layout, () => this.layouts.open()),
+      command('l', k.light, () => this.light.toggle()),
+      command('t', k.turntable, () => this.light.toggleTurntable()),
       command('m', k.mark, () => this.curves.mark()),
       command('v', k.grid, () => state.grid.set(!state.grid.value)),
       command('?', k.help, () => this.help.showModal()),
@@ -232,7 +253,7 @@ export class App {
   }
 
   private toggleDock(): void {
-    this.root.classList.toggle('no-curves');
+    this.state.dock.set(!this.state.dock.value);
   }
 
   private explainRegion(region: string, weights: string[]): void {
