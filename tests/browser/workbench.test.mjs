@@ -135,7 +135,7 @@ test('a drag moves the lamps; exposure is measured; layouts are kept', async () 
   const former = await pixels(page);
   await page.focus('.surface');
   await page.keyboard.press('Shift+L');
-  const { x, y, width, height } = await page.locator('.surface').first().boundingBox();
+  const { x, y, width, height } = await page.locator('.surface').boundingBox();
   await page.mouse.move(x + width / 2, y + height / 2);
   await page.mouse.down();
   await page.mouse.move(x + width / 2 + height / 4, y + height / 2);

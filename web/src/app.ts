@@ -302,9 +302,12 @@ export class App {
   }
 
   private async readRig(): Promise<void> {
+    const subject = this.weights.subject.value;
     try {
-      await this.faceMap.load(this.weights.subject.value);
-      await this.capture.load();
+      const rig = await api.rig(subject);
+      if (subject !== this.weights.subject.value) return; // another answer follows
+      this.faceMap.showRig(rig);
+      this.capture.showRig(rig);
     } catch {
       // There is no subject yet, or the daemon left. The rig is read again once the subject is known.
     }

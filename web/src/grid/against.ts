@@ -23,7 +23,7 @@ export class Against {
 
   constructor(connection: Connection, private readonly state: AppState, private readonly viewer: Viewer) {
     this.live = new LivePicture(connection);
-    this.surface = h('div', { class: 'surface', tabindex: 0, role: 'application', 'aria-label': t.paneHelp }, this.live.canvas);
+    this.surface = h('div', { class: 'pane-surface', tabindex: 0, role: 'application', 'aria-label': t.paneHelp }, this.live.canvas);
     this.element = h('section', { class: 'against', 'aria-label': t.pane, hidden: true }, this.surface, this.name,
       button('×', () => state.against.set(''), { class: 'pane-close', 'aria-label': t.compareEnd, title: t.compareEnd }));
     new CameraInput(this.surface, {
