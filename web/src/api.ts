@@ -105,6 +105,9 @@ export interface SourcesInfo {
 
 export interface RigInfo {
   name: string;
+  /** The joint in whose space positions of a face are measured. */
+  anchor: string;
+  drivers: { name: string; values: { name: string; reference_pose?: string }[] }[];
   regions: { name: string; neighbours: string[]; weights: { name: string; map: string }[] }[];
   reference_poses: string[];
   captures: Capture[];

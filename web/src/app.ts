@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Assembles the page and feeds it with the state of the daemon.
 import { api, ApiError, type DaemonStatus, type SubjectInfo, wordsOf } from './api';
+import { Against } from './grid/against';
+import { SubjectGrid } from './grid/subject_grid';
+import { GuidePanel } from './guide/guide_panel';
+import { LightBar } from './light/light_bar';
 import { CapturePanel } from './panels/capture';
-import { assess, isDimmed, type PictureState } from './panels/condition';
+import { assess, type Condition, isDimmed, type PictureState } from './panels/condition';
 import { CurvesPanel } from './panels/curves';
 import { ExplainPanel } from './panels/explain';
 import { FaceMap } from './panels/face_map';
 import { Header } from './panels/header';
+import { LayoutDialog } from './panels/layouts';
 import { SettingsMenu } from './panels/menu';
 import { Notice } from './panels/notice';
 import { PictureActions } from './panels/picture_actions';
@@ -18,17 +23,21 @@ import { Timeline } from './panels/timeline';
 import { ViewBar } from './panels/view_bar';
 import { AppState } from './state/app_state';
 import { isAcross, isCompact } from './state/layout';
+import { browserStore } from './state/presets';
 import { setToken } from './state/token';
 import { WeightHistory } from './state/weight_history';
 import { text } from './text';
-import { h } from './ui/dom';
+import { button, h } from './ui/dom';
 import { returnFocus } from './ui/focus';
 import { type Command, helpDialog, installKeys } from './ui/keys';
+import { kioskButton } from './ui/kiosk';
 import { Tabs } from './ui/tabs';
 import { Toasts } from './ui/toast';
 import { TokenDialog } from './ui/token_dialog';
 import { CameraInput } from './view/camera_input';
 import { limitOf } from './view/limit';
+import type { ShownPicture } from './view/picture_stats';
+import { isAtRest } from './view/rest';
 import { Viewer } from './view/viewer';
 import { Connection } from './wire/connection';
 import { WeightStream } from './wire/weight_stream';
@@ -38,8 +47,6 @@ const POLL_MS = 1000;
 const SHOW_MS = 250;
 /** While the first picture is prepared. */
 const LOADING_POLL_MS = 250;
-/** Clocks of the daemon and the page, and the time of a request. */
-const REST_TOLERANCE_MS = 300;
 /** While the browser draws: polls until the page notices that another viewer changed the daemon's settings. */
 const POLLS_PER_SETTINGS = 3;
 
@@ -54,6 +61,7 @@ export class App {
   private readonly faceMap: FaceMap;
   private readonly explain: ExplainPanel;
   private readonly capture: CapturePanel;
+  private readonly guide: GuidePanel;
   private readonly session: SessionPanel;
   private readonly header: Header;
   private readonly viewBar: ViewBar;
@@ -62,6 +70,10 @@ export class App {
   private readonly timeline: Timeline;
   private readonly tabs: Tabs;
   private readonly notice: Notice;
+  private readonly grid: SubjectGrid;
+  private readonly against: Against;
+  private readonly light: LightBar;
+  private readonly layouts: LayoutDialog;
   private readonly actions: PictureActions;
   private readonly viewHolder = h('div', { class: 'view-holder' });
   private readonly curvesHolder = h('div', { class: 'curves-holder' });
@@ -90,9 +102,19 @@ export class App {
     this.faceMap = new FaceMap(this.history, (region, weights) => this.explainRegion(region, weights));
     this.weights = new WeightStream(this.connection, state.subject.value, this.history, () => this.onWeights());
     this.viewer = new Viewer(this.connection, state, (words) => toasts.say(words, 'error'), () => this.onPicture());
+    this.grid = new SubjectGrid(this.connection, state, this.viewer);
+    this.against = new Against(this.connection, state, this.viewer);
+    this.light = new LightBar(state, this.viewer, toasts);
+    this.layouts = new LayoutDialog(state, toasts, browserStore());
     this.actions = new PictureActions(() => this.viewer.canvas(), this.root, toasts);
     this.notice = new Notice(toasts, () => this.tabs.choose('sources'));
     this.capture = new CapturePanel(subject, toasts, () => void this.readRig());
+    this.guide = new GuidePanel(this.connection, subject, {
+      onChanged: () => void this.readRig(),
+      onOpen: (isOpen) => (this.capture.element.hidden = isOpen),
+      say: (words) => toasts.say(words),
+      saveRig: () => void this.capture.saveRig(),
+    });
     this.session = new SessionPanel((name) => state.subject.set(name), state.stream);
     const settingsText = new SettingsText(state, toasts);
     this.menu = new SettingsMenu(state, toasts, () => settingsText.open());
@@ -103,6 +125,7 @@ export class App {
     this.help = helpDialog(commands);
     this.header = new Header(state, {
       help: () => this.help.showModal(), panel: () => this.togglePanel(), dock: () => this.toggleDock(),
+      layout: () => this.layouts.open(),
     });
     const wrinkles = h('div', { class: 'wrinkles' }, this.faceMap.map, this.explain.element, this.faceMap.list);
     this.tabs = new Tabs([
@@ -110,7 +133,7 @@ export class App {
       { id: 'look', label: text.tabs.look, icon: 'look', content: this.menu.element },
       { id: 'wrinkles', label: text.tabs.wrinkles, icon: 'wrinkles', content: wrinkles },
       { id: 'curves', label: text.tabs.curves, icon: 'curves', content: this.curvesHolder, isForSheets: true },
-      { id: 'capture', label: text.tabs.capture, icon: 'capture', content: this.capture.element },
+      { id: 'capture', label: text.tabs.capture, icon: 'capture', content: h('div', {}, this.guide.element, this.capture.element) },
       { id: 'sources', label: text.tabs.sources, icon: 'sources', content: new SourcesPanel().element },
       { id: 'session', label: text.tabs.session, icon: 'session', content: this.session.element },
     ], (id) => state.panel.set(id));
@@ -129,12 +152,15 @@ export class App {
 
   private buildLayout(parent: HTMLElement, dialog: HTMLElement): void {
     const { stage } = this.viewer;
-    stage.element.append(this.notice.element, this.actions.element);
-    this.main.append(stage.element);
+    stage.element.append(this.notice.element, this.guide.card, this.light.element, this.actions.element, this.against.nameOfFocus);
+    this.actions.element.prepend(this.light.toggleButton);
+    this.viewHolder.append(button(text.header.layout, () => this.layouts.open(), { title: text.header.layoutTitle }));
+    const pair = h('div', { class: 'pair' }, stage.element, this.against.element);
+    this.main.append(h('div', { class: 'panes' }, pair, this.grid.element));
     this.root.append(
       this.header.element, this.strip.element, this.main, this.dock,
       h('aside', { class: 'side', 'aria-label': text.tabs.list }, this.tabs.list, this.tabs.panels),
-      dialog, this.help, this.token.element, this.toasts.element);
+      dialog, this.help, this.layouts.element, this.token.element, this.toasts.element, kioskButton(this.root, this.state.kiosk));
     parent.replaceChildren(this.root);
     isCompact.bind((compact) => this.arrange(compact));
     isAcross.bind((across) => this.header.element.classList.toggle('on-picture', across));
@@ -144,6 +170,7 @@ export class App {
       this.tabs.setOpen(panel !== '');
     });
     // /embed is the page in a frame of another page.
+    this.state.dock.bind((shown) => this.root.classList.toggle('no-curves', !shown));
     const isEmbedded = location.pathname.endsWith('/embed');
     this.state.kiosk.bind((kiosk) => this.root.classList.toggle('bare', kiosk || isEmbedded));
     returnFocus(this.root, stage.surface);
@@ -152,7 +179,8 @@ export class App {
   /** On small screens, the bars around the picture become sheets. */
   private arrange(compact: boolean): void {
     this.root.classList.toggle('compact', compact);
-    (compact ? this.viewHolder : this.main).append(this.viewBar.element);
+    if (compact) this.viewHolder.prepend(this.viewBar.element);
+    else this.main.append(this.viewBar.element);
     (compact ? this.curvesHolder : this.dock).prepend(this.curves.element);
     this.dock.append(this.timeline.element);
   }
@@ -160,10 +188,19 @@ export class App {
   private connectSignals(): void {
     const { state } = this;
     new CameraInput(this.viewer.stage.surface, {
-      camera: () => state.camera.value, move: (camera) => state.camera.set(camera),
+      camera: () => state.camera.value,
+      move: (camera) => {
+        state.turning.set(false);
+        state.camera.set(camera);
+      },
+      drag: (right, up) => this.light.drag(right, up),
     });
     state.subject.watch((subject) => this.weights.choose(subject));
-    this.weights.subject.watch(() => void this.readRig());
+    state.grid.watch((on) => on && void this.askDaemon().then(() => this.showCondition()));
+    this.weights.subject.watch(() => {
+      this.curves.reset();
+      void this.readRig();
+    });
     this.connection.link.watch((link) => {
       if (link === 'open') {
         this.everConnected = true;
@@ -197,6 +234,11 @@ export class App {
       command('ctrl+y', k.redo, () => state.settings.redo()),
       command('p', k.panel, () => this.togglePanel()),
       command('g', k.curves, () => this.toggleDock()),
+      command('o', k.layout, () => this.layouts.open()),
+      command('l', k.light, () => this.light.toggle()),
+      command('t', k.turntable, () => this.light.toggleTurntable()),
+      command('m', k.mark, () => this.curves.mark()),
+      command('v', k.grid, () => state.grid.set(!state.grid.value)),
       command('?', k.help, () => this.help.showModal()),
     ];
   }
@@ -211,7 +253,7 @@ export class App {
   }
 
   private toggleDock(): void {
-    this.root.classList.toggle('no-curves');
+    this.state.dock.set(!this.state.dock.value);
   }
 
   private explainRegion(region: string, weights: string[]): void {
@@ -260,9 +302,12 @@ export class App {
   }
 
   private async readRig(): Promise<void> {
+    const subject = this.weights.subject.value;
     try {
-      await this.faceMap.load(this.weights.subject.value);
-      await this.capture.load();
+      const rig = await api.rig(subject);
+      if (subject !== this.weights.subject.value) return; // another answer follows
+      this.faceMap.showRig(rig);
+      this.capture.showRig(rig);
     } catch {
       // There is no subject yet, or the daemon left. The rig is read again once the subject is known.
     }
@@ -275,7 +320,9 @@ export class App {
     const shown = this.shownSubject();
     this.viewer.observeRate(shown?.rate_hz ?? 0, nowS);
     this.viewer.drawing.observe(shown, this.viewer.stats.rateHz(nowS));
-    if (this.viewer.drawing.active.value && this.numPolls++ % POLLS_PER_SETTINGS === 0) void this.readSettings();
+    const isHere = this.viewer.drawing.active.value;
+    this.grid.observe(this.pictureState, isHere ? this.viewer.drawing.rateHz(nowS) : this.viewer.stats.rateHz(nowS), shown?.rate_hz ?? 0, this.isAtRest());
+    if (isHere && this.numPolls++ % POLLS_PER_SETTINGS === 0) void this.readSettings();
     setTimeout(() => void this.poll(), this.pictureState === 'loading' ? LOADING_POLL_MS : POLL_MS);
   }
 
@@ -285,12 +332,7 @@ export class App {
 
   /** True if the subject has not moved since the pose on the screen. */
   private isAtRest(): boolean {
-    const picture = this.viewer.picture();
-    const subject = this.shownSubject();
-    const movedMs = subject?.moved_ms ?? null;
-    const isSlow = picture?.isStill === true || (subject?.rate_hz ?? 0) < 1; // else the answer is too old to tell
-    return picture !== null && isSlow && picture.ageMs !== null && movedMs !== null &&
-      picture.ageMs <= movedMs + performance.now() - this.askedMs + REST_TOLERANCE_MS;
+    return isAtRest(this.viewer.picture(), this.shownSubject(), performance.now() - this.askedMs);
   }
 
   private showFigures(nowS: number): void {
@@ -372,16 +414,17 @@ export class App {
     });
     this.header.showOpen(status.open);
     this.header.showSubjects(subjects.map(({ name }) => name));
+    this.grid.setSubjects(subjects, this.weights.subject.value || this.state.subject.value);
     if (this.daemonSession !== '' && status.session !== this.daemonSession) {
       this.toasts.say(text.app.restarted);
     }
     this.daemonSession = status.session;
   }
 
-  private showCondition(): void {
-    const picture = this.viewer.picture();
-    const subject = this.weights.subject.value;
-    const condition = assess({
+  /** How a picture is. `wanted`: the subject that was asked for; `subject`: the one that is drawn. */
+  private conditionOf(wanted: string, subject: string, picture: ShownPicture | null, isChanging: boolean): Condition {
+    const info = this.subjects?.find(({ name }) => name === subject);
+    return assess({
       link: this.connection.link.value,
       silentMs: document.hidden ? 0 : this.connection.silentMs,
       everConnected: this.everConnected,
@@ -389,13 +432,23 @@ export class App {
       renders: this.status?.render ?? true,
       drawing: this.status?.drawing ?? null,
       subjects: this.subjects,
-      wanted: this.state.subject.value,
+      wanted,
       hasPicture: picture !== null,
       pictureMs: picture?.ageMs ?? null,
-      isChanging: this.viewer.isChanging,
-      isAtRest: this.isAtRest(),
+      isChanging,
+      isAtRest: isAtRest(picture, info, performance.now() - this.askedMs),
       isPaused: subject !== '' && this.timeline.pausedSubject === subject,
     });
+  }
+
+  private showCondition(): void {
+    const picture = this.viewer.picture();
+    const subject = this.weights.subject.value;
+    const condition = this.conditionOf(this.state.subject.value, subject, picture, this.viewer.isChanging);
+    const against = this.state.against.value;
+    const beside = against === '' ? null : this.conditionOf(against, against, this.against.live.picture(), this.against.live.isChanging);
+    if (beside !== null) this.against.show(beside, subject);
+    this.grid.show((name, shown) => (name === subject ? condition : name === against ? beside! : this.conditionOf(name, name, shown, false)));
     this.pictureState = condition.state;
     const { stage } = this.viewer;
     const hasPicture = picture !== null || stage.hasPicture;

@@ -2,7 +2,8 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { fromControl, labelOf, toControl } from '../src/panels/setting_binding';
-import { PresetShelf, shippedPresets } from '../src/state/presets';
+import { layoutPairs, readAddress } from '../src/state/address';
+import { PresetShelf } from '../src/state/presets';
 import { assignments, sameValue, SettingsModel } from '../src/state/settings';
 import { someSettings } from './some_settings';
 
@@ -112,14 +113,41 @@ test('a label states its unit once', () => {
 test('own presets are saved, built-in presets are not overwritten', () => {
   const kept = new Map<string, string>();
   const store = { getItem: (key: string) => kept.get(key) ?? null, setItem: (key: string, v: string) => void kept.set(key, v) };
-  const shelf = new PresetShelf(store);
-  assert.equal(shelf.save(shippedPresets()[0]!.name, new Map()), false);
+  const shelf = PresetShelf.presets(store);
+  assert.equal(shelf.save(PresetShelf.presets(null).all()[0]!.name, new Map()), false);
   assert.equal(shelf.save('', new Map()), false);
   assert(shelf.save('mine', new Map([['wrinkles', 'off']])));
-  const again = new PresetShelf(store).all().find(({ name }) => name === 'mine')!;
+  const again = PresetShelf.presets(store).all().find(({ name }) => name === 'mine')!;
   assert.deepEqual([...again.values], [['wrinkles', 'off']]);
   shelf.delete('mine');
-  assert.equal(new PresetShelf(store).all().length, shippedPresets().length);
+  assert.equal(PresetShelf.presets(store).all().length, PresetShelf.presets(null).all().length);
   kept.set('furrow.presets', 'no JSON');
-  assert.equal(new PresetShelf(store).all().length, shippedPresets().length);
+  assert.equal(PresetShelf.presets(store).all().length, PresetShelf.presets(null).all().length);
+});
+
+test('layouts are kept beside presets, and are parts of an address', () => {
+  const kept = new Map<string, string>();
+  const store = { getItem: (key: string) => kept.get(key) ?? null, setItem: (key: string, value: string) => void kept.set(key, value) };
+  const shelf = PresetShelf.layouts(store);
+  const built = shelf.all().length;
+  const page = readAddress('#subject=ann&shading=skin&panel=wrinkles&curves=a,b&debug=normal&grid=1&dock=0&camera=eyes');
+  const pairs = layoutPairs(page);
+  assert.deepEqual(pairs, [['debug', 'normal'], ['curves', 'a,b'], ['panel', 'wrinkles'], ['grid', '1'], ['dock', '0']]);
+  assert.equal(shelf.save('Usual', new Map(pairs)), false);
+  assert.equal(shelf.save('mine', new Map(pairs)), true);
+  assert.deepEqual(PresetShelf.layouts(store).all().at(-1)!.values, new Map(pairs));
+  assert.equal(PresetShelf.layouts(store).all().length, built + 1);
+  assert.equal(PresetShelf.presets(store).all().some(({ name }) => name === 'mine'), false);
+  kept.set('furrow.layouts', '[broken');
+  assert.equal(PresetShelf.layouts(store).all().length, built);
+});
+
+test('settings that change together are one undo step', () => {
+  const settings = model();
+  settings.setMany(new Map([['shadow.taps', '9'], ['shadow.softness_mm', '4']]), 0);
+  settings.setMany(new Map([['shadow.taps', '10'], ['shadow.softness_mm', '5']]), 100);
+  assert.equal(settings.value('shadow.taps'), '10');
+  settings.undo();
+  assert.equal(settings.overrides.size, 0);
+  assert.equal(settings.canUndo, false);
 });

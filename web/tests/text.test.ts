@@ -32,7 +32,7 @@ test('errors in TOML name the line', () => {
 test('the URL restores the page', () => {
   const state = {
     subject: 'stage left & right', wipe: 'shading' as const, strip: ['normal', 'depth'], curves: ['brow_l.squash'], panel: '',
-    drawnBy: 'browser' as const, stream: 'jpeg' as const, kiosk: true,
+    drawnBy: 'browser' as const, stream: 'jpeg' as const, kiosk: true, grid: true, follows: true, against: 'take & 7', dock: false,
     camera: { eye: [0.1, 1.6, 0.8] as const, target: [0, 1.6, 0] as const, fovDegrees: 24, follows: true },
     settings: new Map([['shading', 'skin'], ['background', '0.1,0.2,0.3'], ['subsurface.width', '1.2']]),
   };

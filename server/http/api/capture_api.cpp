@@ -18,8 +18,9 @@ namespace furrow::server {
 namespace {
 
 constexpr char kNeutral[] = "neutral";
-// Each entry may hold a whole rig, so the history is short; the oldest entry goes first.
-constexpr std::size_t kMaxUndo = 16;
+// Enough to undo a guided capture of all poses of a face. Each entry may hold a whole rig (half a
+// megabyte for the default one), so the history is bounded; the oldest entry goes first.
+constexpr std::size_t kMaxUndo = 64;
 // Every solve of every subject evaluates the added poses, too.
 constexpr int kMaxAdded = 32;
 // The name becomes part of the rig file.

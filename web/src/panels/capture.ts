@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Captures the live pose as the performer's neutral pose or as a reference pose of the rig.
-import { api, type Capture, type CaptureResult, type NeutralPart, wordsOf } from '../api';
+import { api, type Capture, type CaptureResult, type NeutralPart, type RigInfo, wordsOf } from '../api';
 import { text } from '../text';
 import { button, download, h, select, setOptions } from '../ui/dom';
 import type { Toasts } from '../ui/toast';
@@ -40,7 +40,7 @@ export class CapturePanel {
       h('p', { class: 'fine' }, t.note));
   }
 
-  private async saveRig(): Promise<void> {
+  async saveRig(): Promise<void> {
     try {
       download('rig.json', 'application/json', await api.rigFile());
     } catch (error) {
@@ -48,8 +48,7 @@ export class CapturePanel {
     }
   }
 
-  async load(): Promise<void> {
-    const rig = await api.rig(this.subject());
+  showRig(rig: RigInfo): void {
     const poses = [...new Set([NEUTRAL, ...rig.reference_poses])];
     setOptions(this.pose, [...poses.map((name) => [name, name] as const), [NEW, t.newPose]]);
     this.newName.hidden = this.pose.value !== NEW;
@@ -69,7 +68,6 @@ export class CapturePanel {
       if (preview) return;
       this.toasts.say(t.captured(result.pose, result.part));
       this.onChanged();
-      await this.load();
     } catch (error) {
       this.error.textContent = wordsOf(error);
     }
@@ -80,7 +78,6 @@ export class CapturePanel {
       this.showCaptures((await api.undoCapture()).captures);
       this.result.replaceChildren();
       this.onChanged();
-      await this.load();
     } catch (error) {
       this.error.textContent = wordsOf(error);
     }

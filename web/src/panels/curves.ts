@@ -1,18 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// Live curves of wrinkle weights over the last seconds.
+// Curves of wrinkle weights: live, or any span of what is kept, with markers.
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
 import type { AppState } from '../state/app_state';
-import type { WeightHistory } from '../state/weight_history';
+import { CurveSpan, type Kept } from '../state/curve_span';
+import type { WeightFrame, WeightHistory } from '../state/weight_history';
 import { text } from '../text';
 import { button, download, h } from '../ui/dom';
 
 const t = text.curves;
-const SHOWN_S = 10;
 const AUTOMATIC = 5;
 const REDRAW_MS = 50;
 /** Seconds for which an automatic choice is kept, so that curves do not flicker. */
 const CHOICE_S = 4;
+const ZOOM = 1.5;
+/** Share of the span that a key or a button moves. */
+const STEP = 0.2;
+/** Pointers that move less have clicked. */
+const CLICK_PX = 4;
 /** Distinguishable on a dark background, also with colour blindness (Okabe and Ito, lightened). */
 const ON_DARK = ['#f0b43c', '#62bdf0', '#3fcf9e', '#f3ec6c', '#7aa5ff', '#ff8a5c', '#e09fcb', '#e6e6e6'];
 /** The same on a light background (Okabe and Ito, darkened). */
@@ -20,41 +25,106 @@ const ON_LIGHT = ['#b07400', '#2f86b8', '#007a59', '#8a8200', '#0058a3', '#b84a0
 
 export class CurvesPanel {
   readonly element: HTMLElement;
-  private readonly plotHolder = h('div', { class: 'plot', role: 'img', 'aria-label': t.plot });
+  private readonly plotHolder = h('div', { class: 'plot', role: 'application', tabindex: 0, 'aria-label': t.plot });
   private readonly chips = h('div', { class: 'chips', role: 'group', 'aria-label': t.shown });
+  private readonly moment = h('output', { class: 'moment', 'aria-live': 'off' });
+  private readonly marks = h('div', { class: 'marks', role: 'group', 'aria-label': t.markers });
   private readonly picker = h('details', { class: 'picker' });
   private readonly freeze: HTMLButtonElement;
+  private readonly span: CurveSpan;
   private plot: uPlot | null = null;
   private shown: string[] = [];
+  /** The frames of the plot, oldest first. */
+  private frames: readonly WeightFrame[] = [];
+  /** Index of the frame under the pointer; null: none. */
+  private hovered: number | null = null;
   private chosenAtS = -Infinity;
   private readonly light = matchMedia('(prefers-color-scheme: light)');
-  private frozen = false;
   private drawnMs = 0;
   private pickerNames = '';
 
   constructor(private readonly state: AppState, private readonly history: WeightHistory) {
-    this.freeze = button(t.freeze, () => this.toggleFrozen(), { 'aria-pressed': 'false' });
+    this.span = new CurveSpan(history.seconds);
+    this.freeze = button(t.freeze, () => this.change(() => (this.span.isLive ? this.span.stop(this.kept()) : this.span.live())),
+      { 'aria-pressed': 'false', title: t.freezeTitle });
     this.picker.append(h('summary', {}, t.choose));
     this.picker.addEventListener('toggle', () => this.fillPicker());
+    const move = (label: string, title: string, by: () => void): HTMLButtonElement =>
+      button(label, () => this.change(by), { class: 'small', title, 'aria-label': title });
     this.element = h('section', { class: 'curves', 'aria-label': t.group },
-      h('div', { class: 'row bar-row' }, this.chips, this.picker, this.freeze,
-        button(t.csv, () => this.save(), { title: t.csvTitle })),
-      this.plotHolder);
+      h('div', { class: 'row bar-row' }, this.chips, this.moment,
+        h('div', { class: 'row span-buttons', role: 'group', 'aria-label': t.span },
+          move('◀', t.earlier, () => this.pan(-STEP)), move('▶', t.later, () => this.pan(STEP)),
+          move('−', t.zoomOut, () => this.zoom(ZOOM)), move('+', t.zoomIn, () => this.zoom(1 / ZOOM)),
+          button(t.mark, () => this.mark(), { title: t.markTitle })),
+        this.picker, this.freeze, button(t.csv, () => this.save(), { title: t.csvTitle })),
+      this.marks, this.plotHolder);
     this.light.addEventListener('change', () => this.plot !== null && this.build());
     state.curves.watch(() => {
       this.choose();
       this.redraw();
     });
+    this.plotHolder.addEventListener('keydown', (event) => this.onKey(event));
     new ResizeObserver(() => this.plot?.setSize(this.size())).observe(this.plotHolder);
   }
 
   /** Called for each new frame of weights. */
   onFrame(): void {
     const nowMs = performance.now();
-    if (this.frozen || nowMs - this.drawnMs < REDRAW_MS || !this.element.isConnected) return;
+    if (nowMs - this.drawnMs < REDRAW_MS || !this.element.isConnected) return;
     this.drawnMs = nowMs;
+    if (this.span.forget(this.kept())) this.showMarkers();
+    if (!this.span.isLive && this.plot !== null) return;
     if (nowMs / 1000 - this.chosenAtS > CHOICE_S || this.shown.length === 0) this.choose();
     this.redraw();
+  }
+
+  /** Another subject is watched. */
+  reset(): void {
+    this.hovered = null;
+    this.change(() => this.span.reset());
+  }
+
+  /** Marks the pose under the pointer, or else the last one that is shown. */
+  mark(): void {
+    const frame = this.frames[this.hovered ?? this.frames.length - 1];
+    if (frame === undefined) return;
+    this.change(() => this.span.mark(frame.atS, frame.sequence));
+  }
+
+  /** The curves end with the pose on the screen, so that both show the same moment. */
+  private kept(): Kept {
+    const newestS = this.history.current?.atS ?? 0;
+    return { oldestS: this.history.frames[0]?.atS ?? newestS, newestS };
+  }
+
+  private change(by: () => void): void {
+    by();
+    this.plotHolder.dataset.span = this.span.lengthS.toFixed(1);
+    this.freeze.setAttribute('aria-pressed', String(!this.span.isLive));
+    this.showMarkers();
+    this.redraw();
+  }
+
+  private pan(share: number): void {
+    this.span.pan(share * this.span.lengthS, this.kept());
+  }
+
+  private zoom(factor: number, share = 0.5): void {
+    this.span.zoom(factor, share, this.kept());
+  }
+
+  private onKey(event: KeyboardEvent): void {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const actions: Record<string, () => void> = {
+      ArrowLeft: () => this.pan(-STEP), ArrowRight: () => this.pan(STEP), '+': () => this.zoom(1 / ZOOM), '=': () => this.zoom(1 / ZOOM),
+      '-': () => this.zoom(ZOOM), Home: () => this.span.pan(-this.history.seconds, this.kept()), End: () => this.span.live(),
+    };
+    const action = actions[event.key];
+    if (action === undefined) return;
+    event.preventDefault();
+    event.stopPropagation();
+    this.change(action);
   }
 
   private choose(): void {
@@ -79,29 +149,109 @@ export class CurvesPanel {
     this.plot = new uPlot({
       ...this.size(),
       legend: { show: false },
-      cursor: { y: false },
+      cursor: { y: false, drag: { x: false, y: false, setScale: false } },
       padding: [6, 8, 0, 0],
-      scales: { x: { time: false, range: [-SHOWN_S, 0] }, y: { range: [0, 1] } },
-      axes: [{ ...axis, values: (_, ticks) => ticks.map((tick) => `${tick} s`), size: 24 }, { ...axis, size: 42, splits: [0, 0.25, 0.5, 0.75, 1] }],
+      scales: { x: { time: false, range: () => this.axisRange() }, y: { range: [0, 1] } },
+      axes: [{ ...axis, values: (_, ticks) => ticks.map((tick) => `${Number(tick.toFixed(2))} s`), size: 24 }, { ...axis, size: 42, splits: [0, 0.25, 0.5, 0.75, 1] }],
       series: [{}, ...this.shown.map((name, i) => ({ label: name, stroke: colours[i]!, width: 1.6, points: { show: false } }))],
+      hooks: { setCursor: [(plot) => this.onHover(plot)], draw: [(plot) => this.drawMarkers(plot, words)] },
     }, [[], ...this.shown.map(() => [])], this.plotHolder);
     this.chips.replaceChildren(...this.shown.map((name, i) =>
       h('span', { class: 'chip', style: `--colour:${colours[i]!}`, 'data-name': name }, name, h('output', {}, '–'))));
+    this.listen(this.plot.over);
+  }
+
+  /** Wheel: zoom at the pointer. Drag: pan. */
+  private listen(over: HTMLElement): void {
+    let last: { x: number; began: number } | null = null;
+    over.style.touchAction = 'pan-y';
+    over.addEventListener('wheel', (event) => {
+      event.preventDefault();
+      const { left, width } = over.getBoundingClientRect();
+      this.change(() => this.zoom(Math.exp(event.deltaY * 0.0015), (event.clientX - left) / Math.max(1, width)));
+    }, { passive: false });
+    over.addEventListener('pointerdown', (event) => {
+      this.plotHolder.focus({ preventScroll: true });
+      over.setPointerCapture(event.pointerId);
+      last = { x: event.clientX, began: event.clientX };
+    });
+    over.addEventListener('pointermove', (event) => {
+      if (last === null) return;
+      const { x, began } = last;
+      if (Math.abs(event.clientX - began) < CLICK_PX && x === began) return;
+      last.x = event.clientX;
+      this.change(() => this.pan((x - event.clientX) / Math.max(1, over.clientWidth)));
+    });
+    for (const end of ['pointerup', 'pointercancel'] as const) over.addEventListener(end, () => (last = null));
+  }
+
+  /** On the axis, which counts from zero(). */
+  private axisRange(): [number, number] {
+    const kept = this.kept();
+    const zero = this.span.zero(kept);
+    const [from, to] = this.span.range(kept);
+    return [from - zero, to - zero];
   }
 
   private redraw(): void {
     if (this.plot === null) return;
-    // The curves end with the pose on the screen, so that both show the same moment.
-    const newest = this.history.current?.atS ?? 0;
-    const frames = this.history.shown.filter((frame) => newest - frame.atS <= SHOWN_S);
+    const kept = this.kept();
+    const zero = this.span.zero(kept);
+    this.frames = this.history.between(...this.span.range(kept));
     const columns = this.shown.map((name) => this.history.indexOf(name));
     this.plot.setData([
-      frames.map((frame) => frame.atS - newest),
-      ...columns.map((column) => frames.map((frame) => frame.values[column] ?? null)),
+      this.frames.map((frame) => frame.atS - zero),
+      ...columns.map((column) => this.frames.map((frame) => frame.values[column] ?? null)),
     ]);
+    this.showValues();
+  }
+
+  private onHover(plot: uPlot): void {
+    const { idx, left } = plot.cursor;
+    this.hovered = left === undefined || left < 0 ? null : (idx ?? null);
+    this.showValues();
+  }
+
+  /** The values under the pointer, or else those of the last moment that is shown. */
+  private showValues(): void {
+    const frame = this.frames[this.hovered ?? this.frames.length - 1];
     this.chips.querySelectorAll('output').forEach((output, i) => {
-      output.textContent = this.history.value(this.shown[i]!).toFixed(2);
+      const value = frame?.values[this.history.indexOf(this.shown[i]!)];
+      output.textContent = value === undefined ? text.figures.none : value.toFixed(2);
     });
+    const zero = this.span.zero(this.kept());
+    this.moment.textContent = this.hovered === null || frame === undefined ? '' : t.moment((frame.atS - zero).toFixed(2), frame.sequence);
+  }
+
+  private drawMarkers(plot: uPlot, colour: string): void {
+    const zero = this.span.zero(this.kept());
+    const { ctx } = plot;
+    const { left, top, width, height } = plot.bbox;
+    ctx.save();
+    ctx.strokeStyle = ctx.fillStyle = colour;
+    ctx.font = `${11 * devicePixelRatio}px system-ui`;
+    for (const { number, atS } of this.span.markers) {
+      const x = plot.valToPos(atS - zero, 'x', true);
+      if (x < left || x > left + width) continue;
+      ctx.setLineDash([4 * devicePixelRatio, 3 * devicePixelRatio]);
+      ctx.beginPath();
+      ctx.moveTo(x, top);
+      ctx.lineTo(x, top + height);
+      ctx.stroke();
+      ctx.fillText(String(number), x + 3 * devicePixelRatio, top + 11 * devicePixelRatio);
+    }
+    ctx.restore();
+  }
+
+  private showMarkers(): void {
+    const { markers } = this.span;
+    const now = markers.map(({ number }) => number).join();
+    this.marks.hidden = markers.length === 0;
+    if (this.marks.dataset.numbers === now) return;
+    this.marks.dataset.numbers = now;
+    this.marks.replaceChildren(...markers.map(({ number, atS, sequence }) => h('span', { class: 'mark' },
+      button(String(number), () => this.change(() => this.span.show(atS, this.kept())), { title: t.showMarker(number, sequence) }),
+      button('×', () => this.change(() => this.span.unmark(number)), { 'aria-label': t.unmark(number), title: t.unmark(number) }))));
   }
 
   private fillPicker(): void {
@@ -124,12 +274,7 @@ export class CurvesPanel {
     this.state.curves.set(on ? [...rest, name] : rest);
   }
 
-  private toggleFrozen(): void {
-    this.frozen = !this.frozen;
-    this.freeze.setAttribute('aria-pressed', String(this.frozen));
-  }
-
   private save(): void {
-    download('weights.csv', 'text/csv', this.history.toCsv());
+    download('weights.csv', 'text/csv', this.history.toCsv(this.history.between(...this.span.range(this.kept()))));
   }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shows the facial regions as a map, coloured by weight, and all regions of the rig as a list with
 // bars. A click on either opens the explanation.
-import { api, type RigInfo } from '../api';
+import type { RigInfo } from '../api';
 import type { WeightHistory } from '../state/weight_history';
 import { text } from '../text';
 import { h, regionWords, svg } from '../ui/dom';
@@ -50,9 +50,8 @@ export class FaceMap {
       h('figcaption', {}, h('span', { class: 'key pressed' }, text.faceMap.compressed), h('span', { class: 'key drawn' }, text.faceMap.stretched)));
   }
 
-  /** Loads the rig of a subject. Rebuilds the map only if the regions differ. */
-  async load(subject: string): Promise<void> {
-    const rig = await api.rig(subject);
+  /** Rebuilds the map only if the regions differ. */
+  showRig(rig: RigInfo): void {
     const shape = JSON.stringify(rig.regions);
     if (shape === this.rigOf) return;
     this.rigOf = shape;

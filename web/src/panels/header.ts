@@ -39,13 +39,16 @@ export class Header {
   private readonly open = h('p', { class: 'open', hidden: true, title: text.header.openTitle }, text.header.open);
   private readonly figures = new Map<string, HTMLOutputElement>();
 
-  constructor(private readonly state: AppState, commands: { help: () => void; panel: () => void; dock: () => void }) {
+  constructor(private readonly state: AppState, commands: Record<'help' | 'panel' | 'dock' | 'layout', () => void>) {
     const t = text.header;
+    const grid = button(t.grid, () => state.grid.set(!state.grid.value), { title: t.gridTitle });
+    state.grid.bind((on) => grid.setAttribute('aria-pressed', String(on)));
     this.subject = select(t.subject, [['', t.anySubject]], (name) => state.subject.set(name));
     this.element = h('header', {},
-      h('h1', {}, 'Furrow'), this.subject, this.status, this.open, h('span', { class: 'space' }),
+      h('h1', {}, 'Furrow'), this.subject, grid, this.status, this.open, h('span', { class: 'space' }),
       h('div', { class: 'numbers', 'aria-label': text.figures.group, role: 'group' },
         this.figure('rate'), this.figure('age'), this.figure('size'), this.figure('stream'), this.figure('limit')),
+      button(t.layout, commands.layout, { title: t.layoutTitle, class: 'wide-only' }),
       button(t.curves, commands.dock, { title: t.curvesTitle, class: 'wide-only' }),
       button(t.panel, commands.panel, { title: t.panelTitle, class: 'wide-only' }),
       button('?', commands.help, { title: t.helpTitle, 'aria-label': t.help, class: 'help-button' }));

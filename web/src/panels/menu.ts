@@ -4,7 +4,7 @@ import type { FolderApi } from '@tweakpane/core';
 import { Pane } from 'tweakpane';
 import type { SettingInfo } from '../api';
 import type { AppState } from '../state/app_state';
-import { PresetShelf } from '../state/presets';
+import { browserStore, PresetShelf } from '../state/presets';
 import { text } from '../text';
 import { button, h, readable, select, setOptions } from '../ui/dom';
 import type { Toasts } from '../ui/toast';
@@ -41,7 +41,7 @@ export class SettingsMenu {
     this.redo = button(text.menu.redo, () => settings.redo(), { title: text.menu.redoTitle });
     this.reset = button(text.menu.reset, () => settings.replace(new Map()), { title: text.menu.resetTitle });
     this.compare = button(text.menu.compare, () => {}, { title: text.menu.compareTitle });
-    this.shelf = new PresetShelf(storage());
+    this.shelf = PresetShelf.presets(browserStore());
     this.presets = select(text.menu.preset, [], (name) => this.choosePreset(name));
     this.search.addEventListener('input', () => this.filter());
     this.holdToCompare();
@@ -153,14 +153,5 @@ export class SettingsMenu {
     if (name === undefined) return;
     if (this.shelf.save(name, this.state.settings.overrides)) this.fillPresets();
     else this.toasts.say(text.menu.builtIn, 'error');
-  }
-}
-
-/** Null if the browser forbids storage. */
-function storage(): Storage | null {
-  try {
-    return window.localStorage;
-  } catch {
-    return null;
   }
 }

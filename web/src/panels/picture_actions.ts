@@ -33,6 +33,7 @@ export class PictureActions {
       return made;
     };
     this.record = action('record', t.record, () => this.toggleRecording());
+    this.record.classList.add('record');
     this.fullscreen = action('fullscreen', t.fullscreen, () => this.toggleFullscreen());
     this.fullscreen.hidden = !document.fullscreenEnabled;
     this.element = h('div', { class: 'stage-actions', role: 'group', 'aria-label': t.actions },

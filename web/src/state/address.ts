@@ -23,9 +23,17 @@ export interface PageState {
   stream: StreamKind;
   /** The picture alone. */
   kiosk: boolean;
+  /** All subjects as tiles. */
+  grid: boolean;
+  /** The focus goes to the subject that moves. */
+  follows: boolean;
+  /** The subject beside the one in focus; empty: none. */
+  against: string;
+  /** The curves are shown. */
+  dock: boolean;
 }
 
-const RESERVED = ['subject', 'camera', 'wipe', 'debug', 'curves', 'panel', 'drawn', 'stream', 'kiosk'] as const;
+const RESERVED = ['subject', 'camera', 'wipe', 'debug', 'curves', 'panel', 'drawn', 'stream', 'kiosk', 'grid', 'follow', 'against', 'dock'] as const;
 
 function writeCamera(camera: Camera): string {
   const numbers = [...camera.eye, ...camera.target, camera.fovDegrees];
@@ -66,6 +74,10 @@ export function readAddress(hash: string): PageState {
     drawnBy: drawn === 'browser' || drawn === 'daemon' ? drawn : 'auto',
     stream: stream === 'h264' || stream === 'jpeg' ? stream : 'auto',
     kiosk: parameters.get('kiosk') === '1',
+    grid: parameters.get('grid') === '1',
+    follows: parameters.get('follow') === '1',
+    against: parameters.get('against') ?? '',
+    dock: parameters.get('dock') !== '0',
   };
   for (const [name, value] of parameters) {
     if (!(RESERVED as readonly string[]).includes(name)) state.settings.set(name, value);
@@ -73,8 +85,21 @@ export function readAddress(hash: string): PageState {
   return state;
 }
 
+/** The parts of the address that arrange panels, without those that are about the subject or its picture. */
+const LAYOUT: readonly string[] = ['debug', 'curves', 'panel', 'kiosk', 'grid', 'dock'];
+
+export function layoutPairs(state: PageState): [string, string][] {
+  return pairsOf(state).filter(([name]) => LAYOUT.includes(name));
+}
+
 /** Writes the fragment with its '#'. Keeps it readable, because people share these links. */
 export function writeAddress(state: PageState): string {
+  const pairs = pairsOf(state);
+  const encode = (text: string): string => encodeURIComponent(text).replaceAll('%2C', ',');
+  return pairs.length === 0 ? '' : `#${pairs.map(([k, v]) => `${encode(k)}=${encode(v)}`).join('&')}`;
+}
+
+function pairsOf(state: PageState): [string, string][] {
   const pairs: [string, string][] = [];
   if (state.subject !== '') pairs.push(['subject', state.subject]);
   if (state.camera !== null) {
@@ -88,7 +113,10 @@ export function writeAddress(state: PageState): string {
   if (state.drawnBy !== 'auto') pairs.push(['drawn', state.drawnBy]);
   if (state.stream !== 'auto') pairs.push(['stream', state.stream]);
   if (state.kiosk) pairs.push(['kiosk', '1']);
+  if (state.grid) pairs.push(['grid', '1']);
+  if (state.follows) pairs.push(['follow', '1']);
+  if (state.against !== '') pairs.push(['against', state.against]);
+  if (!state.dock) pairs.push(['dock', '0']);
   pairs.push(...state.settings);
-  const encode = (text: string): string => encodeURIComponent(text).replaceAll('%2C', ',');
-  return pairs.length === 0 ? '' : `#${pairs.map(([k, v]) => `${encode(k)}=${encode(v)}`).join('&')}`;
+  return pairs;
 }

@@ -5,9 +5,9 @@ import { type Camera, type CameraPreset, fromPreset, sameCamera } from '../view/
 import type { DrawnBy } from '../view/draw_choice';
 import type { Sharpness } from '../view/resolution';
 import type { StreamKind } from '../view/video_choice';
-import { type PageState, readAddress, type Wipe, writeAddress } from './address';
+import { layoutPairs, type PageState, readAddress, type Wipe, writeAddress } from './address';
 import { isCompact } from './layout';
-import { SettingsModel } from './settings';
+import { SettingsModel, type Values } from './settings';
 
 const ADDRESS_DELAY_MS = 250;
 
@@ -32,6 +32,18 @@ export class AppState {
   readonly stream: Signal<StreamKind>;
   /** The picture alone. */
   readonly kiosk: Signal<boolean>;
+  /** All subjects as tiles. */
+  readonly grid: Signal<boolean>;
+  /** The focus goes to the subject that moves, while there are tiles. */
+  readonly follows: Signal<boolean>;
+  /** The subject beside the one in focus; empty: none. */
+  readonly against: Signal<string>;
+  /** The curves are shown. */
+  readonly dock: Signal<boolean>;
+  /** A drag moves the lamps instead of the camera. */
+  readonly lighting = new Signal(false);
+  /** The camera goes around the subject by itself. */
+  readonly turning = new Signal(false);
   /** True while the user compares: the picture is drawn without the last change. */
   readonly comparing = new Signal(false);
   private readonly wishes: PageState;
@@ -51,13 +63,18 @@ export class AppState {
     this.drawnBy = new Signal(this.wishes.drawnBy);
     this.stream = new Signal(this.wishes.stream);
     this.kiosk = new Signal(this.wishes.kiosk);
+    this.grid = new Signal(this.wishes.grid);
+    this.follows = new Signal(this.wishes.follows);
+    this.against = new Signal(this.wishes.against);
+    this.dock = new Signal(this.wishes.dock);
   }
 
   /** Applies the URL once the daemon has replied. Returns names in the URL that the daemon does not know. */
   begin(presets: readonly CameraPreset[]): string[] {
     const unknown = this.settings.begin(this.wishes.settings);
     this.setPresets(presets);
-    for (const signal of [this.subject, this.wipe, this.strip, this.curves, this.panel, this.drawnBy, this.stream, this.kiosk, this.camera, this.settings.changed]) {
+    for (const signal of [this.subject, this.wipe, this.strip, this.curves, this.panel, this.drawnBy, this.stream, this.kiosk,
+      this.grid, this.follows, this.against, this.dock, this.turning, this.camera, this.settings.changed]) {
       (signal as Signal<unknown>).watch(() => this.writeSoon());
     }
     return unknown;
@@ -99,11 +116,32 @@ export class AppState {
       drawnBy: this.drawnBy.value,
       stream: this.stream.value,
       kiosk: this.kiosk.value,
+      grid: this.grid.value,
+      follows: this.follows.value,
+      against: this.against.value,
+      dock: this.dock.value,
     };
   }
 
+  /** The arrangement of the page as parts of an address. */
+  layout(): Values {
+    return new Map(layoutPairs(this.page()));
+  }
+
+  /** Arranges the page as a layout says; what the layout does not name is as usual. */
+  arrange(layout: Values): void {
+    const wanted = readAddress(new URLSearchParams([...layout]).toString());
+    this.strip.set(wanted.strip);
+    this.curves.set(wanted.curves);
+    this.panel.set(wanted.panel ?? usualPanel());
+    this.grid.set(wanted.grid);
+    this.dock.set(wanted.dock);
+    this.kiosk.set(wanted.kiosk);
+  }
+
   private writeSoon(): void {
-    if (this.timer !== null) return;
+    // Browsers allow few changes of the address, and a turntable would use them up.
+    if (this.timer !== null || this.turning.value) return;
     this.timer = setTimeout(() => {
       this.timer = null;
       const hash = writeAddress(this.page());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Named sets of settings: built-in presets and those that the user saves in this browser. A setting
-// that a preset does not name has the daemon's value.
+// Named sets of values: built-in ones and those that the user saves in this browser. Presets are sets of settings; a
+// setting that a preset does not name has the daemon's value. Layouts are sets of parts of an address.
 import type { Values } from './settings';
 
 export interface Preset {
@@ -10,7 +10,9 @@ export interface Preset {
   own: boolean;
 }
 
-const SHIPPED: Record<string, Record<string, string>> = {
+type Shipped = Readonly<Record<string, Readonly<Record<string, string>>>>;
+
+const PRESETS: Shipped = {
   'Daemon settings': {},
   'Skin, portrait': { shading: 'skin' },
   'Fast': { shading: 'diffuse', 'shadow.filter': 'off', 'occlusion.method': 'off', 'anti_aliasing.samples': '1' },
@@ -21,15 +23,14 @@ const SHIPPED: Record<string, Record<string, string>> = {
   },
 };
 
-const KEY = 'furrow.presets';
-
-export function shippedPresets(): Preset[] {
-  return Object.entries(SHIPPED).map(([name, values]) => ({
-    name,
-    values: new Map(Object.entries(values)),
-    own: false,
-  }));
-}
+/** What is open on the page. A part that a layout does not name is as usual. */
+const LAYOUTS: Shipped = {
+  'Usual': {},
+  'Picture only': { panel: '', dock: '0' },
+  'All subjects': { panel: '', dock: '0', grid: '1' },
+  'Wrinkles': { panel: 'wrinkles', debug: 'weights,normal' },
+  'Stage monitor': { kiosk: '1' },
+};
 
 /** The part of Storage that presets need. Without storage, presets last until the page is closed. */
 export interface Store {
@@ -37,20 +38,39 @@ export interface Store {
   setItem(key: string, value: string): void;
 }
 
+/** Null if the browser forbids storage. */
+export function browserStore(): Store | null {
+  try {
+    return window.localStorage;
+  } catch {
+    return null;
+  }
+}
+
 export class PresetShelf {
   private saved: Preset[];
 
-  constructor(private readonly store: Store | null) {
+  /** Without storage, what is saved lasts until the page is closed. */
+  private constructor(private readonly store: Store | null, private readonly key: string, private readonly shipped: Shipped) {
     this.saved = this.load();
   }
 
+  static presets(store: Store | null): PresetShelf {
+    return new PresetShelf(store, 'furrow.presets', PRESETS);
+  }
+
+  static layouts(store: Store | null): PresetShelf {
+    return new PresetShelf(store, 'furrow.layouts', LAYOUTS);
+  }
+
   all(): Preset[] {
-    return [...shippedPresets(), ...this.saved];
+    const built = Object.entries(this.shipped).map(([name, values]) => ({ name, values: new Map(Object.entries(values)), own: false }));
+    return [...built, ...this.saved];
   }
 
   /** Replaces a preset of the same name. Returns false if the name is empty or built-in. */
   save(name: string, values: Values): boolean {
-    if (name === '' || name in SHIPPED) return false;
+    if (name === '' || name in this.shipped) return false;
     this.saved = [...this.saved.filter((p) => p.name !== name), { name, values, own: true }];
     this.write();
     return true;
@@ -63,7 +83,7 @@ export class PresetShelf {
 
   private load(): Preset[] {
     try {
-      const parsed = JSON.parse(this.store?.getItem(KEY) ?? '{}') as Record<string, object>;
+      const parsed = JSON.parse(this.store?.getItem(this.key) ?? '{}') as Record<string, object>;
       return Object.entries(parsed).map(([name, values]) => ({
         name,
         values: new Map(Object.entries(values).map(([k, v]) => [k, String(v)])),
@@ -77,7 +97,7 @@ export class PresetShelf {
   private write(): void {
     const plain = this.saved.map(({ name, values }) => [name, Object.fromEntries(values)]);
     try {
-      this.store?.setItem(KEY, JSON.stringify(Object.fromEntries(plain)));
+      this.store?.setItem(this.key, JSON.stringify(Object.fromEntries(plain)));
     } catch {
       // The storage is full or forbidden. The preset lasts until the page is closed.
     }

@@ -69,10 +69,16 @@ export class SettingsModel {
   }
 
   set(name: string, value: string, nowMs: number): void {
-    if (this.value(name) === value) return;
+    this.setMany(new Map([[name, value]]), nowMs);
+  }
+
+  /** Several values that change together, as one does: quick changes of the same ones are one undo step. */
+  setMany(values: Values, nowMs: number): void {
+    if ([...values].every(([name, value]) => this.value(name) === value)) return;
+    const name = [...values.keys()].join();
     const sameStep = name === this.lastChange.name && nowMs - this.lastChange.atMs < ONE_STEP_MS;
     this.lastChange = { name, atMs: nowMs };
-    this.change(new Map(this.own).set(name, value), sameStep);
+    this.change(new Map([...this.own, ...values]), sameStep);
   }
 
   /** Resets a setting to the daemon's value. */

@@ -8,6 +8,9 @@ export interface WeightFrame {
   values: Float32Array;
 }
 
+/** Numbers that are kept at most, 8 MB. */
+const MOST_VALUES = 2_000_000;
+
 export class WeightHistory {
   names: readonly string[] = [];
   /** Sequence of the pose on the screen, whose weights current() returns; null: the newest pose. */
@@ -16,7 +19,7 @@ export class WeightHistory {
   private index = new Map<string, number>();
 
   /** Drops frames older than `seconds`. */
-  constructor(readonly seconds = 20) {}
+  constructor(readonly seconds = 120) {}
 
   get frames(): readonly WeightFrame[] {
     return this.frames_;
@@ -39,10 +42,6 @@ export class WeightHistory {
   get current(): WeightFrame | undefined {
     return this.frames_[this.currentIndex];
   }
-  /** The frames up to current(). */
-  get shown(): readonly WeightFrame[] {
-    return this.frames_.slice(0, this.currentIndex + 1);
-  }
 
   /** Discards all frames, because the subject or the rig changed. */
   setNames(names: readonly string[]): void {
@@ -61,8 +60,23 @@ export class WeightHistory {
     this.frames_.push(frame);
     const oldest = frame.atS - this.seconds;
     let stale = 0;
-    while (this.frames_[stale]!.atS < oldest) ++stale;
+    const most = Math.max(1, Math.floor(MOST_VALUES / Math.max(1, this.names.length)));
+    while (this.frames_[stale]!.atS < oldest || this.frames_.length - stale > most) ++stale;
     if (stale > 0) this.frames_.splice(0, stale);
+  }
+
+  /** The frames of a span of time, both ends included. */
+  between(fromS: number, toS: number): readonly WeightFrame[] {
+    const first = (isAfter: (frame: WeightFrame) => boolean): number => {
+      let [low, high] = [0, this.frames_.length];
+      while (low < high) {
+        const middle = (low + high) >> 1;
+        if (isAfter(this.frames_[middle]!)) high = middle;
+        else low = middle + 1;
+      }
+      return low;
+    };
+    return this.frames_.slice(first(({ atS }) => atS >= fromS), first(({ atS }) => atS > toS));
   }
 
   indexOf(name: string): number {
@@ -91,9 +105,9 @@ export class WeightHistory {
   }
 
   /** The format of `furrow watch --format csv`; time in seconds since the first row. */
-  toCsv(): string {
-    const first = this.frames_[0]?.atS ?? 0;
-    const rows = this.frames_.map(({ sequence, atS, values }) =>
+  toCsv(frames: readonly WeightFrame[]): string {
+    const first = frames[0]?.atS ?? 0;
+    const rows = frames.map(({ sequence, atS, values }) =>
       [sequence, (atS - first).toFixed(6), ...Array.from(values, (v) => v.toFixed(6))].join(','));
     return `${['frame,time', ...this.names].join(',')}\n${rows.map((row) => `${row}\n`).join('')}`;
   }

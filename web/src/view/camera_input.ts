@@ -5,10 +5,13 @@ import { type Camera, look, orbit, pan, walk, walkSpeed, zoom } from './camera';
 export interface CameraHost {
   camera(): Camera | null;
   move(camera: Camera): void;
+  /** Takes a plain drag, or an arrow key, instead of the camera, in heights of the picture. Returns false if it does not. */
+  drag?(right: number, up: number): boolean;
 }
 
 const TURN_PER_HEIGHT = Math.PI; // radians for a drag across the height of the picture
 const ARROW_STEP = Math.PI / 36;
+const ARROWS: Readonly<Record<string, readonly [number, number]>> = { arrowleft: [-1, 0], arrowright: [1, 0], arrowup: [0, 1], arrowdown: [0, -1] };
 const WALK_KEYS = new Set(['w', 'a', 's', 'd', 'q', 'e']);
 
 /**
@@ -58,7 +61,7 @@ export class CameraInput {
       this.change((camera) => look(camera, dx, -dy));
     } else if (event.shiftKey || (event.buttons & 6) !== 0) {
       this.change((camera) => pan(camera, dx, dy));
-    } else {
+    } else if (this.host.drag?.(dx, -dy) !== true) {
       this.change((camera) => orbit(camera, -dx * TURN_PER_HEIGHT, dy * TURN_PER_HEIGHT));
     }
   }
@@ -92,7 +95,11 @@ export class CameraInput {
       '-': (camera) => zoom(camera, 1 / 0.9),
     };
     const action = actions[key];
-    if (action !== undefined) {
+    const [right, up] = ARROWS[key] ?? [0, 0];
+    const share = step / TURN_PER_HEIGHT;
+    if (key in ARROWS && this.host.drag?.(right * share, up * share) === true) {
+      // The host has used it.
+    } else if (action !== undefined) {
       this.change(action);
     } else if (WALK_KEYS.has(key) && !event.altKey) {
       if (this.held.size === 0) this.startWalking();

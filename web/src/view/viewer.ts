@@ -144,7 +144,8 @@ export class Viewer {
     return comparing.value ? settings.previous : settings.overrides;
   }
 
-  private pixelScale(): number {
+  /** Share of the screen's pixels per direction that pictures have. */
+  pixelScale(): number {
     switch (this.state.sharpness.value) {
       case 'sharp':
         return 1;
@@ -156,20 +157,29 @@ export class Viewer {
   }
 
   private requestFor(values: Values, side: Side): PictureRequest | null {
-    const camera = this.state.camera.value;
-    const { clientWidth, clientHeight } = this.stage.surface;
-    if (camera === null || clientWidth === 0) return null;
     const wipe = this.state.wipe.value;
     const sided = new Map(values);
     if (wipe !== 'none') sided.set(WIPES[wipe].setting, WIPES[wipe][side]);
+    const request = this.request(this.state.subject.value, sided, this.stage.surface, devicePixelRatio * this.pixelScale(), 60);
+    return request === null ? null : { ...request, codecs: this.video.codecs.value };
+  }
+
+  /** The same view of another subject, for an element of this size. Null: not yet. */
+  requestOf(subject: string, element: HTMLElement, density: number, maxRateHz: number): PictureRequest | null {
+    return this.request(subject, this.wantedValues(), element, density, maxRateHz);
+  }
+
+  private request(subject: string, values: Values, element: HTMLElement, density: number, maxRateHz: number): PictureRequest | null {
+    const camera = this.state.camera.value;
+    const { clientWidth, clientHeight } = element;
+    if (camera === null || clientWidth === 0) return null;
     return {
-      subject: this.state.subject.value,
-      ...pictureSize(clientWidth, clientHeight, devicePixelRatio, this.pixelScale()),
-      maxRateHz: 60,
-      view: sided.get('view') ?? this.state.settings.info('view')?.value ?? 'final',
+      subject,
+      ...pictureSize(clientWidth, clientHeight, density, 1),
+      maxRateHz,
+      view: values.get('view') ?? this.state.settings.info('view')?.value ?? 'final',
       camera,
-      settings: assignments(sided),
-      codecs: this.video.codecs.value,
+      settings: assignments(values),
     };
   }
 

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lamps that follow a drag, and the exposure that a point of the picture asks for. Pure.
+
+/** lights.turn_degrees and lights.tilt_degrees. */
+export interface LampAngles {
+  turn: number;
+  tilt: number;
+}
+
+export type Rgb = readonly [number, number, number];
+
+/** A drag across the height of the picture turns the lamps half around. */
+const DEGREES_PER_HEIGHT = 180;
+const MOST_TILT = 90;
+
+/** Linear luminance of a grey card, which reflects 18% of the light. */
+export const CARD = 0.18;
+/** Darker points say nothing about the exposure. */
+const LEAST = 0.0005;
+/** Where the tone map begins to compress (tonemap.glsl). */
+const COMPRESSED = 0.76;
+
+/** The lamps after a drag to the right and up, in heights of the picture. Turning goes round, tilting ends at the poles. */
+export function dragged({ turn, tilt }: LampAngles, right: number, up: number): LampAngles {
+  const round = (degrees: number): number => Math.round(degrees * 10) / 10;
+  const turned = turn + right * DEGREES_PER_HEIGHT;
+  return {
+    turn: round(turned - 360 * Math.floor((turned + 180) / 360)),
+    tilt: round(Math.min(MOST_TILT, Math.max(-MOST_TILT, tilt + up * DEGREES_PER_HEIGHT))),
+  };
+}
+
+/** sRGB in [0, 255] to linear light before the tone map; `neutral`: tone_map is 'neutral', not 'clip'. */
+export function linearOf(srgb: Rgb, neutral: boolean): Rgb {
+  const [r, g, b] = srgb.map((value) => {
+    const x = value / 255;
+    return x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4;
+  }) as [number, number, number];
+  const peak = Math.max(r, g, b);
+  if (!neutral || peak <= COMPRESSED) return [r, g, b];
+  const rest = 1 - COMPRESSED;
+  const before = (rest * rest) / Math.max(1 - peak, 1e-3) - rest + COMPRESSED;
+  return [r, g, b].map((value) => (value * before) / peak) as [number, number, number];
+}
+
+/** The exposure with which a point of this linear colour is as bright as a grey card; null: it is too dark to tell. */
+export function exposureFor([r, g, b]: Rgb, exposure: number, most: number): number | null {
+  const luminance = 0.2126 * r + 0.7152 * g + 0.0722 * b;
+  if (luminance < LEAST || exposure <= 0) return null;
+  return Math.min(most, (exposure * CARD) / luminance);
+}
+
+/** True if both colours look alike in a compressed picture. `linear`: the setting `background` times the exposure. */
+export function isBackground(srgb: Rgb, linear: Rgb): boolean {
+  const encode = (x: number): number => 255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055);
+  return srgb.every((value, i) => Math.abs(value - encode(linear[i]!)) <= 3);
+}
+
+/** Where the lamps are, for the turntable: radians after `seconds`; with reduced motion, in steps. */
+export function turntableRadians(seconds: number, reduced: boolean): number {
+  const STEP_S = 2;
+  const RADIANS_PER_S = Math.PI / 8;
+  const at = reduced ? Math.floor(seconds / STEP_S) * STEP_S : seconds;
+  return at * RADIANS_PER_S;
+}

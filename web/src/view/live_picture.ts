@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// A canvas with the live picture of one subject, for places beside the stage.
+import type { PictureRequest } from 'furrow/protocol';
+import { h } from '../ui/dom';
+import { Signal } from '../ui/signal';
+import type { Connection } from '../wire/connection';
+import { PictureStats, type ShownPicture } from './picture_stats';
+import { type Picture, PictureStream } from './picture_stream';
+
+export class LivePicture {
+  readonly canvas = h('canvas', { 'aria-hidden': 'true' });
+  /** False: what is on the canvas, if anything, is not the subject's. */
+  readonly hasPicture = new Signal(false);
+  private readonly stats = new PictureStats();
+  private stream: PictureStream | null = null;
+
+  constructor(private readonly connection: Connection) {
+    connection.link.watch((link) => link === 'lost' && this.forget());
+  }
+
+  /** Null: no picture is wanted. */
+  request(wanted: PictureRequest | null): void {
+    if (wanted === null) {
+      if (this.stream === null) return;
+      this.stream.stop();
+      this.stream = null;
+      this.forget();
+    } else if (this.stream !== null) {
+      if (this.stream.view.subject !== wanted.subject) this.forget();
+      this.stream.update(wanted);
+    } else {
+      this.stream = new PictureStream(this.connection, wanted, {
+        onPicture: (picture) => this.show(picture),
+        onRefused: () => this.forget(),
+      });
+      this.stream.start();
+    }
+  }
+
+  /** The pose on the canvas; null: none. */
+  picture(): ShownPicture | null {
+    const { sequence, width, height, still } = this.stats;
+    if (sequence === null) return null;
+    return { sequence, width, height, isStill: still, ageMs: this.stats.ageMs(this.connection.nowUs(), this.connection.clock.offsetUs()) };
+  }
+
+  /** True until the picture shows the last change. */
+  get isChanging(): boolean {
+    return this.stream?.pending.value === true;
+  }
+
+  private show(picture: Picture): void {
+    const { bitmap, width, height } = picture;
+    if (this.canvas.width !== width) this.canvas.width = width;
+    if (this.canvas.height !== height) this.canvas.height = height;
+    this.canvas.getContext('2d', { alpha: false })!.drawImage(bitmap, 0, 0, width, height, 0, 0, width, height);
+    bitmap.close();
+    this.stats.add(picture, this.connection.nowUs(), this.connection.clock.offsetUs());
+    this.hasPicture.set(true);
+  }
+
+  private forget(): void {
+    this.stats.reset();
+    this.hasPicture.set(false);
+  }
+}
