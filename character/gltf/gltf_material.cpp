@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "character/gltf/gltf_material.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
+#include <future>
 #include <string>
+#include <thread>
 #include <utility>
 
 #include "base/ascii.h"
@@ -49,6 +53,37 @@ Result<Picture> ReadPicture(const gltf::Document& document, std::size_t index,
   return image->file.empty() ? DecodePicture(name, image->bytes()) : LoadPicture(name, image->file);
 }
 
+std::string NameOf(const gltf::ImageSource& image) {
+  return image.name.empty() && !gltf::IsDataUri(image.uri) ? image.uri : image.name;
+}
+
+// Decodes the images of a file in its order, and a few of them ahead of time on other threads,
+// because decoding takes most of the time in which a character loads. Destroying it waits for them.
+class PicturesAhead {
+ public:
+  explicit PicturesAhead(const gltf::Document& document) : document_(document) {}
+
+  // Call it once for each image, in order.
+  [[nodiscard]] Result<Picture> Next() {
+    // Few, because each may decode to kMaxPicturePixels before the limit of all pictures is known
+    // to be exceeded.
+    static const std::size_t ahead = std::clamp(std::thread::hardware_concurrency(), 1u, 4u);
+    for (; next_ < document_.images().size() && decoding_.size() < ahead; ++next_) {
+      decoding_.push_back(std::async(std::launch::async, [this, index = next_] {
+        return ReadPicture(document_, index, NameOf(document_.images()[index]));
+      }));
+    }
+    Result<Picture> picture = decoding_.front().get();
+    decoding_.pop_front();
+    return picture;
+  }
+
+ private:
+  const gltf::Document& document_;
+  std::size_t next_ = 0;
+  std::deque<std::future<Result<Picture>>> decoding_;
+};
+
 // Furrow's own files state the kind; for others, the name is the only hint.
 Kind KindOf(const gltf::Material& material) {
   for (const auto& [name, kind] : kKindNames) {
@@ -74,17 +109,16 @@ std::string_view MaterialKindName(Kind kind) {
 Result<std::vector<Picture>> ReadGltfPictures(const gltf::Document& document,
                                               const ReadOptions& options) {
   std::vector<Picture> pictures;
+  PicturesAhead ahead(document);
   std::int64_t pixels = 0;
   for (std::size_t i = 0; i < document.images().size(); ++i) {
-    const gltf::ImageSource& image = document.images()[i];
     const std::string where = "images[" + std::to_string(i) + "]";
-    const std::string name =
-        image.name.empty() && !gltf::IsDataUri(image.uri) ? image.uri : image.name;
+    const std::string name = NameOf(document.images()[i]);
     if (!options.pictures) {
       pictures.push_back({.name = name, .pixels = {}, .pixels16 = {}});
       continue;
     }
-    Result<Picture> picture = ReadPicture(document, i, name);
+    Result<Picture> picture = ahead.Next();
     if (!picture.ok() && options.lenient && picture.status().code() != StatusCode::kLimit) {
       if (options.notes != nullptr) {
         options.notes->missing_pictures.push_back(name + ": " + picture.status().what());

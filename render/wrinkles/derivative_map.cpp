@@ -32,6 +32,17 @@ glm::vec2 At(const DerivativeMap& map, int x, int y) {
   return {map.texels[index], map.texels[index + 1]};
 }
 
+// Of a picture of 8 bits with three or four channels.
+std::vector<std::uint8_t> WithAlpha(const character::Picture& picture) {
+  if (picture.channels == 4) return picture.pixels;
+  const std::size_t count = picture.pixels.size() / 3;
+  std::vector<std::uint8_t> rgba(4 * count, 255);
+  for (std::size_t i = 0; i < count; ++i) {
+    std::copy_n(&picture.pixels[3 * i], 3, &rgba[4 * i]);
+  }
+  return rgba;
+}
+
 }  // namespace
 
 float Texel(const character::Picture& picture, int x, int y, int channel) {
@@ -44,13 +55,23 @@ float Texel(const character::Picture& picture, int x, int y, int channel) {
 }
 
 DerivativeMap DerivativesFromNormalMap(const character::Picture& picture) {
+  // A normal map from a file may hold normals that lie in or below the surface. Slopes stay finite
+  // and within the range of half floats.
+  const auto slope_of = [](float x, float y, float z) {
+    const float over_z = 1.0f / std::max(2.0f * z - 1.0f, 1e-3f);
+    return glm::clamp(glm::vec2((2.0f * x - 1.0f) * over_z, (2.0f * y - 1.0f) * over_z),
+                      -kMaxDerivative, kMaxDerivative);
+  };
+  if (picture.channels == 3 && !picture.pixels16.empty()) {  // of our own files
+    const std::uint16_t* from = picture.pixels16.data();
+    return MapTexels(picture, [&](int, int) {
+      const glm::vec2 slope = slope_of(from[0] / 65535.0f, from[1] / 65535.0f, from[2] / 65535.0f);
+      from += 3;
+      return slope;
+    });
+  }
   return MapTexels(picture, [&](int x, int y) {
-    const glm::vec3 n(2.0f * Texel(picture, x, y, 0) - 1.0f, 2.0f * Texel(picture, x, y, 1) - 1.0f,
-                      2.0f * Texel(picture, x, y, 2) - 1.0f);
-    // A normal map from a file may hold normals that lie in or below the surface. Slopes stay
-    // finite and within the range of half floats.
-    const glm::vec2 derivative = glm::vec2(n) / std::max(n.z, 1e-3f);
-    return glm::clamp(derivative, -kMaxDerivative, kMaxDerivative);
+    return slope_of(Texel(picture, x, y, 0), Texel(picture, x, y, 1), Texel(picture, x, y, 2));
   });
 }
 
@@ -67,12 +88,15 @@ DerivativeMap DerivativesFromDerivativeMap(const character::Picture& picture, fl
 // Mip levels average all four channels. The difference between the mean square and the square of
 // the mean is the roughness that the averaging hides (LEAN mapping, Olano and Baker 2010).
 std::vector<float> WithMoments(const DerivativeMap& map) {
-  std::vector<float> texels;
-  texels.reserve(map.texels.size() * 2);
+  std::vector<float> texels(map.texels.size() * 2);
   for (std::size_t i = 0; i < map.texels.size(); i += 2) {
     const float x = map.texels[i];
     const float y = map.texels[i + 1];
-    texels.insert(texels.end(), {x, y, x * x, y * y});
+    float* const to = &texels[2 * i];
+    to[0] = x;
+    to[1] = y;
+    to[2] = x * x;
+    to[3] = y * y;
   }
   return texels;
 }
@@ -101,6 +125,7 @@ DerivativeMap Resample(const DerivativeMap& map, int width, int height) {
 
 std::vector<std::uint8_t> ToRgba8(const character::Picture& picture) {
   const bool grey = picture.channels < 3;  // grey, or grey and alpha
+  if (!grey && !picture.pixels.empty()) return WithAlpha(picture);
   std::vector<std::uint8_t> rgba;
   rgba.reserve(static_cast<std::size_t>(picture.width) * picture.height * 4);
   for (int y = 0; y < picture.height; ++y) {

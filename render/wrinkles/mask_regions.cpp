@@ -24,9 +24,10 @@ class Coverage {
         sums_(static_cast<std::size_t>(mask.width + 1) *
               static_cast<std::size_t>(mask.height + 1)) {
     for (int y = 0; y < size_.y; ++y) {
+      std::uint32_t row = 0;  // the sum of this row so far
       for (int x = 0; x < size_.x; ++x) {
-        const std::uint32_t here = Texel(mask, x, y, channel) > 0.0f ? 1 : 0;
-        Sum(x + 1, y + 1) = here + Sum(x, y + 1) + Sum(x + 1, y) - Sum(x, y);
+        row += Texel(mask, x, y, channel) > 0.0f ? 1 : 0;
+        Sum(x + 1, y + 1) = row + Sum(x + 1, y);
       }
     }
   }

@@ -21,7 +21,8 @@ DerivativeMap HeightsOf(const Picture& picture, float height_mm) {
     for (int x = 0; x < map.width; ++x) {
       const float stored = Texel(picture, x, y, 0);
       const float height = floats ? stored : (2.0f * stored - 1.0f) * height_mm;
-      map.texels.insert(map.texels.end(), 2, height);
+      map.texels.push_back(height);
+      map.texels.push_back(height);
     }
   }
   return map;
@@ -54,6 +55,7 @@ WrinkleHeights MakeWrinkleHeights(const character::Character& character) {
   for (std::size_t layer = 0; layer < maps.size(); ++layer) {
     const DerivativeMap map = Resample(maps[layer], width, height);
     std::vector<float> texels;
+    texels.reserve(map.texels.size() / 2);
     for (std::size_t i = 0; i < map.texels.size(); i += 2) texels.push_back(map.texels[i]);
     glTextureSubImage3D(name, 0, 0, 0, static_cast<GLint>(layer), width, height, 1, GL_RED,
                         GL_FLOAT, texels.data());
