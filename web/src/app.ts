@@ -169,8 +169,8 @@ export class App {
       this.root.classList.toggle('no-panel', panel === '');
       this.tabs.setOpen(panel !== '');
     });
-    // /embed is the page in a frame of another page.
     this.state.dock.bind((shown) => this.root.classList.toggle('no-curves', !shown));
+    // /embed is the page in a frame of another page.
     const isEmbedded = location.pathname.endsWith('/embed');
     this.state.kiosk.bind((kiosk) => this.root.classList.toggle('bare', kiosk || isEmbedded));
     returnFocus(this.root, stage.surface);
@@ -188,11 +188,7 @@ export class App {
   private connectSignals(): void {
     const { state } = this;
     new CameraInput(this.viewer.stage.surface, {
-      camera: () => state.camera.value,
-      move: (camera) => {
-        state.turning.set(false);
-        state.camera.set(camera);
-      },
+      camera: () => state.camera.value, move: (camera) => state.moveCamera(camera),
       drag: (right, up) => this.light.drag(right, up),
     });
     state.subject.watch((subject) => this.weights.choose(subject));

@@ -26,13 +26,7 @@ export class Against {
     this.surface = h('div', { class: 'pane-surface', tabindex: 0, role: 'application', 'aria-label': t.paneHelp }, this.live.canvas);
     this.element = h('section', { class: 'against', 'aria-label': t.pane, hidden: true }, this.surface, this.name,
       button('×', () => state.against.set(''), { class: 'pane-close', 'aria-label': t.compareEnd, title: t.compareEnd }));
-    new CameraInput(this.surface, {
-      camera: () => state.camera.value,
-      move: (camera) => {
-        state.turning.set(false);
-        state.camera.set(camera);
-      },
-    });
+    new CameraInput(this.surface, { camera: () => state.camera.value, move: (camera) => state.moveCamera(camera) });
     const { settings, camera, comparing, sharpness } = state;
     for (const signal of [settings.changed, camera, comparing, sharpness]) (signal as Signal<unknown>).watch(() => this.refresh());
     this.live.hasPicture.watch((has) => this.element.classList.toggle('has-picture', has));

@@ -138,6 +138,11 @@ export class GuidePanel {
   }
 
   private tick(): void {
+    // The picture must show the performer who is captured.
+    if (this.subject() !== this.name && this.subject() !== '') {
+      this.showSummary();
+      return;
+    }
     const nowMs = performance.now();
     const pose = this.feed?.pose() ?? null;
     if (pose !== null && this.sampler?.of !== pose.skeleton.hash) {

@@ -35,17 +35,22 @@ export function ageWords(ms: number): string {
 export class Header {
   readonly element: HTMLElement;
   private readonly subject: HTMLSelectElement;
+  /** Of use where there are several subjects. */
+  private readonly grid: HTMLButtonElement;
   private readonly status = h('p', { class: 'condition wait', role: 'status' });
   private readonly open = h('p', { class: 'open', hidden: true, title: text.header.openTitle }, text.header.open);
   private readonly figures = new Map<string, HTMLOutputElement>();
 
   constructor(private readonly state: AppState, commands: Record<'help' | 'panel' | 'dock' | 'layout', () => void>) {
     const t = text.header;
-    const grid = button(t.grid, () => state.grid.set(!state.grid.value), { title: t.gridTitle });
-    state.grid.bind((on) => grid.setAttribute('aria-pressed', String(on)));
+    this.grid = button(t.grid, () => state.grid.set(!state.grid.value), { title: t.gridTitle, hidden: true });
+    state.grid.bind((on) => {
+      this.grid.setAttribute('aria-pressed', String(on));
+      if (on) this.grid.hidden = false;
+    });
     this.subject = select(t.subject, [['', t.anySubject]], (name) => state.subject.set(name));
     this.element = h('header', {},
-      h('h1', {}, 'Furrow'), this.subject, grid, this.status, this.open, h('span', { class: 'space' }),
+      h('h1', {}, 'Furrow'), this.subject, this.grid, this.status, this.open, h('span', { class: 'space' }),
       h('div', { class: 'numbers', 'aria-label': text.figures.group, role: 'group' },
         this.figure('rate'), this.figure('age'), this.figure('size'), this.figure('stream'), this.figure('limit')),
       button(t.layout, commands.layout, { title: t.layoutTitle, class: 'wide-only' }),
@@ -67,6 +72,7 @@ export class Header {
     const known = wanted === '' || names.includes(wanted) ? names : [...names, wanted];
     setOptions(this.subject, [['', text.header.anySubject], ...known.map((name) => [name, name] as const)]);
     this.subject.value = wanted;
+    this.grid.hidden = names.length < 2 && !this.state.grid.value;
   }
 
   /** Whether everybody on the network is let in. */

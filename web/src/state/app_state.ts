@@ -90,6 +90,12 @@ export class AppState {
     if (this.camera.value === null && presets[0] !== undefined) this.camera.set(fromPreset(presets[0]));
   }
 
+  /** The user moves the camera, which ends the turntable. */
+  moveCamera(camera: Camera): void {
+    this.turning.set(false);
+    this.camera.set(camera);
+  }
+
   choosePreset(name: string): void {
     const preset = this.presets.value.find((candidate) => candidate.name === name);
     if (preset !== undefined) this.camera.set(fromPreset(preset));
