@@ -111,7 +111,10 @@ export class App {
     this.capture = new CapturePanel(subject, toasts, () => void this.readRig());
     this.guide = new GuidePanel(this.connection, subject, {
       onChanged: () => void this.readRig(),
-      onOpen: (isOpen) => (this.capture.element.hidden = isOpen),
+      onOpen: (isOpen) => {
+        this.capture.element.hidden = isOpen;
+        if (isOpen) state.follows.set(false); // the guide stays with one subject
+      },
       say: (words) => toasts.say(words),
       saveRig: () => void this.capture.saveRig(),
     });
@@ -197,8 +200,9 @@ export class App {
     });
     state.subject.watch((subject) => this.weights.choose(subject));
     state.grid.watch((on) => on && void this.askDaemon().then(() => this.showCondition()));
-    this.weights.subject.watch(() => {
+    this.weights.subject.watch((name) => {
       this.curves.reset();
+      this.guide.onSubject(name);
       void this.readRig();
     });
     this.connection.link.watch((link) => {
@@ -417,6 +421,7 @@ export class App {
     this.grid.setSubjects(subjects, this.weights.subject.value || this.state.subject.value);
     if (this.daemonSession !== '' && status.session !== this.daemonSession) {
       this.toasts.say(text.app.restarted);
+      this.guide.onRestart();
     }
     this.daemonSession = status.session;
   }

@@ -310,7 +310,7 @@ export const text = {
   guide: {
     start: 'Guided capture…',
     intro: 'Walks through the neutral pose and the poses of the rig, and captures each one when it is clear and steady.',
-    step: (step: number, all: number) => `Step ${step} of ${all}`,
+    step: (step: number, all: number, subject: string) => `Step ${step} of ${all}, ${subject}`,
     gestures: {
       neutral: 'Relax your face and look straight ahead',
       brow_raise: 'Raise your brows',
@@ -348,7 +348,7 @@ export const text = {
     back: 'Back',
     skip: 'Skip',
     finish: 'Finish',
-    summary: 'Summary',
+    summary: (subject: string) => `Summary, ${subject}`,
     columns: ['Pose', 'Distance', 'Steadiness', ''],
     skipped: 'not captured',
     again: 'Again',
@@ -358,6 +358,13 @@ export const text = {
     done: 'Done',
     undone: (count: number) => `${times(count, 'capture', 'captures')} undone`,
     notOurs: 'Another capture was made since. Undo it first.',
+    exhausted: (left: number) => `The daemon cannot undo the first ${times(left, 'capture', 'captures')}: its history is shorter.`,
+    busy: 'The daemon is busy. Keep holding.',
+    busyNow: 'The daemon is busy. Hold the pose, and capture it again.',
+    moved: 'The pose changed while it was captured. Hold it again.',
+    otherSubject: (name: string) => `Guided capture of “${name}” ended, because another subject is in focus.`,
+    otherSkeleton: 'Guided capture ended, because the stream has another skeleton now.',
+    restarted: 'Guided capture ended, because the daemon was restarted. Its captures are gone.',
   },
   settingsText: {
     title: 'Settings as text',

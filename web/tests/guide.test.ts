@@ -103,9 +103,15 @@ test('a gesture is captured when it is far, steady and held', () => {
   assert(Math.abs(distance.mm - 11) < 1e-3 && wobble!.mm < 1e-3);
   guide.accept(now);
   assert(Math.abs(guide.taken[1]!.distance!.mm - 11) < 1e-3);
-  guide.refuse(now); // the daemon did not capture it
-  assert.equal(guide.taken[1], null);
-  assert.equal(guide.gesture?.id, 'one');
+  assert.equal(guide.advance(now + GOOD_MS), true);
+  now = show(guide, now + GOOD_MS, READ_MS + WINDOW_MS + HOLD_MS, () => 20);
+  assert.equal(guide.progress(now).phase, 'take');
+  assert.equal(guide.advance(now + 2 * GOOD_MS), false); // the daemon has not captured it yet
+  guide.refuse(now); // and does not
+  assert.equal(guide.gesture?.id, 'two');
+  assert.equal(guide.progress(now).phase, 'read');
+  assert.equal(guide.taken[2], null);
+  assert.notEqual(guide.taken[1], null);
 });
 
 test('gestures can be skipped, shown again and ended', () => {
@@ -135,6 +141,12 @@ test('silence and gaps say nothing about steadiness', () => {
   assert.notEqual(guide.progress(now).wobble, null);
   assert.equal(guide.progress(now + 2000).wobble, null);
   assert.equal(guide.isSilent(now + 2000), true);
-  guide.add(sample(1), now + 500);
-  assert.equal(guide.progress(now + 500).wobble, null); // nothing for half a second
+  guide.add(sample(1), now + 350);
+  assert.notEqual(guide.progress(now + 350).wobble, null); // a busy browser
+  const later = show(guide, now + 400, 300, () => 1) + 550;
+  guide.add(sample(1), later);
+  assert.equal(guide.progress(later).wobble, null); // nothing for half a second
+  show(guide, later, 1000, () => 1);
+  guide.add(sample(100), later + 955); // comes too soon after another one to count
+  assert.equal(guide.progress(later + 960).wobble!.mm < 1, true);
 });
