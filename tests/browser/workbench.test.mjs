@@ -159,6 +159,9 @@ test('a drag moves the lamps; exposure is measured; layouts are kept', async () 
   await eventually('another camera', () => /camera=[-\d.]+,/.test(page.url()));
 
   await page.keyboard.press('o');
+  await page.locator('.layouts').getByRole('button', { name: 'Wrinkles' }).click();
+  await page.locator('#panel-wrinkles').waitFor();
+  await page.keyboard.press('o');
   await page.getByRole('button', { name: 'All subjects' }).click();
   await page.locator('.grid').waitFor();
   assert.equal(await page.locator('.curves').isVisible() || await page.locator('.side').isVisible(), false);

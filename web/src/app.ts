@@ -118,7 +118,7 @@ export class App {
       say: (words) => toasts.say(words),
       saveRig: () => void this.capture.saveRig(),
     });
-    this.session = new SessionPanel((name) => state.subject.set(name), state.stream);
+    this.session = new SessionPanel((name) => state.chooseSubject(name), state.stream);
     const settingsText = new SettingsText(state, toasts);
     this.menu = new SettingsMenu(state, toasts, () => settingsText.open());
     this.timeline = new Timeline(toasts);
@@ -167,8 +167,8 @@ export class App {
     parent.replaceChildren(this.root);
     isCompact.bind((compact) => this.arrange(compact));
     isAcross.bind((across) => this.header.element.classList.toggle('on-picture', across));
-    if (this.state.panel.value !== '') this.tabs.choose(this.state.panel.value);
     this.state.panel.bind((panel) => {
+      if (panel !== '' && panel !== this.tabs.current) this.tabs.choose(panel);
       this.root.classList.toggle('no-panel', panel === '');
       this.tabs.setOpen(panel !== '');
     });

@@ -43,7 +43,7 @@ export class Header {
     const t = text.header;
     const grid = button(t.grid, () => state.grid.set(!state.grid.value), { title: t.gridTitle });
     state.grid.bind((on) => grid.setAttribute('aria-pressed', String(on)));
-    this.subject = select(t.subject, [['', t.anySubject]], (name) => state.subject.set(name));
+    this.subject = select(t.subject, [['', t.anySubject]], (name) => state.chooseSubject(name));
     this.element = h('header', {},
       h('h1', {}, 'Furrow'), this.subject, grid, this.status, this.open, h('span', { class: 'space' }),
       h('div', { class: 'numbers', 'aria-label': text.figures.group, role: 'group' },

@@ -80,6 +80,12 @@ export class AppState {
     return unknown;
   }
 
+  /** The user has chosen a subject: the page no longer follows movement, or it would leave the subject at once. */
+  chooseSubject(name: string): void {
+    this.follows.set(false);
+    this.subject.set(name);
+  }
+
   /** Also called after a restart with another character. Chooses the same preset again. */
   setPresets(presets: readonly CameraPreset[]): void {
     const chosen = this.presetName();
