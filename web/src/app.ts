@@ -427,7 +427,7 @@ export class App {
   }
 
   /** How a picture is. `wanted`: the subject that was asked for; `subject`: the one that is drawn. */
-  private conditionOf(wanted: string, subject: string, picture: ShownPicture | null, isChanging: boolean): Condition {
+  private conditionOf(wanted: string, subject: string, picture: ShownPicture | null, isChanging: boolean, everyMs = 0): Condition {
     const info = this.subjects?.find(({ name }) => name === subject);
     return assess({
       link: this.connection.link.value,
@@ -440,6 +440,7 @@ export class App {
       wanted,
       hasPicture: picture !== null,
       pictureMs: picture?.ageMs ?? null,
+      everyMs,
       isChanging,
       isAtRest: isAtRest(picture, info, performance.now() - this.askedMs),
       isPaused: subject !== '' && this.timeline.pausedSubject === subject,
@@ -453,7 +454,8 @@ export class App {
     const against = this.state.against.value;
     const beside = against === '' ? null : this.conditionOf(against, against, this.against.live.picture(), this.against.live.isChanging);
     if (beside !== null) this.against.show(beside, subject);
-    this.grid.show((name, shown) => (name === subject ? condition : name === against ? beside! : this.conditionOf(name, name, shown, false)));
+    this.grid.show((name, shown, everyMs) =>
+      (name === subject ? condition : name === against ? beside! : this.conditionOf(name, name, shown, false, everyMs)));
     this.pictureState = condition.state;
     const { stage } = this.viewer;
     const hasPicture = picture !== null || stage.hasPicture;
