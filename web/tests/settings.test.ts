@@ -138,6 +138,16 @@ test('layouts are kept beside presets, and are parts of an address', () => {
   assert.deepEqual(PresetShelf.layouts(store).all().at(-1)!.values, new Map(pairs));
   assert.equal(PresetShelf.layouts(store).all().length, built + 1);
   assert.equal(PresetShelf.presets(store).all().some(({ name }) => name === 'mine'), false);
+  const other = PresetShelf.layouts(store); // another tab
+  assert.equal(other.save('theirs', new Map()), true);
+  assert.equal(shelf.save('constructor', new Map([['grid', '1']])), true);
+  const own = (from: PresetShelf) => from.all().filter((preset) => preset.own).map(({ name }) => name);
+  assert.deepEqual(own(shelf), ['mine', 'theirs', 'constructor']);
+  shelf.delete('mine');
+  assert.deepEqual(own(other), ['theirs', 'constructor']);
+  kept.set('furrow.layouts', '{"a":null,"b":"x","c":[1],"d":{"grid":1}}');
+  assert.equal(shelf.save('e', new Map()), true);
+  assert.deepEqual(own(other), ['d', 'e']);
   kept.set('furrow.layouts', '[broken');
   assert.equal(PresetShelf.layouts(store).all().length, built);
 });
@@ -150,4 +160,12 @@ test('settings that change together are one undo step', () => {
   settings.undo();
   assert.equal(settings.overrides.size, 0);
   assert.equal(settings.canUndo, false);
+});
+
+test('without room in the storage, presets last until the page is closed', () => {
+  const full = { getItem: () => null, setItem: () => { throw new Error('quota exceeded'); } };
+  const shelf = PresetShelf.presets(full);
+  shelf.save('one', new Map());
+  shelf.save('two', new Map());
+  assert.deepEqual(shelf.all().filter(({ own }) => own).map(({ name }) => name), ['one', 'two']);
 });
