@@ -304,6 +304,8 @@ export const text = {
     exposureTitle: 'Click a point of the picture to make it as bright as a grey card of 18 %. By keyboard: the middle.',
     leave: 'Drag the camera again',
     isBackground: 'That is the background. Measure a point of the subject.',
+    noLight: 'This view shows data, whose colours do not depend on the exposure. Choose a view of light, such as “final”.',
+    limited: (exposure: number) => `The point needs another exposure, but the limit is ${exposure}.`,
     tooDark: 'That point is too dark to measure.',
     wait: 'Wait until the picture shows the last change.',
   },

@@ -37,6 +37,19 @@ test('a drag is one undo step, a later change another', () => {
   assert.deepEqual(Object.fromEntries(settings.overrides), { 'shadow.taps': '19' });
 });
 
+test('a slow drag is one undo step, and the next drag another', () => {
+  const settings = model();
+  settings.set('shadow.taps', '9', 0);
+  settings.endStep();
+  for (let i = 0; i < 3; ++i) settings.set('shadow.taps', String(10 + i), 300); // its time is that of its beginning
+  settings.endStep();
+  settings.set('shadow.taps', '20', 600);
+  settings.undo();
+  assert.equal(settings.value('shadow.taps'), '12');
+  settings.undo();
+  assert.equal(settings.value('shadow.taps'), '9');
+});
+
 test('a change after undo clears the redo steps', () => {
   const settings = model();
   settings.set('wrinkles', 'off', 0);
