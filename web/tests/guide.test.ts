@@ -69,6 +69,15 @@ test('both sides of a face are one gesture; poses that no driver uses are left o
   ]);
 });
 
+test('poses of the rig makehuman have words', () => {
+  const poses = ['brow_down_l', 'brow_outer_up_l', 'brow_inner_up_r', 'nose_wrinkle', 'lid_open_l', 'lid_closed_r', 'lower_lid_up_l', 'cheek_up_l', 'sneer',
+    'chin_up', 'upper_lip_up', 'upper_lip_back', 'lip_wide', 'smile_l', 'corner_down_r'];
+  const values = poses.map((reference_pose) => ({ name: 'x', reference_pose }));
+  const said = gesturesOf({ reference_poses: poses, drivers: [{ name: 'a', values }] }).map(({ words }) => words);
+  assert.equal(said.length, 15); // both parts of the brows are one
+  assert.deepEqual(said.filter((words) => words.startsWith('Make the pose')), []);
+});
+
 const GESTURES = ['neutral', 'one', 'two'].map((id) => ({ id, words: id, poses: [id] }));
 
 /** Shows a pose for a while; returns the time after it. */
