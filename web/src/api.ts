@@ -116,6 +116,7 @@ export interface RigInfo {
 
 export interface Capture {
   pose: string;
+  subject: string;
 }
 
 export type NeutralPart = 'face' | 'body' | 'both';

@@ -111,11 +111,14 @@ export class App {
     this.capture = new CapturePanel(subject, toasts, () => void this.readRig());
     this.guide = new GuidePanel(this.connection, subject, {
       onChanged: () => void this.readRig(),
-      onOpen: (isOpen) => (this.capture.element.hidden = isOpen),
+      onOpen: (isOpen) => {
+        this.capture.element.hidden = isOpen;
+        if (isOpen) state.follows.set(false); // the guide stays with one subject
+      },
       say: (words) => toasts.say(words),
       saveRig: () => void this.capture.saveRig(),
     });
-    this.session = new SessionPanel((name) => state.subject.set(name), state.stream);
+    this.session = new SessionPanel((name) => state.chooseSubject(name), state.stream);
     const settingsText = new SettingsText(state, toasts);
     this.menu = new SettingsMenu(state, toasts, () => settingsText.open());
     this.timeline = new Timeline(toasts);
@@ -164,8 +167,8 @@ export class App {
     parent.replaceChildren(this.root);
     isCompact.bind((compact) => this.arrange(compact));
     isAcross.bind((across) => this.header.element.classList.toggle('on-picture', across));
-    if (this.state.panel.value !== '') this.tabs.choose(this.state.panel.value);
     this.state.panel.bind((panel) => {
+      if (panel !== '' && panel !== this.tabs.current) this.tabs.choose(panel);
       this.root.classList.toggle('no-panel', panel === '');
       this.tabs.setOpen(panel !== '');
     });
@@ -193,8 +196,9 @@ export class App {
     });
     state.subject.watch((subject) => this.weights.choose(subject));
     state.grid.watch((on) => on && void this.askDaemon().then(() => this.showCondition()));
-    this.weights.subject.watch(() => {
+    this.weights.subject.watch((name) => {
       this.curves.reset();
+      this.guide.onSubject(name);
       void this.readRig();
     });
     this.connection.link.watch((link) => {
@@ -413,12 +417,13 @@ export class App {
     this.grid.setSubjects(subjects, this.weights.subject.value || this.state.subject.value);
     if (this.daemonSession !== '' && status.session !== this.daemonSession) {
       this.toasts.say(text.app.restarted);
+      this.guide.onRestart();
     }
     this.daemonSession = status.session;
   }
 
   /** How a picture is. `wanted`: the subject that was asked for; `subject`: the one that is drawn. */
-  private conditionOf(wanted: string, subject: string, picture: ShownPicture | null, isChanging: boolean): Condition {
+  private conditionOf(wanted: string, subject: string, picture: ShownPicture | null, isChanging: boolean, everyMs = 0): Condition {
     const info = this.subjects?.find(({ name }) => name === subject);
     return assess({
       link: this.connection.link.value,
@@ -431,6 +436,7 @@ export class App {
       wanted,
       hasPicture: picture !== null,
       pictureMs: picture?.ageMs ?? null,
+      everyMs,
       isChanging,
       isAtRest: isAtRest(picture, info, performance.now() - this.askedMs),
       isPaused: subject !== '' && this.timeline.pausedSubject === subject,
@@ -444,7 +450,8 @@ export class App {
     const against = this.state.against.value;
     const beside = against === '' ? null : this.conditionOf(against, against, this.against.live.picture(), this.against.live.isChanging);
     if (beside !== null) this.against.show(beside, subject);
-    this.grid.show((name, shown) => (name === subject ? condition : name === against ? beside! : this.conditionOf(name, name, shown, false)));
+    this.grid.show((name, shown, everyMs) =>
+      (name === subject ? condition : name === against ? beside! : this.conditionOf(name, name, shown, false, everyMs)));
     this.pictureState = condition.state;
     const { stage } = this.viewer;
     const hasPicture = picture !== null || stage.hasPicture;

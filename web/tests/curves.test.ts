@@ -68,3 +68,22 @@ test('a span of the history, and its bound', () => {
   assert.deepEqual(history.between(28.5, 99).map(({ sequence }) => sequence), [29]);
   assert.deepEqual(history.between(40, 50), []);
 });
+
+test('frames that are shown outlive the history', () => {
+  const history = new WeightHistory(10);
+  history.setNames(['a']);
+  const values = new Float32Array(1);
+  const addUntil = (end: number) => {
+    for (let i = (history.latest?.sequence ?? -1) + 1; i <= end; ++i) history.add({ sequence: i, atS: i, values });
+  };
+  const numbers = (from: number, to: number) => history.betweenAndShown(shown, from, to).map(({ sequence }) => sequence);
+  addUntil(8);
+  const shown = history.between(4, 8);
+  assert.deepEqual(numbers(4, 8), [4, 5, 6, 7, 8]); // each once
+  addUntil(16);
+  assert.deepEqual(numbers(4, 8), [4, 5, 6, 7, 8]);
+  addUntil(99);
+  assert.deepEqual(numbers(4, 8), [4, 5, 6, 7, 8]);
+  assert.deepEqual(numbers(5, 6), [5, 6]);
+  assert.equal(history.toCsv(shown, ['of then']).split('\n')[0], 'frame,time,of then');
+});

@@ -11,15 +11,24 @@ const subject = (name: string, moved_ms: number | null = null, state: State = 'l
 test('more tiles are slower, and a slow large picture slows them more', () => {
   const budget = new TileBudget();
   const rates = () => [1, 3, 6, 12, 24].map((count) => budget.rateHz(count));
-  assert.deepEqual(rates(), [5, 1.25, 1.25, 1.25, 1.25]);
+  const slowest = [5, 1.25, 0.5, 0.5, 0.25];
+  assert.deepEqual(rates(), slowest);
   for (let i = 0; i < 5; ++i) budget.observe('live', 30, 60, false);
   assert.deepEqual(rates(), [10, 10, 5, 2.5, 1.25]);
   budget.observe('live', 5, 60, false);
-  assert.deepEqual(rates(), [10, 5, 2.5, 1.25, 1.25]);
+  assert.deepEqual(rates(), [10, 5, 2.5, 1.25, 0.5]);
   for (let i = 0; i < 5; ++i) budget.observe('live', 0, 60, true); // a pose at rest needs no pictures
   assert.deepEqual(rates(), [10, 10, 5, 2.5, 1.25]);
   budget.observe('stale', 1, 60, false);
-  assert.deepEqual(rates(), [5, 1.25, 1.25, 1.25, 1.25]);
+  assert.deepEqual(rates(), slowest);
+});
+
+test('all tiles together keep the budget, however many there are', () => {
+  const budget = new TileBudget();
+  const mostOf = () => Math.max(...Array.from({ length: MAX_TILES }, (_, i) => (i + 1) * budget.rateHz(i + 1)));
+  assert(mostOf() <= 6, `${mostOf()} per second`);
+  for (let i = 0; i < 5; ++i) budget.observe('live', 30, 60, false);
+  assert(mostOf() <= 30 && mostOf() > 20, `${mostOf()} per second`);
 });
 
 test('tiles are bounded, and keep the daemon’s order', () => {

@@ -69,6 +69,15 @@ test('both sides of a face are one gesture; poses that no driver uses are left o
   ]);
 });
 
+test('poses of the rig makehuman have words', () => {
+  const poses = ['brow_down_l', 'brow_outer_up_l', 'brow_inner_up_r', 'nose_wrinkle', 'lid_open_l', 'lid_closed_r', 'lower_lid_up_l', 'cheek_up_l', 'sneer',
+    'chin_up', 'upper_lip_up', 'upper_lip_back', 'lip_wide', 'smile_l', 'corner_down_r'];
+  const values = poses.map((reference_pose) => ({ name: 'x', reference_pose }));
+  const said = gesturesOf({ reference_poses: poses, drivers: [{ name: 'a', values }] }).map(({ words }) => words);
+  assert.equal(said.length, 15); // both parts of the brows are one
+  assert.deepEqual(said.filter((words) => words.startsWith('Make the pose')), []);
+});
+
 const GESTURES = ['neutral', 'one', 'two'].map((id) => ({ id, words: id, poses: [id] }));
 
 /** Shows a pose for a while; returns the time after it. */
@@ -103,9 +112,15 @@ test('a gesture is captured when it is far, steady and held', () => {
   assert(Math.abs(distance.mm - 11) < 1e-3 && wobble!.mm < 1e-3);
   guide.accept(now);
   assert(Math.abs(guide.taken[1]!.distance!.mm - 11) < 1e-3);
-  guide.refuse(now); // the daemon did not capture it
-  assert.equal(guide.taken[1], null);
-  assert.equal(guide.gesture?.id, 'one');
+  assert.equal(guide.advance(now + GOOD_MS), true);
+  now = show(guide, now + GOOD_MS, READ_MS + WINDOW_MS + HOLD_MS, () => 20);
+  assert.equal(guide.progress(now).phase, 'take');
+  assert.equal(guide.advance(now + 2 * GOOD_MS), false); // the daemon has not captured it yet
+  guide.refuse(now); // and does not
+  assert.equal(guide.gesture?.id, 'two');
+  assert.equal(guide.progress(now).phase, 'read');
+  assert.equal(guide.taken[2], null);
+  assert.notEqual(guide.taken[1], null);
 });
 
 test('gestures can be skipped, shown again and ended', () => {
@@ -135,6 +150,12 @@ test('silence and gaps say nothing about steadiness', () => {
   assert.notEqual(guide.progress(now).wobble, null);
   assert.equal(guide.progress(now + 2000).wobble, null);
   assert.equal(guide.isSilent(now + 2000), true);
-  guide.add(sample(1), now + 500);
-  assert.equal(guide.progress(now + 500).wobble, null); // nothing for half a second
+  guide.add(sample(1), now + 350);
+  assert.notEqual(guide.progress(now + 350).wobble, null); // a busy browser
+  const later = show(guide, now + 400, 300, () => 1) + 550;
+  guide.add(sample(1), later);
+  assert.equal(guide.progress(later).wobble, null); // nothing for half a second
+  show(guide, later, 1000, () => 1);
+  guide.add(sample(100), later + 955); // comes too soon after another one to count
+  assert.equal(guide.progress(later + 960).wobble!.mm < 1, true);
 });

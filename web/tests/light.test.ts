@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from 'node:assert/strict';
 import test from 'node:test';
-import { CARD, dragged, exposureFor, isBackground, linearOf, type Rgb, turntableRadians } from '../src/light/light_math';
+import { CARD, dragged, exposureFor, isBackground, isOfLight, linearOf, type Rgb, turntableRadians, withinRange } from '../src/light/light_math';
 
 test('a drag turns the lamps around, and tilts them to the poles', () => {
   assert.deepEqual(dragged({ turn: 0, tilt: 0 }, 0.25, 0.1), { turn: 45, tilt: 18 });
@@ -20,16 +20,24 @@ test('colours of the picture lead back to the light before the tone map', () => 
 
 test('a point becomes as bright as a grey card', () => {
   const grey: Rgb = [0.09, 0.09, 0.09];
-  assert(Math.abs(exposureFor(grey, 1, 16)! - CARD / 0.09) < 1e-9);
-  assert(Math.abs(exposureFor(grey, 0.5, 16)! - 1) < 1e-9);
-  assert.equal(exposureFor([0.001, 0.001, 0.001], 1, 16), 16);
-  assert.equal(exposureFor([0, 0, 0], 1, 16), null);
-  assert.equal(exposureFor(grey, 0, 16), null);
+  assert(Math.abs(exposureFor(grey, 1)! - CARD / 0.09) < 1e-9);
+  assert(Math.abs(exposureFor(grey, 0.5)! - 1) < 1e-9);
+  assert.equal(exposureFor([0, 0, 0], 1), null);
+  assert.equal(exposureFor(grey, 0), null);
+  assert.deepEqual([180, 1.234, 0.001].map((exposure) => withinRange(exposure, 16)), [16, 1.23, 0.01]);
+});
+
+test('only pictures of light are measured', () => {
+  assert.deepEqual(['final', 'weights', 'specular', 'normal', 'albedo', 'occlusion'].map(isOfLight), [true, true, true, false, false, false]);
 });
 
 test('the background is recognised', () => {
-  assert.equal(isBackground([47, 48, 49], [0.028, 0.029, 0.031]), true);
-  assert.equal(isBackground([60, 48, 49], [0.028, 0.029, 0.031]), false);
+  assert.equal(isBackground([47, 48, 49], [0.028, 0.029, 0.031], true), true);
+  assert.equal(isBackground([60, 48, 49], [0.028, 0.029, 0.031], true), false);
+  // tonemap.glsl maps 2 to 1 - 0.24² / (2 - 0.52) = 0.9611, which is 250.57 in sRGB; without it, 2 is clipped.
+  assert.equal(isBackground([251, 251, 251], [2, 2, 2], true), true);
+  assert.equal(isBackground([255, 255, 255], [2, 2, 2], true), false);
+  assert.equal(isBackground([255, 255, 255], [2, 2, 2], false), true);
 });
 
 test('the turntable takes 16 s for a turn, with reduced motion in steps', () => {

@@ -37,6 +37,19 @@ test('a drag is one undo step, a later change another', () => {
   assert.deepEqual(Object.fromEntries(settings.overrides), { 'shadow.taps': '19' });
 });
 
+test('a slow drag is one undo step, and the next drag another', () => {
+  const settings = model();
+  settings.set('shadow.taps', '9', 0);
+  settings.endStep();
+  for (let i = 0; i < 3; ++i) settings.set('shadow.taps', String(10 + i), 300); // its time is that of its beginning
+  settings.endStep();
+  settings.set('shadow.taps', '20', 600);
+  settings.undo();
+  assert.equal(settings.value('shadow.taps'), '12');
+  settings.undo();
+  assert.equal(settings.value('shadow.taps'), '9');
+});
+
 test('a change after undo clears the redo steps', () => {
   const settings = model();
   settings.set('wrinkles', 'off', 0);
@@ -138,6 +151,16 @@ test('layouts are kept beside presets, and are parts of an address', () => {
   assert.deepEqual(PresetShelf.layouts(store).all().at(-1)!.values, new Map(pairs));
   assert.equal(PresetShelf.layouts(store).all().length, built + 1);
   assert.equal(PresetShelf.presets(store).all().some(({ name }) => name === 'mine'), false);
+  const other = PresetShelf.layouts(store); // another tab
+  assert.equal(other.save('theirs', new Map()), true);
+  assert.equal(shelf.save('constructor', new Map([['grid', '1']])), true);
+  const own = (from: PresetShelf) => from.all().filter((preset) => preset.own).map(({ name }) => name);
+  assert.deepEqual(own(shelf), ['mine', 'theirs', 'constructor']);
+  shelf.delete('mine');
+  assert.deepEqual(own(other), ['theirs', 'constructor']);
+  kept.set('furrow.layouts', '{"a":null,"b":"x","c":[1],"d":{"grid":1}}');
+  assert.equal(shelf.save('e', new Map()), true);
+  assert.deepEqual(own(other), ['d', 'e']);
   kept.set('furrow.layouts', '[broken');
   assert.equal(PresetShelf.layouts(store).all().length, built);
 });
@@ -150,4 +173,12 @@ test('settings that change together are one undo step', () => {
   settings.undo();
   assert.equal(settings.overrides.size, 0);
   assert.equal(settings.canUndo, false);
+});
+
+test('without room in the storage, presets last until the page is closed', () => {
+  const full = { getItem: () => null, setItem: () => { throw new Error('quota exceeded'); } };
+  const shelf = PresetShelf.presets(full);
+  shelf.save('one', new Map());
+  shelf.save('two', new Map());
+  assert.deepEqual(shelf.all().filter(({ own }) => own).map(({ name }) => name), ['one', 'two']);
 });

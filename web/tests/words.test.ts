@@ -9,7 +9,7 @@ import { clockText, positionAfter } from '../src/panels/timeline';
 
 const GOOD: Situation = {
   link: 'open', everConnected: true, notDrawn: '', renders: true, wanted: '', hasPicture: true,
-  silentMs: 100, drawing: null, pictureMs: 40, isChanging: false, isAtRest: false, isPaused: false,
+  silentMs: 100, drawing: null, pictureMs: 40, everyMs: 0, isChanging: false, isAtRest: false, isPaused: false,
   subjects: [{ name: 'demo', state: 'live', age_ms: 8 }],
 };
 
@@ -37,6 +37,8 @@ test('each condition has its own sentence', () => {
     [{ pictureMs: 3000 }, 'stale', /3 s old/],
     [{ pictureMs: 3000, isChanging: true, drawing: { done: 1, passes: 9 } }, 'stale', /3 s old/],
     [{ pictureMs: 3000, isAtRest: true }, 'live', /Live/],
+    [{ pictureMs: 5000, everyMs: 4000 }, 'live', /Live/], // a tile among many
+    [{ pictureMs: 7000, everyMs: 4000 }, 'stale', /7 s old/],
   ];
   for (const [part, state, text] of cases) {
     const condition = assess({ ...GOOD, ...part });

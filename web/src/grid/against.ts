@@ -37,7 +37,9 @@ export class Against {
     new ResizeObserver(() => this.refresh()).observe(this.surface);
   }
 
+  /** Called several times per second, so it also follows the resolution of the large picture, and asks again after a refusal. */
   show(condition: Condition, focus: string): void {
+    this.refresh();
     const words = t.tile(this.state.against.value, text.state[condition.state]);
     if (this.name.textContent !== words) this.name.textContent = words;
     if (this.nameOfFocus.textContent !== focus) this.nameOfFocus.textContent = focus;

@@ -8,8 +8,8 @@ export const MAX_TILES = 24;
 /** Pictures per second of all visible tiles together. */
 const MOST_HZ = 30;
 const LEAST_HZ = 6;
-/** Pictures per second of one tile, each half of the one before, so that the rate changes seldom. */
-const RATES_HZ = [10, 5, 2.5, 1.25] as const;
+/** Pictures per second of one tile: few steps, so that the rate changes seldom. The last one suits MAX_TILES with LEAST_HZ. */
+const RATES_HZ = [10, 5, 2.5, 1.25, 0.5, 0.25] as const;
 /** The large picture moves well enough with this many pictures per second. */
 const ENOUGH_HZ = 15;
 /** The one who is followed rests when nothing has moved for this long. */

@@ -16,7 +16,8 @@ const t = text.grid;
 /** A drag of the camera would otherwise make a request per tile and mouse event. */
 const REFRESH_MS = 200;
 
-export type ConditionOf = (subject: string, picture: ShownPicture | null) => Condition;
+/** `everyMs`: the time between pictures that were asked for. */
+export type ConditionOf = (subject: string, picture: ShownPicture | null, everyMs: number) => Condition;
 
 export class SubjectGrid {
   readonly element: HTMLElement;
@@ -27,6 +28,8 @@ export class SubjectGrid {
   private readonly sight: IntersectionObserver;
   private readonly budget = new TileBudget();
   private focus = '';
+  /** Of one tile. */
+  private rateHz = 1;
   /** The large picture has been there, so the tiles may ask for theirs. */
   private isStarted = false;
   private timer: ReturnType<typeof setTimeout> | null = null;
@@ -83,16 +86,15 @@ export class SubjectGrid {
   /** Says how each subject is. Called several times per second, because ages grow. */
   show(conditionOf: ConditionOf): void {
     for (const [name, tile] of this.tiles) {
-      tile.show(conditionOf(name, tile.live.picture()), name === this.focus, this.isLarge(name));
+      tile.show(conditionOf(name, tile.live.picture(), 1000 / this.rateHz), name === this.focus, this.isLarge(name));
     }
   }
 
   private choose(name: string): void {
-    const { against, subject, follows } = this.state;
-    follows.set(false); // or the page would leave at once what the user has chosen
+    const { against } = this.state;
     if (name === against.value) against.set(this.focus);
     this.focus = name;
-    subject.set(name);
+    this.state.chooseSubject(name);
     this.refresh();
   }
 
@@ -100,7 +102,7 @@ export class SubjectGrid {
     for (const [name, tile] of this.tiles) {
       if (names.includes(name)) continue;
       this.sight.unobserve(tile.element);
-      tile.live.request(null);
+      tile.live.close();
       tile.element.remove();
       this.tiles.delete(name);
     }
@@ -133,9 +135,9 @@ export class SubjectGrid {
   /** Subjects with a large picture need no small one. */
   private refresh(): void {
     const asks = [...this.tiles.values()].filter(({ name, isVisible }) => isVisible && this.isStarted && !this.isLarge(name));
-    const rateHz = this.budget.rateHz(asks.length);
+    this.rateHz = this.budget.rateHz(asks.length);
     for (const tile of this.tiles.values()) {
-      tile.live.request(asks.includes(tile) ? this.viewer.requestOf(tile.name, tile.element, 1, rateHz) : null);
+      tile.live.request(asks.includes(tile) ? this.viewer.requestOf(tile.name, tile.element, 1, this.rateHz) : null);
     }
   }
 

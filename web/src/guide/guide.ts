@@ -11,8 +11,10 @@ export const WINDOW_MS = 1000;
 export const HOLD_MS = 500;
 /** Time for which the page says that the pose was good. */
 export const GOOD_MS = 1200;
-/** A window with a gap says nothing about steadiness. */
-const MOST_GAP_MS = 300;
+/** A window with a gap says nothing about steadiness. Longer than a busy browser pauses. */
+const MOST_GAP_MS = 500;
+/** Samples that follow sooner say nothing new. */
+const LEAST_GAP_MS = 15;
 
 /** What is far, and what is steady. */
 export interface Limits {
@@ -37,7 +39,7 @@ export interface Progress {
   held: number;
 }
 
-/** The quality of a pose that was captured. Null: it has none (the neutral pose), or it was captured before it was known. */
+/** The quality of a pose when it was captured. Null: it has none (the neutral pose), or it was captured before it was known. */
 export interface Taken {
   distance: Difference | null;
   wobble: Difference | null;
@@ -76,6 +78,8 @@ export class Guide {
   }
 
   add(sample: Sample, nowMs: number): void {
+    const last = this.samples.at(-1);
+    if (last !== undefined && nowMs - last.atMs < LEAST_GAP_MS) return;
     this.samples.push({ ...sample, atMs: nowMs });
     while (this.samples[0]!.atMs < nowMs - WINDOW_MS) this.samples.shift();
   }
@@ -113,7 +117,7 @@ export class Guide {
     return wobbleOf(samples);
   }
 
-  /** The present pose was captured. */
+  /** The daemon has captured the present pose, and has just said so. */
   accept(nowMs: number): void {
     const { distance, wobble } = this.progress(nowMs);
     this.taken[this.at] = { distance: this.isNeutral ? null : distance, wobble };
@@ -121,9 +125,8 @@ export class Guide {
     this.goodMs = nowMs;
   }
 
-  /** The capture of the present pose has failed. */
+  /** The present pose was not captured. The performer shows it again; what was captured of it before stays. */
   refuse(nowMs: number): void {
-    this.taken[this.at] = null;
     this.goTo(this.at, nowMs);
   }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Guided capture: asks the performer for one pose after the other, and captures each when it is clear and steady.
 import { PoseFeed } from 'furrow/protocol';
-import { api, ApiError, wordsOf } from '../api';
+import { api, ApiError, type Capture, wordsOf } from '../api';
 import { text } from '../text';
 import { button, h } from '../ui/dom';
 import type { Connection } from '../wire/connection';
@@ -11,19 +11,19 @@ import { type Difference, Sampler } from './measure';
 
 const t = text.guide;
 const TICK_MS = 50;
-/** A pose that is older has stopped arriving. */
-const OLD_MS = 500;
 /** A daemon that is asked too often says so; another request may follow after this time. */
 const AGAIN_MS = 1100;
 const MOST_TRIES = 8;
 
-/** Repeats a request that the daemon takes too often from this host. */
+const isTooOften = (error: unknown): boolean => error instanceof ApiError && error.status === 429;
+
+/** Repeats a request that the daemon takes too often from this host. For requests that do not depend on the moment. */
 async function patiently<T>(ask: () => Promise<T>): Promise<T> {
   for (let tries = 1; ; ++tries) {
     try {
       return await ask();
     } catch (error) {
-      if (!(error instanceof ApiError) || error.status !== 429 || tries === MOST_TRIES) throw error;
+      if (!isTooOften(error) || tries === MOST_TRIES) throw error;
       await new Promise((resolve) => setTimeout(resolve, AGAIN_MS));
     }
   }
@@ -73,8 +73,14 @@ export class GuidePanel {
   private name = '';
   private timer: ReturnType<typeof setInterval> | null = null;
   private isBusy = false;
-  /** The poses that were captured, oldest first, which "Undo all" takes back. */
-  private made: string[] = [];
+  /** The summary was asked for while a request was under way. */
+  private wantsSummary = false;
+  /** Poses of the present gesture that are still to be captured; null: all. */
+  private pending: string[] | null = null;
+  /** The daemon takes no request before. */
+  private againMs = -Infinity;
+  /** What was captured, oldest first, which "Undo all" takes back. */
+  private made: Capture[] = [];
 
   /** `onChanged`: the rig of the daemon has changed. `onOpen`: whether the guide takes the panel. */
   constructor(private readonly connection: Connection, private readonly subject: () => string,
@@ -93,17 +99,44 @@ export class GuidePanel {
   private stop(): void {
     this.feed?.close();
     this.feed = this.guide = this.sampler = null;
+    this.wantsSummary = false;
+    this.pause();
+  }
+
+  private pause(): void {
     if (this.timer !== null) clearInterval(this.timer);
     this.timer = null;
     this.card.hidden = true;
   }
 
+  /** Another subject is in focus. Captures would be of one that nobody sees. */
+  onSubject(subject: string): void {
+    if (subject !== '' && subject !== this.name) this.end(t.otherSubject(this.name));
+  }
+
+  /** Another daemon has none of the captures. */
+  onRestart(): void {
+    this.made = [];
+    this.end(t.restarted);
+  }
+
+  /** Ends the walk, and says why. What was captured stays, and can be undone. */
+  private end(why: string): void {
+    if (this.feed === null) return;
+    this.feed.close();
+    this.feed = null;
+    if (this.made.length === 0) this.close();
+    else this.showSummary();
+    this.error.textContent = why;
+  }
+
   private async start(): Promise<void> {
-    this.name = this.subject();
-    this.error.textContent = this.name === '' ? t.noSubject : '';
-    if (this.name === '') return;
+    const name = this.subject();
+    this.error.textContent = name === '' ? t.noSubject : '';
+    if (name === '') return;
     try {
-      const rig = await api.rig(this.name);
+      const rig = await api.rig(name);
+      if (name !== this.subject()) return; // the user has chosen another one meanwhile
       this.gestures = gesturesOf(rig);
       this.anchor = rig.anchor;
     } catch (error) {
@@ -111,9 +144,11 @@ export class GuidePanel {
       return;
     }
     this.stop();
+    this.name = name;
     this.made = [];
-    const ignore = (): void => {};
-    this.feed = new PoseFeed(this.connection, { subject: this.name }, { onPose: ignore, onProblem: (problem) => (this.error.textContent = problem) });
+    this.pending = null;
+    this.feed = new PoseFeed(this.connection, { subject: name },
+      { onPose: () => this.onPose(), onProblem: (problem) => (this.error.textContent = problem) });
     this.events.onOpen(true);
     this.showSteps();
   }
@@ -133,38 +168,43 @@ export class GuidePanel {
 
   private move(by: (guide: Guide, nowMs: number) => void): void {
     if (this.guide === null || this.isBusy) return;
+    this.pending = null;
     by(this.guide, performance.now());
     this.tick();
   }
 
-  private tick(): void {
-    // The picture must show the performer who is captured.
-    if (this.subject() !== this.name && this.subject() !== '') {
-      this.showSummary();
+  private onPose(): void {
+    const pose = this.feed?.pose() ?? null;
+    if (pose === null) return;
+    const nowMs = performance.now();
+    const { hash } = pose.skeleton;
+    if (this.sampler === null) {
+      const sampler = new Sampler(pose.skeleton, this.anchor);
+      this.sampler = { of: hash, sampler };
+      this.guide = new Guide(this.gestures, sampler.rest(), sampler.isFace ? FACE : BODY, nowMs);
+    } else if (this.sampler.of !== hash) {
+      this.end(t.otherSkeleton); // samples of another skeleton cannot be compared
       return;
     }
+    if (this.timer !== null) this.guide!.add(this.sampler.sampler.sample(pose), nowMs);
+  }
+
+  private tick(): void {
+    if (this.feed === null) return;
     const nowMs = performance.now();
-    const pose = this.feed?.pose() ?? null;
-    if (pose !== null && this.sampler?.of !== pose.skeleton.hash) {
-      // Samples of another skeleton cannot be compared.
-      const sampler = new Sampler(pose.skeleton, this.anchor);
-      this.sampler = { of: pose.skeleton.hash, sampler };
-      this.guide = new Guide(this.gestures, sampler.rest(), sampler.isFace ? FACE : BODY, nowMs);
-    }
     const { guide } = this;
     this.card.hidden = false;
     if (guide === null) {
       this.show(this.gestures[0]!, 0, null);
       return;
     }
-    if (pose !== null && pose.ageMs < OLD_MS) guide.add(this.sampler!.sampler.sample(pose), nowMs);
     if (guide.isOver || (guide.advance(nowMs) && guide.isOver)) {
       this.showSummary();
       return;
     }
     const progress = guide.progress(nowMs);
     this.show(guide.gesture!, guide.at, guide.isSilent(nowMs) ? null : progress);
-    if (progress.phase === 'take' && this.automatic.checked) void this.take();
+    if (progress.phase === 'take' && this.automatic.checked && nowMs >= this.againMs) void this.take();
   }
 
   /** `progress`: null if no pose arrives. */
@@ -172,7 +212,7 @@ export class GuidePanel {
     const put = (element: HTMLElement, now: string): void => {
       if (element.textContent !== now) element.textContent = now;
     };
-    put(this.step, t.step(at + 1, this.gestures.length));
+    put(this.step, t.step(at + 1, this.gestures.length, this.name));
     put(this.ask, gesture.words);
     put(this.phase, progress === null ? t.silent : t.phases[progress.phase]);
     put(this.cardWords, gesture.words);
@@ -198,37 +238,61 @@ export class GuidePanel {
     const { guide } = this;
     if (guide === null || guide.isOver || this.isBusy || guide.isPraising) return;
     this.isBusy = true;
-    guide.accept(performance.now());
+    const isHeld = guide.progress(performance.now()).phase === 'take';
+    const { name: subject } = this;
+    const pending = (this.pending ??= [...guide.gesture!.poses]);
+    const numMade = this.made.length;
+    let problem = '';
     try {
-      for (const pose of guide.gesture!.poses) {
-        await patiently(() => api.capture(this.name, pose, false));
-        this.made.push(pose);
+      // The daemon captures what is live when it answers, so nothing is repeated without another look at the performer.
+      while (pending.length > 0) {
+        const pose = pending[0]!;
+        await api.capture(subject, pose, false);
+        if (this.guide !== guide) return;
+        this.made.push({ pose, subject });
+        pending.shift();
       }
-      this.error.textContent = '';
-      this.events.onChanged();
+      this.pending = null;
+      const nowMs = performance.now();
+      if (isHeld && guide.progress(nowMs).phase !== 'take') problem = t.moved;
+      else guide.accept(nowMs);
     } catch (error) {
-      guide.refuse(performance.now());
-      this.error.textContent = wordsOf(error);
-      this.automatic.checked = false; // or it would be tried again and again
+      problem = this.onFailed(error, guide);
     } finally {
       this.isBusy = false;
+      if (this.guide === guide) {
+        if (this.made.length > numMade) this.events.onChanged();
+        if (this.feed === null) this.showSummary(); // the walk has ended meanwhile, and says why
+        else this.error.textContent = problem;
+        if (this.wantsSummary) this.showSummary();
+      }
     }
+  }
+
+  /** A capture has failed. Returns what to say. */
+  private onFailed(error: unknown, guide: Guide): string {
+    if (isTooOften(error)) {
+      this.againMs = performance.now() + AGAIN_MS;
+      return this.automatic.checked ? t.busy : t.busyNow;
+    }
+    guide.refuse(performance.now());
+    this.automatic.checked = false; // or it would be tried again and again
+    return wordsOf(error);
   }
 
   private showSummary(): void {
     const { guide } = this;
+    this.wantsSummary = this.isBusy;
     if (this.isBusy) return;
-    if (this.timer !== null) clearInterval(this.timer);
-    this.timer = null;
-    this.card.hidden = true;
+    this.pause();
     const row = ({ words: said }: Gesture, at: number): HTMLElement => {
       const taken = guide?.taken[at] ?? null;
       return h('tr', { 'data-taken': String(taken !== null) }, h('th', { scope: 'row' }, said), ...this.quality(taken),
-        h('td', {}, guide === null ? null : button(taken === null ? t.take : t.again, () => this.again(at), { 'aria-label': t.againNamed(said) })));
+        h('td', {}, guide === null || this.feed === null ? null : button(taken === null ? t.take : t.again, () => this.again(at), { 'aria-label': t.againNamed(said) })));
     };
     const undo = button(t.undoAll, () => void this.undoAll(), { disabled: this.made.length === 0 });
     const done = button(t.done, () => this.close(), { class: 'primary' });
-    this.element.replaceChildren(h('h3', {}, t.summary),
+    this.element.replaceChildren(h('h3', {}, t.summary(this.name)),
       this.error, h('div', { class: 'row' }, done, undo, button(text.capture.download, () => this.events.saveRig())),
       h('table', { class: 'guide-summary' }, h('thead', {}, h('tr', {}, ...t.columns.map((word) => h('th', { scope: 'col' }, word)))),
         h('tbody', {}, ...this.gestures.map(row))),
@@ -244,7 +308,9 @@ export class GuidePanel {
   }
 
   private again(at: number): void {
+    if (this.isBusy) return;
     this.guide?.goTo(at, performance.now());
+    this.pending = null;
     this.showSteps();
   }
 
@@ -254,8 +320,10 @@ export class GuidePanel {
     let count = 0;
     try {
       let { captures } = await api.rig(this.name);
-      while (this.made.length > 0) {
-        if (captures.at(-1)?.pose !== this.made.at(-1)) throw new Error(t.notOurs);
+      for (let ours = this.made.at(-1); ours !== undefined; ours = this.made.at(-1)) {
+        const last = captures.at(-1);
+        if (last === undefined) throw new Error(t.exhausted(this.made.length));
+        if (last.pose !== ours.pose || last.subject !== ours.subject) throw new Error(t.notOurs);
         ({ captures } = await patiently(() => api.undoCapture()));
         this.made.pop();
         ++count;
@@ -267,6 +335,7 @@ export class GuidePanel {
       this.error.textContent = wordsOf(error);
     }
     this.isBusy = false;
+    if (this.wantsSummary) this.showSummary();
     this.events.onChanged();
   }
 }

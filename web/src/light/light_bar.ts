@@ -7,7 +7,7 @@ import { icon } from '../ui/icons';
 import type { Toasts } from '../ui/toast';
 import { orbit } from '../view/camera';
 import type { Viewer } from '../view/viewer';
-import { dragged, exposureFor, isBackground, type LampAngles, linearOf, type Rgb, turntableRadians } from './light_math';
+import { dragged, exposureFor, isBackground, isOfLight, type LampAngles, linearOf, type Rgb, turntableRadians, withinRange } from './light_math';
 
 const t = text.light;
 /** A grey surface without wrinkles, lit as the skin is. */
@@ -27,6 +27,8 @@ export class LightBar {
   /** What the grey card has replaced. */
   private former: ReadonlyMap<string, string> | null = null;
   private isPicking = false;
+  /** When the drag under way began; null: there is none. */
+  private draggedMs: number | null = null;
   private readonly surface: HTMLElement;
 
   constructor(private readonly state: AppState, private readonly viewer: Viewer, private readonly toasts: Toasts) {
@@ -41,7 +43,7 @@ export class LightBar {
     this.element = h('div', { class: 'light-bar', role: 'toolbar', 'aria-label': t.group, hidden: true },
       this.figures, button(t.reset, () => this.reset(), { title: t.resetTitle }), this.grey, this.turn, this.pick,
       button('×', () => state.lighting.set(false), { 'aria-label': t.leave, title: t.leave }));
-    const { lighting, turning, settings } = state;
+    const { lighting, turning, settings, kiosk } = state;
     lighting.bind((on) => {
       this.element.hidden = !on;
       this.toggleButton.setAttribute('aria-pressed', String(on));
@@ -49,20 +51,28 @@ export class LightBar {
       if (!on) this.setPicking(false);
       this.show();
     });
+    kiosk.bind((on) => on && lighting.set(false)); // it hides the bar
     turning.bind((on) => this.turn.setAttribute('aria-pressed', String(on)));
     settings.changed.watch(() => this.show());
     surface.addEventListener('pointerdown', (event) => this.onPick(event), true);
+    const drag = (sinceMs: number | null): void => {
+      settings.endStep();
+      this.draggedMs = sinceMs;
+    };
+    surface.addEventListener('pointerdown', () => drag(performance.now()));
+    for (const end of ['pointerup', 'pointercancel'] as const) surface.addEventListener(end, () => drag(null));
   }
 
   toggle(): void {
-    this.state.lighting.set(!this.state.lighting.value);
+    const { lighting, kiosk } = this.state;
+    lighting.set(!lighting.value && !kiosk.value);
   }
 
-  /** In heights of the picture. False: a drag moves the camera. */
+  /** In heights of the picture. False: a drag moves the camera. A drag is one undo step, however long it takes. */
   drag(right: number, up: number): boolean {
     if (!this.state.lighting.value) return false;
     const { turn, tilt } = dragged(this.angles(), right, up);
-    this.state.settings.setMany(new Map([['lights.turn_degrees', String(turn)], ['lights.tilt_degrees', String(tilt)]]), performance.now());
+    this.state.settings.setMany(new Map([['lights.turn_degrees', String(turn)], ['lights.tilt_degrees', String(tilt)]]), this.draggedMs ?? performance.now());
     return true;
   }
 
@@ -128,6 +138,13 @@ export class LightBar {
     this.setPicking(false);
   }
 
+  private expose(wanted: number): void {
+    const { settings } = this.state;
+    const exposure = withinRange(wanted, settings.info('exposure')?.max ?? 16);
+    settings.set('exposure', exposure.toFixed(2), performance.now());
+    if (Math.abs(exposure - wanted) > 0.0051) this.toasts.say(t.limited(exposure));
+  }
+
   /** Makes the point at these shares of the picture as bright as a grey card. */
   private measure(x: number, y: number): void {
     const { settings } = this.state;
@@ -137,13 +154,18 @@ export class LightBar {
       this.toasts.say(canvas === null ? text.stage.noPicture : t.wait, 'error');
       return;
     }
+    if (!isOfLight(settings.value('view'))) {
+      this.toasts.say(t.noLight, 'error');
+      return;
+    }
     const colour = spotOf(canvas, x, y);
     const present = Number(settings.value('exposure'));
     const background = settings.value('background').split(',').map((value) => Number(value) * present) as unknown as Rgb;
-    const exposure = exposureFor(linearOf(colour, settings.value('tone_map') !== 'clip'), present, settings.info('exposure')?.max ?? 16);
-    if (isBackground(colour, background)) this.toasts.say(t.isBackground, 'error');
+    const isNeutral = settings.value('tone_map') !== 'clip';
+    const exposure = exposureFor(linearOf(colour, isNeutral), present);
+    if (isBackground(colour, background, isNeutral)) this.toasts.say(t.isBackground, 'error');
     else if (exposure === null) this.toasts.say(t.tooDark, 'error');
-    else settings.set('exposure', exposure.toFixed(2), performance.now());
+    else this.expose(exposure);
   }
 }
 

@@ -17,8 +17,14 @@ const MOST_TILT = 90;
 export const CARD = 0.18;
 /** Darker points say nothing about the exposure. */
 const LEAST = 0.0005;
-/** Where the tone map begins to compress (tonemap.glsl). */
+/** Where the tone map begins to compress, and how much colour highlights lose (tonemap.glsl). */
 const COMPRESSED = 0.76;
+const DESATURATION = 0.15;
+/** The least exposure that the page sets. The daemon takes any above 0. */
+const LEAST_EXPOSURE = 0.01;
+/** Views that show data or colours: no exposure and no tone map (composite_pass.cpp). */
+const WITHOUT_LIGHT: readonly string[] =
+  ['normal', 'mask_dynamic', 'mask_texture', 'shadow', 'shadow_maps', 'depth', 'material', 'occlusion', 'albedo'];
 
 /** The lamps after a drag to the right and up, in heights of the picture. Turning goes round, tilting ends at the poles. */
 export function dragged({ turn, tilt }: LampAngles, right: number, up: number): LampAngles {
@@ -44,16 +50,37 @@ export function linearOf(srgb: Rgb, neutral: boolean): Rgb {
 }
 
 /** The exposure with which a point of this linear colour is as bright as a grey card; null: it is too dark to tell. */
-export function exposureFor([r, g, b]: Rgb, exposure: number, most: number): number | null {
+export function exposureFor([r, g, b]: Rgb, exposure: number): number | null {
   const luminance = 0.2126 * r + 0.7152 * g + 0.0722 * b;
   if (luminance < LEAST || exposure <= 0) return null;
-  return Math.min(most, (exposure * CARD) / luminance);
+  return (exposure * CARD) / luminance;
+}
+
+/** The nearest exposure that the page sets, in hundredths. */
+export function withinRange(exposure: number, most: number): number {
+  return Math.min(most, Math.max(LEAST_EXPOSURE, Math.round(exposure * 100) / 100));
+}
+
+/** True if the brightness of a view follows the exposure. */
+export function isOfLight(view: string): boolean {
+  return !WITHOUT_LIGHT.includes(view);
+}
+
+/** The tone map of tonemap.glsl. */
+function toneMapped(linear: Rgb): Rgb {
+  const peak = Math.max(...linear);
+  if (peak < COMPRESSED) return linear;
+  const rest = 1 - COMPRESSED;
+  const newPeak = 1 - (rest * rest) / (peak + rest - COMPRESSED);
+  const white = 1 - 1 / (DESATURATION * (peak - newPeak) + 1);
+  return linear.map((value) => ((1 - white) * value * newPeak) / peak + white * newPeak) as unknown as Rgb;
 }
 
 /** True if both colours look alike in a compressed picture. `linear`: the setting `background` times the exposure. */
-export function isBackground(srgb: Rgb, linear: Rgb): boolean {
+export function isBackground(srgb: Rgb, linear: Rgb, neutral: boolean): boolean {
+  const shown = (neutral ? toneMapped(linear) : linear).map((value) => Math.min(1, Math.max(0, value)));
   const encode = (x: number): number => 255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055);
-  return srgb.every((value, i) => Math.abs(value - encode(linear[i]!)) <= 3);
+  return srgb.every((value, i) => Math.abs(value - encode(shown[i]!)) <= 3);
 }
 
 /** Where the lamps are, for the turntable: radians after `seconds`; with reduced motion, in steps. */

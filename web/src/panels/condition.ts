@@ -33,6 +33,8 @@ export interface Situation {
   hasPicture: boolean;
   /** Time since the pose on the screen reached the daemon; null: unknown. */
   pictureMs: number | null;
+  /** Time between pictures that were asked for; 0: every pose has one. */
+  everyMs: number;
   /** The picture does not show the last change of the page yet. */
   isChanging: boolean;
   /** The subject has not moved since the pose on the screen. */
@@ -82,7 +84,7 @@ export function assess(situation: Situation): Condition {
   if (subject.state === 'lost') return condition('lost', t.noData(subject.name, seconds(subject.age_ms)), t.noDataAdvice);
   if (!situation.hasPicture) return firstPicture(situation.drawing);
   if (situation.isPaused) return condition('paused', t.paused(subject.name));
-  if (!situation.isAtRest && situation.pictureMs !== null && situation.pictureMs > STALE_MS) {
+  if (!situation.isAtRest && situation.pictureMs !== null && situation.pictureMs > STALE_MS + situation.everyMs) {
     const old = t.stale(seconds(situation.pictureMs));
     const { drawing } = situation;
     if (!situation.isChanging || drawing === null) return condition('stale', old, t.staleAdvice);

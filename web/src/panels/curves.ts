@@ -36,6 +36,8 @@ export class CurvesPanel {
   private shown: string[] = [];
   /** The frames of the plot, oldest first. */
   private frames: readonly WeightFrame[] = [];
+  /** Of the weights of these frames. */
+  private names: readonly string[] = [];
   /** Index of the frame under the pointer; null: none. */
   private hovered: number | null = null;
   private chosenAtS = -Infinity;
@@ -92,10 +94,11 @@ export class CurvesPanel {
     this.change(() => this.span.mark(frame.atS, frame.sequence));
   }
 
-  /** The curves end with the pose on the screen, so that both show the same moment. */
+  /** The curves end with the pose on the screen, so that both show the same moment. Curves that stand still keep what they show. */
   private kept(): Kept {
     const newestS = this.history.current?.atS ?? 0;
-    return { oldestS: this.history.frames[0]?.atS ?? newestS, newestS };
+    const shownS = this.span.isLive ? Infinity : (this.frames[0]?.atS ?? Infinity);
+    return { oldestS: Math.min(shownS, this.history.frames[0]?.atS ?? newestS), newestS };
   }
 
   private change(by: () => void): void {
@@ -197,7 +200,12 @@ export class CurvesPanel {
     if (this.plot === null) return;
     const kept = this.kept();
     const zero = this.span.zero(kept);
-    this.frames = this.history.between(...this.span.range(kept));
+    const range = this.span.range(kept);
+    const { history } = this;
+    // Curves that stand still outlive what the history keeps.
+    const isStill = !this.span.isLive && this.names === history.names;
+    this.frames = isStill ? history.betweenAndShown(this.frames, ...range) : history.between(...range);
+    this.names = history.names;
     const columns = this.shown.map((name) => this.history.indexOf(name));
     this.plot.setData([
       this.frames.map((frame) => frame.atS - zero),
@@ -275,6 +283,6 @@ export class CurvesPanel {
   }
 
   private save(): void {
-    download('weights.csv', 'text/csv', this.history.toCsv(this.history.between(...this.span.range(this.kept()))));
+    download('weights.csv', 'text/csv', this.history.toCsv(this.frames, this.names));
   }
 }

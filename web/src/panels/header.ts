@@ -48,7 +48,7 @@ export class Header {
       this.grid.setAttribute('aria-pressed', String(on));
       if (on) this.grid.hidden = false;
     });
-    this.subject = select(t.subject, [['', t.anySubject]], (name) => state.subject.set(name));
+    this.subject = select(t.subject, [['', t.anySubject]], (name) => state.chooseSubject(name));
     this.element = h('header', {},
       h('h1', {}, 'Furrow'), this.subject, this.grid, this.status, this.open, h('span', { class: 'space' }),
       h('div', { class: 'numbers', 'aria-label': text.figures.group, role: 'group' },

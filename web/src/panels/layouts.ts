@@ -35,9 +35,8 @@ export class LayoutDialog {
   }
 
   private fill(): void {
-    const now = JSON.stringify([...this.state.layout()]);
     this.list.replaceChildren(...this.shelf.all().map(({ name, values, own }) => h('li', {},
-      button(name, () => this.load(values), { class: 'layout', 'aria-pressed': String(JSON.stringify([...values]) === now) }),
+      button(name, () => this.load(values), { class: 'layout', 'aria-pressed': String(this.state.isArranged(values)) }),
       own ? button('×', () => this.remove(name), { 'aria-label': t.remove(name), title: t.remove(name) }) : null)));
   }
 
@@ -65,7 +64,7 @@ export class LayoutDialog {
 
   private async copy(): Promise<void> {
     try {
-      await navigator.clipboard.writeText(location.href);
+      await navigator.clipboard.writeText(this.state.link());
       this.toasts.say(t.copied);
     } catch {
       this.error.textContent = t.cannotCopy; // browsers forbid copying except on https and localhost

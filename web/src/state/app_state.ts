@@ -10,6 +10,8 @@ import { isCompact } from './layout';
 import { SettingsModel, type Values } from './settings';
 
 const ADDRESS_DELAY_MS = 250;
+/** Browsers allow few changes of the address, and a turntable would use them up. */
+const TURNING_DELAY_MS = 2000;
 
 /** Small screens show the picture first, and a panel when somebody asks for it. */
 function usualPanel(compact = isCompact.value): string {
@@ -48,6 +50,8 @@ export class AppState {
   readonly comparing = new Signal(false);
   private readonly wishes: PageState;
   private timer: ReturnType<typeof setTimeout> | null = null;
+  private writesAtMs = Infinity;
+  private began = false;
 
   constructor(hash: string) {
     this.wishes = readAddress(hash);
@@ -71,6 +75,7 @@ export class AppState {
 
   /** Applies the URL once the daemon has replied. Returns names in the URL that the daemon does not know. */
   begin(presets: readonly CameraPreset[]): string[] {
+    this.began = true;
     const unknown = this.settings.begin(this.wishes.settings);
     this.setPresets(presets);
     for (const signal of [this.subject, this.wipe, this.strip, this.curves, this.panel, this.drawnBy, this.stream, this.kiosk,
@@ -78,6 +83,12 @@ export class AppState {
       (signal as Signal<unknown>).watch(() => this.writeSoon());
     }
     return unknown;
+  }
+
+  /** The user has chosen a subject: the page no longer follows movement, or it would leave the subject at once. */
+  chooseSubject(name: string): void {
+    this.follows.set(false);
+    this.subject.set(name);
   }
 
   /** Also called after a restart with another character. Chooses the same preset again. */
@@ -136,7 +147,7 @@ export class AppState {
 
   /** Arranges the page as a layout says; what the layout does not name is as usual. */
   arrange(layout: Values): void {
-    const wanted = readAddress(new URLSearchParams([...layout]).toString());
+    const wanted = pageOf(layout);
     this.strip.set(wanted.strip);
     this.curves.set(wanted.curves);
     this.panel.set(wanted.panel ?? usualPanel());
@@ -145,13 +156,34 @@ export class AppState {
     this.kiosk.set(wanted.kiosk);
   }
 
+  /** True if the page is arranged as a layout says, whatever the layout leaves as usual. */
+  isArranged(layout: Values): boolean {
+    const whole = (page: PageState): string => JSON.stringify(layoutPairs({ ...page, panel: page.panel ?? usualPanel() }));
+    return whole(this.page()) === whole(pageOf(layout));
+  }
+
+  /** The address of the present state. The browser's address bar follows a little later. */
+  link(): string {
+    if (!this.began) return location.href; // what the address says was not applied yet
+    return location.href.replace(/#.*$/, '') + writeAddress(this.page());
+  }
+
   private writeSoon(): void {
-    // Browsers allow few changes of the address, and a turntable would use them up.
-    if (this.timer !== null || this.turning.value) return;
+    const delayMs = this.turning.value ? TURNING_DELAY_MS : ADDRESS_DELAY_MS;
+    const atMs = performance.now() + delayMs;
+    if (this.timer !== null) {
+      if (this.writesAtMs <= atMs) return;
+      clearTimeout(this.timer);
+    }
+    this.writesAtMs = atMs;
     this.timer = setTimeout(() => {
       this.timer = null;
-      const hash = writeAddress(this.page());
-      history.replaceState(null, '', hash === '' ? location.pathname + location.search : hash);
-    }, ADDRESS_DELAY_MS);
+      history.replaceState(null, '', this.link());
+    }, delayMs);
   }
+}
+
+/** The page as a layout arranges it. */
+function pageOf(layout: Values): PageState {
+  return readAddress(new URLSearchParams([...layout]).toString());
 }

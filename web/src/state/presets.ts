@@ -47,12 +47,14 @@ export function browserStore(): Store | null {
   }
 }
 
+const isPlain = (value: unknown): value is object => typeof value === 'object' && value !== null && !Array.isArray(value);
+const entriesOf = (value: unknown): [string, unknown][] => (isPlain(value) ? Object.entries(value) : []);
+
 export class PresetShelf {
-  private saved: Preset[];
+  private saved: Preset[] = [];
 
   /** Without storage, what is saved lasts until the page is closed. */
-  private constructor(private readonly store: Store | null, private readonly key: string, private readonly shipped: Shipped) {
-    this.saved = this.load();
+  private constructor(private store: Store | null, private readonly key: string, private readonly shipped: Shipped) {
   }
 
   static presets(store: Store | null): PresetShelf {
@@ -64,29 +66,32 @@ export class PresetShelf {
   }
 
   all(): Preset[] {
+    this.saved = this.load();
     const built = Object.entries(this.shipped).map(([name, values]) => ({ name, values: new Map(Object.entries(values)), own: false }));
     return [...built, ...this.saved];
   }
 
   /** Replaces a preset of the same name. Returns false if the name is empty or built-in. */
   save(name: string, values: Values): boolean {
-    if (name === '' || name in this.shipped) return false;
-    this.saved = [...this.saved.filter((p) => p.name !== name), { name, values, own: true }];
+    if (name === '' || Object.hasOwn(this.shipped, name)) return false;
+    this.saved = [...this.load().filter((p) => p.name !== name), { name, values, own: true }];
     this.write();
     return true;
   }
 
   delete(name: string): void {
-    this.saved = this.saved.filter((preset) => preset.name !== name);
+    this.saved = this.load().filter((preset) => preset.name !== name);
     this.write();
   }
 
+  /** Read each time, because other tabs save, too. Entries that are no sets of values are left out. */
   private load(): Preset[] {
+    if (this.store === null) return this.saved;
     try {
-      const parsed = JSON.parse(this.store?.getItem(this.key) ?? '{}') as Record<string, object>;
-      return Object.entries(parsed).map(([name, values]) => ({
+      const parsed: unknown = JSON.parse(this.store.getItem(this.key) ?? '{}');
+      return entriesOf(parsed).filter(([, values]) => isPlain(values)).map(([name, values]) => ({
         name,
-        values: new Map(Object.entries(values).map(([k, v]) => [k, String(v)])),
+        values: new Map(entriesOf(values).map(([k, v]) => [k, String(v)])),
         own: true,
       }));
     } catch {
@@ -99,7 +104,7 @@ export class PresetShelf {
     try {
       this.store?.setItem(this.key, JSON.stringify(Object.fromEntries(plain)));
     } catch {
-      // The storage is full or forbidden. The preset lasts until the page is closed.
+      this.store = null; // it is full or forbidden, so what is saved lasts until the page is closed
     }
   }
 }

@@ -81,6 +81,11 @@ export class SettingsModel {
     this.change(new Map([...this.own, ...values]), sameStep);
   }
 
+  /** The next change is an undo step of its own, however soon it comes. */
+  endStep(): void {
+    this.lastChange = { name: '', atMs: -Infinity };
+  }
+
   /** Resets a setting to the daemon's value. */
   reset(name: string): void {
     const next = new Map(this.own);
@@ -126,7 +131,7 @@ export class SettingsModel {
     if (next === undefined) return;
     to.push(this.own);
     this.own = this.normalised(next);
-    this.lastChange = { name: '', atMs: -Infinity };
+    this.endStep();
     this.tell();
   }
 

@@ -79,6 +79,12 @@ export class WeightHistory {
     return this.frames_.slice(first(({ atS }) => atS >= fromS), first(({ atS }) => atS > toS));
   }
 
+  /** Like between(), together with frames that are no longer kept but are `shown`. */
+  betweenAndShown(shown: readonly WeightFrame[], fromS: number, toS: number): readonly WeightFrame[] {
+    const keptS = this.frames_[0]?.atS ?? Infinity;
+    return [...shown.filter(({ atS }) => atS >= fromS && atS <= toS && atS < keptS), ...this.between(fromS, toS)];
+  }
+
   indexOf(name: string): number {
     return this.index.get(name) ?? -1;
   }
@@ -105,10 +111,10 @@ export class WeightHistory {
   }
 
   /** The format of `furrow watch --format csv`; time in seconds since the first row. */
-  toCsv(frames: readonly WeightFrame[]): string {
+  toCsv(frames: readonly WeightFrame[], names = this.names): string {
     const first = frames[0]?.atS ?? 0;
     const rows = frames.map(({ sequence, atS, values }) =>
       [sequence, (atS - first).toFixed(6), ...Array.from(values, (v) => v.toFixed(6))].join(','));
-    return `${['frame,time', ...this.names].join(',')}\n${rows.map((row) => `${row}\n`).join('')}`;
+    return `${['frame,time', ...names].join(',')}\n${rows.map((row) => `${row}\n`).join('')}`;
   }
 }

@@ -23,7 +23,10 @@ export function kioskButton(root: HTMLElement, kiosk: Signal<boolean>): HTMLButt
     lock = null;
     if (!kiosk.value || document.hidden || !('wakeLock' in navigator)) return;
     // Only in secure contexts, and not with a low battery: then the screen follows the computer's own rules.
-    navigator.wakeLock.request('screen').then((granted) => (lock = granted), () => undefined);
+    navigator.wakeLock.request('screen').then((granted) => {
+      if (!kiosk.value || lock !== null) void granted.release(); // the kiosk was left meanwhile, or has a lock
+      else lock = granted;
+    }, () => undefined);
   };
   document.addEventListener('visibilitychange', keepAwake); // browsers take the lock away from hidden pages
   kiosk.bind((on) => {

@@ -7,31 +7,42 @@ import type { Connection } from '../wire/connection';
 import { PictureStats, type ShownPicture } from './picture_stats';
 import { type Picture, PictureStream } from './picture_stream';
 
+/** A daemon that has refused is asked again after this time. */
+const AGAIN_MS = 5000;
+
 export class LivePicture {
   readonly canvas = h('canvas', { 'aria-hidden': 'true' });
   /** False: what is on the canvas, if anything, is not the subject's. */
   readonly hasPicture = new Signal(false);
   private readonly stats = new PictureStats();
   private stream: PictureStream | null = null;
+  private againMs = -Infinity;
+  private readonly unwatch: () => void;
 
   constructor(private readonly connection: Connection) {
-    connection.link.watch((link) => link === 'lost' && this.forget());
+    this.unwatch = connection.link.watch((link) => link === 'lost' && this.forget());
   }
 
-  /** Null: no picture is wanted. */
-  request(wanted: PictureRequest | null): void {
+  /** Ends it; it cannot be used again. */
+  close(): void {
+    this.end();
+    this.unwatch();
+  }
+
+  /** Null: no picture is wanted. Called again and again while one is, because the daemon may refuse for a while. */
+  request(wanted: PictureRequest | null, nowMs = performance.now()): void {
     if (wanted === null) {
-      if (this.stream === null) return;
-      this.stream.stop();
-      this.stream = null;
-      this.forget();
+      this.end();
     } else if (this.stream !== null) {
       if (this.stream.view.subject !== wanted.subject) this.forget();
       this.stream.update(wanted);
-    } else {
+    } else if (nowMs >= this.againMs) {
       this.stream = new PictureStream(this.connection, wanted, {
         onPicture: (picture) => this.show(picture),
-        onRefused: () => this.forget(),
+        onRefused: () => {
+          this.againMs = performance.now() + AGAIN_MS;
+          this.end(); // there is no subscription that an update could change
+        },
       });
       this.stream.start();
     }
@@ -57,6 +68,13 @@ export class LivePicture {
     bitmap.close();
     this.stats.add(picture, this.connection.nowUs(), this.connection.clock.offsetUs());
     this.hasPicture.set(true);
+  }
+
+  private end(): void {
+    if (this.stream === null) return;
+    this.stream.stop();
+    this.stream = null;
+    this.forget();
   }
 
   private forget(): void {
