@@ -56,12 +56,21 @@ export class Daemon {
     return `http://127.0.0.1:${this.ports.http}/`;
   }
 
+  /** Asks again as long as the daemon says that this host asks too often, as pages and tests of a busy computer do. */
+  async ask(path, options = {}) {
+    for (;;) {
+      const response = await fetch(this.address + path, options);
+      if (response.status !== 429) return response;
+      await new Promise((resolve) => setTimeout(resolve, 1000 * Number(response.headers.get('retry-after'))));
+    }
+  }
+
   async get(path) {
-    return (await fetch(this.address + path)).json();
+    return (await this.ask(path)).json();
   }
 
   async patch(path, body) {
-    const response = await fetch(this.address + path, {
+    const response = await this.ask(path, {
       method: 'PATCH', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify(body),
     });
     if (!response.ok) throw new Error(`${path}: ${response.status} ${await response.text()}`);

@@ -272,7 +272,10 @@ export class GuidePanel {
   /** A capture has failed. Returns what to say. */
   private onFailed(error: unknown, guide: Guide): string {
     if (isTooOften(error)) {
-      this.againMs = performance.now() + AGAIN_MS;
+      const nowMs = performance.now();
+      this.againMs = nowMs + AGAIN_MS;
+      // Only while it is still held, what was captured already is of this expression.
+      if (guide.progress(nowMs).phase !== 'take') this.pending = null;
       return this.automatic.checked ? t.busy : t.busyNow;
     }
     guide.refuse(performance.now());
