@@ -321,6 +321,7 @@ export class App {
     this.viewer.observeRate(shown?.rate_hz ?? 0, nowS);
     this.viewer.drawing.observe(shown, this.viewer.stats.rateHz(nowS));
     const isHere = this.viewer.drawing.active.value;
+    this.against.observe(this.pictureState);
     this.grid.observe(this.pictureState, isHere ? this.viewer.drawing.rateHz(nowS) : this.viewer.stats.rateHz(nowS), shown?.rate_hz ?? 0, this.isAtRest());
     if (isHere && this.numPolls++ % POLLS_PER_SETTINGS === 0) void this.readSettings();
     setTimeout(() => void this.poll(), this.pictureState === 'loading' ? LOADING_POLL_MS : POLL_MS);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A second subject beside the large picture, with the same camera and the same settings.
 import type { AppState } from '../state/app_state';
-import { type Condition, isDimmed } from '../panels/condition';
+import { type Condition, isDimmed, type PictureState } from '../panels/condition';
 import { text } from '../text';
 import { button, h } from '../ui/dom';
 import type { Signal } from '../ui/signal';
@@ -19,6 +19,7 @@ export class Against {
   readonly nameOfFocus = h('p', { class: 'pane-name', hidden: true });
   readonly live: LivePicture;
   private readonly surface: HTMLElement;
+  private isStarted = false;
   private readonly name = h('p', { class: 'pane-name' });
 
   constructor(connection: Connection, private readonly state: AppState, private readonly viewer: Viewer) {
@@ -37,9 +38,16 @@ export class Against {
     new ResizeObserver(() => this.refresh()).observe(this.surface);
   }
 
-  /** Called several times per second, so it also follows the resolution of the large picture, and asks again after a refusal. */
-  show(condition: Condition, focus: string): void {
+  /**
+   * Called once per second, with the state of the large picture, which comes first and says how many pixels are fast enough. A refused
+   * subscription is asked for again.
+   */
+  observe(state: PictureState): void {
+    this.isStarted ||= state !== 'loading';
     this.refresh();
+  }
+
+  show(condition: Condition, focus: string): void {
     const words = t.tile(this.state.against.value, text.state[condition.state]);
     if (this.name.textContent !== words) this.name.textContent = words;
     if (this.nameOfFocus.textContent !== focus) this.nameOfFocus.textContent = focus;
@@ -50,7 +58,7 @@ export class Against {
 
   private refresh(): void {
     const against = this.state.against.value;
-    const density = devicePixelRatio * this.viewer.pixelScale();
-    this.live.request(against === '' ? null : this.viewer.requestOf(against, this.surface, density, RATE_HZ));
+    const density = devicePixelRatio * this.viewer.pixelScale(this.live.isResting);
+    this.live.request(against === '' || !this.isStarted ? null : this.viewer.requestOf(against, this.surface, density, RATE_HZ));
   }
 }

@@ -30,7 +30,6 @@ export class Tile {
     element.classList.toggle('dimmed', isDimmed(state));
     element.classList.toggle('large', isLarge);
     element.setAttribute('aria-pressed', String(isFocus));
-    element.setAttribute('aria-label', t.tile(this.name, text.state[state]));
     if (this.state.textContent !== text.state[state]) this.state.textContent = text.state[state];
   }
 }

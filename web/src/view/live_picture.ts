@@ -55,6 +55,11 @@ export class LivePicture {
     return { sequence, width, height, isStill: still, ageMs: this.stats.ageMs(this.connection.nowUs(), this.connection.clock.offsetUs()) };
   }
 
+  /** True while its pose does not move. */
+  get isResting(): boolean {
+    return this.stats.resting;
+  }
+
   /** True until the picture shows the last change. */
   get isChanging(): boolean {
     return this.stream?.pending.value === true;

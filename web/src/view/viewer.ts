@@ -144,15 +144,15 @@ export class Viewer {
     return comparing.value ? settings.previous : settings.overrides;
   }
 
-  /** Share of the screen's pixels per direction that pictures have. */
-  pixelScale(): number {
+  /** Share of the screen's pixels per direction that pictures have, of a resting pose or of a moving one. */
+  pixelScale(isResting = this.stats.resting && !this.isHasty): number {
     switch (this.state.sharpness.value) {
       case 'sharp':
         return 1;
       case 'fast':
         return 0.5 / Math.max(1, devicePixelRatio);
       default:
-        return this.stats.resting && !this.isHasty ? 1 : this.scale.scale;
+        return isResting ? 1 : this.scale.scale;
     }
   }
 
