@@ -89,7 +89,7 @@ constexpr int kFewFolds = 400;
 constexpr ReliefOptions kRelief{.height = 2.6f, .steepest = 2.0f, .highest = 0.5f, .narrow = 0.6f};
 // Crests of several sizes add up. Where their slopes, averaged over kAround passes, come near this,
 // all become lower: cloth creases, but it does not gape.
-constexpr float kSteepest = 1.3f;
+constexpr float kSteepest = 1.15f;
 constexpr int kAround = 24;
 
 // Completed share of the time when all poses are measured.
@@ -342,7 +342,8 @@ bool ClothFolds::Draw(BakeProgress* progress) {
        .only_pressed = true,
        .creases = {.least = 0.09f, .start = 0.13f, .longest = 4.0f, .seed = seed_}},
       // Long and even ones: a crest that breaks off is a gash.
-      {.merged = 0.5f, .creases = {.variation = 0.2f, .longest = 8.0f, .seed = seed_ + 1}},
+      {.merged = 0.5f,
+       .creases = {.variation = 0.2f, .shortest = 2.5f, .longest = 8.0f, .seed = seed_ + 1}},
       {.share = 0.12f,
        .wide = 0.5f,
        .creases = {.least = 0.15f, .start = 0.19f, .longest = 7.0f, .seed = seed_ + 2}}};
