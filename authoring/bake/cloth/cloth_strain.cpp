@@ -99,7 +99,8 @@ class Spread {
   [[nodiscard]] ClothStrain Measure(std::span<const vec3> cut, std::span<const vec3> posed,
                                     const ClothSlip& slip) {
     ClothStrain strain{std::vector<mat3>(mesh_.vertices().size(), mat3(0.0f)),
-                       std::vector<mat3>(mesh_.vertices().size(), mat3(0.0f))};
+                       std::vector<mat3>(mesh_.vertices().size(), mat3(0.0f)),
+                       std::vector<float>(mesh_.vertices().size(), 0.0f)};
     std::vector<mat3> lost = Changes(cut, posed), pulled = lost;
     if (flows_.empty()) return strain;
     for (std::size_t i = 0; i < lost.size(); ++i) {
@@ -123,8 +124,9 @@ class Spread {
     }
     lost = Diffused(lost, flows_, steps(slip.pressed));
     for (std::size_t i = 0; i < vertices_.size(); ++i) {
-      const mat3 given = PositiveAcross(fed[i] - pulled[i], normals_[i]);
-      strain.lost[vertices_[i]] = PositiveAcross(lost[i] + kFed * slip.feeds * given, normals_[i]);
+      const mat3 given = kFed * slip.feeds * PositiveAcross(fed[i] - pulled[i], normals_[i]);
+      strain.lost[vertices_[i]] = PositiveAcross(lost[i] + given, normals_[i]);
+      strain.fed[vertices_[i]] = TraceOf(given);
       strain.pulled[vertices_[i]] = PositiveAcross(pulled[i], normals_[i]);
     }
     return strain;

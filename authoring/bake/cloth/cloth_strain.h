@@ -16,7 +16,7 @@ struct ClothSlip {
   float pressed = 0.0f;  // away from where a bend presses it together, along the compression
   float pulled = 0.0f;   // around a pull
   float fed = 0.0f;      // to where it is pulled
-  float feeds = 1.0f;    // share of the length that a pull needs and gets from around, [0, 1]
+  float feeds = 1.0f;    // how much length a pull gets from around, relative to what it needs, >= 0
 };
 
 // How a pose changes the lengths of the surface below cloth, spread over the cloth.
@@ -39,6 +39,7 @@ struct ClothStrain {
   // cut length, or gains dot(d, pulled d).
   std::vector<glm::mat3> lost;
   std::vector<glm::mat3> pulled;
+  std::vector<float> fed;  // the part of the trace of `lost` that a pull nearby takes
 };
 [[nodiscard]] ClothStrain MeasureClothStrain(const FineMesh& mesh, std::span<const glm::vec3> cut,
                                              std::span<const glm::vec3> posed,

@@ -59,7 +59,10 @@ constexpr float kStill = 0.02f;
 constexpr float kMoved = 0.12f;
 // How much wider apart and how high drag lines are, relative to folds that are pressed.
 constexpr float kDragWidth = 1.35f;
-constexpr float kDragHeight = 0.62f;
+constexpr float kDragHeight = 0.68f;
+// Likewise of folds in cloth that feeds a pull nearby: it slides there little by little.
+constexpr float kFedWidth = 0.8f;
+constexpr float kFedHeight = 0.95f;
 // The size of loose and tight places, in wavelengths, and how much longer they are along gravity.
 constexpr float kPlace = 2.5f;
 constexpr float kLong = 0.7f;  // a share of the way along gravity that does not count
@@ -83,10 +86,10 @@ constexpr float kHighest = 0.0195f;
 // on average, but the body stops it from below.
 constexpr float kSettled = 0.7f;
 constexpr int kFewFolds = 400;
-constexpr ReliefOptions kRelief{.height = 2.2f, .steepest = 2.0f, .highest = 0.5f, .narrow = 0.6f};
+constexpr ReliefOptions kRelief{.height = 2.6f, .steepest = 2.0f, .highest = 0.5f, .narrow = 0.6f};
 // Crests of several sizes add up. Where their slopes, averaged over kAround passes, come near this,
 // all become lower: cloth creases, but it does not gape.
-constexpr float kSteepest = 1.5f;
+constexpr float kSteepest = 1.15f;
 constexpr int kAround = 24;
 
 // Completed share of the time when all poses are measured.
@@ -156,7 +159,7 @@ void ClothFolds::Add(const BakePose& pose, std::span<const float> mask, float wa
                                   .own = {},
                                   .laid = {}});
   }
-  found->feeds = std::min(found->feeds, ease.feeds);
+  found->feeds = found->feeds ? std::min(*found->feeds, ease.feeds) : ease.feeds;
   for (std::size_t v = 0; v < mesh_.vertices().size(); ++v) {
     const float inside = mesh_.vertices()[v].Interpolate(mask);
     found->room[v] = std::max(found->room[v], inside);
@@ -189,7 +192,7 @@ ClothFolds::Effect ClothFolds::EffectOf(const Pose& pose, const SkinMatrices& be
   const std::vector<vec3> cut =
       PlacesOn(mesh_, PoseSurface(surface, pose.cut, surface.positions()));
   ClothSlip slip = kSlip;
-  slip.feeds = pose.feeds;
+  slip.feeds = pose.feeds.value_or(slip.feeds);
   const ClothStrain strain =
       MeasureClothStrain(mesh_, cut, PlacesOn(mesh_, posed), pose.room, slip);
   const std::vector<vec3> normals = NormalsOf(mesh_);
@@ -204,6 +207,7 @@ ClothFolds::Effect ClothFolds::EffectOf(const Pose& pose, const SkinMatrices& be
     const ClothEase& ease = pose.eases[v];
     // Cloth that lies on the body does not hang, and taut cloth has no ease left.
     const float lost = TraceOf(strain.lost[v]), pulled = TraceOf(strain.pulled[v]);
+    const float fed = strain.fed[v];
     const float taut = 0.8f * Smoothstep(0.03f, 0.15f, pulled);
     const float loose = (1.0f - taut) * ease_ * ease.looser *
                         LoosenessAt(v, down, pose.wavelength, ease.least) *
@@ -214,9 +218,12 @@ ClothFolds::Effect ClothFolds::EffectOf(const Pose& pose, const SkinMatrices& be
                  std::max(ease.along, kHangingAlong) * glm::outerProduct(along, along));
     const float moved = Smoothstep(kStill, kMoved, lost + pulled);
     const float dragged = Smoothstep(0.04f, 0.2f, pulled - 0.5f * lost);
-    effect.pressed[v] = moved * Smoothstep(0.15f, 0.8f, lost / (pulled + kStill));
-    effect.height[v] = std::lerp(1.0f, kDragHeight, dragged);
-    effect.width[v] = std::lerp(HangingWidth(), std::lerp(1.0f, kDragWidth, dragged), moved);
+    // Cloth that feeds a pull has no large forms: those are lumps below a kneecap.
+    effect.pressed[v] = moved * Smoothstep(0.15f, 0.8f, (lost - fed) / (pulled + kStill));
+    const float feeding = fed / (lost + kStill);
+    effect.height[v] = std::lerp(1.0f, kDragHeight, dragged) * std::lerp(1.0f, kFedHeight, feeding);
+    effect.width[v] = std::lerp(HangingWidth(), std::lerp(1.0f, kDragWidth, dragged), moved) *
+                      std::lerp(1.0f, kFedWidth, feeding);
   }
   return effect;
 }
@@ -334,7 +341,9 @@ bool ClothFolds::Draw(BakeProgress* progress) {
        .wide = 2.1f,
        .only_pressed = true,
        .creases = {.least = 0.09f, .start = 0.13f, .longest = 4.0f, .seed = seed_}},
-      {.merged = 0.5f, .creases = {.seed = seed_ + 1}},
+      // Long and even ones: a crest that breaks off is a gash.
+      {.merged = 0.5f,
+       .creases = {.variation = 0.2f, .shortest = 2.5f, .longest = 8.0f, .seed = seed_ + 1}},
       {.share = 0.12f,
        .wide = 0.5f,
        .creases = {.least = 0.15f, .start = 0.19f, .longest = 7.0f, .seed = seed_ + 2}}};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -79,7 +80,7 @@ class ClothFolds {
     std::vector<float> shares;  // the mask times the weight
     std::vector<ClothEase> eases;
     float wavelength = 0.0f;
-    float feeds = 1.0f;  // ClothEase::feeds, the least of the regions
+    std::optional<float> feeds;  // ClothEase::feeds, the least of the regions
     Effect own;
     Effect laid;  // of `further` if there is one, else empty
   };
