@@ -40,4 +40,14 @@ void Introduction::OnPing(const protocol::Ping& ping) {
   (void)transport_->Send(bytes_);
 }
 
+void RememberOthers(const protocol::Welcome& welcome, const Introduction& introduction,
+                    Transport& transport) {
+  if (!introduction.proven() || welcome.token != 0) return;
+  std::vector<Elsewhere> others;
+  for (const std::string& text : welcome.others) {
+    if (auto server = ParseElsewhere(text)) others.push_back(*std::move(server));
+  }
+  transport.Remember(others);
+}
+
 }  // namespace furrow::client

@@ -45,4 +45,8 @@ class Introduction {
   std::vector<std::uint8_t> bytes_;
 };
 
+// Lets the transport know the servers of a Welcome, once the daemon is proven.
+void RememberOthers(const protocol::Welcome& welcome, const Introduction& introduction,
+                    Transport& transport);
+
 }  // namespace furrow::client

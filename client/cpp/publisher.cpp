@@ -102,7 +102,32 @@ void Publisher::RepeatPrevious(Stream& stream, const protocol::Header& header,
   stream.previous_capture_us = header.capture_time_us;
 }
 
+// A server that is frozen, or whose computer is gone, looks like one that has nothing to say.
+void Publisher::WatchServer(std::int64_t now_us) {
+  constexpr std::int64_t kAskUs = 500'000;
+  constexpr std::int64_t kSilenceUs = 2'000'000;
+  // Without others, there is nothing to do about it. A program that did not poll has not listened.
+  if (!transport_->has_others() || now_us - watched_us_ > kSilenceUs) heard_us_ = now_us;
+  watched_us_ = now_us;
+  if (now_us - heard_us_ > kSilenceUs) {
+    heard_us_ = now_us;
+    transport_->Abandon();
+  } else if (transport_->has_others() && introduction_.proven() && now_us - asked_us_ >= kAskUs) {
+    asked_us_ = now_us;
+    encoder_.Encode({.session = session_}, protocol::Ping{.time_us = now_us}, bytes_);
+    (void)transport_->Send(bytes_);
+  }
+}
+
+// True if the publisher goes on at another server. One with several subjects cannot: it has one
+// connection for all of them.
+bool Publisher::Follow() {
+  if (error_.host.empty() || !introduction_.proven() || streams_.size() != 1) return false;
+  return transport_->GoTo({error_.host, error_.tcp, error_.udp});
+}
+
 IoStatus Publisher::Poll(std::int64_t now_us, std::chrono::milliseconds wait) {
+  WatchServer(now_us);
   if (introduction_.proven()) {
     for (Stream& stream : streams_) {
       const bool due = now_us - stream.offered_us >= protocol::kOfferResendMicroseconds;
@@ -115,6 +140,7 @@ IoStatus Publisher::Poll(std::int64_t now_us, std::chrono::milliseconds wait) {
   IoStatus status = transport_->Receive(message, wait);
   if (transport_->generation() != generation_) StartOver(now_us);
   while (status == IoStatus::kOk) {
+    heard_us_ = now_us;
     Handle(message, now_us);
     // Reads all waiting answers. A timeout after the first one is not a timeout of this call.
     const IoStatus more = transport_->Receive(message, std::chrono::milliseconds(0));
@@ -137,6 +163,7 @@ void Publisher::Handle(std::span<const std::uint8_t> message, std::int64_t now_u
           introduction_.OnWelcome(welcome_)) {
         OfferAll(now_us);
       }
+      RememberOthers(welcome_, introduction_, *transport_);
       return;
     case protocol::MessageKind::kPing:
       if (protocol::Decode(view, ping_) == DecodeStatus::kOk) introduction_.OnPing(ping_);
@@ -179,6 +206,7 @@ void Publisher::OfferAll(std::int64_t now_us) {
 // Says Hello again if the daemon does not know the address, for example after a restart. Each pose
 // on its way then earns this error, and only the first one counts.
 void Publisher::OnError(std::int64_t now_us) {
+  if (Follow()) return;
   if (error_.code != protocol::ErrorCode::kUnprovenAddress) {
     last_error_ = error_.message;
     if (error_.code == protocol::ErrorCode::kNeedsToken) {

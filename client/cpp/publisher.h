@@ -88,6 +88,8 @@ class Publisher {
   void Introduce(std::int64_t now_us);
   void StartOver(std::int64_t now_us);
   void OnError(std::int64_t now_us);
+  [[nodiscard]] bool Follow();
+  void WatchServer(std::int64_t now_us);
   void OnReply(const protocol::Header& header, std::int64_t now_us);
   static void OnOversized(Stream& stream);
   void SendGoodbye(std::size_t stream);
@@ -108,6 +110,11 @@ class Publisher {
   protocol::ErrorMessage error_;
   std::string last_error_;
   bool needs_token_ = false;
+  // With other servers to go to: the last call of WatchServer(), and when this server was heard and
+  // asked last.
+  std::int64_t watched_us_ = 0;
+  std::int64_t heard_us_ = 0;
+  std::int64_t asked_us_ = 0;
 };
 
 // Returns a random session number, never 0. A new number at each start lets the daemon tell a

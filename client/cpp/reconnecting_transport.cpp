@@ -17,6 +17,10 @@ namespace {
 constexpr std::int64_t kConnectTimeoutUs = 3'000'000;
 // A UDP socket that only fails for this time is opened again.
 constexpr std::int64_t kReopenUs = 5'000'000;
+// The same if other servers may be there.
+constexpr std::int64_t kReopenWithOthersUs = 500'000;
+// No daemon can send a client back to a server that was lost for this time.
+constexpr std::int64_t kLostUs = 3'000'000;
 // The pause after an attempt that fails, as a multiple of the time that the attempt itself took.
 // The system's resolver may block for seconds without a network.
 constexpr std::int64_t kRestPerWork = 4;
@@ -42,18 +46,24 @@ std::unique_ptr<ReconnectingTransport> ReconnectingTransport::Create(
     TransportKind kind, const std::string& host, std::uint16_t port,
     std::chrono::milliseconds send_timeout, std::unique_ptr<Transport> first, Security security) {
   const auto open = [=] { return BeginTransport(kind, host, port, send_timeout, security); };
-  return std::make_unique<ReconnectingTransport>(
+  auto transport = std::make_unique<ReconnectingTransport>(
       kind, open, &SteadyMicroseconds, Backoff(std::random_device()(), {}), std::move(first));
+  transport->FollowBy([=](const Elsewhere& server) {
+    return BeginTransport(kind, server.host, kind == TransportKind::kUdp ? server.udp : server.tcp,
+                          send_timeout, security);
+  });
+  return transport;
 }
 
 bool ReconnectingTransport::Open(std::int64_t now_us) {
-  auto opened = open_();
+  auto opened = server_ == 0 ? open_() : open_at_(servers_[server_]);
   if (!opened.ok()) {
     failure_ = opened.status().what();
     tls_failed_ = false;
     const std::int64_t after_us = now_us_();
     backoff_.Failed(after_us);
     backoff_.NotBefore(after_us + kRestPerWork * (after_us - now_us));
+    TryNext(after_us);
     return false;
   }
   inner_ = *std::move(opened);
@@ -68,7 +78,51 @@ void ReconnectingTransport::Lose(std::int64_t now_us) {
   up_ = false;
   abandoned_ = false;
   failing_since_us_.reset();
+  // The server that the daemon has named is there; the next one may not be.
+  if (std::exchange(moves_, false)) return;
   backoff_.Failed(now_us);
+  TryNext(now_us);
+}
+
+void ReconnectingTransport::TryNext(std::int64_t now_us) {
+  lost_ = servers_[server_];
+  lost_us_ = now_us;
+  server_ = (server_ + 1) % servers_.size();
+}
+
+bool ReconnectingTransport::GoTo(const Elsewhere& server) {
+  const std::int64_t now_us = now_us_();
+  std::erase_if(moves_us_, [now_us](std::int64_t moved_us) {
+    return now_us - moved_us > kMoveWindow.count();
+  });
+  if (!open_at_ || server.host.empty()) return false;
+  // The other servers learn later than this client that one is gone.
+  const bool is_lost = lost_ == server && now_us - lost_us_ < kLostUs;
+  if (is_lost || moves_us_.size() >= kMostMoves) return true;
+  moves_us_.push_back(now_us);
+  auto found = std::find(servers_.begin() + 1, servers_.end(), server);
+  if (found == servers_.end()) {
+    if (servers_.size() > protocol::kMaxOthers) servers_.pop_back();
+    found = servers_.insert(servers_.end(), server);
+  }
+  server_ = static_cast<std::size_t>(found - servers_.begin());
+  // Closed in Receive(), because received messages still point into the connection's buffers.
+  moves_ = abandoned_ = true;
+  return true;
+}
+
+void ReconnectingTransport::Remember(std::span<const Elsewhere> others) {
+  if (!open_at_ || moves_) return;
+  const Elsewhere present = servers_[server_];
+  servers_.resize(1);
+  for (const Elsewhere& other : others) {
+    if (servers_.size() > protocol::kMaxOthers) break;
+    if (!other.host.empty() && other != present) servers_.push_back(other);
+  }
+  if (server_ != 0) {
+    server_ = servers_.size();
+    servers_.push_back(present);
+  }
 }
 
 // Waits for the next attempt, so that a caller's loop does not spin.
@@ -126,7 +180,9 @@ IoStatus ReconnectingTransport::OnFailure(std::int64_t now_us) {
   if (const std::string why = inner_->failure(); !why.empty()) failure_ = why;
   refusal_ = inner_->refusal();
   tls_failed_ = inner_->tls_failed();
-  const bool keep = kind() == TransportKind::kUdp && up_ && now_us - *failing_since_us_ < kReopenUs;
+  const std::int64_t patience_us = has_others() ? kReopenWithOthersUs : kReopenUs;
+  const bool keep =
+      kind() == TransportKind::kUdp && up_ && now_us - *failing_since_us_ < patience_us;
   if (!keep) Lose(now_us);
   return IoStatus::kNoConnection;
 }

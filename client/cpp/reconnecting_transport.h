@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "client/cpp/backoff.h"
 #include "client/cpp/tls/security.h"
@@ -25,6 +29,8 @@ class ReconnectingTransport : public Transport {
  public:
   // Starts one attempt, without waiting for its end (BeginTransport()).
   using Opener = std::function<Result<std::unique_ptr<Transport>>()>;
+  // The same for another server.
+  using OpenerAt = std::function<Result<std::unique_ptr<Transport>>(const Elsewhere& server)>;
   // The time of a monotonic clock, microseconds.
   using Clock = std::function<std::int64_t()>;
 
@@ -39,6 +45,14 @@ class ReconnectingTransport : public Transport {
       std::chrono::milliseconds send_timeout, std::unique_ptr<Transport> first = nullptr,
       Security security = {});
 
+  // Lets the transport go to other servers of the daemon's cluster: when the daemon sends it there,
+  // at most kMostMoves times in kMoveWindow, and when the connection is lost. Whoever is met there
+  // must prove the same as the first daemon: the opener shows the same token and checks the same
+  // certificates.
+  void FollowBy(OpenerAt open_at) { open_at_ = std::move(open_at); }
+  static constexpr std::size_t kMostMoves = 4;
+  static constexpr std::chrono::microseconds kMoveWindow = std::chrono::seconds(10);
+
   [[nodiscard]] IoStatus Send(std::span<const std::uint8_t> message) override;
   [[nodiscard]] IoStatus Receive(std::span<const std::uint8_t>& message,
                                  std::chrono::milliseconds timeout) override;
@@ -50,14 +64,26 @@ class ReconnectingTransport : public Transport {
   [[nodiscard]] std::string failure() const override { return failure_; }
   [[nodiscard]] protocol::secure::Refusal refusal() const override { return refusal_; }
   [[nodiscard]] bool tls_failed() const override { return tls_failed_; }
+  [[nodiscard]] bool GoTo(const Elsewhere& server) override;
+  void Remember(std::span<const Elsewhere> others) override;
+  [[nodiscard]] bool has_others() const override { return servers_.size() > 1; }
 
  private:
   bool Open(std::int64_t now_us);
+  void TryNext(std::int64_t now_us);
   void Lose(std::int64_t now_us);
   IoStatus Rest(std::int64_t now_us, std::chrono::milliseconds timeout) const;
   IoStatus OnFailure(std::int64_t now_us);
 
   Opener open_;
+  OpenerAt open_at_;  // empty: only the first server
+  // The first one, which `open_` connects to and whose address stays empty here, and others.
+  std::vector<Elsewhere> servers_{{}};
+  std::size_t server_ = 0;              // the present one in servers_
+  std::vector<std::int64_t> moves_us_;  // when the daemon sent it away
+  bool moves_ = false;                  // it has just done so
+  std::optional<Elsewhere> lost_;       // the server that was lost last, and when
+  std::int64_t lost_us_ = 0;
   Clock now_us_;
   Backoff backoff_;
   std::unique_ptr<Transport> inner_;  // null between a loss and the next attempt

@@ -23,6 +23,8 @@ constexpr std::int64_t kSlowResendMicroseconds = 800'000;
 constexpr std::int64_t kUnchallengedMicroseconds = protocol::kUdpLeaseMicroseconds / 2;
 // After this time without an answer the network or the daemon is considered gone.
 constexpr std::int64_t kSilenceMicroseconds = 3 * protocol::kUdpLeaseMicroseconds;
+// The same if there are other servers to go to.
+constexpr std::int64_t kSilenceWithOthersMicroseconds = 2'000'000;
 
 }  // namespace
 
@@ -41,6 +43,7 @@ std::uint32_t Subscriber::Ask(const Message& message) {
   Request& request = requests_.emplace_back();
   request.number = next_request_++;
   request.wait = message.wait;
+  request.subject = message.subject;
   encoder_.Encode({.session = session_, .sequence = request.number}, message, request.bytes);
   if (transport_->reconnects()) {
     Message resumed = message;
@@ -165,12 +168,12 @@ void Subscriber::Maintain(std::int64_t now_us) {
     last_challenge_us_ = now_us;
     for (Request& request : requests_) request.waiting = true;
   }
-  // TCP does not lose requests, so only UDP repeats them.
-  const bool asking = udp && std::ranges::any_of(requests_, &Request::waiting);
+  // TCP does not lose requests, so only UDP repeats them, unless the daemon has sent them away.
+  const bool asking = (udp || sent_away_) && std::ranges::any_of(requests_, &Request::waiting);
   const bool unsettled = !introduction_.proven() || asking;
   const bool silent =
       unanswered_since_us_ && now_us - *unanswered_since_us_ > protocol::kUdpLeaseMicroseconds;
-  const std::int64_t resend = silent ? kSlowResendMicroseconds : kResendMicroseconds;
+  const std::int64_t resend = silent || sent_away_ ? kSlowResendMicroseconds : kResendMicroseconds;
   if (now_us - last_sent_us_ < (unsettled ? resend : kRenewMicroseconds)) return;
   last_sent_us_ = now_us;
   // Silence counts from the first unanswered send. A daemon that has nothing to say is not gone.
@@ -212,7 +215,9 @@ Event Subscriber::Next(std::int64_t now_us, std::chrono::milliseconds wait) {
 
 // The event of a receive timeout.
 Event::Kind Subscriber::OnTimeout(std::int64_t now_us) {
-  const bool lost = unanswered_since_us_ && now_us - *unanswered_since_us_ > kSilenceMicroseconds;
+  const std::int64_t patience_us =
+      transport_->has_others() ? kSilenceWithOthersMicroseconds : kSilenceMicroseconds;
+  const bool lost = unanswered_since_us_ && now_us - *unanswered_since_us_ > patience_us;
   if (!lost) return Event::Kind::kTimeout;
   if (transport_->reconnects()) {
     // The peer may be gone without a word, as after a power failure.
@@ -233,6 +238,10 @@ bool Subscriber::Handle(std::span<const std::uint8_t> message, Event& event) {
   }
   // Every message carries the daemon's session number, so any message shows a restart.
   NoticeRestart(view.header.session);
+  const bool is_frame = view.kind == MessageKind::kWeights || view.kind == MessageKind::kPose ||
+                        view.kind == MessageKind::kSkeletonOffer ||
+                        view.kind == MessageKind::kImage;
+  if (is_frame && IsFenced(view.header.stream)) return false;
   event.header = view.header;
   payload_ = view.payload;
   DecodeStatus status = DecodeStatus::kOk;
@@ -267,7 +276,7 @@ bool Subscriber::Handle(std::span<const std::uint8_t> message, Event& event) {
     case MessageKind::kSubscribeReply:
       status = protocol::Decode(view, reply_);
       event.kind = Event::Kind::kReply;
-      if (status == DecodeStatus::kOk) OnReply(view.header);
+      if (status == DecodeStatus::kOk && !OnReply(view.header)) return false;
       break;
     case MessageKind::kError:
       status = protocol::Decode(view, error_);
@@ -295,6 +304,7 @@ bool Subscriber::HandleWelcome(const protocol::MessageView& view, Event& event) 
     return false;
   }
   if (introduction_.OnWelcome(welcome)) SendWaiting();
+  RememberOthers(welcome, introduction_, *transport_);
   if (!introduction_.proven() || answered_ || !transport_->reconnects()) return false;
   answered_ = true;
   event.kind = Event::Kind::kConnected;
@@ -311,13 +321,39 @@ void Subscriber::HandlePing(const protocol::MessageView& view) {
   }
 }
 
-void Subscriber::OnReply(const protocol::Header& header) {
+// Returns false if the daemon serves the subject in a lower epoch than another one did. It will
+// notice that it no longer may.
+bool Subscriber::OnReply(const protocol::Header& header) {
   const auto found = std::ranges::find(requests_, header.sequence, &Request::number);
-  if (found == requests_.end()) return;
+  if (found == requests_.end()) return true;
+  sent_away_ = false;
   found->waiting = false;
   found->subscription = header.stream;
+  found->fenced = reply_.epoch != 0 && reply_.epoch < found->epoch;
+  if (found->fenced) return false;
+  found->epoch = std::max(found->epoch, reply_.epoch);
   // Frames carry this hash. OnFrame() compares them.
   found->names_hash = reply_.names_hash;
+  return true;
+}
+
+bool Subscriber::IsFenced(std::uint16_t subscription) const {
+  const auto found = std::ranges::find(requests_, subscription, &Request::subscription);
+  return found != requests_.end() && found->fenced;
+}
+
+// True if the subscriber goes on at another server. One with several subjects cannot: it has one
+// connection for all of them.
+bool Subscriber::Follow() {
+  if (error_.host.empty() || !introduction_.proven() || requests_.empty()) return false;
+  const std::string& subject = requests_.front().subject;
+  const bool same = std::ranges::all_of(
+      requests_, [&subject](const Request& request) { return request.subject == subject; });
+  if (!same || !transport_->GoTo({error_.host, error_.tcp, error_.udp})) return false;
+  // If it stays for now, the daemon may know more in a moment.
+  sent_away_ = true;
+  ResumeAll();
+  return true;
 }
 
 void Subscriber::OnSkeleton(std::uint16_t subscription) {
@@ -333,6 +369,7 @@ void Subscriber::OnFrame(std::uint16_t subscription, std::uint64_t hash) {
 
 // Returns false if the error is handled here and not passed to the caller.
 bool Subscriber::OnError(const protocol::Header& header) {
+  if (Follow()) return false;
   if (error_.code == protocol::ErrorCode::kUnprovenAddress &&
       transport_->kind() == TransportKind::kUdp) {
     if (introduction_.proven()) ProveAgain();

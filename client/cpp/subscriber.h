@@ -103,6 +103,9 @@ class Subscriber {
     bool wait = false;
     bool waiting = true;  // no answer yet
     std::uint16_t subscription = 0;
+    std::string subject;
+    std::uint64_t epoch = 0;       // the highest one that served it
+    bool fenced = false;           // the daemon has a lower one, so its frames are dropped
     std::uint64_t names_hash = 0;  // hash of the names, or of the skeleton
     std::vector<std::uint8_t> bytes;
     std::vector<std::uint8_t> resumed;  // as `bytes`, with `wait`; replaces them after a loss
@@ -122,7 +125,9 @@ class Subscriber {
   bool Handle(std::span<const std::uint8_t> message, Event& event);
   bool HandleWelcome(const protocol::MessageView& view, Event& event);
   void HandlePing(const protocol::MessageView& view);
-  void OnReply(const protocol::Header& header);
+  [[nodiscard]] bool OnReply(const protocol::Header& header);
+  [[nodiscard]] bool IsFenced(std::uint16_t subscription) const;
+  [[nodiscard]] bool Follow();
   void OnSkeleton(std::uint16_t subscription);
   void OnFrame(std::uint16_t subscription, std::uint64_t hash);
   [[nodiscard]] bool OnError(const protocol::Header& header);
@@ -143,6 +148,7 @@ class Subscriber {
   std::int64_t last_challenge_us_ = 0;  // or when requests were repeated for lack of one
   std::optional<std::int64_t> unanswered_since_us_;  // oldest send without any message since
   bool started_ = false;
+  bool sent_away_ = false;  // the daemon has named another one, and none has answered since
   std::uint64_t malformed_ = 0;
 
   std::vector<std::uint8_t> bytes_;

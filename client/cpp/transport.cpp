@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/cpp/transport.h"
 
+#include <charconv>
+#include <cstddef>
+
 #include "protocol/codec/codec.h"
 #include "protocol/secure/token/token_text.h"
 
@@ -38,6 +41,21 @@ Status ConnectionFailed(TransportKind kind, const std::string& host, std::uint16
   return {StatusCode::kUnavailable, "no connection to " + AddressText(host, port) + " over " +
                                         (kind == TransportKind::kTcp ? "TCP: " : "UDP: ") +
                                         std::string(reason)};
+}
+
+std::optional<Elsewhere> ParseElsewhere(std::string_view text) {
+  Elsewhere server;
+  for (std::uint16_t* port : {&server.udp, &server.tcp}) {
+    const std::size_t colon = text.rfind(':');
+    if (colon == std::string_view::npos) return std::nullopt;
+    const char* const end = text.data() + text.size();
+    const auto [parsed, error] = std::from_chars(text.data() + colon + 1, end, *port);
+    if (error != std::errc() || parsed != end || *port == 0) return std::nullopt;
+    text = text.substr(0, colon);
+  }
+  if (text.empty()) return std::nullopt;
+  server.host = text;
+  return server;
 }
 
 }  // namespace furrow::client

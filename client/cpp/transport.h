@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -19,6 +20,16 @@ using Token = protocol::secure::ClientToken;
 
 // The network protocol below a transport.
 enum class TransportKind { kUdp, kTcp };
+
+// Another server of the daemon's cluster.
+struct Elsewhere {
+  std::string host;  // a name or a numeric address, without brackets
+  std::uint16_t tcp = 0;
+  std::uint16_t udp = 0;
+  friend bool operator==(const Elsewhere&, const Elsewhere&) = default;
+};
+// "HOST:TCP:UDP", as in Welcome; nothing if it is not.
+[[nodiscard]] std::optional<Elsewhere> ParseElsewhere(std::string_view text);
 
 // The outcome of one send or receive.
 enum class IoStatus {
@@ -74,6 +85,14 @@ class Transport {
   [[nodiscard]] virtual std::uint64_t generation() const { return 1; }
   // Gives up a connection whose peer has stopped answering, if the transport can make another.
   virtual void Abandon() {}
+
+  // Goes on at another server, because the daemon said so. False: this transport never does. True
+  // also if it stays for now, because that server was lost a moment ago or because servers have
+  // sent it to and fro: ask again later.
+  [[nodiscard]] virtual bool GoTo(const Elsewhere& /*server*/) { return false; }
+  // Servers to try if this one is lost.
+  virtual void Remember(std::span<const Elsewhere> /*others*/) {}
+  [[nodiscard]] virtual bool has_others() const { return false; }
 
   [[nodiscard]] TransportKind kind() const { return kind_; }
 

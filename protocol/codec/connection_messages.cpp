@@ -23,12 +23,14 @@ flatbuffers::Offset<wire::Hello> WriteTable(PayloadBuilder& payload, const Hello
 
 DecodeStatus ReadTable(const wire::Welcome& table, Welcome& message) {
   message.token = table.token();
+  FURROW_CHECK_DECODE(ReadNames(table.others(), kMaxOthers, message.others));
   return ReadText(table.server(), kMaxProgramBytes, message.server);
 }
 
 flatbuffers::Offset<wire::Welcome> WriteTable(PayloadBuilder& payload, const Welcome& message) {
   const auto server = WriteText(payload, message.server);
-  return wire::CreateWelcome(payload.builder, server, message.token);
+  const auto others = WriteNames(payload, message.others);
+  return wire::CreateWelcome(payload.builder, server, message.token, others);
 }
 
 DecodeStatus ReadTable(const wire::Ping& table, Ping& message) {
@@ -66,12 +68,19 @@ DecodeStatus ReadTable(const wire::Error& table, ErrorMessage& message) {
   if (code < ErrorCode::kMalformed || code > ErrorCode::kNotPermitted)
     return DecodeStatus::kBadValue;
   message.code = code;
-  return ReadText(table.message(), kMaxTextBytes, message.message);
+  FURROW_CHECK_DECODE(ReadText(table.message(), kMaxTextBytes, message.message));
+  FURROW_CHECK_DECODE(ReadText(table.host(), kMaxHostBytes, message.host));
+  message.tcp = table.tcp();
+  message.udp = table.udp();
+  const bool has_ports = message.tcp != 0 && message.udp != 0;
+  return message.host.empty() || has_ports ? DecodeStatus::kOk : DecodeStatus::kBadValue;
 }
 
 flatbuffers::Offset<wire::Error> WriteTable(PayloadBuilder& payload, const ErrorMessage& message) {
   const auto text = WriteText(payload, message.message);
-  return wire::CreateError(payload.builder, static_cast<std::uint16_t>(message.code), text);
+  const auto host = WriteText(payload, message.host);
+  return wire::CreateError(payload.builder, static_cast<std::uint16_t>(message.code), text, host,
+                           message.tcp, message.udp);
 }
 
 }  // namespace furrow::protocol::internal

@@ -62,6 +62,7 @@ DecodeStatus ReadTable(const wire::SubscribeReply& table, SubscribeReply& messag
   FURROW_CHECK_DECODE(ReadNames(table.names(), kMaxWeights, message.names));
   message.names_hash = table.names_hash();
   message.publisher_session = table.publisher_session();
+  message.epoch = table.epoch();
   return NamesHash(message.names) == message.names_hash ? DecodeStatus::kOk
                                                         : DecodeStatus::kBadHash;
 }
@@ -71,7 +72,7 @@ flatbuffers::Offset<wire::SubscribeReply> WriteTable(PayloadBuilder& payload,
   const auto subject = WriteText(payload, message.subject);
   const auto names = WriteNames(payload, message.names);
   return wire::CreateSubscribeReply(payload.builder, subject, NamesHash(message.names), names,
-                                    message.publisher_session);
+                                    message.publisher_session, message.epoch);
 }
 
 DecodeStatus ReadTable(const wire::Dropped& table, Dropped& message) {

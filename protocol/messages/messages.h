@@ -57,6 +57,9 @@ struct Hello {
 struct Welcome {
   std::string server;       // program and version
   std::uint64_t token = 0;  // to be returned in Hello; 0 once the address is proven, and on TCP
+  // Further servers of its cluster, "HOST:TCP:UDP", for a client that loses this one; at most
+  // kMaxOthers. Only with token 0.
+  std::vector<std::string> others = {};
 };
 
 // Either direction. The receiver replies with Pong at once. Keeps a UDP subscription alive.
@@ -106,6 +109,10 @@ enum class ErrorCode : std::uint16_t {
 struct ErrorMessage {
   ErrorCode code = ErrorCode::kInternal;
   std::string message;  // one human-readable sentence: what went wrong and what to do
+  // The server that the client must ask instead; empty: none.
+  std::string host = {};  // a name or a numeric address, without brackets; at most kMaxHostBytes
+  std::uint16_t tcp = 0;  // ports; not 0 with a host
+  std::uint16_t udp = 0;
 };
 
 // --- Publishing ---------------------------------------------------------------------------------
@@ -278,6 +285,9 @@ struct SubscribeReply {
   std::vector<std::string> names;  // of the values of a WeightFrame, in the same order
   // Poses: the publisher's session, which tells a restart from a jump in the sequence. Otherwise 0.
   std::uint64_t publisher_session = 0;
+  // Of the server's right to serve the subject, in a cluster: a client drops what comes from a
+  // lower one. 0 without a cluster.
+  std::uint64_t epoch = 0;
 };
 
 // Requests the list of live subjects. TCP only.

@@ -18,7 +18,9 @@ inline Fields FieldsOf(const Hello& m) {
           {"access", Json(m.access)}};
 }
 inline Fields FieldsOf(const Welcome& m) {
-  return {{"server", Json(m.server)}, {"token", JsonHex(m.token)}};
+  Fields fields = {{"server", Json(m.server)}, {"token", JsonHex(m.token)}};
+  if (!m.others.empty()) fields.emplace_back("others", Json(m.others));
+  return fields;
 }
 inline Fields FieldsOf(const Ping& m) { return {{"time_us", Json(m.time_us)}}; }
 inline Fields FieldsOf(const Pong& m) {
@@ -26,7 +28,13 @@ inline Fields FieldsOf(const Pong& m) {
 }
 inline Fields FieldsOf(const Goodbye& m) { return {{"reason", Json(static_cast<int>(m.reason))}}; }
 inline Fields FieldsOf(const ErrorMessage& m) {
-  return {{"code", Json(static_cast<int>(m.code))}, {"message", Json(m.message)}};
+  Fields fields = {{"code", Json(static_cast<int>(m.code))}, {"message", Json(m.message)}};
+  if (!m.host.empty()) {
+    fields.emplace_back("host", Json(m.host));
+    fields.emplace_back("tcp", Json(static_cast<int>(m.tcp)));
+    fields.emplace_back("udp", Json(static_cast<int>(m.udp)));
+  }
+  return fields;
 }
 
 inline std::string JointJson(const OfferedJoint& joint) {
@@ -124,10 +132,12 @@ inline Fields FieldsOf(const Subjects& m) {
 }
 inline Fields FieldsOf(const Unsubscribe&) { return {}; }
 inline Fields FieldsOf(const SubscribeReply& m) {
-  return {{"subject", Json(m.subject)},
-          {"names_hash", JsonHex(m.names_hash)},
-          {"names", Json(m.names)},
-          {"publisher_session", JsonHex(m.publisher_session)}};
+  Fields fields = {{"subject", Json(m.subject)},
+                   {"names_hash", JsonHex(m.names_hash)},
+                   {"names", Json(m.names)},
+                   {"publisher_session", JsonHex(m.publisher_session)}};
+  if (m.epoch != 0) fields.emplace_back("epoch", JsonHex(m.epoch));
+  return fields;
 }
 inline Fields FieldsOf(const WeightFrame& m) {
   return {{"names_hash", JsonHex(m.names_hash)},

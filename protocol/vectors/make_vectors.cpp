@@ -177,10 +177,15 @@ void AddMeeting(Files& files) {
   Add(files, "hello_bundles", Hello{"example/1.0", 0xfedcba9876543210ULL, true});
   Add(files, "hello_access", Hello{"example/1.0", 0, false, "frw1_an_example_that_is_no_token"});
   Add(files, "welcome", Welcome{"furrowd/0.1.0", 0xfedcba9876543210ULL});
+  Add(files, "welcome_others",
+      Welcome{"furrowd/0.1.0", 0, {"10.0.0.2:7400:7401", "node-c:7400:7401"}});
   Add(files, "ping", Ping{-5});
   Add(files, "pong", Pong{-5, 1'234'567'890'123});
   Add(files, "goodbye", Goodbye{GoodbyeReason::kSubjectGone});
   Add(files, "error", ErrorMessage{ErrorCode::kUnknownSubject, "no subject 'bob'; there is: anna"});
+  Add(files, "error_elsewhere",
+      ErrorMessage{ErrorCode::kUnknownSubject, "'anna' is served by the node 'b'", "10.0.0.2", 7400,
+                   7401});
 }
 
 void AddPublishing(Files& files) {
@@ -211,6 +216,8 @@ void AddSubscribing(Files& files) {
   Add(files, "subscribe_reply", SubscribeReply{"anna", 0, {"brow_l.stretch", "brow_l.squash"}});
   Add(files, "subscribe_reply_waiting", SubscribeReply{});
   Add(files, "subscribe_reply_poses", SubscribeReply{"anna", 0, {}, 0xfedcba9876543210ULL});
+  Add(files, "subscribe_reply_epoch",
+      SubscribeReply{"anna", 0, {"brow_l.stretch"}, 0, 1'700'000'000'001});
   const std::vector<std::string> names = {"brow_l.stretch", "brow_l.squash", "nose.squash"};
   WeightFrame frame{NamesHash(names), 0, WeightFormat::kF32, {0.0f, 0.3f, 1.0f}};
   Add(files, "weights", frame);

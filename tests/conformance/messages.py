@@ -79,7 +79,10 @@ def hello(t):
 
 
 def welcome(t):
-    return {"server": t.text(0, limit=64), "token": hexadecimal(t.scalar(1, "Q"))}
+    fields = {"server": t.text(0, limit=64), "token": hexadecimal(t.scalar(1, "Q"))}
+    others = t.texts(2)
+    require(len(others) <= 8, "too many other servers")
+    return {**fields, "others": others} if others else fields
 
 
 def ping(t):
@@ -97,7 +100,10 @@ def goodbye(t):
 def error(t):
     code = t.scalar(0, "H")
     require(1 <= code <= 16, "unknown error code")
-    return {"code": code, "message": t.text(1, limit=1024)}
+    fields = {"code": code, "message": t.text(1, limit=1024)}
+    host, tcp, udp = t.text(2), t.scalar(3, "H"), t.scalar(4, "H")
+    require(host == "" or (tcp != 0 and udp != 0), "another server without ports")
+    return {**fields, "host": host, "tcp": tcp, "udp": udp} if host else fields
 
 
 def skeleton_offer(t):
@@ -227,8 +233,10 @@ def subscribe_reply(t):
     names = t.texts(2)
     expected = fnv1a(b"".join(n.encode() + b"\0" for n in names)) if names else 0
     require(t.scalar(1, "Q") == expected, "wrong hash of the names")
-    return {"subject": t.text(0), "names_hash": hexadecimal(expected), "names": names,
-            "publisher_session": hexadecimal(t.scalar(3, "Q"))}
+    fields = {"subject": t.text(0), "names_hash": hexadecimal(expected), "names": names,
+              "publisher_session": hexadecimal(t.scalar(3, "Q"))}
+    epoch = t.scalar(4, "Q")
+    return {**fields, "epoch": hexadecimal(epoch)} if epoch else fields
 
 
 def age(value):

@@ -24,7 +24,7 @@ STRING, STRINGS = "string", "[string]"
 SLOTS = {
     b"FHEL": [("client", STRING), ("token", "Q"), ("padding", "[B]"), ("bundles", "?"),
               ("access", STRING)],
-    b"FWEL": [("server", STRING), ("token", "Q")],
+    b"FWEL": [("server", STRING), ("token", "Q"), ("others", STRINGS)],
     b"FBYE": [("reason", "B")],
     b"FSKO": [("subject", STRING), ("skeleton_hash", "Q"), ("metres_per_unit", "f"), ("names", STRINGS),
               ("parents", "[h]"), ("rest_translations", "[3f]"), ("rest_rotations", "[4f]"),
@@ -37,7 +37,8 @@ SLOTS = {
               ("blend_shapes", "[f]"), ("packed_blend_shapes", "[h]"), ("previous", "[B]"), ("previous_age_us", "I")],
     b"FSUW": [("subject", STRING), ("wait", "?"), ("pattern", STRING), ("max_rate_hz", "f"), ("format", "B"),
               ("source", "B"), ("every", "?")],
-    b"FSUR": [("subject", STRING), ("names_hash", "Q"), ("names", STRINGS), ("publisher_session", "Q")],
+    b"FSUR": [("subject", STRING), ("names_hash", "Q"), ("names", STRINGS), ("publisher_session", "Q"),
+              ("epoch", "Q")],
     b"FWGT": [("names_hash", "Q"), ("age_us", "q"), ("values", "[f]"), ("packed_values", "[B]")],
 }
 ENVELOPE = [(0, "4s", "magic"), (4, "B", "version"), (5, "B", "flags"), (6, "H", "stream"), (8, "Q", "session"),

@@ -5,8 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "server/http/api/json_reply.h"
 #include "server/http/metrics/trace_json.h"
+#include "server/http/request/json_reply.h"
 #include "server/net/clock.h"
 
 namespace furrow::server {

@@ -19,7 +19,10 @@ struct FarEnd {
   bool takes_bundles = false;  // this end
   bool reconnects = false;     // this end
   std::uint64_t generation = 1;
-  bool abandoned = false;  // this end gave up the connection
+  bool abandoned = false;         // this end gave up the connection
+  bool follows = false;           // this end goes where it is sent
+  std::vector<Elsewhere> moves;   // where it was sent
+  std::vector<Elsewhere> others;  // what it was told
 
   template <class Message>
   void Answer(const protocol::Header& header, const Message& message) {
@@ -62,6 +65,14 @@ class FakeTransport : public Transport {
   [[nodiscard]] bool reconnects() const override { return far_->reconnects; }
   [[nodiscard]] std::uint64_t generation() const override { return far_->generation; }
   void Abandon() override { far_->abandoned = true; }
+  bool GoTo(const Elsewhere& server) override {
+    far_->moves.push_back(server);
+    return far_->follows;
+  }
+  void Remember(std::span<const Elsewhere> others) override {
+    far_->others.assign(others.begin(), others.end());
+  }
+  [[nodiscard]] bool has_others() const override { return !far_->others.empty(); }
 
  private:
   std::shared_ptr<FarEnd> far_;

@@ -273,5 +273,54 @@ TEST(NewSessionTest, IsNeverZeroAndNeverRepeats) {
   EXPECT_FALSE(seen.contains(0));
 }
 
+const protocol::ErrorMessage kMoved{protocol::ErrorCode::kSubjectTaken, "at b", "host-b", 7, 8};
+
+TEST_F(PublisherTest, GoesToTheServerThatTheDaemonNames) {
+  const auto stream = publisher_.AddSubject(OneJoint(), 0);
+  far_->follows = true;
+  far_->Answer({.session = 7}, kMoved);
+  publisher_.Poll(0, milliseconds(0));
+  EXPECT_TRUE(far_->moves.empty()) << "the daemon is not proven yet";
+  Prove();
+  far_->Answer({.session = 7, .stream = stream}, kMoved);
+  publisher_.Poll(0, milliseconds(0));
+  EXPECT_EQ(far_->moves, (std::vector<Elsewhere>{{"host-b", 7, 8}}));
+  // The other server gets the offer, and poses that are numbered on.
+  far_->generation = 2;
+  publisher_.Poll(0, milliseconds(0));
+  (void)far_->TakeKinds();
+  Prove();
+  EXPECT_EQ(far_->TakeKinds(), std::vector{MessageKind::kSkeletonOffer});
+}
+
+TEST_F(PublisherTest, WithSeveralSubjectsItStays) {
+  publisher_.AddSubject(OneJoint(), 0);
+  publisher_.AddSubject(OneJoint(), 0);
+  Prove();
+  far_->follows = true;
+  far_->Answer({.session = 7}, kMoved);
+  publisher_.Poll(0, milliseconds(0));
+  EXPECT_TRUE(far_->moves.empty());
+  EXPECT_EQ(publisher_.last_error(), "at b");
+}
+
+TEST_F(PublisherTest, ASilentServerIsLeftIfThereAreOthers) {
+  publisher_.AddSubject(OneJoint(), 0);
+  far_->Answer({.session = 7}, protocol::Welcome{"daemon", 0, {"host-b:7:8", "no address"}});
+  publisher_.Poll(0, milliseconds(0));
+  EXPECT_EQ(far_->others, (std::vector<Elsewhere>{{"host-b", 7, 8}}));
+  for (std::int64_t now = 0; now <= 1'900'000; now += 100'000) {
+    publisher_.Poll(now, milliseconds(0));
+    EXPECT_FALSE(far_->abandoned) << now;
+  }
+  // Its answers to pings keep it.
+  far_->Answer({.session = 7}, protocol::Pong{});
+  publisher_.Poll(2'000'000, milliseconds(0));
+  publisher_.Poll(3'900'000, milliseconds(0));
+  EXPECT_FALSE(far_->abandoned);
+  publisher_.Poll(4'100'000, milliseconds(0));
+  EXPECT_TRUE(far_->abandoned);
+}
+
 }  // namespace
 }  // namespace furrow::client

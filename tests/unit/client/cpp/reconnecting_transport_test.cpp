@@ -3,6 +3,9 @@
 
 #include <deque>
 #include <optional>
+#include <set>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -163,6 +166,103 @@ TEST_F(ReconnectingTransportTest, AnAbandonedConnectionIsOpenedAgain) {
 TEST_F(ReconnectingTransportTest, MessagesThatNeverFitAreRefusedWithoutAConnection) {
   ReconnectingTransport transport = Make(TransportKind::kUdp);
   EXPECT_EQ(transport.Send(std::vector<std::uint8_t>(200'000)), IoStatus::kTooLarge);
+}
+
+// A transport that may go to other servers; `visited_` lists their hosts.
+class FollowingTransportTest : public ReconnectingTransportTest {
+ protected:
+  FollowingTransportTest() : transport_(Make(TransportKind::kTcp)) {
+    transport_.FollowBy([this](const Elsewhere& server) -> Result<std::unique_ptr<Transport>> {
+      visited_.push_back(server.host);
+      if (!reachable_) return Status(StatusCode::kUnavailable, "connection refused");
+      far_ = std::make_shared<FarEnd>();
+      return std::unique_ptr<Transport>(std::make_unique<FakeTransport>(TransportKind::kTcp, far_));
+    });
+    EXPECT_EQ(Receive(transport_), IoStatus::kTimeout);
+  }
+  // Lets the pause before the next attempt pass.
+  void Pass() { now_us_ += 4000; }
+
+  ReconnectingTransport transport_;
+  std::vector<std::string> visited_;
+};
+
+TEST_F(FollowingTransportTest, GoesWhereItIsSentAtOnce) {
+  EXPECT_TRUE(transport_.GoTo({"b", 1, 2}));
+  EXPECT_EQ(transport_.Send(bytes_), IoStatus::kNoConnection);
+  EXPECT_EQ(Receive(transport_), IoStatus::kTimeout) << "without a pause";
+  EXPECT_EQ(visited_, std::vector<std::string>{"b"});
+  EXPECT_EQ(transport_.generation(), 2u);
+  EXPECT_EQ(transport_.Send(bytes_), IoStatus::kOk);
+}
+
+TEST_F(FollowingTransportTest, ServersThatSendItToAndFroKeepItSoonEnough) {
+  for (std::size_t i = 0; i < ReconnectingTransport::kMostMoves; ++i) {
+    EXPECT_TRUE(transport_.GoTo({i % 2 == 0 ? "b" : "c", 1, 2}));
+    EXPECT_EQ(Receive(transport_), IoStatus::kTimeout);
+  }
+  EXPECT_TRUE(transport_.GoTo({"b", 1, 2})) << "later";
+  EXPECT_EQ(Receive(transport_), IoStatus::kTimeout);
+  EXPECT_EQ(visited_.size(), ReconnectingTransport::kMostMoves);
+  now_us_ += ReconnectingTransport::kMoveWindow.count() + 1;
+  EXPECT_TRUE(transport_.GoTo({"b", 1, 2}));
+  EXPECT_EQ(Receive(transport_), IoStatus::kTimeout);
+  EXPECT_EQ(visited_.size(), ReconnectingTransport::kMostMoves + 1);
+}
+
+TEST_F(FollowingTransportTest, IsNotSentBackToAServerThatItHasJustLost) {
+  EXPECT_TRUE(transport_.GoTo({"b", 1, 2}));
+  EXPECT_EQ(Receive(transport_), IoStatus::kTimeout);
+  transport_.Abandon();
+  EXPECT_EQ(Receive(transport_), IoStatus::kNoConnection);
+  Pass();
+  EXPECT_EQ(Receive(transport_), IoStatus::kTimeout) << "the first server";
+  EXPECT_TRUE(transport_.GoTo({"b", 1, 2}));
+  EXPECT_EQ(transport_.Send(bytes_), IoStatus::kOk) << "it stays";
+  now_us_ += 3'000'000;
+  EXPECT_TRUE(transport_.GoTo({"b", 1, 2}));
+  EXPECT_EQ(transport_.Send(bytes_), IoStatus::kNoConnection);
+}
+
+TEST_F(FollowingTransportTest, TriesTheOthersInTurnWhenTheServerIsLost) {
+  transport_.Remember(std::vector<Elsewhere>{{"b", 1, 2}, {"c", 1, 2}});
+  EXPECT_TRUE(transport_.has_others());
+  reachable_ = false;
+  transport_.Abandon();
+  const int before = attempts_;
+  for (int i = 0; i < 6; ++i) {
+    EXPECT_EQ(Receive(transport_), IoStatus::kNoConnection);
+    Pass();
+  }
+  EXPECT_EQ(visited_, (std::vector<std::string>{"b", "c", "b", "c"}));
+  EXPECT_EQ(attempts_, before + 1) << "the first server, too";
+}
+
+TEST_F(FollowingTransportTest, KeepsFewServers) {
+  std::vector<Elsewhere> many;
+  for (int i = 0; i < 100; ++i) many.push_back({"host-" + std::to_string(i), 1, 2});
+  transport_.Remember(many);
+  reachable_ = false;
+  transport_.Abandon();
+  for (int i = 0; i < 200; ++i, Pass()) (void)Receive(transport_);
+  EXPECT_EQ(std::set<std::string>(visited_.begin(), visited_.end()).size(), 8u);
+}
+
+TEST_F(ReconnectingTransportTest, StaysWhereItIsUnlessItMayFollow) {
+  ReconnectingTransport transport = Make(TransportKind::kTcp);
+  EXPECT_EQ(Receive(transport), IoStatus::kTimeout);
+  EXPECT_FALSE(transport.GoTo({"b", 1, 2}));
+  transport.Remember(std::vector<Elsewhere>{{"b", 1, 2}});
+  EXPECT_FALSE(transport.has_others());
+}
+
+TEST(Elsewhere, IsReadFromText) {
+  EXPECT_EQ(ParseElsewhere("10.0.0.2:7400:7401"), (Elsewhere{"10.0.0.2", 7400, 7401}));
+  EXPECT_EQ(ParseElsewhere("fe80::1:1:2"), (Elsewhere{"fe80::1", 1, 2}));
+  for (const char* text :
+       {"", "h", "h:1", ":1:2", "h:0:1", "h:1:0", "h:1:65536", "h:x:1", "h:1:"}) {
+    EXPECT_FALSE(ParseElsewhere(text)) << text;
+  }
 }
 
 }  // namespace

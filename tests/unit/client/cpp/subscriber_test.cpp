@@ -254,5 +254,44 @@ TEST_F(SubscriberTest, TheEndOfTheTransportIsAnEvent) {
   EXPECT_EQ(subscriber.Next(0, milliseconds(0)).kind, Kind::kNoConnection);
 }
 
+TEST_F(SubscriberTest, GoesToTheServerThatTheDaemonNames) {
+  far_->follows = far_->reconnects = true;
+  Subscriber subscriber = Make(TransportKind::kTcp);
+  const std::uint32_t number = subscriber.Subscribe(protocol::SubscribeWeights{.subject = "ada"});
+  const protocol::ErrorMessage moved{protocol::ErrorCode::kUnknownSubject, "at b", "host-b", 7, 8};
+  far_->Answer({.session = 5, .sequence = number}, moved);
+  EXPECT_EQ(subscriber.Next(0, milliseconds(0)).kind, Kind::kTimeout);
+  EXPECT_EQ(far_->moves, (std::vector<Elsewhere>{{"host-b", 7, 8}}));
+  (void)far_->TakeKinds();
+  far_->generation = 2;
+  (void)subscriber.Next(1, milliseconds(0));
+  EXPECT_EQ(far_->TakeKinds(), (std::vector{MessageKind::kHello, MessageKind::kSubscribeWeights}));
+  // With a second subject, it does not know where to go.
+  subscriber.Subscribe(protocol::SubscribeWeights{.subject = "bob"});
+  far_->Answer({.session = 5, .sequence = number}, moved);
+  EXPECT_EQ(subscriber.Next(2, milliseconds(0)).kind, Kind::kError);
+  EXPECT_EQ(subscriber.error().host, "host-b");
+  EXPECT_EQ(far_->moves.size(), 1u);
+}
+
+TEST_F(SubscriberTest, FramesOfALowerEpochAreDropped) {
+  Subscriber subscriber = Make(TransportKind::kTcp);
+  const std::uint32_t number = subscriber.Subscribe(protocol::SubscribeWeights{.subject = "ada"});
+  const protocol::Header header{.session = 5, .stream = 3, .sequence = number};
+  protocol::WeightFrame frame;
+  frame.names_hash = protocol::NamesHash(std::vector<std::string>{"a"});
+  frame.values = {0.5f};
+  const auto next = [&](std::uint64_t epoch) {
+    far_->Answer(header, protocol::SubscribeReply{"ada", 0, {"a"}, 0, epoch});
+    far_->Answer({.session = 5, .stream = 3}, frame);
+    const Kind first = subscriber.Next(0, milliseconds(0)).kind;
+    return std::pair(first, subscriber.Next(0, milliseconds(0)).kind);
+  };
+  EXPECT_EQ(next(10), std::pair(Kind::kReply, Kind::kWeights));
+  EXPECT_EQ(next(9), std::pair(Kind::kTimeout, Kind::kTimeout));
+  EXPECT_EQ(next(11), std::pair(Kind::kReply, Kind::kWeights));
+  EXPECT_EQ(next(0), std::pair(Kind::kReply, Kind::kWeights)) << "a daemon without a cluster";
+}
+
 }  // namespace
 }  // namespace furrow::client
