@@ -65,7 +65,8 @@ struct SceneShader {
   bool unlit = false;
   bool emission_target = false;  // `unlit` stores emission, too
   bool displaced = false;        // tessellated and moved by heights
-  bool shadow = false;           // displaced geometry for a shadow map: depth only
+  bool shadow = false;           // depth only: of displaced geometry for a shadow map, or of a
+                                 // cut-out in the scene
   bool composed_looks = false;   // the base colour already includes the wrinkles' colour and cavity
   bool shade = false;            // a shell that only darkens what lies behind it
   bool stretch = false;          // the mesh is posed with PoseShader::gradients

@@ -74,6 +74,12 @@ void SetShade(bool shade) {
   }
 }
 
+// Sets whether only those fragments are drawn that DrawCutOutDepth() has left.
+void SetBehindCutOut(bool behind) {
+  glDepthFunc(behind ? GL_EQUAL : GL_LESS);
+  glDepthMask(behind ? GL_FALSE : GL_TRUE);
+}
+
 // Returns true if a view shows light, which a shade darkens. Other views show data.
 bool ShowsShade(const Settings& settings) {
   return settings.view == View::kFinal || settings.view == View::kSpecular ||
@@ -132,6 +138,7 @@ SceneDraw::SceneDraw(const wrinkle::Skeleton& skeleton,
       gpu_(gpu),
       tables_(tables),
       shaders_(shaders),
+      is_software_(is_software),
       buffers_(inverse_bind_matrices, tables),
       cache_(gpu, tables, inverse_bind_matrices, is_software),
       morphs_(gpu),
@@ -362,6 +369,9 @@ Status SceneDraw::DrawMesh(const Settings& settings, SceneKind kind, std::size_t
   const WrinkleCache::Composed composed = ComposedOf(number, settings);
   SceneShader shader = ShaderFor(material, composed, settings, kind);
   shader.stretch = static_cast<bool>(gpu_->meshes()[index].gradients);
+  const bool cuts_first = is_software_ && kind == SceneKind::kFacets && shader.alpha_test &&
+                          !shader.displaced && !shade;
+  if (cuts_first) shader.alpha_test = false;
   const Result<GLuint> program = shaders_->Get(shader);
   FURROW_RETURN_IF_ERROR(program);
   auto form = wireframe ? PosedMeshes::Form::kUnindexed : PosedMeshes::Form::kIndexed;
@@ -370,11 +380,30 @@ Status SceneDraw::DrawMesh(const Settings& settings, SceneKind kind, std::size_t
   const Result<PosedMeshes::Vertices> posed = Pose(index, form, composed.rest);
   FURROW_RETURN_IF_ERROR(posed);
   if (shader.preintegrated) glBindTextureUnit(kPreintegratedUnit, lookup_tables_.preintegrated());
-  glUseProgram(*program);
   SetCulling(!material.double_sided);
+  if (cuts_first) FURROW_RETURN_IF_ERROR(DrawCutOutDepth(*posed, index, form));
+  glUseProgram(*program);
   SetShade(shade);
+  if (cuts_first) SetBehindCutOut(true);
   DrawSubjects(*posed, index, form, DrawList::kCamera);
+  if (cuts_first) SetBehindCutOut(false);
   SetShade(false);
+  return {};
+}
+
+// Draws the depth of a surface with a cut-out texture, so that the surface itself needs no discard.
+// llvmpipe writes all targets of a block of pixels whose shader may discard, even if no pixel is
+// left, and hair has many layers.
+Status SceneDraw::DrawCutOutDepth(const PosedMeshes::Vertices& posed, std::size_t index,
+                                  PosedMeshes::Form form) {
+  SceneShader shader;
+  shader.alpha_test = shader.shadow = true;
+  const Result<GLuint> program = shaders_->Get(shader);
+  FURROW_RETURN_IF_ERROR(program);
+  glUseProgram(*program);
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  DrawSubjects(posed, index, form, DrawList::kCamera);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   return {};
 }
 

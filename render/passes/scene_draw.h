@@ -29,7 +29,8 @@ enum class SceneKind { kPlain, kSkin, kFacets };
 class SceneDraw {
  public:
   // All arguments must outlive this object. `is_software`: the driver renders on the CPU, where
-  // composing wrinkles in advance pays even while they move (WrinkleCache).
+  // composing wrinkles in advance pays even while they move (WrinkleCache), and so does drawing the
+  // depth of cut-outs first.
   SceneDraw(const wrinkle::Skeleton& skeleton, std::span<const glm::mat4> inverse_bind_matrices,
             GpuCharacter* gpu, WrinkleTables* tables, ShaderLibrary* shaders, bool is_software);
 
@@ -81,6 +82,8 @@ class SceneDraw {
   [[nodiscard]] Status DrawCaster(const Settings& settings, int light, std::size_t index);
   void BindLookUps();
   [[nodiscard]] Status DrawMesh(const Settings& settings, SceneKind kind, std::size_t index);
+  [[nodiscard]] Status DrawCutOutDepth(const PosedMeshes::Vertices& posed, std::size_t index,
+                                       PosedMeshes::Form form);
   // The switches that depend on the material and its wrinkles only.
   [[nodiscard]] SceneShader SurfaceShader(const GpuMaterial& material,
                                           const WrinkleCache::Composed& composed) const;
@@ -93,6 +96,7 @@ class SceneDraw {
   GpuCharacter* gpu_;
   WrinkleTables* tables_;
   ShaderLibrary* shaders_;
+  const bool is_software_;
   AmbientCache ambient_;
   FrameSetup setup_;
   float displacement_reach_ = 0.0f;

@@ -33,6 +33,10 @@ layout(location = 5) flat out uint v_subject;
 layout(location = 6) out vec4 v_dynamic_masks[MAP_SLOTS];
 #endif
 
+#if !DISPLACED
+invariant gl_Position;  // cut-outs are drawn twice, and their depths must be equal
+#endif
+
 void main() {
   v_position = a_position;
   v_normal = a_normal;

@@ -178,6 +178,13 @@ TEST_F(ShaderLibraryTest, EveryDisplacedConfigurationCompiles) {
   }
 }
 
+TEST_F(ShaderLibraryTest, TheDepthOfCutOutsCompiles) {
+  SceneShader shader;
+  shader.shadow = shader.alpha_test = true;
+  const Result<GLuint> program = library_.Get(shader);
+  ASSERT_TRUE(program.ok()) << program.status().ToString();
+}
+
 TEST_F(ShaderLibraryTest, EveryCrowdConfigurationCompiles) {
   for (int bits = 0; bits < 16; ++bits) {
     SceneShader shader;

@@ -48,7 +48,7 @@ TEST(HalfFloatsTest, TheNearestHalfIsEncoded) {
   EXPECT_EQ(halves, expected);
 }
 
-// Arrays whose length is no multiple of a vector's, and no write beyond the end.
+// Any length, also one that does not fill the last vector, and no write beyond the end.
 TEST(HalfFloatsTest, EveryLengthIsConvertedExactly) {
   for (std::size_t length = 0; length < 40; ++length) {
     std::vector<float> floats(length + 1, -2.0f);
