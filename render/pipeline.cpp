@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/pipeline.h"
 
+#include <algorithm>
+
 #include "render/passes/finish_pass.h"
 #include "render/passes/light_pass.h"
 #include "render/passes/resolve_pass.h"
@@ -9,6 +11,9 @@ namespace furrow::render {
 namespace {
 
 using Handle = FrameGraph::Handle;
+
+// SubsurfaceSettings::taps, if FrameRequest::is_moving.
+constexpr int kMovingTaps = 11;
 
 // Returns true for views of one part of the light. They show it before occlusion.
 bool IsPartOfLight(View view) {
@@ -50,6 +55,7 @@ Handle Pipeline::Add(FrameGraph* graph, const FrameRequest& request, View view, 
                      Handle* shadows) {
   Settings settings = request.settings;
   settings.view = view;
+  if (request.is_moving) settings.subsurface.taps = std::min(settings.subsurface.taps, kMovingTaps);
   settings.anti_aliasing =
       Chosen(settings.anti_aliasing, !is_software_ || !NeedsSkinPipeline(view, settings));
   TextureDesc desc{size.width, size.height, PixelFormat::kRgba16F, settings.anti_aliasing.samples};

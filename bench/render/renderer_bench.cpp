@@ -118,6 +118,7 @@ void BM_Skin(benchmark::State& state) {
   request.settings.subsurface.method = static_cast<SubsurfaceMethod>(state.range(0));
   request.settings.anti_aliasing.samples = static_cast<int>(state.range(1));
   request.settings.anti_aliasing.fxaa = state.range(1) == 1;
+  request.is_moving = true;
   SetFromEnvironment(&request.settings);
   state.SetLabel(GetSetting("subsurface.method", request.settings));
   // The first frames compile shaders, build tables and compose wrinkles.

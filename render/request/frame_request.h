@@ -44,6 +44,10 @@ struct FrameRequest : PosedSubject {
   int width = 640;  // pixels, [kMinSize, kMaxSize]
   int height = 640;
   std::uint64_t token = 0;  // returned unchanged in Image::token
+  // Seen in motion and compressed, so that it may differ a little from the exact picture, at most
+  // by a root mean square of 1/255 on the face: coarser shadow maps (shadow.fit) and fewer samples
+  // of the scattered light. Saves about a tenth of the work of a renderer on the CPU.
+  bool is_moving = false;
 };
 
 }  // namespace furrow::render

@@ -66,6 +66,9 @@ FrameSetup SetUpFrame(const FrameRequest& request, const wrinkle::Skeleton& skel
   const float shaded = ShadedRadius(radius, distance);
   setup.shadow_resolution =
       ShadowResolution(request.settings.shadow, shaded, distance / setup.pixels_per_slope);
+  if (request.is_moving && request.settings.shadow.fit) {
+    setup.shadow_resolution -= setup.shadow_resolution / 4;
+  }
   for (int i = 0; i < kNumLights; ++i) {
     setup.shadows[i] =
         FitShadow(setup.lighting.lights[i], setup.camera.target, shaded, setup.shadow_resolution);

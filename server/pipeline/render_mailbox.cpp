@@ -53,6 +53,12 @@ Encoding EncodingOf(const PictureTicket& ticket) {
 
 bool RenderJob::IsStill() const { return std::ranges::any_of(tickets, &PictureTicket::still); }
 
+bool RenderJob::IsLossy() const {
+  return std::ranges::all_of(tickets, [](const PictureTicket& ticket) {
+    return !ticket.still && ticket.encoding.format == render::ImageFormat::kJpeg;
+  });
+}
+
 double RenderJob::Work() const {
   static const render::Settings kDefaults;
   return render::EstimateCost(spec.settings == nullptr ? kDefaults : *spec.settings, spec.width,

@@ -81,6 +81,9 @@ struct RenderJob {
 
   // True if at least one ticket wants a still, which is rendered with more samples.
   [[nodiscard]] bool IsStill() const;
+  // True if nobody gets the picture as it was drawn: all tickets are for JPEG or video of a subject
+  // that moves.
+  [[nodiscard]] bool IsLossy() const;
   // What drawing it costs (render::PictureCost::work).
   [[nodiscard]] double Work() const;
 };

@@ -248,6 +248,7 @@ Status RenderThread::Render(const RenderJob& job) {
   int& samples = request.settings.anti_aliasing.samples;
   const bool refines = samples == 0 && job.IsStill();
   if (refines) samples = kStillSamples;
+  request.is_moving = is_software_ && job.IsLossy();
   const Status status = renderer_->Submit(request);
   // A large still with this number of samples needs too much memory.
   if (!refines || status.code() != StatusCode::kLimit) return status;

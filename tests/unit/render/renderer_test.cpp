@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
 #include <gtest/gtest.h>
 
 #include "lost_context.h"
@@ -254,6 +256,32 @@ TEST_F(RendererTest, TheSameRequestGivesTheSamePicture) {
     ASSERT_TRUE(again.ok());
     EXPECT_EQ(again->rgb, first.rgb) << ViewName(view);
   }
+}
+
+// The bound that FrameRequest states, over the pixels of the head.
+TEST_F(RendererTest, AMovingPictureIsNearlyExact) {
+  FrameRequest request = Request(subject_);
+  request.settings.shading = Shading::kSkin;
+  request.settings.anti_aliasing.samples = 1;
+  request.width = request.height = 400;
+  const Image exact = Render(request);
+  request.is_moving = true;
+  const Image moving = Render(request);
+  EXPECT_NE(moving.rgb, exact.rgb);
+  ASSERT_EQ(moving.rgb.size(), exact.rgb.size());
+  const glm::ivec3 background = Pixel(exact, 0, 0);
+  double sum = 0.0;
+  int count = 0;
+  for (int y = 0; y < exact.height; ++y) {
+    for (int x = 0; x < exact.width; ++x) {
+      if (Pixel(exact, x, y) == background) continue;
+      const glm::dvec3 difference(Pixel(moving, x, y) - Pixel(exact, x, y));
+      sum += glm::dot(difference, difference) / 3.0;
+      ++count;
+    }
+  }
+  ASSERT_GT(count, 10000);
+  EXPECT_LT(std::sqrt(sum / count), 1.0);
 }
 
 TEST_F(RendererTest, TwoPicturesInFlightArriveInOrder) {

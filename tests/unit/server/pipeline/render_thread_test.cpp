@@ -41,8 +41,10 @@ struct Script {
   int out_of_memory_submits = 0;          // the next calls throw
   int out_of_memory_polls = 0;
   std::deque<int> samples;                 // of the rendered requests
+  std::deque<bool> moving;                 // the same
   std::vector<std::vector<float>> shapes;  // of the same
   int num_created = 0;
+  bool is_software = false;
 
   static Status Next(std::deque<Status>* of) {
     if (of->empty()) return {};
@@ -66,6 +68,7 @@ class ScriptedRenderer : public render::Renderer {
     Status status = Script::Next(&script_->submit);
     if (status.ok()) ++in_flight_;
     if (status.ok()) script_->samples.push_back(request.settings.anti_aliasing.samples);
+    if (status.ok()) script_->moving.push_back(request.is_moving);
     if (status.ok()) script_->shapes.emplace_back(request.shapes.begin(), request.shapes.end());
     return status;
   }
@@ -80,6 +83,7 @@ class ScriptedRenderer : public render::Renderer {
     return render::Image{16, 16, std::vector<std::uint8_t>(16 * 16 * 3), 0};
   }
   int in_flight() const override { return in_flight_; }
+  bool is_software() const override { return script_->is_software; }
   void SetObserver(render::FrameGraphObserver* observer) override { observer_ = observer; }
   std::string description() const override { return "scripted"; }
   Result<render::Camera> Preset(std::string_view) const override { return render::Camera(); }
@@ -270,6 +274,28 @@ TEST_F(RenderThreadTest, StillsUseMoreSamplesIfTheSettingsAllow) {
   (void)pictures.Take();
   thread.reset();
   EXPECT_EQ(script.samples, (std::deque<int>{0, kStillSamples, 2}));
+}
+
+// Only a renderer on the CPU saves work, and PNG shows every pixel as it was drawn.
+TEST_F(RenderThreadTest, JpegOfAMovingSubjectMayBeInexactOnTheCpu) {
+  script.is_software = true;
+  Start();
+  Submit(1, {.subscription = 1}, {});
+  (void)pictures.Take();
+  Submit(2, {.subscription = 2, .still = true}, {});
+  (void)pictures.Take();
+  Submit(3, {.subscription = 3, .encoding = {.format = render::ImageFormat::kPng}}, {});
+  (void)pictures.Take();
+  thread.reset();
+  EXPECT_EQ(script.moving, (std::deque<bool>{true, false, false}));
+}
+
+TEST_F(RenderThreadTest, PicturesOfAGpuAreExact) {
+  Start();
+  Submit(1, {.subscription = 1}, {});
+  (void)pictures.Take();
+  thread.reset();
+  EXPECT_EQ(script.moving, (std::deque<bool>{false}));
 }
 
 TEST_F(RenderThreadTest, LackOfMemoryCostsPicturesNotTheThread) {
