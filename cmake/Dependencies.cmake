@@ -39,6 +39,7 @@ pkg_check_modules(MINIZIP REQUIRED IMPORTED_TARGET minizip)
 pkg_check_modules(HWY REQUIRED IMPORTED_TARGET libhwy)
 pkg_check_modules(TURBOJPEG REQUIRED IMPORTED_TARGET libturbojpeg)
 pkg_check_modules(OPENH264 REQUIRED IMPORTED_TARGET openh264)
+pkg_check_modules(NATS REQUIRED IMPORTED_TARGET libnats)
 
 # Header-only libraries without a usable CMake package.
 add_library(furrow_glm INTERFACE)

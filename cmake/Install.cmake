@@ -39,10 +39,10 @@ endif()
 install(TARGETS furrow furrowd RUNTIME DESTINATION bin COMPONENT runtime)
 install(TARGETS furrow-load furrow-author furrow-assimp furrow-draco
   RUNTIME DESTINATION libexec/furrow COMPONENT runtime)
-install(TARGETS furrow_pictures furrow_video LIBRARY DESTINATION lib/furrow COMPONENT runtime)
+install(TARGETS furrow_pictures furrow_video furrow_nats LIBRARY DESTINATION lib/furrow COMPONENT runtime)
 install(DIRECTORY "${PROJECT_BINARY_DIR}/share/furrow" DESTINATION share COMPONENT runtime)
 install(FILES "${PROJECT_SOURCE_DIR}/server/furrow.example.toml" DESTINATION share/doc/furrow COMPONENT runtime)
-foreach(folder systemd grafana prometheus)
+foreach(folder systemd grafana prometheus nats)
   install(DIRECTORY "${PROJECT_SOURCE_DIR}/deploy/${folder}" DESTINATION share/doc/furrow COMPONENT runtime)
 endforeach()
 # docs/CMakeLists.txt generates these from --help, if Python is there.

@@ -28,6 +28,7 @@
 #include "protocol/secure/token/key_ring.h"
 #include "rig/rig_file.h"
 #include "server/assets.h"
+#include "server/cluster/setup/make_coordinator.h"
 #include "server/config/log.h"
 #include "server/config/osc_profile_file.h"
 #include "server/core/network_address.h"
@@ -109,6 +110,7 @@ class Daemon {
   // Call these in this order. Each leaves out what the configuration does not ask for.
   Status LoadPlayer();
   Status StartRendering();
+  Status LoadCluster();
   void Confine();
   Status StartRecording();
   Status LoadKeys();
@@ -120,6 +122,7 @@ class Daemon {
   void MakeHub();
   void SetKeys(protocol::secure::KeyRing keys);
   Status CheckListener(const ServiceManager::Listener& listener);
+  Status StartCluster();
   void WarnAboutLoopback() const;
   Status StartOsc();
   Status StartWeb();
@@ -156,6 +159,7 @@ class Daemon {
   KeyFile keys_file_;
   TlsIdentity tls_;
   RigFiles rig_files_;
+  std::unique_ptr<Coordinator> cluster_;  // null: alone; used by the hub, so it outlives it
   std::unique_ptr<Hub> hub_;
   std::unique_ptr<TcpServer> tcp_;
   std::unique_ptr<UdpPort> udp_;
@@ -230,6 +234,26 @@ void Daemon::DeliverPicture(const FinishedPicture& picture) {
   metrics_->Observe(Timing::kPictureRequestToSend, ReadClock() - picture.submitted);
 }
 
+// Before the daemon is confined: loads a module and reads a file.
+Status Daemon::LoadCluster() {
+  auto made = MakeCoordinator(config_, RandomNumber());
+  FURROW_RETURN_IF_ERROR(made);
+  cluster_ = *std::move(made);
+  return {};
+}
+
+Status Daemon::StartCluster() {
+  if (cluster_ == nullptr) return {};
+  const ClusterConfig& cluster = config_.cluster;
+  const NodeAddress self{.name = config_.security.name,
+                         .host = cluster.advertise.empty() ? config_.bind : cluster.advertise,
+                         .tcp = tcp_->address().port,
+                         .udp = udp_->port(),
+                         .http = http_ ? http_->address().port : std::uint16_t{0}};
+  spdlog::info("node '{}' of a cluster, at {}", self.name, self.host);
+  return cluster_->Start(self);
+}
+
 // Before the threads that serve strangers start, because they inherit it.
 void Daemon::Confine() {
   if (!options_.confine) return;
@@ -290,6 +314,7 @@ void Daemon::MakeHub() {
   parts.recording = recorder_.get();
   parts.shards = config_.threads;
   parts.gate = &gate_;
+  parts.cluster = cluster_.get();
   hub_ = std::make_unique<Hub>(std::move(parts));
 }
 
@@ -326,7 +351,8 @@ Status Daemon::Listen() {
                                      io_, hub_.get(), metrics_));
   WarnAboutLoopback();
   FURROW_RETURN_IF_ERROR(StartOsc());
-  return StartWeb();
+  FURROW_RETURN_IF_ERROR(StartWeb());
+  return StartCluster();
 }
 
 // The port is useless for phones otherwise, and nothing on them says why.
@@ -404,6 +430,7 @@ Status Daemon::StartWeb() {
   }
   parts.open_to_network = (ListensToNetwork(config_) || on_network_) && !gate_.required();
   parts.gate = &gate_;
+  parts.cluster = cluster_.get();
   parts.sources = {.bind = config_.bind,
                    .allow = [this] { return config_.mocap_allow; },
                    .livelink_face = [this](Time now) { return mocap_.ReportLiveLinkFace(now); },
@@ -593,7 +620,7 @@ asio::awaitable<void> Daemon::Drain() {
   drain_deadline_ = ReadClock() + FromSeconds(config_.limits.drain_seconds);
   // While it completes its last picture, messages leave. Nobody receives pictures any more.
   if (render_) render_->Stop();
-  hub_->Drain();
+  hub_->Drain(ReadClock());
   // Joins the threads of the other shards: from here on only this thread uses the hub. The goodbyes
   // have left already, at the end of the hub's exclusive lock.
   udp_->Close();
@@ -735,6 +762,10 @@ ExitCode LoadAndServe(const Config& asked, const RunOptions& options) {
   }
   if (Status status = daemon.StartRendering(); !status.ok()) {
     return Fail(ExitCode::kFailed, status);
+  }
+  if (Status status = daemon.LoadCluster(); !status.ok()) {
+    return Fail(status.code() == StatusCode::kUnavailable ? ExitCode::kFailed : ExitCode::kBadInput,
+                status);
   }
   daemon.Confine();
   if (Status status = daemon.StartRecording(); !status.ok()) {

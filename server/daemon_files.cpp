@@ -41,7 +41,8 @@ Confinement FilesOf(const Config& config) {
   for (const fs::path& file :
        {config.source, config.character, config.rig, fs::path(config.skeleton_map),
         fs::path(config.shape_map), config.security.keys, config.play, config.render_settings,
-        config.http.page, tls.certificate, tls.key, tls.client_authority}) {
+        config.http.page, tls.certificate, tls.key, tls.client_authority,
+        config.cluster.credentials, config.cluster.authority}) {
     if (!file.empty()) files.read.push_back(FolderOf(file));
   }
   if (!config.http.page.empty()) files.read.push_back(config.http.page);

@@ -202,6 +202,24 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
   app->add_option("--record-rotate-seconds", config->record.rotate_seconds,
                   "Start a new file after this time in seconds (default: 3600; 0: never)")
       ->check(Within(0, 1e9, "time"));
+  app->add_option("--cluster", config->cluster.store,
+                  "Share subjects with the daemons that use this NATS server: nats://HOST:PORT or\n"
+                  "tls://HOST:PORT; needs --name (default: alone; see docs/CLUSTER.md)")
+      ->type_name("URL");
+  app->add_option("--cluster-advertise", config->cluster.advertise,
+                  "Host by which clients reach this daemon (default: the address of --bind)")
+      ->type_name("HOST");
+  app->add_option("--cluster-credentials", config->cluster.credentials,
+                  "File with user:password for the NATS server, or a .creds file of NATS")
+      ->type_name("FILE");
+  app->add_option("--cluster-node", config->cluster.nodes,
+                  "Share subjects with these daemons, without NATS: NAME=HOST[:TCP:UDP:HTTP]\n"
+                  "(repeatable; all daemons get the same list)")
+      ->type_name("NODE")
+      ->allow_extra_args(false);
+  app->add_flag("--cluster-strict", config->cluster.strict,
+                "Stop serving after 2 s without the NATS server (default: go on with what is\n"
+                "served, and take nothing new)");
   app->add_option("--log-level", config->log_level,
                   "Log these lines and more important ones (default: info)")
       ->transform(CLI::Validator(NumberOfLevel, ""))

@@ -143,6 +143,7 @@ Status ValidateConfig(const Config& config) {
                   "for example 127.0.0.1, 0.0.0.0 or ::1");
   }
   FURROW_RETURN_IF_ERROR(ValidateSecurity(config));
+  FURROW_RETURN_IF_ERROR(ValidateCluster(config.cluster, config.security.name, config.bind));
   for (const std::string& address : config.mocap_allow) {
     if (!IsNumericAddress(address)) {
       return Status(StatusCode::kInvalidArgument,

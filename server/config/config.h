@@ -11,6 +11,7 @@
 
 #include "base/status.h"
 #include "motion/clip/clip.h"
+#include "server/config/cluster_config.h"
 #include "server/config/http_config.h"
 #include "server/config/osc_config.h"
 #include "server/config/security_config.h"
@@ -64,6 +65,7 @@ struct Config {
   OscConfig osc;                               // further targets
   RecordConfig record;
   HttpConfig http;
+  ClusterConfig cluster;               // by default, the daemon is alone
   std::filesystem::path play;          // recording to play inside the daemon, a file or the
                                        // name of a shipped one; empty: none
   std::string bvh_positions = "auto";  // motion::ParseBvhPositions()

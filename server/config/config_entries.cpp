@@ -95,6 +95,13 @@ void AddOutputs(const Config& config, std::vector<ConfigEntry>* entries) {
   add("http.api_share", config.http.api_share);
   add("http.requests_per_second", config.http.requests_per_second);
   add("http.page", config.http.page);
+  add("cluster.store", config.cluster.store);
+  add("cluster.nodes", config.cluster.nodes);
+  add("cluster.bucket", config.cluster.bucket);
+  add("cluster.advertise", config.cluster.advertise);
+  add("cluster.credentials", config.cluster.credentials);
+  add("cluster.authority", config.cluster.authority);
+  add("cluster.strict", config.cluster.strict);
   add("log.level", config.log_level);
   add("log.verbose", config.verbose);
   add("log.json", config.log_json);

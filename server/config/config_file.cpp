@@ -147,6 +147,7 @@ Tables InputTables(Config* config, const std::filesystem::path& folder) {
 Tables OutputTables(Config* config, const std::filesystem::path& folder) {
   RecordConfig& record = config->record;
   HttpConfig& http = config->http;
+  ClusterConfig& cluster = config->cluster;
   return {
       {"render",
        {Flag("enabled", &config->render), Flag("required", &config->require_render),
@@ -164,6 +165,11 @@ Tables OutputTables(Config* config, const std::filesystem::path& folder) {
         Count("max_connections", &http.max_connections), Path("page", &http.page, folder),
         Number("api_share", &http.api_share),
         Count("requests_per_second", &http.requests_per_second)}},
+      {"cluster",
+       {Text("store", &cluster.store), Texts("nodes", &cluster.nodes),
+        Text("bucket", &cluster.bucket), Text("advertise", &cluster.advertise),
+        Path("credentials", &cluster.credentials, folder),
+        Path("authority", &cluster.authority, folder), Flag("strict", &cluster.strict)}},
       {"log",
        {Level("level", &config->log_level), Flag("verbose", &config->verbose),
         Flag("json", &config->log_json)}}};

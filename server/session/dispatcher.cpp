@@ -219,7 +219,7 @@ void Dispatcher::OnHello(Peer& peer, const protocol::Header& header, const proto
   if (!OnToken(peer, header, hello.access, now)) return;
   if (peer.transport == Transport::kUdp) peer.link->SetTakesBundles(hello.bundles);
   parts_.messages->SendReply(peer, MessageSender::ReplyHeader(header),
-                             protocol::Welcome{kServerName, 0});
+                             protocol::Welcome{kServerName, 0, parts_.places->Others()});
 }
 
 // Over UDP, a token is not shown but used (protocol/secure). False: the peer has been refused.

@@ -15,6 +15,7 @@
 #include "server/session/peers/peer.h"
 #include "server/session/shards.h"
 #include "server/session/stream_router.h"
+#include "server/session/subjects/places.h"
 #include "server/session/subjects/publishers.h"
 #include "server/session/subjects/subject_registry.h"
 #include "server/session/subscriptions/subscribers.h"
@@ -38,6 +39,7 @@ class Dispatcher {
     MessageSender* messages = nullptr;  // used under the exclusive lock
     Metrics* metrics = nullptr;
     const TokenGate* gate = nullptr;  // null: everybody may do everything
+    const Places* places = nullptr;
     const Limits* limits = nullptr;
   };
   explicit Dispatcher(Parts parts) : parts_(std::move(parts)) {}

@@ -44,10 +44,11 @@ Hub::Hub(Parts parts)
                    static_cast<std::size_t>(parts.limits.max_skeletons),
                    {std::move(parts.skeletons), std::move(parts.shape_matcher)}),
       subjects_(static_cast<std::size_t>(limits_.max_subjects)),
+      places_(parts.cluster, static_cast<std::size_t>(limits_.max_subjects)),
       publishers_(limits_, JitterDelays(parts.jitter), &definitions_, &subjects_,
-                  &exclusive_context_.messages, random_, metrics_),
+                  &exclusive_context_.messages, &places_, random_, metrics_),
       subscribers_(limits_, &subjects_, parts.pictures, parts.settings,
-                   /*all_drivers=*/recording_ != nullptr, &exclusive_context_, metrics_),
+                   /*all_drivers=*/recording_ != nullptr, &places_, &exclusive_context_, metrics_),
       router_({.publishers = &publishers_,
                .subscribers = &subscribers_,
                .subjects = &subjects_,
@@ -62,6 +63,7 @@ Hub::Hub(Parts parts)
                    .messages = &exclusive_context_.messages,
                    .metrics = metrics_,
                    .gate = gate_,
+                   .places = &places_,
                    .limits = &limits_}),
       mocap_(limits_, &shards_, &router_, metrics_),
       holds_poses_(JitterDelays(std::move(parts.jitter)).any()) {}
@@ -240,6 +242,8 @@ void Hub::Tick(Time now, Time late) {
   const ExclusiveLock lock(*this, 0);
   if (late >= kStall) OnStall(now, late);
   AgeSubjects(now);
+  if (places_.in_cluster() && !draining_ && now - places_refreshed_ >= Places::kRefresh)
+    RefreshPlaces(now);
   mocap_.ForgetRejected(now);
   shards_.ForEachPeer([&](Peer& peer) {
     EndIfTokenEnded(peer, now);
@@ -290,7 +294,35 @@ void Hub::RemoveSubject(Subject& subject) {
   subscribers_.OnSubjectGone(subject);
   if (recording_ != nullptr) recording_->OnSubjectGone(subject);
   mocap_.ForgetSubject(subject.name);
+  places_.Release(subject.name);
   subjects_.Remove(subject.id);
+}
+
+Peer* Hub::OwnerOf(const Subject& subject) {
+  return shards_.Of(subject.owner.peer).peers.Find(subject.owner.peer);
+}
+
+// A subject without a place stays: the node may get it back, and its publisher goes on.
+void Hub::RefreshPlaces(Time now) {
+  places_refreshed_ = now;
+  std::vector<std::pair<Subject*, NodeAddress>> moved;
+  for (const auto& subject : subjects_.all()) {
+    const std::uint64_t epoch = subject->epoch;
+    const Place place = publishers_.RenewPlace(*subject, OwnerOf(*subject), now);
+    if (place.kind == Place::Kind::kElsewhere) moved.emplace_back(subject.get(), place.node);
+    if (subject->epoch != epoch) subscribers_.OnEpoch(*subject);
+  }
+  for (const auto& [subject, node] : moved) MoveSubject(*subject, node);
+  if (!moved.empty()) subscribers_.BindWaiting();
+  subscribers_.SendWaitingElsewhere();
+  places_.Expire([this](std::string_view subject) { return subjects_.Find(subject) != nullptr; },
+                 now);
+}
+
+// The publisher has been sent away already.
+void Hub::MoveSubject(Subject& subject, const NodeAddress& node) {
+  subscribers_.OnSubjectMoved(subject, node);
+  RemoveSubject(subject);
 }
 
 // A UDP address has no connection that could close. Publishing needs no consent: silence ends a
@@ -307,8 +339,16 @@ void Hub::RenewConsent(Peer& peer, Time now) {
   exclusive_context_.messages.SendChallenge(peer, number);
 }
 
-void Hub::Drain() {
+void Hub::Drain(Time now) {
   const ExclusiveLock lock(*this, 0);
+  places_.SetDraining();
+  for (const auto& subject : subjects_.all()) {
+    const Place place = places_.Successor(subject->name, now);
+    if (place.kind != Place::Kind::kElsewhere) continue;
+    publishers_.SendAway(*subject, OwnerOf(*subject), place.node);
+    subscribers_.OnSubjectMoved(*subject, place.node);
+  }
+  for (const auto& subject : subjects_.all()) places_.Release(subject->name);
   // Stop all frames before the goodbye, which must be the last message that a peer receives.
   draining_ = true;
   router_.StopFanOut();
@@ -333,7 +373,7 @@ Subject* Hub::RequireAllDrivers(std::string_view name, const Access& access) {
 
 std::string_view Hub::SourceOf(const Subject& subject) {
   // A subject outlives its publisher while it decays, so the peer may be gone.
-  const Peer* peer = shards_.Of(subject.owner.peer).peers.Find(subject.owner.peer);
+  const Peer* peer = OwnerOf(subject);
   return peer == nullptr ? std::string_view() : std::string_view(peer->name);
 }
 

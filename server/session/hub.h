@@ -16,6 +16,7 @@
 #include "protocol/mocap/neutral_frame.h"
 #include "render/settings/settings.h"
 #include "rig/skeleton_match.h"
+#include "server/cluster/coordinator.h"
 #include "server/core/jitter_rule.h"
 #include "server/core/limits.h"
 #include "server/core/metrics.h"
@@ -30,6 +31,7 @@
 #include "server/session/recording_tap.h"
 #include "server/session/shards.h"
 #include "server/session/stream_router.h"
+#include "server/session/subjects/places.h"
 #include "server/session/subjects/publishers.h"
 #include "server/session/subjects/subject_registry.h"
 #include "server/session/subscriptions/subscribers.h"
@@ -61,6 +63,7 @@ class Hub {
     std::function<std::uint64_t()> random;  // returns unpredictable numbers, never 0
     RecordingTap* recording = nullptr;      // optional; outlives the hub
     const TokenGate* gate = nullptr;        // outlives the hub; null: everybody may do everything
+    Coordinator* cluster = nullptr;         // outlives the hub; null: the daemon is alone
     int shards = 1;                         // one per network thread
   };
   explicit Hub(Parts parts);
@@ -160,8 +163,9 @@ class Hub {
   // and that time does not count as silence of subjects and peers.
   void Tick(Time now, Time late = Time{0});
   static constexpr Time kStall = std::chrono::milliseconds(100);
-  // Says goodbye to all peers and refuses new subscriptions. Call it on SIGTERM.
-  void Drain();
+  // Says goodbye to all peers and refuses new subscriptions. Call it on SIGTERM. In a cluster,
+  // sends publishers and subscribers to other nodes first.
+  void Drain(Time now);
 
   // The functions below require the exclusive lock, and so does every use of the objects that they
   // return.
@@ -208,6 +212,9 @@ class Hub {
   void OnStall(Time now, Time length);
   void AgeSubjects(Time now);
   void RemoveSubject(Subject& subject);
+  [[nodiscard]] Peer* OwnerOf(const Subject& subject);
+  void RefreshPlaces(Time now);
+  void MoveSubject(Subject& subject, const NodeAddress& node);
   void RenewConsent(Peer& peer, Time now);
   void EndIfTokenEnded(Peer& peer, Time now);
   void RepublishWeights(Subject& subject, Time now);
@@ -222,6 +229,8 @@ class Hub {
   PublishContext exclusive_context_;
   StreamDefinitions definitions_;
   SubjectRegistry subjects_;
+  Places places_;
+  Time places_refreshed_{0};
   Publishers publishers_;
   Subscribers subscribers_;
   StreamRouter router_;

@@ -168,6 +168,7 @@ void StreamRouter::PublishAged(Shard& shard, Subject& subject, std::int64_t age_
 
 void StreamRouter::Publish(Shard& shard, Subject& subject, std::span<const std::uint8_t> payload,
                            std::int64_t age_us, Time now) {
+  if (now >= subject.served_until) return;  // another node may serve it, also while it decays
   if (fans_out_) {
     // Under the exclusive lock, frames take the way of the replies and cannot overtake them.
     PublishContext* context = shard.exclusive_locks > 0 ? parts_.exclusive_context : &shard.context;

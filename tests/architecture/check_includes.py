@@ -68,6 +68,7 @@ CONFINED = [
     (r"(tiny_gltf\.h|third_party/tinygltf/)", {"gltf"}),
     (r"assimp/", {"authoring/assimp"}),
     (r"sodium(\.h|/)", {"protocol/secure/crypto"}),
+    (r"nats/", {"server/cluster/nats"}),
     (r"openssl/", {"server/tls", "server/net/tcp", "server/http/request", "client/cpp"}),
     (r"(zstd|lz4frame)\.h", {"motion/mcap"}),
 ]

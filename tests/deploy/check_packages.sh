@@ -66,7 +66,7 @@ sh /srv/pose-in-weights-out
 mkdir -p /var/lib/private/furrow/takes /var/cache/private/furrow
 ln -s private/furrow /var/lib/furrow
 ln -s private/furrow /var/cache/furrow
-apt-get purge --yes --quiet=2 furrowd furrow-pictures furrow-tools furrow-data libfurrow-client1 libfurrow-client-dev \
+apt-get purge --yes --quiet=2 furrowd furrow-pictures furrow-cluster furrow-tools furrow-data libfurrow-client1 libfurrow-client-dev \
   >/srv/apt.log 2>&1 || { cat /srv/apt.log; exit 1; }
 left=$(files)
 [ -z "$left" ] || { echo "purge left: $left"; exit 1; }

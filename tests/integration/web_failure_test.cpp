@@ -93,7 +93,7 @@ TEST_F(WebFailure, AFailedWebSocketLeavesNothingInTheHub) {
   }
   door.RunNext(*hub);
   EXPECT_EQ(hub->num_subscriptions(), 0u);
-  hub->Drain();  // sends to every link
+  hub->Drain(Time{0});  // sends to every link
 }
 
 TEST_F(WebFailure, AFailedPictureStreamLeavesNothingInTheHub) {
@@ -102,7 +102,7 @@ TEST_F(WebFailure, AFailedPictureStreamLeavesNothingInTheHub) {
   EXPECT_EQ(client.Ask("GET", "/mjpeg").status, 0);
   door.RunNext(*hub);
   door.RunNext(*hub);  // removes the peer
-  hub->Drain();
+  hub->Drain(Time{0});
   EXPECT_EQ(WebClient(http->port()).Ask("HEAD", "/mjpeg").status, 200);  // others are served
 }
 

@@ -222,10 +222,9 @@ std::vector<LeaseWrite> LeaseKeeper::Tick(Time now, std::int64_t unix_ms) {
   return writes;
 }
 
+// What the store said before a freeze proves nothing any more.
 void LeaseKeeper::NoticeFreeze(Time now) {
-  if (!last_tick_ || now - *last_tick_ <= kLeaseFreeze) return;
-  EndIsolation();
-  heard_ = last_tick_.emplace(now);
+  if (last_tick_ && now - *last_tick_ > kLeaseFreeze) heard_ = last_tick_.emplace(now);
 }
 
 void LeaseKeeper::EndIsolation() {
@@ -235,11 +234,22 @@ void LeaseKeeper::EndIsolation() {
 std::optional<LeaseKeeper::Serving> LeaseKeeper::ServingOf(std::string_view subject,
                                                            Time now) const {
   const auto found = own_.find(subject);
-  if (found == own_.end() || !found->second.held) return std::nullopt;
-  const Own& own = found->second;
-  if (IsGood(own, now)) return Serving{own.epoch, own.good + kLeaseStop};
-  if (!own.isolated || !last_tick_ || now - *last_tick_ > kLeaseFreeze) return std::nullopt;
-  return Serving{own.epoch, *last_tick_ + kLeaseFreeze};
+  return found == own_.end() ? std::nullopt : ServingOf(found->second, now);
+}
+
+std::optional<LeaseKeeper::Serving> LeaseKeeper::ServingOf(const Own& own, Time now) const {
+  if (!own.held) return std::nullopt;
+  Time until = own.good + kLeaseStop;
+  if (own.isolated && last_tick_) until = std::max(until, *last_tick_ + kLeaseFreeze);
+  return now < until ? std::optional(Serving{own.epoch, until}) : std::nullopt;
+}
+
+std::map<std::string, LeaseKeeper::Serving, std::less<>> LeaseKeeper::AllServing(Time now) const {
+  std::map<std::string, Serving, std::less<>> all;
+  for (const auto& [subject, own] : own_) {
+    if (const auto serving = ServingOf(own, now)) all.emplace(subject, *serving);
+  }
+  return all;
 }
 
 std::string_view LeaseKeeper::HolderOf(std::string_view subject, Time now) const {

@@ -60,6 +60,9 @@ class LeaseKeeper {
     Time until{0};
   };
   [[nodiscard]] std::optional<Serving> ServingOf(std::string_view subject, Time now) const;
+  [[nodiscard]] std::map<std::string, Serving, std::less<>> AllServing(Time now) const;
+  // True until everything that was held has been released.
+  [[nodiscard]] bool holds_any() const { return !own_.empty(); }
   // The other node that holds the subject; empty if none does.
   [[nodiscard]] std::string_view HolderOf(std::string_view subject, Time now) const;
   // Every foreign lease that is in force.
@@ -71,7 +74,7 @@ class LeaseKeeper {
   [[nodiscard]] bool MayTake(Time now) const;
 
  private:
-  // What is known of a record in the store.
+  // A record in the store, as this node knows it.
   struct Record {
     Lease lease;
     Revision revision = 0;
@@ -110,6 +113,7 @@ class LeaseKeeper {
     return own.held && now < own.good + kLeaseStop;
   }
   [[nodiscard]] const Record* Find(std::string_view subject) const;
+  [[nodiscard]] std::optional<Serving> ServingOf(const Own& own, Time now) const;
   [[nodiscard]] bool Keeps(const Own& own, const Lease& lease) const;
   [[nodiscard]] std::optional<Lease> NextLease(const Own& own, const Record* record, Time now,
                                                std::int64_t unix_ms) const;

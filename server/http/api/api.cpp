@@ -18,12 +18,14 @@ Api::Api(Parts parts)
                .connections = std::move(parts.connections),
                .viewers = std::move(parts.viewers),
                .recording_is_paused = std::move(parts.recording_is_paused),
-               .open_to_network = parts.open_to_network}),
+               .open_to_network = parts.open_to_network,
+               .cluster = parts.cluster}),
       settings_(parts.pictures),
       rig_(&captures_),
       playback_(parts.player),
       osc_(parts.osc),
       tokens_(parts.gate, parts.metrics),
+      cluster_(parts.cluster, &tokens_),
       sources_(std::move(parts.sources)),
       routes_{{"GET", "/api/subjects", Need::kToken,
                [this](const ApiRequest& request, Hub& hub, Time now) {
@@ -75,10 +77,16 @@ Api::Api(Parts parts)
                [this](const ApiRequest& request, Hub&, Time now) {
                  return tokens_.Make(request, now);
                }},
+              {"GET", "/api/place", Need::kToken,
+               [this](const ApiRequest& request, Hub&, Time now) {
+                 return cluster_.FindPlace(request, now);
+               }},
+              {"GET", "/api/cluster", Need::kOperate,
+               [this](const ApiRequest&, Hub&, Time now) { return cluster_.Show(now); }},
               {"GET", "/healthz", Need::kNothing,
                [this](const ApiRequest&, Hub&, Time) { return status_.Health(); }},
               {"GET", "/readyz", Need::kNothing,
-               [this](const ApiRequest&, Hub& hub, Time) { return status_.Ready(hub); }},
+               [this](const ApiRequest&, Hub& hub, Time now) { return status_.Ready(hub, now); }},
               {"GET", "/metrics", Need::kOperate, [this](const ApiRequest&, Hub& hub, Time now) {
                  return status_.MetricsText(hub, now);
                }}} {}

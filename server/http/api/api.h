@@ -7,9 +7,11 @@
 #include <string_view>
 #include <vector>
 
+#include "server/cluster/coordinator.h"
 #include "server/core/metrics.h"
 #include "server/core/time.h"
 #include "server/http/api/capture_api.h"
+#include "server/http/api/cluster_api.h"
 #include "server/http/api/osc_api.h"
 #include "server/http/api/playback_api.h"
 #include "server/http/api/rig_api.h"
@@ -46,6 +48,7 @@ class Api {
     std::function<bool()> recording_is_paused;  // by a full disk; empty: nothing is recorded
     bool open_to_network = false;               // other computers need no token
     const TokenGate* gate = nullptr;            // null: the daemon makes no tokens
+    Coordinator* cluster = nullptr;             // null: the daemon is alone
     SourcesApi::Parts sources;
   };
   explicit Api(Parts parts);
@@ -77,6 +80,7 @@ class Api {
   PlaybackApi playback_;
   OscApi osc_;
   TokenApi tokens_;
+  ClusterApi cluster_;
   SourcesApi sources_;
   const std::vector<Route> routes_;
 };

@@ -10,8 +10,8 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "server/core/time.h"
-#include "server/http/api/json_reply.h"
 #include "server/http/request/api_types.h"
+#include "server/http/request/json_reply.h"
 #include "server/pipeline/neutral_part.h"
 #include "server/session/hub.h"
 

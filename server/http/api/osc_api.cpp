@@ -7,7 +7,7 @@
 
 #include "base/numbers.h"
 #include "server/config/osc_profile_file.h"
-#include "server/http/api/json_reply.h"
+#include "server/http/request/json_reply.h"
 
 namespace furrow::server {
 namespace {

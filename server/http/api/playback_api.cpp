@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "server/http/api/json_reply.h"
+#include "server/http/request/json_reply.h"
 
 namespace furrow::server {
 namespace {

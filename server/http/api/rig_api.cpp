@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "rig/rig_file.h"
-#include "server/http/api/json_reply.h"
+#include "server/http/request/json_reply.h"
 #include "wrinkle/solver/explain.h"
 #include "wrinkle/weights/modulation_curve.h"
 

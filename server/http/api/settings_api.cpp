@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "render/settings/settings_file.h"
-#include "server/http/api/json_reply.h"
 #include "server/http/api/setting_json.h"
+#include "server/http/request/json_reply.h"
 #include "server/session/subscriptions/view_settings.h"
 
 namespace furrow::server {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "server/core/network_address.h"
-#include "server/http/api/json_reply.h"
+#include "server/http/request/json_reply.h"
 #include "server/machine/own_addresses.h"
 
 namespace furrow::server {

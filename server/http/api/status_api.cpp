@@ -11,8 +11,8 @@
 #include <prometheus/text_serializer.h>
 #include <spdlog/fmt/fmt.h>
 
-#include "server/http/api/json_reply.h"
 #include "server/http/api/metric_families.h"
+#include "server/http/request/json_reply.h"
 
 namespace furrow::server {
 
@@ -107,7 +107,7 @@ ApiReply StatusApi::ShowStatus(const ApiRequest& request, const Hub& hub, Time n
 
 ApiReply StatusApi::Health() const { return JsonReply({{"ok", true}}); }
 
-ApiReply StatusApi::Ready(const Hub& hub) const {
+ApiReply StatusApi::Ready(const Hub& hub, Time now) const {
   if (hub.draining()) return ErrorReply(503, "unavailable", "", "the daemon is shutting down");
   if (parts_.wants_pictures && parts_.pictures == nullptr) {
     return ErrorReply(503, "unavailable", "", "rendering is enabled but no renderer is available");
@@ -120,6 +120,12 @@ ApiReply StatusApi::Ready(const Hub& hub) const {
   if (parts_.recording_is_paused && parts_.recording_is_paused()) {
     return ErrorReply(503, "unavailable", "",
                       "the recording is paused until its disk has room; see the log");
+  }
+  if (parts_.cluster != nullptr) {
+    if (const std::string fault = parts_.cluster->Fault(now); !fault.empty()) {
+      return ErrorReply(503, "unavailable", "",
+                        fault + ": sessions go on, and nothing new is placed");
+    }
   }
   return JsonReply({{"ok", true}});
 }
@@ -145,7 +151,7 @@ ApiReply StatusApi::MetricsText(const Hub& hub, Time now) const {
               static_cast<double>(parts_.video->state().encoders));
   }
   add_gauge("furrow_ready", "1 while /readyz replies with 200, otherwise 0.",
-            Ready(hub).status == 200 ? 1.0 : 0.0);
+            Ready(hub, now).status == 200 ? 1.0 : 0.0);
   add_gauge("furrow_renderer_running", "1 while a renderer runs and responds, otherwise 0.",
             parts_.pictures != nullptr && !parts_.pictures->is_stuck() ? 1.0 : 0.0);
   add_gauge("furrow_renderer_wanted", "1 if the configuration asks for pictures, otherwise 0.",

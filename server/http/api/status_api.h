@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "server/cluster/coordinator.h"
 #include "server/core/metrics.h"
 #include "server/core/time.h"
 #include "server/http/request/api_types.h"
@@ -30,6 +31,7 @@ class StatusApi {
     std::function<int()> viewers;               // WebSockets and picture streams
     std::function<bool()> recording_is_paused;  // by a full disk; empty: nothing is recorded
     bool open_to_network = false;               // other computers need no token
+    const Coordinator* cluster = nullptr;       // null: the daemon is alone
   };
   explicit StatusApi(Parts parts) : parts_(std::move(parts)) {}
 
@@ -41,8 +43,8 @@ class StatusApi {
   // Always 200: a reply shows that the hub's event loop runs.
   [[nodiscard]] ApiReply Health() const;
   // 200, or 503 while the daemon shuts down, lacks the renderer that its configuration asks for,
-  // has one that does not respond, or cannot record.
-  [[nodiscard]] ApiReply Ready(const Hub& hub) const;
+  // has one that does not respond, cannot record, or can place no subjects in its cluster.
+  [[nodiscard]] ApiReply Ready(const Hub& hub, Time now) const;
   // Counters, histograms and gauges of the daemon and of its process, in Prometheus' text format.
   [[nodiscard]] ApiReply MetricsText(const Hub& hub, Time now) const;
 

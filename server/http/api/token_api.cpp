@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/http/api/token_api.h"
 
+#include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include <nlohmann/json.hpp>
 
 #include "base/utc_time.h"
-#include "server/http/api/json_reply.h"
+#include "server/http/request/json_reply.h"
 
 namespace furrow::server {
 namespace {
 
 namespace secure = protocol::secure;
+
+constexpr std::uint64_t kDefaultSeconds = 3600;
 
 // The issuer checks the values against the token of the maker.
 Result<TokenIssuer::Wanted> ParseWanted(const Json& object) {
@@ -45,6 +50,8 @@ Result<TokenIssuer::Wanted> ParseWanted(const Json& object) {
   return wanted;
 }
 
+}  // namespace
+
 ApiReply TokenRefusal(const Status& status) {
   switch (status.code()) {
     case StatusCode::kUnsupported:
@@ -57,14 +64,37 @@ ApiReply TokenRefusal(const Status& status) {
   }
 }
 
-}  // namespace
+Status TokenApi::CheckWay(const ApiRequest& request) const {
+  if (gate_ != nullptr && request.shielded) return {};
+  return {StatusCode::kUnsupported,
+          "tokens are made over HTTPS, or on the computer of the daemon only", "",
+          "start the daemon with --tls-certificate"};
+}
+
+Result<std::string> TokenApi::MakeFor(const ApiRequest& request, const std::string& audience,
+                                      const std::string& subject, Time now) {
+  FURROW_RETURN_IF_ERROR(CheckWay(request));
+  const auto roles = secure::ParseRoles(request.url.Value("roles"));
+  if (!roles.ok()) return roles.status().At("roles");
+  const std::string_view duration = request.url.Value("for");
+  const auto seconds = duration.empty() ? std::optional(kDefaultSeconds) : ParseDuration(duration);
+  if (!seconds || *seconds == 0) {
+    return Status(StatusCode::kInvalidArgument, "is not a time", "for", "for example 30m or 8h");
+  }
+  // In a pattern, these letters would mean further subjects.
+  if (subject.find_first_of("*?, ") != std::string::npos) {
+    return Status(StatusCode::kInvalidArgument, "is a pattern, and a token is for one subject",
+                  "subject");
+  }
+  const auto issued = issuer_.Issue(
+      request.access,
+      {.roles = *roles, .subjects = subject, .seconds = *seconds, .audience = audience}, now);
+  FURROW_RETURN_IF_ERROR(issued);
+  return issued->text;
+}
 
 ApiReply TokenApi::Make(const ApiRequest& request, Time now) {
-  if (gate_ == nullptr || !request.shielded) {
-    return ErrorReply(403, "forbidden", "",
-                      "tokens are made over HTTPS, or on the computer of the daemon only",
-                      "start the daemon with --tls-certificate");
-  }
+  if (const Status way = CheckWay(request); !way.ok()) return TokenRefusal(way);
   const Result<Json> object = ParseObject(request);
   if (!object.ok()) return ErrorReply(object.status());
   const auto wanted = ParseWanted(*object);

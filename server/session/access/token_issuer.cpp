@@ -51,6 +51,12 @@ Result<TokenIssuer::Issued> TokenIssuer::Issue(const Access& maker, const Wanted
   }
   secure::Grant grant = own;  // also the audience and the rate
   grant.roles = wanted.roles;
+  if (!wanted.audience.empty()) {
+    if (!own.audience.empty() && own.audience != wanted.audience) {
+      return Forbidden("a new token can be for no further server", "audience", maker);
+    }
+    grant.audience = wanted.audience;
+  }
   if (!wanted.subjects.empty()) grant.subjects = wanted.subjects;
   if (!IsWithin(grant.subjects, own.subjects)) {
     return Forbidden("a new token can have no further subject", "subjects", maker);

@@ -27,6 +27,7 @@ class TokenIssuer {
     protocol::secure::Roles roles;
     std::string subjects;       // globs; empty: those of the maker
     std::uint64_t seconds = 0;  // until the end; greater than 0
+    std::string audience = {};  // the only server that accepts it; empty: that of the maker
   };
   struct Issued {
     std::string text;

@@ -8,6 +8,7 @@
 
 #include "protocol/codec/codec.h"
 #include "protocol/messages/messages.h"
+#include "server/cluster/place.h"
 #include "server/core/metrics.h"
 #include "server/session/peers/peer.h"
 
@@ -65,6 +66,18 @@ class MessageSender {
                  std::string text) {
     metrics_->Add(Counter::kMessagesRefused);
     SendReply(peer, ReplyHeader(request), protocol::ErrorMessage{code, Truncate(std::move(text))});
+  }
+
+  // Answers `request` with the server that must be asked instead.
+  void SendElsewhere(Peer& peer, const protocol::Header& request, protocol::ErrorCode code,
+                     std::string text, const NodeAddress& node) {
+    metrics_->Add(Counter::kRedirected);
+    SendReply(peer, ReplyHeader(request),
+              protocol::ErrorMessage{.code = code,
+                                     .message = Truncate(std::move(text)),
+                                     .host = node.host,
+                                     .tcp = node.tcp,
+                                     .udp = node.udp});
   }
 
   // The header of a reply: the stream and sequence of the request.

@@ -28,13 +28,14 @@ bool HasSecretSession(const Peer& peer) {
 }  // namespace
 
 Publishers::Publishers(const Limits& limits, JitterDelays delays, StreamDefinitions* definitions,
-                       SubjectRegistry* subjects, MessageSender* messages,
+                       SubjectRegistry* subjects, MessageSender* messages, Places* places,
                        std::function<std::uint64_t()> random, Metrics* metrics)
     : limits_(limits),
       delays_(std::move(delays)),
       definitions_(definitions),
       subjects_(subjects),
       messages_(messages),
+      places_(places),
       random_(std::move(random)),
       metrics_(metrics) {}
 
@@ -49,6 +50,8 @@ Subject* Publishers::OnOffer(Peer& peer, const protocol::Header& header,
            "not permitted to publish '" + offer.subject + "'; " + peer.access.Text(), now);
     return nullptr;
   }
+  const auto place = TakePlace(peer, header, offer.subject, now);
+  if (!place) return nullptr;
   const StreamKey key{peer.id, header.session, header.stream};
   Subject* subject = subjects_->Find(offer.subject);
   const bool is_owner = subject != nullptr && subject->owner == key;
@@ -85,10 +88,51 @@ Subject* Publishers::OnOffer(Peer& peer, const protocol::Header& header,
     }
     subject = Accept(peer, key, offer, *std::move(definition), now);
   }
+  subject->served_until = place->until;
+  subject->epoch = place->epoch;
   messages_->SendReply(
       peer, MessageSender::ReplyHeader(header),
       protocol::SkeletonReply{offer.skeleton_hash, protocol::SkeletonStatus::kAccepted, {}});
   return subject;
+}
+
+// Nothing: the offer is answered, or waits for a place. Senders repeat it then.
+std::optional<Place> Publishers::TakePlace(Peer& peer, const protocol::Header& header,
+                                           const std::string& subject, Time now) {
+  Place place = places_->Ask(subject, now);
+  switch (place.kind) {
+    case Place::Kind::kHere: return place;
+    case Place::Kind::kPending: return std::nullopt;
+    case Place::Kind::kElsewhere:
+      messages_->SendElsewhere(peer, header, protocol::ErrorCode::kSubjectTaken,
+                               ElsewhereText(subject, place.node), place.node);
+      return std::nullopt;
+    case Place::Kind::kNowhere: break;
+  }
+  messages_->SendError(peer, header, protocol::ErrorCode::kLimit,
+                       "'" + subject + "' has no place in the cluster: " + place.why);
+  return std::nullopt;
+}
+
+Place Publishers::RenewPlace(Subject& subject, Peer* owner, Time now) {
+  Place place = places_->Ask(subject.name, now);
+  if (place.kind == Place::Kind::kHere) {
+    subject.served_until = place.until;
+    subject.epoch = place.epoch;
+    return place;
+  }
+  // A node that only has room is no reason to move: this one may get the subject back.
+  place = places_->Elsewhere(subject.name);
+  if (place.kind == Place::Kind::kElsewhere) SendAway(subject, owner, place.node);
+  return place;
+}
+
+void Publishers::SendAway(const Subject& subject, Peer* owner, const NodeAddress& node) {
+  spdlog::info("subject '{}' goes on at the node '{}'", subject.name, node.name);
+  if (owner == nullptr || subject.ended) return;
+  messages_->SendElsewhere(*owner, {.stream = subject.owner.stream},
+                           protocol::ErrorCode::kSubjectTaken, ElsewhereText(subject.name, node),
+                           node);
 }
 
 // True if the host may offer another skeleton that the daemon does not know.
@@ -195,6 +239,10 @@ bool Publishers::AcceptPose(Subject& subject, const protocol::Header& header,
                             const protocol::PoseFrame& pose, Time now) {
   if (subject.ended) {  // the goodbye has overtaken this pose
     metrics_->Add(Counter::kPosesLate);
+    return false;
+  }
+  if (now >= subject.served_until) {  // another node may serve it
+    metrics_->Add(Counter::kPosesUnplaced);
     return false;
   }
   SubjectPipeline& pipeline = *subject.pipeline;

@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "protocol/codec/codec.h"
@@ -15,6 +16,7 @@
 #include "server/session/delivery/message_sender.h"
 #include "server/session/peers/peer.h"
 #include "server/session/subjects/jitter_delays.h"
+#include "server/session/subjects/places.h"
 #include "server/session/subjects/pose_batch.h"
 #include "server/session/subjects/subject_registry.h"
 
@@ -38,7 +40,7 @@ class Publishers {
  public:
   // `random`: returns unpredictable numbers, never 0.
   Publishers(const Limits& limits, JitterDelays delays, StreamDefinitions* definitions,
-             SubjectRegistry* subjects, MessageSender* messages,
+             SubjectRegistry* subjects, MessageSender* messages, Places* places,
              std::function<std::uint64_t()> random, Metrics* metrics);
 
   // Limits new skeletons of all senders together, because binding one takes milliseconds. One host
@@ -78,6 +80,12 @@ class Publishers {
   // Ends the peer's subjects that its access does not allow (any more).
   void EndForbidden(const Peer& peer, Time now);
 
+  // The place of a subject in a cluster, which the hub asks for every Places::kRefresh. kElsewhere:
+  // the publisher has been sent there. `owner`: the peer that publishes it; null: it has left.
+  [[nodiscard]] Place RenewPlace(Subject& subject, Peer* owner, Time now);
+  // Sends the publisher of the subject to the node. `owner`: as for RenewPlace().
+  void SendAway(const Subject& subject, Peer* owner, const NodeAddress& node);
+
   // The daemon runs again after a stall that ended at `now`. Nobody could be heard during it, so
   // silence counts from here: the poses of the stall still wait in the sockets.
   void OnStall(Time now) { awake_since_ = now; }
@@ -91,6 +99,8 @@ class Publishers {
  private:
   Subject* Accept(Peer& peer, const StreamKey& key, const protocol::SkeletonOffer& offer,
                   std::shared_ptr<const StreamDefinition> stream, Time now);
+  [[nodiscard]] std::optional<Place> TakePlace(Peer& peer, const protocol::Header& header,
+                                               const std::string& subject, Time now);
   void Reject(Peer& peer, const protocol::Header& header, std::uint64_t hash, std::string why,
               Time now);
   [[nodiscard]] bool IsContested(const Subject& subject, const Peer& peer, const StreamKey& key,
@@ -104,6 +114,7 @@ class Publishers {
   StreamDefinitions* const definitions_;
   SubjectRegistry* const subjects_;
   MessageSender* const messages_;
+  Places* const places_;
   const std::function<std::uint64_t()> random_;
   Metrics* const metrics_;
   // By skeleton hash. Entries of offers that no subject uses expire.

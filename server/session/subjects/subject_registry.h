@@ -55,6 +55,8 @@ struct Subject {
   std::shared_ptr<const protocol::SkeletonOffer> offer;
   protocol::SequenceWindow window;
   std::unique_ptr<SubjectPipeline> pipeline;
+  Time served_until{Time::max()};  // in a cluster: the end of this node's right to serve it
+  std::uint64_t epoch = 0;         // of that right; 0 without a cluster
   Time hold{0};                    // delay of its jitter buffer; 0: none
   Time last_pose{0};               // arrival, or release from the jitter buffer
   Time last_update{0};             // arrival or decay

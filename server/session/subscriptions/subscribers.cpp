@@ -49,11 +49,12 @@ std::string WhyForbidden(const Subscription& subscription, const Access& access)
 }  // namespace
 
 Subscribers::Subscribers(const Limits& limits, SubjectRegistry* subjects, PictureSource* pictures,
-                         const render::Settings& settings, bool all_drivers,
+                         const render::Settings& settings, bool all_drivers, const Places* places,
                          PublishContext* context, Metrics* metrics)
     : limits_(limits),
       subjects_(subjects),
       all_drivers_(all_drivers),
+      places_(places),
       messages_(&context->messages),
       metrics_(metrics),
       poses_(messages_),
@@ -162,6 +163,13 @@ void Subscribers::Add(Peer& peer, const protocol::Header& header,
                          WhyForbidden(*subscription, peer.access));
   }
   Subject* subject = name.empty() ? subjects_->First(peer.access) : subjects_->Find(name);
+  if (subject == nullptr) {
+    const Place place = places_->Elsewhere(name);
+    if (place.kind == Place::Kind::kElsewhere) {
+      return messages_->SendElsewhere(peer, header, ErrorCode::kUnknownSubject,
+                                      ElsewhereText(name, place.node), place.node);
+    }
+  }
   if (subject == nullptr && !subscription->wait) {
     const std::string known = subjects_->Names(peer.access);
     return RefuseRequest(
@@ -296,6 +304,7 @@ void Subscribers::Reply(const Subscription& subscription, std::vector<std::strin
   if (const auto* poses = std::get_if<PoseRequest>(&subscription.request)) {
     reply.publisher_session = poses->publisher;
   }
+  if (subscription.subject != nullptr) reply.epoch = subscription.subject->epoch;
   reply.names_hash = protocol::NamesHash(names);
   reply.names = std::move(names);
   messages_->SendReply(*subscription.peer,
@@ -389,6 +398,41 @@ void Subscribers::OnSubjectGone(Subject& subject) {
     if (auto* poses = std::get_if<PoseRequest>(&subscription->request)) *poses = {};
     if (!subscription->wait) Erase(*subscription);
   }
+}
+
+void Subscribers::SendElsewhere(Subscription& subscription, const NodeAddress& node) {
+  const std::string name =
+      subscription.subject != nullptr ? subscription.subject->name : subscription.subject_name;
+  messages_->SendElsewhere(*subscription.peer,
+                           {.stream = subscription.id, .sequence = subscription.request_sequence},
+                           ErrorCode::kUnknownSubject, ElsewhereText(name, node), node);
+}
+
+void Subscribers::OnSubjectMoved(Subject& subject, const NodeAddress& node) {
+  const std::span<Subscription* const> bound = table_.Of(subject.id);
+  const std::vector<Subscription*> subscriptions(bound.begin(), bound.end());
+  for (Subscription* subscription : subscriptions) {
+    // One for the oldest subject finds another one here.
+    if (subscription->subject_name.empty()) continue;
+    SendElsewhere(*subscription, node);
+    Erase(*subscription);
+  }
+}
+
+void Subscribers::SendWaitingElsewhere() {
+  const auto waits = [](const Subscription& each) {
+    return each.subject == nullptr && !each.subject_name.empty();
+  };
+  for (Subscription* subscription : table_.Select(waits)) {
+    const Place place = places_->Elsewhere(subscription->subject_name);
+    if (place.kind != Place::Kind::kElsewhere) continue;
+    SendElsewhere(*subscription, place.node);
+    Erase(*subscription);
+  }
+}
+
+void Subscribers::OnEpoch(Subject& subject) {
+  for (Subscription* subscription : table_.Of(subject.id)) ReplyAgain(*subscription);
 }
 
 void Subscribers::BindWaiting() {

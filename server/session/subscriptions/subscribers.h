@@ -14,6 +14,7 @@
 #include "server/pipeline/picture_source.h"
 #include "server/session/delivery/publish_context.h"
 #include "server/session/peers/peer.h"
+#include "server/session/subjects/places.h"
 #include "server/session/subjects/subject_registry.h"
 #include "server/session/subscriptions/fan_out.h"
 #include "server/session/subscriptions/picture_views.h"
@@ -33,8 +34,8 @@ class Subscribers {
   // every subject; else evaluate only those that a subscription needs. `context` is used for
   // replies and for frames sent outside of a pose.
   Subscribers(const Limits& limits, SubjectRegistry* subjects, PictureSource* pictures,
-              const render::Settings& settings, bool all_drivers, PublishContext* context,
-              Metrics* metrics);
+              const render::Settings& settings, bool all_drivers, const Places* places,
+              PublishContext* context, Metrics* metrics);
   Subscribers(const Subscribers&) = delete;  // its parts point at each other
   Subscribers& operator=(const Subscribers&) = delete;
 
@@ -66,6 +67,12 @@ class Subscribers {
   void OnSubjectReady(Subject& subject);
   // Call before a subject is removed. Says goodbye to its subscribers.
   void OnSubjectGone(Subject& subject);
+  // Call before a subject that goes on at another node is removed. Sends its subscribers there.
+  void OnSubjectMoved(Subject& subject, const NodeAddress& node);
+  // Sends subscriptions that wait for a subject to the node that serves it.
+  void SendWaitingElsewhere();
+  // Call after the epoch of the subject has changed. Sends new replies.
+  void OnEpoch(Subject& subject);
   // Call after subjects were removed. Binds subscriptions without a subject name to the oldest
   // subject, if there is one.
   void BindWaiting();
@@ -95,11 +102,13 @@ class Subscribers {
   void RefuseRequest(Peer& peer, const protocol::Header& header, protocol::ErrorCode code,
                      std::string why);
   void RefuseAndErase(Subscription& subscription, protocol::ErrorCode code, std::string why);
+  void SendElsewhere(Subscription& subscription, const NodeAddress& node);
   void Erase(Subscription& subscription);
 
   const Limits& limits_;  // of the hub, which may change them
   SubjectRegistry* const subjects_;
   bool all_drivers_;
+  const Places* const places_;
   MessageSender* const messages_;
   Metrics* const metrics_;
   SubscriptionTable table_;

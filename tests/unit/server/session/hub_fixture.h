@@ -125,6 +125,7 @@ class HubTest : public testing::Test {
     parts.pictures = &pictures;
     parts.metrics = &metrics;
     parts.gate = gate;
+    parts.cluster = cluster;
     parts.random = [this] { return ++last_token; };
     hub = std::make_unique<Hub>(std::move(parts));
   }
@@ -175,6 +176,7 @@ class HubTest : public testing::Test {
 
   Metrics metrics;
   const TokenGate* gate = nullptr;  // this and the next: of hubs that are made from now on
+  Coordinator* cluster = nullptr;
   std::vector<JitterRule> jitter;
   FakePictures pictures;
   std::unique_ptr<Hub> hub;

@@ -51,7 +51,7 @@ TEST_F(HubSessionTest, GarbageIsAnsweredOnTcpAndIgnoredOnUdp) {
 }
 
 TEST_F(HubSessionTest, DrainingSaysGoodbyeAndRefusesSubscriptions) {
-  hub->Drain();
+  hub->Drain(Time{0});
   EXPECT_EQ(viewer.Take<protocol::Goodbye>()->message.reason, protocol::GoodbyeReason::kDraining);
   Send(viewer, protocol::SubscribeWeights{.wait = true});
   ExpectError(viewer, ErrorCode::kDraining);
@@ -63,7 +63,7 @@ TEST_F(HubSessionTest, NothingFollowsAGoodbye) {
   Send(sender, Pose(0.5f), 1, 0);
   ASSERT_TRUE(viewer.Take<protocol::WeightFrame>().has_value());
   Send(sender, Pose(0.25f), 1, 1);  // owed
-  hub->Drain();
+  hub->Drain(Time{0});
   EXPECT_TRUE(viewer.Take<protocol::Goodbye>().has_value());
   Advance(1.0);
   hub->Tick(now);

@@ -120,7 +120,7 @@ TEST_F(ShardsTest, ARemovedSenderIsForgottenInAnyShard) {
 TEST_F(ShardsTest, GoodbyesReachAllShards) {
   FakePeer peers[kShards];
   for (int shard = 0; shard < kShards; ++shard) ConnectIn(shard, &peers[shard]);
-  hub->Drain();
+  hub->Drain(Time{0});
   for (FakePeer& peer : peers) EXPECT_TRUE(peer.Take<protocol::Goodbye>().has_value());
 }
 

@@ -77,6 +77,19 @@ TEST_F(TokenIssuerTest, NobodyGivesMoreThanTheyHave) {
   EXPECT_EQ(metrics.Get(Counter::kTokensMade), 2u);
 }
 
+TEST_F(TokenIssuerTest, ATokenForEveryServerMakesOnesForASingleServer) {
+  const auto issue = [this](const std::string& audience) {
+    return issuer.Issue(
+        Maker(), {.roles = Role::kWatch, .subjects = {}, .seconds = 60, .audience = audience}, now);
+  };
+  EXPECT_TRUE(issue("a").ok()) << "its own";
+  EXPECT_EQ(issue("b").status().where(), "audience");
+  own.audience.clear();
+  const auto issued = issue("b");
+  ASSERT_TRUE(issued.ok()) << issued.status().ToString();
+  EXPECT_FALSE(gate.Admit(issued->text, /*shielded=*/true, now).ok()) << "it is not for this one";
+}
+
 TEST_F(TokenIssuerTest, NoTokenOutlivesItsKey) {
   secure::KeyRing short_lived;
   key_id = *short_lived.AddNew(kUnixNow, kUnixNow + 30, secure::SystemRandom());

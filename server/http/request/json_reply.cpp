@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/http/api/json_reply.h"
+#include "server/http/request/json_reply.h"
 
 #include <string>
 

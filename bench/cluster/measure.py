@@ -1,0 +1,149 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Makes parts of a cluster fail and measures what a viewer notices (bench/cluster.sh)."""
+import contextlib
+import math
+import signal
+import sys
+import threading
+import time
+
+from cluster_testing import NATS, NatsServer, Node, Performer, Viewer, reorderings, wait_until
+
+BEFORE = 60  # frames before each failure: a second
+AFTER = 120
+FROZEN = 5.0  # seconds
+
+
+class Claims:
+    """Asks every node again and again which epoch it serves itself, and counts epochs of two nodes."""
+
+    def __init__(self, nodes):
+        self.nodes = nodes
+        self.owners = {}
+        self.split = 0
+        self.stop = threading.Event()
+        self.thread = threading.Thread(target=self.run, daemon=True)
+        self.thread.start()
+
+    def run(self):
+        while not self.stop.wait(0.1):
+            for node in list(self.nodes.values()):
+                with contextlib.suppress(OSError, ValueError):
+                    found = node.holder("ada")
+                    if found and found[0] == node.name:
+                        owner = self.owners.setdefault(found[1], node.name)
+                        self.split += owner != node.name
+
+    def close(self):
+        self.stop.set()
+        self.thread.join()
+
+
+def outage(frames, since):
+    """The longest time without a frame from shortly before `since` on, in ms."""
+    times = [at for at, _ in frames if at >= since - 0.5]
+    return max(b - a for a, b in zip(times, times[1:])) * 1000
+
+
+def percentile(values, part):
+    values = sorted(values)
+    return values[min(len(values) - 1, math.ceil(part * len(values)) - 1)]
+
+
+class Stage:
+    """The cluster, one performer and one viewer."""
+
+    def __init__(self, stack):
+        self.stack = stack
+        self.nats = NatsServer()
+        stack.callback(self.nats.close)
+        self.nodes = {}
+        for name in "abc":
+            self.start(name)
+        for node in self.nodes.values():
+            wait_until(node.is_ready, "the nodes are ready")
+        self.performer = Performer(self.nodes["a"].udp, "ada")
+        stack.callback(self.performer.close)
+        self.viewer = Viewer(self.nodes["b"].udp, "ada")
+        stack.callback(self.viewer.close)
+        self.claims = Claims(self.nodes)
+        stack.callback(self.claims.close)
+
+    def start(self, name, ports=None):
+        node = Node(name, "--cluster", self.nats.url)
+        if ports:  # the clients know these
+            node.args[1:5] = ["--tcp", str(ports["tcp"]), "--udp", str(ports["udp"])]
+        self.nodes[name] = self.stack.enter_context(node)
+
+    def holder(self):
+        def agreed():
+            found = {node.holder("ada") for node in self.nodes.values()}
+            return found.pop() if len(found) == 1 else None
+        return self.nodes[wait_until(agreed, "the nodes agree")[0]]
+
+    def kill(self):
+        node = self.holder()
+        since = time.monotonic()
+        node.signal(signal.SIGKILL)
+        self.viewer.wait_for(AFTER)
+        self.start(node.name, node.ports)
+        wait_until(self.nodes[node.name].is_ready, "the node is back")
+        return since
+
+    def freeze(self):
+        node = self.holder()
+        since = time.monotonic()
+        node.signal(signal.SIGSTOP)
+        threading.Event().wait(FROZEN)
+        node.signal(signal.SIGCONT)
+        self.viewer.wait_for(AFTER)
+        wait_until(node.is_ready, "the node is back")
+        return since
+
+    def empty(self):
+        since = time.monotonic()
+        self.nats.kill()
+        self.viewer.wait_for(AFTER)
+        self.nats.start()
+        for node in self.nodes.values():
+            wait_until(node.is_ready, "the nodes are ready again")
+        self.viewer.wait_for(AFTER)
+        return since
+
+    def drain(self):
+        node = self.holder()
+        since = time.monotonic()
+        node.signal(signal.SIGTERM)
+        node.process.wait()
+        self.viewer.wait_for(AFTER)
+        self.start(node.name, node.ports)
+        wait_until(self.nodes[node.name].is_ready, "the node is back")
+        return since
+
+
+def main():
+    if NATS is None:
+        print("bench/cluster.sh: nats-server is not installed", file=sys.stderr)
+        return 1
+    rounds = int(sys.argv[1])
+    print(f"{'failure':<28}{'rounds':>7}{'p50':>9}{'p99':>9}{'max':>9}  twice  disorder  split")
+    with contextlib.ExitStack() as stack:
+        stage = Stage(stack)
+        for label, fail in (("the holder is killed", stage.kill), ("the holder freezes for 5 s", stage.freeze),
+                            ("NATS restarts, emptied", stage.empty), ("the holder ends (SIGTERM)", stage.drain)):
+            first, split = len(stage.viewer.frames), stage.claims.split
+            outages = []
+            for _ in range(rounds):
+                stage.viewer.wait_for(BEFORE)
+                since = fail()
+                outages.append(outage(stage.viewer.frames, since))
+            frames = stage.viewer.frames[first:]
+            twice = len(frames) - len({number for _, number in frames})
+            print(f"{label:<28}{rounds:>7}" + "".join(f"{percentile(outages, p):>6.0f} ms" for p in (0.5, 0.99, 1.0)) +
+                  f"{twice:>7}{reorderings(frames):>10}{stage.claims.split - split:>7}", flush=True)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,345 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <atomic>
+#include <charconv>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include <nats/nats.h>
+
+#include "server/cluster/store/store.h"
+
+namespace furrow::server {
+namespace {
+
+using std::chrono::milliseconds;
+
+template <auto kDestroy>
+struct Deleter {
+  template <class T>
+  void operator()(T* object) const {
+    kDestroy(object);
+  }
+};
+using Options = std::unique_ptr<natsOptions, Deleter<natsOptions_Destroy>>;
+using Connection = std::unique_ptr<natsConnection, Deleter<natsConnection_Destroy>>;
+using Subscription = std::unique_ptr<natsSubscription, Deleter<natsSubscription_Destroy>>;
+using Message = std::unique_ptr<natsMsg, Deleter<natsMsg_Destroy>>;
+using Context = std::unique_ptr<jsCtx, Deleter<jsCtx_Destroy>>;
+using StreamInfo = std::unique_ptr<jsStreamInfo, Deleter<jsStreamInfo_Destroy>>;
+using Bucket = std::unique_ptr<kvStore, Deleter<kvStore_Destroy>>;
+using Watcher = std::unique_ptr<kvWatcher, Deleter<kvWatcher_Destroy>>;
+using Entry = std::unique_ptr<kvEntry, Deleter<kvEntry_Destroy>>;
+
+// A server that answers no ping for about twice this time is gone.
+constexpr std::int64_t kPingMs = 400;
+constexpr std::int64_t kReconnectMs = 250;
+constexpr std::int64_t kConnectMs = 1000;
+constexpr std::int64_t kRequestMs = 400;
+// Reading everything must end before the leases do.
+constexpr milliseconds kListTime(700);
+// How often the stream is compared with what was heard of it: a watcher may die without a word.
+constexpr milliseconds kCheckPause(1000);
+// Records of nodes and subjects that are gone. Far above every time of a lease, and the epochs of
+// subjects that left are remembered for it.
+constexpr std::int64_t kRecordLifeNs = std::int64_t{600} * 1'000'000'000;
+constexpr std::int64_t kMaxBucketBytes = 64 << 20;
+constexpr int kMaxValueBytes = 1024;
+constexpr int kWrongLastSequence = 10071;  // err_code of JetStream
+
+using Clock = std::chrono::steady_clock;
+
+// The number after `"key":` in a small JSON text of the server; 0 if there is none.
+std::uint64_t NumberAfter(std::string_view text, std::string_view key) {
+  std::size_t at = text.find(key);
+  if (at == std::string_view::npos) return 0;
+  at = std::min(text.find_first_not_of(" :", at + key.size()), text.size());
+  std::uint64_t number = 0;
+  (void)std::from_chars(text.data() + at, text.data() + text.size(), number);
+  return number;
+}
+
+class NatsStore : public Store {
+ public:
+  explicit NatsStore(const StoreOptions& options)
+      : options_(options), bucket_name_(options.bucket), stream_("KV_" + options.bucket) {}
+
+  // The library's threads call this object, so they end first.
+  ~NatsStore() override {
+    watcher_.reset();
+    answers_.reset();
+    bucket_.reset();
+    context_.reset();
+    if (connection_ != nullptr) natsConnection_Close(connection_.get());
+    connection_.reset();
+    (void)nats_CloseAndWait(kConnectMs);
+  }
+
+  bool Open(std::string* why) override;
+  // The library locks the connection while it tries to connect, so its status cannot be asked.
+  bool connected() override { return connected_; }
+  void Put(const StorePut& put) override;
+  bool Poll(milliseconds wait, std::vector<StoreAnswer>* answers,
+            std::vector<StoreRecord>* changes) override;
+  bool List(std::uint64_t* incarnation, std::vector<StoreRecord>* records,
+            std::string* why) override;
+
+ private:
+  natsStatus PrepareAnswers();
+  natsStatus PrepareBucket(StreamInfo* info);
+  natsStatus GetInfo(StreamInfo* info);
+  bool IsComplete();
+  void TakeAnswer(const Message& message, std::vector<StoreAnswer>* answers) const;
+  void TakeEntry(const Entry& entry, std::vector<StoreRecord>* records);
+
+  const StoreOptions options_;
+  const std::string bucket_name_;
+  const std::string stream_;
+  std::atomic<bool> connected_ = false;  // changed by the library's threads
+  Connection connection_;
+  Context context_;
+  Bucket bucket_;
+  Watcher watcher_;
+  std::string inbox_;  // where answers arrive: inbox_ + the number of the write
+  Subscription answers_;
+  std::uint64_t heard_ = 0;     // the highest revision of a record that was read
+  std::uint64_t expected_ = 0;  // of the stream at the last check
+  std::int64_t created_ = 0;    // of the stream at the last listing
+  Clock::time_point checked_{};
+};
+
+bool NatsStore::Open(std::string* why) {
+  natsOptions* raw = nullptr;
+  natsStatus status = natsOptions_Create(&raw);
+  const Options settings(raw);
+  const auto set = [&status](natsStatus next) {
+    if (status == NATS_OK) status = next;
+  };
+  if (status == NATS_OK) {
+    set(natsOptions_SetURL(raw, options_.url.c_str()));
+    set(natsOptions_SetName(raw, ("furrowd " + options_.node).c_str()));
+    set(natsOptions_SetAllowReconnect(raw, true));
+    set(natsOptions_SetMaxReconnect(raw, -1));
+    set(natsOptions_SetReconnectWait(raw, kReconnectMs));
+    set(natsOptions_SetTimeout(raw, kConnectMs));
+    set(natsOptions_SetPingInterval(raw, kPingMs));
+    set(natsOptions_SetMaxPingsOut(raw, 2));
+    // A write that waited for a connection would come too late.
+    set(natsOptions_SetReconnectBufSize(raw, 1));
+    set(natsOptions_SetSendAsap(raw, true));
+    const natsConnectionHandler up = [](natsConnection*, void* self) {
+      static_cast<NatsStore*>(self)->connected_ = true;
+    };
+    const natsConnectionHandler down = [](natsConnection*, void* self) {
+      static_cast<NatsStore*>(self)->connected_ = false;
+    };
+    set(natsOptions_SetRetryOnFailedConnect(raw, true, up, this));
+    set(natsOptions_SetReconnectedCB(raw, up, this));
+    set(natsOptions_SetDisconnectedCB(raw, down, this));
+    set(natsOptions_SetClosedCB(raw, down, this));
+    if (!options_.user.empty()) {
+      set(natsOptions_SetUserInfo(raw, options_.user.c_str(), options_.password.c_str()));
+    }
+    if (!options_.credentials.empty()) {
+      set(natsOptions_SetUserCredentialsFromFiles(raw, options_.credentials.c_str(), nullptr));
+    }
+    if (options_.url.starts_with("tls://")) {
+      set(natsOptions_SetSecure(raw, true));
+      const std::string host = options_.url.substr(6, options_.url.rfind(':') - 6);
+      set(natsOptions_SetExpectedHostname(raw, host.c_str()));
+      if (!options_.authority.empty()) {
+        set(natsOptions_LoadCATrustedCertificates(raw, options_.authority.c_str()));
+      }
+    }
+  }
+  natsConnection* connection = nullptr;
+  if (status == NATS_OK) status = natsConnection_Connect(&connection, raw);
+  connection_.reset(connection);
+  if (status == NATS_OK) connected_ = true;
+  if (status == NATS_NOT_YET_CONNECTED) status = NATS_OK;
+  if (status != NATS_OK) *why = natsStatus_GetText(status);
+  return status == NATS_OK;
+}
+
+natsStatus NatsStore::PrepareAnswers() {
+  if (answers_ != nullptr) return NATS_OK;
+  natsInbox* inbox = nullptr;
+  natsStatus status = natsInbox_Create(&inbox);
+  if (status != NATS_OK) return status;
+  inbox_ = std::string(inbox) + ".";
+  natsInbox_Destroy(inbox);
+  natsSubscription* subscription = nullptr;
+  status = natsConnection_SubscribeSync(&subscription, connection_.get(), (inbox_ + "*").c_str());
+  answers_.reset(subscription);
+  return status;
+}
+
+natsStatus NatsStore::GetInfo(StreamInfo* info) {
+  jsStreamInfo* found = nullptr;
+  const natsStatus status =
+      js_GetStreamInfo(&found, context_.get(), stream_.c_str(), nullptr, nullptr);
+  info->reset(found);
+  return status;
+}
+
+// The first node makes the bucket. An operator may have made another one, on disk or on
+// several servers.
+natsStatus NatsStore::PrepareBucket(StreamInfo* info) {
+  natsStatus status = NATS_OK;
+  if (context_ == nullptr) {
+    jsOptions options;
+    jsOptions_Init(&options);
+    options.Wait = kRequestMs;
+    jsCtx* context = nullptr;
+    status = natsConnection_JetStream(&context, connection_.get(), &options);
+    context_.reset(context);
+    if (status != NATS_OK) return status;
+  }
+  status = GetInfo(info);
+  if (status == NATS_NOT_FOUND) {
+    kvConfig config;
+    kvConfig_Init(&config);
+    config.Bucket = bucket_name_.c_str();
+    config.Description = "leases of a Furrow cluster";
+    config.MaxValueSize = kMaxValueBytes;
+    config.History = 1;
+    config.TTL = kRecordLifeNs;
+    config.MaxBytes = kMaxBucketBytes;
+    config.StorageType = js_MemoryStorage;
+    config.Replicas = 1;
+    kvStore* made = nullptr;
+    status = js_CreateKeyValue(&made, context_.get(), &config);
+    bucket_.reset(made);
+    if (status == NATS_OK) status = GetInfo(info);
+  }
+  if (status != NATS_OK || bucket_ != nullptr) return status;
+  kvStore* bucket = nullptr;
+  status = js_KeyValue(&bucket, context_.get(), bucket_name_.c_str());
+  bucket_.reset(bucket);
+  return status;
+}
+
+void NatsStore::Put(const StorePut& put) {
+  if (answers_ == nullptr || !connected()) return;
+  natsMsg* raw = nullptr;
+  const std::string subject = "$KV." + bucket_name_ + "." + put.key;
+  const std::string reply = inbox_ + std::to_string(put.id);
+  if (natsMsg_Create(&raw, subject.c_str(), reply.c_str(), put.value.data(),
+                     static_cast<int>(put.value.size())) != NATS_OK) {
+    return;
+  }
+  const Message message(raw);
+  if (natsMsgHeader_Set(raw, "Nats-Expected-Last-Subject-Sequence",
+                        std::to_string(put.expected).c_str()) == NATS_OK) {
+    (void)natsConnection_PublishMsg(connection_.get(), raw);  // without an answer it is unknown
+  }
+}
+
+void NatsStore::TakeAnswer(const Message& message, std::vector<StoreAnswer>* answers) const {
+  const std::string_view subject = natsMsg_GetSubject(message.get());
+  const std::string_view text(natsMsg_GetData(message.get()),
+                              static_cast<std::size_t>(natsMsg_GetDataLength(message.get())));
+  StoreAnswer answer;
+  if (!subject.starts_with(inbox_)) return;
+  const std::string_view id = subject.substr(inbox_.size());
+  (void)std::from_chars(id.data(), id.data() + id.size(), answer.id);
+  answer.revision = NumberAfter(text, "\"seq\"");
+  if (text.find("\"error\"") != std::string_view::npos) {
+    const bool refused = NumberAfter(text, "\"err_code\"") == kWrongLastSequence;
+    answer.result = refused ? WriteResult::kRefused : WriteResult::kUnknown;
+  } else if (answer.revision != 0) {
+    answer.result = WriteResult::kDone;
+  }
+  answers->push_back(answer);
+}
+
+void NatsStore::TakeEntry(const Entry& entry, std::vector<StoreRecord>* records) {
+  kvEntry* const raw = entry.get();
+  StoreRecord record{.key = kvEntry_Key(raw), .value = {}, .revision = kvEntry_Revision(raw)};
+  heard_ = std::max(heard_, record.revision);
+  const int size = kvEntry_ValueLen(raw);
+  if (kvEntry_Operation(raw) == kvOp_Put && size > 0 && size <= kMaxValueBytes) {
+    record.value.assign(static_cast<const char*>(kvEntry_Value(raw)),
+                        static_cast<std::size_t>(size));
+  }
+  records->push_back(std::move(record));
+}
+
+bool NatsStore::Poll(milliseconds wait, std::vector<StoreAnswer>* answers,
+                     std::vector<StoreRecord>* changes) {
+  if (answers_ == nullptr || !connected()) {
+    nats_Sleep(wait.count());
+    return false;
+  }
+  natsMsg* raw = nullptr;
+  std::int64_t left = wait.count();
+  while (natsSubscription_NextMsg(&raw, answers_.get(), left) == NATS_OK) {
+    TakeAnswer(Message(raw), answers);
+    left = 0;  // takes what else is there
+  }
+  if (watcher_ == nullptr) return false;
+  kvEntry* entry = nullptr;
+  while (kvWatcher_Next(&entry, watcher_.get(), 1) == NATS_OK && entry != nullptr) {
+    TakeEntry(Entry(entry), changes);
+  }
+  return IsComplete();
+}
+
+// A watcher that has not heard of what was there a second ago hears nothing any more. A stream that
+// was made later is another one.
+bool NatsStore::IsComplete() {
+  const auto now = Clock::now();
+  if (now - checked_ < kCheckPause) return true;
+  checked_ = now;
+  StreamInfo info;
+  if (GetInfo(&info) != NATS_OK || info->Created != created_) return false;
+  const bool complete = heard_ >= expected_;
+  expected_ = info->State.LastSeq;
+  return complete;
+}
+
+bool NatsStore::List(std::uint64_t* incarnation, std::vector<StoreRecord>* records,
+                     std::string* why) {
+  const auto deadline = Clock::now() + kListTime;
+  StreamInfo info;
+  natsStatus status = PrepareAnswers();
+  if (status == NATS_OK) status = PrepareBucket(&info);
+  watcher_.reset();
+  kvWatcher* watcher = nullptr;
+  if (status == NATS_OK) status = kvStore_WatchAll(&watcher, bucket_.get(), nullptr);
+  watcher_.reset(watcher);
+  heard_ = 0;
+  while (status == NATS_OK) {
+    const auto left = std::chrono::duration_cast<milliseconds>(deadline - Clock::now());
+    kvEntry* entry = nullptr;
+    status =
+        left.count() <= 0 ? NATS_TIMEOUT : kvWatcher_Next(&entry, watcher_.get(), left.count());
+    if (status == NATS_OK && entry == nullptr) break;  // the end of what was there
+    if (status == NATS_OK) TakeEntry(Entry(entry), records);
+  }
+  // The stream may have been made again while it was read.
+  StreamInfo after;
+  if (status == NATS_OK) status = GetInfo(&after);
+  if (status == NATS_OK && after->Created != info->Created) status = NATS_TIMEOUT;
+  if (status != NATS_OK) {
+    *why = natsStatus_GetText(status);
+    watcher_.reset();
+    return false;
+  }
+  created_ = info->Created;
+  expected_ = 0;
+  heard_ = std::max(heard_, after->State.LastSeq);
+  *incarnation = static_cast<std::uint64_t>(info->Created);
+  return true;
+}
+
+}  // namespace
+}  // namespace furrow::server
+
+// Where store.h looks for it (MakeStore).
+extern "C" __attribute__((visibility("default"))) furrow::server::Store* FurrowNatsStore(
+    const furrow::server::StoreOptions& options) {
+  return new furrow::server::NatsStore(options);
+}

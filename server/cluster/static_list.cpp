@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/cluster/static_list.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+namespace furrow::server {
+namespace {
+
+// FNV-1a, and a last mixing step: without it, names that differ in their last letter alone would
+// select nodes unevenly.
+std::uint64_t Weight(std::string_view node, std::string_view subject) {
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (const std::string_view text : {node, std::string_view("\0", 1), subject}) {
+    for (const char c : text) {
+      hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+    }
+  }
+  hash ^= hash >> 33;
+  hash *= 0xff51afd7ed558ccd;
+  return hash ^ (hash >> 33);
+}
+
+}  // namespace
+
+Status StaticList::Start(const NodeAddress& self) {
+  for (NodeAddress& node : nodes_) {
+    if (node.name == self_) node = self;
+  }
+  return {};
+}
+
+Place StaticList::Find(std::string_view subject, Time /*now*/) const {
+  const auto best =
+      std::max_element(nodes_.begin(), nodes_.end(), [subject](const auto& a, const auto& b) {
+        return Weight(a.name, subject) < Weight(b.name, subject);
+      });
+  Place place;
+  place.kind = best->name == self_ ? Place::Kind::kHere : Place::Kind::kElsewhere;
+  place.node = *best;
+  place.until = kNoEnd;
+  return place;
+}
+
+Place StaticList::Elsewhere(std::string_view subject) const {
+  Place place = Find(subject, Time{0});
+  return place.kind == Place::Kind::kElsewhere ? place : Place();
+}
+
+Place StaticList::Ask(std::string_view subject, Time now) {
+  Place place = Find(subject, now);
+  if (place.kind == Place::Kind::kHere && draining_) {
+    place.kind = Place::Kind::kNowhere;
+    place.why = "this node is draining";
+  }
+  return place;
+}
+
+Place StaticList::Propose(std::string_view subject, Time now) const { return Find(subject, now); }
+
+std::vector<NodeAddress> StaticList::Others() const {
+  std::vector<NodeAddress> others = nodes_;
+  std::erase_if(others, [this](const NodeAddress& node) { return node.name == self_; });
+  return others;
+}
+
+ClusterState StaticList::State(Time /*now*/) const {
+  ClusterState state;
+  for (const NodeAddress& node : nodes_) {
+    const bool is_self = node.name == self_;
+    state.nodes.push_back({.address = node,
+                           .subjects = 0,
+                           .capacity = 0,
+                           .draining = is_self && draining_,
+                           .self = is_self});
+  }
+  return state;
+}
+
+}  // namespace furrow::server

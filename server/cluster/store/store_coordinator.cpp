@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/cluster/store/store_coordinator.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+namespace furrow::server {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kStep(50);
+// The pause between two attempts to list the store.
+constexpr Time kListPause = milliseconds(100);
+// More cannot be wanted: one daemon has at most a million subjects.
+constexpr std::size_t kMaxForeign = 1'000'000;
+
+}  // namespace
+
+StoreCoordinator::StoreCoordinator(Parts parts)
+    : run_(parts.run),
+      capacity_(parts.capacity),
+      now_(std::move(parts.now)),
+      unix_ms_(std::move(parts.unix_ms)),
+      store_(std::move(parts.store)),
+      leases_(parts.node, parts.run, parts.strict) {
+  View first;
+  first.fault = "the store of the cluster cannot be reached";
+  view_ = std::make_shared<const View>(std::move(first));
+}
+
+Status StoreCoordinator::Start(const NodeAddress& self) {
+  self_ = self;
+  nodes_ = NodeTable({.address = self,
+                      .run = run_,
+                      .capacity = capacity_,
+                      .subjects = 0,
+                      .draining = false,
+                      .ready = false});
+  std::string why;
+  if (!store_->Open(&why)) {
+    return {StatusCode::kInvalidArgument, "cannot connect to the store: " + why, "--cluster"};
+  }
+  thread_ = std::jthread([this](const std::stop_token& stop) { Run(stop); });
+  return {};
+}
+
+StoreCoordinator::~StoreCoordinator() {
+  if (!thread_.joinable()) return;
+  thread_.request_stop();
+  thread_.join();
+}
+
+void StoreCoordinator::Run(const std::stop_token& stop) {
+  while (!stop.stop_requested()) Step(kStep);
+  // So that other nodes need not wait for the end of the leases.
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [subject, serving] : view_->own) requests_.wanted[subject] = false;
+    requests_.draining = true;
+  }
+  const Time end = now_() + kFarewell;
+  while (leases_.holds_any() && leases_.reachable() && now_() < end) Step(milliseconds(10));
+}
+
+void StoreCoordinator::Step(milliseconds wait) {
+  std::vector<StoreAnswer> answers;
+  std::vector<StoreRecord> changes;
+  leases_.OnReachable(store_->connected(), now_());
+  if (!store_->Poll(wait, &answers, &changes)) missed_ = true;
+  const Time now = now_();
+  leases_.OnReachable(store_->connected(), now);
+  for (const StoreRecord& change : changes) OnRecord(change, nullptr, now);
+  for (const StoreAnswer& answer : answers) {
+    const auto write = writes_.find(answer.id);
+    if (write == writes_.end()) {  // of an announcement
+      missed_ |= answer.result == WriteResult::kRefused;
+      continue;
+    }
+    leases_.OnWritten(write->second, answer.result, answer.revision, now);
+    writes_.erase(write);
+  }
+  if (!leases_.reachable()) writes_.clear();
+  TakeRequests();
+  if (leases_.reachable() && (missed_ || leases_.needs_listing()) && now - listed_ >= kListPause) {
+    List();
+  }
+  for (LeaseWrite& write : leases_.Tick(now_(), unix_ms_())) {
+    const std::uint64_t id = next_id_++;
+    writes_[id] = write.id;
+    store_->Put({id, LeaseKey(write.subject), ToText(write.lease), write.expected});
+  }
+  // Answers that never came.
+  constexpr std::size_t kMaxWrites = 100'000;
+  while (writes_.size() > kMaxWrites) writes_.erase(writes_.begin());
+  if (leases_.reachable() && !missed_) {
+    if (auto put = nodes_.Tick(next_id_, now_())) {
+      ++next_id_;
+      store_->Put(*put);
+    }
+  }
+  Publish(now_());
+}
+
+void StoreCoordinator::TakeRequests() {
+  std::map<std::string, bool, std::less<>> wanted;
+  {
+    const std::lock_guard lock(mutex_);
+    wanted.swap(requests_.wanted);
+    draining_ = requests_.draining;
+  }
+  for (const auto& [subject, is_wanted] : wanted) {
+    is_wanted ? leases_.Want(subject) : leases_.Release(subject);
+  }
+}
+
+void StoreCoordinator::List() {
+  LeaseListing listing;
+  std::vector<StoreRecord> records;
+  const bool listed = store_->List(&listing.incarnation, &records, &why_);
+  const Time now = now_();
+  listed_ = now;
+  if (!listed) return;
+  why_.clear();
+  missed_ = false;
+  nodes_.BeginListing();
+  for (const StoreRecord& record : records) OnRecord(record, &listing.entries, now);
+  nodes_.EndListing();
+  leases_.OnListing(listing, now);
+}
+
+// Without `entries`: one change. Records that cannot be read are left out: whoever may write to the
+// store cannot do more than that.
+void StoreCoordinator::OnRecord(const StoreRecord& record, std::vector<LeaseEntry>* entries,
+                                Time now) {
+  if (const auto node = NodeOfKey(record.key)) {
+    nodes_.OnRecord(*node, record.value, record.revision, now);
+    return;
+  }
+  const auto subject = SubjectOfKey(record.key);
+  if (!subject || (entries != nullptr && entries->size() >= kMaxForeign)) return;
+  // Deleted and invalid records are free for the next lease. A record keeps its
+  // revision, which the next write must name.
+  LeaseEntry entry{*subject, ParseLease(record.value).value_or(Lease()), record.revision};
+  if (entries != nullptr) {
+    entries->push_back(std::move(entry));
+  } else {
+    leases_.OnEntry(entry, now);
+  }
+}
+
+void StoreCoordinator::Publish(Time now) {
+  auto next = std::make_shared<View>();
+  next->own = leases_.AllServing(now);
+  leases_.ForEachForeign(now, [&next](const std::string& subject, const Lease& lease) {
+    next->foreign.emplace(subject, lease);
+  });
+  next->others = nodes_.Others(now, leases_.reachable());
+  next->reachable = leases_.reachable();
+  next->may_take = leases_.MayTake(now) && !nodes_.HasRival(now);
+  if (nodes_.HasRival(now)) {
+    next->fault =
+        "another daemon of the cluster has the name '" + self_.name + "'; give each its own --name";
+  } else if (!leases_.reachable()) {
+    next->fault = "the store of the cluster cannot be reached";
+  } else if (!why_.empty()) {
+    next->fault = "the store of the cluster cannot be read: " + why_;
+  } else if (!next->may_take) {
+    next->fault = "the store of the cluster has been reached a moment ago";
+  }
+  nodes_.Update(static_cast<int>(next->own.size()), draining_, next->may_take);
+  LogChanges(*next);
+  const std::lock_guard lock(mutex_);
+  view_ = std::move(next);
+}
+
+void StoreCoordinator::LogChanges(const View& view) {
+  if (view.fault == logged_) return;
+  logged_ = view.fault;
+  if (view.fault.empty()) {
+    spdlog::info("the cluster has {} more nodes; this one takes subjects", view.others.size());
+  } else {
+    spdlog::warn("nothing new is placed: {}", view.fault);
+  }
+}
+
+std::shared_ptr<const StoreCoordinator::View> StoreCoordinator::view() const {
+  const std::lock_guard lock(mutex_);
+  return view_;
+}
+
+void StoreCoordinator::Request(std::string_view subject, bool wanted) {
+  const std::lock_guard lock(mutex_);
+  requests_.wanted.insert_or_assign(std::string(subject), wanted);
+}
+
+void StoreCoordinator::Release(std::string_view subject) { Request(subject, false); }
+
+void StoreCoordinator::SetDraining() {
+  const std::lock_guard lock(mutex_);
+  requests_.draining = true;
+}
+
+// The node with the largest part of its places free.
+const Announcement* StoreCoordinator::RoomElsewhere(const View& view) {
+  const auto load = [](const Announcement& node) {
+    return static_cast<double>(node.subjects) / std::max(1, node.capacity);
+  };
+  const Announcement* best = nullptr;
+  if (!view.reachable) return best;  // no node takes anything
+  for (const auto& [name, node] : view.others) {
+    if (node.draining || !node.ready || node.subjects >= node.capacity) continue;
+    if (best == nullptr || load(node) < load(*best)) best = &node;
+  }
+  return best;
+}
+
+Place StoreCoordinator::ForeignPlace(const View& view, std::string_view subject) {
+  Place place;
+  const auto lease = view.foreign.find(subject);
+  if (lease == view.foreign.end()) {
+    place.why = view.fault.empty() ? "no node serves the subject" : view.fault;
+    return place;
+  }
+  place.epoch = lease->second.epoch;
+  const auto node = view.others.find(lease->second.node);
+  if (node != view.others.end() && node->second.draining) {
+    place.why = "the node '" + lease->second.node + "' is draining";
+  } else if (node != view.others.end()) {
+    place.kind = Place::Kind::kElsewhere;
+    place.node = node->second.address;
+  } else {
+    place.why = "the node '" + lease->second.node + "' holds the subject, and is not there";
+  }
+  return place;
+}
+
+Place StoreCoordinator::Elsewhere(std::string_view subject) const {
+  return ForeignPlace(*view(), subject);
+}
+
+Place StoreCoordinator::Find(std::string_view subject, Time now) const {
+  const auto seen = view();
+  const auto own = seen->own.find(subject);
+  if (own == seen->own.end() || now >= own->second.until) return ForeignPlace(*seen, subject);
+  Place place;
+  place.kind = Place::Kind::kHere;
+  place.epoch = own->second.epoch;
+  place.until = own->second.until;
+  place.node = self_;
+  return place;
+}
+
+Place StoreCoordinator::Propose(std::string_view subject, Time now) const {
+  Place place = Find(subject, now);
+  if (place.kind != Place::Kind::kNowhere) return place;
+  const auto seen = view();
+  if (seen->foreign.contains(subject)) return place;
+  bool draining = false;
+  {
+    const std::lock_guard lock(mutex_);
+    draining = requests_.draining;
+  }
+  const Announcement* const other = RoomElsewhere(*seen);
+  const auto own = static_cast<int>(seen->own.size());
+  const bool has_room = !draining && seen->may_take && own < capacity_;
+  // Offered to the emptier node.
+  const bool is_emptier =
+      other == nullptr || static_cast<double>(own) / std::max(1, capacity_) <=
+                              static_cast<double>(other->subjects) / std::max(1, other->capacity);
+  if (has_room && is_emptier) {
+    place.kind = Place::Kind::kHere;
+    place.node = self_;
+  } else if (other != nullptr) {
+    place.kind = Place::Kind::kElsewhere;
+    place.node = other->address;
+  } else if (seen->fault.empty()) {
+    place.why = draining ? "this node is draining, and no other node has room"
+                         : "this node is full, and no other node has room";
+  }
+  return place;
+}
+
+// A subject stays where it is offered, if there is room: its sender has chosen this node.
+Place StoreCoordinator::Ask(std::string_view subject, Time now) {
+  Place place = Find(subject, now);
+  if (place.kind == Place::Kind::kHere) return place;
+  if (place.kind == Place::Kind::kElsewhere) {
+    Request(subject, false);
+    return place;
+  }
+  const auto seen = view();
+  bool draining = false;
+  {
+    const std::lock_guard lock(mutex_);
+    draining = requests_.draining;
+  }
+  const bool has_room = !draining && static_cast<int>(seen->own.size()) < capacity_;
+  const bool is_held = seen->foreign.contains(subject);
+  const bool waits = seen->reachable && (is_held || RoomElsewhere(*seen) == nullptr);
+  if (!has_room || !(seen->may_take || waits)) return Propose(subject, now);
+  Request(subject, true);
+  place.kind = Place::Kind::kPending;
+  return place;
+}
+
+std::vector<NodeAddress> StoreCoordinator::Others() const {
+  const auto seen = view();
+  std::vector<NodeAddress> others;
+  for (const bool draining : {false, true}) {
+    for (const auto& [name, node] : seen->others) {
+      if (node.draining == draining) others.push_back(node.address);
+    }
+  }
+  return others;
+}
+
+std::string StoreCoordinator::Fault(Time /*now*/) const { return view()->fault; }
+
+ClusterState StoreCoordinator::State(Time now) const {
+  const auto seen = view();
+  ClusterState state;
+  state.fault = seen->fault;
+  {
+    const std::lock_guard lock(mutex_);
+    state.nodes.push_back({.address = self_,
+                           .subjects = static_cast<int>(seen->own.size()),
+                           .capacity = capacity_,
+                           .draining = requests_.draining,
+                           .self = true});
+  }
+  for (const auto& [name, node] : seen->others) {
+    state.nodes.push_back({.address = node.address,
+                           .subjects = node.subjects,
+                           .capacity = node.capacity,
+                           .draining = node.draining,
+                           .self = false});
+  }
+  for (const auto& [subject, serving] : seen->own) {
+    if (now < serving.until) state.subjects.push_back({subject, self_.name, serving.epoch});
+  }
+  for (const auto& [subject, lease] : seen->foreign) {
+    state.subjects.push_back({subject, lease.node, lease.epoch});
+  }
+  return state;
+}
+
+}  // namespace furrow::server

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/cluster/coordinator.h"
+#include "server/core/time.h"
+
+namespace furrow::server {
+
+// The places of subjects in a cluster, as the hub needs them. Without a cluster, every subject is
+// served here, for ever. All functions require the hub's exclusive lock.
+class Places {
+ public:
+  // `coordinator`: null without a cluster; outlives this object. `most`: subjects that are asked
+  // for, but not published here yet.
+  Places(Coordinator* coordinator, std::size_t most) : coordinator_(coordinator), most_(most) {}
+
+  [[nodiscard]] bool in_cluster() const { return coordinator_ != nullptr; }
+  // A stream offers the subject. Whoever gets kHere or kPending must offer again or publish within
+  // kPatience, or another node may have the subject.
+  [[nodiscard]] Place Ask(std::string_view subject, Time now);
+  // Where another node serves the subject; kNowhere if none does.
+  [[nodiscard]] Place Elsewhere(std::string_view subject) const;
+  // The node that should take the subject instead of this one; kNowhere if there is none.
+  [[nodiscard]] Place Successor(std::string_view subject, Time now) const;
+  // Other nodes as Welcome lists them.
+  [[nodiscard]] std::vector<std::string> Others() const;
+  void Release(std::string_view subject);
+  // Gives back what was asked for and is not published. `is_published`: here.
+  void Expire(const std::function<bool(std::string_view subject)>& is_published, Time now);
+  void SetDraining();
+  static constexpr Time kPatience = std::chrono::seconds(3);
+  // How often the hub asks again for the subjects that it has.
+  static constexpr Time kRefresh = std::chrono::milliseconds(100);
+
+ private:
+  Coordinator* const coordinator_;
+  const std::size_t most_;
+  std::map<std::string, Time, std::less<>> asked_;  // when it was asked for last
+};
+
+// "'ada' is served by the node 'b' at 10.0.0.2", for people whose client does not follow.
+[[nodiscard]] std::string ElsewhereText(std::string_view subject, const NodeAddress& node);
+
+}  // namespace furrow::server

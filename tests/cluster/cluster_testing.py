@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Shared by the tests and the measurement of clusters: a NATS server, nodes, a performer and a viewer."""
+import json
+import os
+import pathlib
+import shutil
+import signal
+import socket
+import subprocess
+import tempfile
+import threading
+import time
+import urllib.error
+import urllib.request
+
+from furrow_testing import BIN, GUARD, SHARE, Daemon, spawn
+
+PERFORMANCE = SHARE / "recordings" / "performance.bvh"
+NATS = shutil.which("nats-server") or shutil.which("nats-server", path="/usr/sbin")
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+def wait_until(condition, what):
+    """Calls `condition` until it is true, and returns its value."""
+    deadline = time.monotonic() + GUARD
+    pause = threading.Event()
+    while time.monotonic() < deadline:
+        value = condition()
+        if value:
+            return value
+        pause.wait(0.05)
+    raise AssertionError(f"this never happened: {what}")
+
+
+class NatsServer:
+    """A NATS server that keeps its data in memory: a restart empties it."""
+
+    def __init__(self, *args):
+        self.port = free_port()
+        self.args = args
+        self.folder = tempfile.TemporaryDirectory()
+        self.process = None
+        self.start()
+
+    def start(self):
+        self.process = subprocess.Popen(
+            [NATS, "-a", "127.0.0.1", "-p", str(self.port), "-js", "-sd", self.folder.name, *self.args],
+            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+    def kill(self):
+        self.process.kill()
+        self.process.wait(timeout=GUARD)
+
+    def close(self):
+        self.kill()
+        self.folder.cleanup()
+
+    @property
+    def url(self):
+        return f"nats://127.0.0.1:{self.port}"
+
+
+class Node(Daemon):
+    """One daemon of a cluster."""
+
+    def __init__(self, name, *args):
+        super().__init__("--no-render", "--http", "0", "--name", name, *args)
+        self.name = name
+
+    def __enter__(self):
+        super().__enter__()
+        # Nobody reads the log while it runs, and a pipe is small.
+        self.log = []
+        self.reader = threading.Thread(target=lambda: self.log.extend(self.process.stderr), daemon=True)
+        self.reader.start()
+        return self
+
+    def __exit__(self, *_):
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGCONT)
+            self.process.send_signal(signal.SIGTERM)
+        self.process.wait(timeout=GUARD)
+        self.reader.join(timeout=GUARD)
+        self.process.stdout.close()
+        self.process.stderr.close()
+
+    def get(self, path):
+        """The status and the JSON of a request."""
+        try:
+            with urllib.request.urlopen(f"http://127.0.0.1:{self.ports['http']}{path}", timeout=10) as reply:
+                return reply.status, json.load(reply)
+        except urllib.error.HTTPError as error:
+            with error:
+                return error.code, json.load(error)
+
+    def is_ready(self):
+        return self.get("/readyz")[0] == 200
+
+    def holder(self, subject):
+        """The node that serves the subject, as this node knows it, and its epoch; nothing if none does."""
+        status, place = self.get(f"/api/place?subject={subject}")
+        return (place["node"], place["epoch"]) if status == 200 and place["served"] else None
+
+    def signal(self, number):
+        self.process.send_signal(number)
+
+
+class Viewer:
+    """`furrow watch`: the numbers of the frames, and when they arrived."""
+
+    def __init__(self, address, subject, *args):
+        self.process = spawn("watch", address, "--udp", "--subject", subject, "--wait", "--pattern", "brow_l.*",
+                             "--format", "csv", *args)
+        self.frames = []  # (time, number)
+        self.errors = []
+        self.threads = [threading.Thread(target=self.read, daemon=True),
+                        threading.Thread(target=lambda: self.errors.extend(self.process.stderr), daemon=True)]
+        for thread in self.threads:
+            thread.start()
+
+    def read(self):
+        for line in self.process.stdout:
+            number = line.split(b",", 1)[0]
+            if number.isdigit():
+                self.frames.append((time.monotonic(), int(number)))
+
+    def wait_for(self, count):
+        """Waits for `count` more frames."""
+        before = len(self.frames)
+        wait_until(lambda: len(self.frames) >= before + count, f"{count} more frames: {self.errors[-3:]}")
+
+    def close(self):
+        self.process.send_signal(signal.SIGINT)
+        self.process.wait(timeout=GUARD)
+        for thread in self.threads:
+            thread.join(timeout=GUARD)
+        self.process.stdout.close()
+        self.process.stderr.close()
+
+
+class Performer:
+    """`furrow play`, for ever."""
+
+    def __init__(self, address, subject, *args):
+        self.process = spawn("play", PERFORMANCE, "--to", address, "--udp", "--subject", subject, "--loop", *args)
+        # Nobody reads what it prints; these threads keep the pipes empty.
+        self.lines = []
+        self.threads = [threading.Thread(target=lambda s=s: self.lines.extend(s), daemon=True)
+                        for s in (self.process.stdout, self.process.stderr)]
+        for thread in self.threads:
+            thread.start()
+
+    def close(self):
+        self.process.send_signal(signal.SIGINT)
+        self.process.wait(timeout=GUARD)
+        for thread in self.threads:
+            thread.join(timeout=GUARD)
+        self.process.stdout.close()
+        self.process.stderr.close()
+
+
+def reorderings(frames):
+    """How often a frame came after a later one. Decaying frames repeat a number."""
+    return sum(b < a for (_, a), (_, b) in zip(frames, frames[1:]))

@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/cluster/store/store_coordinator.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <limits>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace furrow::server {
+namespace {
+
+using std::chrono::milliseconds;
+
+// What all nodes of a test share. The clock goes on only while the nodes wait, so seconds of a
+// cluster take moments. No node gets ahead of the others, however busy the computer is.
+struct World {
+  std::mutex mutex;
+  std::map<std::string, StoreRecord> records;
+  Revision revision = 0;
+  std::uint64_t incarnation = 1;
+  std::atomic<bool> reachable = true;
+  std::atomic<std::int64_t> now_ns = 1'000'000'000;
+  std::mutex turns_mutex;
+  std::condition_variable turns_changed;
+  std::map<const void*, int> turns;  // of each node: how often it has waited
+
+  void Join(const void* node) {
+    const std::lock_guard lock(turns_mutex);
+    const int slowest = turns.empty() ? 0 : Slowest();
+    turns[node] = slowest;
+  }
+  void Leave(const void* node) {
+    const std::lock_guard lock(turns_mutex);
+    turns.erase(node);
+    turns_changed.notify_all();
+  }
+  // Every node waits; together they let the time pass once.
+  void Wait(const void* node, Time time) {
+    std::unique_lock lock(turns_mutex);
+    now_ns += time.count() / static_cast<std::int64_t>(turns.size());
+    ++turns[node];
+    turns_changed.notify_all();
+    turns_changed.wait(lock, [&] { return turns[node] <= Slowest() + 1; });
+  }
+  [[nodiscard]] int Slowest() const {
+    int slowest = std::numeric_limits<int>::max();
+    for (const auto& [node, count] : turns) slowest = std::min(slowest, count);
+    return slowest;
+  }
+
+  [[nodiscard]] Time Now() const { return Time(now_ns.load()); }
+};
+
+class FakeStore : public Store {
+ public:
+  explicit FakeStore(World* world) : world_(world) {}
+  ~FakeStore() override { world_->Leave(this); }
+
+  bool Open(std::string* /*why*/) override {
+    world_->Join(this);
+    return true;
+  }
+  bool connected() override { return world_->reachable; }
+  void Put(const StorePut& put) override {
+    if (!connected()) return;
+    const std::lock_guard lock(world_->mutex);
+    StoreRecord& record = world_->records[put.key];
+    const bool done = record.revision == put.expected;
+    if (done) record = {put.key, put.value, ++world_->revision};
+    answers_.push_back({put.id, done ? WriteResult::kDone : WriteResult::kRefused,
+                        done ? world_->revision : Revision{0}});
+    if (record.revision == 0) world_->records.erase(put.key);
+  }
+  bool Poll(milliseconds wait, std::vector<StoreAnswer>* answers,
+            std::vector<StoreRecord>* changes) override {
+    world_->Wait(this, wait);
+    *answers = std::exchange(answers_, {});
+    const std::lock_guard lock(world_->mutex);
+    if (world_->incarnation != incarnation_) return false;
+    for (const auto& [key, record] : world_->records) {
+      if (record.revision > heard_) changes->push_back(record);
+    }
+    heard_ = world_->revision;
+    return true;
+  }
+  bool List(std::uint64_t* incarnation, std::vector<StoreRecord>* records,
+            std::string* /*why*/) override {
+    if (!connected()) return false;
+    const std::lock_guard lock(world_->mutex);
+    for (const auto& [key, record] : world_->records) records->push_back(record);
+    *incarnation = incarnation_ = world_->incarnation;
+    heard_ = world_->revision;
+    return true;
+  }
+
+ private:
+  World* const world_;
+  std::vector<StoreAnswer> answers_;
+  std::uint64_t incarnation_ = 0;
+  Revision heard_ = 0;
+};
+
+class StoreCoordinatorTest : public ::testing::Test {
+ protected:
+  StoreCoordinator& Add(const std::string& name, int capacity = 10) {
+    auto node = std::make_unique<StoreCoordinator>(StoreCoordinator::Parts{
+        .store = std::make_unique<FakeStore>(&world_),
+        .node = name,
+        .run = ++runs_,
+        .capacity = capacity,
+        .strict = false,
+        .now = [this] { return world_.Now(); },
+        .unix_ms = [this] { return 1'700'000'000'000 + world_.Now() / milliseconds(1); }});
+    EXPECT_TRUE(node->Start({name, "host-" + name, 7400, 7401, 7480}).ok());
+    nodes_.push_back(std::move(node));
+    return *nodes_.back();
+  }
+  // Waits until it is true; a test that fails waits for 20 s.
+  static bool Becomes(const std::function<bool()>& condition) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    while (std::chrono::steady_clock::now() < end) {
+      if (condition()) return true;
+      std::this_thread::yield();
+    }
+    return false;
+  }
+  bool IsReady(const StoreCoordinator& node) {
+    return Becomes([&] { return node.Fault(world_.Now()).empty(); });
+  }
+  // Offers the subject until the node serves it.
+  bool Takes(StoreCoordinator& node, const std::string& subject) {
+    return Becomes([&] { return node.Ask(subject, world_.Now()).kind == Place::Kind::kHere; });
+  }
+  // The node learns that another one serves the subject.
+  bool Sees(StoreCoordinator& node, const std::string& subject, const std::string& holder) {
+    return Becomes([&] {
+      const Place place = node.Elsewhere(subject);
+      return place.kind == Place::Kind::kElsewhere && place.node.name == holder;
+    });
+  }
+
+  World world_;
+  std::uint64_t runs_ = 0;
+  std::vector<std::unique_ptr<StoreCoordinator>> nodes_;
+};
+
+TEST_F(StoreCoordinatorTest, OneNodeServesAndTheOthersKnowWhere) {
+  StoreCoordinator& a = Add("a");
+  StoreCoordinator& b = Add("b");
+  ASSERT_TRUE(IsReady(a));
+  ASSERT_TRUE(IsReady(b));
+  ASSERT_TRUE(Takes(a, "ada"));
+  ASSERT_TRUE(Sees(b, "ada", "a"));
+  const Place place = b.Ask("ada", world_.Now());
+  EXPECT_EQ(place.kind, Place::Kind::kElsewhere);
+  EXPECT_EQ(place.node.host, "host-a");
+  EXPECT_EQ(place.epoch, a.Find("ada", world_.Now()).epoch);
+  // A new subject is proposed for the emptier node.
+  EXPECT_TRUE(Becomes([&] { return a.Propose("bob", world_.Now()).node.name == "b"; }));
+}
+
+TEST_F(StoreCoordinatorTest, AReleasedSubjectMovesAtOnceAndUpwards) {
+  StoreCoordinator& a = Add("a");
+  StoreCoordinator& b = Add("b");
+  ASSERT_TRUE(IsReady(a));
+  ASSERT_TRUE(IsReady(b));
+  ASSERT_TRUE(Takes(a, "ada"));
+  const std::uint64_t epoch = a.Find("ada", world_.Now()).epoch;
+  ASSERT_TRUE(Sees(b, "ada", "a"));
+  a.Release("ada");
+  ASSERT_TRUE(Takes(b, "ada"));
+  EXPECT_GT(b.Find("ada", world_.Now()).epoch, epoch);
+}
+
+TEST_F(StoreCoordinatorTest, ANodeThatEndsGivesItsLeasesBack) {
+  Add("a");
+  StoreCoordinator& b = Add("b");
+  ASSERT_TRUE(IsReady(*nodes_[0]));
+  ASSERT_TRUE(IsReady(b));
+  ASSERT_TRUE(Takes(*nodes_[0], "ada"));
+  nodes_[0].reset();
+  {
+    const std::lock_guard lock(world_.mutex);
+    const auto lease = ParseLease(world_.records.at(LeaseKey("ada")).value);
+    ASSERT_TRUE(lease);
+    EXPECT_EQ(lease->node, "");
+  }
+  EXPECT_TRUE(Takes(b, "ada"));
+}
+
+TEST_F(StoreCoordinatorTest, AFullOrDrainingNodeNamesAnotherOne) {
+  StoreCoordinator& a = Add("a", 1);
+  StoreCoordinator& b = Add("b");
+  ASSERT_TRUE(IsReady(a));
+  ASSERT_TRUE(IsReady(b));
+  ASSERT_TRUE(Takes(a, "ada"));
+  EXPECT_TRUE(Becomes([&] {
+    const Place place = a.Ask("bob", world_.Now());
+    return place.kind == Place::Kind::kElsewhere && place.node.name == "b";
+  }));
+  b.SetDraining();
+  EXPECT_TRUE(Becomes([&] {
+    const Place place = a.Ask("bob", world_.Now());
+    return place.kind == Place::Kind::kNowhere &&
+           place.why == "this node is full, and no other node has room";
+  }));
+  const Place place = b.Ask("eve", world_.Now());
+  EXPECT_TRUE(place.kind == Place::Kind::kNowhere || place.kind == Place::Kind::kElsewhere);
+}
+
+TEST_F(StoreCoordinatorTest, WithoutTheStoreSubjectsStayAndNothingIsTaken) {
+  StoreCoordinator& a = Add("a");
+  ASSERT_TRUE(IsReady(a));
+  ASSERT_TRUE(Takes(a, "ada"));
+  const std::uint64_t epoch = a.Find("ada", world_.Now()).epoch;
+  world_.reachable = false;
+  ASSERT_TRUE(Becomes(
+      [&] { return a.Fault(world_.Now()) == "the store of the cluster cannot be reached"; }));
+  const Time until = world_.Now() + std::chrono::seconds(30);
+  ASSERT_TRUE(Becomes([&] { return world_.Now() >= until; }));
+  EXPECT_TRUE(Becomes([&] { return a.Find("ada", world_.Now()).epoch == epoch; }));
+  EXPECT_EQ(a.Ask("bob", world_.Now()).kind, Place::Kind::kNowhere);
+  // It comes back without its data.
+  {
+    const std::lock_guard lock(world_.mutex);
+    world_.records.clear();
+    world_.revision = 0;
+    ++world_.incarnation;
+  }
+  world_.reachable = true;
+  ASSERT_TRUE(IsReady(a));
+  EXPECT_TRUE(Takes(a, "ada"));
+  EXPECT_GE(a.Find("ada", world_.Now()).epoch, epoch);
+  EXPECT_TRUE(Takes(a, "bob"));
+}
+
+TEST_F(StoreCoordinatorTest, TwoNodesOfOneNameAreAFault) {
+  StoreCoordinator& a = Add("a");
+  ASSERT_TRUE(IsReady(a));
+  StoreCoordinator& rival = Add("a");
+  EXPECT_TRUE(Becomes([&] {
+    return rival.Fault(world_.Now()) ==
+           "another daemon of the cluster has the name 'a'; give each its own --name";
+  }));
+}
+
+TEST_F(StoreCoordinatorTest, RecordsThatCannotBeReadAreFree) {
+  {
+    const std::lock_guard lock(world_.mutex);
+    world_.records = {{LeaseKey("ada"), {LeaseKey("ada"), "not a lease", 3}},
+                      {"lease.zz", {"lease.zz", "1 b 1 1 1", 4}},
+                      {"node.b", {"node.b", "1 2 3", 5}}};
+    world_.revision = 5;
+  }
+  StoreCoordinator& a = Add("a");
+  ASSERT_TRUE(IsReady(a));
+  EXPECT_TRUE(Takes(a, "ada"));
+  EXPECT_EQ(a.State(world_.Now()).nodes.size(), 1u);
+}
+
+}  // namespace
+}  // namespace furrow::server

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "hub_fixture.h"
+#include "server/cluster/coordinator.h"
+
+namespace furrow::server {
+namespace {
+
+// Places that the test decides.
+class FakeCluster : public Coordinator {
+ public:
+  Status Start(const NodeAddress& /*self*/) override { return {}; }
+  Place Ask(std::string_view subject, Time now) override {
+    asked.emplace_back(subject);
+    return Find(subject, now);
+  }
+  Place Find(std::string_view subject, Time /*now*/) const override {
+    const auto found = places.find(std::string(subject));
+    return found == places.end() ? Place() : found->second;
+  }
+  Place Elsewhere(std::string_view subject) const override {
+    const Place place = Find(subject, Time{0});
+    if (only_proposed) return {};
+    return place.kind == Place::Kind::kElsewhere ? place : Place();
+  }
+  Place Propose(std::string_view /*subject*/, Time /*now*/) const override { return successor; }
+  std::vector<NodeAddress> Others() const override { return {kOther}; }
+  void Release(std::string_view subject) override { released.emplace_back(subject); }
+  void SetDraining() override { draining = true; }
+  ClusterState State(Time /*now*/) const override { return {}; }
+  std::string Fault(Time /*now*/) const override { return {}; }
+
+  static Place Here(Time until, std::uint64_t epoch) {
+    Place place;
+    place.kind = Place::Kind::kHere;
+    place.until = until;
+    place.epoch = epoch;
+    return place;
+  }
+  static Place At(const NodeAddress& node) {
+    Place place;
+    place.kind = Place::Kind::kElsewhere;
+    place.node = node;
+    return place;
+  }
+  inline static const NodeAddress kOther{"b", "host-b", 1, 2, 3};
+
+  std::map<std::string, Place> places;
+  Place successor;
+  std::vector<std::string> asked;
+  std::vector<std::string> released;
+  bool draining = false;
+  bool only_proposed = false;  // a node elsewhere has room, but does not serve the subject
+};
+
+class HubClusterTest : public HubPeersTest {
+ protected:
+  HubClusterTest() { cluster = &nodes; }
+
+  void ExpectSentAway(FakePeer& peer, protocol::ErrorCode code) {
+    const auto error = peer.Take<protocol::ErrorMessage>();
+    ASSERT_TRUE(error.has_value());
+    EXPECT_EQ(error->message.code, code);
+    EXPECT_EQ(error->message.host, "host-b");
+    EXPECT_EQ(error->message.tcp, 1);
+    EXPECT_EQ(error->message.udp, 2);
+    EXPECT_EQ(error->message.message, "'ada' is served by the node 'b' at host-b");
+  }
+  void Serve(double seconds, std::uint64_t epoch) {
+    nodes.places["ada"] = FakeCluster::Here(now + FromSeconds(seconds), epoch);
+  }
+  void Tick() {
+    now += Places::kRefresh;
+    hub->Tick(now);
+  }
+
+  FakeCluster nodes;
+};
+
+TEST_F(HubClusterTest, AnOfferWaitsForItsPlace) {
+  Place pending;
+  pending.kind = Place::Kind::kPending;
+  nodes.places["ada"] = pending;
+  Send(sender, Offer("ada"), 1);
+  EXPECT_TRUE(sender.inbox.empty());
+  EXPECT_EQ(hub->num_subjects(), 0u);
+  Serve(2.0, 10);
+  Publish(sender, "ada");
+  EXPECT_EQ(hub->num_subjects(), 1u);
+}
+
+TEST_F(HubClusterTest, AnOfferWithoutAPlaceIsAnsweredWithTheReason) {
+  nodes.places["ada"].why = "no room";
+  Send(sender, Offer("ada"), 1);
+  const auto error = sender.Take<protocol::ErrorMessage>();
+  ASSERT_TRUE(error.has_value());
+  EXPECT_EQ(error->message.code, protocol::ErrorCode::kLimit);
+  EXPECT_EQ(error->message.message, "'ada' has no place in the cluster: no room");
+  EXPECT_EQ(error->message.host, "");
+}
+
+TEST_F(HubClusterTest, OffersAndSubscriptionsAreSentToTheServingNode) {
+  nodes.places["ada"] = FakeCluster::At(FakeCluster::kOther);
+  Send(sender, Offer("ada"), 1);
+  ExpectSentAway(sender, protocol::ErrorCode::kSubjectTaken);
+  for (const bool wait : {false, true}) {
+    Send(viewer, protocol::SubscribeWeights{.subject = "ada", .wait = wait}, 0, 1);
+    ExpectSentAway(viewer, protocol::ErrorCode::kUnknownSubject);
+  }
+  EXPECT_EQ(hub->num_subscriptions(), 0u);
+  EXPECT_EQ(Count(Counter::kRedirected), 3u);
+}
+
+TEST_F(HubClusterTest, WaitingSubscriptionsFollowWhenTheSubjectAppearsElsewhere) {
+  ASSERT_NE(Watch(viewer, {.subject = "ada", .wait = true}), 0);
+  Tick();
+  EXPECT_TRUE(viewer.inbox.empty());
+  nodes.places["ada"] = FakeCluster::At(FakeCluster::kOther);
+  Tick();
+  ExpectSentAway(viewer, protocol::ErrorCode::kUnknownSubject);
+  EXPECT_EQ(hub->num_subscriptions(), 0u);
+}
+
+TEST_F(HubClusterTest, NothingIsSentAfterTheEndOfALease) {
+  Serve(2.0, 10);
+  Publish(sender, "ada");
+  ASSERT_NE(Watch(viewer, {.subject = "ada"}), 0);
+  Send(sender, Pose(0.5f), 1, 0);
+  EXPECT_TRUE(viewer.Take<protocol::WeightFrame>().has_value());
+  // As if the daemon had been frozen: no tick in between.
+  Advance(2.0);
+  Send(sender, Pose(0.6f), 1, 1);
+  EXPECT_EQ(Count(Counter::kPosesUnplaced), 1u);
+  EXPECT_TRUE(viewer.inbox.empty());
+  // Not even while the subject decays.
+  nodes.places["ada"] = Place();
+  for (int i = 0; i < 20; ++i) Tick();
+  EXPECT_TRUE(viewer.inbox.empty());
+  // The node gets the lease back.
+  Serve(2.0, 11);
+  Tick();
+  const auto reply = viewer.Take<protocol::SubscribeReply>();
+  ASSERT_TRUE(reply.has_value());
+  EXPECT_EQ(reply->message.epoch, 11u);
+  viewer.inbox.clear();
+  Send(sender, Pose(0.7f), 1, 2);
+  EXPECT_TRUE(viewer.Take<protocol::WeightFrame>().has_value());
+}
+
+TEST_F(HubClusterTest, ASubjectThatMovesTakesItsPeersAlong) {
+  Serve(2.0, 10);
+  Publish(sender, "ada", 3);
+  ASSERT_NE(Watch(viewer, {.subject = "ada"}), 0);
+  nodes.places["ada"] = FakeCluster::At(FakeCluster::kOther);
+  Tick();
+  ExpectSentAway(sender, protocol::ErrorCode::kSubjectTaken);
+  ExpectSentAway(viewer, protocol::ErrorCode::kUnknownSubject);
+  EXPECT_TRUE(viewer.inbox.empty());
+  EXPECT_EQ(hub->num_subjects(), 0u);
+  EXPECT_EQ(nodes.released, std::vector<std::string>{"ada"});
+}
+
+TEST_F(HubClusterTest, ASubjectWaitsForItsLeaseAlthoughAnotherNodeHasRoom) {
+  Serve(2.0, 10);
+  Publish(sender, "ada");
+  nodes.places["ada"] = FakeCluster::At(FakeCluster::kOther);
+  nodes.only_proposed = true;
+  Tick();
+  EXPECT_TRUE(sender.inbox.empty());
+  EXPECT_EQ(hub->num_subjects(), 1u);
+  // A new one goes there.
+  Send(viewer, Offer("ada"), 1);
+  ExpectSentAway(viewer, protocol::ErrorCode::kSubjectTaken);
+}
+
+TEST_F(HubClusterTest, APlaceThatNobodyUsesIsGivenBack) {
+  Place pending;
+  pending.kind = Place::Kind::kPending;
+  nodes.places["ada"] = pending;
+  Send(sender, Offer("ada"), 1);
+  Tick();
+  EXPECT_TRUE(nodes.released.empty());
+  now += Places::kPatience;
+  Tick();
+  EXPECT_EQ(nodes.released, std::vector<std::string>{"ada"});
+}
+
+TEST_F(HubClusterTest, ADrainingNodeSendsItsPeersAwayBeforeItSaysGoodbye) {
+  Serve(2.0, 10);
+  Publish(sender, "ada");
+  ASSERT_NE(Watch(viewer, {.subject = "ada"}), 0);
+  nodes.successor = FakeCluster::At(FakeCluster::kOther);
+  hub->Drain(now);
+  EXPECT_TRUE(nodes.draining);
+  EXPECT_EQ(nodes.released, std::vector<std::string>{"ada"});
+  ExpectSentAway(sender, protocol::ErrorCode::kSubjectTaken);
+  EXPECT_TRUE(sender.Take<protocol::Goodbye>().has_value());
+  ExpectSentAway(viewer, protocol::ErrorCode::kUnknownSubject);
+  EXPECT_TRUE(viewer.Take<protocol::Goodbye>().has_value());
+}
+
+TEST_F(HubClusterTest, AWelcomeListsTheOtherNodes) {
+  Send(viewer, protocol::Hello{.client = "test"});
+  const auto welcome = viewer.Take<protocol::Welcome>();
+  ASSERT_TRUE(welcome.has_value());
+  EXPECT_EQ(welcome->message.others, std::vector<std::string>{"host-b:1:2"});
+}
+
+}  // namespace
+}  // namespace furrow::server
