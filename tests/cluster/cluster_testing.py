@@ -40,16 +40,22 @@ def wait_until(condition, what):
 class NatsServer:
     """A NATS server that keeps its data in memory: a restart empties it."""
 
-    def __init__(self, *args):
+    def __init__(self, config=None):
+        """`config`: the text of a configuration, for a server with rules of its own."""
         self.port = free_port()
-        self.args = args
         self.folder = tempfile.TemporaryDirectory()
+        self.args = ["-js", "-sd", self.folder.name]
+        if config:
+            file = pathlib.Path(self.folder.name, "nats.conf")
+            file.write_text(config.replace("127.0.0.1:4222", f"127.0.0.1:{self.port}")
+                            .replace("/var/lib/nats", self.folder.name))
+            self.args = ["-c", str(file)]
         self.process = None
         self.start()
 
     def start(self):
         self.process = subprocess.Popen(
-            [NATS, "-a", "127.0.0.1", "-p", str(self.port), "-js", "-sd", self.folder.name, *self.args],
+            [NATS, "-a", "127.0.0.1", "-p", str(self.port), *self.args],
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
     def kill(self):

@@ -4,14 +4,33 @@
 import contextlib
 import signal
 import sys
+import tempfile
 import unittest
 
 from cluster_testing import NATS, NatsServer, Node, Performer, Viewer, reorderings, wait_until
-from furrow_testing import finish, spawn
+from furrow_testing import SOURCE, finish, spawn
 
 if NATS is None:
     print("skipped: nats-server is not installed")
     sys.exit(77)
+
+
+class SampleTest(unittest.TestCase):
+    """The user of the sample configuration may do what a node needs."""
+
+    def test_the_rights_of_the_sample_are_enough(self):
+        nats = NatsServer((SOURCE / "deploy/nats/nats-server.conf").read_text())
+        self.addCleanup(nats.close)
+        with tempfile.NamedTemporaryFile("w") as credentials:
+            credentials.write("furrow:change-me\n")
+            credentials.flush()
+            with Node("a", "--cluster", nats.url, "--cluster-credentials", credentials.name) as node:
+                wait_until(node.is_ready, "the node is ready")
+                performer, viewer = Performer(node.udp, "ada"), Viewer(node.udp, "ada")
+                self.addCleanup(performer.close)
+                self.addCleanup(viewer.close)
+                viewer.wait_for(90)
+                self.assertEqual(node.holder("ada")[0], "a")
 
 
 class ClusterTest(unittest.TestCase):
@@ -82,7 +101,6 @@ class ClusterTest(unittest.TestCase):
         self.assertIn(self.holder()[0], "abc")
 
     def config(self, text):
-        import tempfile
         file = tempfile.NamedTemporaryFile("w", suffix=".toml")
         self.addCleanup(file.close)
         file.write(text)

@@ -121,7 +121,7 @@ Place Publishers::RenewPlace(Subject& subject, Peer* owner, Time now) {
     subject.epoch = place.epoch;
     return place;
   }
-  // A node that only has room is no reason to move: this one may get the subject back.
+  // The subject does not move because another node has room: this one may get it back.
   place = places_->Elsewhere(subject.name);
   if (place.kind == Place::Kind::kElsewhere) SendAway(subject, owner, place.node);
   return place;

@@ -53,9 +53,9 @@ struct Single {
 TEST(LeaseSimulation, OneFaultCostsNoMoreThanStated) {
   const Single singles[] = {{"crash", kCrash, 9000},
                             {"freeze", kFreeze, 7000},
-                            {"cut", kCut, 7000},
+                            {"cut", kCut, 2000},
                             {"store down", kStoreDown, 2000},
-                            {"store emptied", kStoreEmptied, 9500},
+                            {"store emptied", kStoreEmptied, 6000},
                             {"clock step", kClockStep, 1000},
                             {"publisher cut", kPublisherCut, 7000}};
   for (const Single& single : singles) {
