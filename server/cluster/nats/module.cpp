@@ -66,20 +66,11 @@ class NatsStore : public Store {
   explicit NatsStore(const StoreOptions& options)
       : options_(options), bucket_name_(options.bucket), stream_("KV_" + options.bucket) {}
 
-  // The library's threads call this object, so they end first.
-  ~NatsStore() override {
-    watcher_.reset();
-    answers_.reset();
-    bucket_.reset();
-    context_.reset();
-    if (connection_ != nullptr) natsConnection_Close(connection_.get());
-    connection_.reset();
-    (void)nats_CloseAndWait(kConnectMs);
-  }
+  ~NatsStore() override;
 
   bool Open(std::string* why) override;
   // The library locks the connection while it tries to connect, so its status cannot be asked.
-  bool connected() override { return connected_; }
+  bool connected() override { return link_->connected; }
   void Put(const StorePut& put) override;
   bool Poll(milliseconds wait, std::vector<StoreAnswer>* answers,
             std::vector<StoreRecord>* changes) override;
@@ -97,7 +88,12 @@ class NatsStore : public Store {
   const StoreOptions options_;
   const std::string bucket_name_;
   const std::string stream_;
-  std::atomic<bool> connected_ = false;  // changed by the library's threads
+  // Changed by threads of the library, which may call after the connection has been closed.
+  struct Link {
+    std::atomic<bool> connected = false;
+    std::atomic<bool> closed = false;
+  };
+  std::unique_ptr<Link> link_ = std::make_unique<Link>();
   Connection connection_;
   Context context_;
   Bucket bucket_;
@@ -109,6 +105,20 @@ class NatsStore : public Store {
   std::int64_t created_ = 0;    // of the stream at the last listing
   Clock::time_point checked_{};
 };
+
+// The call that says that the connection is closed is the last one of the library. If it does not
+// come, a few bytes are left behind for it.
+NatsStore::~NatsStore() {
+  watcher_.reset();
+  answers_.reset();
+  bucket_.reset();
+  context_.reset();
+  if (connection_ == nullptr) return;
+  natsConnection_Close(connection_.get());
+  const auto deadline = Clock::now() + milliseconds(kConnectMs);
+  while (!link_->closed && Clock::now() < deadline) nats_Sleep(5);
+  if (!link_->closed) (void)link_.release();
+}
 
 bool NatsStore::Open(std::string* why) {
   natsOptions* raw = nullptr;
@@ -129,16 +139,20 @@ bool NatsStore::Open(std::string* why) {
     // A write that waited for a connection would come too late.
     set(natsOptions_SetReconnectBufSize(raw, 1));
     set(natsOptions_SetSendAsap(raw, true));
-    const natsConnectionHandler up = [](natsConnection*, void* self) {
-      static_cast<NatsStore*>(self)->connected_ = true;
+    const natsConnectionHandler up = [](natsConnection*, void* link) {
+      static_cast<Link*>(link)->connected = true;
     };
-    const natsConnectionHandler down = [](natsConnection*, void* self) {
-      static_cast<NatsStore*>(self)->connected_ = false;
+    const natsConnectionHandler down = [](natsConnection*, void* link) {
+      static_cast<Link*>(link)->connected = false;
     };
-    set(natsOptions_SetRetryOnFailedConnect(raw, true, up, this));
-    set(natsOptions_SetReconnectedCB(raw, up, this));
-    set(natsOptions_SetDisconnectedCB(raw, down, this));
-    set(natsOptions_SetClosedCB(raw, down, this));
+    const natsConnectionHandler closed = [](natsConnection*, void* link) {
+      static_cast<Link*>(link)->connected = false;
+      static_cast<Link*>(link)->closed = true;
+    };
+    set(natsOptions_SetRetryOnFailedConnect(raw, true, up, link_.get()));
+    set(natsOptions_SetReconnectedCB(raw, up, link_.get()));
+    set(natsOptions_SetDisconnectedCB(raw, down, link_.get()));
+    set(natsOptions_SetClosedCB(raw, closed, link_.get()));
     if (!options_.user.empty()) {
       set(natsOptions_SetUserInfo(raw, options_.user.c_str(), options_.password.c_str()));
     }
@@ -157,7 +171,7 @@ bool NatsStore::Open(std::string* why) {
   natsConnection* connection = nullptr;
   if (status == NATS_OK) status = natsConnection_Connect(&connection, raw);
   connection_.reset(connection);
-  if (status == NATS_OK) connected_ = true;
+  if (status == NATS_OK) link_->connected = true;
   if (status == NATS_NOT_YET_CONNECTED) status = NATS_OK;
   if (status != NATS_OK) *why = natsStatus_GetText(status);
   return status == NATS_OK;
