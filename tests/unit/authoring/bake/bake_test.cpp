@@ -71,7 +71,7 @@ TEST(Bake, RejectsInvalidRequests) {
         r->options.eases = {{"elbow", {.along = -0.1f}}};
       },
       [](Request* r) {
-        r->options.eases = {{"knee", {.feeds = 1.1f}}};
+        r->options.eases = {{"knee", {.feeds = 4.1f}}};
       },
       [](Request* r) { r->options.depth = -1.0f; },
       [](Request* r) { r->options.skin.wavelength_mm = 0.0f; },
