@@ -56,13 +56,7 @@ Subject* Publishers::OnOffer(Peer& peer, const protocol::Header& header,
   const bool is_repeated = is_owner && subject->skeleton_hash == offer.skeleton_hash;
   const bool is_contested =
       subject != nullptr && !is_owner && IsContested(*subject, peer, key, now);
-  const bool is_elsewhere = places_->Elsewhere(offer.subject).kind == Place::Kind::kElsewhere;
-  // Before it takes a place in the cluster: refused offers must leave the places to others.
-  std::shared_ptr<const StreamDefinition> definition;
-  if (!is_repeated && !is_contested && !is_elsewhere) {
-    definition = DefinitionFor(peer, header, offer, now);
-    if (definition == nullptr) return nullptr;
-  }
+  // First: a node that is full sends the publisher to another one.
   const auto place = TakePlace(peer, header, offer.subject, now);
   if (!place) return nullptr;
   if (is_repeated) {
@@ -76,7 +70,8 @@ Subject* Publishers::OnOffer(Peer& peer, const protocol::Header& header,
         "another sender is sending '" + offer.subject + "'; stop it, or send under another name");
     return nullptr;
   } else {
-    if (definition == nullptr) return nullptr;  // has just come here; senders repeat their offer
+    auto definition = DefinitionFor(peer, header, offer, now);
+    if (definition == nullptr) return nullptr;
     subject = Accept(peer, key, offer, std::move(definition), now);
   }
   subject->served_until = place->until;

@@ -167,21 +167,6 @@ TEST_F(HubClusterTest, SubscribersLearnOfAnEpochThatComesWithAnOffer) {
   EXPECT_TRUE(viewer.inbox.empty());
 }
 
-TEST_F(HubClusterTest, ARefusedOfferAsksForNoPlace) {
-  Limits limits;
-  limits.max_subjects = 2;
-  Make(limits);
-  Connect(&sender);
-  Serve(2.0, 10);
-  Publish(sender, "ada");
-  nodes.asked.clear();
-  Send(sender, Offer("bob"), 2);  // more than the share of one host
-  const auto reply = sender.Take<protocol::SkeletonReply>();
-  ASSERT_TRUE(reply.has_value());
-  EXPECT_EQ(reply->message.status, protocol::SkeletonStatus::kRejected);
-  EXPECT_TRUE(nodes.asked.empty());
-}
-
 TEST_F(HubClusterTest, AFloodOfOffersEndsNoPlace) {
   Limits limits;
   limits.max_subjects = 4;
