@@ -144,7 +144,7 @@ export class FakeDaemon implements TransportOpener {
     this.isProven ||= token === TOKEN;
     const builder = new Builder(64);
     const server = builder.createString('fake');
-    Welcome.finishWelcomeBuffer(builder, Welcome.createWelcome(builder, server, this.isProven ? 0n : TOKEN));
+    Welcome.finishWelcomeBuffer(builder, Welcome.createWelcome(builder, server, this.isProven ? 0n : TOKEN, 0));
     this.send(0, message.sequence, builder.asUint8Array());
   }
 
@@ -171,14 +171,14 @@ export class FakeDaemon implements TransportOpener {
     const builder = new Builder(256);
     const text = builder.createString(names.length > 0 ? subject : '');
     const list = SubscribeReply.createNamesVector(builder, names.map((name) => builder.createString(name)));
-    SubscribeReply.finishSubscribeReplyBuffer(builder, SubscribeReply.createSubscribeReply(builder, text, namesHash(names), list, 0n));
+    SubscribeReply.finishSubscribeReplyBuffer(builder, SubscribeReply.createSubscribeReply(builder, text, namesHash(names), list, 0n, 0n));
     this.send(stream, sequence, builder.asUint8Array());
   }
 
   refuse(sequence: number, code: number, text: string): void {
     const builder = new Builder(64);
     const words = builder.createString(text);
-    WireError.finishErrorBuffer(builder, WireError.createError(builder, code, words));
+    WireError.finishErrorBuffer(builder, WireError.createError(builder, code, words, 0, 0, 0));
     this.send(0, sequence, builder.asUint8Array());
   }
 

@@ -52,7 +52,7 @@ test('bytes that are not a message are malformed', () => {
 test('texts keep every character, a byte order mark too', () => {
   const builder = new Builder(64);
   const words = builder.createString('\ufeffada');
-  WireError.finishErrorBuffer(builder, WireError.createError(builder, 5, words));
+  WireError.finishErrorBuffer(builder, WireError.createError(builder, 5, words, 0, 0, 0));
   assert.equal(readError(builder.asUint8Array()).message, '\ufeffada');
 });
 
