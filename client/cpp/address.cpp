@@ -254,6 +254,7 @@ Result<Security> LoadSecurityOf(const Address& address) {
   auto tls = MakeTlsContext(address.tls_files);
   if (!tls.ok()) return tls.status().Within("tls");
   security.tls = *std::move(tls);
+  security.own_authority = !address.tls_files.authority.empty();
   return security;
 }
 

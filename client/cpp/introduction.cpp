@@ -40,6 +40,11 @@ void Introduction::OnPing(const protocol::Ping& ping) {
   (void)transport_->Send(bytes_);
 }
 
+bool SendsElsewhere(const protocol::ErrorMessage& error) {
+  return !error.host.empty() && (error.code == protocol::ErrorCode::kUnknownSubject ||
+                                 error.code == protocol::ErrorCode::kSubjectTaken);
+}
+
 void RememberOthers(const protocol::Welcome& welcome, const Introduction& introduction,
                     Transport& transport) {
   if (!introduction.proven() || welcome.token != 0) return;

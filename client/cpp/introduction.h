@@ -45,6 +45,9 @@ class Introduction {
   std::vector<std::uint8_t> bytes_;
 };
 
+// True if the error names the server that has the subject.
+[[nodiscard]] bool SendsElsewhere(const protocol::ErrorMessage& error);
+
 // Lets the transport know the servers of a Welcome, once the daemon is proven.
 void RememberOthers(const protocol::Welcome& welcome, const Introduction& introduction,
                     Transport& transport);

@@ -119,10 +119,16 @@ void Publisher::WatchServer(std::int64_t now_us) {
   }
 }
 
+// Over UDP, others may send as if they were the daemon. They do not know its session.
+bool Publisher::IsFromServer(const protocol::Header& header) const {
+  return transport_->kind() == TransportKind::kTcp || header.session == server_session_;
+}
+
 // True if the publisher goes on at another server. One with several subjects cannot: it has one
 // connection for all of them.
-bool Publisher::Follow() {
-  if (error_.host.empty() || !introduction_.proven() || streams_.size() != 1) return false;
+bool Publisher::Follow(const protocol::Header& header) {
+  if (!SendsElsewhere(error_) || !introduction_.proven() || streams_.size() != 1) return false;
+  if (!IsFromServer(header) || header.stream != 0) return false;
   return transport_->GoTo({error_.host, error_.tcp, error_.udp});
 }
 
@@ -156,14 +162,15 @@ void Publisher::Handle(std::span<const std::uint8_t> message, std::int64_t now_u
   if (protocol::OpenMessage(message, view, protocol::kMaxReplyBytes) != DecodeStatus::kOk) return;
   switch (view.kind) {
     case protocol::MessageKind::kError:
-      if (protocol::Decode(view, error_) == DecodeStatus::kOk) OnError(now_us);
+      if (protocol::Decode(view, error_) == DecodeStatus::kOk) OnError(view.header, now_us);
       return;
     case protocol::MessageKind::kWelcome:
       if (protocol::Decode(view, welcome_) == DecodeStatus::kOk &&
           introduction_.OnWelcome(welcome_)) {
+        server_session_ = view.header.session;
         OfferAll(now_us);
       }
-      RememberOthers(welcome_, introduction_, *transport_);
+      if (IsFromServer(view.header)) RememberOthers(welcome_, introduction_, *transport_);
       return;
     case protocol::MessageKind::kPing:
       if (protocol::Decode(view, ping_) == DecodeStatus::kOk) introduction_.OnPing(ping_);
@@ -205,8 +212,8 @@ void Publisher::OfferAll(std::int64_t now_us) {
 
 // Says Hello again if the daemon does not know the address, for example after a restart. Each pose
 // on its way then earns this error, and only the first one counts.
-void Publisher::OnError(std::int64_t now_us) {
-  if (Follow()) return;
+void Publisher::OnError(const protocol::Header& header, std::int64_t now_us) {
+  if (Follow(header)) return;
   if (error_.code != protocol::ErrorCode::kUnprovenAddress) {
     last_error_ = error_.message;
     if (error_.code == protocol::ErrorCode::kNeedsToken) {

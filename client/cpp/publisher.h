@@ -87,8 +87,9 @@ class Publisher {
   void OfferAll(std::int64_t now_us);
   void Introduce(std::int64_t now_us);
   void StartOver(std::int64_t now_us);
-  void OnError(std::int64_t now_us);
-  [[nodiscard]] bool Follow();
+  void OnError(const protocol::Header& header, std::int64_t now_us);
+  [[nodiscard]] bool IsFromServer(const protocol::Header& header) const;
+  [[nodiscard]] bool Follow(const protocol::Header& header);
   void WatchServer(std::int64_t now_us);
   void OnReply(const protocol::Header& header, std::int64_t now_us);
   static void OnOversized(Stream& stream);
@@ -99,6 +100,7 @@ class Publisher {
   protocol::Encoder encoder_;
   std::uint64_t session_;
   Introduction introduction_;
+  std::uint64_t server_session_ = 0;           // of the daemon that has proven the address
   std::optional<std::int64_t> introduced_us_;  // when the last Hello was sent
   std::uint64_t generation_;  // of the transport's connection that the offers went to
   std::vector<Stream> streams_;

@@ -25,6 +25,14 @@ constexpr std::int64_t kLostUs = 3'000'000;
 // The system's resolver may block for seconds without a network.
 constexpr std::int64_t kRestPerWork = 4;
 
+// True if the client may show its token to servers that others have named. Over UDP they must know
+// the token's key, and learn nothing. Over TCP they get the token itself: they need a certificate
+// of the authority that the user has named, because any server has one of a public authority.
+bool MayFollow(TransportKind kind, const Security& security) {
+  if (kind == TransportKind::kUdp || !security.token) return true;
+  return security.tls != nullptr && security.own_authority && !security.token_in_clear;
+}
+
 }  // namespace
 
 ReconnectingTransport::ReconnectingTransport(TransportKind kind, Opener open, Clock now_us,
@@ -48,6 +56,7 @@ std::unique_ptr<ReconnectingTransport> ReconnectingTransport::Create(
   const auto open = [=] { return BeginTransport(kind, host, port, send_timeout, security); };
   auto transport = std::make_unique<ReconnectingTransport>(
       kind, open, &SteadyMicroseconds, Backoff(std::random_device()(), {}), std::move(first));
+  if (!MayFollow(kind, security)) return transport;
   transport->FollowBy([=](const Elsewhere& server) {
     return BeginTransport(kind, server.host, kind == TransportKind::kUdp ? server.udp : server.tcp,
                           send_timeout, security);

@@ -39,7 +39,8 @@ class ReconnectingTransport : public Transport {
                         std::unique_ptr<Transport> first = nullptr);
 
   // The usual one: the steady clock, and the default limits of Backoff. Does not connect yet.
-  // `send_timeout`, `security`: as for BeginTransport().
+  // `send_timeout`, `security`: as for BeginTransport(). Follows, except over TCP with a token,
+  // unless the user has named the authority of the certificates.
   [[nodiscard]] static std::unique_ptr<ReconnectingTransport> Create(
       TransportKind kind, const std::string& host, std::uint16_t port,
       std::chrono::milliseconds send_timeout, std::unique_ptr<Transport> first = nullptr,

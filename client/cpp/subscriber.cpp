@@ -329,6 +329,11 @@ bool Subscriber::OnReply(const protocol::Header& header) {
   sent_away_ = false;
   found->waiting = false;
   found->subscription = header.stream;
+  // Epochs of different subjects do not compare. A reply without one says that the request waits.
+  if (!reply_.subject.empty() && reply_.subject != found->served) {
+    found->served = reply_.subject;
+    found->epoch = 0;
+  }
   found->fenced = reply_.epoch != 0 && reply_.epoch < found->epoch;
   if (found->fenced) return false;
   found->epoch = std::max(found->epoch, reply_.epoch);
@@ -344,8 +349,12 @@ bool Subscriber::IsFenced(std::uint16_t subscription) const {
 
 // True if the subscriber goes on at another server. One with several subjects cannot: it has one
 // connection for all of them.
-bool Subscriber::Follow() {
-  if (error_.host.empty() || !introduction_.proven() || requests_.empty()) return false;
+bool Subscriber::Follow(const protocol::Header& header) {
+  if (!SendsElsewhere(error_) || !introduction_.proven()) return false;
+  // Only the answer to a request counts. NoticeRestart() has checked the session.
+  const bool asked = std::ranges::any_of(
+      requests_, [&header](const Request& request) { return request.number == header.sequence; });
+  if (!asked) return false;
   const std::string& subject = requests_.front().subject;
   const bool same = std::ranges::all_of(
       requests_, [&subject](const Request& request) { return request.subject == subject; });
@@ -369,7 +378,7 @@ void Subscriber::OnFrame(std::uint16_t subscription, std::uint64_t hash) {
 
 // Returns false if the error is handled here and not passed to the caller.
 bool Subscriber::OnError(const protocol::Header& header) {
-  if (Follow()) return false;
+  if (Follow(header)) return false;
   if (error_.code == protocol::ErrorCode::kUnprovenAddress &&
       transport_->kind() == TransportKind::kUdp) {
     if (introduction_.proven()) ProveAgain();

@@ -104,6 +104,7 @@ class Subscriber {
     bool waiting = true;  // no answer yet
     std::uint16_t subscription = 0;
     std::string subject;
+    std::string served;            // the subject of the last reply; `subject` may be empty
     std::uint64_t epoch = 0;       // the highest one that served it
     bool fenced = false;           // the daemon has a lower one, so its frames are dropped
     std::uint64_t names_hash = 0;  // hash of the names, or of the skeleton
@@ -127,7 +128,7 @@ class Subscriber {
   void HandlePing(const protocol::MessageView& view);
   [[nodiscard]] bool OnReply(const protocol::Header& header);
   [[nodiscard]] bool IsFenced(std::uint16_t subscription) const;
-  [[nodiscard]] bool Follow();
+  [[nodiscard]] bool Follow(const protocol::Header& header);
   void OnSkeleton(std::uint16_t subscription);
   void OnFrame(std::uint16_t subscription, std::uint64_t hash);
   [[nodiscard]] bool OnError(const protocol::Header& header);

@@ -51,6 +51,8 @@ class Coordinator {
   [[nodiscard]] virtual Place Elsewhere(std::string_view subject) const = 0;
   // Where a new subject should be offered: kHere or kElsewhere, or kNowhere.
   [[nodiscard]] virtual Place Propose(std::string_view subject, Time now) const = 0;
+  // The other node that should take the subject from this one; kNowhere if there is none.
+  [[nodiscard]] virtual Place Successor(std::string_view subject) const = 0;
   // The other nodes that are there, those that are not draining first.
   [[nodiscard]] virtual std::vector<NodeAddress> Others() const = 0;
   // This node serves the subject no longer.

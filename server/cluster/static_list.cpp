@@ -59,6 +59,9 @@ Place StaticList::Ask(std::string_view subject, Time now) {
 
 Place StaticList::Propose(std::string_view subject, Time now) const { return Find(subject, now); }
 
+// The list alone decides, so nobody takes a subject of this node.
+Place StaticList::Successor(std::string_view subject) const { return Elsewhere(subject); }
+
 std::vector<NodeAddress> StaticList::Others() const {
   std::vector<NodeAddress> others = nodes_;
   std::erase_if(others, [this](const NodeAddress& node) { return node.name == self_; });

@@ -24,6 +24,7 @@ class StaticList : public Coordinator {
   [[nodiscard]] Place Find(std::string_view subject, Time now) const override;
   [[nodiscard]] Place Elsewhere(std::string_view subject) const override;
   [[nodiscard]] Place Propose(std::string_view subject, Time now) const override;
+  [[nodiscard]] Place Successor(std::string_view subject) const override;
   [[nodiscard]] std::vector<NodeAddress> Others() const override;
   void Release(std::string_view /*subject*/) override {}
   void SetDraining() override { draining_ = true; }

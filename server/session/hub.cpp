@@ -347,12 +347,16 @@ void Hub::Drain(Time now) {
   const ExclusiveLock lock(*this, 0);
   places_.SetDraining();
   for (const auto& subject : subjects_.all()) {
-    const Place place = places_.Successor(subject->name, now);
+    const Place place = places_.Successor(subject->name);
     if (place.kind != Place::Kind::kElsewhere) continue;
     publishers_.SendAway(*subject, OwnerOf(*subject), place.node);
     subscribers_.OnSubjectMoved(*subject, place.node);
   }
-  for (const auto& subject : subjects_.all()) places_.Release(subject->name);
+  for (const auto& subject : subjects_.all()) {
+    places_.Release(subject->name);
+    // Another node may serve it from now on. A right that never ends has no other node.
+    if (subject->served_until != kNoEnd) subject->served_until = now;
+  }
   // Stop all frames before the goodbye, which must be the last message that a peer receives.
   draining_ = true;
   router_.StopFanOut();

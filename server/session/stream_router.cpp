@@ -23,9 +23,12 @@ bool StreamRouter::OnOffer(Peer& peer, const protocol::Header& header,
                            const protocol::SkeletonOffer& offer, Time now) {
   // Subscribers learn of a new skeleton before the first pose that uses it, and so does the
   // recording.
+  const Subject* const known = parts_.subjects->Find(offer.subject);
+  const std::uint64_t epoch = known == nullptr ? 0 : known->epoch;
   Subject* subject = parts_.publishers->OnOffer(peer, header, offer, now);
   if (subject == nullptr) return false;
   parts_.subscribers->OnSubjectReady(*subject);
+  if (known != nullptr && subject->epoch != epoch) parts_.subscribers->OnEpoch(*subject);
   if (parts_.recording != nullptr) parts_.recording->OnOffer(*subject, offer, now);
   return true;
 }

@@ -16,6 +16,8 @@ struct Security {
   std::optional<protocol::secure::ClientToken> token;
   // TLS over TCP (MakeTlsContext()); null: plain TCP.
   std::shared_ptr<SSL_CTX> tls;
+  // `tls` checks with an authority that the user has named, not with those of the system.
+  bool own_authority = false;
   // Permits the token over plain TCP to other computers. Everybody on the way can read it there.
   bool token_in_clear = false;
 };

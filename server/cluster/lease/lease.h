@@ -31,6 +31,12 @@ inline constexpr Time kLeaseFreeze = std::chrono::seconds(1);
 // Epochs above are refused, so that no record can end the numbers.
 inline constexpr std::uint64_t kMaxEpoch = std::uint64_t{1} << 62;
 
+// Epochs are times of the wall clock, or slightly more. Those that are farther ahead of it are not
+// counted on from, so that one record cannot end the placement of all subjects. 10 years, in ms.
+inline constexpr std::uint64_t kMaxEpochAhead = std::uint64_t{10} * 365 * 24 * 3600 * 1000;
+// 2026-01-01 in Unix milliseconds. A clock behind it has not been set yet.
+inline constexpr std::uint64_t kLeastClock = 1'767'225'600'000;
+
 // Of a record: every write gets a higher one. 0: there is no record.
 using Revision = std::uint64_t;
 

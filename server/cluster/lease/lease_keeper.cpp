@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <iterator>
+#include <utility>
 
 namespace furrow::server {
 namespace {
@@ -23,7 +24,14 @@ void LeaseKeeper::Want(std::string_view subject) {
 void LeaseKeeper::Release(std::string_view subject) {
   const auto found = own_.find(subject);
   if (found == own_.end()) return;
-  Own& own = found->second;
+  GiveUp(found->second);
+}
+
+void LeaseKeeper::ReleaseAll() {
+  for (auto& [subject, own] : own_) GiveUp(own);
+}
+
+void LeaseKeeper::GiveUp(Own& own) {
   own.wanted = own.held = own.isolated = false;
   own.candidate.reset();
   own.next_write = Time{0};
@@ -97,8 +105,12 @@ void LeaseKeeper::OnEntry(const LeaseEntry& entry, Time now) {
   }
 }
 
+void LeaseKeeper::NoteEpoch(std::uint64_t epoch) {
+  if (epoch <= std::max(wall_, kLeastClock) + kMaxEpochAhead) highest_ = std::max(highest_, epoch);
+}
+
 void LeaseKeeper::Learn(const LeaseEntry& entry, Time now) {
-  highest_ = std::max(highest_, std::min(entry.lease.epoch, kMaxEpoch));
+  NoteEpoch(entry.lease.epoch);
   records_.insert_or_assign(entry.subject, Record{entry.lease, entry.revision, now});
 }
 
@@ -207,6 +219,11 @@ std::optional<LeaseWrite> LeaseKeeper::NextWrite(const std::string& subject, Own
 std::vector<LeaseWrite> LeaseKeeper::Tick(Time now, std::int64_t unix_ms) {
   NoticeFreeze(now);
   last_tick_ = now;
+  const auto wall = static_cast<std::uint64_t>(std::max<std::int64_t>(unix_ms, 1));
+  // Records that came before the time was known.
+  if (std::exchange(wall_, wall) == 0) {
+    for (const auto& [subject, record] : records_) NoteEpoch(record.lease.epoch);
+  }
   std::vector<LeaseWrite> writes;
   if (!reachable_ || !listed_) return writes;
   if (now > reachable_since_ + kLeaseTtl + kLeaseStop) EndIsolation();

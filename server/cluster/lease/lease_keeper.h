@@ -39,6 +39,8 @@ class LeaseKeeper {
   void Want(std::string_view subject);
   // Gives the lease back, so that another node need not wait.
   void Release(std::string_view subject);
+  // The same for all, also for those that are wanted and not held yet.
+  void ReleaseAll();
 
   // The store answers or does not. A listing must follow after it answers again.
   void OnReachable(bool reachable, Time now);
@@ -119,6 +121,8 @@ class LeaseKeeper {
                                                std::int64_t unix_ms) const;
   [[nodiscard]] std::optional<LeaseWrite> NextWrite(const std::string& subject, Own& own, Time now,
                                                     std::int64_t unix_ms);
+  static void GiveUp(Own& own);
+  void NoteEpoch(std::uint64_t epoch);
   void Learn(const LeaseEntry& entry, Time now);
   void NoticeFreeze(Time now);
   void EndIsolation();
@@ -132,7 +136,8 @@ class LeaseKeeper {
   std::map<std::string, Record, std::less<>> records_;
   std::map<std::string, Own, std::less<>> own_;
   std::uint64_t next_write_ = 1;
-  std::uint64_t highest_ = 0;  // of all epochs that were seen
+  std::uint64_t wall_ = 0;     // of the last Tick(): the system's clock in ms; 0: none yet
+  std::uint64_t highest_ = 0;  // of all epochs that were seen, except absurd ones
   bool reachable_ = false;
   bool listed_ = false;  // since the store is reachable
   bool needs_listing_ = true;

@@ -45,8 +45,15 @@ constexpr milliseconds kCheckPause(1000);
 // Records of nodes and subjects that are gone. Far above every time of a lease, and the epochs of
 // subjects that left are remembered for it.
 constexpr std::int64_t kRecordLifeNs = std::int64_t{600} * 1'000'000'000;
-constexpr std::int64_t kMaxBucketBytes = 64 << 20;
+constexpr std::size_t kMaxBucketBytes = 64 << 20;
 constexpr int kMaxValueBytes = 1024;
+// What one call of Poll() takes, so that a flood does not keep the leases from being renewed. What
+// is left comes with the next call.
+constexpr int kMostAtOnce = 10'000;
+constexpr milliseconds kPollTime(100);
+// Answers that wait to be read. The library drops more, and a write without an answer is unknown.
+constexpr int kMaxWaiting = 65'536;
+constexpr int kMaxWaitingBytes = 16 << 20;
 constexpr int kWrongLastSequence = 10071;  // err_code of JetStream
 
 using Clock = std::chrono::steady_clock;
@@ -59,6 +66,10 @@ std::uint64_t NumberAfter(std::string_view text, std::string_view key) {
   std::uint64_t number = 0;
   (void)std::from_chars(text.data() + at, text.data() + text.size(), number);
   return number;
+}
+
+std::size_t BytesOf(const StoreRecord& record) {
+  return sizeof(record) + record.key.size() + record.value.size();
 }
 
 class NatsStore : public Store {
@@ -139,6 +150,8 @@ bool NatsStore::Open(std::string* why) {
     // A write that waited for a connection would come too late.
     set(natsOptions_SetReconnectBufSize(raw, 1));
     set(natsOptions_SetSendAsap(raw, true));
+    // A server that reads nothing must not hold the thread for ever.
+    set(natsOptions_SetWriteDeadline(raw, kRequestMs));
     const natsConnectionHandler up = [](natsConnection*, void* link) {
       static_cast<Link*>(link)->connected = true;
     };
@@ -187,7 +200,8 @@ natsStatus NatsStore::PrepareAnswers() {
   natsSubscription* subscription = nullptr;
   status = natsConnection_SubscribeSync(&subscription, connection_.get(), (inbox_ + "*").c_str());
   answers_.reset(subscription);
-  return status;
+  if (status != NATS_OK) return status;
+  return natsSubscription_SetPendingLimits(subscription, kMaxWaiting, kMaxWaitingBytes);
 }
 
 natsStatus NatsStore::GetInfo(StreamInfo* info) {
@@ -220,7 +234,7 @@ natsStatus NatsStore::PrepareBucket(StreamInfo* info) {
     config.MaxValueSize = kMaxValueBytes;
     config.History = 1;
     config.TTL = kRecordLifeNs;
-    config.MaxBytes = kMaxBucketBytes;
+    config.MaxBytes = static_cast<std::int64_t>(kMaxBucketBytes);
     config.StorageType = js_MemoryStorage;
     config.Replicas = 1;
     kvStore* made = nullptr;
@@ -289,13 +303,18 @@ bool NatsStore::Poll(milliseconds wait, std::vector<StoreAnswer>* answers,
   }
   natsMsg* raw = nullptr;
   std::int64_t left = wait.count();
-  while (natsSubscription_NextMsg(&raw, answers_.get(), left) == NATS_OK) {
+  for (int taken = 0;
+       taken < kMostAtOnce && natsSubscription_NextMsg(&raw, answers_.get(), left) == NATS_OK;
+       ++taken) {
     TakeAnswer(Message(raw), answers);
     left = 0;  // takes what else is there
   }
   if (watcher_ == nullptr) return false;
   kvEntry* entry = nullptr;
-  while (kvWatcher_Next(&entry, watcher_.get(), 1) == NATS_OK && entry != nullptr) {
+  const auto end = Clock::now() + kPollTime;
+  for (int taken = 0; taken < kMostAtOnce && Clock::now() < end &&
+                      kvWatcher_Next(&entry, watcher_.get(), 1) == NATS_OK && entry != nullptr;
+       ++taken) {
     TakeEntry(Entry(entry), changes);
   }
   return IsComplete();
@@ -325,6 +344,7 @@ bool NatsStore::List(std::uint64_t* incarnation, std::vector<StoreRecord>* recor
   if (status == NATS_OK) status = kvStore_WatchAll(&watcher, bucket_.get(), nullptr);
   watcher_.reset(watcher);
   heard_ = 0;
+  std::size_t bytes = 0;
   while (status == NATS_OK) {
     const auto left = std::chrono::duration_cast<milliseconds>(deadline - Clock::now());
     kvEntry* entry = nullptr;
@@ -332,6 +352,8 @@ bool NatsStore::List(std::uint64_t* incarnation, std::vector<StoreRecord>* recor
         left.count() <= 0 ? NATS_TIMEOUT : kvWatcher_Next(&entry, watcher_.get(), left.count());
     if (status == NATS_OK && entry == nullptr) break;  // the end of what was there
     if (status == NATS_OK) TakeEntry(Entry(entry), records);
+    if (status == NATS_OK) bytes += BytesOf(records->back());
+    if (bytes > 2 * kMaxBucketBytes) status = NATS_INSUFFICIENT_BUFFER;
   }
   // The stream may have been made again while it was read.
   StreamInfo after;

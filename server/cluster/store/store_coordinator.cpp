@@ -60,9 +60,10 @@ void StoreCoordinator::Run(const std::stop_token& stop) {
   // So that other nodes need not wait for the end of the leases.
   {
     const std::lock_guard lock(mutex_);
-    for (const auto& [subject, serving] : view_->own) requests_.wanted[subject] = false;
+    requests_.wanted.clear();
     requests_.draining = true;
   }
+  leases_.ReleaseAll();
   const Time end = now_() + kFarewell;
   while (leases_.holds_any() && leases_.reachable() && now_() < end) Step(milliseconds(10));
 }
@@ -113,8 +114,13 @@ void StoreCoordinator::TakeRequests() {
     wanted.swap(requests_.wanted);
     draining_ = requests_.draining;
   }
+  const bool has_rival = nodes_.HasRival(now_());
   for (const auto& [subject, is_wanted] : wanted) {
-    is_wanted ? leases_.Want(subject) : leases_.Release(subject);
+    if (!is_wanted) {
+      leases_.Release(subject);
+    } else if (!has_rival) {  // senders repeat their offers, and ask again
+      leases_.Want(subject);
+    }
   }
 }
 
@@ -161,8 +167,9 @@ void StoreCoordinator::Publish(Time now) {
   });
   next->others = nodes_.Others(now, leases_.reachable());
   next->reachable = leases_.reachable();
-  next->may_take = leases_.MayTake(now) && !nodes_.HasRival(now);
-  if (nodes_.HasRival(now)) {
+  next->has_rival = nodes_.HasRival(now);
+  next->may_take = leases_.MayTake(now) && !next->has_rival;
+  if (next->has_rival) {
     next->fault =
         "another daemon of the cluster has the name '" + self_.name + "'; give each its own --name";
   } else if (!leases_.reachable()) {
@@ -301,10 +308,23 @@ Place StoreCoordinator::Ask(std::string_view subject, Time now) {
   }
   const bool has_room = !draining && static_cast<int>(seen->own.size()) < capacity_;
   const bool is_held = seen->foreign.contains(subject);
-  const bool waits = seen->reachable && (is_held || RoomElsewhere(*seen) == nullptr);
+  const bool waits =
+      seen->reachable && !seen->has_rival && (is_held || RoomElsewhere(*seen) == nullptr);
   if (!has_room || !(seen->may_take || waits)) return Propose(subject, now);
   Request(subject, true);
   place.kind = Place::Kind::kPending;
+  return place;
+}
+
+// Not Propose(), which names this node while it holds the lease.
+Place StoreCoordinator::Successor(std::string_view subject) const {
+  const auto seen = view();
+  Place place = ForeignPlace(*seen, subject);
+  if (place.kind == Place::Kind::kElsewhere) return place;
+  if (const Announcement* const other = RoomElsewhere(*seen); other != nullptr) {
+    place.kind = Place::Kind::kElsewhere;
+    place.node = other->address;
+  }
   return place;
 }
 

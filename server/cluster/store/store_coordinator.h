@@ -42,6 +42,7 @@ class StoreCoordinator : public Coordinator {
   [[nodiscard]] Place Find(std::string_view subject, Time now) const override;
   [[nodiscard]] Place Elsewhere(std::string_view subject) const override;
   [[nodiscard]] Place Propose(std::string_view subject, Time now) const override;
+  [[nodiscard]] Place Successor(std::string_view subject) const override;
   [[nodiscard]] std::vector<NodeAddress> Others() const override;
   void Release(std::string_view subject) override;
   void SetDraining() override;
@@ -56,6 +57,7 @@ class StoreCoordinator : public Coordinator {
     std::map<std::string, Announcement> others;
     bool reachable = false;
     bool may_take = false;
+    bool has_rival = false;  // NodeTable
     std::string fault;
   };
   // What the hub's thread wants.

@@ -8,19 +8,30 @@
 
 namespace furrow::server {
 
-Place Places::Ask(std::string_view subject, Time now) {
+Place Places::Renew(std::string_view subject, Time now) {
+  Place place;
   if (coordinator_ == nullptr) {
-    Place place;
     place.kind = Place::Kind::kHere;
     place.until = kNoEnd;
     return place;
   }
+  place = coordinator_->Ask(subject, now);
+  // The coordinator may not have given back yet what this node has just released.
+  if (draining_ && place.kind == Place::Kind::kHere) {
+    place.kind = Place::Kind::kNowhere;
+    place.why = "this node is draining";
+  }
+  return place;
+}
+
+Place Places::Ask(std::string_view subject, Time now) {
+  if (coordinator_ == nullptr) return Renew(subject, now);
   Place place;
   if (asked_.size() >= most_ && !asked_.contains(subject)) {
     place.why = "too many subjects wait for their place in the cluster";
     return place;
   }
-  place = coordinator_->Ask(subject, now);
+  place = Renew(subject, now);
   if (place.kind == Place::Kind::kHere || place.kind == Place::Kind::kPending) {
     asked_.insert_or_assign(std::string(subject), now);
   }
@@ -31,11 +42,8 @@ Place Places::Elsewhere(std::string_view subject) const {
   return coordinator_ == nullptr || subject.empty() ? Place() : coordinator_->Elsewhere(subject);
 }
 
-Place Places::Successor(std::string_view subject, Time now) const {
-  if (coordinator_ == nullptr) return {};
-  Place place = coordinator_->Propose(subject, now);
-  if (place.kind != Place::Kind::kElsewhere) place.kind = Place::Kind::kNowhere;
-  return place;
+Place Places::Successor(std::string_view subject) const {
+  return coordinator_ == nullptr ? Place() : coordinator_->Successor(subject);
 }
 
 std::vector<std::string> Places::Others() const {
@@ -73,6 +81,7 @@ void Places::Expire(const std::function<bool(std::string_view subject)>& is_publ
 }
 
 void Places::SetDraining() {
+  draining_ = true;
   if (coordinator_ != nullptr) coordinator_->SetDraining();
 }
 

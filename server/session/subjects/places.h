@@ -26,10 +26,13 @@ class Places {
   // A stream offers the subject. Whoever gets kHere or kPending must offer again or publish within
   // kPatience, or another node may have the subject.
   [[nodiscard]] Place Ask(std::string_view subject, Time now);
+  // The same for a subject that is published here already. It needs no room beside those that wait,
+  // so a flood of offers ends no place.
+  [[nodiscard]] Place Renew(std::string_view subject, Time now);
   // Where another node serves the subject; kNowhere if none does.
   [[nodiscard]] Place Elsewhere(std::string_view subject) const;
   // The node that should take the subject instead of this one; kNowhere if there is none.
-  [[nodiscard]] Place Successor(std::string_view subject, Time now) const;
+  [[nodiscard]] Place Successor(std::string_view subject) const;
   // Other nodes as Welcome lists them.
   [[nodiscard]] std::vector<std::string> Others() const;
   void Release(std::string_view subject);
@@ -43,6 +46,7 @@ class Places {
  private:
   Coordinator* const coordinator_;
   const std::size_t most_;
+  bool draining_ = false;
   std::map<std::string, Time, std::less<>> asked_;  // when it was asked for last
 };
 

@@ -50,14 +50,18 @@ Subject* Publishers::OnOffer(Peer& peer, const protocol::Header& header,
            "not permitted to publish '" + offer.subject + "'; " + peer.access.Text(), now);
     return nullptr;
   }
-  const auto place = TakePlace(peer, header, offer.subject, now);
-  if (!place) return nullptr;
   const StreamKey key{peer.id, header.session, header.stream};
   Subject* subject = subjects_->Find(offer.subject);
   const bool is_owner = subject != nullptr && subject->owner == key;
-  if (is_owner && subject->skeleton_hash == offer.skeleton_hash) {
+  const bool is_repeated = is_owner && subject->skeleton_hash == offer.skeleton_hash;
+  const bool is_contested =
+      subject != nullptr && !is_owner && IsContested(*subject, peer, key, now);
+  // First: a node that is full sends the publisher to another one.
+  const auto place = TakePlace(peer, header, offer.subject, now);
+  if (!place) return nullptr;
+  if (is_repeated) {
     subject->ended = false;  // a repeated offer, or the sender is back after its goodbye
-  } else if (subject != nullptr && !is_owner && IsContested(*subject, peer, key, now)) {
+  } else if (is_contested) {
     metrics_->Add(Counter::kSubjectsContested);
     // Not a rejection: the sender repeats its offer, and takes over when the present one falls
     // silent.
@@ -66,27 +70,9 @@ Subject* Publishers::OnOffer(Peer& peer, const protocol::Header& header,
         "another sender is sending '" + offer.subject + "'; stop it, or send under another name");
     return nullptr;
   } else {
-    if (subject == nullptr && !subjects_->HasRoomFor(peer.host)) {
-      Reject(peer, header, offer.skeleton_hash,
-             "this address has its share of the " + std::to_string(limits_.max_subjects) +
-                 " subjects; see limits.max_subjects",
-             now);
-      return nullptr;
-    }
-    // Binding a skeleton to the rig takes milliseconds under the exclusive lock. Known skeletons
-    // are free; new ones need a token, or a flood of random offers would stop the daemon.
-    auto definition =
-        definitions_->Get(ToStreamOffer(offer), [&] { return TakeNewSkeleton(peer.host, now); });
-    if (!definition.ok()) {
-      Reject(peer, header, offer.skeleton_hash, definition.status().ToString(), now);
-      return nullptr;
-    }
-    // No reply: senders repeat their offer until it is answered.
-    if (*definition == nullptr) {
-      metrics_->Add(Counter::kSkeletonsThrottled);
-      return nullptr;
-    }
-    subject = Accept(peer, key, offer, *std::move(definition), now);
+    auto definition = DefinitionFor(peer, header, offer, now);
+    if (definition == nullptr) return nullptr;
+    subject = Accept(peer, key, offer, std::move(definition), now);
   }
   subject->served_until = place->until;
   subject->epoch = place->epoch;
@@ -94,6 +80,32 @@ Subject* Publishers::OnOffer(Peer& peer, const protocol::Header& header,
       peer, MessageSender::ReplyHeader(header),
       protocol::SkeletonReply{offer.skeleton_hash, protocol::SkeletonStatus::kAccepted, {}});
   return subject;
+}
+
+// Null: the offer is answered, or must be repeated.
+std::shared_ptr<const StreamDefinition> Publishers::DefinitionFor(
+    Peer& peer, const protocol::Header& header, const protocol::SkeletonOffer& offer, Time now) {
+  if (subjects_->Find(offer.subject) == nullptr && !subjects_->HasRoomFor(peer.host)) {
+    Reject(peer, header, offer.skeleton_hash,
+           "this address has its share of the " + std::to_string(limits_.max_subjects) +
+               " subjects; see limits.max_subjects",
+           now);
+    return nullptr;
+  }
+  // Binding a skeleton to the rig takes milliseconds under the exclusive lock. Known skeletons
+  // are free; new ones need a token, or a flood of random offers would stop the daemon.
+  auto definition =
+      definitions_->Get(ToStreamOffer(offer), [&] { return TakeNewSkeleton(peer.host, now); });
+  if (!definition.ok()) {
+    Reject(peer, header, offer.skeleton_hash, definition.status().ToString(), now);
+    return nullptr;
+  }
+  // No reply: senders repeat their offer until it is answered.
+  if (*definition == nullptr) {
+    metrics_->Add(Counter::kSkeletonsThrottled);
+    return nullptr;
+  }
+  return *std::move(definition);
 }
 
 // Nothing: the offer is answered, or waits for a place. Senders repeat it then.
@@ -115,7 +127,7 @@ std::optional<Place> Publishers::TakePlace(Peer& peer, const protocol::Header& h
 }
 
 Place Publishers::RenewPlace(Subject& subject, Peer* owner, Time now) {
-  Place place = places_->Ask(subject.name, now);
+  Place place = places_->Renew(subject.name, now);
   if (place.kind == Place::Kind::kHere) {
     subject.served_until = place.until;
     subject.epoch = place.epoch;

@@ -99,6 +99,8 @@ class Publishers {
  private:
   Subject* Accept(Peer& peer, const StreamKey& key, const protocol::SkeletonOffer& offer,
                   std::shared_ptr<const StreamDefinition> stream, Time now);
+  [[nodiscard]] std::shared_ptr<const StreamDefinition> DefinitionFor(
+      Peer& peer, const protocol::Header& header, const protocol::SkeletonOffer& offer, Time now);
   [[nodiscard]] std::optional<Place> TakePlace(Peer& peer, const protocol::Header& header,
                                                const std::string& subject, Time now);
   void Reject(Peer& peer, const protocol::Header& header, std::uint64_t hash, std::string why,

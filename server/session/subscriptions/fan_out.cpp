@@ -63,6 +63,8 @@ void FanOut::SendOwed(Time now) {
 }
 
 void FanOut::SendOwed(Subscription& subscription, Time now) {
+  // Another node may serve the subject. The frame stays owed, for a lease that comes back.
+  if (now >= subscription.subject->served_until) return;
   if (subscription.peer->stuck && CanWait(subscription)) return;
   subscription.held_back = false;
   // Ask the flow control before the gate: Pass() spends the time slot even if nothing is sent.

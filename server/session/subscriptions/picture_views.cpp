@@ -254,7 +254,10 @@ void PictureViews::OnPicture(const FinishedPicture& picture, Time now) {
   for (const PictureTicket& ticket : picture.tickets) {
     Subscription* subscription = table_->Find(ticket.subscription);
     if (subscription == nullptr) continue;  // it ended while the picture was rendered
-    if (!failed) {
+    // Another node may serve the subject since the picture was requested.
+    const bool unplaced =
+        subscription->subject != nullptr && now >= subscription->subject->served_until;
+    if (!failed && !unplaced) {
       SendPicture(*subscription, picture, ticket, now);
     } else if (PictureRequest* viewer = FlowControlled(*subscription); viewer != nullptr) {
       // Ends the request; the tick asks again after ViewerFlow::kRetry.

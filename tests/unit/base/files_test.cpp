@@ -94,7 +94,7 @@ TEST_F(Files, RootHandsASecretToAGroup) {
     ASSERT_EQ(::chmod(path.c_str(), mode), 0);
     EXPECT_EQ(read_as_nobody().status().code(), StatusCode::kInvalidArgument) << mode;
   }
-  // Somebody else's file is no hand-over.
+  // A file of somebody else has not been handed over.
   ASSERT_EQ(::chown(path.c_str(), 1, kNobody), 0);
   ASSERT_EQ(::chmod(path.c_str(), 0440), 0);
   EXPECT_EQ(read_as_nobody().status().code(), StatusCode::kInvalidArgument);

@@ -293,6 +293,23 @@ TEST_F(PublisherTest, GoesToTheServerThatTheDaemonNames) {
   EXPECT_EQ(far_->TakeKinds(), std::vector{MessageKind::kSkeletonOffer});
 }
 
+TEST_F(PublisherTest, ForgedRedirectsAreNotFollowed) {
+  const auto stream = publisher_.AddSubject(OneJoint(), 0);
+  far_->follows = true;
+  Prove();
+  protocol::ErrorMessage other = kMoved;
+  other.code = protocol::ErrorCode::kMalformed;
+  const protocol::Header right{.session = 7, .stream = stream};
+  far_->Answer({.session = 8, .stream = stream}, kMoved);
+  far_->Answer({.session = 7, .stream = 9}, kMoved);
+  far_->Answer(right, other);
+  publisher_.Poll(0, milliseconds(0));
+  EXPECT_TRUE(far_->moves.empty());
+  far_->Answer(right, kMoved);
+  publisher_.Poll(0, milliseconds(0));
+  EXPECT_EQ(far_->moves.size(), 1u);
+}
+
 TEST_F(PublisherTest, WithSeveralSubjectsItStays) {
   publisher_.AddSubject(OneJoint(), 0);
   publisher_.AddSubject(OneJoint(), 0);

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "client/cpp/tls/client_tls.h"
 #include "fake_transport.h"
 
 namespace furrow::client {
@@ -254,6 +255,27 @@ TEST_F(ReconnectingTransportTest, StaysWhereItIsUnlessItMayFollow) {
   EXPECT_FALSE(transport.GoTo({"b", 1, 2}));
   transport.Remember(std::vector<Elsewhere>{{"b", 1, 2}});
   EXPECT_FALSE(transport.has_others());
+}
+
+// Over TCP, a token goes only to servers with a certificate of an authority that the user named.
+TEST_F(ReconnectingTransportTest, ATokenOverTcpGoesNowhereElse) {
+  const auto follows = [](TransportKind kind, Security security) {
+    const auto transport =
+        ReconnectingTransport::Create(kind, "127.0.0.1", 1, {}, nullptr, std::move(security));
+    return transport->GoTo({"127.0.0.1", 1, 2});
+  };
+  const auto context = MakeTlsContext({});
+  ASSERT_TRUE(context.ok());
+  const protocol::secure::ClientToken token{};
+  EXPECT_TRUE(follows(TransportKind::kTcp, {}));
+  EXPECT_TRUE(follows(TransportKind::kUdp, {.token = token}));
+  EXPECT_FALSE(follows(TransportKind::kTcp, {.token = token}));
+  EXPECT_FALSE(follows(TransportKind::kTcp, {.token = token, .tls = *context}));
+  EXPECT_TRUE(
+      follows(TransportKind::kTcp, {.token = token, .tls = *context, .own_authority = true}));
+  EXPECT_FALSE(
+      follows(TransportKind::kTcp,
+              {.token = token, .tls = *context, .own_authority = true, .token_in_clear = true}));
 }
 
 TEST(Elsewhere, IsReadFromText) {

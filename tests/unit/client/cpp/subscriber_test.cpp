@@ -293,5 +293,34 @@ TEST_F(SubscriberTest, FramesOfALowerEpochAreDropped) {
   EXPECT_EQ(next(0), std::pair(Kind::kReply, Kind::kWeights)) << "a daemon without a cluster";
 }
 
+TEST_F(SubscriberTest, EpochsOfDifferentSubjectsDoNotCompare) {
+  Subscriber subscriber = Make(TransportKind::kTcp);
+  const std::uint32_t number = subscriber.Subscribe(protocol::SubscribeWeights{.wait = true});
+  const auto next = [&](const char* subject, std::uint64_t epoch) {
+    far_->Answer({.session = 5, .stream = 3, .sequence = number},
+                 protocol::SubscribeReply{subject, 0, {"a"}, 0, epoch});
+    return subscriber.Next(0, milliseconds(0)).kind;
+  };
+  EXPECT_EQ(next("ada", 10), Kind::kReply);
+  EXPECT_EQ(next("", 0), Kind::kReply) << "ada has left";
+  EXPECT_EQ(next("ada", 9), Kind::kTimeout);
+  EXPECT_EQ(next("bob", 4), Kind::kReply);
+  EXPECT_EQ(next("bob", 3), Kind::kTimeout);
+}
+
+TEST_F(SubscriberTest, FollowsOnlyAnswersToItsOwnRequests) {
+  far_->follows = far_->reconnects = true;
+  Subscriber subscriber = Make(TransportKind::kTcp);
+  const std::uint32_t number = subscriber.Subscribe(protocol::SubscribeWeights{.subject = "ada"});
+  protocol::ErrorMessage moved{protocol::ErrorCode::kUnknownSubject, "at b", "host-b", 7, 8};
+  far_->Answer({.session = 5, .sequence = number + 1}, moved);
+  (void)subscriber.Next(0, milliseconds(0));
+  EXPECT_TRUE(far_->moves.empty());
+  moved.code = protocol::ErrorCode::kMalformed;
+  far_->Answer({.session = 5, .sequence = number}, moved);
+  (void)subscriber.Next(0, milliseconds(0));
+  EXPECT_TRUE(far_->moves.empty());
+}
+
 }  // namespace
 }  // namespace furrow::client

@@ -29,7 +29,8 @@ class FakeCluster : public Coordinator {
     if (only_proposed) return {};
     return place.kind == Place::Kind::kElsewhere ? place : Place();
   }
-  Place Propose(std::string_view /*subject*/, Time /*now*/) const override { return successor; }
+  Place Propose(std::string_view subject, Time now) const override { return Find(subject, now); }
+  Place Successor(std::string_view /*subject*/) const override { return successor; }
   std::vector<NodeAddress> Others() const override { return {kOther}; }
   void Release(std::string_view subject) override { released.emplace_back(subject); }
   void SetDraining() override { draining = true; }
@@ -153,6 +154,81 @@ TEST_F(HubClusterTest, NothingIsSentAfterTheEndOfALease) {
   EXPECT_TRUE(viewer.Take<protocol::WeightFrame>().has_value());
 }
 
+TEST_F(HubClusterTest, SubscribersLearnOfAnEpochThatComesWithAnOffer) {
+  Serve(2.0, 10);
+  Publish(sender, "ada");
+  ASSERT_NE(Watch(viewer, {.subject = "ada"}), 0);
+  Serve(2.0, 11);
+  Publish(sender, "ada");
+  const auto reply = viewer.Take<protocol::SubscribeReply>();
+  ASSERT_TRUE(reply.has_value());
+  EXPECT_EQ(reply->message.epoch, 11u);
+  Publish(sender, "ada");
+  EXPECT_TRUE(viewer.inbox.empty());
+}
+
+TEST_F(HubClusterTest, AFloodOfOffersEndsNoPlace) {
+  Limits limits;
+  limits.max_subjects = 4;
+  Make(limits);
+  Connect(&sender);
+  Connect(&viewer);
+  Serve(2.0, 10);
+  Publish(sender, "ada");
+  Tick();
+  Place pending;
+  pending.kind = Place::Kind::kPending;
+  for (const char* name : {"b", "c", "d", "e", "f"}) {
+    nodes.places[name] = pending;
+    Send(viewer, Offer(name), 1);
+  }
+  ExpectError(viewer, protocol::ErrorCode::kLimit);
+  Serve(2.0, 10);
+  Tick();
+  Advance(1.8);
+  Send(sender, Pose(0.5f), 1, 0);
+  EXPECT_EQ(Count(Counter::kPosesUnplaced), 0u);
+}
+
+TEST_F(HubClusterTest, OwedFramesWaitForALeaseThatHasEnded) {
+  Serve(2.0, 10);
+  Publish(sender, "ada");
+  ASSERT_NE(Watch(viewer, {.subject = "ada", .max_rate_hz = 1.0f}), 0);
+  Send(sender, Pose(0.5f), 1, 0);
+  EXPECT_TRUE(viewer.Take<protocol::WeightFrame>().has_value());
+  Advance(0.1);
+  Send(sender, Pose(0.6f), 1, 1);  // the rate holds it back
+  EXPECT_TRUE(viewer.inbox.empty());
+  // As if the daemon had been frozen until now.
+  Advance(2.0);
+  nodes.places["ada"] = Place();
+  Tick();
+  EXPECT_TRUE(viewer.inbox.empty());
+  Serve(2.0, 11);
+  Tick();
+  EXPECT_TRUE(viewer.Take<protocol::SubscribeReply>().has_value());
+  EXPECT_TRUE(viewer.Take<protocol::WeightFrame>().has_value());
+}
+
+TEST_F(HubClusterTest, PicturesAreNotSentAfterTheEndOfALease) {
+  Serve(2.0, 10);
+  Publish(sender, "ada");
+  Send(sender, Pose(0.5f), 1, 0);
+  Send(viewer, protocol::SubscribePictures{.subject = "ada", .width = 64, .height = 64}, 0, 1);
+  ASSERT_TRUE(viewer.Take<protocol::SubscribeReply>().has_value());
+  Tick();
+  ASSERT_FALSE(pictures.jobs.empty());
+  FinishedPicture picture;
+  picture.width = picture.height = 64;
+  picture.bytes = {1, 2, 3};
+  picture.tickets = pictures.jobs.back().tickets;
+  hub->OnPicture(picture, now);
+  EXPECT_TRUE(viewer.Take<protocol::ImageFrame>().has_value());
+  Advance(2.0);
+  hub->OnPicture(picture, now);
+  EXPECT_TRUE(viewer.inbox.empty());
+}
+
 TEST_F(HubClusterTest, ASubjectThatMovesTakesItsPeersAlong) {
   Serve(2.0, 10);
   Publish(sender, "ada", 3);
@@ -203,6 +279,24 @@ TEST_F(HubClusterTest, ADrainingNodeSendsItsPeersAwayBeforeItSaysGoodbye) {
   EXPECT_TRUE(sender.Take<protocol::Goodbye>().has_value());
   ExpectSentAway(viewer, protocol::ErrorCode::kUnknownSubject);
   EXPECT_TRUE(viewer.Take<protocol::Goodbye>().has_value());
+}
+
+TEST_F(HubClusterTest, ADrainingNodeUsesNoMorePosesOfWhatItReleased) {
+  Serve(2.0, 10);
+  Publish(sender, "ada");
+  Send(sender, Pose(0.5f), 1, 0);
+  EXPECT_EQ(Count(Counter::kPosesUnplaced), 0u);
+  hub->Drain(now);
+  sender.inbox.clear();
+  Send(sender, Pose(0.6f), 1, 1);
+  EXPECT_EQ(Count(Counter::kPosesUnplaced), 1u);
+  // The coordinator still says that the subject is here.
+  Send(sender, Offer("ada"), 1);
+  const auto error = sender.Take<protocol::ErrorMessage>();
+  ASSERT_TRUE(error.has_value());
+  EXPECT_EQ(error->message.message, "'ada' has no place in the cluster: this node is draining");
+  Send(sender, Pose(0.7f), 1, 2);
+  EXPECT_EQ(Count(Counter::kPosesUnplaced), 2u);
 }
 
 TEST_F(HubClusterTest, AWelcomeListsTheOtherNodes) {

@@ -118,7 +118,7 @@ TEST_F(LeaseKeeperTest, RenewsInTheSameEpoch) {
 }
 
 TEST_F(LeaseKeeperTest, TakesOverWhatWasNotRenewedAndGoesAboveItsEpoch) {
-  const std::uint64_t ahead = kUnixMs * 2;  // the clock of the other node is far ahead
+  const std::uint64_t ahead = kUnixMs + kMaxEpochAhead;  // the clock of the other node is far ahead
   entries_ = {{"ada", {.node = "b", .run = 1, .epoch = ahead, .deadline_ms = 0}, 5}};
   Settle();
   EXPECT_EQ(keeper_.HolderOf("ada", now_ - milliseconds(1)), "b");
@@ -151,11 +151,27 @@ TEST_F(LeaseKeeperTest, AListingThatNamesAnotherHolderEndsTheLease) {
 }
 
 // A record cannot use up all epochs.
-TEST_F(LeaseKeeperTest, TakesNothingAboveTheHighestEpoch) {
-  entries_ = {{"ada", {.node = {}, .run = 0, .epoch = ~std::uint64_t{0}, .deadline_ms = 0}, 5}};
+TEST_F(LeaseKeeperTest, AnAbsurdEpochDoesNotEndPlacement) {
+  entries_ = {{"eve", {.node = {}, .run = 0, .epoch = kMaxEpoch, .deadline_ms = 0}, 5}};
   Settle();
-  keeper_.Want("ada");
+  const std::uint64_t epoch = Take();
+  EXPECT_GT(epoch, static_cast<std::uint64_t>(kUnixMs));
+  EXPECT_LT(epoch, kLeastClock);
+  EXPECT_TRUE(Serves());
+}
+
+TEST_F(LeaseKeeperTest, ReleasingAllTakesNothingThatWasOnlyWanted) {
+  Settle();
+  (void)Take();
+  keeper_.Want("bob");
+  keeper_.ReleaseAll();
+  const auto writes = Tick();
+  ASSERT_EQ(writes.size(), 1u);
+  EXPECT_EQ(writes[0].subject, "ada");
+  EXPECT_EQ(writes[0].lease.node, "");
+  Done(writes[0]);
   EXPECT_TRUE(Tick().empty());
+  EXPECT_FALSE(keeper_.holds_any());
 }
 
 TEST_F(LeaseKeeperTest, WritesItsLeaseAgainIntoAnEmptiedStore) {

@@ -220,6 +220,21 @@ TEST_F(StoreCoordinatorTest, AFullOrDrainingNodeNamesAnotherOne) {
   EXPECT_TRUE(place.kind == Place::Kind::kNowhere || place.kind == Place::Kind::kElsewhere);
 }
 
+TEST_F(StoreCoordinatorTest, ASubjectThatIsServedHereHasASuccessorElsewhere) {
+  StoreCoordinator& a = Add("a");
+  StoreCoordinator& b = Add("b");
+  ASSERT_TRUE(IsReady(a));
+  ASSERT_TRUE(IsReady(b));
+  ASSERT_TRUE(Takes(a, "ada"));
+  a.SetDraining();
+  EXPECT_TRUE(Becomes([&] {
+    const Place place = a.Successor("ada");
+    return place.kind == Place::Kind::kElsewhere && place.node.name == "b";
+  }));
+  b.SetDraining();
+  EXPECT_TRUE(Becomes([&] { return a.Successor("ada").kind == Place::Kind::kNowhere; }));
+}
+
 TEST_F(StoreCoordinatorTest, WithoutTheStoreSubjectsStayAndNothingIsTaken) {
   StoreCoordinator& a = Add("a");
   ASSERT_TRUE(IsReady(a));
@@ -254,6 +269,9 @@ TEST_F(StoreCoordinatorTest, TwoNodesOfOneNameAreAFault) {
     return rival.Fault(world_.Now()) ==
            "another daemon of the cluster has the name 'a'; give each its own --name";
   }));
+  const Place place = rival.Ask("ada", world_.Now());
+  EXPECT_EQ(place.kind, Place::Kind::kNowhere);
+  EXPECT_EQ(place.why, rival.Fault(world_.Now()));
 }
 
 TEST_F(StoreCoordinatorTest, RecordsThatCannotBeReadAreFree) {
