@@ -11,12 +11,12 @@
 set -euo pipefail
 repository=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 packages=$repository/build/deb
-include=furrowd
+include=furrowd,furrow-cluster
 name=furrowd
 output=''
 while [[ $# -gt 0 ]]; do
   case "$1" in
-    --pictures) include=furrowd,furrow-pictures; name=furrowd-pictures; shift ;;
+    --pictures) include=$include,furrow-pictures; name=furrowd-pictures; shift ;;
     --packages) packages=${2:?--packages needs a folder}; shift 2 ;;
     -h|--help) sed -n '3,12s/^# \{0,1\}//p' "$0"; exit 0 ;;
     -*) echo "build-container: unknown option '$1' (--help lists them)" >&2; exit 2 ;;
@@ -70,10 +70,10 @@ needed() {
     done < <(readelf -d "$file" 2>/dev/null | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p')
   done
 }
-# A driver is loaded by its name.
-loaded=("$root/usr/bin/furrowd")
+# Modules and a driver are loaded by their names.
+loaded=("$root/usr/bin/furrowd" "$root"/usr/lib/furrow/*.so)
 if [[ $name == furrowd-pictures ]]; then
-  loaded+=("$root"/usr/lib/furrow/*.so "$root"/usr/lib/*/libEGL*.so.? "$root"/usr/lib/*/lib{,Open}GL*.so.?
+  loaded+=("$root"/usr/lib/*/libEGL*.so.? "$root"/usr/lib/*/lib{,Open}GL*.so.?
            "$root"/usr/lib/*/dri/swrast_dri.so)
 fi
 needed "${loaded[@]}"
