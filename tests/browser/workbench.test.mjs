@@ -23,6 +23,9 @@ const SMALL = { viewport: { width: 920, height: 540 } };
 const tile = (page, name) => page.locator(`.tile[data-subject="${name}"]`);
 const subscriptions = async () => (await daemon.get('api/status')).subscriptions;
 
+/** Waits for the address, which the page writes a moment after a change. */
+const addressIs = (page, pattern) => eventually(`the address ${pattern}`, () => pattern.test(page.url()));
+
 test('tiles show all subjects; keys choose one, and two are compared', async () => {
   const page = await openPage(browser, `${daemon.address}#grid=1&panel=&dock=0&subject=performance`, SMALL);
   await page.locator('.tile.has-picture[data-subject=ada][data-state=live]').waitFor();
@@ -54,7 +57,7 @@ test('the focus follows the one who moves', async () => {
   const page = await openPage(browser, `${daemon.address}#grid=1&panel=&dock=0&subject=performance&follow=1`, SMALL);
   await page.locator('.tile[data-subject=ada][aria-pressed=true]').waitFor();
   await shown(page);
-  assert.match(page.url(), /subject=ada/);
+  await addressIs(page, /subject=ada/);
   await closePage(page);
 });
 
@@ -141,7 +144,7 @@ test('a drag moves the lamps; exposure is measured; layouts are kept', async () 
   await page.keyboard.press('ArrowUp');
   await page.locator('.light-figures', { hasText: 'Turn 45°, tilt 5°' }).waitFor();
   await eventually('another light', async () => changedShare(former, await pixels(page)) > 0.1);
-  assert.match(page.url(), /camera=mouth.*lights\.turn_degrees=45/);
+  await addressIs(page, /camera=mouth.*lights\.turn_degrees=45/);
   await still(page);
   await page.focus('.light-bar button:has-text("Measure")');
   await page.keyboard.press('Enter');
