@@ -134,21 +134,22 @@ void LeaseKeeper::Settle(const std::string& subject, Own& own) const {
   }
 }
 
-void LeaseKeeper::OnWritten(std::uint64_t write, WriteResult result, Revision revision, Time now) {
+void LeaseKeeper::OnWritten(std::string_view subject, std::uint64_t write, WriteResult result,
+                            Revision revision, Time now) {
   if (result != WriteResult::kUnknown) heard_ = std::max(heard_, now);
-  for (auto& [subject, own] : own_) {
-    const auto found = own.pending.find(write);
-    if (found == own.pending.end()) continue;
-    const Pending done = std::move(found->second);
-    own.pending.erase(found);
-    if (result == WriteResult::kDone) {
-      OnDone(subject, own, done, revision, now);
-      if (done.lease.node.empty() && !own.wanted) own_.erase(subject);
-    } else {
-      own.next_write = now;
-      own.stale = needs_listing_ = true;
-    }
-    return;
+  const auto known = own_.find(subject);
+  if (known == own_.end()) return;
+  Own& own = known->second;
+  const auto found = own.pending.find(write);
+  if (found == own.pending.end()) return;
+  const Pending done = std::move(found->second);
+  own.pending.erase(found);
+  if (result == WriteResult::kDone) {
+    OnDone(known->first, own, done, revision, now);
+    if (done.lease.node.empty() && !own.wanted) own_.erase(known);
+  } else {
+    own.next_write = now;
+    own.stale = needs_listing_ = true;
   }
 }
 

@@ -47,8 +47,10 @@ class LeaseKeeper {
   void OnListing(const LeaseListing& listing, Time now);
   // One record has changed. Only a hint: the next listing counts.
   void OnEntry(const LeaseEntry& entry, Time now);
-  // `revision`: of the record that was written; only with kDone.
-  void OnWritten(std::uint64_t write, WriteResult result, Revision revision, Time now);
+  // `subject`, `write`: of the LeaseWrite. `revision`: of the record that was written; only with
+  // kDone.
+  void OnWritten(std::string_view subject, std::uint64_t write, WriteResult result,
+                 Revision revision, Time now);
 
   // The writes that must be sent now. Call it every 100 ms or more often. `unix_ms`: the time of
   // the system's clock.

@@ -19,6 +19,11 @@ constexpr Time kListPause = milliseconds(100);
 // More cannot be wanted: one daemon has at most a million subjects.
 constexpr std::size_t kMaxForeign = 1'000'000;
 
+// The part of its places that a node has given away.
+double LoadOf(int subjects, int capacity) {
+  return static_cast<double>(subjects) / std::max(1, capacity);
+}
+
 }  // namespace
 
 StoreCoordinator::StoreCoordinator(Parts parts)
@@ -82,7 +87,7 @@ void StoreCoordinator::Step(milliseconds wait) {
       missed_ |= answer.result == WriteResult::kRefused;
       continue;
     }
-    leases_.OnWritten(write->second, answer.result, answer.revision, now);
+    leases_.OnWritten(write->second.subject, write->second.id, answer.result, answer.revision, now);
     writes_.erase(write);
   }
   if (!leases_.reachable()) writes_.clear();
@@ -92,8 +97,8 @@ void StoreCoordinator::Step(milliseconds wait) {
   }
   for (LeaseWrite& write : leases_.Tick(now_(), unix_ms_())) {
     const std::uint64_t id = next_id_++;
-    writes_[id] = write.id;
     store_->Put({id, LeaseKey(write.subject), ToText(write.lease), write.expected});
+    writes_[id] = {std::move(write.subject), write.id};
   }
   // Answers that never came.
   constexpr std::size_t kMaxWrites = 100'000;
@@ -195,6 +200,11 @@ void StoreCoordinator::LogChanges(const View& view) {
   }
 }
 
+bool StoreCoordinator::is_draining() const {
+  const std::lock_guard lock(mutex_);
+  return requests_.draining;
+}
+
 std::shared_ptr<const StoreCoordinator::View> StoreCoordinator::view() const {
   const std::lock_guard lock(mutex_);
   return view_;
@@ -214,14 +224,14 @@ void StoreCoordinator::SetDraining() {
 
 // The node with the largest part of its places free.
 const Announcement* StoreCoordinator::RoomElsewhere(const View& view) {
-  const auto load = [](const Announcement& node) {
-    return static_cast<double>(node.subjects) / std::max(1, node.capacity);
-  };
   const Announcement* best = nullptr;
   if (!view.reachable) return best;  // no node takes anything
   for (const auto& [name, node] : view.others) {
     if (node.draining || !node.ready || node.subjects >= node.capacity) continue;
-    if (best == nullptr || load(node) < load(*best)) best = &node;
+    if (best == nullptr ||
+        LoadOf(node.subjects, node.capacity) < LoadOf(best->subjects, best->capacity)) {
+      best = &node;
+    }
   }
   return best;
 }
@@ -267,18 +277,13 @@ Place StoreCoordinator::Propose(std::string_view subject, Time now) const {
   if (place.kind != Place::Kind::kNowhere) return place;
   const auto seen = view();
   if (seen->foreign.contains(subject)) return place;
-  bool draining = false;
-  {
-    const std::lock_guard lock(mutex_);
-    draining = requests_.draining;
-  }
+  const bool draining = is_draining();
   const Announcement* const other = RoomElsewhere(*seen);
   const auto own = static_cast<int>(seen->own.size());
   const bool has_room = !draining && seen->may_take && own < capacity_;
   // Offered to the emptier node.
   const bool is_emptier =
-      other == nullptr || static_cast<double>(own) / std::max(1, capacity_) <=
-                              static_cast<double>(other->subjects) / std::max(1, other->capacity);
+      other == nullptr || LoadOf(own, capacity_) <= LoadOf(other->subjects, other->capacity);
   if (has_room && is_emptier) {
     place.kind = Place::Kind::kHere;
     place.node = self_;
@@ -301,11 +306,7 @@ Place StoreCoordinator::Ask(std::string_view subject, Time now) {
     return place;
   }
   const auto seen = view();
-  bool draining = false;
-  {
-    const std::lock_guard lock(mutex_);
-    draining = requests_.draining;
-  }
+  const bool draining = is_draining();
   const bool has_room = !draining && static_cast<int>(seen->own.size()) < capacity_;
   const bool is_held = seen->foreign.contains(subject);
   const bool waits =
@@ -345,14 +346,11 @@ ClusterState StoreCoordinator::State(Time now) const {
   const auto seen = view();
   ClusterState state;
   state.fault = seen->fault;
-  {
-    const std::lock_guard lock(mutex_);
-    state.nodes.push_back({.address = self_,
-                           .subjects = static_cast<int>(seen->own.size()),
-                           .capacity = capacity_,
-                           .draining = requests_.draining,
-                           .self = true});
-  }
+  state.nodes.push_back({.address = self_,
+                         .subjects = static_cast<int>(seen->own.size()),
+                         .capacity = capacity_,
+                         .draining = is_draining(),
+                         .self = true});
   for (const auto& [name, node] : seen->others) {
     state.nodes.push_back({.address = node.address,
                            .subjects = node.subjects,

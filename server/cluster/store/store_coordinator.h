@@ -73,6 +73,7 @@ class StoreCoordinator : public Coordinator {
   void OnRecord(const StoreRecord& record, std::vector<LeaseEntry>* entries, Time now);
   void Publish(Time now);
   void LogChanges(const View& view);
+  [[nodiscard]] bool is_draining() const;
   [[nodiscard]] std::shared_ptr<const View> view() const;
   void Request(std::string_view subject, bool wanted);
   [[nodiscard]] static Place ForeignPlace(const View& view, std::string_view subject);
@@ -92,8 +93,12 @@ class StoreCoordinator : public Coordinator {
   bool missed_ = true;  // changes may have been missed
   Time listed_{0};
   std::uint64_t next_id_ = 1;
-  std::map<std::uint64_t, std::uint64_t> writes_;  // number of a write of a lease by that of a put
-  std::string why_;                                // the store could not be read
+  struct Write {
+    std::string subject;
+    std::uint64_t id = 0;  // LeaseWrite::id
+  };
+  std::map<std::uint64_t, Write> writes_;  // of leases, by the number of the put
+  std::string why_;                        // the store could not be read
   std::string logged_;
 
   mutable std::mutex mutex_;  // guards the two below, for moments

@@ -37,7 +37,7 @@ class LeaseKeeperTest : public ::testing::Test {
   void Done(const LeaseWrite& write) {
     std::erase_if(entries_, [&](const LeaseEntry& each) { return each.subject == write.subject; });
     entries_.push_back({write.subject, write.lease, ++revision_});
-    keeper_.OnWritten(write.id, WriteResult::kDone, revision_, now_);
+    keeper_.OnWritten(write.subject, write.id, WriteResult::kDone, revision_, now_);
   }
   // Takes the lease of "ada" and returns its epoch.
   std::uint64_t Take() {
@@ -191,7 +191,8 @@ TEST_F(LeaseKeeperTest, WritesItsLeaseAgainIntoAnEmptiedStore) {
 TEST_F(LeaseKeeperTest, ARefusedWriteWaitsForAListing) {
   Settle();
   keeper_.Want("ada");
-  keeper_.OnWritten(Tick().at(0).id, WriteResult::kRefused, 0, now_);
+  const LeaseWrite write = Tick().at(0);
+  keeper_.OnWritten(write.subject, write.id, WriteResult::kRefused, 0, now_);
   now_ += kLeaseRenewal;
   EXPECT_TRUE(Tick().empty());
   List();

@@ -174,11 +174,13 @@ class Simulation {
       const Revision revision = entry.revision;
       if (entry.revision == 0) store_.erase(write.subject);
       if (nodes_[index].life != life) return;
-      OnNode(index, now_ + Delay(), [this, id = write.id, done, revision](Node& each) {
-        if (!Hears(each)) return;
-        each.keeper->OnWritten(id, done ? WriteResult::kDone : WriteResult::kRefused, revision,
-                               Clock(each));
-      });
+      OnNode(index, now_ + Delay(),
+             [this, subject = write.subject, id = write.id, done, revision](Node& each) {
+               if (!Hears(each)) return;
+               each.keeper->OnWritten(subject, id,
+                                      done ? WriteResult::kDone : WriteResult::kRefused, revision,
+                                      Clock(each));
+             });
     });
   }
 
