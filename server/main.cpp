@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <chrono>
 #include <csignal>
-#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <string>
@@ -18,6 +16,7 @@
 #include "server/daemon.h"
 #include "server/machine/cache_folder.h"
 #include "server/machine/journal.h"
+#include "server/net/clock.h"
 
 namespace {
 
@@ -34,10 +33,8 @@ void PrepareCaches() {
 
 // The first line of the log: what has started, when, and how it is configured.
 void LogStart(const furrow::server::Config& config) {
-  const auto now = std::chrono::duration_cast<std::chrono::seconds>(
-      std::chrono::system_clock::now().time_since_epoch());
   spdlog::info("furrowd {} started at {}, process {}, configuration {}: {}", FURROW_VERSION,
-               furrow::FormatUtc(static_cast<std::uint64_t>(now.count())), getpid(),
+               furrow::FormatUtc(furrow::server::UnixSeconds()), getpid(),
                config.source.empty() ? "of the command line" : config.source.string(),
                furrow::server::ConfigSummary(config));
 }

@@ -5,18 +5,18 @@
 #include <cstdint>
 #include <utility>
 
+#include "protocol/messages/hash.h"
+
 namespace furrow::server {
 namespace {
 
-// FNV-1a, and a last mixing step: without it, names that differ in their last letter alone would
+// The last mixing step is needed: without it, names that differ in their last letter alone would
 // select nodes unevenly.
 std::uint64_t Weight(std::string_view node, std::string_view subject) {
-  std::uint64_t hash = 0xcbf29ce484222325;
-  for (const std::string_view text : {node, std::string_view("\0", 1), subject}) {
-    for (const char c : text) {
-      hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
-    }
-  }
+  protocol::Hasher hasher;
+  hasher.String(node);
+  hasher.String(subject);
+  std::uint64_t hash = hasher.value();
   hash ^= hash >> 33;
   hash *= 0xff51afd7ed558ccd;
   return hash ^ (hash >> 33);

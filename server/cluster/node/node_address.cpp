@@ -17,10 +17,7 @@ constexpr std::string_view kLetters =
 constexpr std::string_view kHostLetters =
     "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.:%";
 
-// The default ports of the daemon.
-constexpr std::uint16_t kTcpPort = 7400;
-constexpr std::uint16_t kUdpPort = 7401;
-constexpr std::uint16_t kHttpPort = 7480;
+constexpr std::uint16_t kHttpPort = 7480;  // HttpConfig::kDefaultPort
 
 bool TakePort(std::string_view* text, std::uint16_t* port) {
   if (text->empty()) return true;
@@ -47,8 +44,8 @@ Result<NodeAddress> ParseNode(std::string_view text) {
   const std::size_t equals = std::min(text.find('='), text.size());
   NodeAddress node{.name = std::string(text.substr(0, equals)),
                    .host = {},
-                   .tcp = kTcpPort,
-                   .udp = kUdpPort,
+                   .tcp = protocol::kDefaultTcpPort,
+                   .udp = protocol::kDefaultUdpPort,
                    .http = kHttpPort};
   std::string_view rest = text.substr(std::min(equals + 1, text.size()));
   const bool bracketed = rest.starts_with('[');

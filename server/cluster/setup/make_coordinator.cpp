@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/cluster/setup/make_coordinator.h"
 
-#include <chrono>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,7 +20,7 @@ constexpr char kCredsMark[] = "-----BEGIN NATS USER JWT-----";
 // "user:password" on the first line, or a .creds file, which the library reads by itself.
 Status ReadCredentials(const std::filesystem::path& path, StoreOptions* options) {
   if (path.empty()) return {};
-  auto text = ReadFile(path, kMaxCredentialBytes);
+  auto text = ReadSecretFile(path, kMaxCredentialBytes);
   if (!text.ok()) return text.status().Within("--cluster-credentials");
   if (text->find(kCredsMark) != std::string::npos) {
     options->credentials = path.string();
@@ -36,12 +35,6 @@ Status ReadCredentials(const std::filesystem::path& path, StoreOptions* options)
   options->user = line.substr(0, colon);
   options->password = line.substr(colon + 1);
   return {};
-}
-
-std::int64_t UnixMilliseconds() {
-  return std::chrono::duration_cast<std::chrono::milliseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
 }
 
 }  // namespace
@@ -76,7 +69,7 @@ Result<std::unique_ptr<Coordinator>> MakeCoordinator(const Config& config, std::
                               .capacity = config.limits.max_subjects,
                               .strict = cluster.strict,
                               .now = ReadClock,
-                              .unix_ms = UnixMilliseconds}));
+                              .unix_ms = [] { return ToMicroseconds(ReadUnixClock()) / 1000; }}));
 }
 
 }  // namespace furrow::server
