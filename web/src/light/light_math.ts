@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lamps that follow a drag, and the exposure that a point of the picture asks for. Pure.
+import { toLinear, toSrgb } from './srgb';
 
 /** lights.turn_degrees and lights.tilt_degrees. */
 export interface LampAngles {
@@ -38,10 +39,7 @@ export function dragged({ turn, tilt }: LampAngles, right: number, up: number): 
 
 /** sRGB in [0, 255] to linear light before the tone map; `neutral`: tone_map is 'neutral', not 'clip'. */
 export function linearOf(srgb: Rgb, neutral: boolean): Rgb {
-  const [r, g, b] = srgb.map((value) => {
-    const x = value / 255;
-    return x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4;
-  }) as [number, number, number];
+  const [r, g, b] = srgb.map((value) => toLinear(value / 255)) as [number, number, number];
   const peak = Math.max(r, g, b);
   if (!neutral || peak <= COMPRESSED) return [r, g, b];
   const rest = 1 - COMPRESSED;
@@ -79,8 +77,7 @@ function toneMapped(linear: Rgb): Rgb {
 /** True if both colours look alike in a compressed picture. `linear`: the setting `background` times the exposure. */
 export function isBackground(srgb: Rgb, linear: Rgb, neutral: boolean): boolean {
   const shown = (neutral ? toneMapped(linear) : linear).map((value) => Math.min(1, Math.max(0, value)));
-  const encode = (x: number): number => 255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055);
-  return srgb.every((value, i) => Math.abs(value - encode(shown[i]!)) <= 3);
+  return srgb.every((value, i) => Math.abs(value - 255 * toSrgb(shown[i]!)) <= 3);
 }
 
 /** Where the lamps are, for the turntable: radians after `seconds`; with reduced motion, in steps. */

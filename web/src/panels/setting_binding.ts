@@ -3,12 +3,10 @@
 // the control's value. Uses only the daemon's description of the setting, never its name.
 import type { BindingApi, BindingParams, FolderApi } from '@tweakpane/core';
 import type { SettingInfo } from '../api';
+import { toLinear, toSrgb } from '../light/srgb';
 import { isOn } from '../state/settings';
 import { text as words } from '../text';
 import { button, readable } from '../ui/dom';
-
-const toSrgb = (x: number): number => (x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055);
-const toLinear = (x: number): number => (x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4);
 
 const hexByte = (x: number): string => Math.round(255 * Math.min(1, Math.max(0, x))).toString(16).padStart(2, '0');
 

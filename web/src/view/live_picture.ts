@@ -50,9 +50,7 @@ export class LivePicture {
 
   /** The pose on the canvas; null: none. */
   picture(): ShownPicture | null {
-    const { sequence, width, height, still } = this.stats;
-    if (sequence === null) return null;
-    return { sequence, width, height, isStill: still, ageMs: this.stats.ageMs(this.connection.nowUs(), this.connection.clock.offsetUs()) };
+    return this.stats.picture(this.connection.nowUs(), this.connection.clock.offsetUs());
   }
 
   /** True while its pose does not move. */

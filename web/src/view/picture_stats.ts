@@ -151,6 +151,12 @@ export class PictureStats {
     return Math.max(0, (nowUs + offsetUs - this.receivedUs) / 1000);
   }
 
+  /** What is on the screen; null: there is no picture of this connection. */
+  picture(nowUs: number, offsetUs: number | null): ShownPicture | null {
+    const { sequence, width, height, still } = this;
+    return sequence === null ? null : { sequence, width, height, isStill: still, ageMs: this.ageMs(nowUs, offsetUs) };
+  }
+
   private prune(nowS: number): void {
     for (const list of [this.samples, this.loads]) {
       while (list.length > 0 && list[0]!.atS < nowS - WINDOW_S) list.shift();

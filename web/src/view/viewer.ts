@@ -121,11 +121,8 @@ export class Viewer {
 
   /** The pose on the screen. Null: there is no picture of this connection. */
   picture(): ShownPicture | null {
-    const { stats, drawing } = this;
-    if (drawing.active.value) return drawing.shown();
-    if (stats.sequence === null) return null;
-    const { sequence, width, height, still } = stats;
-    return { sequence, width, height, isStill: still, ageMs: stats.ageMs(this.connection.nowUs(), this.connection.clock.offsetUs()) };
+    if (this.drawing.active.value) return this.drawing.shown();
+    return this.stats.picture(this.connection.nowUs(), this.connection.clock.offsetUs());
   }
 
   private onLink(): void {
