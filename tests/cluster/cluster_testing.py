@@ -116,21 +116,36 @@ class Node(Daemon):
         self.process.send_signal(number)
 
 
-class Viewer:
-    """`furrow watch`: the numbers of the frames, and when they arrived."""
+class Program:
+    """A `furrow` that runs until it is closed. Threads read what it prints."""
 
-    def __init__(self, address, subject, *args):
-        self.process = spawn("watch", address, "--udp", "--subject", subject, "--wait", "--pattern", "brow_l.*",
-                             "--format", "csv", *args)
-        self.frames = []  # (time, number)
-        self.errors = []
-        self.threads = [threading.Thread(target=self.read, daemon=True),
-                        threading.Thread(target=lambda: self.errors.extend(self.process.stderr), daemon=True)]
+    def __init__(self, process, on_output, on_errors):
+        self.process = process
+        self.threads = [threading.Thread(target=read, args=(stream,), daemon=True)
+                        for read, stream in ((on_output, process.stdout), (on_errors, process.stderr))]
         for thread in self.threads:
             thread.start()
 
-    def read(self):
-        for line in self.process.stdout:
+    def close(self):
+        self.process.send_signal(signal.SIGINT)
+        self.process.wait(timeout=GUARD)
+        for thread in self.threads:
+            thread.join(timeout=GUARD)
+        self.process.stdout.close()
+        self.process.stderr.close()
+
+
+class Viewer(Program):
+    """`furrow watch`: the numbers of the frames, and when they arrived."""
+
+    def __init__(self, address, subject, *args):
+        self.frames = []  # (time, number)
+        self.errors = []
+        super().__init__(spawn("watch", address, "--udp", "--subject", subject, "--wait", "--pattern", "brow_l.*",
+                               "--format", "csv", *args), self.read, self.errors.extend)
+
+    def read(self, lines):
+        for line in lines:
             number = line.split(b",", 1)[0]
             if number.isdigit():
                 self.frames.append((time.monotonic(), int(number)))
@@ -140,34 +155,14 @@ class Viewer:
         before = len(self.frames)
         wait_until(lambda: len(self.frames) >= before + count, f"{count} more frames: {self.errors[-3:]}")
 
-    def close(self):
-        self.process.send_signal(signal.SIGINT)
-        self.process.wait(timeout=GUARD)
-        for thread in self.threads:
-            thread.join(timeout=GUARD)
-        self.process.stdout.close()
-        self.process.stderr.close()
 
-
-class Performer:
+class Performer(Program):
     """`furrow play`, for ever."""
 
     def __init__(self, address, subject, *args):
-        self.process = spawn("play", PERFORMANCE, "--to", address, "--udp", "--subject", subject, "--loop", *args)
-        # Nobody reads what it prints; these threads keep the pipes empty.
-        self.lines = []
-        self.threads = [threading.Thread(target=lambda s=s: self.lines.extend(s), daemon=True)
-                        for s in (self.process.stdout, self.process.stderr)]
-        for thread in self.threads:
-            thread.start()
-
-    def close(self):
-        self.process.send_signal(signal.SIGINT)
-        self.process.wait(timeout=GUARD)
-        for thread in self.threads:
-            thread.join(timeout=GUARD)
-        self.process.stdout.close()
-        self.process.stderr.close()
+        self.lines = []  # nobody reads them; the pipes stay empty
+        super().__init__(spawn("play", PERFORMANCE, "--to", address, "--udp", "--subject", subject, "--loop", *args),
+                         self.lines.extend, self.lines.extend)
 
 
 def reorderings(frames):
