@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -55,6 +56,15 @@ character::Picture* SkinNormals(character::Character* character) {
 
 }  // namespace
 
+std::vector<BakeStroke> AgedStrokes(std::span<const BakeStroke> strokes, float depth) {
+  std::vector<BakeStroke> aged(strokes.begin(), strokes.end());
+  for (BakeStroke& stroke : aged) {
+    const bool lid = stroke.name.starts_with("lid_");
+    if (lid && depth > 1.0f) stroke.depth_mm /= depth;
+  }
+  return aged;
+}
+
 void AddRestingFolds(const BakedMap& map, float share, character::Picture* normals) {
   if (map.width != normals->width || map.height != normals->height) return;
   for (std::size_t i = 0; 3 * i + 2 < normals->pixels16.size(); ++i) {
@@ -80,8 +90,8 @@ Status AddWrinkleMaps(std::span<const BakeStroke> strokes, int size, float depth
                       character::Character* character) {
   Result<CollectedPoses> poses = CollectBakePoses(*character);
   FURROW_RETURN_IF_ERROR(poses);
-  Result<BakedMaps> maps =
-      Bake(*character, poses.value().poses, strokes, WrinkleMapOptions(size, depth));
+  Result<BakedMaps> maps = Bake(*character, poses.value().poses, AgedStrokes(strokes, depth),
+                                WrinkleMapOptions(size, depth));
   FURROW_RETURN_IF_ERROR(maps);
   const float resting = kResting * std::max(depth - 1.0f, 0.0f);
   character::Picture* normals = SkinNormals(character);

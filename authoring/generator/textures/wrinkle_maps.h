@@ -16,6 +16,11 @@ namespace furrow::authoring {
 // BakeOptions.
 [[nodiscard]] BakeOptions WrinkleMapOptions(int size, float depth);
 
+// The strokes of a face whose folds WrinkleMapOptions() makes `depth` times as deep. The skin of
+// upper lids is thin: the creases there (strokes named "lid_...") keep the depth of a young face,
+// because deeper ones are gashes.
+[[nodiscard]] std::vector<BakeStroke> AgedStrokes(std::span<const BakeStroke> strokes, float depth);
+
 // Bakes the wrinkle maps of the character's rig from the rig's reference poses and from `strokes`,
 // and embeds the pictures that the rig names: normals, heights, cavities and colours. `size` and
 // `depth`: see WrinkleMapOptions(). Above a depth of 1, the folds of the skin stay in part when the

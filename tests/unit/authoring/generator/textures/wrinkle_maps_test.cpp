@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "authoring/generator/textures/wrinkle_maps.h"
 
+#include <algorithm>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -23,6 +24,20 @@ glm::vec2 SlopeAt(const character::Picture& normals, std::size_t texel) {
     return static_cast<float>(normals.pixels16[3 * texel + channel]) / 65535.0f * 2.0f - 1.0f;
   };
   return glm::vec2(value(0), value(1)) / value(2);
+}
+
+// The bake multiplies all depths, so creases of lids come out as deep as on a young face.
+TEST(AgedStrokes, CreasesOfLidsDoNotDeepen) {
+  const BakeStroke lid{.name = "lid_crease_l", .depth_mm = 1.0f};
+  const BakeStroke brow{.name = "brow_raise_l", .depth_mm = 0.5f};
+  const BakeStroke strokes[] = {lid, brow};
+  for (const float depth : {0.8f, 1.0f, 1.7f, 2.5f}) {
+    const std::vector<BakeStroke> aged = AgedStrokes(strokes, depth);
+    ASSERT_EQ(aged.size(), 2u);
+    EXPECT_FLOAT_EQ(WrinkleMapOptions(64, depth).skin.depth * aged[0].depth_mm,
+                    std::min(depth, 1.0f));
+    EXPECT_FLOAT_EQ(aged[1].depth_mm, 0.5f);
+  }
 }
 
 TEST(RestingFolds, AddAShareOfTheSlopes) {
