@@ -26,7 +26,7 @@ constexpr float kMeets = 0.4f;
 // The cosine of the angle at which creases join.
 constexpr float kJoins = 0.75f;
 // The length over which loose ends fade, in spacings.
-constexpr float kFade = 1.6f;
+constexpr float kFade = 2.5f;
 constexpr float kJoint = 0.4f;  // likewise, where it joins another
 // The least length of shallow creases, and of creases without neighbours, in spacings.
 constexpr float kShallow = 2.0f;

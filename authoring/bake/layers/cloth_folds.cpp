@@ -25,8 +25,8 @@ namespace furrow::authoring {
 struct ClothFolds::Size {
   float share = 1.0f;         // of the full height
   float wide = 1.0f;          // spacing, in spacings of the field
-  float merged = 0.0f;        // how much wider it is where much is to hide
   bool only_pressed = false;  // only where a pose presses the cloth together
+  bool merges = false;        // where much is to hide, creases of stiff cloth merge
   CreaseOptions creases;
 };
 
@@ -50,8 +50,7 @@ constexpr float kSmoothFrom = 0.2f;
 constexpr float kSmoothTo = 0.5f;
 constexpr float kSmoothLeaves = 0.8f;
 constexpr float kMostExcess = 0.8f;
-// The share of the ease that hanging cloth has across gravity, and along it unless something
-// holds it up.
+// The share of the ease that hanging cloth has across gravity, and along it.
 constexpr float kHanging = 0.9f;
 constexpr float kHangingAlong = 0.1f;
 // Strain of cloth that just hangs, and of cloth that a pose deforms.
@@ -62,7 +61,12 @@ constexpr float kDragWidth = 1.35f;
 constexpr float kDragHeight = 0.68f;
 // Likewise of folds in cloth that feeds a pull nearby: it slides there little by little.
 constexpr float kFedWidth = 0.8f;
-constexpr float kFedHeight = 0.95f;
+constexpr float kFedHeight = 0.6f;
+// Where much is to hide, the folds of stiff cloth merge: how much wider apart they are then, and
+// the wavelengths between which cloth turns from thin (it creases finely) to stiff, metres.
+constexpr float kMerged = 0.5f;
+constexpr float kThin = 0.038f;
+constexpr float kStiff = 0.045f;
 // The size of loose and tight places, in wavelengths, and how much longer they are along gravity.
 constexpr float kPlace = 2.5f;
 constexpr float kLong = 0.7f;  // a share of the way along gravity that does not count
@@ -167,7 +171,6 @@ void ClothFolds::Add(const BakePose& pose, std::span<const float> mask, float wa
     ClothEase& here = found->eases[v];
     here.looser = std::max(here.looser, std::lerp(1.0f, ease.looser, inside));
     here.least = std::max(here.least, inside * ease.least);
-    here.along = std::max(here.along, inside * ease.along);
   }
   mask_.resize(mask.size(), 0.0f);
   for (std::size_t v = 0; v < mask.size(); ++v) mask_[v] = std::max(mask_[v], mask[v]);
@@ -212,10 +215,9 @@ ClothFolds::Effect ClothFolds::EffectOf(const Pose& pose, const SkinMatrices& be
     const float loose = (1.0f - taut) * ease_ * ease.looser *
                         LoosenessAt(v, down, pose.wavelength, ease.least) *
                         Smoothstep(0.2f, 0.7f, glm::length(fall));
-    effect.slack[v] =
-        kBend * strain.lost[v] - strain.pulled[v] +
-        loose * (kHanging * glm::outerProduct(level, level) +
-                 std::max(ease.along, kHangingAlong) * glm::outerProduct(along, along));
+    effect.slack[v] = kBend * strain.lost[v] - strain.pulled[v] +
+                      loose * (kHanging * glm::outerProduct(level, level) +
+                               kHangingAlong * glm::outerProduct(along, along));
     const float moved = Smoothstep(kStill, kMoved, lost + pulled);
     const float dragged = Smoothstep(0.04f, 0.2f, pulled - 0.5f * lost);
     // Cloth that feeds a pull has no large forms: those are lumps below a kneecap.
@@ -267,6 +269,7 @@ void ClothFolds::Join() {
             std::vector<float>(count, kValleyWidth), std::vector<float>(count, 0.0f)};
   excess_.assign(count, 0.0f);
   pressed_.assign(count, 0.0f);
+  merged_.assign(count, 0.0f);
   deep_.assign(count, 0.0f);
   const std::vector<vec3> normals = NormalsOf(mesh_);
   for (std::size_t v = 0; v < count; ++v) {
@@ -282,6 +285,7 @@ void ClothFolds::Join() {
       own += weight * pose.own.slack[v];
       pressed_[v] += weight * effect.pressed[v];
       spacing += weight * pose.wavelength * effect.width[v];
+      merged_[v] += weight * kMerged * Smoothstep(kThin, kStiff, pose.wavelength);
       // A weak pose has shallow folds.
       deep_[v] += weight * pose.own.height[v] * pose.shares[v] / pose.room[v];
       weights += weight;
@@ -294,6 +298,7 @@ void ClothFolds::Join() {
     field_.spacing[v] = spacing / weights;
     excess_[v] = ExcessOf(PrincipalOf(Across(own * (1.0f / weights), axes)));
     pressed_[v] /= weights;
+    merged_[v] *= Smoothstep(0.2f, 0.5f, field_.excess[v]) / weights;
     deep_[v] /= weights;
   }
   SmoothOver(mesh_, kNear, &field_.excess);
@@ -327,7 +332,7 @@ void ClothFolds::Add(const Size& size) {
     SmoothOver(mesh_, kFold, excess);
   }
   for (std::size_t v = 0; v < field.spacing.size(); ++v) {
-    field.spacing[v] *= size.wide + size.merged * Smoothstep(0.2f, 0.5f, field.excess[v]);
+    field.spacing[v] *= size.wide + (size.merges ? merged_[v] : 0.0f);
   }
   const std::vector<Crease> creases = LayCreases(mesh_, field, own, size.creases);
   const std::vector<float> heights = DrawCreases(drawn_, creases, kRelief);
@@ -342,7 +347,7 @@ bool ClothFolds::Draw(BakeProgress* progress) {
        .only_pressed = true,
        .creases = {.least = 0.09f, .start = 0.13f, .longest = 4.0f, .seed = seed_}},
       // Long and even ones: a crest that breaks off is a gash.
-      {.merged = 0.5f,
+      {.merges = true,
        .creases = {.variation = 0.2f, .shortest = 2.5f, .longest = 8.0f, .seed = seed_ + 1}},
       {.share = 0.12f,
        .wide = 0.5f,

@@ -108,7 +108,8 @@ class ClothFolds {
   CreaseField field_;          // for which creases are laid
   std::vector<float> excess_;  // for which they are drawn
   std::vector<float> pressed_;
-  std::vector<float> deep_;  // multiplier for the heights
+  std::vector<float> merged_;  // how much wider apart creases are that merge, in their spacings
+  std::vector<float> deep_;    // multiplier for the heights
   // Per vertex of the drawn mesh.
   std::vector<float> heights_;  // metres
   std::vector<glm::vec3> gradients_;

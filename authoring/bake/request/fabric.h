@@ -51,8 +51,6 @@ struct RegionFabric {
 struct ClothEase {
   float looser = 1.0f;  // multiplier for the mean ease, [1, 4]
   float least = 0.0f;   // the least ease of any place, as a share of this mean, [0, 1]
-  // Share of the ease that is left along gravity, [0, 1]: a cuff at the wrist holds up a sleeve.
-  float along = 0.0f;
   // How much length the cloth around a pull gives, relative to what the pull needs, [0, 4]. A tight
   // leg gives less, as it slips as a whole. A wide sleeve gives more: it is cut as long as a bent
   // elbow needs it on the outside, so it is too long at the sides.

@@ -167,9 +167,6 @@ Status CheckOptions(const BakeOptions& options) {
     if (!In(region.ease.least, 0.0f, 1.0f)) {
       return Refuse("least is " + Text(region.ease.least) + "; it must be in [0, 1]", where);
     }
-    if (!In(region.ease.along, 0.0f, 1.0f)) {
-      return Refuse("along is " + Text(region.ease.along) + "; it must be in [0, 1]", where);
-    }
     if (!In(region.ease.feeds, 0.0f, 4.0f)) {
       return Refuse("feeds is " + Text(region.ease.feeds) + "; it must be in [0, 4]", where);
     }

@@ -68,7 +68,7 @@ TEST(Bake, RejectsInvalidRequests) {
         r->options.eases = {{"elbow", {.least = 1.1f}}};
       },
       [](Request* r) {
-        r->options.eases = {{"elbow", {.along = -0.1f}}};
+        r->options.eases = {{"elbow", {.least = -0.1f}}};
       },
       [](Request* r) {
         r->options.eases = {{"knee", {.feeds = 4.1f}}};

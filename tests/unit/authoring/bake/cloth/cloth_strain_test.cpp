@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "authoring/bake/cloth/sheet_math.h"
 #include "tests/unit/authoring/bake/toys.h"
 
 namespace furrow::authoring {
@@ -107,6 +108,26 @@ TEST_F(Strain, ClothBesideAPullFeedsIt) {
   EXPECT_LT(lost(0.0f, kLast + 0.02f, kLast + 0.06f), 1e-3);
   EXPECT_NEAR(lost(0.05f, kLast + 0.02f, kLast + 0.06f, 0.5f),
               0.5 * lost(0.05f, kLast + 0.02f, kLast + 0.06f), 1e-3);
+}
+
+// What feeds a pull is the part of the lost length that would not be lost without it.
+TEST_F(Strain, TellsWhatFeedsAPull) {
+  const auto measured = [&](float feeds) {
+    return MeasureClothStrain(*fine_, cut_, Pressed(-0.2f), Room(),
+                              {.pressed = kReach, .pulled = 0.01f, .fed = 0.05f, .feeds = feeds});
+  };
+  const ClothStrain feeding = measured(1.0f), still = measured(0.0f);
+  ASSERT_EQ(feeding.fed.size(), cut_.size());
+  float beside = 0.0f;
+  for (std::size_t v = 0; v < cut_.size(); ++v) {
+    EXPECT_EQ(still.fed[v], 0.0f);
+    EXPECT_NEAR(feeding.fed[v], TraceOf(feeding.lost[v]) - TraceOf(still.lost[v]), 1e-4f);
+    if (cut_[v].x > kLast + 0.02f && cut_[v].x < kLast + 0.06f) {
+      beside = std::max(beside, feeding.fed[v]);
+    }
+    if (cut_[v].x > kLast + 0.15f) EXPECT_LT(feeding.fed[v], 1e-3f);
+  }
+  EXPECT_GT(beside, 0.02f);
 }
 
 TEST_F(Strain, IsZeroWithoutDeformationOrRoom) {
