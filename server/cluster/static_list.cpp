@@ -59,6 +59,12 @@ Place StaticList::Ask(std::string_view subject, Time now) {
 
 Place StaticList::Propose(std::string_view subject, Time now) const { return Find(subject, now); }
 
+Place StaticList::Expect(std::string_view /*subject*/, Time /*now*/) {
+  Place place;
+  place.why = "a fixed list of nodes decides where subjects are served";
+  return place;
+}
+
 // The list alone decides, so nobody takes a subject of this node.
 Place StaticList::Successor(std::string_view subject) const { return Elsewhere(subject); }
 
