@@ -16,6 +16,9 @@ using protocol::MessageKind;
 
 // The payload of a request that costs one more.
 constexpr double kBytesPerRequest = 64.0;
+// Captured poses may change the rig, which binds all subjects again: they cost as much as this many
+// requests.
+constexpr double kRequestsPerCaptures = 64.0;
 
 }  // namespace
 
@@ -285,14 +288,18 @@ void Dispatcher::OnSubjectState(Peer& peer, const protocol::MessageView& view,
         "not permitted to hand over '" + state.subject + "'; " + peer.access.Text());
   }
   std::string why;
+  const bool has_captures = !state.captures.empty();
   // A state that arrives after its subject is an old copy.
   if (parts_.subjects->Find(state.subject) == nullptr) {
     const Place place = parts_.places->Expect(state.subject, now);
     if (place.kind != Place::Kind::kPending) {
       why = place.why;
+    } else if (has_captures && !peer.requests.Take(now, kRequestsPerCaptures)) {
+      parts_.metrics->Add(Counter::kRequestsThrottled);
+      why = "too many captured poses at once";
     } else if (!parts_.arrivals->Add(state.subject, view, now)) {
       why = "too many subjects are on their way to this node";
-    } else if (!state.captures.empty()) {
+    } else if (has_captures) {
       parts_.adopt_captures(state, now);
     }
   }
