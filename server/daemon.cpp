@@ -2,6 +2,7 @@
 #include "server/daemon.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -28,6 +29,7 @@
 #include "protocol/secure/token/key_ring.h"
 #include "rig/rig_file.h"
 #include "server/assets.h"
+#include "server/cluster/handover/mover.h"
 #include "server/cluster/setup/make_coordinator.h"
 #include "server/config/log.h"
 #include "server/config/osc_profile_file.h"
@@ -132,6 +134,10 @@ class Daemon {
   void EverySecond(StatusLine* status_line);
   asio::awaitable<void> PlayLoop();
   asio::awaitable<void> Drain();
+  asio::awaitable<void> MoveAndEnd();
+  asio::awaitable<void> MoveInTime();
+  asio::awaitable<void> Pause(Time time);
+  protocol::DrainState OnDrainRequest(bool begin);
   void RequestDrain();
   void MakeVideo();
   ReloadRequest MakeReloadRequest();
@@ -161,6 +167,7 @@ class Daemon {
   RigFiles rig_files_;
   std::unique_ptr<Coordinator> cluster_;  // null: alone; used by the hub, so it outlives it
   std::unique_ptr<Hub> hub_;
+  std::unique_ptr<Mover> mover_;  // null: alone
   std::unique_ptr<TcpServer> tcp_;
   std::unique_ptr<UdpPort> udp_;
   MocapInputs mocap_;
@@ -170,6 +177,8 @@ class Daemon {
   bool render_is_confined_ = false;  // used by the render thread
   bool on_network_ = false;          // a socket of the service manager is
   bool draining_ = false;
+  std::atomic<bool> moves_ = false;         // subjects are moved to other nodes
+  std::atomic<bool> end_is_known_ = false;  // whoever asked for it knows that all have moved
   Time drain_deadline_{0};
   std::unique_ptr<ReloadLoop> reload_;  // its thread ends before the members above
 };
@@ -315,7 +324,11 @@ void Daemon::MakeHub() {
   parts.shards = config_.threads;
   parts.gate = &gate_;
   parts.cluster = cluster_.get();
+  if (cluster_ != nullptr) parts.drain = [this](bool begin) { return OnDrainRequest(begin); };
   hub_ = std::make_unique<Hub>(std::move(parts));
+  if (cluster_ != nullptr) {
+    mover_ = std::make_unique<Mover>(io_, &gate_, hub_.get(), RandomNumber);
+  }
 }
 
 // The configuration does not know where the sockets of the service manager listen, and an open
@@ -612,6 +625,48 @@ void Daemon::RequestDrain() {
   StartCriticalTask(io_, Drain());
 }
 
+// May run on any shard's thread.
+protocol::DrainState Daemon::OnDrainRequest(bool begin) {
+  if (begin && !moves_.exchange(true)) {
+    asio::post(io_, [this] { StartCriticalTask(io_, MoveAndEnd()); });
+  }
+  const Mover::Progress progress = mover_->progress();
+  protocol::DrainState state;
+  state.draining = moves_;
+  state.moved = progress.moved;
+  state.why = MessageSender::Truncate(progress.why);
+  if (state.draining && hub_->num_subjects() == 0) end_is_known_ = true;
+  return state;
+}
+
+asio::awaitable<void> Daemon::Pause(Time time) {
+  asio::steady_timer timer(io_);
+  timer.expires_after(time);
+  co_await timer.async_wait(kAwaitTuple);
+}
+
+// Moves all subjects, however long that takes, and ends then.
+asio::awaitable<void> Daemon::MoveAndEnd() {
+  if (draining_) co_return;
+  spdlog::info("moves its subjects to other nodes");
+  co_await mover_->Run();
+  for (const Time end = ReadClock() + kSecond; !end_is_known_ && ReadClock() < end;) {
+    co_await Pause(kDrainPoll);
+  }
+  RequestDrain();
+}
+
+// Moves the subjects until shortly before the deadline of Drain().
+asio::awaitable<void> Daemon::MoveInTime() {
+  const Time left = drain_deadline_ - ReadClock();
+  mover_->EndBy(ReadClock() + left * 3 / 4);
+  if (!moves_.exchange(true)) {
+    co_await mover_->Run();
+  } else {
+    while (mover_->running()) co_await Pause(kDrainPoll);
+  }
+}
+
 // Says goodbye to all peers, lets queued messages leave until the deadline, then ends the event
 // loop.
 asio::awaitable<void> Daemon::Drain() {
@@ -620,6 +675,7 @@ asio::awaitable<void> Daemon::Drain() {
   drain_deadline_ = ReadClock() + FromSeconds(config_.limits.drain_seconds);
   // While it completes its last picture, messages leave. Nobody receives pictures any more.
   if (render_) render_->Stop();
+  if (mover_) co_await MoveInTime();
   hub_->Drain(ReadClock());
   // Joins the threads of the other shards: from here on only this thread uses the hub. The goodbyes
   // have left already, at the end of the hub's exclusive lock.

@@ -8,7 +8,9 @@ import sys
 import threading
 import time
 
-from cluster_testing import NATS, NatsServer, Node, Performer, Viewer, reorderings, wait_until
+from cluster_testing import (NATS, NatsServer, Node, Performer, Viewer, missing, reorderings, repetitions,
+                             wait_until)
+from furrow_testing import finish, spawn
 
 BEFORE = 60  # frames before each failure: a second
 AFTER = 120
@@ -71,10 +73,7 @@ class Stage:
         stack.callback(self.claims.close)
 
     def start(self, name, ports=None):
-        node = Node(name, "--cluster", self.nats.url)
-        if ports:  # the clients know these
-            node.args[1:5] = ["--tcp", str(ports["tcp"]), "--udp", str(ports["udp"])]
-        self.nodes[name] = self.stack.enter_context(node)
+        self.nodes[name] = self.stack.enter_context(Node(name, "--cluster", self.nats.url, ports=ports))
 
     def holder(self):
         def agreed():
@@ -111,10 +110,22 @@ class Stage:
         self.viewer.wait_for(AFTER)
         return since
 
+    def end(self):
+        return self.leave(self.holder(), lambda node: node.signal(signal.SIGTERM))
+
     def drain(self):
-        node = self.holder()
+        return self.leave(self.holder(), lambda node: finish(spawn("drain", "--wait", node.tcp)))
+
+    def roll(self):
+        """Replaces all nodes, one after the other."""
         since = time.monotonic()
-        node.signal(signal.SIGTERM)
+        for node in list(self.nodes.values()):
+            self.leave(node, lambda old: finish(spawn("drain", "--wait", old.tcp)))
+        return since
+
+    def leave(self, node, end):
+        since = time.monotonic()
+        end(node)
         node.process.wait()
         self.viewer.wait_for(AFTER)
         self.start(node.name, node.ports)
@@ -127,11 +138,12 @@ def main():
         print("bench/cluster.sh: nats-server is not installed", file=sys.stderr)
         return 1
     rounds = int(sys.argv[1])
-    print(f"{'failure':<28}{'rounds':>7}{'p50':>9}{'p99':>9}{'max':>9}  twice  disorder  split")
+    print(f"{'failure':<28}{'rounds':>7}{'p50':>9}{'p99':>9}{'max':>9}  twice  disorder  missing  split")
     with contextlib.ExitStack() as stack:
         stage = Stage(stack)
         for label, fail in (("the holder is killed", stage.kill), ("the holder freezes for 5 s", stage.freeze),
-                            ("NATS restarts, emptied", stage.empty), ("the holder ends (SIGTERM)", stage.drain)):
+                            ("NATS restarts, emptied", stage.empty), ("the holder ends (SIGTERM)", stage.end),
+                            ("the holder is drained", stage.drain), ("all are replaced in turn", stage.roll)):
             first, split = len(stage.viewer.frames), stage.claims.split
             outages = []
             for _ in range(rounds):
@@ -139,9 +151,9 @@ def main():
                 since = fail()
                 outages.append(outage(stage.viewer.frames, since))
             frames = stage.viewer.frames[first:]
-            twice = len(frames) - len({number for _, number in frames})
             print(f"{label:<28}{rounds:>7}" + "".join(f"{percentile(outages, p):>6.0f} ms" for p in (0.5, 0.99, 1.0)) +
-                  f"{twice:>7}{reorderings(frames):>10}{stage.claims.split - split:>7}", flush=True)
+                  f"{repetitions(frames):>7}{reorderings(frames):>10}{missing(frames):>9}{stage.claims.split - split:>7}",
+                  flush=True)
     return 0
 
 

@@ -24,6 +24,7 @@ void AddCommands(CLI::App& app, Action& action) {
   AddConvert(app, action);
   AddInfo(app, action);
   AddToken(app, action);
+  AddDrain(app, action);
   AddHelperEntry(app, "character");
   AddHelperEntry(app, "bake");
   AddHelperEntry(app, "export");

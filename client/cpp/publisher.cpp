@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/cpp/publisher.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <random>
 #include <utility>
@@ -76,7 +77,10 @@ IoStatus Publisher::Send(std::uint16_t number, protocol::PoseFrame& pose,
   } else {
     stream.previous.clear();
   }
-  return transport_->Send(bytes_);
+  if (!moving_since_us_) return transport_->Send(bytes_);
+  if (waiting_.size() == kMostWaiting) waiting_.pop_front();
+  waiting_.push_back(bytes_);
+  return IoStatus::kOk;
 }
 
 // Adds the stream's last pose to the encoded `pose` if there is room, and keeps `pose` for the next
@@ -132,6 +136,17 @@ bool Publisher::Follow(const protocol::Header& header) {
   return transport_->GoTo({error_.host, error_.tcp, error_.udp});
 }
 
+// A pose that comes late is better than none, and each answer of the next server is a pose late.
+std::chrono::milliseconds Publisher::MovePause() const {
+  return std::chrono::milliseconds(moving_since_us_ ? 5 : 0);
+}
+
+void Publisher::EndMove() {
+  if (!std::exchange(moving_since_us_, std::nullopt)) return;
+  for (const std::vector<std::uint8_t>& pose : waiting_) (void)transport_->Send(pose);
+  waiting_.clear();
+}
+
 IoStatus Publisher::Poll(std::int64_t now_us, std::chrono::milliseconds wait) {
   WatchServer(now_us);
   if (introduction_.proven()) {
@@ -142,18 +157,26 @@ IoStatus Publisher::Poll(std::int64_t now_us, std::chrono::milliseconds wait) {
   } else if (introduced_us_ && now_us - *introduced_us_ >= protocol::kOfferResendMicroseconds) {
     Introduce(now_us);
   }
+  if (moving_since_us_ && now_us - *moving_since_us_ > kMovePatience) {
+    moving_since_us_.reset();
+    waiting_.clear();
+  }
   std::span<const std::uint8_t> message;
-  IoStatus status = transport_->Receive(message, wait);
-  if (transport_->generation() != generation_) StartOver(now_us);
-  while (status == IoStatus::kOk) {
-    heard_us_ = now_us;
-    Handle(message, now_us);
+  IoStatus status = transport_->Receive(message, std::max(wait, MovePause()));
+  for (;;) {
+    const bool starts_over = transport_->generation() != generation_;
+    if (starts_over) StartOver(now_us);
+    if (status == IoStatus::kOk) {
+      heard_us_ = now_us;
+      Handle(message, now_us);
+    } else if (!starts_over || !moving_since_us_) {
+      return status;
+    }
     // Reads all waiting answers. A timeout after the first one is not a timeout of this call.
-    const IoStatus more = transport_->Receive(message, std::chrono::milliseconds(0));
-    if (more == IoStatus::kTimeout) break;
+    const IoStatus more = transport_->Receive(message, MovePause());
+    if (more == IoStatus::kTimeout && transport_->generation() == generation_) return status;
     status = more;
   }
-  return status;
 }
 
 void Publisher::Handle(std::span<const std::uint8_t> message, std::int64_t now_us) {
@@ -191,6 +214,7 @@ void Publisher::OnReply(const protocol::Header& header, std::int64_t now_us) {
     case protocol::SkeletonStatus::kAccepted:
       stream.accepted = true;
       needs_token_ = false;
+      EndMove();
       break;
     case protocol::SkeletonStatus::kRejected:
       stream.rejection = reply_.message.empty() ? "the daemon gave no reason" : reply_.message;
@@ -213,7 +237,10 @@ void Publisher::OfferAll(std::int64_t now_us) {
 // Says Hello again if the daemon does not know the address, for example after a restart. Each pose
 // on its way then earns this error, and only the first one counts.
 void Publisher::OnError(const protocol::Header& header, std::int64_t now_us) {
-  if (Follow(header)) return;
+  if (Follow(header)) {
+    if (!moving_since_us_) moving_since_us_ = now_us;
+    return;
+  }
   if (error_.code != protocol::ErrorCode::kUnprovenAddress) {
     last_error_ = error_.message;
     if (error_.code == protocol::ErrorCode::kNeedsToken) {

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
+#include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,7 +24,8 @@ namespace furrow::client {
 //   publisher.Send(stream, pose, capture_time_us);
 //
 // With a transport that reconnects, the publisher outlives every loss: it offers all subjects again
-// on each connection, and their numbering continues.
+// on each connection, and their numbering continues. While the daemon sends it to another server
+// of its cluster, poses wait for that server, for at most kMovePatience, so that none is lost.
 //
 // Time is a parameter: microseconds of any monotonic clock. The class starts no thread and must be
 // used on one thread.
@@ -44,8 +48,9 @@ class Publisher {
                               const protocol::PoseEncoding& encoding = {},
                               bool repeat_previous = false);
 
-  // Reads answers for up to `wait` and repeats unanswered offers. Call it between poses. kOk and
-  // kTimeout are both normal. kNoConnection over UDP means that the port is closed at present.
+  // Reads answers for up to `wait` and repeats unanswered offers. Call it between poses. On its way
+  // to another server, it waits a few milliseconds for each answer. kOk and kTimeout are both
+  // normal. kNoConnection over UDP means that the port is closed at present.
   IoStatus Poll(std::int64_t now_us, std::chrono::milliseconds wait);
 
   // Sends a goodbye for one stream. The stream stays rejected with the reason `why`.
@@ -91,8 +96,12 @@ class Publisher {
   [[nodiscard]] bool IsFromServer(const protocol::Header& header) const;
   [[nodiscard]] bool Follow(const protocol::Header& header);
   void WatchServer(std::int64_t now_us);
+  [[nodiscard]] std::chrono::milliseconds MovePause() const;
+  void EndMove();
   void OnReply(const protocol::Header& header, std::int64_t now_us);
   static void OnOversized(Stream& stream);
+  static constexpr std::int64_t kMovePatience = 1'000'000;  // microseconds
+  static constexpr std::size_t kMostWaiting = 64;
   void SendGoodbye(std::size_t stream);
   void Handle(std::span<const std::uint8_t> message, std::int64_t now_us);
 
@@ -112,6 +121,9 @@ class Publisher {
   protocol::ErrorMessage error_;
   std::string last_error_;
   bool needs_token_ = false;
+  // Since when it has been on its way to another server, and the poses that wait for it.
+  std::optional<std::int64_t> moving_since_us_;
+  std::deque<std::vector<std::uint8_t>> waiting_;
   // With other servers to go to: the last call of WatchServer(), and when this server was heard and
   // asked last.
   std::int64_t watched_us_ = 0;

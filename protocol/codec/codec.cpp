@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "protocol/codec/cluster_messages.h"
 #include "protocol/codec/connection_messages.h"
 #include "protocol/codec/picture_messages.h"
 #include "protocol/codec/pose_message.h"
@@ -50,6 +51,9 @@ template <> struct EntryOf<SubscribePoses> : Entry<wire::SubscribePoses, Message
 template <> struct EntryOf<Dropped> : Entry<wire::Dropped, MessageKind::kDropped> {};
 template <> struct EntryOf<ListSubjects> : Entry<wire::ListSubjects, MessageKind::kListSubjects> {};
 template <> struct EntryOf<Subjects> : Entry<wire::Subjects, MessageKind::kSubjects> {};
+template <> struct EntryOf<SubjectState> : Entry<wire::SubjectState, MessageKind::kSubjectState> {};
+template <> struct EntryOf<Drain> : Entry<wire::Drain, MessageKind::kDrain> {};
+template <> struct EntryOf<DrainState> : Entry<wire::DrainState, MessageKind::kDrainState> {};
 // clang-format on
 
 // FlatBuffers loads numbers from aligned addresses, and a message inside a receive buffer may lie
@@ -186,6 +190,17 @@ void Encoder::Encode(const Header& header, const Subjects& message,
                      std::vector<std::uint8_t>& out) {
   EncodeMessage(state_->payload, header, message, out);
 }
+void Encoder::Encode(const Header& header, const SubjectState& message,
+                     std::vector<std::uint8_t>& out) {
+  EncodeMessage(state_->payload, header, message, out);
+}
+void Encoder::Encode(const Header& header, const Drain& message, std::vector<std::uint8_t>& out) {
+  EncodeMessage(state_->payload, header, message, out);
+}
+void Encoder::Encode(const Header& header, const DrainState& message,
+                     std::vector<std::uint8_t>& out) {
+  EncodeMessage(state_->payload, header, message, out);
+}
 
 DecodeStatus Decode(const MessageView& view, Hello& message) {
   return DecodeMessage(view, message);
@@ -253,6 +268,15 @@ DecodeStatus Decode(const MessageView& view, ListSubjects& message) {
   return DecodeMessage(view, message);
 }
 DecodeStatus Decode(const MessageView& view, Subjects& message) {
+  return DecodeMessage(view, message);
+}
+DecodeStatus Decode(const MessageView& view, SubjectState& message) {
+  return DecodeMessage(view, message);
+}
+DecodeStatus Decode(const MessageView& view, Drain& message) {
+  return DecodeMessage(view, message);
+}
+DecodeStatus Decode(const MessageView& view, DrainState& message) {
   return DecodeMessage(view, message);
 }
 

@@ -7,6 +7,7 @@
 
 #include "protocol/codec/decode_status.h"
 #include "protocol/codec/message_view.h"
+#include "protocol/messages/cluster_messages.h"
 #include "protocol/messages/messages.h"
 #include "protocol/messages/quantise.h"
 
@@ -43,6 +44,9 @@ namespace furrow::protocol {
 [[nodiscard]] DecodeStatus Decode(const MessageView& view, Dropped& message);
 [[nodiscard]] DecodeStatus Decode(const MessageView& view, ListSubjects& message);
 [[nodiscard]] DecodeStatus Decode(const MessageView& view, Subjects& message);
+[[nodiscard]] DecodeStatus Decode(const MessageView& view, SubjectState& message);
+[[nodiscard]] DecodeStatus Decode(const MessageView& view, Drain& message);
+[[nodiscard]] DecodeStatus Decode(const MessageView& view, DrainState& message);
 
 // Decodes the pose that `pose` repeats (PoseFrame::previous, which must not be empty). kBadValue:
 // it is partial, repeats a pose itself, or is of another skeleton.
@@ -89,6 +93,9 @@ class Encoder {
   void Encode(const Header& header, const Dropped& message, std::vector<std::uint8_t>& out);
   void Encode(const Header& header, const ListSubjects& message, std::vector<std::uint8_t>& out);
   void Encode(const Header& header, const Subjects& message, std::vector<std::uint8_t>& out);
+  void Encode(const Header& header, const SubjectState& message, std::vector<std::uint8_t>& out);
+  void Encode(const Header& header, const Drain& message, std::vector<std::uint8_t>& out);
+  void Encode(const Header& header, const DrainState& message, std::vector<std::uint8_t>& out);
 
  private:
   struct State;  // holds FlatBuffers types, which this header hides

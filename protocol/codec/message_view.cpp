@@ -14,7 +14,7 @@ struct KindInfo {
   std::string_view name;
 };
 
-constexpr std::array<KindInfo, 21> kKinds = {{
+constexpr std::array<KindInfo, 24> kKinds = {{
     {MessageKind::kHello, "FHEL", "hello"},
     {MessageKind::kWelcome, "FWEL", "welcome"},
     {MessageKind::kPing, "FPIN", "ping"},
@@ -36,6 +36,9 @@ constexpr std::array<KindInfo, 21> kKinds = {{
     {MessageKind::kDropped, "FDRP", "dropped"},
     {MessageKind::kListSubjects, "FLSU", "list_subjects"},
     {MessageKind::kSubjects, "FSBJ", "subjects"},
+    {MessageKind::kSubjectState, "FSST", "subject_state"},
+    {MessageKind::kDrain, "FDRN", "drain"},
+    {MessageKind::kDrainState, "FDRS", "drain_state"},
 }};
 
 // Exclusive bound in both directions: the difference of two capture times then fits an int64.

@@ -38,6 +38,9 @@ enum class MessageKind : std::uint8_t {
   kDropped,            // "FDRP"
   kListSubjects,       // "FLSU"
   kSubjects,           // "FSBJ"
+  kSubjectState,       // "FSST"
+  kDrain,              // "FDRN"
+  kDrainState,         // "FDRS"
 };
 
 // Stable lowercase name ("pose"), for counters and logs.

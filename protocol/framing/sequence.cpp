@@ -27,6 +27,12 @@ SequenceStatus SequenceWindow::Accept(std::uint64_t session, std::uint32_t seque
   return SequenceStatus::kLate;
 }
 
+SequenceWindow SequenceWindow::After(std::uint64_t session, std::uint32_t sequence) {
+  SequenceWindow window;
+  window.Start(session, sequence);
+  return window;
+}
+
 void SequenceWindow::Start(std::uint64_t session, std::uint32_t sequence) {
   if (started_) old_sessions_[next_old_++ % old_sessions_.size()] = session_;
   started_ = true;

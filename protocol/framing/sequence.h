@@ -25,6 +25,9 @@ class SequenceWindow {
   // A duplicate at least this far behind the newest pose is reported as kLate.
   static constexpr std::uint32_t kWindow = 1024;
 
+  // As if another window had accepted this pose last: it and the ones before it are not new.
+  [[nodiscard]] static SequenceWindow After(std::uint64_t session, std::uint32_t sequence);
+
   // Classifies a pose by the session and sequence of its envelope, and records it.
   [[nodiscard]] SequenceStatus Accept(std::uint64_t session, std::uint32_t sequence);
 

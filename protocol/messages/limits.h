@@ -28,8 +28,11 @@ inline constexpr int kMaxPictureSettings = 128;
 inline constexpr int kMaxPictureCodecs = 8;
 inline constexpr int kMaxCodecBytes = 32;  // of one name, such as avc1.42c01f
 inline constexpr int kNumPictureTiers = 3;
-inline constexpr int kMaxOthers = 8;        // servers in a Welcome
-inline constexpr int kMaxHostBytes = 255;   // of a server to ask instead
+inline constexpr int kMaxOthers = 8;       // servers in a Welcome
+inline constexpr int kMaxHostBytes = 255;  // of a server to ask instead
+inline constexpr int kMaxCaptureBytes =
+    64 * 1024;                              // captured reference poses of a subject that moves
+inline constexpr int kMaxLeftNames = 32;    // in a DrainState
 inline constexpr int kMaxTextBytes = 1024;  // human-readable messages
 inline constexpr int kMaxImageSize = 4096;  // pixels per side
 inline constexpr int kMinImageSize = 16;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "protocol/messages/cluster_messages.h"
 #include "protocol/messages/messages.h"
 #include "protocol/vectors/json.h"
 
@@ -129,6 +130,31 @@ inline Fields FieldsOf(const Dropped& m) {
 inline Fields FieldsOf(const ListSubjects& m) { return {{"follow", Json(m.follow)}}; }
 inline Fields FieldsOf(const Subjects& m) {
   return {{"names", Json(m.names)}, {"total", Json(static_cast<std::int64_t>(m.total))}};
+}
+inline Fields FieldsOf(const SubjectState& m) {
+  Fields fields = {{"subject", Json(m.subject)},
+                   {"skeleton_hash", JsonHex(m.skeleton_hash)},
+                   {"publisher_session", JsonHex(m.publisher_session)},
+                   {"run", JsonHex(m.run)},
+                   {"newest_sequence", Json(static_cast<std::int64_t>(m.newest_sequence))},
+                   {"values_hash", JsonHex(m.values_hash)},
+                   {"num_drivers", Json(static_cast<std::int64_t>(m.num_drivers))},
+                   {"filtered", Json(m.filtered)},
+                   {"inputs", Json(m.inputs)},
+                   {"speeds", Json(m.speeds)},
+                   {"since_input_s", Json(static_cast<float>(m.since_input_s))},
+                   {"captures", Json(m.captures)}};
+  if (m.has_pose) fields.emplace_back("pose", Json(FieldsOf(m.pose), "    "));
+  if (m.has_neutral) fields.emplace_back("neutral", Json(FieldsOf(m.neutral), "    "));
+  return fields;
+}
+inline Fields FieldsOf(const Drain& m) { return {{"begin", Json(m.begin)}}; }
+inline Fields FieldsOf(const DrainState& m) {
+  return {{"draining", Json(m.draining)},
+          {"moved", Json(static_cast<std::int64_t>(m.moved))},
+          {"left", Json(static_cast<std::int64_t>(m.left))},
+          {"names", Json(m.names)},
+          {"why", Json(m.why)}};
 }
 inline Fields FieldsOf(const Unsubscribe&) { return {}; }
 inline Fields FieldsOf(const SubscribeReply& m) {

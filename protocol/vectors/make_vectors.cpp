@@ -203,6 +203,30 @@ void AddPublishing(Files& files) {
   Add(files, "pose_partial_packed", PartialPose(), PoseEncoding::Small());
 }
 
+// Between servers, and to a server that gives its subjects away.
+void AddMoving(Files& files) {
+  SubjectState state;
+  state.subject = "anna";
+  state.skeleton_hash = SmallPose().skeleton_hash;
+  state.publisher_session = 0xfedcba9876543210ULL;
+  state.run = 0x0123456789abcdefULL;
+  const std::vector<std::string> values = {"brow_l.stretch", "brow_l.squash"};
+  state.values_hash = NamesHash(values);
+  Add(files, "subject_state_new", state);
+  state.has_pose = state.has_neutral = true;
+  state.pose = state.neutral = SmallPose();
+  state.newest_sequence = 4'000'000'000;
+  state.num_drivers = kAllDriversOnWire;
+  state.filtered = {0.25f, 1.0f};
+  state.inputs = {0.5f, 1.0f};
+  state.speeds = {-1.5f, 0.0f};
+  state.since_input_s = 0.25;
+  state.captures = "{\"version\": 1}";
+  Add(files, "subject_state", state);
+  Add(files, "drain", Drain{true});
+  Add(files, "drain_state", DrainState{true, 3, 2, {"anna", "bob"}, "no other node has room"});
+}
+
 void AddSubscribing(Files& files) {
   Add(files, "subscribe_weights", SubscribeWeights{});
   Add(files, "subscribe_weights_all",
@@ -424,6 +448,7 @@ Files MakeFiles() {
   Files files;
   AddMeeting(files);
   AddPublishing(files);
+  AddMoving(files);
   AddSubscribing(files);
   AddViewing(files);
   AddFragments(files);

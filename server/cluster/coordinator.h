@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -55,6 +56,12 @@ class Coordinator {
   [[nodiscard]] virtual Place Successor(std::string_view subject) const = 0;
   // The other nodes that are there, those that are not draining first.
   [[nodiscard]] virtual std::vector<NodeAddress> Others() const = 0;
+  // Another node is about to hand the subject over to this one, within kExpected. Until then, this
+  // node sends nobody elsewhere for it. kPending, or kNowhere: this node does not take it.
+  [[nodiscard]] virtual Place Expect(std::string_view subject, Time now) = 0;
+  static constexpr Time kExpected = std::chrono::seconds(3);
+  // This node serves the subject no longer, and the node `heir` goes on with it.
+  virtual void HandOver(std::string_view subject, const NodeAddress& heir) = 0;
   // This node serves the subject no longer.
   virtual void Release(std::string_view subject) = 0;
   // Refuses new subjects from now on.

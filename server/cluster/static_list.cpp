@@ -10,6 +10,8 @@
 namespace furrow::server {
 namespace {
 
+constexpr char kListDecides[] = "a fixed list of nodes decides where subjects are served";
+
 // The last mixing step is needed: without it, names that differ in their last letter alone would
 // select nodes unevenly.
 std::uint64_t Weight(std::string_view node, std::string_view subject) {
@@ -59,8 +61,18 @@ Place StaticList::Ask(std::string_view subject, Time now) {
 
 Place StaticList::Propose(std::string_view subject, Time now) const { return Find(subject, now); }
 
+Place StaticList::Expect(std::string_view /*subject*/, Time /*now*/) {
+  Place place;
+  place.why = kListDecides;
+  return place;
+}
+
 // The list alone decides, so nobody takes a subject of this node.
-Place StaticList::Successor(std::string_view subject) const { return Elsewhere(subject); }
+Place StaticList::Successor(std::string_view subject) const {
+  Place place = Elsewhere(subject);
+  if (place.kind == Place::Kind::kNowhere) place.why = kListDecides;
+  return place;
+}
 
 std::vector<NodeAddress> StaticList::Others() const {
   std::vector<NodeAddress> others = nodes_;

@@ -26,6 +26,8 @@ class StaticList : public Coordinator {
   [[nodiscard]] Place Propose(std::string_view subject, Time now) const override;
   [[nodiscard]] Place Successor(std::string_view subject) const override;
   [[nodiscard]] std::vector<NodeAddress> Others() const override;
+  [[nodiscard]] Place Expect(std::string_view subject, Time now) override;
+  void HandOver(std::string_view /*subject*/, const NodeAddress& /*heir*/) override {}
   void Release(std::string_view /*subject*/) override {}
   void SetDraining() override { draining_ = true; }
   [[nodiscard]] ClusterState State(Time now) const override;

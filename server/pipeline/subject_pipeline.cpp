@@ -123,6 +123,28 @@ void SubjectPipeline::SetLevel(std::size_t num_drivers) {
   (void)solver_.SetLevel(solved_pose(), num_drivers);
 }
 
+SubjectPipeline::Memory SubjectPipeline::memory() const {
+  return {.sequence = sequence_,
+          .capture_time_us = capture_time_us_,
+          .level = level(),
+          .solver = solver_.Memory()};
+}
+
+bool SubjectPipeline::Resume(const wrinkle::LocalPose& pose, const Memory& memory) {
+  if (pose.joints.size() != pose_.joints.size() ||
+      pose.blend_shapes.size() != pose_.blend_shapes.size() || !solver_.Remember(memory.solver)) {
+    return false;
+  }
+  pose_ = pose;
+  stream_->shapes.Extend(&pose_);
+  if (neutral_pose_) SubtractNeutral();
+  solver_.set_num_drivers(memory.level);
+  sequence_ = memory.sequence;
+  capture_time_us_ = memory.capture_time_us;
+  has_pose_ = true;
+  return true;
+}
+
 wrinkle::JobStatus SubjectPipeline::Decay(double dt) { return solver_.Decay(dt); }
 
 bool SubjectPipeline::neutral() const {

@@ -69,6 +69,19 @@ class SubjectPipeline {
   void SetLevel(std::size_t num_drivers);
   [[nodiscard]] std::size_t level() const { return solver_.num_drivers(); }
 
+  // What another pipeline needs to go on as if it were this one, besides the pose and the neutral
+  // pose. Also before the first pose, with an empty memory.
+  struct Memory {
+    std::uint32_t sequence = 0;  // of the last solved pose
+    std::int64_t capture_time_us = 0;
+    std::size_t level = wrinkle::kAllDrivers;
+    wrinkle::SolverMemory solver;
+  };
+  [[nodiscard]] Memory memory() const;
+  // Goes on from `pose`, the last one of the other pipeline, and from its memory. Call it after
+  // SetNeutral(). False, and nothing has changed: they do not fit the stream.
+  bool Resume(const wrinkle::LocalPose& pose, const Memory& memory);
+
   // Advances the weights by `dt` seconds without a new pose: they hold, then decay to neutral. The
   // pose stays.
   [[nodiscard]] wrinkle::JobStatus Decay(double dt);

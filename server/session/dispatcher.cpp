@@ -16,6 +16,9 @@ using protocol::MessageKind;
 
 // The payload of a request that costs one more.
 constexpr double kBytesPerRequest = 64.0;
+// Captured poses may change the rig, which binds all subjects again: they cost as much as this many
+// requests.
+constexpr double kRequestsPerCaptures = 64.0;
 
 }  // namespace
 
@@ -128,7 +131,8 @@ void Dispatcher::RecoverPrevious(Shard& shard, const Peer& peer, const protocol:
 // pattern costs as much as several. UDP clients repeat a request that is not answered.
 bool Dispatcher::TakeRequest(Shard& shard, Peer& peer, const protocol::MessageView& view,
                              Time now) {
-  const bool is_free = view.kind == MessageKind::kSkeletonOffer ||  // has limits of its own
+  const bool is_free = view.kind == MessageKind::kSkeletonOffer ||  // these two have limits
+                       view.kind == MessageKind::kSubjectState ||   // of their own
                        view.kind == MessageKind::kFrameAck || view.kind == MessageKind::kGoodbye;
   const double cost = 1.0 + static_cast<double>(view.payload.size()) / kBytesPerRequest;
   if (is_free || peer.requests.Take(now, cost)) return true;
@@ -192,6 +196,11 @@ void Dispatcher::DispatchRequest(Shard& shard, Peer& peer, const protocol::Messa
     case MessageKind::kFrameAck:
       return Decode(shard, peer, view, in.frame_ack,
                     [&] { subscribers.Acknowledge(peer, header, in.frame_ack, now); });
+    case MessageKind::kSubjectState:
+      return Decode(shard, peer, view, in.subject_state,
+                    [&] { OnSubjectState(peer, view, in.subject_state, now); });
+    case MessageKind::kDrain:
+      return Decode(shard, peer, view, in.drain, [&] { OnDrain(peer, header, in.drain); });
     default:
       parts_.messages->SendError(peer, header, ErrorCode::kUnsupported,
                                  "only a daemon sends " + std::string(MessageKindName(view.kind)));
@@ -268,6 +277,56 @@ void Dispatcher::CutOff(Peer& peer, bool soon) {
         peer, {}, protocol::Goodbye{protocol::GoodbyeReason::kTimedOut});
   }
   soon ? peer.link->FinishSoon() : peer.link->Finish();
+}
+
+// Another node of the cluster, or whoever may operate this one, hands a subject over.
+void Dispatcher::OnSubjectState(Peer& peer, const protocol::MessageView& view,
+                                const protocol::SubjectState& state, Time now) {
+  if (!peer.access.Has(Role::kOperate) || !peer.access.Concerns(state.subject)) {
+    return parts_.messages->SendError(
+        peer, view.header, ErrorCode::kNotPermitted,
+        "not permitted to hand over '" + state.subject + "'; " + peer.access.Text());
+  }
+  std::string why;
+  const bool has_captures = !state.captures.empty();
+  // A state that arrives after its subject is an old copy.
+  if (parts_.subjects->Find(state.subject) == nullptr) {
+    const Place place = parts_.places->Expect(state.subject, now);
+    if (place.kind != Place::Kind::kPending) {
+      why = place.why;
+    } else if (has_captures && !peer.requests.Take(now, kRequestsPerCaptures)) {
+      parts_.metrics->Add(Counter::kRequestsThrottled);
+      why = "too many captured poses at once";
+    } else if (!parts_.arrivals->Add(state.subject, view, now)) {
+      why = "too many subjects are on their way to this node";
+    } else if (has_captures) {
+      parts_.adopt_captures(state, now);
+    }
+  }
+  const auto status =
+      why.empty() ? protocol::SkeletonStatus::kAccepted : protocol::SkeletonStatus::kRejected;
+  parts_.messages->SendReply(
+      peer, MessageSender::ReplyHeader(view.header),
+      protocol::SkeletonReply{state.skeleton_hash, status, MessageSender::Truncate(why)});
+}
+
+void Dispatcher::OnDrain(Peer& peer, const protocol::Header& header,
+                         const protocol::Drain& request) {
+  if (!peer.access.Has(Role::kOperate)) {
+    return parts_.messages->SendError(peer, header, ErrorCode::kNotPermitted,
+                                      "not permitted to drain the daemon; " + peer.access.Text());
+  }
+  if (!parts_.drain) {
+    return parts_.messages->SendError(peer, header, ErrorCode::kUnsupported,
+                                      "this daemon is in no cluster; end it with SIGTERM");
+  }
+  protocol::DrainState state = parts_.drain(request.begin);
+  state.left = static_cast<std::uint32_t>(parts_.subjects->size());
+  for (const auto& subject : parts_.subjects->all()) {
+    if (state.names.size() == protocol::kMaxLeftNames) break;
+    state.names.push_back(subject->name);
+  }
+  parts_.messages->SendReply(peer, MessageSender::ReplyHeader(header), state);
 }
 
 void Dispatcher::OnListSubjects(Peer& peer, const protocol::Header& header,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <utility>
 
@@ -15,6 +16,7 @@
 #include "server/session/peers/peer.h"
 #include "server/session/shards.h"
 #include "server/session/stream_router.h"
+#include "server/session/subjects/arrivals.h"
 #include "server/session/subjects/places.h"
 #include "server/session/subjects/publishers.h"
 #include "server/session/subjects/subject_registry.h"
@@ -29,18 +31,22 @@ namespace furrow::server {
 // an error.
 class Dispatcher {
  public:
-  // All pointers are not null and outlive the dispatcher.
+  // All pointers are not null, unless they say otherwise, and outlive the dispatcher.
   struct Parts {
     Shards* shards = nullptr;
     StreamRouter* router = nullptr;
     Publishers* publishers = nullptr;
     Subscribers* subscribers = nullptr;
-    const SubjectRegistry* subjects = nullptr;
+    SubjectRegistry* subjects = nullptr;
     MessageSender* messages = nullptr;  // used under the exclusive lock
     Metrics* metrics = nullptr;
     const TokenGate* gate = nullptr;  // null: everybody may do everything
-    const Places* places = nullptr;
+    Places* places = nullptr;
+    Arrivals* arrivals = nullptr;
     const Limits* limits = nullptr;
+    std::function<protocol::DrainState(bool begin)> drain;  // Hub::Parts::drain
+    // Adds the reference poses of a subject that arrives to the rig.
+    std::function<void(const protocol::SubjectState& state, Time now)> adopt_captures;
   };
   explicit Dispatcher(Parts parts) : parts_(std::move(parts)) {}
 
@@ -82,6 +88,9 @@ class Dispatcher {
   void RefuseStranger(Shard& shard, Peer& peer, const protocol::Header& header, std::string why);
   void OnListSubjects(Peer& peer, const protocol::Header& header,
                       const protocol::ListSubjects& request);
+  void OnSubjectState(Peer& peer, const protocol::MessageView& view,
+                      const protocol::SubjectState& state, Time now);
+  void OnDrain(Peer& peer, const protocol::Header& header, const protocol::Drain& request);
   void SendSubjectList(Peer& peer, const protocol::Header& request);
 
   const Parts parts_;

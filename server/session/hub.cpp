@@ -13,6 +13,7 @@
 
 #include "protocol/messages/limits.h"
 #include "server/session/peers/peer_access.h"
+#include "server/session/subjects/subject_state.h"
 
 namespace furrow::server {
 namespace {
@@ -47,7 +48,7 @@ Hub::Hub(Parts parts)
       subjects_(static_cast<std::size_t>(limits_.max_subjects)),
       places_(parts.cluster, static_cast<std::size_t>(limits_.max_subjects)),
       publishers_(limits_, JitterDelays(parts.jitter), &definitions_, &subjects_,
-                  &exclusive_context_.messages, &places_, random_, metrics_),
+                  &exclusive_context_.messages, &places_, &arrivals_, random_, metrics_),
       subscribers_(limits_, &subjects_, parts.pictures, parts.settings,
                    /*all_drivers=*/recording_ != nullptr, &places_, &exclusive_context_, metrics_),
       router_({.publishers = &publishers_,
@@ -66,7 +67,11 @@ Hub::Hub(Parts parts)
                    .metrics = metrics_,
                    .gate = gate_,
                    .places = &places_,
-                   .limits = &limits_}),
+                   .arrivals = &arrivals_,
+                   .limits = &limits_,
+                   .drain = std::move(parts.drain),
+                   .adopt_captures = [this](const protocol::SubjectState& state,
+                                            Time now) { AdoptCaptures(state, now); }}),
       mocap_(limits_, &shards_, &router_, metrics_),
       holds_poses_(JitterDelays(std::move(parts.jitter)).any()) {}
 
@@ -246,8 +251,10 @@ void Hub::Tick(Time now, Time late) {
   const ExclusiveLock lock(*this, 0);
   if (late >= kStall) OnStall(now, late);
   AgeSubjects(now);
-  if (places_.in_cluster() && !draining_ && now - places_refreshed_ >= Places::kRefresh)
-    RefreshPlaces(now);
+  if (places_.in_cluster() && !draining_) {
+    publishers_.AskAgain([this](PeerId id) { return shards_.Of(id).peers.Find(id); }, now);
+    if (now - places_refreshed_ >= Places::kRefresh) RefreshPlaces(now);
+  }
   mocap_.ForgetRejected(now);
   shards_.ForEachPeer([&](Peer& peer) {
     EndIfTokenEnded(peer, now);
@@ -319,8 +326,19 @@ void Hub::RefreshPlaces(Time now) {
   for (const auto& [subject, node] : moved) MoveSubject(*subject, node);
   if (!moved.empty()) subscribers_.BindWaiting();
   subscribers_.SendWaitingElsewhere();
+  arrivals_.Expire(now);
+  FreeLevels(now);
   places_.Expire([this](std::string_view subject) { return subjects_.Find(subject) != nullptr; },
                  now);
+}
+
+// The subscribers of a subject that came from another node have followed it by now.
+void Hub::FreeLevels(Time now) {
+  for (const auto& subject : subjects_.all()) {
+    if (!subject->keeps_level || now < subject->level_kept_until) continue;
+    subject->keeps_level = false;
+    subscribers_.UpdateDriverLevel(*subject);
+  }
 }
 
 // The publisher has been sent away already.
@@ -345,7 +363,7 @@ void Hub::RenewConsent(Peer& peer, Time now) {
 
 void Hub::Drain(Time now) {
   const ExclusiveLock lock(*this, 0);
-  places_.SetDraining();
+  places_.Close();
   for (const auto& subject : subjects_.all()) {
     const Place place = places_.Successor(subject->name);
     if (place.kind != Place::Kind::kElsewhere) continue;
@@ -367,6 +385,83 @@ void Hub::Drain(Time now) {
     exclusive_context_.messages.SendReply(peer, {},
                                           protocol::Goodbye{protocol::GoodbyeReason::kDraining});
   });
+}
+
+// A capture changes the rig of the daemon, on this node as on the one before.
+void Hub::AdoptCaptures(const protocol::SubjectState& state, Time now) {
+  auto changed = WithCaptures(rig(), state.captures);
+  Status status = changed.status();
+  if (changed.ok()) {
+    if (!changed->has_value()) return;
+    status = SetRig(std::make_shared<const wrinkle::Rig>(**std::move(changed)), now);
+  }
+  if (status.ok()) {
+    spdlog::info("took over the captured poses of subject '{}'", state.subject);
+  } else {
+    spdlog::warn("cannot take over the captured poses of subject '{}': {}", state.subject,
+                 status.ToString());
+  }
+}
+
+void Hub::TakeNothingNew() {
+  const ExclusiveLock lock(*this, 0);
+  places_.SetDraining();
+}
+
+std::vector<std::string> Hub::SubjectNames() {
+  const ExclusiveLock lock(*this, 0);
+  std::vector<std::string> names;
+  for (const auto& subject : subjects_.all()) names.push_back(subject->name);
+  return names;
+}
+
+Place Hub::SuccessorOf(std::string_view name) {
+  const ExclusiveLock lock(*this, 0);
+  const Subject* subject = subjects_.Find(name);
+  Place place;
+  if (subject == nullptr) {
+    place.why = "it has left";
+    return place;
+  }
+  const Peer* owner = OwnerOf(*subject);
+  // Foreign wires, and a recording that this daemon plays itself.
+  const bool is_own =
+      owner != nullptr && (owner->transport == Transport::kMocap ||
+                           (owner->transport == Transport::kWeb && owner->host.empty()));
+  if (is_own) {
+    place.why = "its sender cannot be sent to another daemon";
+    return place;
+  }
+  place = places_.Successor(name);
+  if (place.kind != Place::Kind::kElsewhere && place.why.empty()) {
+    place.why = "no other node has room";
+  }
+  return place;
+}
+
+bool Hub::WriteState(std::string_view name, std::uint32_t number,
+                     std::vector<std::uint8_t>& message) {
+  const ExclusiveLock lock(*this, 0);
+  Subject* subject = subjects_.Find(name);
+  if (subject == nullptr) return false;
+  exclusive_context_.messages.Encode(StateHeader(*subject, number), StateOf(*subject), message);
+  return true;
+}
+
+bool Hub::HandOver(std::string_view name, const NodeAddress& node, std::uint32_t number,
+                   std::vector<std::uint8_t>& message, Time now) {
+  const ExclusiveLock lock(*this, 0);
+  Subject* subject = subjects_.Find(name);
+  if (subject == nullptr) return false;
+  // Poses that wait for their time are used now, because the publisher does not send them again.
+  Shard& shard = shards_.Of(subject->owner.peer);
+  router_.ReleaseStream(shard, subject->owner, now);
+  exclusive_context_.messages.Encode(StateHeader(*subject, number), StateOf(*subject), message);
+  publishers_.SendAway(*subject, OwnerOf(*subject), node);
+  places_.HandOver(name, node);
+  MoveSubject(*subject, node);
+  subscribers_.BindWaiting();
+  return true;
 }
 
 // An empty name: the oldest subject.

@@ -31,6 +31,7 @@
 #include "server/session/recording_tap.h"
 #include "server/session/shards.h"
 #include "server/session/stream_router.h"
+#include "server/session/subjects/arrivals.h"
 #include "server/session/subjects/places.h"
 #include "server/session/subjects/publishers.h"
 #include "server/session/subjects/subject_registry.h"
@@ -67,6 +68,8 @@ class Hub {
     std::function<Time()> clock;            // read for traced poses alone; empty: traces nothing
     Coordinator* cluster = nullptr;         // outlives the hub; null: the daemon is alone
     int shards = 1;                         // one per network thread
+    // Answers Drain. Called on any shard's thread, under the exclusive lock. Empty: not possible.
+    std::function<protocol::DrainState(bool begin)> drain;
   };
   explicit Hub(Parts parts);
 
@@ -169,10 +172,29 @@ class Hub {
   // sends publishers and subscribers to other nodes first.
   void Drain(Time now);
 
+  // The functions of a move to another node. Each takes the exclusive lock.
+
+  // Takes no new subject from now on. Those that are here stay until they are handed over or leave.
+  void TakeNothingNew();
+  // The names of the subjects that are here.
+  [[nodiscard]] std::vector<std::string> SubjectNames();
+  // The node that should get the subject; kNowhere with the reason: none can.
+  [[nodiscard]] Place SuccessorOf(std::string_view subject);
+  // Writes the subject's state as a message (SubjectState) to `message`. `number`: which the answer
+  // repeats. False: there is no such subject.
+  [[nodiscard]] bool WriteState(std::string_view subject, std::uint32_t number,
+                                std::vector<std::uint8_t>& message);
+  // The node goes on with the subject: sends its publisher and its subscribers there and forgets
+  // it. Writes the last state, as WriteState() does.
+  [[nodiscard]] bool HandOver(std::string_view subject, const NodeAddress& node,
+                              std::uint32_t number, std::vector<std::uint8_t>& message, Time now);
+
   // The functions below require the exclusive lock, and so does every use of the objects that they
   // return.
 
   [[nodiscard]] const SubjectRegistry& subjects() const { return subjects_; }
+  // Null: no such subject.
+  [[nodiscard]] Subject* FindSubject(std::string_view name) { return subjects_.Find(name); }
   // Finds a subject by name (empty: the oldest) that `access` is for, and evaluates all of
   // its drivers from now on. Null: no such subject.
   [[nodiscard]] Subject* RequireAllDrivers(std::string_view name,
@@ -222,6 +244,8 @@ class Hub {
   [[nodiscard]] Subject* FindFor(std::string_view name, const Access& access);
   [[nodiscard]] Peer* OwnerOf(const Subject& subject);
   void RefreshPlaces(Time now);
+  void FreeLevels(Time now);
+  void AdoptCaptures(const protocol::SubjectState& state, Time now);
   void MoveSubject(Subject& subject, const NodeAddress& node);
   void RenewConsent(Peer& peer, Time now);
   void EndIfTokenEnded(Peer& peer, Time now);
@@ -239,6 +263,7 @@ class Hub {
   StreamDefinitions definitions_;
   SubjectRegistry subjects_;
   Places places_;
+  Arrivals arrivals_;
   Time places_refreshed_{0};
   Publishers publishers_;
   Subscribers subscribers_;

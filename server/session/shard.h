@@ -65,6 +65,8 @@ struct Shard {
     protocol::FrameAck frame_ack;
     protocol::Unsubscribe unsubscribe;
     protocol::ListSubjects list_subjects;
+    protocol::SubjectState subject_state;
+    protocol::Drain drain;
   } in;
 };
 

@@ -74,8 +74,9 @@ class NatsServer:
 class Node(Daemon):
     """One daemon of a cluster."""
 
-    def __init__(self, name, *args):
-        super().__init__("--no-render", "--http", "0", "--name", name, *args)
+    def __init__(self, name, *args, ports=None):
+        """`ports`: those of an earlier daemon, which the clients know."""
+        super().__init__("--no-render", "--http", "0", "--name", name, *args, ports=ports)
         self.name = name
 
     def __enter__(self):
@@ -95,10 +96,13 @@ class Node(Daemon):
         self.process.stdout.close()
         self.process.stderr.close()
 
-    def get(self, path):
-        """The status and the JSON of a request."""
+    def get(self, path, body=None):
+        """The status and the JSON of a request; `body`: of a POST."""
+        url = f"http://127.0.0.1:{self.ports['http']}{path}"
+        data = None if body is None else json.dumps(body).encode()
+        headers = {} if body is None else {"Content-Type": "application/json"}
         try:
-            with urllib.request.urlopen(f"http://127.0.0.1:{self.ports['http']}{path}", timeout=10) as reply:
+            with urllib.request.urlopen(urllib.request.Request(url, data, headers), timeout=10) as reply:
                 return reply.status, json.load(reply)
         except urllib.error.HTTPError as error:
             with error:
@@ -163,6 +167,17 @@ class Performer(Program):
         self.lines = []  # nobody reads them; the pipes stay empty
         super().__init__(spawn("play", PERFORMANCE, "--to", address, "--udp", "--subject", subject, "--loop", *args),
                          self.lines.extend, self.lines.extend)
+
+
+def repetitions(frames):
+    """How many numbers of frames came again."""
+    return len(frames) - len({number for _, number in frames})
+
+
+def missing(frames):
+    """How many numbers are missing between the first and the last frame."""
+    numbers = {number for _, number in frames}
+    return max(numbers) - min(numbers) + 1 - len(numbers) if numbers else 0
 
 
 def reorderings(frames):

@@ -2,13 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Three daemons share subjects through NATS: placement, redirects, and what happens when a part of it fails."""
 import contextlib
+import pathlib
 import signal
 import sys
 import tempfile
 import unittest
 
-from cluster_testing import NATS, NatsServer, Node, Performer, Viewer, reorderings, wait_until
-from furrow_testing import SOURCE, finish, spawn
+from cluster_testing import NATS, NatsServer, Node, Performer, Viewer, reorderings, repetitions, wait_until
+from furrow_testing import GUARD, SOURCE, finish, furrow, spawn
 
 if NATS is None:
     print("skipped: nats-server is not installed")
@@ -33,6 +34,37 @@ class SampleTest(unittest.TestCase):
                 self.assertEqual(node.holder("ada")[0], "a")
 
 
+class SecuredTest(unittest.TestCase):
+    """Nodes that let nobody in without a token trust each other by their keys."""
+
+    def test_a_drain_needs_the_role_operate_and_moves_the_subjects(self):
+        nats = NatsServer()
+        self.addCleanup(nats.close)
+        with tempfile.TemporaryDirectory() as folder, contextlib.ExitStack() as stack:
+            keys = pathlib.Path(folder, "keys")
+            furrow("token", "key", "new", "--key", keys, check=0)
+            tokens = {role: pathlib.Path(folder, role) for role in ("publish", "watch", "operate")}
+            for role, file in tokens.items():
+                furrow("token", "new", "--role", role, "--key", keys, "--out", file, check=0)
+            a, b = (stack.enter_context(Node(name, "--cluster", nats.url, "--security", "required", "--keys", keys))
+                    for name in "ab")
+            for node in (a, b):
+                wait_until(node.is_ready, "the node is ready")
+            performer = Performer(a.udp, "ada", "--token", tokens["publish"])
+            self.addCleanup(performer.close)
+            viewer = Viewer(a.udp, "ada", "--token", tokens["watch"])
+            self.addCleanup(viewer.close)
+            viewer.wait_for(20)
+            code, _, errors = finish(spawn("drain", a.udp, "--token", tokens["watch"]))
+            self.assertEqual(code, 1)
+            self.assertIn("not permitted to drain the daemon; the token allows watch", errors)
+            code, output, errors = finish(spawn("drain", "--wait", a.udp, "--token", tokens["operate"]))
+            self.assertEqual((code, output, errors), (0, b"drained: 1 subject moved\n", ""))
+            self.assertEqual(a.process.wait(timeout=GUARD), 0)
+            viewer.wait_for(60)
+            self.assertEqual((reorderings(viewer.frames), repetitions(viewer.frames)), (0, 0))
+
+
 class ClusterTest(unittest.TestCase):
     def setUp(self):
         self.nats = NatsServer()
@@ -41,9 +73,9 @@ class ClusterTest(unittest.TestCase):
         for node in self.nodes.values():
             wait_until(node.is_ready, f"node {node.name} is ready")
 
-    def add_node(self, name, *args):
+    def add_node(self, name, *args, ports=None):
         stack = contextlib.ExitStack()
-        node = stack.enter_context(Node(name, "--cluster", self.nats.url, *args))
+        node = stack.enter_context(Node(name, "--cluster", self.nats.url, *args, ports=ports))
         self.addCleanup(stack.close)
         return node
 
@@ -168,6 +200,79 @@ class ClusterTest(unittest.TestCase):
         self.assertGreaterEqual(next_epoch, epoch)
         viewer.wait_for(60)
         self.assertEqual(reorderings(viewer.frames), 0)
+
+    def drain(self, node, *args):
+        """Drains the node and waits for its end. Returns what the command printed."""
+        code, output, errors = finish(spawn("drain", "--wait", *args, node.udp if "--udp" in args else node.tcp))
+        self.assertEqual((code, errors), (0, ""), output)
+        self.assertEqual(node.process.wait(timeout=GUARD), 0)
+        return output.decode()
+
+    def test_nodes_are_replaced_one_after_the_other_under_load(self):
+        subjects = {"ada": "a", "bob": "a", "cyd": "b"}
+        for subject, name in subjects.items():
+            self.perform(self.nodes[name], subject)
+        viewers = {subject: self.watch(self.nodes["c"], subject) for subject in subjects}
+        for viewer in viewers.values():
+            viewer.wait_for(20)
+        # The neutral pose and a captured pose move along.
+        for pose in ("neutral", "smile"):
+            status, reply = self.nodes["a"].get("/api/capture", {"subject": "ada", "pose": pose})
+            self.assertEqual(status, 200, reply)
+        _, epoch = self.holder()
+        moved = {}
+        for name, args in (("a", ["--udp"]), ("b", []), ("c", ["60"])):
+            old = self.nodes.pop(name)
+            held = [s for s in subjects if old.holder(s)[0] == name]
+            output = self.drain(old, *args)
+            moved[name] = len(held)
+            self.assertIn(f"drained: {len(held)} subject", output)
+            for viewer in viewers.values():
+                viewer.wait_for(20)
+            self.nodes[name] = self.add_node(name, ports=old.ports)
+            for node in self.nodes.values():
+                wait_until(node.is_ready, f"node {node.name} is ready")
+        self.assertEqual(moved["a"], 2)
+        for subject, viewer in viewers.items():
+            self.assertEqual((reorderings(viewer.frames), repetitions(viewer.frames)), (0, 0), subject)
+        name, next_epoch = self.holder()
+        self.assertGreater(next_epoch, epoch)
+        self.assertTrue(self.reference_poses(self.nodes[name]) >= {"smile"})
+        listed = self.nodes[name].get("/api/subjects")[1]["subjects"]
+        self.assertTrue(next(each for each in listed if each["name"] == "ada")["neutral"])
+        log = [line for node in self.nodes.values() for line in node.log]
+        self.assertFalse([line for line in log if b"cannot take over" in line])
+
+    @staticmethod
+    def reference_poses(node):
+        status, rig = node.get("/api/rig.json")
+        return {pose["name"] for pose in rig["reference_poses"]} if status == 200 else set()
+
+    def test_what_cannot_move_is_named(self):
+        only = self.nodes["a"]
+        self.perform(only)
+        self.watch(only).wait_for(5)
+        for name in "bc":
+            self.nodes.pop(name).signal(signal.SIGKILL)
+        wait_until(lambda: len(only.get("/api/cluster")[1]["nodes"]) == 1, "the others are gone")
+        code, _, errors = finish(spawn("drain", "--wait", "1", only.tcp))
+        self.assertEqual(code, 1)
+        self.assertIn("the time is over, these did not move: 'ada'; 'ada': no other node has room", errors)
+        # It goes on until there is room.
+        self.watch(only).wait_for(5)
+        self.add_node("d")
+        self.assertEqual(only.process.wait(timeout=GUARD), 0)
+
+    def test_sigterm_moves_the_subjects(self):
+        a = self.nodes.pop("a")
+        self.perform(a)
+        viewer = self.watch(self.nodes["b"])
+        viewer.wait_for(20)
+        a.signal(signal.SIGTERM)
+        self.assertEqual(a.process.wait(timeout=GUARD), 0)
+        viewer.wait_for(60)
+        self.assertIn(self.holder()[0], "bc")
+        self.assertEqual((reorderings(viewer.frames), repetitions(viewer.frames)), (0, 0))
 
     def test_two_daemons_of_one_name_are_noticed(self):
         rival = self.add_node("a")

@@ -267,6 +267,45 @@ def subjects(t):
     return {"names": names, "total": total}
 
 
+def numbers_between(values, count, least, most):
+    require(len(finite(values)) == count and all(least <= v <= most for v in values), "wrong numbers of the filter")
+    return list(values)
+
+
+def subject_state(t):
+    require(t.text(0) != "", "no subject")
+    skeleton = t.scalar(1, "Q")
+
+    def whole(slot):
+        found = pose(Table(t.data, t.target(slot)))
+        require(found["skeleton_hash"] == hexadecimal(skeleton) and not found["partial"] and "previous" not in found,
+                "a pose that does not stand alone")
+        return found
+
+    filtered = t.vector(10, "f") or []
+    require(len(filtered) <= 2048, "too many driver values")
+    since = finite([t.scalar(13, "d", 0.0)])[0]
+    require(since >= 0, "negative time")
+    require(t.flag(4) == (t.place(6) is not None), "a pose is missing")
+    fields = {"subject": t.text(0), "skeleton_hash": hexadecimal(skeleton), "publisher_session": hexadecimal(t.scalar(2, "Q")),
+              "run": hexadecimal(t.scalar(3, "Q")), "newest_sequence": t.scalar(5, "I"), "values_hash": hexadecimal(t.scalar(8, "Q")),
+              "num_drivers": t.scalar(9, "I"), "filtered": numbers_between(filtered, len(filtered), 0, 1),
+              "inputs": numbers_between(t.vector(11, "f") or [], len(filtered), 0, 1),
+              "speeds": numbers_between(t.vector(12, "f") or [], len(filtered), -1e6, 1e6),
+              "since_input_s": since, "captures": t.text(14, limit=65536)}
+    return {**fields, **{name: whole(slot) for name, slot in (("pose", 6), ("neutral", 7)) if t.place(slot) is not None}}
+
+
+def drain(t):
+    return {"begin": t.flag(0)}
+
+
+def drain_state(t):
+    names, left = t.texts(3), t.scalar(2, "I")
+    require(len(names) <= min(left, 32), "more names than subjects")
+    return {"draining": t.flag(0), "moved": t.scalar(1, "I"), "left": left, "names": names, "why": t.text(4, limit=1024)}
+
+
 def image(t):
     data = t.vector(4, "B")
     require(data, "no bytes")
@@ -285,4 +324,5 @@ KINDS = {b"FHEL": hello, b"FWEL": welcome, b"FPIN": ping, b"FPON": pong, b"FBYE"
          b"FERR": error, b"FSKO": skeleton_offer, b"FSKR": skeleton_reply, b"FPOS": pose,
          b"FSUW": subscribe_weights, b"FSUP": subscribe_pictures, b"FUNS": unsubscribe,
          b"FSUR": subscribe_reply, b"FWGT": weights, b"FIMG": image, b"FUPP": update_pictures, b"FACK": frame_ack,
-         b"FSPO": subscribe_poses, b"FDRP": dropped, b"FLSU": list_subjects, b"FSBJ": subjects}
+         b"FSPO": subscribe_poses, b"FDRP": dropped, b"FLSU": list_subjects, b"FSBJ": subjects,
+         b"FSST": subject_state, b"FDRN": drain, b"FDRS": drain_state}

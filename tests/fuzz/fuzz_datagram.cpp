@@ -68,6 +68,9 @@ void DecodeAny(std::span<const std::uint8_t> bytes) {
     case MessageKind::kSubjects: return RoundTrip<p::Subjects>(view);
     case MessageKind::kUpdatePictures: return RoundTrip<p::UpdatePictures>(view);
     case MessageKind::kFrameAck: return RoundTrip<p::FrameAck>(view);
+    case MessageKind::kSubjectState: return RoundTrip<p::SubjectState>(view);
+    case MessageKind::kDrain: return RoundTrip<p::Drain>(view);
+    case MessageKind::kDrainState: return RoundTrip<p::DrainState>(view);
     case MessageKind::kUnknown: return;
   }
 }

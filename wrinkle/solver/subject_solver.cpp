@@ -81,6 +81,35 @@ void SubjectSolver::Reset() {
   is_apart_ = false;
 }
 
+SolverMemory SubjectSolver::Memory() const {
+  SolverMemory memory;
+  if (!filter_context_.started) return memory;
+  const auto count = static_cast<std::ptrdiff_t>(binding_->driver_value_names().size());
+  const auto copy = [count](const RowList& from) {
+    return std::vector<float>(from.begin(), from.begin() + count);
+  };
+  memory.filtered = copy(filter_context_.value);
+  memory.inputs = copy(filter_context_.raw);
+  memory.speeds = copy(filter_context_.derivative);
+  memory.since_input = filter_context_.since_input;
+  return memory;
+}
+
+bool SubjectSolver::Remember(const SolverMemory& memory) {
+  const std::size_t count = binding_->driver_value_names().size();
+  if (memory.filtered.size() != count || memory.inputs.size() != count ||
+      memory.speeds.size() != count || !IsDuration(memory.since_input)) {
+    return false;
+  }
+  Reset();
+  std::copy(memory.filtered.begin(), memory.filtered.end(), filter_context_.value.begin());
+  std::copy(memory.inputs.begin(), memory.inputs.end(), filter_context_.raw.begin());
+  std::copy(memory.speeds.begin(), memory.speeds.end(), filter_context_.derivative.begin());
+  filter_context_.since_input = memory.since_input;
+  filter_context_.started = true;
+  return Decay(0.0) == JobStatus::kOk;  // no time passes: only the weights are computed again
+}
+
 JobStatus SubjectSolver::SetLevel(const LocalPose& pose, std::size_t num_drivers) {
   const BindingData& data = binding_->data();
   const auto first = static_cast<std::ptrdiff_t>(data.NumValues(num_drivers_));

@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "wrinkle/skeleton/pose.h"
 #include "wrinkle/solver/rig_binding.h"
@@ -13,6 +14,15 @@
 namespace furrow::wrinkle {
 
 struct SubjectKernel;  // private to wrinkle/
+
+// What a solver remembers of the poses before: one number per driver value in each list, or none
+// before the first pose.
+struct SolverMemory {
+  std::vector<float> filtered;  // [0, 1]
+  std::vector<float> inputs;    // before the filter, [0, 1]
+  std::vector<float> speeds;    // 1/s
+  double since_input = 0.0;     // seconds, >= 0
+};
 
 inline constexpr std::size_t kAllDrivers = std::numeric_limits<std::size_t>::max();
 
@@ -43,6 +53,11 @@ class SubjectSolver {
   [[nodiscard]] JobStatus Decay(double dt);
   // Restores the state after construction, except for the number of drivers.
   void Reset();
+
+  // What another solver of the same rig needs to go on as if it were this one.
+  [[nodiscard]] SolverMemory Memory() const;
+  // Goes on from there. False, and nothing has changed: the lists do not fit the binding.
+  bool Remember(const SolverMemory& memory);
 
   // Level of detail: from the next Update() on, only the first `count` of the rig's drivers are
   // evaluated. The values of the others become 0 and fade through the filter.

@@ -8,6 +8,7 @@ namespace furrow::cli {
 // The commands of the program `furrow`. Each function adds one subcommand to `app`. When the
 // command line names the subcommand, parsing sets `action`.
 void AddConvert(CLI::App& app, Action& action);
+void AddDrain(CLI::App& app, Action& action);
 void AddFrames(CLI::App& app, Action& action);
 void AddInfo(CLI::App& app, Action& action);
 void AddPlay(CLI::App& app, Action& action);

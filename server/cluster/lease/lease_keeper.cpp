@@ -18,13 +18,22 @@ constexpr std::int64_t kTtlMs =
 }  // namespace
 
 void LeaseKeeper::Want(std::string_view subject) {
-  own_.try_emplace(std::string(subject)).first->second.wanted = true;
+  Own& own = own_.try_emplace(std::string(subject)).first->second;
+  own.wanted = true;
+  own.heir.reset();
 }
 
 void LeaseKeeper::Release(std::string_view subject) {
   const auto found = own_.find(subject);
   if (found == own_.end()) return;
   GiveUp(found->second);
+}
+
+void LeaseKeeper::HandOver(std::string_view subject, std::string_view node, std::uint64_t run) {
+  const auto found = own_.find(subject);
+  if (found == own_.end()) return;
+  GiveUp(found->second);
+  found->second.heir = Heir{std::string(node), run};
 }
 
 void LeaseKeeper::ReleaseAll() {
@@ -146,7 +155,7 @@ void LeaseKeeper::OnWritten(std::string_view subject, std::uint64_t write, Write
   own.pending.erase(found);
   if (result == WriteResult::kDone) {
     OnDone(known->first, own, done, revision, now);
-    if (done.lease.node.empty() && !own.wanted) own_.erase(known);
+    if (!IsOwn(done.lease) && !own.wanted) own_.erase(known);
   } else {
     own.next_write = now;
     own.stale = needs_listing_ = true;
@@ -159,8 +168,16 @@ void LeaseKeeper::OnDone(const std::string& subject, Own& own, const Pending& do
   if (known == nullptr || known->revision < revision) {
     Learn({subject, done.lease, revision}, now);
   }
-  if (!own.wanted || done.lease.node.empty() || done.incarnation != incarnation_) return;
-  if (own.held && own.epoch == done.lease.epoch) {
+  if (!own.wanted || !IsOwn(done.lease) || done.incarnation != incarnation_) return;
+  if (done.inherits && done.lease.epoch > own.epoch) {
+    // It replaced a record of a certain revision, which an emptied store does not have. So the
+    // write reached the store in which the holder gave the lease away.
+    own.epoch = done.lease.epoch;
+    own.good = done.sent;
+    own.held = true;
+    own.isolated = false;
+    own.candidate.reset();
+  } else if (own.held && own.epoch == done.lease.epoch) {
     own.good = std::max(own.good, done.sent);
     own.isolated = false;
   } else if (own.candidate && own.candidate->epoch == done.lease.epoch) {
@@ -171,6 +188,16 @@ void LeaseKeeper::OnDone(const std::string& subject, Own& own, const Pending& do
     own.candidate = Candidate{done.lease.epoch, done.sent, done.incarnation};
     needs_listing_ = true;
   }
+}
+
+// What this node writes instead of a lease that it no longer wants. The epoch is remembered.
+Lease LeaseKeeper::Farewell(const Own& own, const Record& record, std::int64_t unix_ms) {
+  Lease lease{.node = {}, .run = 0, .epoch = record.lease.epoch, .deadline_ms = 0};
+  if (!own.heir || lease.epoch >= kMaxEpoch) return lease;
+  return {.node = own.heir->node,
+          .run = own.heir->run,
+          .epoch = lease.epoch + 1,
+          .deadline_ms = unix_ms + kTtlMs};
 }
 
 // True if the record continues the lease that this node holds or has just taken.
@@ -207,13 +234,14 @@ std::optional<LeaseWrite> LeaseKeeper::NextWrite(const std::string& subject, Own
   if (own.wanted) {
     lease = NextLease(own, record, now, unix_ms);
   } else if (record != nullptr && IsOwn(record->lease)) {
-    lease = Lease{.node = {}, .run = 0, .epoch = record->lease.epoch, .deadline_ms = 0};
+    lease = Farewell(own, *record, unix_ms);
   }
   if (!lease) return std::nullopt;
   own.next_write = now + (own.held && !own.isolated ? kLeaseRenewal : kNextAttempt);
   if (own.pending.size() >= kMaxPending) own.pending.erase(own.pending.begin());
   const std::uint64_t id = next_write_++;
-  own.pending.emplace(id, Pending{*lease, now, incarnation_});
+  const bool inherits = record != nullptr && IsOwn(record->lease) && !Keeps(own, record->lease);
+  own.pending.emplace(id, Pending{*lease, now, incarnation_, inherits});
   return LeaseWrite{id, subject, *std::move(lease), record == nullptr ? 0 : record->revision};
 }
 

@@ -39,7 +39,11 @@ class LeaseKeeper {
   void Want(std::string_view subject);
   // Gives the lease back, so that another node need not wait.
   void Release(std::string_view subject);
-  // The same for all, also for those that are wanted and not held yet.
+  // Gives the lease to another node, in the next epoch: no third one can take it in between. The
+  // heir must want it, and serves it once it has written it again. `run`: of the heir's process.
+  void HandOver(std::string_view subject, std::string_view node, std::uint64_t run);
+  // The same as Release() for all, also for those that are wanted and not held yet. Those that are
+  // on their way to another node go on.
   void ReleaseAll();
 
   // The store answers or does not. A listing must follow after it answers again.
@@ -89,6 +93,12 @@ class LeaseKeeper {
     Lease lease;
     Time sent{0};
     std::uint64_t incarnation = 0;
+    bool inherits = false;  // it replaces a record in which another node names this one
+  };
+  // The node that gets the lease instead of nobody.
+  struct Heir {
+    std::string node;
+    std::uint64_t run = 0;
   };
   // A lease that was written, but not seen in a listing yet.
   struct Candidate {
@@ -105,6 +115,7 @@ class LeaseKeeper {
     bool wanted = true;     // false: to be released
     bool stale = false;     // a listing must come before the next write
     Time next_write{0};
+    std::optional<Heir> heir;  // only if not wanted
     std::optional<Candidate> candidate;
     std::map<std::uint64_t, Pending> pending;  // by the number of the write; at most kMaxPending
   };
@@ -119,6 +130,7 @@ class LeaseKeeper {
   [[nodiscard]] const Record* Find(std::string_view subject) const;
   [[nodiscard]] std::optional<Serving> ServingOf(const Own& own, Time now) const;
   [[nodiscard]] bool Keeps(const Own& own, const Lease& lease) const;
+  [[nodiscard]] static Lease Farewell(const Own& own, const Record& record, std::int64_t unix_ms);
   [[nodiscard]] std::optional<Lease> NextLease(const Own& own, const Record* record, Time now,
                                                std::int64_t unix_ms) const;
   [[nodiscard]] std::optional<LeaseWrite> NextWrite(const std::string& subject, Own& own, Time now,

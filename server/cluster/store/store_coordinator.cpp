@@ -14,6 +14,9 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kStep(50);
+// While subjects move.
+constexpr milliseconds kHurriedStep(5);
+constexpr Time kHurry = std::chrono::seconds(1);
 // The pause between two attempts to list the store.
 constexpr Time kListPause = milliseconds(100);
 // More cannot be wanted: one daemon has at most a million subjects.
@@ -61,7 +64,9 @@ StoreCoordinator::~StoreCoordinator() {
 }
 
 void StoreCoordinator::Run(const std::stop_token& stop) {
-  while (!stop.stop_requested()) Step(kStep);
+  while (!stop.stop_requested()) {
+    Step(draining_ || now_() < hurries_until_ ? kHurriedStep : kStep);
+  }
   // So that other nodes need not wait for the end of the leases.
   {
     const std::lock_guard lock(mutex_);
@@ -114,10 +119,13 @@ void StoreCoordinator::Step(milliseconds wait) {
 
 void StoreCoordinator::TakeRequests() {
   std::map<std::string, bool, std::less<>> wanted;
+  std::map<std::string, std::string> heirs;
   {
     const std::lock_guard lock(mutex_);
     wanted.swap(requests_.wanted);
+    heirs.swap(requests_.heirs);
     draining_ = requests_.draining;
+    if (!expected_.empty()) hurries_until_ = now_() + kHurry;
   }
   const bool has_rival = nodes_.HasRival(now_());
   for (const auto& [subject, is_wanted] : wanted) {
@@ -125,6 +133,15 @@ void StoreCoordinator::TakeRequests() {
       leases_.Release(subject);
     } else if (!has_rival) {  // senders repeat their offers, and ask again
       leases_.Want(subject);
+    }
+  }
+  const auto others = nodes_.Others(now_(), leases_.reachable());
+  for (const auto& [subject, node] : heirs) {
+    const auto heir = others.find(node);
+    if (heir == others.end()) {
+      leases_.Release(subject);
+    } else {
+      leases_.HandOver(subject, node, heir->second.run);
     }
   }
 }
@@ -215,29 +232,90 @@ void StoreCoordinator::Request(std::string_view subject, bool wanted) {
   requests_.wanted.insert_or_assign(std::string(subject), wanted);
 }
 
-void StoreCoordinator::Release(std::string_view subject) { Request(subject, false); }
+void StoreCoordinator::Release(std::string_view subject) {
+  Request(subject, false);
+  const std::lock_guard lock(mutex_);
+  if (const auto known = expected_.find(subject); known != expected_.end()) expected_.erase(known);
+}
+
+Place StoreCoordinator::Expect(std::string_view subject, Time now) {
+  const auto seen = view();
+  Place place;
+  if (is_draining()) {
+    place.why = "this node is draining";
+  } else if (static_cast<int>(seen->own.size()) >= capacity_) {
+    place.why = "this node is full";
+  } else if (!seen->may_take) {
+    place.why = seen->fault;
+  } else {
+    place.kind = Place::Kind::kPending;
+    Request(subject, true);
+    const std::lock_guard lock(mutex_);
+    std::erase_if(expected_, [now](const auto& known) { return now >= known.second; });
+    expected_.insert_or_assign(std::string(subject), now + kExpected);
+  }
+  return place;
+}
+
+void StoreCoordinator::HandOver(std::string_view subject, const NodeAddress& heir) {
+  const std::lock_guard lock(mutex_);
+  requests_.heirs.insert_or_assign(std::string(subject), heir.name);
+  const Time now = now_();
+  std::erase_if(given_, [now](const auto& given) { return now >= given.second.until; });
+  given_.insert_or_assign(std::string(subject), Given{heir, now + kExpected});
+  ++given_to_[heir.name];
+}
+
+bool StoreCoordinator::IsExpected(std::string_view subject) const {
+  const std::lock_guard lock(mutex_);
+  const auto known = expected_.find(subject);
+  return known != expected_.end() && now_() < known->second;
+}
+
+// The view still shows this node as the holder until its thread has written the record.
+std::optional<NodeAddress> StoreCoordinator::HeirOf(std::string_view subject) const {
+  const std::lock_guard lock(mutex_);
+  const auto known = given_.find(subject);
+  if (known == given_.end() || now_() >= known->second.until) return std::nullopt;
+  return known->second.heir;
+}
 
 void StoreCoordinator::SetDraining() {
   const std::lock_guard lock(mutex_);
   requests_.draining = true;
 }
 
-// The node with the largest part of its places free.
-const Announcement* StoreCoordinator::RoomElsewhere(const View& view) {
+// The node with the largest part of its places free. Nodes announce themselves once per second, so
+// what this one has given to them counts, too.
+const Announcement* StoreCoordinator::RoomElsewhere(const View& view) const {
   const Announcement* best = nullptr;
+  double least = 0.0;
   if (!view.reachable) return best;  // no node takes anything
+  const std::lock_guard lock(mutex_);
   for (const auto& [name, node] : view.others) {
     if (node.draining || !node.ready || node.subjects >= node.capacity) continue;
-    if (best == nullptr ||
-        LoadOf(node.subjects, node.capacity) < LoadOf(best->subjects, best->capacity)) {
+    const auto given = given_to_.find(name);
+    const double load =
+        LoadOf(node.subjects + (given == given_to_.end() ? 0 : given->second), node.capacity);
+    if (best == nullptr || load < least) {
       best = &node;
+      least = load;
     }
   }
   return best;
 }
 
-Place StoreCoordinator::ForeignPlace(const View& view, std::string_view subject) {
+Place StoreCoordinator::ForeignPlace(const View& view, std::string_view subject) const {
   Place place;
+  if (const auto heir = HeirOf(subject)) {
+    place.kind = Place::Kind::kElsewhere;
+    place.node = *heir;
+    return place;
+  }
+  if (IsExpected(subject)) {
+    place.why = "the subject is on its way to this node";
+    return place;
+  }
   const auto lease = view.foreign.find(subject);
   if (lease == view.foreign.end()) {
     place.why = view.fault.empty() ? "no node serves the subject" : view.fault;
@@ -263,7 +341,9 @@ Place StoreCoordinator::Elsewhere(std::string_view subject) const {
 Place StoreCoordinator::Find(std::string_view subject, Time now) const {
   const auto seen = view();
   const auto own = seen->own.find(subject);
-  if (own == seen->own.end() || now >= own->second.until) return ForeignPlace(*seen, subject);
+  if (own == seen->own.end() || now >= own->second.until || HeirOf(subject)) {
+    return ForeignPlace(*seen, subject);
+  }
   Place place;
   place.kind = Place::Kind::kHere;
   place.epoch = own->second.epoch;
@@ -308,7 +388,7 @@ Place StoreCoordinator::Ask(std::string_view subject, Time now) {
   const auto seen = view();
   const bool draining = is_draining();
   const bool has_room = !draining && static_cast<int>(seen->own.size()) < capacity_;
-  const bool is_held = seen->foreign.contains(subject);
+  const bool is_held = seen->foreign.contains(subject) || IsExpected(subject);
   const bool waits =
       seen->reachable && !seen->has_rival && (is_held || RoomElsewhere(*seen) == nullptr);
   if (!has_room || !(seen->may_take || waits)) return Propose(subject, now);
@@ -325,6 +405,8 @@ Place StoreCoordinator::Successor(std::string_view subject) const {
   if (const Announcement* const other = RoomElsewhere(*seen); other != nullptr) {
     place.kind = Place::Kind::kElsewhere;
     place.node = other->address;
+  } else {
+    place.why = seen->fault.empty() ? "no other node has room" : seen->fault;
   }
   return place;
 }

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -44,6 +45,8 @@ class StoreCoordinator : public Coordinator {
   [[nodiscard]] Place Propose(std::string_view subject, Time now) const override;
   [[nodiscard]] Place Successor(std::string_view subject) const override;
   [[nodiscard]] std::vector<NodeAddress> Others() const override;
+  [[nodiscard]] Place Expect(std::string_view subject, Time now) override;
+  void HandOver(std::string_view subject, const NodeAddress& heir) override;
   void Release(std::string_view subject) override;
   void SetDraining() override;
   [[nodiscard]] ClusterState State(Time now) const override;
@@ -63,6 +66,7 @@ class StoreCoordinator : public Coordinator {
   // What the hub's thread wants.
   struct Requests {
     std::map<std::string, bool, std::less<>> wanted;  // false: to be released
+    std::map<std::string, std::string> heirs;         // by subject: the nodes that get it
     bool draining = false;
   };
 
@@ -76,8 +80,10 @@ class StoreCoordinator : public Coordinator {
   [[nodiscard]] bool is_draining() const;
   [[nodiscard]] std::shared_ptr<const View> view() const;
   void Request(std::string_view subject, bool wanted);
-  [[nodiscard]] static Place ForeignPlace(const View& view, std::string_view subject);
-  [[nodiscard]] static const Announcement* RoomElsewhere(const View& view);
+  [[nodiscard]] bool IsExpected(std::string_view subject) const;
+  [[nodiscard]] std::optional<NodeAddress> HeirOf(std::string_view subject) const;
+  [[nodiscard]] Place ForeignPlace(const View& view, std::string_view subject) const;
+  [[nodiscard]] const Announcement* RoomElsewhere(const View& view) const;
 
   NodeAddress self_;  // set by Start()
   const std::uint64_t run_;
@@ -90,7 +96,8 @@ class StoreCoordinator : public Coordinator {
   LeaseKeeper leases_;
   NodeTable nodes_{{}};
   bool draining_ = false;
-  bool missed_ = true;  // changes may have been missed
+  Time hurries_until_{0};  // a subject moves, and its viewers wait
+  bool missed_ = true;     // changes may have been missed
   Time listed_{0};
   std::uint64_t next_id_ = 1;
   struct Write {
@@ -101,10 +108,17 @@ class StoreCoordinator : public Coordinator {
   std::string why_;                        // the store could not be read
   std::string logged_;
 
-  mutable std::mutex mutex_;  // guards the two below, for moments
+  mutable std::mutex mutex_;  // guards those below, for moments
   std::shared_ptr<const View> view_ = std::make_shared<const View>();
   Requests requests_;
-  std::jthread thread_;  // last: it uses all of the above
+  std::map<std::string, Time, std::less<>> expected_;  // by subject: until when
+  struct Given {
+    NodeAddress heir;
+    Time until{0};  // by then the record says so
+  };
+  std::map<std::string, Given, std::less<>> given_;  // by subject
+  std::map<std::string, int> given_to_;              // by node: how many it got in all
+  std::jthread thread_;                              // last: it uses all of the above
 };
 
 }  // namespace furrow::server

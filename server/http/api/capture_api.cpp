@@ -239,6 +239,7 @@ ApiReply CaptureApi::CapturePose(Hub& hub, Subject& subject, const std::string& 
     }
     spdlog::info("captured reference pose '{}' from '{}'", pose, subject.name);
     num_added_ += added ? 1 : 0;
+    subject.captures.insert(pose);
     Remember({pose, subject.name, subject.skeleton_hash, std::nullopt, std::move(former), added});
   }
   return JsonReply({{"pose", pose},
@@ -248,6 +249,17 @@ ApiReply CaptureApi::CapturePose(Hub& hub, Subject& subject, const std::string& 
                     {"captures", History()}});
 }
 
+// An earlier capture of the same pose stays with its subject.
+void CaptureApi::Forget(const Capture& last, Hub& hub) {
+  const auto is_same = [&last](const Capture& other) {
+    return &other != &last && other.pose == last.pose && other.subject == last.subject;
+  };
+  Subject* const subject = hub.FindSubject(last.subject);
+  if (subject != nullptr && std::ranges::none_of(captures_, is_same)) {
+    subject->captures.erase(last.pose);
+  }
+}
+
 ApiReply CaptureApi::Undo(Hub& hub, Time now) {
   if (captures_.empty()) return ErrorReply(409, "conflict", "", "there is nothing to undo");
   const Capture& last = captures_.back();
@@ -255,6 +267,7 @@ ApiReply CaptureApi::Undo(Hub& hub, Time now) {
   if (last.rig != nullptr) {
     if (Status status = hub.SetRig(last.rig, now); !status.ok()) return ErrorReply(status);
     num_added_ -= last.added ? 1 : 0;
+    Forget(last, hub);
   } else if (Subject* subject = hub.RequireAllDrivers(last.subject);
              subject != nullptr && subject->skeleton_hash == last.skeleton_hash) {
     hub.SetNeutral(*subject, last.neutral, now);

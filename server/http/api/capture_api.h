@@ -46,6 +46,7 @@ class CaptureApi {
   [[nodiscard]] ApiReply CapturePose(Hub& hub, Subject& subject, const std::string& pose,
                                      bool preview, Time now);
   void Remember(Capture capture);
+  void Forget(const Capture& last, Hub& hub);
 
   std::vector<Capture> captures_;  // newest last
   int num_added_ = 0;              // reference poses that captures have added to the rig

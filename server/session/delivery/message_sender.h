@@ -61,6 +61,11 @@ class MessageSender {
   void Encode(const Message& message, std::vector<std::uint8_t>& out) {
     encoder_.Encode({.session = session_}, message, out);
   }
+  template <class Message>
+  void Encode(protocol::Header header, const Message& message, std::vector<std::uint8_t>& out) {
+    header.session = session_;
+    encoder_.Encode(header, message, out);
+  }
   // Answers `request` with an error and counts it.
   void SendError(Peer& peer, const protocol::Header& request, protocol::ErrorCode code,
                  std::string text) {
@@ -95,9 +100,8 @@ class MessageSender {
 
  private:
   template <class Message>
-  void Encode(protocol::Header& header, const Message& message) {
-    header.session = session_;
-    encoder_.Encode(header, message, buffer_);
+  void Encode(const protocol::Header& header, const Message& message) {
+    Encode(header, message, buffer_);
   }
   std::uint64_t Push(Peer& peer, std::uint64_t key, Counter sent, Counter dropped,
                      std::size_t keep) {

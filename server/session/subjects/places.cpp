@@ -17,7 +17,7 @@ Place Places::Renew(std::string_view subject, Time now) {
   }
   place = coordinator_->Ask(subject, now);
   // The coordinator may not have given back yet what this node has just released.
-  if (draining_ && place.kind == Place::Kind::kHere) {
+  if (closed_ && place.kind == Place::Kind::kHere) {
     place.kind = Place::Kind::kNowhere;
     place.why = "this node is draining";
   }
@@ -78,6 +78,29 @@ void Places::Expire(const std::function<bool(std::string_view subject)>& is_publ
     if (!published) coordinator_->Release(it->first);
     it = asked_.erase(it);
   }
+}
+
+Place Places::Expect(std::string_view subject, Time now) {
+  Place place;
+  if (coordinator_ == nullptr) {
+    place.why = "this daemon is in no cluster";
+  } else if (asked_.size() >= most_ && !asked_.contains(subject)) {
+    place.why = "too many subjects wait for their place in the cluster";
+  } else {
+    place = coordinator_->Expect(subject, now);
+    if (place.kind == Place::Kind::kPending) asked_.insert_or_assign(std::string(subject), now);
+  }
+  return place;
+}
+
+void Places::HandOver(std::string_view subject, const NodeAddress& heir) {
+  if (const auto asked = asked_.find(subject); asked != asked_.end()) asked_.erase(asked);
+  if (coordinator_ != nullptr) coordinator_->HandOver(subject, heir);
+}
+
+void Places::Close() {
+  SetDraining();
+  closed_ = true;
 }
 
 void Places::SetDraining() {

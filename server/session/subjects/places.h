@@ -38,7 +38,16 @@ class Places {
   void Release(std::string_view subject);
   // Gives back what was asked for and is not published. `is_published`: here.
   void Expire(const std::function<bool(std::string_view subject)>& is_published, Time now);
+  // Another node is about to hand the subject over (Coordinator::Expect()). It is given back like
+  // one that was asked for.
+  [[nodiscard]] Place Expect(std::string_view subject, Time now);
+  // The other node goes on with the subject.
+  void HandOver(std::string_view subject, const NodeAddress& heir);
+  // Takes no new subject from now on. Those that are here stay.
   void SetDraining();
+  // Nothing is here from now on.
+  void Close();
+  [[nodiscard]] bool draining() const { return draining_; }
   static constexpr Time kPatience = std::chrono::seconds(3);
   // How often the hub asks again for the subjects that it has.
   static constexpr Time kRefresh = std::chrono::milliseconds(100);
@@ -47,6 +56,7 @@ class Places {
   Coordinator* const coordinator_;
   const std::size_t most_;
   bool draining_ = false;
+  bool closed_ = false;
   std::map<std::string, Time, std::less<>> asked_;  // when it was asked for last
 };
 

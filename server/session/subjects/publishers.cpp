@@ -9,6 +9,7 @@
 #include <spdlog/spdlog.h>
 
 #include "server/pipeline/wire_adapter.h"
+#include "server/session/subjects/subject_state.h"
 
 namespace furrow::server {
 namespace {
@@ -16,6 +17,10 @@ namespace {
 // Weights of a lost subject change slowly, so a display's rate is enough whatever the tick's rate
 // is.
 constexpr Time kDecayInterval = FromSeconds(1.0 / 60.0);
+
+// Subscribers follow their subject to another node within this time. Until then, the drivers that
+// they needed go on.
+constexpr Time kLevelKept = std::chrono::seconds(5);
 
 // The shortest silence after which another sender gets a subject.
 constexpr Time kTakeOver = FromSeconds(0.5);
@@ -29,13 +34,14 @@ bool HasSecretSession(const Peer& peer) {
 
 Publishers::Publishers(const Limits& limits, JitterDelays delays, StreamDefinitions* definitions,
                        SubjectRegistry* subjects, MessageSender* messages, Places* places,
-                       std::function<std::uint64_t()> random, Metrics* metrics)
+                       Arrivals* arrivals, std::function<std::uint64_t()> random, Metrics* metrics)
     : limits_(limits),
       delays_(std::move(delays)),
       definitions_(definitions),
       subjects_(subjects),
       messages_(messages),
       places_(places),
+      arrivals_(arrivals),
       random_(std::move(random)),
       metrics_(metrics) {}
 
@@ -57,7 +63,7 @@ Subject* Publishers::OnOffer(Peer& peer, const protocol::Header& header,
   const bool is_contested =
       subject != nullptr && !is_owner && IsContested(*subject, peer, key, now);
   // First: a node that is full sends the publisher to another one.
-  const auto place = TakePlace(peer, header, offer.subject, now);
+  const auto place = TakePlace(peer, header, offer, now);
   if (!place) return nullptr;
   if (is_repeated) {
     subject->ended = false;  // a repeated offer, or the sender is back after its goodbye
@@ -73,6 +79,11 @@ Subject* Publishers::OnOffer(Peer& peer, const protocol::Header& header,
     auto definition = DefinitionFor(peer, header, offer, now);
     if (definition == nullptr) return nullptr;
     subject = Accept(peer, key, offer, std::move(definition), now);
+    if (const auto arrived = arrivals_->Take(subject->name, now)) {
+      ResumeFrom(arrived->header, arrived->state, subject);
+      subject->level_kept_until = now + kLevelKept;
+      subject->keeps_level = true;
+    }
   }
   subject->served_until = place->until;
   subject->epoch = place->epoch;
@@ -110,8 +121,14 @@ std::shared_ptr<const StreamDefinition> Publishers::DefinitionFor(
 
 // Nothing: the offer is answered, or waits for a place. Senders repeat it then.
 std::optional<Place> Publishers::TakePlace(Peer& peer, const protocol::Header& header,
-                                           const std::string& subject, Time now) {
+                                           const protocol::SkeletonOffer& offer, Time now) {
+  const std::string& subject = offer.subject;
   Place place = places_->Ask(subject, now);
+  if (place.kind == Place::Kind::kPending) {
+    arrivals_->Await(subject, peer.id, header, offer.skeleton_hash, now);
+    return std::nullopt;
+  }
+  arrivals_->StopWaiting(subject);
   switch (place.kind) {
     case Place::Kind::kHere: return place;
     case Place::Kind::kPending: return std::nullopt;
@@ -124,6 +141,21 @@ std::optional<Place> Publishers::TakePlace(Peer& peer, const protocol::Header& h
   messages_->SendError(peer, header, protocol::ErrorCode::kLimit,
                        "'" + subject + "' has no place in the cluster: " + place.why);
   return std::nullopt;
+}
+
+// Sooner than the publisher would repeat its offer by itself.
+void Publishers::AskAgain(const std::function<Peer*(PeerId)>& find_peer, Time now) {
+  std::vector<std::string> here;
+  for (const auto& [subject, waiting] : arrivals_->waiting()) {
+    if (places_->Renew(subject, now).kind != Place::Kind::kHere) continue;
+    here.push_back(subject);
+    Peer* const peer = find_peer(waiting.peer);
+    if (peer == nullptr) continue;
+    messages_->SendReply(
+        *peer, MessageSender::ReplyHeader(waiting.offer),
+        protocol::SkeletonReply{waiting.skeleton_hash, protocol::SkeletonStatus::kNeeded, {}});
+  }
+  for (const std::string& subject : here) arrivals_->StopWaiting(subject);
 }
 
 Place Publishers::RenewPlace(Subject& subject, Peer* owner, Time now) {

@@ -15,6 +15,7 @@
 #include "server/pipeline/stream_definition.h"
 #include "server/session/delivery/message_sender.h"
 #include "server/session/peers/peer.h"
+#include "server/session/subjects/arrivals.h"
 #include "server/session/subjects/jitter_delays.h"
 #include "server/session/subjects/places.h"
 #include "server/session/subjects/pose_batch.h"
@@ -40,7 +41,7 @@ class Publishers {
  public:
   // `random`: returns unpredictable numbers, never 0.
   Publishers(const Limits& limits, JitterDelays delays, StreamDefinitions* definitions,
-             SubjectRegistry* subjects, MessageSender* messages, Places* places,
+             SubjectRegistry* subjects, MessageSender* messages, Places* places, Arrivals* arrivals,
              std::function<std::uint64_t()> random, Metrics* metrics);
 
   // Limits new skeletons of all senders together, because binding one takes milliseconds. One host
@@ -83,6 +84,9 @@ class Publishers {
   // The place of a subject in a cluster, which the hub asks for every Places::kRefresh. kElsewhere:
   // the publisher has been sent there. `owner`: the peer that publishes it; null: it has left.
   [[nodiscard]] Place RenewPlace(Subject& subject, Peer* owner, Time now);
+  // Asks the publishers for their offers again that wait for places which are here now.
+  // `find_peer`: null if the peer has left.
+  void AskAgain(const std::function<Peer*(PeerId)>& find_peer, Time now);
   // Sends the publisher of the subject to the node. `owner`: as for RenewPlace().
   void SendAway(const Subject& subject, Peer* owner, const NodeAddress& node);
 
@@ -102,7 +106,7 @@ class Publishers {
   [[nodiscard]] std::shared_ptr<const StreamDefinition> DefinitionFor(
       Peer& peer, const protocol::Header& header, const protocol::SkeletonOffer& offer, Time now);
   [[nodiscard]] std::optional<Place> TakePlace(Peer& peer, const protocol::Header& header,
-                                               const std::string& subject, Time now);
+                                               const protocol::SkeletonOffer& offer, Time now);
   void Reject(Peer& peer, const protocol::Header& header, std::uint64_t hash, std::string why,
               Time now);
   [[nodiscard]] bool IsContested(const Subject& subject, const Peer& peer, const StreamKey& key,
@@ -117,6 +121,7 @@ class Publishers {
   SubjectRegistry* const subjects_;
   MessageSender* const messages_;
   Places* const places_;
+  Arrivals* const arrivals_;
   const std::function<std::uint64_t()> random_;
   Metrics* const metrics_;
   // By skeleton hash. Entries of offers that no subject uses expire.

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -69,7 +70,10 @@ struct Subject {
   bool lost = false;               // no pose for Limits::loss_seconds: the subject decays
   bool can_move = false;           // the owner's session number is a secret that proves who it is
   bool orphaned = false;           // its publisher's connection has closed
+  Time level_kept_until{0};        // after a move: when keeps_level ends
+  bool keeps_level = false;        // no driver is switched off
   bool needs_all_drivers = false;  // evaluate all drivers, not only subscribed ones
+  std::set<std::string> captures;  // reference poses of the rig that were captured from it
   SubjectStats stats;
   CaptureClock capture_clock;  // for the lateness of its poses
   RestDetector rest;           // updated only while a viewer uses flow control

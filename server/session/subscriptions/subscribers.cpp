@@ -231,10 +231,11 @@ bool Subscribers::BindPoses(Subscription& subscription, PoseRequest& request, Su
 void Subscribers::Attach(Subscription& subscription, Subject& subject) {
   table_.Attach(subscription, subject);
   UpdateDriverLevel(subject);
-  subscription.owed = subject.pipeline->has_pose();  // the next tick sends the newest pose
+  // The next tick sends the newest pose, unless another node has sent it before the subject moved.
+  subscription.owed = subject.pipeline->has_pose() && subject.stats.poses() > 0;
 }
 
-// Evaluates as few drivers as the subscriptions need. Levels count drivers from the rig's first.
+// Levels count drivers from the rig's first.
 void Subscribers::UpdateDriverLevel(Subject& subject) {
   std::size_t needed = all_drivers_ || subject.needs_all_drivers ? wrinkle::kAllDrivers : 0;
   // Poses are relayed unsolved and need no drivers. Pictures need all, because a shader reads any
@@ -246,6 +247,7 @@ void Subscribers::UpdateDriverLevel(Subject& subject) {
       needed = wrinkle::kAllDrivers;
     }
   }
+  if (subject.keeps_level) needed = std::max(needed, subject.pipeline->level());
   subject.pipeline->SetLevel(needed);
 }
 

@@ -71,6 +71,8 @@ class Subscribers {
   void OnSubjectMoved(Subject& subject, const NodeAddress& node);
   // Sends subscriptions that wait for a subject to the node that serves it.
   void SendWaitingElsewhere();
+  // Evaluates as few drivers of the subject as its subscriptions need.
+  void UpdateDriverLevel(Subject& subject);
   // Call after the epoch of the subject has changed. Sends new replies.
   void OnEpoch(Subject& subject);
   // Call after subjects were removed. Binds subscriptions without a subject name to the oldest
@@ -96,7 +98,6 @@ class Subscribers {
   bool Bind(Subscription& subscription, Subject& subject);
   bool BindPoses(Subscription& subscription, PoseRequest& request, Subject& subject);
   void Attach(Subscription& subscription, Subject& subject);
-  void UpdateDriverLevel(Subject& subject);
   void SendNow(Subscription& subscription, Time now);
   void Reply(const Subscription& subscription, std::vector<std::string> names);
   void RefuseRequest(Peer& peer, const protocol::Header& header, protocol::ErrorCode code,

@@ -52,6 +52,26 @@ PoseFrame MakePose(int num_joints, int num_blend_shapes, std::uint32_t seed) {
   return pose;
 }
 
+SubjectState MakeState(int num_joints, int num_blend_shapes) {
+  SubjectState state;
+  state.subject = "anna";
+  state.skeleton_hash = 42;
+  state.publisher_session = 7;
+  state.run = 8;
+  state.has_pose = state.has_neutral = true;
+  state.newest_sequence = 10;
+  state.pose = MakePose(num_joints, num_blend_shapes, 1);
+  state.neutral = MakePose(num_joints, num_blend_shapes, 2);
+  state.values_hash = 9;
+  state.num_drivers = 2;
+  state.filtered = {0.25f, 0.5f};
+  state.inputs = {0.3f, 0.75f};
+  state.speeds = {0.5f, -2.5f};
+  state.since_input_s = 0.125;
+  state.captures = "{}";
+  return state;
+}
+
 double AngleBetween(const Quat& a, const Quat& b) {
   const auto distance = [&a, &b](double sign) {
     return std::hypot(std::hypot(a.x - sign * b.x, a.y - sign * b.y),

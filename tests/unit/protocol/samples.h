@@ -14,6 +14,10 @@ inline constexpr Header kHeader{0xfeedULL, 7, 11, 123'456'789};
 // Makes a random pose of that skeleton: all rotations, translations within 5 cm, blend shapes.
 [[nodiscard]] PoseFrame MakePose(int num_joints, int num_blend_shapes, std::uint32_t seed);
 
+// Makes the state of a subject with that skeleton, with a pose, a neutral pose and two driver
+// values.
+[[nodiscard]] SubjectState MakeState(int num_joints, int num_blend_shapes);
+
 // Angle between two rotations in radians. The distance of unit quaternions is more accurate than
 // the arc cosine for small angles.
 [[nodiscard]] double AngleBetween(const Quat& a, const Quat& b);

@@ -11,7 +11,7 @@ import { SubscribeWeights } from '@wire/subscribe-weights';
 import { Weights } from '@wire/weights';
 import { Welcome } from '@wire/welcome';
 import type { Environment } from '../src/link/environment.js';
-import type { Transport, TransportEvents, TransportKind, TransportOpener } from '../src/transport/transport.js';
+import type { Server, Transport, TransportEvents, TransportKind, TransportOpener } from '../src/transport/transport.js';
 import { type Envelope, readMessage, writeMessage } from '../src/wire/envelope.js';
 import { namesHash } from '../src/wire/hash.js';
 
@@ -69,6 +69,12 @@ export class FakeDaemon implements TransportOpener {
   received: string[] = [];
   /** The times of all Pongs, which answer challenges. */
   answers: bigint[] = [];
+  /** Where subjects are that it does not have. */
+  moved: Server | null = null;
+  /** Of its right to serve. */
+  epoch = 0n;
+  /** Further servers of its cluster. */
+  others: string[] = [];
   /** Drops everything that it would send. */
   isMute = false;
   events: TransportEvents | null = null;
@@ -144,7 +150,8 @@ export class FakeDaemon implements TransportOpener {
     this.isProven ||= token === TOKEN;
     const builder = new Builder(64);
     const server = builder.createString('fake');
-    Welcome.finishWelcomeBuffer(builder, Welcome.createWelcome(builder, server, this.isProven ? 0n : TOKEN, 0));
+    const others = this.isProven ? Welcome.createOthersVector(builder, this.others.map((each) => builder.createString(each))) : 0;
+    Welcome.finishWelcomeBuffer(builder, Welcome.createWelcome(builder, server, this.isProven ? 0n : TOKEN, others));
     this.send(0, message.sequence, builder.asUint8Array());
   }
 
@@ -162,6 +169,10 @@ export class FakeDaemon implements TransportOpener {
     }
     const subject = SubscribeWeights.getRootAsSubscribeWeights(new ByteBuffer(message.payload)).subject()!;
     const names = this.subjects.get(subject);
+    if (names === undefined && this.moved !== null) {
+      this.refuse(message.sequence, 4, 'elsewhere', this.moved);
+      return;
+    }
     const stream = this.streams.get(subject) ?? this.streams.size + 1;
     this.streams.set(subject, stream);
     this.sendNames(stream, message.sequence, subject, names ?? []);
@@ -171,14 +182,15 @@ export class FakeDaemon implements TransportOpener {
     const builder = new Builder(256);
     const text = builder.createString(names.length > 0 ? subject : '');
     const list = SubscribeReply.createNamesVector(builder, names.map((name) => builder.createString(name)));
-    SubscribeReply.finishSubscribeReplyBuffer(builder, SubscribeReply.createSubscribeReply(builder, text, namesHash(names), list, 0n, 0n));
+    SubscribeReply.finishSubscribeReplyBuffer(builder, SubscribeReply.createSubscribeReply(builder, text, namesHash(names), list, 0n, this.epoch));
     this.send(stream, sequence, builder.asUint8Array());
   }
 
-  refuse(sequence: number, code: number, text: string): void {
+  refuse(sequence: number, code: number, text: string, to: Server = { host: '', tcp: 0, udp: 0 }): void {
     const builder = new Builder(64);
     const words = builder.createString(text);
-    WireError.finishErrorBuffer(builder, WireError.createError(builder, code, words, 0, 0, 0));
+    const host = to.host === '' ? 0 : builder.createString(to.host);
+    WireError.finishErrorBuffer(builder, WireError.createError(builder, code, words, host, to.tcp, to.udp));
     this.send(0, sequence, builder.asUint8Array());
   }
 

@@ -18,22 +18,25 @@ const triples = (values: Float32Array, n: number): number[][] =>
 /** Readers that return the objects of the JSON files. Kinds that only a daemon receives are missing. */
 const READERS: Record<string, (payload: Uint8Array) => unknown> = {
   FWEL: (p) => {
-    const { server, token } = readWelcome(p);
-    return { server, token: hex(token) };
+    const { server, token, others } = readWelcome(p);
+    return { server, token: hex(token), ...(others.length > 0 && { others }) };
   },
   FPON: (p) => {
     const { timeUs, serverTimeUs } = readPong(p);
     return { time_us: timeUs, server_time_us: serverTimeUs };
   },
   FBYE: (p) => ({ reason: readGoodbye(p) }),
-  FERR: (p) => readError(p),
+  FERR: (p) => {
+    const { code, message, elsewhere } = readError(p);
+    return { code, message, ...elsewhere };
+  },
   FWGT: (p) => {
     const { namesHash, ageUs, values } = readWeights(p);
     return { names_hash: hex(namesHash), age_us: ageUs, values: [...values] };
   },
   FSUR: (p) => {
-    const { subject, namesHash, names } = readReply(p);
-    return { subject, names_hash: hex(namesHash), names };
+    const { subject, namesHash, names, epoch } = readReply(p);
+    return { subject, names_hash: hex(namesHash), names, ...(epoch !== 0n && { epoch: hex(epoch) }) };
   },
   FIMG: (p) => {
     const m = readPicture(p);

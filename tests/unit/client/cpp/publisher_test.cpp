@@ -293,6 +293,51 @@ TEST_F(PublisherTest, GoesToTheServerThatTheDaemonNames) {
   EXPECT_EQ(far_->TakeKinds(), std::vector{MessageKind::kSkeletonOffer});
 }
 
+TEST_F(PublisherTest, PosesWaitForTheServerToWhichItMoves) {
+  const auto stream = publisher_.AddSubject(OneJoint(), 0);
+  Prove();
+  Reply(stream, SkeletonStatus::kAccepted);
+  protocol::PoseFrame pose;
+  pose.num_joints = 1;
+  EXPECT_EQ(publisher_.Send(stream, pose, 0), IoStatus::kOk);
+  far_->follows = true;
+  far_->Answer({.session = 7, .stream = stream}, kMoved);
+  publisher_.Poll(0, milliseconds(0));
+  (void)far_->TakeKinds();
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(publisher_.Send(stream, pose, 0), IoStatus::kOk);
+  EXPECT_TRUE(far_->sent.empty());
+  far_->generation = 2;
+  publisher_.Poll(0, milliseconds(0));
+  Prove();
+  (void)far_->TakeKinds();
+  Reply(stream, SkeletonStatus::kAccepted);
+  publisher_.Poll(0, milliseconds(0));
+  // In their order, and those that follow leave at once.
+  EXPECT_EQ(publisher_.Send(stream, pose, 0), IoStatus::kOk);
+  std::vector<std::uint32_t> sequences;
+  for (const auto& bytes : far_->sent) {
+    protocol::MessageView view;
+    ASSERT_EQ(protocol::OpenMessage(bytes, view), protocol::DecodeStatus::kOk);
+    if (view.kind == MessageKind::kPose) sequences.push_back(view.header.sequence);
+  }
+  EXPECT_EQ(sequences, (std::vector<std::uint32_t>{1, 2, 3, 4}));
+}
+
+TEST_F(PublisherTest, PosesDoNotWaitForAServerThatNeverAnswers) {
+  const auto stream = publisher_.AddSubject(OneJoint(), 0);
+  Prove();
+  far_->follows = true;
+  far_->Answer({.session = 7, .stream = stream}, kMoved);
+  publisher_.Poll(0, milliseconds(0));
+  protocol::PoseFrame pose;
+  pose.num_joints = 1;
+  EXPECT_EQ(publisher_.Send(stream, pose, 0), IoStatus::kOk);
+  publisher_.Poll(1'100'000, milliseconds(0));
+  (void)far_->TakeKinds();
+  EXPECT_EQ(publisher_.Send(stream, pose, 0), IoStatus::kOk);
+  EXPECT_EQ(far_->TakeKinds(), std::vector{MessageKind::kPose});
+}
+
 TEST_F(PublisherTest, ForgedRedirectsAreNotFollowed) {
   const auto stream = publisher_.AddSubject(OneJoint(), 0);
   far_->follows = true;

@@ -44,6 +44,9 @@ DecodeStatus DecodeAny(std::span<const std::uint8_t> bytes) {
     case MessageKind::kSubjects: return decode(Subjects{});
     case MessageKind::kUpdatePictures: return decode(UpdatePictures{});
     case MessageKind::kFrameAck: return decode(FrameAck{});
+    case MessageKind::kSubjectState: return decode(SubjectState{});
+    case MessageKind::kDrain: return decode(Drain{});
+    case MessageKind::kDrainState: return decode(DrainState{});
     case MessageKind::kUnknown: break;
   }
   return DecodeStatus::kUnknownKind;
@@ -70,6 +73,9 @@ std::vector<test::Bytes> OneOfEach() {
           Encoded(Dropped{7}),
           Encoded(ListSubjects{true}),
           Encoded(Subjects{{"a", "b"}, 2}),
+          Encoded(test::MakeState(5, 3)),
+          Encoded(Drain{true}),
+          Encoded(DrainState{true, 1, 2, {"a", "b"}, "no room"}),
           Encoded(UpdatePictures{pictures}),
           Encoded(FrameAck{3}),
           Encoded(Unsubscribe{}),
@@ -88,7 +94,7 @@ TEST(Codec, RecognisesEveryKind) {
     EXPECT_EQ(DecodeAny(bytes), DecodeStatus::kOk) << MessageKindName(view.kind);
     kinds.insert(view.kind);
   }
-  EXPECT_EQ(kinds.size(), 21u);
+  EXPECT_EQ(kinds.size(), 24u);
 }
 
 TEST(Codec, RejectsEveryTruncation) {

@@ -22,6 +22,16 @@ TEST(SequenceWindow, AcceptsNewerPosesAndCountsLostOnes) {
   EXPECT_EQ(window.lost(), 2u);
 }
 
+TEST(SequenceWindow, GoesOnAfterAnotherWindow) {
+  SequenceWindow window = SequenceWindow::After(7, 100);
+  EXPECT_EQ(window.newest(), 100u);
+  EXPECT_EQ(window.Accept(7, 100), SequenceStatus::kDuplicate);
+  EXPECT_EQ(window.Accept(7, 99), SequenceStatus::kLate);
+  EXPECT_EQ(window.Accept(7, 101), SequenceStatus::kNewest);
+  EXPECT_EQ(window.lost(), 0u);
+  EXPECT_EQ(window.Accept(8, 0), SequenceStatus::kRestart);
+}
+
 TEST(SequenceWindow, WrapsAround) {
   SequenceWindow window;
   EXPECT_EQ(window.Accept(1, 0xFFFFFFFEu), kRestart);

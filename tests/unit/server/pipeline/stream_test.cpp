@@ -451,6 +451,52 @@ TEST(SubjectPipeline, ACaptureTimeThatGoesBackRestartsTheFilter) {
 }
 
 // Cloth that is slack at rest keeps its weight. The subject counts as neutral all the same.
+TEST(SubjectPipeline, AnotherPipelineGoesOnAsIfNothingHadHappened) {
+  const auto stream = Define(/*filter=*/true);
+  SubjectPipeline former(stream);
+  const auto solve = [&stream](SubjectPipeline& pipeline, std::uint32_t sequence) {
+    const float bend = 0.3f + 0.2f * std::sin(static_cast<float>(sequence));
+    ApplyPose(Bend(bend), *stream, pipeline.mutable_pose());
+    EXPECT_EQ(pipeline.Solve(sequence, 20'000 * std::int64_t{sequence}), wrinkle::JobStatus::kOk);
+  };
+  wrinkle::LocalPose neutral = former.pose();
+  neutral.joints[2].rotation = glm::angleAxis(0.1f, glm::vec3(1, 0, 0));
+  ASSERT_TRUE(former.SetNeutral(neutral));
+  for (std::uint32_t i = 1; i <= 5; ++i) solve(former, i);
+  ASSERT_EQ(former.Decay(0.05), wrinkle::JobStatus::kOk);
+  SubjectPipeline next(stream);
+  ASSERT_TRUE(next.SetNeutral(former.neutral_pose()));
+  ASSERT_TRUE(next.Resume(former.pose(), former.memory()));
+  const auto weights = [](const SubjectPipeline& pipeline) {
+    const auto all = pipeline.wrinkle_weights();
+    return std::vector<float>(all.begin(), all.end());
+  };
+  EXPECT_TRUE(next.has_pose());
+  EXPECT_EQ(next.sequence(), 5u);
+  EXPECT_EQ(next.capture_time_us(), 100'000);
+  EXPECT_EQ(weights(next), weights(former));
+  for (std::uint32_t i = 6; i <= 9; ++i) {
+    solve(former, i);
+    solve(next, i);
+    EXPECT_EQ(weights(next), weights(former)) << i;
+  }
+  // One without this past differs, so the comparison can fail.
+  SubjectPipeline fresh(stream);
+  ASSERT_TRUE(fresh.SetNeutral(former.neutral_pose()));
+  solve(fresh, 9);
+  EXPECT_NE(weights(fresh), weights(former));
+}
+
+TEST(SubjectPipeline, RefusesThePastOfAnotherRig) {
+  SubjectPipeline pipeline(Define(/*filter=*/true));
+  SubjectPipeline::Memory memory = pipeline.memory();
+  EXPECT_FALSE(pipeline.Resume(pipeline.pose(), memory)) << "there was no pose yet";
+  memory.solver.filtered.assign(99, 0.0f);
+  memory.solver.inputs = memory.solver.speeds = memory.solver.filtered;
+  EXPECT_FALSE(pipeline.Resume(pipeline.pose(), memory));
+  EXPECT_FALSE(pipeline.has_pose());
+}
+
 TEST(SubjectPipeline, FoldsAtRestDoNotHoldASubject) {
   auto rig = std::make_shared<wrinkle::Rig>(*KneeRig(/*filter=*/true));
   rig->regions[0].curve = {{0.0f, 0.5f}, {1.0f, 1.0f}};

@@ -71,6 +71,10 @@ export class PoseFeed implements Subscriber {
     this.subscription.close();
   }
 
+  asksFor(): string {
+    return this.wanted.subject;
+  }
+
   request(): Uint8Array {
     return subscribePoses(this.wanted);
   }

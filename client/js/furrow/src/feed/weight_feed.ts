@@ -122,6 +122,10 @@ export class WeightFeed implements Subscriber {
     this.subscription.close();
   }
 
+  asksFor(): string {
+    return this.wanted.subject;
+  }
+
   request(): Uint8Array {
     return subscribeWeights(this.wanted);
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One connection to a daemon for all subscriptions. It opens by itself, and again after every loss, and subscribes
 // again then (protocol/STANDARD.md sections 4 and 8).
-import type { Transport, TransportKind, TransportOpener } from '../transport/transport.js';
+import type { Server, Transport, TransportKind, TransportOpener } from '../transport/transport.js';
 import { type Envelope, readMessage, writeMessage } from '../wire/envelope.js';
 import { Malformed } from '../wire/flat_table.js';
 import { readError, readGoodbye, readPing, readPong, readReply, readWelcome, type ReplyMessage } from '../wire/replies.js';
@@ -9,6 +9,7 @@ import { hello, ping, pong, unsubscribe } from '../wire/requests.js';
 import { Backoff } from './backoff.js';
 import { ServerClock } from './clock.js';
 import { type Environment, MACHINE } from './environment.js';
+import { Servers } from './servers.js';
 
 /** A datagram may be lost, so requests and the Hello are repeated. */
 const REPEAT_MS = 200;
@@ -21,10 +22,14 @@ const PING_MS = { ws: 1000, tcp: 1000, udp: 400 } as const;
 const SILENCE_MS = 5000;
 /** An attempt that takes longer has failed. */
 const CONNECT_MS = 3000;
+/** The same if there are other servers to go to. */
+const SILENCE_WITH_OTHERS_MS = 2000;
+/** A client that was sent elsewhere, but stays, asks again after this time. */
+const STAY_MS = 800;
 const MAX_CLIENT_BYTES = 64;
 
 /** Codes of STANDARD.md section 10. */
-export const ERROR = { unsupported: 3, noMatch: 5, limit: 6, notRendering: 8, badPicture: 9, unproven: 11, draining: 12,
+export const ERROR = { unsupported: 3, unknownSubject: 4, noMatch: 5, limit: 6, notRendering: 8, badPicture: 9, unproven: 11, draining: 12,
   needsToken: 15, notPermitted: 16 } as const;
 /** Reasons of a Goodbye. */
 const DONE = 0;
@@ -34,6 +39,8 @@ const TIMED_OUT = 3;
 
 /** The request of a subscription and its callbacks. Callbacks of one subscription may throw Malformed. */
 export interface Subscriber {
+  /** The subject that it asks for. Absent: the connection stays at its server. */
+  asksFor?(): string;
   /** Returns the current request. Called for every connection. */
   request(): Uint8Array;
   onReply(reply: ReplyMessage, requestSequence: number): void;
@@ -69,6 +76,11 @@ interface Entry {
   stream: number;
   /** Sequences of requests about the subscription, to assign errors to it. */
   requests: Set<number>;
+  /** The subject that was served last, and the highest epoch in which it was. */
+  served: string;
+  epoch: bigint;
+  /** The server serves a lower epoch than another one did. It will notice that it no longer may. */
+  isFenced: boolean;
 }
 
 export interface ConnectionOptions {
@@ -84,6 +96,7 @@ export class Connection {
   private readonly backoff: Backoff;
   private readonly program: string;
   private readonly session: bigint;
+  private readonly servers: Servers;
   private readonly stateListeners = new Set<(state: LinkState) => void>();
   private readonly entries = new Set<Entry>();
   private current: LinkState = 'connecting';
@@ -103,7 +116,8 @@ export class Connection {
   private cancelTimer: () => void = () => {};
   private isClosed = false;
 
-  constructor(private readonly opener: TransportOpener, options: ConnectionOptions = {}) {
+  constructor(opener: TransportOpener, options: ConnectionOptions = {}) {
+    this.servers = new Servers(opener);
     this.kind = opener.kind;
     this.environment = options.environment ?? MACHINE;
     this.backoff = new Backoff(this.environment.random);
@@ -157,7 +171,8 @@ export class Connection {
 
   /** Sends the request now if the connection is open, otherwise once it is. */
   subscribe(subscriber: Subscriber): Subscription {
-    const entry: Entry = { subscriber, sequence: 0, message: null, waiting: false, stream: 0, requests: new Set() };
+    const entry: Entry = { subscriber, sequence: 0, message: null, waiting: false, stream: 0, requests: new Set(),
+      served: '', epoch: 0n, isFenced: false };
     this.entries.add(entry);
     if (this.isProven) this.ask(entry);
     return {
@@ -208,7 +223,7 @@ export class Connection {
     const current = <A extends unknown[]>(run: (...args: A) => void) => (...args: A): void => {
       if (opening === null || opening === this.transport) run(...args);
     };
-    opening = this.opener.open({
+    opening = this.servers.opener.open({
       onOpen: current(events.onOpen),
       onMessage: current(events.onMessage),
       onMalformed: current(events.onMalformed),
@@ -246,18 +261,23 @@ export class Connection {
   }
 
   private sayHello(): void {
-    this.send(0, hello(this.program, this.token, this.kind === 'udp', this.opener.access ?? ''));
+    this.send(0, hello(this.program, this.token, this.kind === 'udp', this.servers.opener.access ?? ''));
   }
 
-  private lost(why: string): void {
-    if (this.isClosed) return;
+  private letGo(): void {
     this.transport?.close();
     this.transport = null;
     this.isUp = this.isProven = false;
     this.serverSession = 0n;
-    if (why !== '') this.failure = why; // a daemon that wants a token has said so before it closed
     for (const entry of this.entries) forget(entry);
     this.cancelTimer();
+  }
+
+  private lost(why: string): void {
+    if (this.isClosed) return;
+    this.letGo();
+    this.servers.next(this.environment.nowMs());
+    if (why !== '') this.failure = why; // a daemon that wants a token has said so before it closed
     this.cancelTimer = this.environment.after(this.backoff.failed(), () => this.connect());
     this.setState('lost'); // last, because a listener may close the connection
   }
@@ -278,7 +298,8 @@ export class Connection {
     // A dead connection never completes a closing handshake, so it is given up. So is a daemon that does not answer the
     // Hello after a restart. Before the first answer, UDP keeps asking on the same socket.
     const isOpen = this.current === 'open' || this.current === 'draining';
-    if (isOpen && silentMs > SILENCE_MS && this.environment.isAwake()) {
+    const mostMs = this.servers.hasOthers ? SILENCE_WITH_OTHERS_MS : SILENCE_MS;
+    if (isOpen && silentMs > mostMs && this.environment.isAwake()) {
       this.lost('the daemon is silent');
       return;
     }
@@ -346,7 +367,7 @@ export class Connection {
     this.noticeRestart(message.session);
     switch (message.identifier) {
       case 'FWEL':
-        return this.welcomed(readWelcome(message.payload).token);
+        return this.welcomed(readWelcome(message.payload));
       case 'FPIN': // over UDP, a challenge: whether this address still wants what is sent to it
         this.send(0, pong(readPing(message.payload)));
         return;
@@ -361,8 +382,10 @@ export class Connection {
         return this.replied(message);
       case 'FBYE':
         return this.goodbye(message);
-      default:
-        this.entryOf(message.stream)?.subscriber.onMessage(message);
+      default: {
+        const entry = this.entryOf(message.stream);
+        if (entry !== null && !entry.isFenced) entry.subscriber.onMessage(message);
+      }
     }
   }
 
@@ -373,7 +396,8 @@ export class Connection {
     if (isOther && this.isProven && this.kind === 'udp') this.proveAgain();
   }
 
-  private welcomed(token: bigint): void {
+  private welcomed({ token, others }: { token: bigint; others: string[] }): void {
+    if (token === 0n) this.servers.remember(others);
     if (this.isProven) return;
     if (token !== 0n) {
       this.token = token;
@@ -397,6 +421,8 @@ export class Connection {
       if (entry.sequence !== message.sequence) continue;
       entry.stream = message.stream;
       entry.waiting = false;
+      noteEpoch(entry, reply);
+      if (entry.isFenced) return;
       entry.subscriber.onReply(reply, message.sequence);
       return;
     }
@@ -405,7 +431,8 @@ export class Connection {
   }
 
   private refused(message: Envelope): void {
-    const { code, message: text } = readError(message.payload);
+    const { code, message: text, elsewhere } = readError(message.payload);
+    if (elsewhere !== null && code === ERROR.unknownSubject && this.follows(message.sequence, elsewhere)) return;
     if (code === ERROR.unproven && this.kind === 'udp') {
       if (this.isProven) this.proveAgain();
       return;
@@ -424,6 +451,30 @@ export class Connection {
     }
   }
 
+  /**
+   * True if the connection goes on at another server, or asks here again later. One with several subjects cannot: they
+   * may be at different servers. Only the answer to a request counts.
+   */
+  private follows(sequence: number, server: Server): boolean {
+    const entries = [...this.entries];
+    const subject = entries[0]?.subscriber.asksFor?.();
+    const isAsked = entries.some((entry) => entry.sequence === sequence);
+    const isOne = subject !== undefined && entries.every(({ subscriber }) => subscriber.asksFor?.() === subject);
+    if (!this.servers.canFollow || !this.isProven || !isAsked || !isOne) return false;
+    if (this.servers.goTo(server, this.environment.nowMs())) {
+      this.letGo();
+      this.connect();
+      return true;
+    }
+    for (const entry of entries) {
+      forget(entry);
+      this.environment.after(STAY_MS, () => {
+        if (this.isProven && this.entries.has(entry) && entry.message === null) this.ask(entry);
+      });
+    }
+    return true;
+  }
+
   private goodbye(message: Envelope): void {
     const reason = readGoodbye(message.payload);
     if (reason === TIMED_OUT) {
@@ -437,6 +488,16 @@ export class Connection {
       if (reason === DONE) entry?.subscriber.onRefused(0, 'the daemon has ended the subscription', entry.sequence);
     }
   }
+}
+
+/** Epochs of different subjects do not compare. A reply without one says that the request waits. */
+function noteEpoch(entry: Entry, reply: ReplyMessage): void {
+  if (reply.subject !== '' && reply.subject !== entry.served) {
+    entry.served = reply.subject;
+    entry.epoch = 0n;
+  }
+  entry.isFenced = reply.epoch !== 0n && reply.epoch < entry.epoch;
+  if (reply.epoch > entry.epoch) entry.epoch = reply.epoch;
 }
 
 function forget(entry: Entry): void {

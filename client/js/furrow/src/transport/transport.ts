@@ -24,6 +24,14 @@ export interface Transport {
   close(): void;
 }
 
+/** How clients reach another server of the daemon's cluster. */
+export interface Server {
+  /** A name or a numeric address, without brackets. */
+  host: string;
+  tcp: number;
+  udp: number;
+}
+
 /** Starts one attempt. */
 export interface TransportOpener {
   kind: TransportKind;
@@ -34,5 +42,10 @@ export interface TransportOpener {
   makeSession?(): bigint;
   /** The text of the connect token that each Hello shows; absent or empty: none. */
   access?: string;
+  /**
+   * The same for a server that the daemon has named. Absent if the client must not follow: the token would be shown to
+   * a server that nobody has proved to be one of them.
+   */
+  elsewhere?(server: Server): TransportOpener;
   open(events: TransportEvents): Transport;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The messages that a client receives, as plain objects. Every reader throws Malformed (protocol/STANDARD.md section
 // 11): a message that fails a check is dropped as a whole.
+import type { Server } from '../transport/transport.js';
 import { FlatTable, require } from './flat_table.js';
 import { namesHash } from './hash.js';
 
@@ -9,6 +10,7 @@ const MAX_ERROR_BYTES = 1024;
 const MAX_SERVER_BYTES = 64;
 const NUM_ERROR_CODES = 16;
 const MAX_CODEC_BYTES = 32;
+const MAX_OTHERS = 8;
 
 export interface PictureMessage {
   width: number;
@@ -46,6 +48,8 @@ export interface ReplyMessage {
   /** Equal names in equal order have equal hashes; 0n: no names. */
   namesHash: bigint;
   names: string[];
+  /** Grows with each server of a cluster that gets the subject; 0n without a cluster. */
+  epoch: bigint;
 }
 
 export function readPicture(payload: Uint8Array): PictureMessage {
@@ -95,7 +99,7 @@ export function readReply(payload: Uint8Array): ReplyMessage {
   const names = table.names(2, MAX_NAMES);
   const hash = table.u64(1);
   require(hash === namesHash(names), 'a hash that does not match the names');
-  return { subject: table.text(0), namesHash: hash, names };
+  return { subject: table.text(0), namesHash: hash, names, epoch: table.u64(4) };
 }
 
 /** The time of the sender, microseconds. A Pong repeats it. */
@@ -108,17 +112,20 @@ export function readPong(payload: Uint8Array): { timeUs: number; serverTimeUs: n
   return { timeUs: Number(table.i64(0)), serverTimeUs: Number(table.i64(1)) };
 }
 
-export function readWelcome(payload: Uint8Array): { server: string; token: bigint } {
+/** `others`: further servers of the daemon's cluster, "HOST:TCP:UDP". */
+export function readWelcome(payload: Uint8Array): { server: string; token: bigint; others: string[] } {
   const table = new FlatTable(payload);
-  return { server: table.text(0, MAX_SERVER_BYTES), token: table.u64(1) };
+  return { server: table.text(0, MAX_SERVER_BYTES), token: table.u64(1), others: table.names(2, MAX_OTHERS) };
 }
 
-/** `code`: as in STANDARD.md section 10. */
-export function readError(payload: Uint8Array): { code: number; message: string } {
+/** `code`: as in STANDARD.md section 10. `elsewhere`: the server to ask instead; null: none. */
+export function readError(payload: Uint8Array): { code: number; message: string; elsewhere: Server | null } {
   const table = new FlatTable(payload);
   const code = table.u16(0);
   require(code >= 1 && code <= NUM_ERROR_CODES, 'an unknown error code');
-  return { code, message: table.text(1, MAX_ERROR_BYTES) };
+  const [host, tcp, udp] = [table.text(2), table.u16(3), table.u16(4)];
+  require(host === '' || (tcp !== 0 && udp !== 0), 'another server without ports');
+  return { code, message: table.text(1, MAX_ERROR_BYTES), elsewhere: host === '' ? null : { host, tcp, udp } };
 }
 
 /** 0 done, 1 subject gone, 2 draining, 3 timed out. */

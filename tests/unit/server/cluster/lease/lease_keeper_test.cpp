@@ -63,6 +63,69 @@ class StrictLeaseKeeperTest : public LeaseKeeperTest {
   StrictLeaseKeeperTest() : LeaseKeeperTest(true) {}
 };
 
+TEST_F(LeaseKeeperTest, AnHeirGetsTheLeaseInTheNextEpochAndNobodyElse) {
+  Settle();
+  const std::uint64_t epoch = Take();
+  keeper_.HandOver("ada", "b", 8);
+  EXPECT_FALSE(Serves());
+  auto writes = Tick();
+  ASSERT_EQ(writes.size(), 1u);
+  EXPECT_EQ(writes[0].lease.node, "b");
+  EXPECT_EQ(writes[0].lease.run, 8u);
+  EXPECT_EQ(writes[0].lease.epoch, epoch + 1);
+  EXPECT_EQ(writes[0].expected, revision_);
+  EXPECT_TRUE(keeper_.holds_any());
+  Done(writes[0]);
+  EXPECT_FALSE(keeper_.holds_any());
+  EXPECT_EQ(keeper_.HolderOf("ada", now_), "b");
+}
+
+TEST_F(LeaseKeeperTest, AHandOverIsRepeatedUntilItIsWritten) {
+  Settle();
+  (void)Take();
+  keeper_.HandOver("ada", "b", 8);
+  auto writes = Tick();
+  ASSERT_EQ(writes.size(), 1u);
+  keeper_.OnWritten("ada", writes[0].id, WriteResult::kUnknown, 0, now_);
+  keeper_.Release("ada");  // changes nothing
+  List();
+  writes = Tick();
+  ASSERT_EQ(writes.size(), 1u);
+  EXPECT_EQ(writes[0].lease.node, "b");
+}
+
+TEST_F(LeaseKeeperTest, AnHeirServesAsSoonAsItHasWrittenTheLease) {
+  Settle();
+  keeper_.Want("ada");
+  entries_ = {{"ada", {.node = "b", .run = 8, .epoch = 5, .deadline_ms = 0}, ++revision_}};
+  keeper_.OnEntry(entries_[0], now_);
+  EXPECT_TRUE(Tick().empty()) << "the other node holds it";
+  // The other node names this one.
+  entries_ = {{"ada", {.node = "a", .run = 7, .epoch = 6, .deadline_ms = 0}, ++revision_}};
+  keeper_.OnEntry(entries_[0], now_);
+  EXPECT_FALSE(Serves()) << "nobody knows how old the record is";
+  const auto writes = Tick();
+  ASSERT_EQ(writes.size(), 1u);
+  EXPECT_EQ(writes[0].expected, revision_);
+  EXPECT_GT(writes[0].lease.epoch, 6u);
+  Done(writes[0]);
+  EXPECT_TRUE(Serves()) << "without a listing";
+}
+
+TEST_F(LeaseKeeperTest, AnInheritanceOfAStoreThatWasEmptiedIsNone) {
+  Settle();
+  keeper_.Want("ada");
+  entries_ = {{"ada", {.node = "a", .run = 7, .epoch = 6, .deadline_ms = 0}, ++revision_}};
+  keeper_.OnEntry(entries_[0], now_);
+  const auto writes = Tick();
+  ASSERT_EQ(writes.size(), 1u);
+  incarnation_ = 2;
+  entries_.clear();
+  List();
+  keeper_.OnWritten("ada", writes[0].id, WriteResult::kDone, ++revision_, now_);
+  EXPECT_FALSE(Serves());
+}
+
 TEST_F(LeaseKeeperTest, TakesNothingBeforeTheStoreIsKnownForTheTimeOfALease) {
   keeper_.Want("ada");
   keeper_.OnReachable(true, now_);

@@ -184,6 +184,65 @@ TEST_F(StoreCoordinatorTest, AReleasedSubjectMovesAtOnceAndUpwards) {
   EXPECT_GT(b.Find("ada", world_.Now()).epoch, epoch);
 }
 
+TEST_F(StoreCoordinatorTest, ASubjectIsHandedOverAndNoThirdNodeGetsIt) {
+  StoreCoordinator& a = Add("a");
+  StoreCoordinator& b = Add("b");
+  StoreCoordinator& c = Add("c");
+  for (StoreCoordinator* node : {&a, &b, &c}) ASSERT_TRUE(IsReady(*node));
+  ASSERT_TRUE(Takes(a, "ada"));
+  ASSERT_TRUE(Sees(b, "ada", "a"));
+  ASSERT_TRUE(Sees(c, "ada", "a"));
+  const std::uint64_t epoch = a.Find("ada", world_.Now()).epoch;
+  a.SetDraining();
+  // The heir sends nobody back while it waits.
+  EXPECT_EQ(b.Expect("ada", world_.Now()).kind, Place::Kind::kPending);
+  EXPECT_EQ(b.Elsewhere("ada").kind, Place::Kind::kNowhere);
+  EXPECT_EQ(b.Ask("ada", world_.Now()).kind, Place::Kind::kPending);
+  // The node that hands it over goes on until then, and sends everybody away from then on.
+  EXPECT_EQ(a.Ask("ada", world_.Now()).kind, Place::Kind::kHere);
+  (void)c.Ask("ada", world_.Now());
+  a.HandOver("ada", {"b", "host-b", 7400, 7401, 7480});
+  for (const Place& place :
+       {a.Ask("ada", world_.Now()), a.Find("ada", world_.Now()), a.Elsewhere("ada")}) {
+    EXPECT_EQ(place.kind, Place::Kind::kElsewhere);
+    EXPECT_EQ(place.node.name, "b");
+  }
+  ASSERT_TRUE(Takes(b, "ada"));
+  EXPECT_GT(b.Find("ada", world_.Now()).epoch, epoch);
+  EXPECT_TRUE(Sees(c, "ada", "b"));
+  EXPECT_TRUE(Sees(a, "ada", "b"));
+}
+
+TEST_F(StoreCoordinatorTest, AnExpectedSubjectThatNeverComesIsForgotten) {
+  StoreCoordinator& a = Add("a");
+  StoreCoordinator& b = Add("b");
+  ASSERT_TRUE(IsReady(a));
+  ASSERT_TRUE(IsReady(b));
+  ASSERT_TRUE(Takes(a, "ada"));
+  ASSERT_TRUE(Sees(b, "ada", "a"));
+  EXPECT_EQ(b.Expect("ada", world_.Now()).kind, Place::Kind::kPending);
+  EXPECT_EQ(b.Elsewhere("ada").kind, Place::Kind::kNowhere);
+  EXPECT_TRUE(Sees(b, "ada", "a")) << "after a while";
+  b.SetDraining();
+  EXPECT_EQ(b.Expect("ada", world_.Now()).why, "this node is draining");
+}
+
+TEST_F(StoreCoordinatorTest, SubjectsThatAreHandedOverAreSpread) {
+  StoreCoordinator& a = Add("a");
+  for (const char* name : {"b", "c"}) ASSERT_TRUE(IsReady(Add(name)));
+  ASSERT_TRUE(IsReady(a));
+  std::map<std::string, int> given;
+  ASSERT_TRUE(Becomes([&] { return a.Others().size() == 2; }));
+  for (const char* subject : {"s1", "s2", "s3", "s4"}) {
+    ASSERT_TRUE(Takes(a, subject));
+    ASSERT_TRUE(Becomes([&] { return a.Successor(subject).kind == Place::Kind::kElsewhere; }));
+    const NodeAddress heir = a.Successor(subject).node;
+    a.HandOver(subject, heir);
+    ++given[heir.name];
+  }
+  EXPECT_EQ(given, (std::map<std::string, int>{{"b", 2}, {"c", 2}}));
+}
+
 TEST_F(StoreCoordinatorTest, ANodeThatEndsGivesItsLeasesBack) {
   Add("a");
   StoreCoordinator& b = Add("b");

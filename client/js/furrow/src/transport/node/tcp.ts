@@ -6,7 +6,13 @@ import { ByteQueue } from './byte_queue.js';
 import { connectStream, failureText, NO_SECURITY, type StreamSecurity } from './stream.js';
 
 export function tcpSocket(host: string, port: number, security = NO_SECURITY): TransportOpener {
-  return { kind: 'tcp', access: security.token, open: (events) => openTcp(host, port, security, events) };
+  const opener: TransportOpener = {
+    kind: 'tcp', access: security.token, open: (events) => openTcp(host, port, security, events),
+  };
+  // Any server has a certificate of a public authority, so a token needs one that the user has named.
+  const isSafe = security.token === '' || (security.tls?.ca !== undefined && !security.tokenInClear);
+  if (isSafe) opener.elsewhere = (server) => tcpSocket(server.host, server.tcp, security);
+  return opener;
 }
 
 function openTcp(host: string, port: number, security: StreamSecurity, events: TransportEvents): Transport {

@@ -17,6 +17,8 @@ export function udpSocket(host: string, port: number, token = ''): TransportOpen
   return {
     kind: 'udp',
     makeSession: () => randomBytes(8).readBigUInt64LE(),
+    // The other server must know the key of the token, and learns nothing.
+    elsewhere: (server) => udpSocket(server.host, server.udp, token),
     open: (events) => new UdpSocket(host, port, parsed, events),
   };
 }

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/session/subjects/arrivals.h"
+
+#include <iterator>
+#include <utility>
+
+#include "protocol/messages/limits.h"
+
+namespace furrow::server {
+namespace {
+
+// The senders of offers repeat them much sooner.
+constexpr Time kOfferPatience = std::chrono::seconds(3);
+
+}  // namespace
+
+std::size_t Arrivals::BytesOf(const States::value_type& kept) {
+  constexpr std::size_t kOfEntry = 256;
+  return kOfEntry + kept.first.size() + kept.second.payload.size();
+}
+
+Arrivals::States::iterator Arrivals::Forget(States::iterator kept) {
+  bytes_ -= BytesOf(*kept);
+  return states_.erase(kept);
+}
+
+bool Arrivals::Add(const std::string& subject, const protocol::MessageView& view, Time now) {
+  if (const auto known = states_.find(subject); known != states_.end()) (void)Forget(known);
+  Expire(now);
+  if (view.payload.size() > protocol::kMaxUdpMessageBytes) return false;
+  States::value_type kept(
+      subject, {view.header, {view.payload.begin(), view.payload.end()}, now + kPatience});
+  if (bytes_ + BytesOf(kept) > kMaxBytes) return false;
+  bytes_ += BytesOf(kept);
+  states_.insert(std::move(kept));
+  return true;
+}
+
+std::optional<Arrivals::Arrived> Arrivals::Take(std::string_view subject, Time now) {
+  const auto kept = states_.find(subject);
+  if (kept == states_.end()) return std::nullopt;
+  Arrived arrived{kept->second.header, {}};
+  const protocol::MessageView view{.header = kept->second.header,
+                                   .kind = protocol::MessageKind::kSubjectState,
+                                   .payload = kept->second.payload};
+  const bool is_good = now < kept->second.until &&
+                       protocol::Decode(view, arrived.state) == protocol::DecodeStatus::kOk;
+  (void)Forget(kept);
+  return is_good ? std::optional(std::move(arrived)) : std::nullopt;
+}
+
+void Arrivals::Await(const std::string& subject, PeerId peer, const protocol::Header& offer,
+                     std::uint64_t skeleton_hash, Time now) {
+  if (waiting_.size() >= kMaxWaiting && !waiting_.contains(subject)) return;
+  waiting_.insert_or_assign(subject, Waiting{peer, offer, skeleton_hash, now + kOfferPatience});
+}
+
+void Arrivals::StopWaiting(std::string_view subject) {
+  if (const auto known = waiting_.find(subject); known != waiting_.end()) waiting_.erase(known);
+}
+
+void Arrivals::Expire(Time now) {
+  for (auto kept = states_.begin(); kept != states_.end();) {
+    kept = now >= kept->second.until ? Forget(kept) : std::next(kept);
+  }
+  std::erase_if(waiting_, [now](const auto& each) { return now >= each.second.until; });
+}
+
+}  // namespace furrow::server

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "protocol/codec/codec.h"
+#include "server/core/time.h"
+#include "server/session/peers/peer.h"
+
+namespace furrow::server {
+
+// States of subjects that other nodes have handed over, until their publishers offer them here, and
+// publishers that wait for the place of their subject. All functions require the hub's exclusive
+// lock. Bounded in bytes; what does not fit is refused.
+class Arrivals {
+ public:
+  static constexpr std::size_t kMaxBytes = std::size_t{16} * 1024 * 1024;
+  static constexpr std::size_t kMaxWaiting = 4096;
+  // A publisher that lost its way needs time to find this node.
+  static constexpr Time kPatience = std::chrono::seconds(10);
+
+  // Keeps a state that Decode() has accepted, instead of an older one of the subject. False: there
+  // is too little room.
+  [[nodiscard]] bool Add(const std::string& subject, const protocol::MessageView& view, Time now);
+  struct Arrived {
+    protocol::Header header;
+    protocol::SubjectState state;
+  };
+  // The state of the subject, which is then forgotten; nothing if there is none.
+  [[nodiscard]] std::optional<Arrived> Take(std::string_view subject, Time now);
+
+  // The publisher has offered a subject that has no place here yet.
+  void Await(const std::string& subject, PeerId peer, const protocol::Header& offer,
+             std::uint64_t skeleton_hash, Time now);
+  struct Waiting {
+    PeerId peer = 0;
+    protocol::Header offer;
+    std::uint64_t skeleton_hash = 0;
+    Time until{0};
+  };
+  [[nodiscard]] const std::map<std::string, Waiting, std::less<>>& waiting() const {
+    return waiting_;
+  }
+  void StopWaiting(std::string_view subject);
+
+  // Forgets what nobody has come for.
+  void Expire(Time now);
+  [[nodiscard]] std::size_t bytes() const { return bytes_; }
+
+ private:
+  struct Kept {
+    protocol::Header header;
+    std::vector<std::uint8_t> payload;
+    Time until{0};
+  };
+  using States = std::map<std::string, Kept, std::less<>>;
+  [[nodiscard]] static std::size_t BytesOf(const States::value_type& kept);
+  States::iterator Forget(States::iterator kept);
+
+  States states_;
+  std::size_t bytes_ = 0;
+  std::map<std::string, Waiting, std::less<>> waiting_;
+};
+
+}  // namespace furrow::server

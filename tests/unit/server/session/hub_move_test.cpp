@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: Apache-2.0
+// Subjects that move from one hub to another one.
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "fake_cluster.h"
+#include "hub_fixture.h"
+#include "protocol/secure/token/roles.h"
+
+namespace furrow::server {
+namespace {
+
+using protocol::SkeletonStatus;
+
+// One hub at a time: the next node of the cluster takes the place of the one before.
+class HubMoveTest : public HubPeersTest {
+ protected:
+  HubMoveTest() {
+    cluster = &nodes;
+    nodes.successor = FakeCluster::At(FakeCluster::kOther);
+    nodes.expects.kind = Place::Kind::kPending;
+  }
+  void SetUp() override {
+    Make({}, /*filter=*/true);
+    Connect(&sender);
+    Connect(&viewer);
+    Serve(10);
+  }
+
+  void Serve(std::uint64_t epoch) {
+    nodes.places["ada"] = FakeCluster::Here(now + FromSeconds(60.0), epoch);
+  }
+  // The last weights that the viewer has got.
+  std::vector<float> Weights() {
+    std::vector<float> values;
+    while (!viewer.inbox.empty()) {
+      const auto got = viewer.Take<protocol::WeightFrame>();
+      if (got) values = got->message.values;
+    }
+    return values;
+  }
+  void SendPose(std::uint32_t sequence) {
+    Advance(0.02);
+    Send(sender, Pose(0.1f * static_cast<float>(sequence % 7)), 1, sequence, 20'000 * sequence);
+  }
+  // Publishes "ada" here, with a neutral pose, and sends some poses.
+  void Perform() {
+    Publish(sender, "ada");
+    ASSERT_NE(Watch(viewer, {.subject = "ada"}), 0);
+    for (std::uint32_t i = 1; i <= 5; ++i) SendPose(i);
+    Subject* const subject = hub->RequireAllDrivers("ada");
+    ASSERT_NE(subject, nullptr);
+    wrinkle::LocalPose neutral = subject->pipeline->pose();
+    neutral.blend_shapes[0] = 0.05f;
+    hub->SetNeutral(*subject, neutral, now);
+    for (std::uint32_t i = 6; i <= 9; ++i) SendPose(i);
+    viewer.inbox.clear();
+    sender.inbox.clear();
+  }
+  [[nodiscard]] std::vector<std::uint8_t> State() {
+    std::vector<std::uint8_t> state;
+    EXPECT_TRUE(hub->WriteState("ada", 1, state));
+    return state;
+  }
+  // Another node, where nobody is yet.
+  void NextNode() {
+    nodes.places.clear();
+    Make({}, /*filter=*/true);
+    for (FakePeer* peer : {&sender, &viewer, &node}) {
+      peer->inbox.clear();
+      Connect(peer);
+    }
+  }
+  void Receive(const std::vector<std::uint8_t>& state) { hub->OnMessage(node.id, state, now); }
+  void ExpectAnswer(SkeletonStatus status, const std::string& why) {
+    const auto reply = node.Take<protocol::SkeletonReply>();
+    ASSERT_TRUE(reply.has_value());
+    EXPECT_EQ(reply->message.status, status);
+    EXPECT_EQ(reply->message.message, why);
+    EXPECT_EQ(reply->header.sequence, 1u);
+  }
+
+  FakeCluster nodes;
+  FakePeer node;  // the one that hands the subject over
+};
+
+TEST_F(HubMoveTest, TheNextNodeGoesOnAsIfNothingHadHappened) {
+  Perform();
+  const std::vector<std::uint8_t> state = State();
+  SendPose(10);
+  const std::vector<float> wanted = Weights();
+  ASSERT_EQ(wanted.size(), 2u);
+  now -= FromSeconds(0.02);
+
+  NextNode();
+  Receive(state);
+  ExpectAnswer(SkeletonStatus::kAccepted, "");
+  EXPECT_EQ(nodes.expected, std::vector<std::string>{"ada"});
+  Serve(11);
+  Publish(sender, "ada");
+  ASSERT_NE(Watch(viewer, {.subject = "ada"}), 0);
+  // The viewer has got the newest pose of the other node there.
+  hub->Tick(now);
+  EXPECT_TRUE(Weights().empty());
+  // What the other node has used already is not used again.
+  Send(sender, Pose(0.9f), 1, 9, 180'000);
+  EXPECT_TRUE(Weights().empty());
+  EXPECT_EQ(Count(Counter::kPosesDuplicate), 1u);
+  SendPose(10);
+  EXPECT_EQ(Weights(), wanted);
+  EXPECT_TRUE(hub->RequireAllDrivers("ada")->pipeline->neutral_pose().has_value());
+}
+
+TEST_F(HubMoveTest, AnotherSessionGetsTheNeutralPoseAlone) {
+  Perform();
+  const std::vector<std::uint8_t> state = State();
+  NextNode();
+  Receive(state);
+  Serve(11);
+  sender.session = 78;
+  Publish(sender, "ada");
+  const Subject* subject = hub->RequireAllDrivers("ada");
+  EXPECT_TRUE(subject->pipeline->neutral_pose().has_value());
+  EXPECT_FALSE(subject->pipeline->has_pose());
+  Send(sender, Pose(0.5f), 1, 0, 0);
+  EXPECT_TRUE(subject->pipeline->has_pose());
+}
+
+TEST_F(HubMoveTest, DriversStayUntilTheSubscribersHaveFollowed) {
+  Perform();
+  const std::vector<std::uint8_t> state = State();
+  NextNode();
+  Receive(state);
+  Serve(11);
+  Publish(sender, "ada");
+  const Subject* subject = hub->subjects().all().at(0).get();
+  EXPECT_EQ(subject->pipeline->level(), wrinkle::kAllDrivers);
+  Advance(5.0);
+  hub->Tick(now);
+  EXPECT_EQ(subject->pipeline->level(), 0u) << "nobody needs them";
+}
+
+TEST_F(HubMoveTest, TheOldNodeSendsEverybodyAway) {
+  Perform();
+  hub->TakeNothingNew();
+  EXPECT_TRUE(nodes.draining);
+  // The subject stays until it moves.
+  hub->Tick(now += Places::kRefresh);
+  SendPose(10);
+  EXPECT_FALSE(Weights().empty());
+  EXPECT_EQ(hub->SubjectNames(), std::vector<std::string>{"ada"});
+  const Place place = hub->SuccessorOf("ada");
+  ASSERT_EQ(place.kind, Place::Kind::kElsewhere);
+  std::vector<std::uint8_t> state;
+  ASSERT_TRUE(hub->HandOver("ada", place.node, 7, state, now));
+  for (FakePeer* peer : {&sender, &viewer}) {
+    const auto error = peer->Take<protocol::ErrorMessage>();
+    ASSERT_TRUE(error.has_value());
+    EXPECT_EQ(error->message.host, "host-b");
+    EXPECT_TRUE(peer->inbox.empty());
+  }
+  EXPECT_EQ(hub->num_subjects(), 0u);
+  protocol::MessageView view;
+  protocol::SubjectState message;
+  ASSERT_EQ(protocol::OpenMessage(state, view), protocol::DecodeStatus::kOk);
+  ASSERT_EQ(protocol::Decode(view, message), protocol::DecodeStatus::kOk);
+  EXPECT_EQ(view.header.sequence, 7u);
+  EXPECT_EQ(view.header.capture_time_us, 200'000);
+  EXPECT_EQ(message.newest_sequence, 10u);
+  EXPECT_EQ(message.publisher_session, sender.session);
+  // Poses that are still on their way here change nothing, and an offer is sent after the subject.
+  SendPose(11);
+  EXPECT_TRUE(Weights().empty());
+  sender.inbox.clear();
+  Send(sender, Offer("ada"), 1);
+  EXPECT_TRUE(sender.Take<protocol::ErrorMessage>().has_value());
+  EXPECT_FALSE(hub->HandOver("ada", place.node, 8, state, now));
+}
+
+TEST_F(HubMoveTest, ASubjectWithoutASuccessorStays) {
+  Publish(sender, "ada");
+  nodes.successor = Place();
+  EXPECT_EQ(hub->SuccessorOf("ada").why, "no other node has room");
+  EXPECT_EQ(hub->SuccessorOf("bob").why, "it has left");
+}
+
+TEST_F(HubMoveTest, ForeignWiresCannotBeSentElsewhere) {
+  FakePeer wire;
+  Connect(&wire, Transport::kMocap);
+  Publish(wire, "ada");
+  EXPECT_EQ(hub->SuccessorOf("ada").why, "its sender cannot be sent to another daemon");
+}
+
+TEST_F(HubMoveTest, ANodeMayRefuseASubject) {
+  Perform();
+  const std::vector<std::uint8_t> state = State();
+  NextNode();
+  nodes.expects = {};
+  nodes.expects.why = "this node is full";
+  Receive(state);
+  ExpectAnswer(SkeletonStatus::kRejected, "this node is full");
+  // A state that arrives after its subject changes nothing.
+  Serve(11);
+  Publish(sender, "ada");
+  Receive(state);
+  ExpectAnswer(SkeletonStatus::kAccepted, "");
+  EXPECT_FALSE(hub->subjects().all().at(0)->pipeline->has_pose());
+}
+
+TEST_F(HubMoveTest, StatesThatNobodyComesForAreForgotten) {
+  Perform();
+  const std::vector<std::uint8_t> state = State();
+  NextNode();
+  Receive(state);
+  Advance(10.0);
+  hub->Tick(now);
+  Serve(11);
+  Publish(sender, "ada");
+  EXPECT_FALSE(hub->subjects().all().at(0)->pipeline->has_pose());
+}
+
+TEST_F(HubMoveTest, OnlyOperatorsHandSubjectsOver) {
+  Perform();
+  const std::vector<std::uint8_t> state = State();
+  NextNode();
+  protocol::secure::Grant grant{.roles = protocol::secure::Role::kPublish};
+  hub->SetAccess(node.id, Access::Of(grant, 1, now + FromSeconds(60)));
+  Receive(state);
+  ExpectError(node, protocol::ErrorCode::kNotPermitted);
+  grant.roles = protocol::secure::Role::kOperate;
+  grant.subjects = "bob";
+  hub->SetAccess(node.id, Access::Of(grant, 1, now + FromSeconds(60)));
+  Receive(state);
+  ExpectError(node, protocol::ErrorCode::kNotPermitted);
+  EXPECT_TRUE(nodes.expected.empty());
+}
+
+TEST_F(HubMoveTest, AnOfferIsAskedForAgainAsSoonAsItsPlaceIsHere) {
+  Place pending;
+  pending.kind = Place::Kind::kPending;
+  nodes.places["ada"] = pending;
+  Send(sender, Offer("ada"), 1);
+  hub->Tick(now);
+  EXPECT_TRUE(sender.inbox.empty());
+  Serve(11);
+  hub->Tick(now += FromSeconds(0.01));
+  const auto reply = sender.Take<protocol::SkeletonReply>();
+  ASSERT_TRUE(reply.has_value());
+  EXPECT_EQ(reply->message.status, SkeletonStatus::kNeeded);
+  EXPECT_EQ(reply->header.stream, 1);
+  hub->Tick(now += FromSeconds(0.01));
+  EXPECT_TRUE(sender.inbox.empty()) << "once";
+  Publish(sender, "ada");
+}
+
+TEST_F(HubMoveTest, CapturedReferencePosesMoveAlong) {
+  Perform();
+  wrinkle::Rig rig = hub->rig();
+  rig.reference_poses.push_back({.name = "smile", .joints = {}, .shapes = {{"brow", 0.75f}}});
+  ASSERT_TRUE(hub->SetRig(std::make_shared<const wrinkle::Rig>(std::move(rig)), now).ok());
+  hub->FindSubject("ada")->captures.insert("smile");
+  const std::vector<std::uint8_t> state = State();
+  NextNode();
+  const std::size_t before = hub->rig().reference_poses.size();
+  for (int i = 0; i < 2; ++i) Receive(state);  // the second time, there is nothing to do
+  const auto& poses = hub->rig().reference_poses;
+  ASSERT_EQ(poses.size(), before + 1);
+  EXPECT_EQ(poses.back().name, "smile");
+  EXPECT_EQ(poses.back().shapes, (std::vector<wrinkle::ShapeValue>{{"brow", 0.75f}}));
+  // They go on with the subject from there, too.
+  Serve(11);
+  Publish(sender, "ada");
+  EXPECT_EQ(hub->FindSubject("ada")->captures, std::set<std::string>{"smile"});
+}
+
+TEST_F(HubMoveTest, ADaemonThatIsAloneTakesNothingAndDrainsNothing) {
+  Perform();
+  const std::vector<std::uint8_t> state = State();
+  cluster = nullptr;
+  NextNode();
+  Receive(state);
+  ExpectAnswer(SkeletonStatus::kRejected, "this daemon is in no cluster");
+  Send(node, protocol::Drain{true}, 0, 3);
+  ExpectError(node, protocol::ErrorCode::kUnsupported);
+}
+
+}  // namespace
+}  // namespace furrow::server

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/session/subjects/arrivals.h"
+
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "protocol/messages/limits.h"
+
+namespace furrow::server {
+namespace {
+
+using std::chrono::seconds;
+
+class ArrivalsTest : public ::testing::Test {
+ protected:
+  bool Add(const std::string& subject, std::int64_t captured_us = 0, std::size_t extra = 0) {
+    protocol::SubjectState state;
+    state.subject = subject;
+    state.captures = std::string(extra, ' ');
+    protocol::Encoder().Encode({.session = 1, .capture_time_us = captured_us}, state, bytes_);
+    protocol::MessageView view;
+    EXPECT_EQ(protocol::OpenMessage(bytes_, view), protocol::DecodeStatus::kOk);
+    return arrivals_.Add(subject, view, now_);
+  }
+
+  Arrivals arrivals_;
+  Time now_ = seconds(100);
+  std::vector<std::uint8_t> bytes_;
+};
+
+TEST_F(ArrivalsTest, AStateIsTakenOnceAndTheNewestCounts) {
+  ASSERT_TRUE(Add("ada", 1));
+  ASSERT_TRUE(Add("ada", 2));
+  EXPECT_FALSE(arrivals_.Take("bob", now_));
+  const auto arrived = arrivals_.Take("ada", now_);
+  ASSERT_TRUE(arrived);
+  EXPECT_EQ(arrived->header.capture_time_us, 2);
+  EXPECT_EQ(arrived->state.subject, "ada");
+  EXPECT_FALSE(arrivals_.Take("ada", now_));
+  EXPECT_EQ(arrivals_.bytes(), 0u);
+}
+
+TEST_F(ArrivalsTest, StatesEnd) {
+  ASSERT_TRUE(Add("ada"));
+  ASSERT_TRUE(Add("bob"));
+  now_ += Arrivals::kPatience;
+  EXPECT_FALSE(arrivals_.Take("ada", now_));
+  EXPECT_GT(arrivals_.bytes(), 0u);
+  arrivals_.Expire(now_);
+  EXPECT_EQ(arrivals_.bytes(), 0u);
+}
+
+TEST_F(ArrivalsTest, TheirMemoryIsBounded) {
+  int added = 0;
+  while (Add("subject " + std::to_string(added), 0, protocol::kMaxCaptureBytes)) ++added;
+  EXPECT_GT(added, 200);
+  EXPECT_LE(arrivals_.bytes(), Arrivals::kMaxBytes);
+  // Another one finds room when the old ones have ended.
+  now_ += Arrivals::kPatience;
+  EXPECT_TRUE(Add("late"));
+}
+
+TEST_F(ArrivalsTest, WaitingPublishersAreBoundedAndEnd) {
+  for (std::size_t i = 0; i < Arrivals::kMaxWaiting + 10; ++i) {
+    arrivals_.Await("subject " + std::to_string(i), 1, {}, 2, now_);
+  }
+  EXPECT_EQ(arrivals_.waiting().size(), Arrivals::kMaxWaiting);
+  arrivals_.StopWaiting("subject 0");
+  EXPECT_EQ(arrivals_.waiting().size(), Arrivals::kMaxWaiting - 1);
+  arrivals_.Expire(now_ + seconds(3));
+  EXPECT_TRUE(arrivals_.waiting().empty());
+}
+
+}  // namespace
+}  // namespace furrow::server
