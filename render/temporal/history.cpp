@@ -15,14 +15,6 @@ int Scaled(int side, float scale) {
 
 }  // namespace
 
-bool IsCompleted(const FrameRequest& request, bool is_software) {
-  const Settings& settings = request.settings;
-  return is_software && request.is_moving && request.stream != 0 && request.others.empty() &&
-         settings.view == View::kFinal && settings.shading == Shading::kSkin &&
-         settings.anti_aliasing.samples == 0 && !settings.displacement.enabled &&
-         settings.strip.views.empty();
-}
-
 SceneMotion MotionOf(const TemporalFrame& frame) {
   const glm::vec2 size(static_cast<float>(frame.width), static_cast<float>(frame.height));
   const History& history = *frame.history;

@@ -86,9 +86,4 @@ class Histories {
   TemporalFrame frame_;
 };
 
-// True if the picture is drawn with fewer pixels and completed from former ones. Others stand
-// alone: those of no stream, stills, views of data, several subjects, displaced surfaces, strips,
-// settings with a number of samples, and all pictures of a GPU.
-[[nodiscard]] bool IsCompleted(const FrameRequest& request, bool is_software);
-
 }  // namespace furrow::render

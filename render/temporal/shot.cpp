@@ -22,6 +22,14 @@ bool MovesOn(const Camera& former, const Camera& next) {
 
 }  // namespace
 
+bool IsCompleted(const FrameRequest& request, bool is_software) {
+  const Settings& settings = request.settings;
+  return is_software && request.is_moving && request.stream != 0 && request.others.empty() &&
+         settings.view == View::kFinal && settings.shading == Shading::kSkin &&
+         settings.anti_aliasing.samples == 0 && !settings.displacement.enabled &&
+         settings.strip.views.empty();
+}
+
 bool Continues(const Shot& former, const Shot& next) {
   return former.width == next.width && former.height == next.height &&
          former.settings == next.settings && MovesOn(former.camera, next.camera);

@@ -5,6 +5,11 @@
 
 namespace furrow::render {
 
+// True if the picture is drawn with fewer pixels and completed from former ones. Others stand
+// alone: those of no stream, stills, views of data, several subjects, displaced surfaces, strips,
+// settings with a number of samples, and all pictures of a GPU.
+[[nodiscard]] bool IsCompleted(const FrameRequest& request, bool is_software);
+
 // What the pictures of a stream have in common.
 struct Shot {
   int width = 0;  // pixels

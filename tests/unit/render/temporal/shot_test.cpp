@@ -51,5 +51,33 @@ TEST(Shot, AnotherSizeOrAnySettingIsACut) {
   EXPECT_FALSE(ContinuesAfter([](Shot* s) { s->settings.strip.views = {View::kNormal}; }));
 }
 
+FrameRequest Moving(std::uint64_t stream) {
+  FrameRequest request;
+  request.settings.shading = Shading::kSkin;
+  request.is_moving = true;
+  request.stream = stream;
+  request.scale = 0.5f;
+  return request;
+}
+
+TEST(IsCompleted, OnlyMovingPicturesOfAStreamWithSkin) {
+  EXPECT_TRUE(IsCompleted(Moving(1), true));
+  EXPECT_FALSE(IsCompleted(Moving(1), false)) << "a GPU";
+  EXPECT_FALSE(IsCompleted(Moving(0), true)) << "no stream";
+  const auto changed = [](auto change) {
+    FrameRequest request = Moving(1);
+    change(request);
+    return IsCompleted(request, true);
+  };
+  EXPECT_FALSE(changed([](FrameRequest& r) { r.is_moving = false; })) << "a still or a PNG";
+  EXPECT_FALSE(changed([](FrameRequest& r) { r.settings.shading = Shading::kDiffuse; }));
+  EXPECT_FALSE(changed([](FrameRequest& r) { r.settings.view = View::kDepth; }));
+  EXPECT_FALSE(changed([](FrameRequest& r) { r.settings.anti_aliasing.samples = 1; }));
+  EXPECT_FALSE(changed([](FrameRequest& r) { r.settings.displacement.enabled = true; }));
+  EXPECT_FALSE(changed([](FrameRequest& r) { r.settings.strip.views = {View::kNormal}; }));
+  const PosedSubject other;
+  EXPECT_FALSE(changed([&](FrameRequest& r) { r.others = std::span(&other, 1); }));
+}
+
 }  // namespace
 }  // namespace furrow::render
