@@ -6,6 +6,7 @@
 #include "render/passes/finish_pass.h"
 #include "render/passes/light_pass.h"
 #include "render/passes/resolve_pass.h"
+#include "render/temporal/temporal_pass.h"
 
 namespace furrow::render {
 namespace {
@@ -52,14 +53,19 @@ Pipeline::Pipeline(const character::Character& character, SceneDraw* scene, Shad
       composite_pass_(&fullscreen_) {}
 
 Handle Pipeline::Add(FrameGraph* graph, const FrameRequest& request, View view, const Size& size,
-                     Handle* shadows) {
+                     Handle* shadows, const TemporalFrame* temporal) {
   Settings settings = request.settings;
   settings.view = view;
   if (request.is_moving) settings.subsurface.taps = std::min(settings.subsurface.taps, kMovingTaps);
   settings.anti_aliasing =
       Chosen(settings.anti_aliasing, !is_software_ || !NeedsSkinPipeline(view, settings));
   TextureDesc desc{size.width, size.height, PixelFormat::kRgba16F, settings.anti_aliasing.samples};
+  if (temporal != nullptr) {
+    desc.width = temporal->width;
+    desc.height = temporal->height;
+  }
   Handle shown;
+  Skin skin;
   Handle bloom;
   const bool casts = settings.shadow.filter != ShadowFilter::kOff && settings.shadow.lamps > 0;
   // The picture and all tiles of its strip share the maps, so only the first view adds the pass.
@@ -70,7 +76,9 @@ Handle Pipeline::Add(FrameGraph* graph, const FrameRequest& request, View view, 
     desc.samples = 1;
     shown = AddShadowMaps(graph, *shadows, desc);
   } else if (NeedsSkinPipeline(view, settings)) {
-    shown = AddSkin(graph, request, settings, desc, *shadows);
+    skin = AddSkin(graph, request, settings, desc, *shadows,
+                   temporal == nullptr ? glm::vec2(0.0f) : temporal->jitter);
+    shown = skin.shown;
     desc.samples = 1;
     if (view == View::kFinal || view == View::kBloom) {
       bloom = AddBloomPass(graph, shown, desc, settings, &fullscreen_);
@@ -85,15 +93,24 @@ Handle Pipeline::Add(FrameGraph* graph, const FrameRequest& request, View view, 
         scene_pass_.AddPlain(graph, settings, {desc.width, desc.height, desc.format, desc.samples});
   }
   const Handle picture = composite_pass_.Add(graph, shown, desc, settings, bloom);
+  if (temporal != nullptr) {
+    return AddTemporalPasses(graph, *temporal,
+                             {picture, skin.lit.depth, skin.lit.motion, skin.bounds,
+                              scene_->setup().camera.focus_distance()},
+                             {size.width, size.height, PixelFormat::kRgba8, 1},
+                             BloomReach(settings, size.height), &fullscreen_);
+  }
   if (!settings.anti_aliasing.fxaa || !IsLight(view)) return picture;
   return AddFxaaPass(graph, picture, desc, &fullscreen_);
 }
 
-Handle Pipeline::AddSkin(FrameGraph* graph, const FrameRequest& request, const Settings& settings,
-                         const TextureDesc& desc, Handle shadows) {
+Pipeline::Skin Pipeline::AddSkin(FrameGraph* graph, const FrameRequest& request,
+                                 const Settings& settings, const TextureDesc& desc, Handle shadows,
+                                 glm::vec2 jitter) {
   const CameraFrame& camera = scene_->setup().camera;
   const float slope = camera.PixelsPerSlope(desc.height);
-  // The pixels that some subject can cover, extended by one pixel, because filters read neighbours.
+  // The pixels that some subject can cover, extended by one pixel, because filters read neighbours,
+  // and by one for the jitter.
   const auto project = [&](const JointBounds& bounds) {
     ScreenRect rect;
     for (const NamedSubject& named : SubjectsOf(request)) {
@@ -102,10 +119,15 @@ Handle Pipeline::AddSkin(FrameGraph* graph, const FrameRequest& request, const S
                                       camera.view_projection * subject.placement, desc.width,
                                       desc.height, scene_->displacement_reach()));
     }
-    return rect.Grown(1, desc.width, desc.height);
+    return rect.Grown(2, desc.width, desc.height);
   };
-  const OcclusionGeometry view{desc.width, desc.height,      glm::mat3(camera.view),
-                               slope,      project(bounds_), SkinBackground(settings)};
+  const OcclusionGeometry view{.width = desc.width,
+                               .height = desc.height,
+                               .view_rotation = glm::mat3(camera.view),
+                               .pixels_per_slope = slope,
+                               .bounds = project(bounds_),
+                               .background = SkinBackground(settings),
+                               .jitter = jitter};
   const Surface surface = AddSurface(graph, settings, desc, shadows, view);
   const SkinGeometry skin{.width = desc.width,
                           .height = desc.height,
@@ -115,6 +137,12 @@ Handle Pipeline::AddSkin(FrameGraph* graph, const FrameRequest& request, const S
                           .surface_z = surface.lit.z};
   const Handle scattered =
       subsurface_pass_.Add(graph, surface.lit.irradiance, settings.subsurface, skin);
+  return {AddShownSkin(graph, settings, desc, surface, scattered, view), surface.lit, view.bounds};
+}
+
+Handle Pipeline::AddShownSkin(FrameGraph* graph, const Settings& settings, const TextureDesc& desc,
+                              const Surface& surface, Handle scattered,
+                              const OcclusionGeometry& view) {
   switch (settings.view) {
     case View::kScattered: return scattered;
     case View::kFinal:

@@ -7,6 +7,7 @@
 #include "render/passes/scene_pass.h"
 #include "render/passes/shadow_pass.h"
 #include "render/passes/subsurface_pass.h"
+#include "render/temporal/history.h"
 
 namespace furrow::render {
 
@@ -17,6 +18,8 @@ namespace furrow::render {
 //           combine -> bloom -> composite -> fxaa
 //   skin, one sample per pixel: shadows -> scene (facets) -> occlusion, blur -> light -> scatter ->
 //           combine -> bloom -> composite -> fxaa
+//   skin, a picture of a stream: the same with fewer pixels up to composite -> neighbours ->
+//           surround -> accumulate
 //
 // The frame graph culls the passes that a view does not need.
 class Pipeline {
@@ -33,19 +36,31 @@ class Pipeline {
   // Adds the passes for one view. Requires SceneDraw::Update() with the same request. Returns an
   // 8-bit picture of `view`, `size` pixels, rows from the top. All views of one graph share the
   // shadow maps: set `*shadows` to an empty handle before the first call and pass it to every call.
+  // `temporal`: how a picture of a stream is drawn, which must outlive the graph; null: it stands
+  // alone.
   [[nodiscard]] FrameGraph::Handle Add(FrameGraph* graph, const FrameRequest& request, View view,
-                                       const Size& size, FrameGraph::Handle* shadows);
+                                       const Size& size, FrameGraph::Handle* shadows,
+                                       const TemporalFrame* temporal = nullptr);
 
  private:
-  [[nodiscard]] FrameGraph::Handle AddSkin(FrameGraph* graph, const FrameRequest& request,
-                                           const Settings& settings, const TextureDesc& desc,
-                                           FrameGraph::Handle shadows);
   // The surfaces after lighting.
   struct Surface {
     SkinTargets lit;
     FrameGraph::Handle unoccluded;  // radiance before occlusion
     OcclusionPass::Openness open;
   };
+  struct Skin {
+    FrameGraph::Handle shown;
+    SkinTargets lit;
+    ScreenRect bounds;
+  };
+  [[nodiscard]] Skin AddSkin(FrameGraph* graph, const FrameRequest& request,
+                             const Settings& settings, const TextureDesc& desc,
+                             FrameGraph::Handle shadows, glm::vec2 jitter);
+  [[nodiscard]] FrameGraph::Handle AddShownSkin(FrameGraph* graph, const Settings& settings,
+                                                const TextureDesc& desc, const Surface& surface,
+                                                FrameGraph::Handle scattered,
+                                                const OcclusionGeometry& view);
   [[nodiscard]] Surface AddSurface(FrameGraph* graph, const Settings& settings,
                                    const TextureDesc& desc, FrameGraph::Handle shadows,
                                    const OcclusionGeometry& view);

@@ -2,6 +2,7 @@
 #include "render/renderer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "base/status.h"
@@ -60,6 +61,10 @@ class GlRenderer final : public Renderer {
     }
     const Status status = graph.Execute(&pool_, observer_);
     pool_.EndFrame();
+    if (status.ok() && temporal_ != nullptr) {
+      histories_.End(request, scene_.setup().camera);
+      scene_.KeepVertices(histories_.vertices());
+    }
     return status;
   }
 
@@ -92,6 +97,7 @@ class GlRenderer final : public Renderer {
         context_(std::move(context)),
         pool_(&device_,
               options.max_texture_bytes == 0 ? TransientPool::kNoLimit : options.max_texture_bytes),
+        histories_(&device_),
         gpu_(std::move(gpu)),
         tables_(std::move(tables)),
         scene_(skeleton_, inverse_bind_matrices_, gpu_.get(), tables_.get(), &shaders_,
@@ -102,10 +108,13 @@ class GlRenderer final : public Renderer {
   // Nothing is drawn before the graph has been compiled.
   Status BuildFrame(const FrameRequest& request, FrameGraph* graph) {
     shaders_.BeginFrame();
-    FURROW_RETURN_IF_ERROR(scene_.Update(request));
+    temporal_ = histories_.Begin(request, is_software());
+    const SceneMotion motion = temporal_ == nullptr ? SceneMotion{} : MotionOf(*temporal_);
+    FURROW_RETURN_IF_ERROR(scene_.Update(request, temporal_ == nullptr ? nullptr : &motion));
     FrameGraph::Handle shadows;
-    FrameGraph::Handle picture = pipeline_.Add(graph, request, request.settings.view,
-                                               {request.width, request.height}, &shadows);
+    FrameGraph::Handle picture =
+        pipeline_.Add(graph, request, request.settings.view, {request.width, request.height},
+                      &shadows, temporal_);
     std::vector<FrameGraph::Handle> tiles;
     for (const View view : request.settings.strip.views) {
       tiles.push_back(pipeline_.Add(
@@ -114,7 +123,9 @@ class GlRenderer final : public Renderer {
           &shadows));
     }
     picture = AddStripPass(graph, picture, tiles, &device_);
-    AddReadBackPass(graph, picture, request.token, &device_, &read_back_);
+    const int percent =
+        temporal_ == nullptr ? 100 : static_cast<int>(std::lround(100.0f * request.scale));
+    AddReadBackPass(graph, picture, {request.token, percent}, &device_, &read_back_);
     return {};
   }
 
@@ -125,6 +136,8 @@ class GlRenderer final : public Renderer {
   std::unique_ptr<EglContext> context_;
   GlDevice device_;
   TransientPool pool_;
+  Histories histories_;
+  const TemporalFrame* temporal_ = nullptr;  // of the picture that is being drawn
   ShaderLibrary shaders_;
   std::unique_ptr<GpuCharacter> gpu_;
   std::unique_ptr<WrinkleTables> tables_;

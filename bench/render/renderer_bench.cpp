@@ -106,21 +106,20 @@ void CountPasses(Scene* scene, const FrameRequest& request, benchmark::State* st
   }
 }
 
-// Two frames in flight with skin shading, as on a laptop or a small server. Uses FXAA if the scene
-// has one sample. CPU time covers all threads. The counters are milliseconds of processor time per
-// pass, with a wait for the device between passes (render/gl/pass_timer.h).
-void BM_Skin(benchmark::State& state) {
-  Scene& scene = TheScene();
+FrameRequest SkinRequest(const Scene& scene) {
   FrameRequest request = scene.request_;
   request.width = 640;
   request.height = 400;
   request.settings.shading = Shading::kSkin;
-  request.settings.subsurface.method = static_cast<SubsurfaceMethod>(state.range(0));
-  request.settings.anti_aliasing.samples = static_cast<int>(state.range(1));
-  request.settings.anti_aliasing.fxaa = state.range(1) == 1;
   request.is_moving = true;
   SetFromEnvironment(&request.settings);
-  state.SetLabel(GetSetting("subsurface.method", request.settings));
+  return request;
+}
+
+// Two frames in flight. CPU time covers all threads. The counters are milliseconds of processor
+// time per pass, with a wait for the device between passes (render/gl/pass_timer.h).
+void DrawFrames(const FrameRequest& request, benchmark::State& state) {
+  Scene& scene = TheScene();
   // The first frames compile shaders, build tables and compose wrinkles.
   constexpr int kWarmUp = 4;
   for (int frame = 0; frame < kWarmUp; ++frame) {
@@ -139,9 +138,37 @@ void BM_Skin(benchmark::State& state) {
   state.counters["frames/s"] =
       benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
 }
+
+// Skin shading as on a laptop or a small server. Uses FXAA if the scene has one sample.
+void BM_Skin(benchmark::State& state) {
+  FrameRequest request = SkinRequest(TheScene());
+  request.settings.subsurface.method = static_cast<SubsurfaceMethod>(state.range(0));
+  request.settings.anti_aliasing.samples = static_cast<int>(state.range(1));
+  request.settings.anti_aliasing.fxaa = state.range(1) == 1;
+  state.SetLabel(GetSetting("subsurface.method", request.settings));
+  DrawFrames(request, state);
+}
 BENCHMARK(BM_Skin)
     ->ArgNames({"method", "samples"})
     ->ArgsProduct({{0, 1, 2, 3, 4}, {1, 4}})
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
+
+// A stream of pictures that are drawn with fewer pixels and completed from former ones. `percent`:
+// of the width and height.
+void BM_Stream(benchmark::State& state) {
+  FrameRequest request = SkinRequest(TheScene());
+  request.stream = 1 + static_cast<std::uint64_t>(state.range(0));
+  request.scale = 0.01f * static_cast<float>(state.range(0));
+  DrawFrames(request, state);
+}
+BENCHMARK(BM_Stream)
+    ->ArgName("percent")
+    ->Arg(100)
+    ->Arg(75)
+    ->Arg(60)
+    ->Arg(50)
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime()
     ->UseRealTime();

@@ -73,22 +73,35 @@ std::string NameOf(Scene scene) {
   return {};
 }
 
-Result<std::vector<render::Image>> DrawScene(Scene scene, int width, int height, int count) {
-  auto clip = LoadPerformance(scene, count);
-  FURROW_RETURN_IF_ERROR(clip);
-  const auto character = cli::LoadCharacterArgument("", "", {}, "");
+SceneDrawer::SceneDrawer(character::Character character, rig::SkeletonMatcher matcher,
+                         rig::ShapeMatcher shapes, std::unique_ptr<render::Renderer> renderer)
+    : character_(std::move(character)),
+      matcher_(std::move(matcher)),
+      shapes_(std::move(shapes)),
+      renderer_(std::move(renderer)) {}
+
+Result<std::unique_ptr<SceneDrawer>> SceneDrawer::Create() {
+  auto character = cli::LoadCharacterArgument("", "", {}, "");
   FURROW_RETURN_IF_ERROR(character);
-  const auto matcher = cli::LoadSkeletonMatcher("", &*character);
+  auto matcher = cli::LoadSkeletonMatcher("", &*character);
   FURROW_RETURN_IF_ERROR(matcher);
-  const auto shapes = cli::LoadShapeMatcher("");
+  auto shapes = cli::LoadShapeMatcher("");
   FURROW_RETURN_IF_ERROR(shapes);
-  auto group = cli::SubjectGroup::Create(*character,
-                                         {std::make_shared<const motion::Clip>(*std::move(clip))},
-                                         {"performance"}, *matcher, *shapes, {});
-  FURROW_RETURN_IF_ERROR(group);
   auto renderer = render::Renderer::Create(*character);
   FURROW_RETURN_IF_ERROR(renderer);
-  const auto camera = (*renderer)->Preset("face");
+  return std::unique_ptr<SceneDrawer>(new SceneDrawer(*std::move(character), *std::move(matcher),
+                                                      *std::move(shapes), *std::move(renderer)));
+}
+
+Result<std::vector<render::Image>> SceneDrawer::Draw(Scene scene, int width, int height, int count,
+                                                     const Adjust& adjust) {
+  auto clip = LoadPerformance(scene, count);
+  FURROW_RETURN_IF_ERROR(clip);
+  auto group = cli::SubjectGroup::Create(character_,
+                                         {std::make_shared<const motion::Clip>(*std::move(clip))},
+                                         {"performance"}, matcher_, shapes_, {});
+  FURROW_RETURN_IF_ERROR(group);
+  const auto camera = renderer_->Preset("face");
   FURROW_RETURN_IF_ERROR(camera);
   (*group)->FrameBy(*camera, static_cast<float>(width) / static_cast<float>(height));
   std::vector<render::Image> images;
@@ -99,7 +112,8 @@ Result<std::vector<render::Image>> DrawScene(Scene scene, int width, int height,
     request.width = width;
     request.height = height;
     if (scene == Scene::kTurningCamera) request.camera = Circle(request.camera, i / kHz);
-    auto image = (*renderer)->Render(request);
+    if (adjust) adjust(&request);
+    auto image = renderer_->Render(request);
     FURROW_RETURN_IF_ERROR(image);
     images.push_back(*std::move(image));
   }

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "base/status.h"
-#include "render/request/image.h"
+#include "character/character.h"
+#include "render/renderer.h"
+#include "rig/shapes/shape_match.h"
+#include "rig/skeleton_match.h"
 
 namespace furrow::bench {
 
@@ -18,9 +23,27 @@ enum class Scene { kFace, kTurningFace, kTurningCamera };
 
 [[nodiscard]] std::string NameOf(Scene scene);
 
-// Draws `count` pictures of the default character with skin shading, 30 per second of the
-// recording, as the daemon draws moving pictures. Errors: no data, no OpenGL.
-[[nodiscard]] Result<std::vector<render::Image>> DrawScene(Scene scene, int width, int height,
-                                                           int count);
+// Changes a request before it is drawn; may be empty.
+using Adjust = std::function<void(render::FrameRequest*)>;
+
+// Draws pictures of the default character in a scene, with skin shading, 30 per second of the
+// recording.
+class SceneDrawer {
+ public:
+  // Errors: no data, no OpenGL.
+  [[nodiscard]] static Result<std::unique_ptr<SceneDrawer>> Create();
+  // The first `count` pictures of the scene.
+  [[nodiscard]] Result<std::vector<render::Image>> Draw(Scene scene, int width, int height,
+                                                        int count, const Adjust& adjust = {});
+
+ private:
+  SceneDrawer(character::Character character, rig::SkeletonMatcher matcher,
+              rig::ShapeMatcher shapes, std::unique_ptr<render::Renderer> renderer);
+
+  const character::Character character_;
+  const rig::SkeletonMatcher matcher_;
+  const rig::ShapeMatcher shapes_;
+  const std::unique_ptr<render::Renderer> renderer_;
+};
 
 }  // namespace furrow::bench

@@ -13,6 +13,7 @@
 #include "bench/report/aims.h"
 #include "bench/report/command_line.h"
 #include "bench/report/results.h"
+#include "bench/report/value_or_exit.h"
 #include "bench/video/measure_video.h"
 #include "bench/video/scenes.h"
 #include "report/table.h"
@@ -38,8 +39,9 @@ std::string RateOf(const Encoded& encoded) {
 }
 
 // Bits at the brightness PSNR of JPEG.
-Status CompareScene(Scene scene, const Options& options, std::vector<Aim>* aims) {
-  const auto images = DrawScene(scene, 640, 400, options.pictures);
+Status CompareScene(SceneDrawer* drawer, Scene scene, const Options& options,
+                    std::vector<Aim>* aims) {
+  const auto images = drawer->Draw(scene, 640, 400, options.pictures);
   FURROW_RETURN_IF_ERROR(images);
   const auto jpeg = MeasureJpeg(*images, kJpegQuality);
   FURROW_RETURN_IF_ERROR(jpeg);
@@ -62,8 +64,9 @@ Status CompareScene(Scene scene, const Options& options, std::vector<Aim>* aims)
 }
 
 // As the page asks for it.
-Status MeasureLarge(Scene scene, const Options& options, std::vector<Aim>* aims) {
-  const auto images = DrawScene(scene, 1280, 720, options.large_pictures);
+Status MeasureLarge(SceneDrawer* drawer, Scene scene, const Options& options,
+                    std::vector<Aim>* aims) {
+  const auto images = drawer->Draw(scene, 1280, 720, options.large_pictures);
   FURROW_RETURN_IF_ERROR(images);
   const auto jpeg = MeasureJpeg(*images, kJpegQuality);
   FURROW_RETURN_IF_ERROR(jpeg);
@@ -79,9 +82,11 @@ Status MeasureLarge(Scene scene, const Options& options, std::vector<Aim>* aims)
 
 int Run(const Options& options) {
   std::vector<Aim> aims;
+  const auto drawer = ValueOrExit(SceneDrawer::Create());
   for (const Scene scene : {Scene::kFace, Scene::kTurningFace, Scene::kTurningCamera}) {
-    Status status = CompareScene(scene, options, &aims);
-    if (status.ok() && scene != Scene::kFace) status = MeasureLarge(scene, options, &aims);
+    Status status = CompareScene(drawer.get(), scene, options, &aims);
+    if (status.ok() && scene != Scene::kFace)
+      status = MeasureLarge(drawer.get(), scene, options, &aims);
     if (!status.ok()) {
       std::fprintf(stderr, "bench_video: %s\n", status.ToString().c_str());
       return 1;

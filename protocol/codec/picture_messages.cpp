@@ -122,7 +122,9 @@ DecodeStatus ReadTable(const wire::Image& table, ImageFrame& message) {
   if (!is_video && table.key()) return DecodeStatus::kBadValue;
   if (is_video && message.still) return DecodeStatus::kBadValue;
   message.key = table.key();
-  return DecodeStatus::kOk;
+  message.drawn_percent = table.drawn_percent();
+  const bool good = message.drawn_percent >= 1 && message.drawn_percent <= 100;
+  return good ? DecodeStatus::kOk : DecodeStatus::kBadValue;
 }
 
 flatbuffers::Offset<wire::Image> WriteTable(PayloadBuilder& payload, const ImageFrame& message) {
@@ -131,7 +133,8 @@ flatbuffers::Offset<wire::Image> WriteTable(PayloadBuilder& payload, const Image
   return wire::CreateImage(payload.builder, message.width, message.height,
                            static_cast<wire::ImageFormat>(message.format), message.age_us, bytes,
                            message.number, message.tier, message.still, message.dropped,
-                           message.received_us, message.view_request, codec, message.key);
+                           message.received_us, message.view_request, codec, message.key,
+                           message.drawn_percent);
 }
 
 DecodeStatus ReadTable(const wire::FrameAck& table, FrameAck& message) {

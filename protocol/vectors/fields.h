@@ -184,7 +184,8 @@ inline Fields FieldsOf(const ImageFrame& m) {
           {"received_us", Json(m.received_us)},
           {"view_request", Json(static_cast<std::int64_t>(m.view_request))},
           {"codec", Json(m.codec)},
-          {"key", Json(m.key)}};
+          {"key", Json(m.key)},
+          {"drawn_percent", Json(int{m.drawn_percent})}};
 }
 
 }  // namespace furrow::protocol::vectors

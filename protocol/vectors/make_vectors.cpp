@@ -261,6 +261,7 @@ ImageFrame VideoPicture() {
   image.view_request = 5;
   image.codec = "avc1.42c01e";
   image.key = true;
+  image.drawn_percent = 75;
   return image;
 }
 

@@ -28,7 +28,7 @@ ReadBack::~ReadBack() {
   }
 }
 
-void ReadBack::Start(GLuint framebuffer, int width, int height, std::uint64_t token) {
+void ReadBack::Start(GLuint framebuffer, int width, int height, const Label& label) {
   Slot& slot = slots_[static_cast<std::size_t>((oldest_ + count_) % kCapacity)];
   const std::size_t bytes = static_cast<std::size_t>(width) * height * 4;
   // Storage is immutable, so a larger picture needs a new buffer. Smaller pictures reuse it. Client
@@ -41,7 +41,7 @@ void ReadBack::Start(GLuint framebuffer, int width, int height, std::uint64_t to
   }
   slot.width = width;
   slot.height = height;
-  slot.token = token;
+  slot.label = label;
   // With a bound pack buffer, glReadPixels() only queues the copy and returns. The last argument is
   // an offset then, not a pointer. The buffer is unbound again because other reads expect a
   // pointer.
@@ -78,7 +78,7 @@ Result<std::optional<Image>> ReadBack::Take(bool wait) {
     return Status(StatusCode::kUnavailable, "the GPU did not return the picture", "read-back",
                   "create a new renderer");
   }
-  Image image{slot.width, slot.height, {}, slot.token};
+  Image image{slot.width, slot.height, {}, slot.label.token, slot.label.drawn_percent};
   image.rgb = DropAlpha(static_cast<const std::uint8_t*>(pixels), num_pixels);
   glUnmapNamedBuffer(slot.pixels.name());
   return std::optional<Image>(std::move(image));

@@ -25,9 +25,14 @@ class ReadBack {
 
   [[nodiscard]] int in_flight() const { return count_; }
 
-  // Starts to copy the 8-bit RGBA colour of `framebuffer`, `width` x `height` pixels. `token` is
-  // returned in Image::token. Precondition: in_flight() < kCapacity.
-  void Start(GLuint framebuffer, int width, int height, std::uint64_t token);
+  // What the image states besides its pixels.
+  struct Label {
+    std::uint64_t token = 0;
+    int drawn_percent = 100;
+  };
+  // Starts to copy the 8-bit RGBA colour of `framebuffer`, `width` x `height` pixels. Precondition:
+  // in_flight() < kCapacity.
+  void Start(GLuint framebuffer, int width, int height, const Label& label);
 
   // Returns the oldest picture in flight, without alpha, and ends its flight. nullopt if there is
   // none, or if its copy is not complete; `wait` blocks until it is. Row 0 of the framebuffer,
@@ -42,7 +47,7 @@ class ReadBack {
     GLsync fence = nullptr;
     int width = 0;
     int height = 0;
-    std::uint64_t token = 0;
+    Label label;
   };
   std::array<Slot, kCapacity> slots_;
   int oldest_ = 0;

@@ -52,6 +52,7 @@ std::vector<std::string> Defines(const SceneShader& shader) {
       Define("DISPLACED", shader.displaced),
       Define("SHADOW", shader.shadow),
       Define("CROWD", shader.crowd),
+      Define("MOTION", shader.motion),
       Define("STRETCH", shader.stretch),
       Define("SKIN_TARGETS", shader.shading == Shading::kSkin),
       Define("FACETS", shader.unlit),

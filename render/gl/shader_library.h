@@ -71,6 +71,7 @@ struct SceneShader {
   bool shade = false;            // a shell that only darkens what lies behind it
   bool stretch = false;          // the mesh is posed with PoseShader::gradients
   bool crowd = false;            // several subjects, each with its own wrinkle weights
+  bool motion = false;           // `unlit` stores the motion since the former picture, too
 
   friend auto operator<=>(const SceneShader&, const SceneShader&) = default;
 };

@@ -2,6 +2,7 @@
 #include "render/passes/finish_pass.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <glm/vec4.hpp>
 
@@ -46,6 +47,13 @@ FrameGraph::Handle AddBloomPass(FrameGraph* graph, FrameGraph::Handle colour,
   const FrameGraph::Handle across =
       add("bloom x", "bloom x", bright, false, {1.0f, 0.0f, sigma, 0.0f});
   return add("bloom y", "bloom", across, false, {0.0f, 1.0f, sigma, 0.0f});
+}
+
+// Three standard deviations, as far as the shader blurs, and a pixel of bloom for its filter.
+int BloomReach(const Settings& settings, int height) {
+  if (settings.bloom.strength <= 0.0f) return 0;
+  const float reach = 3.0f * settings.bloom.radius * static_cast<float>(height);
+  return static_cast<int>(std::ceil(reach)) + 2 * kBloomScale;
 }
 
 FrameGraph::Handle AddShowPass(FrameGraph* graph, FrameGraph::Handle target, const ShowTarget& show,

@@ -15,6 +15,9 @@ inline constexpr int kBloomScale = 4;  // picture pixels per bloom pixel, along 
                                               const TextureDesc& desc, const Settings& settings,
                                               Fullscreen* fullscreen);
 
+// How far the glow reaches in a picture of this height, in pixels.
+[[nodiscard]] int BloomReach(const Settings& settings, int height);
+
 // How AddShowPass() displays a target.
 struct ShowTarget {
   // kColour: rgb unchanged. kMetres: red as a depth, white at near_metres to black at far_metres.

@@ -27,7 +27,9 @@ std::vector<FrameGraph::Handle> Fullscreen::AddPass(FrameGraph* graph, const Ful
       if (read.version >= 0) builder.Read(read);
     }
     for (const FullscreenPass::Target& target : pass.writes) {
-      data.writes.push_back(builder.Write(builder.Create(target.name, target.desc)));
+      const bool is_new = target.into.version < 0;
+      data.writes.push_back(
+          builder.Write(is_new ? builder.Create(target.name, target.desc) : target.into));
     }
   };
   // The pass runs after this function has returned, so everything is copied.

@@ -18,13 +18,14 @@ struct FullscreenPass {
   struct Target {
     std::string_view name;
     TextureDesc desc;
+    FrameGraph::Handle into = {};  // written on top of this; an empty handle: a new texture
   };
   std::string_view name;
   std::string_view fragment;         // path of the fragment shader below shaders/
   std::vector<std::string> defines;  // "NAME VALUE" for the shader
   // Entry i is bound to texture unit i. An empty handle leaves its unit without a texture.
   std::vector<FrameGraph::Handle> reads;
-  std::vector<Target> writes;  // created by the pass, all of the same size
+  std::vector<Target> writes;  // all of the same size
   // The scene's depth buffer, of the same size as the targets: draws only pixels with a surface. An
   // empty handle draws all pixels.
   FrameGraph::Handle surface_z = {};

@@ -47,15 +47,14 @@ SkinTargets AddLightPass(FrameGraph* graph, const FacetTargets& facets, FrameGra
         // After the pass has bound its textures, which unbinds all units without a handle.
         scene->BindLights(settings);
         glUniformMatrix3fv(kLightViewRotation, 1, GL_FALSE, &geometry.view_rotation[0].x);
-        glUniform4f(kLightLens, geometry.pixels_per_slope,
-                    0.5f * static_cast<float>(geometry.width),
-                    0.5f * static_cast<float>(geometry.height), 0.0f);
+        glUniform4f(kLightLens, geometry.pixels_per_slope, geometry.axis().x, geometry.axis().y,
+                    0.0f);
         glUniform1f(kLightRange, OcclusionPass::BlurDepthLimit(settings.occlusion));
         fullscreen->Clear(0, 0.0f, 0.0f, 0.0f, kFarAway);
         fullscreen->Clear(1, back.r, back.g, back.b, 0.0f);
         fullscreen->Draw(geometry.bounds);
       });
-  return {lit[0], lit[1], lit[2], facets.normal, facets.depth, facets.z};
+  return {lit[0], lit[1], lit[2], facets.normal, facets.depth, facets.z, facets.motion};
 }
 
 }  // namespace furrow::render

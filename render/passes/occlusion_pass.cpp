@@ -49,9 +49,8 @@ FrameGraph::Handle OcclusionPass::AddSearch(FrameGraph* graph, FrameGraph::Handl
        .writes = {{"occlusion noisy", TargetOf(settings, geometry)}}},
       [this, settings, geometry] {
         glUniformMatrix3fv(kOcclusionViewRotation, 1, GL_FALSE, &geometry.view_rotation[0].x);
-        glUniform4f(kOcclusionLens, geometry.pixels_per_slope,
-                    0.5f * static_cast<float>(geometry.width),
-                    0.5f * static_cast<float>(geometry.height), 0.0f);
+        glUniform4f(kOcclusionLens, geometry.pixels_per_slope, geometry.axis().x, geometry.axis().y,
+                    0.0f);
         glUniform2f(kOcclusionReach, 0.001f * settings.radius_mm, settings.strength);
         DrawBounds(settings, geometry);
       });

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
 
 #include "render/passes/fullscreen.h"
 #include "render/passes/scene_pass.h"
@@ -18,6 +19,12 @@ struct OcclusionGeometry {
   float pixels_per_slope = 1.0f;
   ScreenRect bounds;           // pixels outside show no surface; they are not computed
   glm::vec3 background{0.0f};  // linear radiance of pixels without a surface
+  glm::vec2 jitter{0.0f};      // by which the scene is moved, pixels
+
+  // The pixel on the camera's axis.
+  [[nodiscard]] glm::vec2 axis() const {
+    return 0.5f * glm::vec2(static_cast<float>(width), static_cast<float>(height)) + jitter;
+  }
 };
 
 // Ambient occlusion: computes how much of the sky each pixel sees, and removes the rest of the

@@ -3,7 +3,7 @@
 
 namespace furrow::render {
 
-void AddReadBackPass(FrameGraph* graph, FrameGraph::Handle picture, std::uint64_t token,
+void AddReadBackPass(FrameGraph* graph, FrameGraph::Handle picture, const ReadBack::Label& label,
                      GlDevice* device, ReadBack* read_back) {
   struct Data {
     FrameGraph::Handle picture;
@@ -18,7 +18,7 @@ void AddReadBackPass(FrameGraph* graph, FrameGraph::Handle picture, std::uint64_
       [=](const FrameGraph::Resources& resources, const Data& pass) {
         const TextureDesc& desc = resources.Desc(pass.picture);
         read_back->Start(device->Framebuffer(resources.Get(pass.picture), 0), desc.width,
-                         desc.height, token);
+                         desc.height, label);
         return Status();
       });
 }

@@ -8,9 +8,9 @@
 namespace furrow::render {
 
 // Adds a pass that starts the copy of `picture` (8-bit RGBA) to memory: ReadBack::Start() with
-// `token`. This side effect keeps the passes before it from being culled. `device` and `read_back`
+// `label`. This side effect keeps the passes before it from being culled. `device` and `read_back`
 // must outlive the graph.
-void AddReadBackPass(FrameGraph* graph, FrameGraph::Handle picture, std::uint64_t token,
+void AddReadBackPass(FrameGraph* graph, FrameGraph::Handle picture, const ReadBack::Label& label,
                      GlDevice* device, ReadBack* read_back);
 
 }  // namespace furrow::render

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include <glm/gtc/matrix_transform.hpp>
+
 #include "base/status.h"
 #include "render/mesh/displacement_patches.h"
 
@@ -148,7 +150,7 @@ SceneDraw::SceneDraw(const wrinkle::Skeleton& skeleton,
       shadow_depth_(MakeShadowSampler(false)),
       cut_out_(MakeCutOutSampler()) {}
 
-Status SceneDraw::Update(const FrameRequest& request) {
+Status SceneDraw::Update(const FrameRequest& request, const SceneMotion* motion) {
   FURROW_RETURN_IF_ERROR(tables_->Update(request));
   setup_ = SetUpFrame(request, skeleton_, &ambient_);
   const Settings& settings = request.settings;
@@ -162,10 +164,19 @@ Status SceneDraw::Update(const FrameRequest& request) {
   is_crowd_ = subjects.size() > 1;
   // Later steps use the results of earlier ones: tables, frame set-up, visibility, composing.
   FindVisible(subjects, settings);
-  buffers_.Upload(MakeFrameBlock(setup_, settings), subjects, gpu_->layout());
+  has_motion_ = motion != nullptr;
+  FrameBlock frame = MakeFrameBlock(setup_, settings);
+  if (has_motion_) {
+    frame.view_projection =
+        glm::translate(glm::mat4(1.0f), glm::vec3(motion->jitter, 0.0f)) * frame.view_projection;
+    const CameraFrame& before = motion->camera == nullptr ? setup_.camera : *motion->camera;
+    buffers_.UploadMotion({setup_.camera.view_projection, before.view_projection,
+                           FocusPlane(before), glm::vec4(motion->detail, 0.0f, 0.0f, 0.0f)});
+  }
+  buffers_.Upload(frame, subjects, gpu_->layout());
   morphs_.BeginFrame(subjects);
   materials_.BeginFrame(subjects);
-  posed_.BeginFrame();
+  posed_.BeginFrame(has_motion_ ? motion->vertices : nullptr);
   PlanComposing(request);
   return {};
 }
@@ -448,6 +459,7 @@ SceneShader SceneDraw::ShaderFor(const GpuMaterial& material,
   shader.wrinkle_looks = gpu_->wrinkle_looks() != 0;
   shader.thickness_map = skin && CanShineThrough(settings) && material.thickness != 0;
   shader.unlit = kind == SceneKind::kFacets;
+  shader.motion = shader.unlit && has_motion_;
   if (shader.unlit || shader.shade) {
     shader.view = View::kFinal;
   } else {

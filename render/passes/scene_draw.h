@@ -12,6 +12,7 @@
 #include "render/scene/lookup_tables.h"
 #include "render/scene/material_blocks.h"
 #include "render/scene/morph_sums.h"
+#include "render/scene/motion.h"
 #include "render/scene/posed_meshes.h"
 #include "render/scene/scene_buffers.h"
 #include "render/wrinkles/wrinkle_table.h"
@@ -35,8 +36,15 @@ class SceneDraw {
             GpuCharacter* gpu, WrinkleTables* tables, ShaderLibrary* shaders, bool is_software);
 
   // Uploads a request. Call once per frame, before any pass draws. The request may be freed
-  // afterwards. Errors: those of WrinkleTables::Update().
-  [[nodiscard]] Status Update(const FrameRequest& request);
+  // afterwards. `motion`: for kFacets of a single subject without displacement; what it refers to
+  // must live until the frame ends. Null: the picture stands alone. Errors: those of
+  // WrinkleTables::Update().
+  [[nodiscard]] Status Update(const FrameRequest& request, const SceneMotion* motion = nullptr);
+  // Keeps the posed vertices of this frame for the next picture of its stream. Call it when the
+  // frame has been drawn.
+  void KeepVertices(FormerVertices* former) { posed_.EndFrame(former); }
+  // True if this frame has motion: kFacets has one more target, the last.
+  [[nodiscard]] bool has_motion() const { return has_motion_; }
   [[nodiscard]] const FrameSetup& setup() const { return setup_; }
   // Upper bound, in metres, of the distance between the drawn and the skinned surface in this
   // frame.
@@ -101,6 +109,7 @@ class SceneDraw {
   FrameSetup setup_;
   float displacement_reach_ = 0.0f;
   bool is_crowd_ = false;
+  bool has_motion_ = false;
   DrawList draw_list_;
   SceneBuffers buffers_;
   WrinkleCache cache_;

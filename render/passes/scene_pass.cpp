@@ -139,19 +139,26 @@ FacetTargets ScenePass::AddFacets(FrameGraph* graph, const Settings& settings, i
                target("scene matter", PixelFormat::kRgba8),
                target("scene depth", PixelFormat::kR32F),
                target("scene z", PixelFormat::kDepth32F),
+               {},
                {}};
         if (scene_->emits()) out.emission = target("scene emission", PixelFormat::kRgba16F);
+        if (scene_->has_motion()) out.motion = target("scene motion", PixelFormat::kRgba16F);
       },
       [this, settings](const FrameGraph::Resources& resources, const FacetTargets& out) {
         std::vector<TextureId> colours = {resources.Get(out.colour), resources.Get(out.normal),
                                           resources.Get(out.geometric), resources.Get(out.matter),
                                           resources.Get(out.depth)};
-        if (out.emission.version >= 0) colours.push_back(resources.Get(out.emission));
+        for (const FrameGraph::Handle more : {out.emission, out.motion}) {
+          if (more.version >= 0) colours.push_back(resources.Get(more));
+        }
         const GLuint framebuffer = device_->Framebuffer(colours, resources.Get(out.z));
         const TextureDesc& desc = resources.Desc(out.depth);
         BeginScene(framebuffer, desc.width, desc.height);
         Clear(framebuffer, 4, {kNoSurface, 0.0f, 0.0f, 0.0f});  // the other targets are not read
                                                                 // there
+        if (out.motion.version >= 0) {
+          Clear(framebuffer, static_cast<GLint>(colours.size()) - 1, {0.0f, 0.0f, kFarAway, 0.0f});
+        }
         return scene_->DrawScene(settings, SceneKind::kFacets);
       });
 }

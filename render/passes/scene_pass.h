@@ -17,6 +17,7 @@ struct SkinTargets {
   FrameGraph::Handle depth;       // metres along the camera's axis
   FrameGraph::Handle z;  // the depth buffer, for FullscreenPass::surface_z; an empty handle if the
                          // targets have several samples per pixel
+  FrameGraph::Handle motion;  // FacetTargets::motion
 };
 
 // The scene's surface properties before lighting, encoded as in shaders/scene/stored_facet.glsl.
@@ -28,6 +29,9 @@ struct FacetTargets {
   FrameGraph::Handle depth;  // metres along the camera's axis
   FrameGraph::Handle z;
   FrameGraph::Handle emission;  // an empty handle if no material sends out light
+  // Where the former picture showed the same point (motionOf() of shaders/scene/motion.glsl); an
+  // empty handle if SceneDraw has no motion.
+  FrameGraph::Handle motion;
 };
 
 // Depth behind the focus, in metres, that means "no skin". FAR_AWAY of the shaders. A half float
@@ -60,7 +64,7 @@ class ScenePass {
   [[nodiscard]] SkinTargets AddSkin(FrameGraph* graph, const Settings& settings,
                                     const Targets& targets, FrameGraph::Handle shadows);
   // Draws the skin pipeline's scene without light into five targets, one sample per pixel, and the
-  // light that the surfaces send out into a sixth, if they do.
+  // light that the surfaces send out and their motion into further ones, if there are any.
   [[nodiscard]] FacetTargets AddFacets(FrameGraph* graph, const Settings& settings, int width,
                                        int height);
 

@@ -15,6 +15,7 @@ namespace furrow::render {
 inline constexpr int kMaxSubjects = 256;  // of one picture, including the first
 inline constexpr int kMinSize = 16;       // width and height of a picture, pixels
 inline constexpr int kMaxSize = 4096;
+inline constexpr float kMinScale = 0.5f;  // of a picture of a stream (FrameRequest::scale)
 
 // One subject of a picture: the character in a pose, with wrinkles. The caller owns what spans and
 // pointers refer to.
@@ -48,6 +49,11 @@ struct FrameRequest : PosedSubject {
   // by a root mean square of 1/255 on the face: coarser shadow maps (shadow.fit) and fewer samples
   // of the scattered light. Saves about a tenth of the work of a renderer on the CPU.
   bool is_moving = false;
+  // The stream of pictures of one subject and one viewer that a moving picture continues; 0: none.
+  // A renderer on the CPU draws such a picture with skin shading at `scale` of its width and
+  // height, and completes it from the former pictures of the stream (render/temporal/).
+  std::uint64_t stream = 0;
+  float scale = 1.0f;  // [kMinScale, 1]
 };
 
 }  // namespace furrow::render

@@ -12,6 +12,7 @@ struct Image {
   int height = 0;
   std::vector<std::uint8_t> rgb;  // 3 * width * height bytes
   std::uint64_t token = 0;        // FrameRequest::token
+  int drawn_percent = 100;        // of the width and height; less: completed from former pictures
 };
 
 }  // namespace furrow::render

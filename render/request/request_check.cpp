@@ -133,6 +133,9 @@ Status CheckSubjects(const FrameRequest& request, int num_joints, std::size_t nu
 Status CheckRequest(const FrameRequest& request, int num_joints, std::size_t num_shapes) {
   FURROW_RETURN_IF_ERROR(CheckSize("width", request.width));
   FURROW_RETURN_IF_ERROR(CheckSize("height", request.height));
+  if (!(request.scale >= kMinScale && request.scale <= 1.0f)) {
+    return {StatusCode::kInvalidArgument, "must be in [0.5, 1]", "scale"};
+  }
   FURROW_RETURN_IF_ERROR(CheckSettings(request.settings));
   FURROW_RETURN_IF_ERROR(CheckCamera(request.camera, num_joints));
   return CheckSubjects(request, num_joints, num_shapes);

@@ -10,6 +10,8 @@ namespace {
 
 constexpr GLuint kSubjectAttribute = 7;  // of shaders/scene/pose.vert.glsl
 constexpr GLuint kSubjectBinding = 2;    // of a mesh's vertex array
+constexpr GLuint kFormerAttribute = 5;   // of shaders/scene/scene.vert.glsl
+constexpr GLuint kFormerBinding = 1;     // of a posed mesh's vertex array
 
 // Offsets in bytes. Mirrors the outputs of shaders/scene/pose.vert.glsl.
 struct Layout {
@@ -54,8 +56,32 @@ void DescribePosed(GLuint array, const gl::Buffer& vertices, const PoseShader& s
 
 }  // namespace
 
-void PosedMeshes::BeginFrame() {
+std::size_t FormerVertices::num_bytes() const {
+  std::size_t bytes = 0;
+  for (const auto& [index, mesh] : meshes) bytes += mesh.capacity;
+  return bytes;
+}
+
+void PosedMeshes::BeginFrame(const FormerVertices* former) {
   for (auto& [key, posed] : posed_) posed.is_fresh = false;
+  former_ = former;
+}
+
+void PosedMeshes::EndFrame(FormerVertices* former) {
+  std::erase_if(former->meshes, [this](const auto& item) {
+    const auto found = posed_.find({item.first, Form::kIndexed});
+    return found == posed_.end() || !found->second.is_fresh;
+  });
+  for (auto& [key, posed] : posed_) {
+    if (key.second != Form::kIndexed || !posed.is_fresh) continue;
+    FormerVertices::Mesh& mesh = former->meshes[key.first];
+    std::swap(mesh.vertices, posed.vertices);
+    std::swap(mesh.capacity, posed.capacity);
+    mesh.count = posed.per_subject;
+    mesh.stride = posed.stride;
+    posed.is_fresh = false;
+  }
+  former_ = nullptr;
 }
 
 PosedMeshes::Source PosedMeshes::SourceOf(std::size_t mesh, Form form) {
@@ -92,9 +118,9 @@ Result<PosedMeshes::Vertices> PosedMeshes::Get(std::size_t mesh, Form form,
 void PosedMeshes::Reserve(std::size_t bytes, Posed* posed) {
   if (!posed->vertex_array) {
     posed->vertex_array = gl::MakeVertexArray();
-    posed->vertices = gl::MakeBuffer();
     posed->subjects = gl::MakeBuffer();
   }
+  if (!posed->vertices) posed->vertices = gl::MakeBuffer();
   // Also shrinks: after a crowd, storage of more than four times the need is given back.
   if (posed->capacity >= bytes && posed->capacity / 4 <= bytes) return;
   glNamedBufferData(posed->vertices.name(), static_cast<GLsizeiptr>(bytes), nullptr,
@@ -130,8 +156,29 @@ Status PosedMeshes::Pose(const Source& source, const PoseShader& shader,
   DescribePosed(posed->vertex_array.name(), posed->vertices, shader);
   glVertexArrayElementBuffer(posed->vertex_array.name(), source.indices);
   posed->per_subject = source.num_vertices;
+  posed->stride = Layout(shader).stride;
+  if (!shader.displaced) DescribeFormer(source, *posed);
   posed->is_fresh = true;
   return {};
+}
+
+// The former vertices have a layout of their own, because other masks may have been active.
+void PosedMeshes::DescribeFormer(const Source& source, const Posed& posed) const {
+  const GLuint array = posed.vertex_array.name();
+  if (former_ == nullptr) {
+    glDisableVertexArrayAttrib(array, kFormerAttribute);
+    glVertexArrayVertexBuffer(array, kFormerBinding, 0, 0, 0);  // releases the buffer
+    return;
+  }
+  const auto found = former_->meshes.find(source.mesh);
+  const bool is_known =
+      found != former_->meshes.end() && found->second.count == source.num_vertices;
+  glVertexArrayVertexBuffer(array, kFormerBinding,
+                            is_known ? found->second.vertices.name() : posed.vertices.name(), 0,
+                            static_cast<GLsizei>(is_known ? found->second.stride : posed.stride));
+  glEnableVertexArrayAttrib(array, kFormerAttribute);
+  glVertexArrayAttribFormat(array, kFormerAttribute, 3, GL_FLOAT, GL_FALSE, Layout::kPosition);
+  glVertexArrayAttribBinding(array, kFormerAttribute, kFormerBinding);
 }
 
 // A crowd of morphed faces is captured in parts, because the sums of all faces may not fit one

@@ -14,6 +14,19 @@
 
 namespace furrow::render {
 
+// The vertices of a former picture with one subject, by mesh (an index of GpuCharacter::meshes()).
+struct FormerVertices {
+  struct Mesh {
+    gl::Buffer vertices;
+    std::size_t capacity = 0;  // bytes
+    GLsizei count = 0;
+    GLuint stride = 0;  // bytes
+  };
+  std::map<std::size_t, Mesh> meshes;
+
+  [[nodiscard]] std::size_t num_bytes() const;
+};
+
 // Skinned vertices of meshes for all subjects of a frame. They are computed once per frame and read
 // by every pass that draws them: the scene and the shadow maps of all lamps.
 class PosedMeshes {
@@ -26,8 +39,12 @@ class PosedMeshes {
   PosedMeshes(GpuCharacter* gpu, MorphSums* morphs, ShaderLibrary* shaders)
       : gpu_(gpu), morphs_(morphs), shaders_(shaders) {}
 
-  // Marks all posed vertices as outdated.
-  void BeginFrame();
+  // Marks all posed vertices as outdated. `former`: vertices that the shaders compare with those of
+  // this frame (a_former of scene.vert.glsl), and which must live until the frame ends; null: none.
+  // A mesh that is missing there, or has another number of vertices, is compared with itself.
+  void BeginFrame(const FormerVertices* former);
+  // Moves the vertices of this frame (kIndexed) to `former` in exchange for the buffers there.
+  void EndFrame(FormerVertices* former);
 
   struct Vertices {
     GLuint vertex_array = 0;  // in the layout of scene.vert.glsl, one subject after another
@@ -49,6 +66,7 @@ class PosedMeshes {
     std::size_t capacity = 0;  // of `vertices`, in bytes
     gl::Buffer subjects;       // one subject number per instance
     GLsizei per_subject = 0;
+    GLuint stride = 0;                 // of `vertices`, in bytes
     std::optional<WrinklePart> masks;  // the part whose masks the vertices hold
     bool is_fresh = false;
   };
@@ -63,6 +81,7 @@ class PosedMeshes {
   [[nodiscard]] Status Pose(const Source& source, const PoseShader& shader,
                             std::span<const std::uint32_t> subjects, Posed* posed);
 
+  void DescribeFormer(const Source& source, const Posed& posed) const;
   void Capture(const Source& source, const PoseShader& shader,
                std::span<const std::uint32_t> subjects, const gl::Buffer& vertices);
 
@@ -70,6 +89,7 @@ class PosedMeshes {
   MorphSums* morphs_;
   ShaderLibrary* shaders_;
   std::map<std::pair<std::size_t, Form>, Posed> posed_;
+  const FormerVertices* former_ = nullptr;
 };
 
 }  // namespace furrow::render

@@ -7,7 +7,7 @@ namespace furrow::render {
 namespace {
 
 // Binding points of the shaders in shaders/scene/ and shaders/wrinkles/.
-enum UniformBinding : GLuint { kFrameBlock = 0, kWrinkleTable = 2 };
+enum UniformBinding : GLuint { kFrameBlock = 0, kWrinkleTable = 2, kMotionBlock = 3 };
 enum StorageBinding : GLuint {
   kJointRows = 0,
   kJointInfluences = 1,
@@ -25,7 +25,7 @@ std::size_t MasksIndex(WrinklePart part) { return part == WrinklePart::kSliding 
 SceneBuffers::SceneBuffers(std::span<const glm::mat4> inverse_bind_matrices,
                            const WrinkleTables* tables)
     : inverse_bind_matrices_(inverse_bind_matrices), tables_(tables) {
-  for (gl::Buffer* buffer : {&frame_, &joints_, &influences_}) *buffer = gl::MakeBuffer();
+  for (gl::Buffer* buffer : {&frame_, &motion_, &joints_, &influences_}) *buffer = gl::MakeBuffer();
   for (GroupBuffers& group : groups_) {
     for (auto* buffers : {&group.dynamic_masks, &group.first_masks}) {
       for (gl::Buffer& buffer : *buffers) buffer = gl::MakeBuffer();
@@ -94,6 +94,7 @@ void SceneBuffers::UploadMasks(const WrinkleTable& table, WrinklePart part, Grou
 
 void SceneBuffers::Bind() const {
   glBindBufferBase(GL_UNIFORM_BUFFER, kFrameBlock, frame_.name());
+  glBindBufferBase(GL_UNIFORM_BUFFER, kMotionBlock, motion_.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kJointRows, joints_.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kJointInfluences, influences_.name());
 }

@@ -7,6 +7,7 @@
 #include "render/gl/gl_objects.h"
 #include "render/request/subjects.h"
 #include "render/scene/frame_block.h"
+#include "render/scene/motion.h"
 #include "render/wrinkles/wrinkle_table.h"
 
 namespace furrow::render {
@@ -21,6 +22,8 @@ class SceneBuffers {
   // Replaces the contents of all buffers. `subjects` may be freed afterwards.
   void Upload(const FrameBlock& frame, std::span<const NamedSubject> subjects,
               const WrinkleLayout& layout);
+  // Replaces the block that only shaders with MOTION read.
+  void UploadMotion(const MotionBlock& motion) { gl::Upload(motion_, &motion, sizeof(motion)); }
   // Binds the buffers that all surfaces share.
   void Bind() const;
   // Binds the buffers with the wrinkles of a group of surfaces, for the maps of `part`.
@@ -42,6 +45,7 @@ class SceneBuffers {
   std::span<const glm::mat4> inverse_bind_matrices_;
   const WrinkleTables* tables_;
   gl::Buffer frame_;
+  gl::Buffer motion_;
   gl::Buffer joints_;
   gl::Buffer influences_;
   GroupBuffers groups_[kNumWrinkleGroups];

@@ -37,6 +37,8 @@ struct LightSettings {
   glm::vec3 fill{1.0f};
   glm::vec3 rim{1.0f};
   glm::vec3 sky{1.0f};
+
+  friend bool operator==(const LightSettings&, const LightSettings&) = default;
 };
 
 struct ShadowSettings {
@@ -48,6 +50,8 @@ struct ShadowSettings {
   float softness_mm = 3.0f;       // pcf: radius of the filter on the surface, [0, 50]
   float lamp_mm = 60.0f;          // pcss: radius of the lamp, [0, 1000]
   float normal_offset_mm = 1.0f;  // offset that prevents self-shadowing artefacts, [0, 20]
+
+  friend bool operator==(const ShadowSettings&, const ShadowSettings&) = default;
 };
 
 struct OcclusionSettings {
@@ -56,6 +60,8 @@ struct OcclusionSettings {
   float strength = 1.0f;    // [0, 2]
   int samples = 12;         // per pixel, [4, 64]
   bool half_resolution = true;
+
+  friend bool operator==(const OcclusionSettings&, const OcclusionSettings&) = default;
 };
 
 struct SubsurfaceSettings {
@@ -69,6 +75,8 @@ struct SubsurfaceSettings {
   // Exponent: albedo^mix is applied before scattering and the rest after it. 0: all after, 1: all
   // before; [0, 1].
   float mix = 0.5f;
+
+  friend bool operator==(const SubsurfaceSettings&, const SubsurfaceSettings&) = default;
 };
 
 struct TranslucencySettings {
@@ -76,6 +84,8 @@ struct TranslucencySettings {
   float strength = 1.0f;   // [0, 8]
   float scale = 1.0f;      // scales the thickness that light passes through, [0.01, 100]
   float shrink_mm = 5.0f;  // depth below the surface where the thickness look-up starts, [0, 20]
+
+  friend bool operator==(const TranslucencySettings&, const TranslucencySettings&) = default;
 };
 
 struct SpecularSettings {
@@ -86,6 +96,8 @@ struct SpecularSettings {
   bool conserve_energy = true;  // subtract reflected light from the diffuse light
   bool widen = true;            // enlarge m by the variance of the normal map's slopes
   bool table = false;           // look up the Beckmann term as in GPU Gems 3; off: compute it
+
+  friend bool operator==(const SpecularSettings&, const SpecularSettings&) = default;
 };
 
 struct WrinkleSettings {
@@ -94,6 +106,8 @@ struct WrinkleSettings {
   // Compose the wrinkles of a single subject in texture space where that is cheaper, and only where
   // weights changed. Off: evaluate them in every fragment.
   bool cache = true;
+
+  friend bool operator==(const WrinkleSettings&, const WrinkleSettings&) = default;
 };
 
 // Moves the surface by the height maps of the rig's wrinkle maps, so that outlines and shadows show
@@ -103,6 +117,8 @@ struct DisplacementSettings {
   float strength = 1.0f;     // scales the heights, [0, 4]; the normal maps match strength 1
   float edge_pixels = 4.0f;  // target length of a subdivided triangle edge, [1, 64]
   int max_level = 16;        // largest number of parts of an edge, [1, 64]
+
+  friend bool operator==(const DisplacementSettings&, const DisplacementSettings&) = default;
 };
 
 struct DetailSettings {
@@ -113,12 +129,16 @@ struct DetailSettings {
   // ShadowSettings::normal_offset_mm, which hides smaller ones, is never allowed. 0: shadow maps
   // use the mesh that the camera sees.
   float hair_shadow_texels = 0.5f;
+
+  friend bool operator==(const DetailSettings&, const DetailSettings&) = default;
 };
 
 struct BloomSettings {
   float strength = 0.05f;  // [0, 1]; 0: off
   float threshold = 1.0f;  // linear, after exposure, [0, 16]
   float radius = 0.015f;   // standard deviation as a share of the picture's height, [0.001, 0.1]
+
+  friend bool operator==(const BloomSettings&, const BloomSettings&) = default;
 };
 
 struct AntiAliasingSettings {
@@ -126,10 +146,14 @@ struct AntiAliasingSettings {
   // software device, where every sample of every target costs time: 1, and FXAA is on.
   int samples = 0;
   bool fxaa = false;  // on the finished picture
+
+  friend bool operator==(const AntiAliasingSettings&, const AntiAliasingSettings&) = default;
 };
 
 struct StripSettings {
   std::vector<View> views;  // small pictures along the right edge, from the top, at most 6
+
+  friend bool operator==(const StripSettings&, const StripSettings&) = default;
 };
 
 // Defaults draw a portrait. CheckSettings() of named_settings.h validates the ranges.
@@ -155,6 +179,8 @@ struct Settings {
   BloomSettings bloom;
   AntiAliasingSettings anti_aliasing;
   StripSettings strip;
+
+  friend bool operator==(const Settings&, const Settings&) = default;
 };
 
 // Returns true if the skin pipeline, with shadows, draws `view`; false: the plain one does.

@@ -26,8 +26,9 @@ struct FinishedPicture {
   Time taken{0};
   Time drawn{0};
   Time encoded{0};
-  int width = 0;                     // pixels
+  int width = 0;  // pixels
   int height = 0;
+  int drawn_percent = 100;  // render::Image::drawn_percent
   Encoding encoding;
   std::vector<std::uint8_t> bytes;     // the encoded picture; empty: rendering failed
   std::string codec;                   // of a video (VideoCodecName()); empty: a file of `encoding`

@@ -9,6 +9,7 @@
 #include <sys/resource.h>
 
 #include "base/status.h"
+#include "render/temporal/shot.h"
 #include "server/core/within_memory.h"
 
 namespace furrow::server {
@@ -48,6 +49,7 @@ FinishedPicture FinishedOf(const render::Image& image, const RenderJob& job, Tim
           .encoded = encoded,
           .width = image.width,
           .height = image.height,
+          .drawn_percent = image.drawn_percent,
           .encoding = {},
           .bytes = {},
           .codec = {},
@@ -197,7 +199,7 @@ void RenderThread::DrawAndCollect() {
   // this thread encodes another. Blocks in Take() only if nothing is in flight.
   while (static_cast<int>(in_flight_.size()) < kMaxReadBacks &&
          (in_flight_.empty() || in_flight_.back().Work() < kLargeWork)) {
-    std::optional<RenderJob> job = mailbox_.Take(/*wait=*/in_flight_.empty());
+    std::optional<RenderJob> job = TakeJob();
     if (!job) break;
     job->taken = clock_();
     if (!job->prepares) metrics_->Observe(Timing::kPictureWait, job->taken - job->submitted);
@@ -206,13 +208,22 @@ void RenderThread::DrawAndCollect() {
   if (!in_flight_.empty()) Collect(/*wait=*/true);
 }
 
+// Waits only if nothing is in flight.
+std::optional<RenderJob> RenderThread::TakeJob() {
+  if (!in_flight_.empty()) return mailbox_.Take(/*wait=*/false);
+  const Time begun = clock_();
+  std::optional<RenderJob> job = mailbox_.Take(/*wait=*/true);
+  idle_ += clock_() - begun;
+  return job;
+}
+
 void RenderThread::Draw(RenderJob job) {
   const Step step(&steps_);
   if (renderer_ == nullptr && !Revive()) return Fail(std::move(job));
   // In flight before it is drawn, so that nothing can fail between the two.
   in_flight_.push_back(std::move(job));
   progress_.Begin(&in_flight_.back());
-  const Status status = OrOutOfMemory(metrics_, [this] { return Render(in_flight_.back()); });
+  const Status status = OrOutOfMemory(metrics_, [this] { return Render(&in_flight_.back()); });
   progress_.End();
   if (status.ok()) return;
   job = std::move(in_flight_.back());
@@ -225,7 +236,8 @@ void RenderThread::Draw(RenderJob job) {
   }
 }
 
-Status RenderThread::Render(const RenderJob& job) {
+Status RenderThread::Render(RenderJob* taken) {
+  const RenderJob& job = *taken;
   const Snapshot& snapshot = *job.snapshot;
   // Retargeting runs here, not on the network thread: only poses that are drawn pay for it.
   if (drawn_.Run({*snapshot.retarget, *snapshot.blend_shape_pose, snapshot.shape_program.get(),
@@ -249,6 +261,12 @@ Status RenderThread::Render(const RenderJob& job) {
   const bool refines = samples == 0 && job.IsStill();
   if (refines) samples = kStillSamples;
   request.is_moving = is_software_ && job.IsLossy();
+  if (request.is_moving) {
+    const PictureStreams::Place place = streams_.Find(job);
+    request.stream = place.stream;
+    request.scale = place.scale;
+    if (render::IsCompleted(request, is_software_)) taken->stream = place.stream;
+  }
   const Status status = renderer_->Submit(request);
   // A large still with this number of samples needs too much memory.
   if (!refines || status.code() != StatusCode::kLimit) return status;
@@ -274,6 +292,7 @@ void RenderThread::Collect(bool wait) {
   metrics_->Add(Counter::kPicturesRendered);
   job.drawn = clock_();
   metrics_->Observe(Timing::kPictureDraw, job.drawn - job.taken);
+  if (job.stream != 0) streams_.OnDrawn(job.stream, job.drawn - idle_, job.drawn);
   Finish(*image, std::move(job));
 }
 

@@ -21,6 +21,7 @@
 #include "server/core/metrics.h"
 #include "server/core/time.h"
 #include "server/pipeline/picture_source.h"
+#include "server/pipeline/picture_streams.h"
 #include "server/pipeline/render_mailbox.h"
 #include "server/pipeline/video_encoders.h"
 #include "wrinkle/shapes/character_pose.h"
@@ -35,6 +36,9 @@ namespace furrow::server {
 // Stills (refined pictures of a subject at rest) use kStillSamples samples per pixel if the
 // settings leave the number to the device: with one sample, hair and lashes show specks that are
 // noticeable once they stop moving.
+//
+// With a renderer on the processor, moving pictures that are compressed anyway belong to the stream
+// of their viewer (PictureStreams), which draws fewer pixels if the machine is slow.
 //
 // Lack of memory costs the pictures in flight and the context, not the daemon.
 //
@@ -139,7 +143,8 @@ class RenderThread : public PictureSource {
   void Run(std::promise<Status> started);
   void DrawAndCollect();
   void Draw(RenderJob job);
-  Status Render(const RenderJob& job);
+  Status Render(RenderJob* job);
+  [[nodiscard]] std::optional<RenderJob> TakeJob();
   void Collect(bool wait);
   void Finish(const render::Image& image, RenderJob job);
   void EncodeVideos(const render::Image& image, RenderJob* job);
@@ -175,6 +180,8 @@ class RenderThread : public PictureSource {
   int jobs_to_skip_ = 0;                        // before the next attempt to create it
   int next_skip_ = 0;                           // doubles until a picture succeeds
   std::deque<RenderJob> in_flight_;             // oldest first, in the order of the read-backs
+  PictureStreams streams_;
+  Time idle_{0};  // without anything to draw, altogether
   wrinkle::CharacterPose drawn_;
   render::Planes planes_;  // of the picture that is being encoded; its memory is reused
 

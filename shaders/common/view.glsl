@@ -3,8 +3,8 @@
 // Positions in view space (x right, y up, looking along -z; metres) from linear depth.
 
 layout(location = 0) uniform mat3 u_view_rotation;  // model space to view space
-layout(location = 3) uniform vec4 u_lens;           // x: pixels per unit slope, y: width / 2, z:
-                                                    // height / 2 (pixels)
+layout(location = 3) uniform vec4 u_lens;           // x: pixels per unit slope; yz: the pixel on
+                                                    // the camera's axis, near the centre
 
 const float NO_SURFACE = 1e5;  // metres; anything farther is background
 

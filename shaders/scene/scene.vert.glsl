@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/frame.glsl"
+#if MOTION
+#include "scene/motion.glsl"
+#endif
 
 // A vertex as scene/pose.vert.glsl wrote it: skinned and placed.
 layout(location = 0) in vec3 a_position;
@@ -11,6 +14,9 @@ layout(location = 4) in uint a_subject;
 #endif
 #if DISPLACED
 layout(location = 5) in float a_share;
+#endif
+#if MOTION
+layout(location = 5) in vec3 a_former;  // the position of the former picture
 #endif
 #if WRINKLE_DYNAMIC
 layout(location = 6) in vec4 a_dynamic_masks[MAP_SLOTS];
@@ -28,6 +34,9 @@ layout(location = 4) out float v_share;
 #endif
 #if CROWD
 layout(location = 5) flat out uint v_subject;
+#endif
+#if MOTION
+layout(location = 5) noperspective out vec3 v_motion;
 #endif
 #if WRINKLE_DYNAMIC
 layout(location = 6) out vec4 v_dynamic_masks[MAP_SLOTS];
@@ -52,6 +61,9 @@ void main() {
 #endif
 #if WRINKLE_DYNAMIC
   v_dynamic_masks = a_dynamic_masks;
+#endif
+#if MOTION
+  v_motion = motionOf(a_position, a_former);
 #endif
 #if DISPLACED
   v_share = a_share;

@@ -18,6 +18,9 @@ layout(location = 4) out float f_fifth;
 #if EMISSION_TARGET
 layout(location = 5) out vec4 f_sixth;   // facets: emission
 #endif
+#if MOTION
+layout(location = 5 + EMISSION_TARGET) out vec4 f_motion;
+#endif
 
 void main() {
   vec3 passes = baseColour().rgb;
@@ -29,6 +32,9 @@ void main() {
   f_fifth = 1.0;
 #if EMISSION_TARGET
   f_sixth = vec4(passes, 1.0);
+#endif
+#if MOTION
+  f_motion = vec4(1.0);
 #endif
 #else
   f_first = vec4(passes, 1.0);

@@ -15,6 +15,10 @@ layout(location = 4) out float f_depth;     // metres along the camera's axis
 #if EMISSION_TARGET
 layout(location = 5) out vec4 f_emission;   // rgb; see struct Facet
 #endif
+#if MOTION
+layout(location = 5) noperspective in vec3 v_motion;
+layout(location = 5 + EMISSION_TARGET) out vec4 f_motion;  // see motionOf() of scene/motion.glsl
+#endif
 
 void main() {
   Facet facet = facetHere();
@@ -26,5 +30,8 @@ void main() {
   f_depth = depthOf(facet.position);
 #if EMISSION_TARGET
   f_emission = vec4(facet.emission, 0.0);
+#endif
+#if MOTION
+  f_motion = vec4(v_motion, 0.0);
 #endif
 }

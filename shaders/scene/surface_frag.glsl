@@ -4,6 +4,14 @@
 // Material and normal of a fragment, before lighting. Inputs are the outputs of
 // scene/scene.vert.glsl.
 
+// The level of a texture, as a last argument of texture().
+#if MOTION
+#include "scene/motion.glsl"
+#define DETAIL , u_detail.x
+#else
+#define DETAIL
+#endif
+
 layout(location = 0) in vec3 v_position;
 layout(location = 1) in vec3 v_normal;
 layout(location = 2) in vec4 v_tangent;
@@ -43,7 +51,7 @@ vec2 textureUv() { return v_uv * u_texture_uv.xy + u_texture_uv.zw; }
 // Base colour, linear; a: opacity.
 vec4 baseColour() {
 #if HAS_BASE_COLOUR
-  return u_base_colour * texture(u_base_colour_map, textureUv());
+  return u_base_colour * texture(u_base_colour_map, textureUv() DETAIL);
 #else
   return u_base_colour;
 #endif
@@ -63,7 +71,7 @@ vec3 emission() {
 // Roughness, [0, 1].
 float roughness() {
 #if HAS_ROUGHNESS
-  return u_roughness * texture(u_roughness_map, textureUv()).g;
+  return u_roughness * texture(u_roughness_map, textureUv() DETAIL).g;
 #else
   return u_roughness;
 #endif
@@ -130,7 +138,7 @@ bool facesCamera() { return MATERIAL == MATERIAL_HAIR || gl_FrontFacing; }
 // Unit shading normal, model space. `variance`: of the slopes within the pixel.
 vec3 surfaceNormal(vec4 masks[MASK_LAYERS], vec4 dynamicMasks[MAP_SLOTS], out float variance) {
 #if HAS_BASE_NORMAL
-  vec3 base = slopeOf(texture(u_base_derivatives, textureUv()));
+  vec3 base = slopeOf(texture(u_base_derivatives, textureUv() DETAIL));
 #else
   vec3 base = vec3(0.0);
 #endif

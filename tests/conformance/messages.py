@@ -314,10 +314,13 @@ def image(t):
     codec, key = t.text(11, limit=32), t.flag(12)
     require(not (key and codec == ""), "a key picture without a codec")
     require(not (t.flag(7) and codec != ""), "a still in a video codec")
+    drawn = t.scalar(13, "B", 100)
+    require(1 <= drawn <= 100, "drawn_percent out of range")
     return {"width": width, "height": height, "format": one_of(t.scalar(2, "B"), 2),
             "age_us": age(t.scalar(3, "q")), "bytes": data, "number": t.scalar(5, "I"),
             "tier": one_of(t.scalar(6, "B"), 3), "still": t.flag(7), "dropped": t.scalar(8, "I"),
-            "received_us": t.scalar(9, "q"), "view_request": t.scalar(10, "I"), "codec": codec, "key": key}
+            "received_us": t.scalar(9, "q"), "view_request": t.scalar(10, "I"), "codec": codec, "key": key,
+            "drawn_percent": drawn}
 
 
 KINDS = {b"FHEL": hello, b"FWEL": welcome, b"FPIN": ping, b"FPON": pong, b"FBYE": goodbye,

@@ -349,6 +349,7 @@ export class App {
     const isAtRest = this.isAtRest();
     this.header.showFigures({
       picturesHz, posesHz, isAtRest, ageMs: picture.ageMs, width: picture.width, height: picture.height,
+      drawnPercent: picture.drawnPercent,
       ...this.streamFigures(nowS),
       limit: limitOf({ posesHz, picturesHz, waitedHz: stats.waitedHz(nowS), decodeMs: stats.decodeMs(), isAtRest, isHere }),
     });

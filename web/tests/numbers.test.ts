@@ -47,7 +47,7 @@ test('the CSV equals the output of furrow watch', () => {
 });
 
 const FACTS = { sequence: 1, ageUs: 0, still: false, tier: 0, dropped: 0, receivedUs: 990_000, width: 640, height: 480, decodeMs: 4,
-  codec: '', numBytes: 1000 };
+  codec: '', numBytes: 1000, drawnPercent: 100 };
 
 test('latency is the median of fresh pictures on the daemon’s clock', () => {
   const stats = new PictureStats();
@@ -153,29 +153,47 @@ test('a single change at rest is not movement, several in a row are', () => {
 
 test('slow pictures reduce the pixels, which return after a while', () => {
   const scale = new AdaptiveScale();
-  assert(scale.observe(5, 60, 0));
-  assert(scale.observe(5, 60, 1));
+  assert(scale.observe(5, 60, 0, 100));
+  assert(scale.observe(5, 60, 1, 100));
   assert.equal(scale.scale, 0.5);
-  assert(!scale.observe(20, 60, 2)); // neither slow nor fast
-  for (let s = 3; s < 7; ++s) assert(!scale.observe(50, 60, s));
-  assert(scale.observe(50, 60, 7));
+  assert(!scale.observe(20, 60, 2, 100)); // neither slow nor fast
+  for (let s = 3; s < 7; ++s) assert(!scale.observe(50, 60, s, 100));
+  assert(scale.observe(50, 60, 7, 100));
   assert.equal(scale.scale, 0.75);
 });
 
 test('a slow publisher is not the renderer’s fault', () => {
   const scale = new AdaptiveScale();
-  assert(!scale.observe(9.5, 10, 0));
+  assert(!scale.observe(9.5, 10, 0, 100));
   assert.equal(scale.scale, 1);
+});
+
+test('a daemon that draws fewer pixels than it sends gets time for it', () => {
+  const scale = new AdaptiveScale();
+  assert(!scale.observe(15, 60, 0, 75)); // it may still go down to a half
+  assert(scale.observe(15, 60, 1, 50));
+  assert.equal(scale.scale, 0.75);
+  for (let s = 2; s < 20; ++s) assert(!scale.observe(50, 60, s, 75)); // it has no time for more
+  for (let s = 20; s < 24; ++s) assert(!scale.observe(50, 60, s, 100));
+  assert(scale.observe(50, 60, 24, 100));
+});
+
+test('the share that was drawn is that of the picture on the screen', () => {
+  const stats = new PictureStats();
+  stats.add({ ...FACTS, drawnPercent: 63 }, 0, null);
+  assert.equal(stats.picture(0, null)!.drawnPercent, 63);
+  stats.add({ ...FACTS, still: true }, 0, null);
+  assert.equal(stats.picture(0, null)!.drawnPercent, 100);
 });
 
 test('failed attempts become rarer', () => {
   const scale = new AdaptiveScale();
-  scale.observe(5, 60, 0);
+  scale.observe(5, 60, 0, 100);
   let raised = 0;
-  for (let s = 1; raised === 0; ++s) if (scale.observe(50, 60, s)) raised = s;
-  scale.observe(5, 60, raised + 1); // the larger size was too slow
+  for (let s = 1; raised === 0; ++s) if (scale.observe(50, 60, s, 100)) raised = s;
+  scale.observe(5, 60, raised + 1, 100); // the larger size was too slow
   let again = 0;
-  for (let s = raised + 2; again === 0; ++s) if (scale.observe(50, 60, s)) again = s;
+  for (let s = raised + 2; again === 0; ++s) if (scale.observe(50, 60, s, 100)) again = s;
   assert(again - raised - 2 >= 2 * (raised - 1));
 });
 

@@ -280,6 +280,7 @@ void PictureViews::FillImage(const FinishedPicture& picture) {
   image_.bytes = picture.bytes;
   image_.codec = picture.codec;
   image_.key = picture.key;
+  image_.drawn_percent = static_cast<std::uint8_t>(picture.drawn_percent);
 }
 
 void PictureViews::SendPicture(Subscription& subscription, const FinishedPicture& picture,

@@ -15,6 +15,8 @@ export interface Figures {
   isAtRest: boolean;
   width: number;
   height: number;
+  /** Share of the width and height that was drawn; below 100, former pictures completed it. */
+  drawnPercent: number;
   limit: Limit;
   /** How the pictures come; empty: this browser draws them. */
   stream: string;
@@ -96,11 +98,12 @@ export class Header {
       for (const id of this.figures.keys()) this.put(id, t.none);
       return;
     }
-    const { picturesHz, posesHz, ageMs, isAtRest, width, height, limit, stream, streamTitle } = figures;
+    const { picturesHz, posesHz, ageMs, isAtRest, width, height, drawnPercent, limit, stream, streamTitle } = figures;
     // Pictures of a pose at rest say nothing about the speed.
     this.put('rate', posesHz < 0.5 ? t.none : `${picturesHz.toFixed(0)} of ${posesHz.toFixed(0)} /s`);
     this.put('age', isAtRest ? t.atRest : ageMs === null ? t.none : ageWords(ageMs));
-    this.put('size', width === 0 ? t.none : `${width} × ${height}`);
+    const drawn = drawnPercent === 100 ? '' : t.drawn(drawnPercent);
+    this.put('size', width === 0 ? t.none : `${width} × ${height}${drawn}`);
     this.put('stream', stream || t.none);
     this.figures.get('stream')!.title = streamTitle;
     this.put('limit', t.limits[limit]);

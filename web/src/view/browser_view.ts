@@ -273,7 +273,7 @@ export class BrowserView {
     if (step === 'measure') {
       this.note(endedMs - beganMs);
     } else {
-      this.drawn = { sequence: pose.sequence, width, height, isStill: false, ageMs: pose.ageMs, atMs: endedMs };
+      this.drawn = { sequence: pose.sequence, width, height, isStill: false, drawnPercent: 100, ageMs: pose.ageMs, atMs: endedMs };
       this.show(endedMs / 1000);
       this.onShown();
     }

@@ -15,6 +15,8 @@ export interface PictureFacts {
   /** Of a video (RFC 6381); empty: the picture came as a file. */
   codec: string;
   numBytes: number;
+  /** Share of the width and height at which the daemon drew it, percent. */
+  drawnPercent: number;
 }
 
 /** What is on the screen, whoever drew it. */
@@ -24,6 +26,8 @@ export interface ShownPicture {
   width: number;
   height: number;
   isStill: boolean;
+  /** Below 100, former pictures completed it. */
+  drawnPercent: number;
   /** Time since the pose reached the daemon; null: unknown. */
   ageMs: number | null;
 }
@@ -60,6 +64,7 @@ export class PictureStats {
   sequence: number | null = null;
   width = 0;
   height = 0;
+  drawnPercent = 100;
   /** When the pose on the screen reached the daemon, on the daemon's clock; 0: unknown. */
   private receivedUs = 0;
   private sinceStill = Infinity;
@@ -88,6 +93,7 @@ export class PictureStats {
     if (!picture.still) this.codec = picture.codec;
     this.width = picture.width;
     this.height = picture.height;
+    this.drawnPercent = picture.drawnPercent;
     this.receivedUs = picture.receivedUs;
     this.sinceStill = picture.still ? 0 : this.sinceStill + 1;
     const isFresh = picture.ageUs === 0 && !picture.still && picture.sequence !== this.sequence;
@@ -153,8 +159,9 @@ export class PictureStats {
 
   /** What is on the screen; null: there is no picture of this connection. */
   picture(nowUs: number, offsetUs: number | null): ShownPicture | null {
-    const { sequence, width, height, still } = this;
-    return sequence === null ? null : { sequence, width, height, isStill: still, ageMs: this.ageMs(nowUs, offsetUs) };
+    const { sequence, width, height, still, drawnPercent } = this;
+    if (sequence === null) return null;
+    return { sequence, width, height, isStill: still, drawnPercent, ageMs: this.ageMs(nowUs, offsetUs) };
   }
 
   private prune(nowS: number): void {

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The number of pixels to request. "sharp" uses the density of the screen. If the daemon cannot draw
-// that fast enough, "auto" requests fewer pixels while the picture moves and all of them at rest.
+// that fast enough, "auto" requests fewer pixels while the picture moves and all of them at rest. Before that, a
+// daemon without a GPU draws fewer pixels than it sends, and completes them from former pictures.
 
 export type Sharpness = 'auto' | 'sharp' | 'fast';
 
+/** Share of the width and height, percent, below which a daemon draws no picture. */
+const LEAST_DRAWN = 50;
 const STEPS = [1, 0.75, 0.5, 0.35, 0.25] as const;
 /** Below this, the eye sees single pictures rather than motion. */
 const TOO_SLOW_HZ = 20;
@@ -29,10 +32,17 @@ export class AdaptiveScale {
     this.step = fits < 0 ? STEPS.length - 1 : fits;
   }
 
-  /** Called once per second with pictures and poses per second. Returns true if the scale changed. */
-  observe(picturesHz: number, posesHz: number, nowS: number): boolean {
-    if (picturesHz < Math.min(TOO_SLOW_HZ, 0.8 * posesHz)) return this.lower(nowS);
-    if (picturesHz < Math.min(FAST_HZ, 0.9 * posesHz) || this.step === 0) {
+  /**
+   * Called once per second with pictures and poses per second. `drawnPercent`: of the last picture. Returns true if
+   * the scale changed.
+   */
+  observe(picturesHz: number, posesHz: number, nowS: number, drawnPercent: number): boolean {
+    const isDrawnInFull = drawnPercent === 100;
+    if (picturesHz < Math.min(TOO_SLOW_HZ, 0.8 * posesHz)) {
+      // The daemon has something left to do about it.
+      return isDrawnInFull || drawnPercent <= LEAST_DRAWN ? this.lower(nowS) : false;
+    }
+    if (picturesHz < Math.min(FAST_HZ, 0.9 * posesHz) || this.step === 0 || !isDrawnInFull) {
       this.fastSinceS = null;
       return false;
     }

@@ -29,7 +29,7 @@ const WIPES: Record<Exclude<Wipe, 'none'>, WipeSides> = {
 };
 
 /** Pixels that a renderer on the processor draws within a fraction of a second. */
-const SOFTWARE_PIXELS = 130_000;
+const SOFTWARE_PIXELS = 300_000;
 /** Nobody minds waiting this long for a full picture. */
 const LONG_MS = 500;
 
@@ -99,7 +99,7 @@ export class Viewer {
   observeRate(posesHz: number, nowS: number): void {
     if (this.drawing.active.value) return;
     if (this.state.sharpness.value !== 'auto' || this.stats.resting || posesHz < 1) return;
-    if (this.scale.observe(this.stats.rateHz(nowS), posesHz, nowS)) this.refresh();
+    if (this.scale.observe(this.stats.rateHz(nowS), posesHz, nowS, this.stats.drawnPercent)) this.refresh();
   }
 
   /** Called when it is known how the daemon draws, so that the first picture comes quickly. */

@@ -43,7 +43,7 @@ const READERS: Record<string, (payload: Uint8Array) => unknown> = {
     return {
       width: m.width, height: m.height, format: m.mimeType === 'image/png' ? 1 : 0, age_us: m.ageUs, bytes: [...m.bytes],
       number: m.number, tier: m.tier, still: m.still, dropped: m.dropped, received_us: m.receivedUs, view_request: m.viewRequest,
-      codec: m.codec, key: m.key,
+      codec: m.codec, key: m.key, drawn_percent: m.drawnPercent,
     };
   },
   FSKO: (p) => {

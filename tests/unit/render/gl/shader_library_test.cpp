@@ -56,7 +56,7 @@ TEST_F(ShaderLibraryTest, EmissionCompilesInEveryWayOfDrawing) {
     EXPECT_TRUE(library_.Get(shader).ok()) << "plain";
     shader.shading = Shading::kSkin;
     EXPECT_TRUE(library_.Get(shader).ok()) << "skin";
-    shader.unlit = shader.emission_target = true;
+    shader.unlit = shader.emission_target = shader.motion = true;
     EXPECT_TRUE(library_.Get(shader).ok()) << "facets";
     shader.shade = true;
     EXPECT_TRUE(library_.Get(shader).ok()) << "shade over facets";
@@ -117,6 +117,7 @@ TEST_F(ShaderLibraryTest, ShadesCompileForEveryTarget) {
   for (const Shading shading : {Shading::kDiffuse, Shading::kSkin}) {
     for (const bool unlit : {false, true}) {
       SceneShader shader;
+      shader.motion = unlit && shading == Shading::kSkin;
       shader.shade = true;
       shader.material = character::Material::Kind::kShade;
       shader.shading = shading;
@@ -131,10 +132,11 @@ TEST_F(ShaderLibraryTest, ShadesCompileForEveryTarget) {
 // The facets of every material, and the shader that lights them.
 TEST_F(ShaderLibraryTest, EveryFacetConfigurationCompiles) {
   using Kind = character::Material::Kind;
-  for (int bits = 0; bits < 16; ++bits) {
+  for (int bits = 0; bits < 32; ++bits) {
     SceneShader shader;
     shader.shading = Shading::kSkin;
     shader.unlit = true;
+    shader.motion = (bits & 16) != 0;
     shader.material = bits % 2 == 0 ? Kind::kSkin : Kind::kCloth;
     shader.widen = (bits & 2) != 0;
     shader.wrinkle_looks = shader.wrinkle_texture = (bits & 4) != 0;
@@ -238,6 +240,10 @@ TEST_F(ShaderLibraryTest, EveryFullscreenConfigurationCompiles) {
       {"post/show.frag.glsl", {"SHOWN 1"}},
       {"post/show.frag.glsl", {"SHOWN 2"}},
       {"post/fxaa.frag.glsl", {}},
+      {"temporal/neighbours.frag.glsl", {"HAS_FORMER 0"}},
+      {"temporal/neighbours.frag.glsl", {"HAS_FORMER 1"}},
+      {"temporal/surround.frag.glsl", {}},
+      {"temporal/accumulate.frag.glsl", {}},
   };
   for (const auto& [fragment, defines] : shaders) {
     const Result<GLuint> program = library_.GetFullscreen(fragment, defines);

@@ -41,6 +41,9 @@ TEST_F(RequestCheck, AcceptsDefaultsAndLimits) {
 TEST_F(RequestCheck, NamesTheInvalidField) {
   ExpectRefused("width", [](FrameRequest& r) { r.width = kMinSize - 1; });
   ExpectRefused("height", [](FrameRequest& r) { r.height = kMaxSize + 1; });
+  ExpectRefused("scale", [](FrameRequest& r) { r.scale = 0.49f; });
+  ExpectRefused("scale", [](FrameRequest& r) { r.scale = 1.01f; });
+  ExpectRefused("scale", [](FrameRequest& r) { r.scale = kNan; });
   ExpectRefused("settings.wrinkle_strength",
                 [](FrameRequest& r) { r.settings.wrinkle_strength = 4.01f; });
   ExpectRefused("settings.wrinkle_strength",

@@ -42,6 +42,7 @@ struct Script {
   int out_of_memory_polls = 0;
   std::deque<int> samples;                 // of the rendered requests
   std::deque<bool> moving;                 // the same
+  std::deque<std::uint64_t> streams;       // the same
   std::vector<std::vector<float>> shapes;  // of the same
   int num_created = 0;
   bool is_software = false;
@@ -69,6 +70,7 @@ class ScriptedRenderer : public render::Renderer {
     if (status.ok()) ++in_flight_;
     if (status.ok()) script_->samples.push_back(request.settings.anti_aliasing.samples);
     if (status.ok()) script_->moving.push_back(request.is_moving);
+    if (status.ok()) script_->streams.push_back(request.stream);
     if (status.ok()) script_->shapes.emplace_back(request.shapes.begin(), request.shapes.end());
     return status;
   }
@@ -80,7 +82,7 @@ class ScriptedRenderer : public render::Renderer {
     FURROW_RETURN_IF_ERROR(Script::Next(&script_->poll));
     if (in_flight_ == 0) return render::Image();
     --in_flight_;
-    return render::Image{16, 16, std::vector<std::uint8_t>(16 * 16 * 3), 0};
+    return render::Image{16, 16, std::vector<std::uint8_t>(16 * 16 * 3), 0, 75};
   }
   int in_flight() const override { return in_flight_; }
   bool is_software() const override { return script_->is_software; }
@@ -290,12 +292,41 @@ TEST_F(RenderThreadTest, JpegOfAMovingSubjectMayBeInexactOnTheCpu) {
   EXPECT_EQ(script.moving, (std::deque<bool>{true, false, false}));
 }
 
+TEST_F(RenderThreadTest, MovingPicturesContinueTheStreamOfTheirViewer) {
+  script.is_software = true;
+  Start();
+  const auto draw = [this](const RenderJob& from, const PictureTicket& ticket) {
+    RenderJob job = from;
+    job.tickets = {ticket};
+    thread->Submit(std::move(job));
+    return pictures.Take();
+  };
+  const RenderJob job = JobOf(1);
+  EXPECT_EQ(draw(job, {.subscription = 1}).drawn_percent, 75) << "as the renderer says";
+  (void)draw(job, {.subscription = 1});
+  (void)draw(job, {.subscription = 2});
+  (void)draw(job, {.subscription = 1, .still = true});
+  (void)draw(job, {.subscription = 1, .encoding = {.format = render::ImageFormat::kPng}});
+  (void)draw(JobOf(2), {.subscription = 1});  // another subject
+  thread.reset();
+  const std::deque<std::uint64_t>& streams = script.streams;
+  ASSERT_EQ(streams.size(), 6u);
+  EXPECT_NE(streams[0], 0u);
+  EXPECT_EQ(streams[1], streams[0]);
+  EXPECT_NE(streams[2], streams[0]);
+  EXPECT_EQ(streams[3], 0u);
+  EXPECT_EQ(streams[4], 0u);
+  EXPECT_NE(streams[5], 0u);
+  EXPECT_NE(streams[5], streams[0]);
+}
+
 TEST_F(RenderThreadTest, PicturesOfAGpuAreExact) {
   Start();
   Submit(1, {.subscription = 1}, {});
   (void)pictures.Take();
   thread.reset();
   EXPECT_EQ(script.moving, (std::deque<bool>{false}));
+  EXPECT_EQ(script.streams, (std::deque<std::uint64_t>{0}));
 }
 
 TEST_F(RenderThreadTest, LackOfMemoryCostsPicturesNotTheThread) {

@@ -58,9 +58,9 @@ export class FlatTable {
     return this.table + offset;
   }
 
-  u8(slot: number): number {
+  u8(slot: number, absent = 0): number {
     const at = this.field(slot, 1);
-    return at === 0 ? 0 : this.view.getUint8(at);
+    return at === 0 ? absent : this.view.getUint8(at);
   }
 
   flag(slot: number): boolean {

@@ -32,6 +32,8 @@ export interface PictureMessage {
   receivedUs: number;
   /** Sequence of the request that defined the view. */
   viewRequest: number;
+  /** Share of the width and height at which the scene was drawn, [1, 100]. Below 100, former pictures completed it. */
+  drawnPercent: number;
 }
 
 export interface WeightsMessage {
@@ -61,6 +63,8 @@ export function readPicture(payload: Uint8Array): PictureMessage {
   require(bytes !== null, 'a picture without bytes');
   const [codec, still, key] = [table.text(11, MAX_CODEC_BYTES), table.flag(7), table.flag(12)];
   require(codec === '' ? !key : !still, 'a contradictory picture');
+  const drawnPercent = table.u8(13, 100);
+  require(drawnPercent >= 1 && drawnPercent <= 100, 'a share that is out of range');
   return {
     width,
     height,
@@ -75,6 +79,7 @@ export function readPicture(payload: Uint8Array): PictureMessage {
     dropped: table.u32(8),
     receivedUs: Number(table.i64(9)),
     viewRequest: table.u32(10),
+    drawnPercent,
   };
 }
 

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/temporal/history.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/temporal/jitter.h"
+
+namespace furrow::render {
+namespace {
+
+int Scaled(int side, float scale) {
+  return std::max(1, static_cast<int>(std::lround(static_cast<float>(side) * scale)));
+}
+
+}  // namespace
+
+SceneMotion MotionOf(const TemporalFrame& frame) {
+  const glm::vec2 size(static_cast<float>(frame.width), static_cast<float>(frame.height));
+  const History& history = *frame.history;
+  const float scale =
+      static_cast<float>(frame.height) / static_cast<float>(frame.colour.desc.height);
+  return {.jitter = 2.0f * frame.jitter / size,
+          .detail = std::log2(scale),
+          .camera = history.is_valid ? &history.camera : nullptr,
+          .vertices = &history.vertices};
+}
+
+std::size_t History::num_bytes() const {
+  std::size_t bytes = vertices.num_bytes();
+  for (const auto* pair : {&colours, &places}) {
+    for (const KeptTexture& kept : *pair) {
+      if (kept.texture != 0) bytes += TextureBytes(kept.desc);
+    }
+  }
+  return bytes;
+}
+
+std::size_t Histories::num_bytes() const {
+  std::size_t bytes = 0;
+  for (const auto& [stream, history] : histories_) bytes += history.num_bytes();
+  return bytes;
+}
+
+Histories::~Histories() {
+  for (auto& [stream, history] : histories_) Release(&history);
+}
+
+void Histories::Release(History* history) {
+  for (auto* pair : {&history->colours, &history->places}) {
+    for (KeptTexture& kept : *pair) {
+      if (kept.texture != 0) device_->DestroyTexture(kept.texture);
+      kept.texture = 0;
+    }
+  }
+}
+
+void Histories::Prepare(KeptTexture* kept, const TextureDesc& desc) {
+  if (kept->texture != 0 && kept->desc == desc) return;
+  if (kept->texture != 0) device_->DestroyTexture(kept->texture);
+  *kept = {desc, device_->CreateTexture(desc)};
+}
+
+// Drops histories until `bytes` of `stream` fit.
+void Histories::MakeRoom(std::uint64_t stream, std::size_t bytes) {
+  const auto others = [&] {
+    const auto own = histories_.find(stream);
+    return num_bytes() - (own == histories_.end() ? 0 : own->second.num_bytes());
+  };
+  while (others() + bytes > kMaxBytes) {
+    auto oldest = histories_.end();
+    for (auto it = histories_.begin(); it != histories_.end(); ++it) {
+      if (it->first == stream) continue;
+      if (oldest == histories_.end() || it->second.used < oldest->second.used) oldest = it;
+    }
+    if (oldest == histories_.end()) return;
+    Release(&oldest->second);
+    histories_.erase(oldest);
+  }
+}
+
+const TemporalFrame* Histories::Begin(const FrameRequest& request, bool is_software) {
+  frame_ = {};
+  if (!IsCompleted(request, is_software)) return nullptr;
+  const TextureDesc whole{request.width, request.height, PixelFormat::kRgba16F, 1};
+  const TextureDesc drawn{Scaled(request.width, request.scale),
+                          Scaled(request.height, request.scale), PixelFormat::kRgba16F, 1};
+  const std::size_t bytes = 2 * (TextureBytes(whole) + TextureBytes(drawn));
+  if (bytes > kMaxBytes) return nullptr;
+  const auto found = histories_.find(request.stream);
+  MakeRoom(request.stream,
+           bytes + (found == histories_.end() ? 0 : found->second.vertices.num_bytes()));
+  History& history = histories_[request.stream];
+  if (history.is_valid && !Continues(history.shot, ShotOf(request))) {
+    history.is_valid = false;
+    history.number = 0;
+    history.vertices.meshes.clear();
+  }
+  const auto next = static_cast<std::size_t>(1 - history.newest);
+  Prepare(&history.colours[next], whole);
+  Prepare(&history.places[next], drawn);
+  history.used = ++num_pictures_;
+  frame_ = {.history = &history,
+            .width = drawn.width,
+            .height = drawn.height,
+            .jitter = Jitter(history.number, request.scale),
+            .colour = history.colours[next],
+            .place = history.places[next]};
+  if (history.is_valid) {
+    frame_.former_colour = history.colours[1 - next];
+    frame_.former_place = history.places[1 - next];
+  }
+  return &frame_;
+}
+
+void Histories::End(const FrameRequest& request, const CameraFrame& camera) {
+  History& history = *frame_.history;
+  history.is_valid = true;
+  ++history.number;
+  history.newest = 1 - history.newest;
+  history.shot = ShotOf(request);
+  history.camera = camera;
+}
+
+}  // namespace furrow::render

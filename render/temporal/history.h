@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+
+#include <glm/vec2.hpp>
+
+#include "render/graph/frame_graph.h"
+#include "render/scene/motion.h"
+#include "render/temporal/shot.h"
+
+namespace furrow::render {
+
+// A texture that outlives the frame.
+struct KeptTexture {
+  TextureDesc desc;
+  TextureId texture = 0;  // 0: none yet
+};
+
+// The former picture of a stream, and what the next one needs to find its surfaces there.
+struct History {
+  bool is_valid = false;               // there is a former picture that the next one may continue
+  int number = 0;                      // of the next picture, for its jitter
+  int newest = 0;                      // index of the former picture's textures
+  std::array<KeptTexture, 2> colours;  // shaders/temporal/accumulate.frag.glsl, f_history
+  std::array<KeptTexture, 2> places;   // shaders/temporal/neighbours.frag.glsl, f_place
+  Shot shot;
+  CameraFrame camera;
+  FormerVertices vertices;
+  std::uint64_t used = 0;  // counts up with each picture of any stream
+
+  [[nodiscard]] std::size_t num_bytes() const;
+};
+
+// How a picture of a stream is drawn. The history is that of the stream.
+struct TemporalFrame {
+  History* history = nullptr;
+  int width = 0;  // pixels that are drawn
+  int height = 0;
+  glm::vec2 jitter{0.0f};  // by which the scene is moved, in these pixels
+  // Textures of the history.
+  KeptTexture colour;
+  KeptTexture place;
+  KeptTexture former_colour;  // without a texture: the picture begins the stream
+  KeptTexture former_place;
+};
+
+// How the scene is drawn for `frame`, whose history must outlive the result.
+[[nodiscard]] SceneMotion MotionOf(const TemporalFrame& frame);
+
+// Keeps the histories of streams. A history is used by its stream alone, and is dropped when the
+// stream cuts (Continues()). Together they take at most kMaxBytes; the one that was used longest
+// ago goes first. Needs a current context.
+class Histories {
+ public:
+  static constexpr std::size_t kMaxBytes = std::size_t{96} << 20;
+
+  // `device` outlives this object.
+  explicit Histories(FrameGraphDevice* device) : device_(device) {}
+  ~Histories();
+  Histories(const Histories&) = delete;
+  Histories& operator=(const Histories&) = delete;
+
+  // Prepares the next picture of a stream. Null textures in the result: it stands alone, because it
+  // is not one that IsCompleted(), or too large. The result is valid until the next call.
+  [[nodiscard]] const TemporalFrame* Begin(const FrameRequest& request, bool is_software);
+  // The picture of the last Begin() has been drawn, with `camera`. Without this call, the history
+  // remains as it was.
+  void End(const FrameRequest& request, const CameraFrame& camera);
+  // The history of the last Begin(), which gets the vertices of the picture.
+  [[nodiscard]] FormerVertices* vertices() { return &frame_.history->vertices; }
+
+  [[nodiscard]] std::size_t num_bytes() const;
+
+ private:
+  void Prepare(KeptTexture* kept, const TextureDesc& desc);
+  void Release(History* history);
+  void MakeRoom(std::uint64_t stream, std::size_t bytes);
+
+  FrameGraphDevice* device_;
+  std::map<std::uint64_t, History> histories_;  // by stream
+  std::uint64_t num_pictures_ = 0;
+  TemporalFrame frame_;
+};
+
+}  // namespace furrow::render

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+
+#include "server/core/time.h"
+
+namespace furrow::server {
+
+// Chooses the share of its width and height at which the pictures of a stream are drawn
+// (render::FrameRequest::scale), so that the renderer keeps up with kTarget. It goes down after a
+// few slow pictures, and up by one step after a second or more with time to spare. A step up that
+// turns out too slow makes the next one wait longer.
+class PictureScale {
+ public:
+  static constexpr Time kTarget = std::chrono::microseconds(1'000'000 / 24);
+  static constexpr int kSteps = 8;  // from the full size down to render::kMinScale
+  // Pictures in a row that are too slow, and that would leave time for a larger size.
+  static constexpr int kSlow = 3;
+  static constexpr int kQuick = 24;
+  static constexpr int kMostPatience = 16;  // times kQuick
+  // A longer time between two pictures is a pause, which says nothing about speed.
+  static constexpr Time kPause = std::chrono::seconds(1);
+
+  // Two pictures of the stream follow each other `passed` apart; during `busy` of that time, the
+  // renderer worked, for this stream or for others.
+  void Observe(Time busy, Time passed);
+  [[nodiscard]] float scale() const;
+
+ private:
+  void Lower(Time busy);
+  void Raise();
+
+  int step_ = 0;  // 0: the full size
+  int num_slow_ = 0;
+  int num_quick_ = 0;
+  int patience_ = 1;       // times kQuick
+  int since_raised_ = -1;  // pictures; -1: the size was not raised lately
+};
+
+}  // namespace furrow::server

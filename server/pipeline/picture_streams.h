@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+
+#include "server/pipeline/picture_scale.h"
+#include "server/pipeline/render_mailbox.h"
+
+namespace furrow::server {
+
+// The streams of moving pictures that are drawn: one for each viewer and its subject. A picture for
+// several viewers belongs to the stream of the one that subscribed first. A viewer that changes its
+// subject begins a new stream, so no picture can hold anything of another subject or viewer.
+class PictureStreams {
+ public:
+  // More than the renderer keeps histories. The stream that rested longest is forgotten.
+  static constexpr std::size_t kMaxStreams = 64;
+  // The stream of jobs that prepare. Those of viewers have higher numbers.
+  static constexpr std::uint64_t kPreparation = 1;
+
+  struct Place {
+    std::uint64_t stream = 0;  // render::FrameRequest::stream
+    float scale = 1.0f;
+  };
+  // Where the picture of a job with moving pictures belongs.
+  [[nodiscard]] Place Find(const RenderJob& job);
+  // A picture of the stream was completed at `now`. `busy`: how long the renderer has worked since
+  // it began. Unknown streams are ignored.
+  void OnDrawn(std::uint64_t stream, Time busy, Time now);
+
+  [[nodiscard]] std::size_t num_streams() const { return streams_.size(); }
+
+ private:
+  struct Stream {
+    std::uint64_t number = 0;
+    std::uint64_t subject = 0;
+    PictureScale scale;
+    bool has_drawn = false;
+    Time busy{0};  // at the last picture
+    Time drawn{0};
+    std::uint64_t used = 0;  // counts up with each job
+  };
+  void ForgetOldest();
+
+  std::map<std::uint64_t, Stream> streams_;  // by subscription
+  std::uint64_t last_number_ = kPreparation;
+  std::uint64_t num_jobs_ = 0;
+};
+
+}  // namespace furrow::server

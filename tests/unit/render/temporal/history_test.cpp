@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/temporal/history.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/render/null_device.h"
+
+namespace furrow::render {
+namespace {
+
+FrameRequest Moving(std::uint64_t stream, int width = 640, int height = 400) {
+  FrameRequest request;
+  request.settings.shading = Shading::kSkin;
+  request.width = width;
+  request.height = height;
+  request.is_moving = true;
+  request.stream = stream;
+  request.scale = 0.5f;
+  return request;
+}
+
+class HistoriesTest : public testing::Test {
+ protected:
+  // Draws a picture. Returns whether it could continue a former one.
+  bool Draw(const FrameRequest& request) {
+    const TemporalFrame* frame = histories_.Begin(request, true);
+    if (frame == nullptr) return false;
+    const bool continues = frame->former_colour.texture != 0;
+    EXPECT_EQ(continues, frame->former_place.texture != 0);
+    EXPECT_NE(frame->former_colour.texture, frame->colour.texture);
+    histories_.End(request, {});
+    return continues;
+  }
+  test::NullDevice device_;
+  Histories histories_{&device_};
+};
+
+TEST_F(HistoriesTest, TheSecondPictureOfAStreamContinuesTheFirst) {
+  EXPECT_FALSE(Draw(Moving(1)));
+  EXPECT_TRUE(Draw(Moving(1)));
+  EXPECT_TRUE(Draw(Moving(1)));
+}
+
+TEST_F(HistoriesTest, StreamsShareNothing) {
+  EXPECT_FALSE(Draw(Moving(1)));
+  EXPECT_FALSE(Draw(Moving(2)));
+  EXPECT_TRUE(Draw(Moving(1)));
+}
+
+TEST_F(HistoriesTest, ACutBeginsAgain) {
+  EXPECT_FALSE(Draw(Moving(1)));
+  EXPECT_TRUE(Draw(Moving(1)));
+  FrameRequest cut = Moving(1);
+  cut.settings.exposure = 2.0f;
+  const TemporalFrame* frame = histories_.Begin(cut, true);
+  ASSERT_NE(frame, nullptr);
+  EXPECT_EQ(frame->former_colour.texture, 0u);
+  EXPECT_EQ(frame->history->number, 0) << "the jitter, too";
+  EXPECT_TRUE(frame->history->vertices.meshes.empty());
+  EXPECT_EQ(MotionOf(*frame).camera, nullptr);
+}
+
+TEST_F(HistoriesTest, ThePictureMayChangeItsScaleWithoutACut) {
+  EXPECT_FALSE(Draw(Moving(1)));
+  FrameRequest finer = Moving(1);
+  finer.scale = 0.75f;
+  const TemporalFrame* frame = histories_.Begin(finer, true);
+  ASSERT_NE(frame, nullptr);
+  EXPECT_NE(frame->former_colour.texture, 0u);
+  EXPECT_EQ(frame->width, 480);
+  EXPECT_EQ(frame->height, 300);
+  EXPECT_EQ(frame->former_place.desc.width, 320);
+}
+
+TEST_F(HistoriesTest, APictureThatFailedLeavesTheHistoryAlone) {
+  EXPECT_FALSE(Draw(Moving(1)));
+  const TemporalFrame* frame = histories_.Begin(Moving(1), true);
+  ASSERT_NE(frame, nullptr);
+  const TextureId former = frame->former_colour.texture;
+  const glm::vec2 jitter = frame->jitter;
+  frame = histories_.Begin(Moving(1), true);
+  ASSERT_NE(frame, nullptr);
+  EXPECT_EQ(frame->former_colour.texture, former);
+  EXPECT_EQ(frame->jitter, jitter);
+}
+
+TEST_F(HistoriesTest, MemoryIsBounded) {
+  for (std::uint64_t stream = 1; stream < 100; ++stream) {
+    EXPECT_FALSE(Draw(Moving(stream, 1280, 720)));
+    EXPECT_FALSE(stream > 1 && !Draw(Moving(stream, 1280, 720))) << "the newest is kept";
+    ASSERT_LE(histories_.num_bytes(), Histories::kMaxBytes);
+  }
+  EXPECT_LT(device_.num_alive(), device_.num_created());
+  EXPECT_EQ(device_.num_bad_destroys(), 0);
+  EXPECT_TRUE(Draw(Moving(99, 1280, 720)));
+  EXPECT_FALSE(Draw(Moving(1, 1280, 720))) << "dropped long ago";
+}
+
+TEST_F(HistoriesTest, APictureThatIsTooLargeStandsAlone) {
+  EXPECT_EQ(histories_.Begin(Moving(1, 4096, 4096), true), nullptr);
+  EXPECT_EQ(histories_.num_bytes(), 0u);
+}
+
+TEST_F(HistoriesTest, ReleasesItsTextures) {
+  {
+    Histories histories(&device_);
+    ASSERT_NE(histories.Begin(Moving(1), true), nullptr);
+  }
+  EXPECT_EQ(device_.num_alive(), 0);
+}
+
+}  // namespace
+}  // namespace furrow::render

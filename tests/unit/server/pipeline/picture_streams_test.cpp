@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/pipeline/picture_streams.h"
+
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "render/request/frame_request.h"
+
+namespace furrow::server {
+namespace {
+
+RenderJob JobFor(std::uint64_t subject, std::initializer_list<std::uint64_t> subscriptions) {
+  RenderJob job;
+  job.subject = subject;
+  for (const std::uint64_t subscription : subscriptions) {
+    job.tickets.push_back({.subscription = subscription});
+  }
+  return job;
+}
+
+TEST(PictureStreams, AViewerKeepsItsStream) {
+  PictureStreams streams;
+  const auto first = streams.Find(JobFor(7, {1}));
+  EXPECT_NE(first.stream, 0u);
+  EXPECT_EQ(first.scale, 1.0f);
+  EXPECT_EQ(streams.Find(JobFor(7, {1})).stream, first.stream);
+}
+
+TEST(PictureStreams, ViewersAndSubjectsShareNoStream) {
+  PictureStreams streams;
+  std::set<std::uint64_t> numbers;
+  for (const std::uint64_t subscription : {1, 2, 3}) {
+    for (const std::uint64_t subject : {7, 8, 7}) {
+      EXPECT_TRUE(numbers.insert(streams.Find(JobFor(subject, {subscription})).stream).second);
+    }
+  }
+}
+
+TEST(PictureStreams, ASharedPictureContinuesThatOfTheFirstViewer) {
+  PictureStreams streams;
+  const auto first = streams.Find(JobFor(7, {3}));
+  EXPECT_EQ(streams.Find(JobFor(7, {5, 3})).stream, first.stream);
+  EXPECT_NE(streams.Find(JobFor(7, {5})).stream, first.stream);
+}
+
+TEST(PictureStreams, PreparationsAreApart) {
+  PictureStreams streams;
+  EXPECT_EQ(streams.Find(JobFor(0, {})).stream, PictureStreams::kPreparation);
+  EXPECT_NE(streams.Find(JobFor(0, {1})).stream, PictureStreams::kPreparation);
+}
+
+TEST(PictureStreams, TheirNumberIsBounded) {
+  PictureStreams streams;
+  const auto kept = streams.Find(JobFor(7, {1}));
+  for (std::uint64_t subscription = 2; subscription < 500; ++subscription) {
+    (void)streams.Find(JobFor(7, {subscription}));
+    ASSERT_EQ(streams.Find(JobFor(7, {1})).stream, kept.stream) << "used again and again";
+    ASSERT_LE(streams.num_streams(), PictureStreams::kMaxStreams);
+  }
+}
+
+// The work for others counts, too: they share the machine.
+TEST(PictureStreams, EachStreamFollowsTheTimeBetweenItsPictures) {
+  PictureStreams streams;
+  const auto slow = streams.Find(JobFor(7, {1})).stream;
+  const auto rare = streams.Find(JobFor(7, {2})).stream;
+  const Time step = 2 * PictureScale::kTarget;
+  for (int i = 0; i < 10; ++i) {
+    streams.OnDrawn(slow, i * step, i * step);
+    streams.OnDrawn(rare, i * PictureScale::kTarget / 2, i * step);
+  }
+  EXPECT_LT(streams.Find(JobFor(7, {1})).scale, 1.0f);
+  EXPECT_EQ(streams.Find(JobFor(7, {2})).scale, 1.0f);
+}
+
+}  // namespace
+}  // namespace furrow::server
