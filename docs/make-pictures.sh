@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Draws the pictures of the documents again, from a build: docs/make-pictures.sh [BUILD_DIR [NAMES...]]
-# NAMES: functions below; only their pictures are drawn: docs/make-pictures.sh build/dev subsurface
+# NAMES: functions below; only their pictures are drawn: docs/make-pictures.sh build/dev subsurface "bodies default"
 #
 # FURROW_SHARED_DATA (default ../shared/data): MakeHuman's data and a recording for its skeleton. If that
 # folder is missing, the pictures of the MakeHuman character stay as they are.
@@ -277,7 +277,7 @@ browser_skin() {
 }
 
 if (($# > 1)); then
-  for name in "${@:2}"; do "$name"; done
+  for name in "${@:2}"; do $name; done  # split: a name may have arguments
   exit
 fi
 
