@@ -79,15 +79,25 @@ class MakeHumanTest(unittest.TestCase):
         self.assertLess(worst, 1e-3)
 
     def test_live_weights_equal_solve_and_pictures_move(self):
-        with Daemon("--character", self.package) as daemon:
-            pictures = self.root / "pictures"
-            watcher = spawn_watch(daemon.tcp, "ada")
+        pictures = self.root / "pictures"
+
+        def play(daemon):
             camera = spawn("frames", daemon.tcp, "--subject", "ada", "--wait", "--out", pictures, "--size", "256x256",
                            "--rate", "5")
             furrow("play", self.recording, "--to", daemon.udp, "--udp", "--subject", "ada", check=0)
+            self.assertEqual(finish(camera)[0], 0)
+            return list(pictures.iterdir()) if pictures.exists() else []
+
+        with Daemon("--character", self.package) as daemon:
+            watcher = spawn_watch(daemon.tcp, "ada")
+            drawn = play(daemon)
             code, out, err = finish(watcher)
             self.assertEqual(code, 0, err)
-            self.assertEqual(finish(camera)[0], 0)
+            # On a slow machine, the shaders are compiled after the recording has ended.
+            for _ in range(5):
+                if len(drawn) > 1:
+                    break
+                drawn = play(daemon)
         worst, frames = worst_difference(Table(out.decode()), self.solved)
         print(f"{frames} of {len(self.solved.rows)} frames arrived, worst difference {worst:.2e}")
         self.assertGreater(frames, 0)
