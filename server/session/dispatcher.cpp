@@ -297,7 +297,7 @@ void Dispatcher::OnSubjectState(Peer& peer, const protocol::MessageView& view,
     } else if (has_captures && !peer.requests.Take(now, kRequestsPerCaptures)) {
       parts_.metrics->Add(Counter::kRequestsThrottled);
       why = "too many captured poses at once";
-    } else if (!parts_.arrivals->Add(state.subject, view, now)) {
+    } else if (!parts_.arrivals->Add(state, view, now)) {
       why = "too many subjects are on their way to this node";
     } else if (has_captures) {
       parts_.adopt_captures(state, now);

@@ -45,8 +45,9 @@ Publishers::Publishers(const Limits& limits, JitterDelays delays, StreamDefiniti
       random_(std::move(random)),
       metrics_(metrics) {}
 
-// Decides between four cases: a repeated offer, a subject that another sender is sending, too many
-// subjects, and a stream that starts, restarts or takes over its subject.
+// Decides between five cases: a repeated offer, a subject that another sender is sending, or that
+// comes here with another sender, too many subjects, and a stream that starts, restarts or takes
+// over its subject.
 Subject* Publishers::OnOffer(Peer& peer, const protocol::Header& header,
                              const protocol::SkeletonOffer& offer, Time now) {
   metrics_->Add(Counter::kSkeletonsOffered);
@@ -60,6 +61,11 @@ Subject* Publishers::OnOffer(Peer& peer, const protocol::Header& header,
   Subject* subject = subjects_->Find(offer.subject);
   const bool is_owner = subject != nullptr && subject->owner == key;
   const bool is_repeated = is_owner && subject->skeleton_hash == offer.skeleton_hash;
+  // Before anything else: such an offer must neither ask for the place nor wait for it.
+  if (subject == nullptr && arrivals_->IsReserved(offer.subject, header.session, now)) {
+    Contest(peer, header, offer.subject);
+    return nullptr;
+  }
   const bool is_contested =
       subject != nullptr && !is_owner && IsContested(*subject, peer, key, now);
   // First: a node that is full sends the publisher to another one.
@@ -68,12 +74,7 @@ Subject* Publishers::OnOffer(Peer& peer, const protocol::Header& header,
   if (is_repeated) {
     subject->ended = false;  // a repeated offer, or the sender is back after its goodbye
   } else if (is_contested) {
-    metrics_->Add(Counter::kSubjectsContested);
-    // Not a rejection: the sender repeats its offer, and takes over when the present one falls
-    // silent.
-    messages_->SendError(
-        peer, header, protocol::ErrorCode::kSubjectTaken,
-        "another sender is sending '" + offer.subject + "'; stop it, or send under another name");
+    Contest(peer, header, offer.subject);
     return nullptr;
   } else {
     auto definition = DefinitionFor(peer, header, offer, now);
@@ -91,6 +92,14 @@ Subject* Publishers::OnOffer(Peer& peer, const protocol::Header& header,
       peer, MessageSender::ReplyHeader(header),
       protocol::SkeletonReply{offer.skeleton_hash, protocol::SkeletonStatus::kAccepted, {}});
   return subject;
+}
+
+// Not a rejection: the sender repeats its offer, and takes over when the present one stops.
+void Publishers::Contest(Peer& peer, const protocol::Header& header, const std::string& subject) {
+  metrics_->Add(Counter::kSubjectsContested);
+  messages_->SendError(
+      peer, header, protocol::ErrorCode::kSubjectTaken,
+      "another sender is sending '" + subject + "'; stop it, or send under another name");
 }
 
 // Null: the offer is answered, or must be repeated.

@@ -107,6 +107,7 @@ class Publishers {
       Peer& peer, const protocol::Header& header, const protocol::SkeletonOffer& offer, Time now);
   [[nodiscard]] std::optional<Place> TakePlace(Peer& peer, const protocol::Header& header,
                                                const protocol::SkeletonOffer& offer, Time now);
+  void Contest(Peer& peer, const protocol::Header& header, const std::string& subject);
   void Reject(Peer& peer, const protocol::Header& header, std::uint64_t hash, std::string why,
               Time now);
   [[nodiscard]] bool IsContested(const Subject& subject, const Peer& peer, const StreamKey& key,

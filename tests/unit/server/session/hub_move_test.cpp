@@ -123,12 +123,40 @@ TEST_F(HubMoveTest, AnotherSessionGetsTheNeutralPoseAlone) {
   Receive(state);
   Serve(11);
   sender.session = 78;
+  now += Arrivals::kReserved;
   Publish(sender, "ada");
   const Subject* subject = hub->RequireAllDrivers("ada");
   EXPECT_TRUE(subject->pipeline->neutral_pose().has_value());
   EXPECT_FALSE(subject->pipeline->has_pose());
   Send(sender, Pose(0.5f), 1, 0, 0);
   EXPECT_TRUE(subject->pipeline->has_pose());
+}
+
+TEST_F(HubMoveTest, AnotherSenderCannotTakeASubjectOnItsWay) {
+  Perform();
+  const std::vector<std::uint8_t> state = State();
+  NextNode();
+  FakePeer thief;
+  thief.session = 78;
+  Connect(&thief);
+  Place pending;
+  pending.kind = Place::Kind::kPending;
+  nodes.places["ada"] = pending;
+  Send(thief, Offer("ada"), 1);  // waits before the state comes
+  EXPECT_TRUE(thief.inbox.empty());
+  Receive(state);
+  Send(sender, Offer("ada"), 1);
+  Send(thief, Offer("ada"), 1);
+  ExpectError(thief, protocol::ErrorCode::kSubjectTaken);
+  Serve(11);
+  hub->Tick(now);
+  // The publisher is asked again, and nobody else.
+  EXPECT_TRUE(thief.inbox.empty());
+  ASSERT_TRUE(sender.Take<protocol::SkeletonReply>().has_value());
+  Send(thief, Offer("ada"), 1);
+  ExpectError(thief, protocol::ErrorCode::kSubjectTaken);
+  Publish(sender, "ada");
+  EXPECT_TRUE(hub->FindSubject("ada")->pipeline->has_pose()) << "the state is still there";
 }
 
 TEST_F(HubMoveTest, DriversStayUntilTheSubscribersHaveFollowed) {
