@@ -389,13 +389,18 @@ void Hub::Drain(Time now) {
 
 // A capture changes the rig of the daemon, on this node as on the one before.
 void Hub::AdoptCaptures(const protocol::SubjectState& state, Time now) {
-  auto changed = WithCaptures(rig(), state.captures);
+  auto changed = WithCaptures(rig(), state.captures,
+                              static_cast<std::size_t>(kMaxAddedPoses - num_added_poses_));
   Status status = changed.status();
+  int added = 0;
   if (changed.ok()) {
     if (!changed->has_value()) return;
+    added = static_cast<int>((*changed)->reference_poses.size() - rig().reference_poses.size());
     status = SetRig(std::make_shared<const wrinkle::Rig>(**std::move(changed)), now);
   }
   if (status.ok()) {
+    num_added_poses_ += added;
+    ++num_adoptions_;
     spdlog::info("took over the captured poses of subject '{}'", state.subject);
   } else {
     spdlog::warn("cannot take over the captured poses of subject '{}': {}", state.subject,

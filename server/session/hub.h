@@ -222,6 +222,13 @@ class Hub {
   [[nodiscard]] const std::shared_ptr<const wrinkle::Rig>& shared_rig() const {
     return definitions_.shared_rig();
   }
+  // At most this many reference poses come to the rig by captures, here or on the way here: every
+  // solve of every subject evaluates them.
+  static constexpr int kMaxAddedPoses = 32;
+  [[nodiscard]] int num_added_poses() const { return num_added_poses_; }
+  void AddToAddedPoses(int number) { num_added_poses_ += number; }
+  // How often the rig got captures of subjects that came from other nodes.
+  [[nodiscard]] std::uint64_t num_adoptions() const { return num_adoptions_; }
   // Replaces the limits. Whatever exceeds them already stays. The rate of messages counts for peers
   // that come from now on; max_udp_peers is not the hub's.
   void SetLimits(const Limits& limits);
@@ -272,6 +279,8 @@ class Hub {
   Dispatcher dispatcher_;
   MocapStreams mocap_;
   const bool holds_poses_;
+  int num_added_poses_ = 0;
+  std::uint64_t num_adoptions_ = 0;
   bool draining_ = false;
 };
 
