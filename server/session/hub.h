@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -178,16 +179,19 @@ class Hub {
   void TakeNothingNew();
   // The names of the subjects that are here.
   [[nodiscard]] std::vector<std::string> SubjectNames();
-  // The node that should get the subject; kNowhere with the reason: none can.
-  [[nodiscard]] Place SuccessorOf(std::string_view subject);
+  // The node that should get the subject, but none of `without`; kNowhere with the reason: none
+  // can, or the subject must stay.
+  [[nodiscard]] Place SuccessorOf(std::string_view subject, Time now,
+                                  const std::set<std::string>& without = {});
   // Writes the subject's state as a message (SubjectState) to `message`. `number`: which the answer
   // repeats. False: there is no such subject.
   [[nodiscard]] bool WriteState(std::string_view subject, std::uint32_t number,
                                 std::vector<std::uint8_t>& message);
   // The node goes on with the subject: sends its publisher and its subscribers there and forgets
-  // it. Writes the last state, as WriteState() does.
-  [[nodiscard]] bool HandOver(std::string_view subject, const NodeAddress& node,
-                              std::uint32_t number, std::vector<std::uint8_t>& message, Time now);
+  // it. Writes the last state, as WriteState() does. Errors: kNotFound, there is no such subject;
+  // kUnavailable, it must stay for now.
+  [[nodiscard]] Status HandOver(std::string_view subject, const NodeAddress& node,
+                                std::uint32_t number, std::vector<std::uint8_t>& message, Time now);
 
   // The functions below require the exclusive lock, and so does every use of the objects that they
   // return.
@@ -253,6 +257,7 @@ class Hub {
   void RefreshPlaces(Time now);
   void FreeLevels(Time now);
   void AdoptCaptures(const protocol::SubjectState& state, Time now);
+  [[nodiscard]] std::string WhyItStays(const Subject& subject, Time now);
   void MoveSubject(Subject& subject, const NodeAddress& node);
   void RenewConsent(Peer& peer, Time now);
   void EndIfTokenEnded(Peer& peer, Time now);

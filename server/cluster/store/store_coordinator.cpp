@@ -287,13 +287,15 @@ void StoreCoordinator::SetDraining() {
 
 // The node with the largest part of its places free. Nodes announce themselves once per second, so
 // what this one has given to them counts, too.
-const Announcement* StoreCoordinator::RoomElsewhere(const View& view) const {
+const Announcement* StoreCoordinator::RoomElsewhere(const View& view,
+                                                    const std::set<std::string>& without) const {
   const Announcement* best = nullptr;
   double least = 0.0;
   if (!view.reachable) return best;  // no node takes anything
   const std::lock_guard lock(mutex_);
   for (const auto& [name, node] : view.others) {
     if (node.draining || !node.ready || node.subjects >= node.capacity) continue;
+    if (without.contains(name)) continue;
     const auto given = given_to_.find(name);
     const double load =
         LoadOf(node.subjects + (given == given_to_.end() ? 0 : given->second), node.capacity);
@@ -398,11 +400,12 @@ Place StoreCoordinator::Ask(std::string_view subject, Time now) {
 }
 
 // Not Propose(), which names this node while it holds the lease.
-Place StoreCoordinator::Successor(std::string_view subject) const {
+Place StoreCoordinator::Successor(std::string_view subject,
+                                  const std::set<std::string>& without) const {
   const auto seen = view();
   Place place = ForeignPlace(*seen, subject);
   if (place.kind == Place::Kind::kElsewhere) return place;
-  if (const Announcement* const other = RoomElsewhere(*seen); other != nullptr) {
+  if (const Announcement* const other = RoomElsewhere(*seen, without); other != nullptr) {
     place.kind = Place::Kind::kElsewhere;
     place.node = other->address;
   } else {

@@ -182,10 +182,10 @@ TEST_F(HubMoveTest, TheOldNodeSendsEverybodyAway) {
   SendPose(10);
   EXPECT_FALSE(Weights().empty());
   EXPECT_EQ(hub->SubjectNames(), std::vector<std::string>{"ada"});
-  const Place place = hub->SuccessorOf("ada");
+  const Place place = hub->SuccessorOf("ada", now);
   ASSERT_EQ(place.kind, Place::Kind::kElsewhere);
   std::vector<std::uint8_t> state;
-  ASSERT_TRUE(hub->HandOver("ada", place.node, 7, state, now));
+  ASSERT_TRUE(hub->HandOver("ada", place.node, 7, state, now).ok());
   for (FakePeer* peer : {&sender, &viewer}) {
     const auto error = peer->Take<protocol::ErrorMessage>();
     ASSERT_TRUE(error.has_value());
@@ -207,14 +207,14 @@ TEST_F(HubMoveTest, TheOldNodeSendsEverybodyAway) {
   sender.inbox.clear();
   Send(sender, Offer("ada"), 1);
   EXPECT_TRUE(sender.Take<protocol::ErrorMessage>().has_value());
-  EXPECT_FALSE(hub->HandOver("ada", place.node, 8, state, now));
+  EXPECT_EQ(hub->HandOver("ada", place.node, 8, state, now).code(), StatusCode::kNotFound);
 }
 
 TEST_F(HubMoveTest, ASubjectWithoutASuccessorStays) {
   Publish(sender, "ada");
   nodes.successor = Place();
-  EXPECT_EQ(hub->SuccessorOf("ada").why, "no other node has room");
-  EXPECT_EQ(hub->SuccessorOf("bob").why, "it has left");
+  EXPECT_EQ(hub->SuccessorOf("ada", now).why, "no other node has room");
+  EXPECT_EQ(hub->SuccessorOf("bob", now).why, "it has left");
 }
 
 TEST_F(HubMoveTest, ForeignWiresCannotBeSentElsewhere) {

@@ -235,8 +235,8 @@ TEST_F(StoreCoordinatorTest, SubjectsThatAreHandedOverAreSpread) {
   ASSERT_TRUE(Becomes([&] { return a.Others().size() == 2; }));
   for (const char* subject : {"s1", "s2", "s3", "s4"}) {
     ASSERT_TRUE(Takes(a, subject));
-    ASSERT_TRUE(Becomes([&] { return a.Successor(subject).kind == Place::Kind::kElsewhere; }));
-    const NodeAddress heir = a.Successor(subject).node;
+    ASSERT_TRUE(Becomes([&] { return a.Successor(subject, {}).kind == Place::Kind::kElsewhere; }));
+    const NodeAddress heir = a.Successor(subject, {}).node;
     a.HandOver(subject, heir);
     ++given[heir.name];
   }
@@ -287,11 +287,11 @@ TEST_F(StoreCoordinatorTest, ASubjectThatIsServedHereHasASuccessorElsewhere) {
   ASSERT_TRUE(Takes(a, "ada"));
   a.SetDraining();
   EXPECT_TRUE(Becomes([&] {
-    const Place place = a.Successor("ada");
+    const Place place = a.Successor("ada", {});
     return place.kind == Place::Kind::kElsewhere && place.node.name == "b";
   }));
   b.SetDraining();
-  EXPECT_TRUE(Becomes([&] { return a.Successor("ada").kind == Place::Kind::kNowhere; }));
+  EXPECT_TRUE(Becomes([&] { return a.Successor("ada", {}).kind == Place::Kind::kNowhere; }));
 }
 
 TEST_F(StoreCoordinatorTest, WithoutTheStoreSubjectsStayAndNothingIsTaken) {
