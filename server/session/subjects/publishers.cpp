@@ -106,10 +106,15 @@ void Publishers::Contest(Peer& peer, const protocol::Header& header, const std::
 std::shared_ptr<const StreamDefinition> Publishers::DefinitionFor(
     Peer& peer, const protocol::Header& header, const protocol::SkeletonOffer& offer, Time now) {
   if (subjects_->Find(offer.subject) == nullptr && !subjects_->HasRoomFor(peer.host)) {
-    Reject(peer, header, offer.skeleton_hash,
-           "this address has its share of the " + std::to_string(limits_.max_subjects) +
-               " subjects; see limits.max_subjects",
-           now);
+    const std::string why = "this address has its share of the " +
+                            std::to_string(limits_.max_subjects) +
+                            " subjects; see limits.max_subjects";
+    // The publisher may have come from another node, and would keep a rejection for ever.
+    if (places_->in_cluster()) {
+      messages_->SendError(peer, header, protocol::ErrorCode::kLimit, why);
+    } else {
+      Reject(peer, header, offer.skeleton_hash, why, now);
+    }
     return nullptr;
   }
   // Binding a skeleton to the rig takes milliseconds under the exclusive lock. Known skeletons
@@ -154,8 +159,15 @@ std::optional<Place> Publishers::TakePlace(Peer& peer, const protocol::Header& h
 
 // Sooner than the publisher would repeat its offer by itself.
 void Publishers::AskAgain(const std::function<Peer*(PeerId)>& find_peer, Time now) {
+  // Runs every 10 ms under the exclusive lock, so the others have their turn at the next call.
+  constexpr std::size_t kMostAtOnce = 64;
+  const auto& all = arrivals_->waiting();
   std::vector<std::string> here;
-  for (const auto& [subject, waiting] : arrivals_->waiting()) {
+  auto next = all.upper_bound(asked_again_);
+  for (std::size_t i = 0; i < std::min(kMostAtOnce, all.size()); ++i) {
+    if (next == all.end()) next = all.begin();
+    const auto& [subject, waiting] = *next++;
+    asked_again_ = subject;
     if (places_->Renew(subject, now).kind != Place::Kind::kHere) continue;
     here.push_back(subject);
     Peer* const peer = find_peer(waiting.peer);

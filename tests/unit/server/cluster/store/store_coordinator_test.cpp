@@ -241,6 +241,19 @@ TEST_F(StoreCoordinatorTest, SubjectsThatAreHandedOverAreSpread) {
     ++given[heir.name];
   }
   EXPECT_EQ(given, (std::map<std::string, int>{{"b", 2}, {"c", 2}}));
+  ASSERT_TRUE(Takes(a, "s5"));
+  EXPECT_EQ(a.Successor("s5", {"b"}).node.name, "c");
+  EXPECT_EQ(a.Successor("s5", {"b", "c"}).why, "no other node has room");
+}
+
+TEST_F(StoreCoordinatorTest, ANodeExpectsNoMoreSubjectsThanItHasRoomFor) {
+  StoreCoordinator& a = Add("a", 2);
+  ASSERT_TRUE(IsReady(a));
+  // At once, so the leases are not there yet.
+  EXPECT_EQ(a.Expect("s1", world_.Now()).kind, Place::Kind::kPending);
+  EXPECT_EQ(a.Expect("s2", world_.Now()).kind, Place::Kind::kPending);
+  EXPECT_EQ(a.Expect("s2", world_.Now()).kind, Place::Kind::kPending) << "again";
+  EXPECT_EQ(a.Expect("s3", world_.Now()).why, "this node is full");
 }
 
 TEST_F(StoreCoordinatorTest, ANodeThatEndsGivesItsLeasesBack) {
