@@ -29,6 +29,10 @@ bool Arrivals::Add(const protocol::SubjectState& state, const protocol::MessageV
   Expire(now);
   if (view.payload.size() > protocol::kMaxUdpMessageBytes) return false;
   const auto known = states_.find(state.subject);
+  if (known != states_.end() && known->second.header.session == view.header.session &&
+      view.header.sequence < known->second.header.sequence) {
+    return true;
+  }
   States::value_type kept(state.subject, {.header = view.header,
                                           .payload = {view.payload.begin(), view.payload.end()},
                                           .publisher_session = state.publisher_session,
@@ -45,6 +49,10 @@ bool Arrivals::Add(const protocol::SubjectState& state, const protocol::MessageV
     waiting_.erase(waiting);
   }
   return true;
+}
+
+void Arrivals::Drop(std::string_view subject) {
+  if (const auto kept = states_.find(subject); kept != states_.end()) (void)Forget(kept);
 }
 
 bool Arrivals::IsReserved(std::string_view subject, std::uint64_t session, Time now) const {

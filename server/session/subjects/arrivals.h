@@ -31,13 +31,15 @@ class Arrivals {
   // For this long after the last state of a subject, only its publisher may offer it here.
   static constexpr Time kReserved = std::chrono::seconds(1);
 
-  // Keeps a state that Decode() has read from `view`, instead of an older one of the subject.
-  // False: there is too little room.
+  // Keeps a state that Decode() has read from `view`, instead of an older one of the subject. A
+  // copy of an older one of the same node changes nothing. False: there is too little room.
   [[nodiscard]] bool Add(const protocol::SubjectState& state, const protocol::MessageView& view,
                          Time now);
   // True if the subject is on its way here with a publisher of another session, which had no time
   // to follow it yet.
   [[nodiscard]] bool IsReserved(std::string_view subject, std::uint64_t session, Time now) const;
+  // Forgets the state of the subject.
+  void Drop(std::string_view subject);
   struct Arrived {
     protocol::Header header;
     protocol::SubjectState state;
