@@ -320,15 +320,29 @@ void Dispatcher::OnSubjectState(Peer& peer, const protocol::MessageView& view,
       protocol::SkeletonReply{state.skeleton_hash, status, MessageSender::Truncate(why)});
 }
 
+// Empty: the peer may. Draining ends the daemon and concerns all of its subjects.
+std::string Dispatcher::WhyNoDrain(const Peer& peer) const {
+  if (peer.access.by_token()) {
+    if (peer.access.Has(Role::kOperate) && peer.access.grant().subjects == "*") return {};
+    return "a token with the role operate for all subjects is needed; " + peer.access.Text();
+  }
+  // Nobody has shown who it is.
+  const bool is_here =
+      !peer.address.empty() && parts_.is_own_address && parts_.is_own_address(peer.address);
+  return is_here ? ""
+                 : "without tokens, only programs on the daemon's own computer may; end the daemon "
+                   "with SIGTERM there, or start it with --security required";
+}
+
 void Dispatcher::OnDrain(Peer& peer, const protocol::Header& header,
                          const protocol::Drain& request) {
-  if (!peer.access.Has(Role::kOperate)) {
-    return parts_.messages->SendError(peer, header, ErrorCode::kNotPermitted,
-                                      "not permitted to drain the daemon; " + peer.access.Text());
-  }
-  if (!parts_.drain) {
+  if (const std::string why = parts_.places->WhyNothingMoves(); !why.empty() || !parts_.drain) {
     return parts_.messages->SendError(peer, header, ErrorCode::kUnsupported,
-                                      "this daemon is in no cluster; end it with SIGTERM");
+                                      why + "; end the daemon with SIGTERM");
+  }
+  if (const std::string why = WhyNoDrain(peer); !why.empty()) {
+    return parts_.messages->SendError(peer, header, ErrorCode::kNotPermitted,
+                                      "not permitted to drain the daemon: " + why);
   }
   protocol::DrainState state = parts_.drain(request.begin);
   state.left = static_cast<std::uint32_t>(parts_.subjects->size());

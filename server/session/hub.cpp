@@ -71,6 +71,7 @@ Hub::Hub(Parts parts)
                    .arrivals = &arrivals_,
                    .limits = &limits_,
                    .drain = std::move(parts.drain),
+                   .is_own_address = std::move(parts.is_own_address),
                    .adopt_captures = [this](const protocol::SubjectState& state,
                                             Time now) { AdoptCaptures(state, now); }}),
       mocap_(limits_, &shards_, &router_, metrics_),

@@ -71,6 +71,8 @@ class Hub {
     int shards = 1;                         // one per network thread
     // Answers Drain. Called on any shard's thread, under the exclusive lock. Empty: not possible.
     std::function<protocol::DrainState(bool begin)> drain;
+    // True for the numeric addresses of this computer. Empty: it has none.
+    std::function<bool(const std::string& address)> is_own_address;
   };
   explicit Hub(Parts parts);
 

@@ -57,7 +57,8 @@ class SecuredTest(unittest.TestCase):
             viewer.wait_for(20)
             code, _, errors = finish(spawn("drain", a.udp, "--token", tokens["watch"]))
             self.assertEqual(code, 1)
-            self.assertIn("not permitted to drain the daemon; the token allows watch", errors)
+            self.assertIn("not permitted to drain the daemon: a token with the role operate for all subjects is needed; "
+                          "the token allows watch", errors)
             code, output, errors = finish(spawn("drain", "--wait", a.udp, "--token", tokens["operate"]))
             self.assertEqual((code, output, errors), (0, b"drained: 1 subject moved\n", ""))
             self.assertEqual(a.process.wait(timeout=GUARD), 0)
