@@ -258,7 +258,7 @@ class ClusterTest(unittest.TestCase):
         wait_until(lambda: len(only.get("/api/cluster")[1]["nodes"]) == 1, "the others are gone")
         code, _, errors = finish(spawn("drain", "--wait", "1", only.tcp))
         self.assertEqual(code, 1)
-        self.assertIn("the time is over, these did not move: 'ada'; 'ada': no other node has room", errors)
+        self.assertIn("timed out; 1 subject did not move: 'ada' (no other node has room)", errors)
         # It goes on until there is room.
         self.watch(only).wait_for(5)
         self.add_node("d")
