@@ -40,6 +40,7 @@
 #include "server/http/api/api.h"
 #include "server/http/http_server.h"
 #include "server/machine/confine.h"
+#include "server/machine/own_addresses.h"
 #include "server/net/await_tuple.h"
 #include "server/net/clock.h"
 #include "server/net/critical_task.h"
@@ -325,6 +326,7 @@ void Daemon::MakeHub() {
   parts.gate = &gate_;
   parts.cluster = cluster_.get();
   if (cluster_ != nullptr) parts.drain = [this](bool begin) { return OnDrainRequest(begin); };
+  parts.is_own_address = IsOwnAddress;
   hub_ = std::make_unique<Hub>(std::move(parts));
   if (cluster_ != nullptr) {
     mover_ = std::make_unique<Mover>(io_, &gate_, hub_.get(), RandomNumber);

@@ -25,7 +25,8 @@ namespace furrow::client {
 //
 // With a transport that reconnects, the publisher outlives every loss: it offers all subjects again
 // on each connection, and their numbering continues. While the daemon sends it to another server
-// of its cluster, poses wait for that server, for at most kMovePatience, so that none is lost.
+// of its cluster, poses wait for that server, for at most kMovePatience. Those that are on their
+// way to the former server when it hands the subject over are lost.
 //
 // Time is a parameter: microseconds of any monotonic clock. The class starts no thread and must be
 // used on one thread.

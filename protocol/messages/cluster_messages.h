@@ -49,7 +49,7 @@ struct DrainState {
   std::uint32_t moved = 0;         // subjects that other servers have taken
   std::uint32_t left = 0;          // subjects that are still here
   std::vector<std::string> names;  // of the latter; at most kMaxLeftNames
-  std::string why;                 // the first of them could not be moved; may be empty
+  std::string why;                 // one of them could not be moved last; may be empty
 };
 
 }  // namespace furrow::protocol

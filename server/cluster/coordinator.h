@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -52,8 +53,12 @@ class Coordinator {
   [[nodiscard]] virtual Place Elsewhere(std::string_view subject) const = 0;
   // Where a new subject should be offered: kHere or kElsewhere, or kNowhere.
   [[nodiscard]] virtual Place Propose(std::string_view subject, Time now) const = 0;
-  // The other node that should take the subject from this one; kNowhere if there is none.
-  [[nodiscard]] virtual Place Successor(std::string_view subject) const = 0;
+  // The other node that should take the subject from this one, but none of `without`; kNowhere if
+  // there is none.
+  [[nodiscard]] virtual Place Successor(std::string_view subject,
+                                        const std::set<std::string>& without) const = 0;
+  // Why subjects never move from this node to another one; empty: they do.
+  [[nodiscard]] virtual std::string WhyNothingMoves() const { return {}; }
   // The other nodes that are there, those that are not draining first.
   [[nodiscard]] virtual std::vector<NodeAddress> Others() const = 0;
   // Another node is about to hand the subject over to this one, within kExpected. Until then, this

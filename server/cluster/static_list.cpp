@@ -67,8 +67,11 @@ Place StaticList::Expect(std::string_view /*subject*/, Time /*now*/) {
   return place;
 }
 
+std::string StaticList::WhyNothingMoves() const { return kListDecides; }
+
 // The list alone decides, so nobody takes a subject of this node.
-Place StaticList::Successor(std::string_view subject) const {
+Place StaticList::Successor(std::string_view subject,
+                            const std::set<std::string>& /*without*/) const {
   Place place = Elsewhere(subject);
   if (place.kind == Place::Kind::kNowhere) place.why = kListDecides;
   return place;

@@ -24,7 +24,9 @@ class StaticList : public Coordinator {
   [[nodiscard]] Place Find(std::string_view subject, Time now) const override;
   [[nodiscard]] Place Elsewhere(std::string_view subject) const override;
   [[nodiscard]] Place Propose(std::string_view subject, Time now) const override;
-  [[nodiscard]] Place Successor(std::string_view subject) const override;
+  [[nodiscard]] Place Successor(std::string_view subject,
+                                const std::set<std::string>& without) const override;
+  [[nodiscard]] std::string WhyNothingMoves() const override;
   [[nodiscard]] std::vector<NodeAddress> Others() const override;
   [[nodiscard]] Place Expect(std::string_view subject, Time now) override;
   void HandOver(std::string_view /*subject*/, const NodeAddress& /*heir*/) override {}

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <string_view>
 
 #include <arpa/inet.h>
 #include <ifaddrs.h>
@@ -50,6 +51,16 @@ std::vector<std::string> ReachableAddresses(const std::string& bind) {
     return address.find(':') == std::string::npos;
   });
   return found;
+}
+
+bool IsOwnAddress(const std::string& address) {
+  if (IsLoopback(address)) return true;
+  const std::vector<std::string> own = ReachableAddresses("::");
+  // A socket for both families shows IPv4 addresses as "::ffff:10.0.0.1".
+  constexpr std::string_view kMapped = "::ffff:";
+  const bool is_mapped = address.starts_with(kMapped) && address.find('.') != std::string::npos;
+  const std::string plain = is_mapped ? address.substr(kMapped.size()) : address;
+  return std::find(own.begin(), own.end(), plain) != own.end();
 }
 
 }  // namespace furrow::server

@@ -11,4 +11,8 @@ namespace furrow::server {
 // first, without loopback and link-local ones. Empty if only this computer reaches it.
 [[nodiscard]] std::vector<std::string> ReachableAddresses(const std::string& bind);
 
+// True for a numeric address of this computer: a loopback one, or one of its interfaces that are
+// up.
+[[nodiscard]] bool IsOwnAddress(const std::string& address);
+
 }  // namespace furrow::server

@@ -105,6 +105,13 @@ void Dispatcher::DispatchVerified(Shard& shard, Peer& peer, const protocol::Mess
       [[fallthrough]];
     default: {
       if (!TakeRequest(shard, peer, view, now)) return;
+      // A state is large, so it is not even read for others.
+      if (view.kind == MessageKind::kSubjectState && !peer.access.Has(Role::kOperate)) {
+        if (peer.transport == Transport::kUdp && !peer.consent.Holds(now)) return;
+        return shard.context.messages.SendError(
+            peer, header, ErrorCode::kNotPermitted,
+            "not permitted to hand over subjects; " + peer.access.Text());
+      }
       // `peer` and `view` stay valid while the lock changes hands: only this thread removes the
       // peer or reuses the buffer of the message. Subjects may have left, so the handlers look them
       // up again.
@@ -131,10 +138,12 @@ void Dispatcher::RecoverPrevious(Shard& shard, const Peer& peer, const protocol:
 // pattern costs as much as several. UDP clients repeat a request that is not answered.
 bool Dispatcher::TakeRequest(Shard& shard, Peer& peer, const protocol::MessageView& view,
                              Time now) {
-  const bool is_free = view.kind == MessageKind::kSkeletonOffer ||  // these two have limits
-                       view.kind == MessageKind::kSubjectState ||   // of their own
+  const bool is_free = view.kind == MessageKind::kSkeletonOffer ||  // has a limit of its own
                        view.kind == MessageKind::kFrameAck || view.kind == MessageKind::kGoodbye;
-  const double cost = 1.0 + static_cast<double>(view.payload.size()) / kBytesPerRequest;
+  // States are large by nature, and Arrivals limits their bytes.
+  const double size =
+      view.kind == MessageKind::kSubjectState ? 0.0 : static_cast<double>(view.payload.size());
+  const double cost = 1.0 + size / kBytesPerRequest;
   if (is_free || peer.requests.Take(now, cost)) return true;
   parts_.metrics->Add(Counter::kRequestsThrottled);
   if (peer.transport != Transport::kUdp) {
@@ -282,7 +291,7 @@ void Dispatcher::CutOff(Peer& peer, bool soon) {
 // Another node of the cluster, or whoever may operate this one, hands a subject over.
 void Dispatcher::OnSubjectState(Peer& peer, const protocol::MessageView& view,
                                 const protocol::SubjectState& state, Time now) {
-  if (!peer.access.Has(Role::kOperate) || !peer.access.Concerns(state.subject)) {
+  if (!peer.access.Concerns(state.subject)) {
     return parts_.messages->SendError(
         peer, view.header, ErrorCode::kNotPermitted,
         "not permitted to hand over '" + state.subject + "'; " + peer.access.Text());
@@ -291,14 +300,15 @@ void Dispatcher::OnSubjectState(Peer& peer, const protocol::MessageView& view,
   const bool has_captures = !state.captures.empty();
   // A state that arrives after its subject is an old copy.
   if (parts_.subjects->Find(state.subject) == nullptr) {
-    const Place place = parts_.places->Expect(state.subject, now);
-    if (place.kind != Place::Kind::kPending) {
-      why = place.why;
-    } else if (has_captures && !peer.requests.Take(now, kRequestsPerCaptures)) {
+    if (has_captures && !peer.requests.Take(now, kRequestsPerCaptures)) {
       parts_.metrics->Add(Counter::kRequestsThrottled);
       why = "too many captured poses at once";
-    } else if (!parts_.arrivals->Add(state.subject, view, now)) {
+    } else if (!parts_.arrivals->Add(state, view, now)) {
       why = "too many subjects are on their way to this node";
+    } else if (const Place place = parts_.places->Expect(state.subject, now);
+               place.kind != Place::Kind::kPending) {
+      why = place.why;
+      parts_.arrivals->Drop(state.subject);
     } else if (has_captures) {
       parts_.adopt_captures(state, now);
     }
@@ -310,15 +320,29 @@ void Dispatcher::OnSubjectState(Peer& peer, const protocol::MessageView& view,
       protocol::SkeletonReply{state.skeleton_hash, status, MessageSender::Truncate(why)});
 }
 
+// Empty: the peer may. Draining ends the daemon and concerns all of its subjects.
+std::string Dispatcher::WhyNoDrain(const Peer& peer) const {
+  if (peer.access.by_token()) {
+    if (peer.access.Has(Role::kOperate) && peer.access.grant().subjects == "*") return {};
+    return "a token with the role operate for all subjects is needed; " + peer.access.Text();
+  }
+  // Nobody has shown who it is.
+  const bool is_here =
+      !peer.address.empty() && parts_.is_own_address && parts_.is_own_address(peer.address);
+  return is_here ? ""
+                 : "without tokens, only programs on the daemon's own computer may; end the daemon "
+                   "with SIGTERM there, or start it with --security required";
+}
+
 void Dispatcher::OnDrain(Peer& peer, const protocol::Header& header,
                          const protocol::Drain& request) {
-  if (!peer.access.Has(Role::kOperate)) {
-    return parts_.messages->SendError(peer, header, ErrorCode::kNotPermitted,
-                                      "not permitted to drain the daemon; " + peer.access.Text());
-  }
-  if (!parts_.drain) {
+  if (const std::string why = parts_.places->WhyNothingMoves(); !why.empty() || !parts_.drain) {
     return parts_.messages->SendError(peer, header, ErrorCode::kUnsupported,
-                                      "this daemon is in no cluster; end it with SIGTERM");
+                                      why + "; end the daemon with SIGTERM");
+  }
+  if (const std::string why = WhyNoDrain(peer); !why.empty()) {
+    return parts_.messages->SendError(peer, header, ErrorCode::kNotPermitted,
+                                      "not permitted to drain the daemon: " + why);
   }
   protocol::DrainState state = parts_.drain(request.begin);
   state.left = static_cast<std::uint32_t>(parts_.subjects->size());

@@ -45,6 +45,8 @@ class Dispatcher {
     Arrivals* arrivals = nullptr;
     const Limits* limits = nullptr;
     std::function<protocol::DrainState(bool begin)> drain;  // Hub::Parts::drain
+    // Hub::Parts::is_own_address; empty: none is
+    std::function<bool(const std::string& address)> is_own_address;
     // Adds the reference poses of a subject that arrives to the rig.
     std::function<void(const protocol::SubjectState& state, Time now)> adopt_captures;
   };
@@ -90,6 +92,7 @@ class Dispatcher {
                       const protocol::ListSubjects& request);
   void OnSubjectState(Peer& peer, const protocol::MessageView& view,
                       const protocol::SubjectState& state, Time now);
+  [[nodiscard]] std::string WhyNoDrain(const Peer& peer) const;
   void OnDrain(Peer& peer, const protocol::Header& header, const protocol::Drain& request);
   void SendSubjectList(Peer& peer, const protocol::Header& request);
 

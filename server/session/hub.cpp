@@ -12,6 +12,7 @@
 #include <spdlog/spdlog.h>
 
 #include "protocol/messages/limits.h"
+#include "server/cluster/lease/lease.h"
 #include "server/session/peers/peer_access.h"
 #include "server/session/subjects/subject_state.h"
 
@@ -70,6 +71,7 @@ Hub::Hub(Parts parts)
                    .arrivals = &arrivals_,
                    .limits = &limits_,
                    .drain = std::move(parts.drain),
+                   .is_own_address = std::move(parts.is_own_address),
                    .adopt_captures = [this](const protocol::SubjectState& state,
                                             Time now) { AdoptCaptures(state, now); }}),
       mocap_(limits_, &shards_, &router_, metrics_),
@@ -389,13 +391,18 @@ void Hub::Drain(Time now) {
 
 // A capture changes the rig of the daemon, on this node as on the one before.
 void Hub::AdoptCaptures(const protocol::SubjectState& state, Time now) {
-  auto changed = WithCaptures(rig(), state.captures);
+  auto changed = WithCaptures(rig(), state.captures,
+                              static_cast<std::size_t>(kMaxAddedPoses - num_added_poses_));
   Status status = changed.status();
+  int added = 0;
   if (changed.ok()) {
     if (!changed->has_value()) return;
+    added = static_cast<int>((*changed)->reference_poses.size() - rig().reference_poses.size());
     status = SetRig(std::make_shared<const wrinkle::Rig>(**std::move(changed)), now);
   }
   if (status.ok()) {
+    num_added_poses_ += added;
+    ++num_adoptions_;
     spdlog::info("took over the captured poses of subject '{}'", state.subject);
   } else {
     spdlog::warn("cannot take over the captured poses of subject '{}': {}", state.subject,
@@ -415,7 +422,29 @@ std::vector<std::string> Hub::SubjectNames() {
   return names;
 }
 
-Place Hub::SuccessorOf(std::string_view name) {
+// Empty: it may move.
+std::string Hub::WhyItStays(const Subject& subject, Time now) {
+  // The store has not confirmed the lease for longer than it takes. The other node would not get
+  // the lease either.
+  constexpr Time kLeast = kLeaseStop - kLeaseRenewal - std::chrono::milliseconds(500);
+  if (subject.served_until - now < kLeast) return "the store of the cluster does not answer";
+  const Peer* owner = OwnerOf(subject);
+  if (owner == nullptr) return {};
+  // Foreign wires, web pages, and a recording that this daemon plays itself.
+  if (owner->transport == Transport::kMocap || owner->transport == Transport::kWeb) {
+    return "its sender cannot be sent to another daemon";
+  }
+  // Its other subjects may go elsewhere, so such a client follows nobody.
+  const auto is_of_owner = [owner](const std::unique_ptr<Subject>& other) {
+    return other->owner.peer == owner->id && !other->ended;
+  };
+  const auto& all = subjects_.all();
+  return std::count_if(all.begin(), all.end(), is_of_owner) > 1
+             ? "its sender has several subjects on one connection"
+             : "";
+}
+
+Place Hub::SuccessorOf(std::string_view name, Time now, const std::set<std::string>& without) {
   const ExclusiveLock lock(*this, 0);
   const Subject* subject = subjects_.Find(name);
   Place place;
@@ -423,16 +452,9 @@ Place Hub::SuccessorOf(std::string_view name) {
     place.why = "it has left";
     return place;
   }
-  const Peer* owner = OwnerOf(*subject);
-  // Foreign wires, and a recording that this daemon plays itself.
-  const bool is_own =
-      owner != nullptr && (owner->transport == Transport::kMocap ||
-                           (owner->transport == Transport::kWeb && owner->host.empty()));
-  if (is_own) {
-    place.why = "its sender cannot be sent to another daemon";
-    return place;
-  }
-  place = places_.Successor(name);
+  place.why = WhyItStays(*subject, now);
+  if (!place.why.empty()) return place;
+  place = places_.Successor(name, without);
   if (place.kind != Place::Kind::kElsewhere && place.why.empty()) {
     place.why = "no other node has room";
   }
@@ -448,11 +470,14 @@ bool Hub::WriteState(std::string_view name, std::uint32_t number,
   return true;
 }
 
-bool Hub::HandOver(std::string_view name, const NodeAddress& node, std::uint32_t number,
-                   std::vector<std::uint8_t>& message, Time now) {
+Status Hub::HandOver(std::string_view name, const NodeAddress& node, std::uint32_t number,
+                     std::vector<std::uint8_t>& message, Time now) {
   const ExclusiveLock lock(*this, 0);
   Subject* subject = subjects_.Find(name);
-  if (subject == nullptr) return false;
+  if (subject == nullptr) return {StatusCode::kNotFound, "it has left"};
+  if (std::string why = WhyItStays(*subject, now); !why.empty()) {
+    return {StatusCode::kUnavailable, std::move(why)};
+  }
   // Poses that wait for their time are used now, because the publisher does not send them again.
   Shard& shard = shards_.Of(subject->owner.peer);
   router_.ReleaseStream(shard, subject->owner, now);
@@ -461,7 +486,7 @@ bool Hub::HandOver(std::string_view name, const NodeAddress& node, std::uint32_t
   places_.HandOver(name, node);
   MoveSubject(*subject, node);
   subscribers_.BindWaiting();
-  return true;
+  return {};
 }
 
 // An empty name: the oldest subject.

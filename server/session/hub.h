@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -70,6 +71,8 @@ class Hub {
     int shards = 1;                         // one per network thread
     // Answers Drain. Called on any shard's thread, under the exclusive lock. Empty: not possible.
     std::function<protocol::DrainState(bool begin)> drain;
+    // True for the numeric addresses of this computer. Empty: it has none.
+    std::function<bool(const std::string& address)> is_own_address;
   };
   explicit Hub(Parts parts);
 
@@ -178,16 +181,19 @@ class Hub {
   void TakeNothingNew();
   // The names of the subjects that are here.
   [[nodiscard]] std::vector<std::string> SubjectNames();
-  // The node that should get the subject; kNowhere with the reason: none can.
-  [[nodiscard]] Place SuccessorOf(std::string_view subject);
+  // The node that should get the subject, but none of `without`; kNowhere with the reason: none
+  // can, or the subject must stay.
+  [[nodiscard]] Place SuccessorOf(std::string_view subject, Time now,
+                                  const std::set<std::string>& without = {});
   // Writes the subject's state as a message (SubjectState) to `message`. `number`: which the answer
   // repeats. False: there is no such subject.
   [[nodiscard]] bool WriteState(std::string_view subject, std::uint32_t number,
                                 std::vector<std::uint8_t>& message);
   // The node goes on with the subject: sends its publisher and its subscribers there and forgets
-  // it. Writes the last state, as WriteState() does.
-  [[nodiscard]] bool HandOver(std::string_view subject, const NodeAddress& node,
-                              std::uint32_t number, std::vector<std::uint8_t>& message, Time now);
+  // it. Writes the last state, as WriteState() does. Errors: kNotFound, there is no such subject;
+  // kUnavailable, it must stay for now.
+  [[nodiscard]] Status HandOver(std::string_view subject, const NodeAddress& node,
+                                std::uint32_t number, std::vector<std::uint8_t>& message, Time now);
 
   // The functions below require the exclusive lock, and so does every use of the objects that they
   // return.
@@ -222,6 +228,13 @@ class Hub {
   [[nodiscard]] const std::shared_ptr<const wrinkle::Rig>& shared_rig() const {
     return definitions_.shared_rig();
   }
+  // At most this many reference poses come to the rig by captures, here or on the way here: every
+  // solve of every subject evaluates them.
+  static constexpr int kMaxAddedPoses = 32;
+  [[nodiscard]] int num_added_poses() const { return num_added_poses_; }
+  void AddToAddedPoses(int number) { num_added_poses_ += number; }
+  // How often the rig got captures of subjects that came from other nodes.
+  [[nodiscard]] std::uint64_t num_adoptions() const { return num_adoptions_; }
   // Replaces the limits. Whatever exceeds them already stays. The rate of messages counts for peers
   // that come from now on; max_udp_peers is not the hub's.
   void SetLimits(const Limits& limits);
@@ -246,6 +259,7 @@ class Hub {
   void RefreshPlaces(Time now);
   void FreeLevels(Time now);
   void AdoptCaptures(const protocol::SubjectState& state, Time now);
+  [[nodiscard]] std::string WhyItStays(const Subject& subject, Time now);
   void MoveSubject(Subject& subject, const NodeAddress& node);
   void RenewConsent(Peer& peer, Time now);
   void EndIfTokenEnded(Peer& peer, Time now);
@@ -272,6 +286,8 @@ class Hub {
   Dispatcher dispatcher_;
   MocapStreams mocap_;
   const bool holds_poses_;
+  int num_added_poses_ = 0;
+  std::uint64_t num_adoptions_ = 0;
   bool draining_ = false;
 };
 

@@ -51,7 +51,11 @@ Shards::ExclusiveLock::ExclusiveLock(Shards& shards, int index)
   shards_.PublishGathered(shard_);
   // With one shard, one thread uses the hub (other threads post to its event loop), so there is
   // nobody to lock out.
-  if (shard_.exclusive_locks++ > 0 || shards_.size() == 1) return;
+  if (shard_.exclusive_locks++ > 0) return;
+  if (shards_.size() == 1) {
+    shards_.router_->SetExclusive(true);
+    return;
+  }
   if (shard_.shard_locks > 0) {
     // Give up the own shard first: two threads that each held their shard and waited for all others
     // would wait forever.
@@ -60,10 +64,12 @@ Shards::ExclusiveLock::ExclusiveLock(Shards& shards, int index)
     shards_.mutexes_.Unlock(shard_.index);
   }
   shards_.mutexes_.LockAll();
+  shards_.router_->SetExclusive(true);
 }
 
 Shards::ExclusiveLock::~ExclusiveLock() {
   if (--shard_.exclusive_locks > 0) return;
+  shards_.router_->SetExclusive(false);
   const bool is_single = shards_.size() == 1;
   if (is_single && shard_.shard_locks > 0) return;  // the end of the shard lock flushes
   // Replies under the exclusive lock go to the sender of the receiving peer's shard, so all may

@@ -216,8 +216,9 @@ void StreamRouter::Publish(Shard& shard, Subject& subject, std::span<const std::
                            std::int64_t age_us, Time now) {
   if (now >= subject.served_until) return;  // another node may serve it, also while it decays
   if (fans_out_) {
-    // Under the exclusive lock, frames take the way of the replies and cannot overtake them.
-    PublishContext* context = shard.exclusive_locks > 0 ? parts_.exclusive_context : &shard.context;
+    // Under the exclusive lock, of whichever shard, frames take the way of the replies and cannot
+    // overtake them.
+    PublishContext* context = exclusive_ ? parts_.exclusive_context : &shard.context;
     parts_.subscribers->fan_out().Publish(subject, payload, age_us, now, context);
   }
   // OSC output and the recording continue while the daemon drains; only peers stop receiving

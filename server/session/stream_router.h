@@ -82,6 +82,8 @@ class StreamRouter {
 
   // Stops sending to subscribers, which have been sent a goodbye. Recorder and OSC go on.
   void StopFanOut() { fans_out_ = false; }
+  // A thread has the exclusive lock, or gives it up. Requires it.
+  void SetExclusive(bool exclusive) { exclusive_ = exclusive; }
 
   // Is called with each subject's new weights; empty, as at first: nobody is. Requires the
   // exclusive lock.
@@ -109,6 +111,7 @@ class StreamRouter {
   Parts parts_;
   OnWeights on_weights_;  // may be empty
   bool fans_out_ = true;
+  bool exclusive_ = false;  // SetExclusive()
 };
 
 }  // namespace furrow::server

@@ -57,7 +57,8 @@ class SecuredTest(unittest.TestCase):
             viewer.wait_for(20)
             code, _, errors = finish(spawn("drain", a.udp, "--token", tokens["watch"]))
             self.assertEqual(code, 1)
-            self.assertIn("not permitted to drain the daemon; the token allows watch", errors)
+            self.assertIn("not permitted to drain the daemon: a token with the role operate for all subjects is needed; "
+                          "the token allows watch", errors)
             code, output, errors = finish(spawn("drain", "--wait", a.udp, "--token", tokens["operate"]))
             self.assertEqual((code, output, errors), (0, b"drained: 1 subject moved\n", ""))
             self.assertEqual(a.process.wait(timeout=GUARD), 0)
@@ -257,7 +258,7 @@ class ClusterTest(unittest.TestCase):
         wait_until(lambda: len(only.get("/api/cluster")[1]["nodes"]) == 1, "the others are gone")
         code, _, errors = finish(spawn("drain", "--wait", "1", only.tcp))
         self.assertEqual(code, 1)
-        self.assertIn("the time is over, these did not move: 'ada'; 'ada': no other node has room", errors)
+        self.assertIn("timed out; 1 subject did not move: 'ada' (no other node has room)", errors)
         # It goes on until there is room.
         self.watch(only).wait_for(5)
         self.add_node("d")

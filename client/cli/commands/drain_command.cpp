@@ -32,6 +32,9 @@ struct DrainOptions {
 
 // The time for the first answer.
 constexpr std::int64_t kPatienceUs = 3'000'000;
+// After this time without an answer, the daemon or its computer is gone. Over UDP, nothing else
+// says so.
+constexpr std::int64_t kSilenceUs = 10'000'000;
 
 std::string Listed(const protocol::DrainState& state) {
   std::string text;
@@ -46,10 +49,21 @@ std::string Count(std::uint32_t subjects) {
   return std::to_string(subjects) + (subjects == 1 ? " subject" : " subjects");
 }
 
-int FailLeft(const protocol::DrainState& state, const char* when) {
-  std::fprintf(stderr, "furrow: %s, these did not move: %s%s%s\n", when, Listed(state).c_str(),
-               state.why.empty() ? "" : "; ", state.why.c_str());
-  return kFailed;
+// " (no other node has room)", or nothing. The daemon names the subject that its reason is about.
+std::string Reason(const protocol::DrainState& state) {
+  if (state.why.empty()) return {};
+  std::string why = state.why;
+  if (state.names.size() == 1) {
+    const std::string prefix = "'" + state.names[0] + "': ";
+    if (why.starts_with(prefix)) why.erase(0, prefix.size());
+  }
+  return " (" + why + ")";
+}
+
+int FailLeft(const protocol::DrainState& state, const char* when, ExitCode code = kFailed) {
+  std::fprintf(stderr, "furrow: %s; %s did not move: %s%s\n", when, Count(state.left).c_str(),
+               Listed(state).c_str(), Reason(state).c_str());
+  return code;
 }
 
 // What the end of the connection means. The daemon shows that it is empty before it ends.
@@ -89,12 +103,16 @@ int Follow(client::Drainer& drainer, const DrainOptions& options) {
       return kDone;
     }
     if (state->draining && state->left == 0) return OnEnd(drainer);
+    if (client::SteadyMicroseconds() - drainer.heard_us() > kSilenceUs) {
+      progress.reset();
+      return FailLeft(*state, "the daemon no longer answers", kNoConnection);
+    }
     const auto total = static_cast<std::int64_t>(state->moved) + state->left;
     if (!progress) progress = std::make_unique<Progress>("moved", total);
     progress->Set(std::min<std::int64_t>(state->moved, total));
     if (limit_us > 0 && passed_us > limit_us) {
       progress.reset();
-      return FailLeft(*state, "the time is over");
+      return FailLeft(*state, "timed out");
     }
   }
   return kFailed;
@@ -109,7 +127,8 @@ void TellAddressFromWait(DrainOptions* options) {
   if (options->host.empty()) throw CLI::RequiredError("host");
   if (options->wait.empty()) return;
   if (!is_number || !(options->wait_seconds > 0.0 && options->wait_seconds <= 86400.0)) {
-    throw CLI::ValidationError("--wait", "'" + options->wait + "' is not a number from 0 to 86400");
+    throw CLI::ValidationError(
+        "--wait", "'" + options->wait + "' is not a number above 0, and at most 86400");
   }
 }
 

@@ -33,7 +33,7 @@ IoStatus Drainer::Poll(std::int64_t now_us, std::chrono::milliseconds wait) {
   std::span<const std::uint8_t> message;
   IoStatus status = transport_->Receive(message, wait);
   while (status == IoStatus::kOk) {
-    Handle(message);
+    Handle(message, now_us);
     const IoStatus more = transport_->Receive(message, std::chrono::milliseconds(0));
     if (more == IoStatus::kTimeout) break;
     status = more;
@@ -41,7 +41,7 @@ IoStatus Drainer::Poll(std::int64_t now_us, std::chrono::milliseconds wait) {
   return status;
 }
 
-void Drainer::Handle(std::span<const std::uint8_t> message) {
+void Drainer::Handle(std::span<const std::uint8_t> message, std::int64_t now_us) {
   using protocol::DecodeStatus;
   protocol::MessageView view;
   if (protocol::OpenMessage(message, view, protocol::kMaxReplyBytes) != DecodeStatus::kOk) return;
@@ -55,6 +55,7 @@ void Drainer::Handle(std::span<const std::uint8_t> message) {
     introduction_.OnPing(ping);
   } else if (protocol::Decode(view, state) == DecodeStatus::kOk) {
     state_ = std::move(state);
+    heard_us_ = now_us;
   } else if (protocol::Decode(view, error) == DecodeStatus::kOk) {
     // A busy daemon is asked again.
     if (error.code != protocol::ErrorCode::kLimit) refusal_ = error.message;

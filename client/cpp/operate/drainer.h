@@ -27,16 +27,19 @@ class Drainer {
 
   // The newest answer; nothing before the first.
   [[nodiscard]] const std::optional<protocol::DrainState>& state() const { return state_; }
+  // When the newest answer came: the time of that Poll().
+  [[nodiscard]] std::int64_t heard_us() const { return heard_us_; }
   // Why the daemon refuses; empty if it does not.
   [[nodiscard]] const std::string& refusal() const { return refusal_; }
 
  private:
-  void Handle(std::span<const std::uint8_t> message);
+  void Handle(std::span<const std::uint8_t> message, std::int64_t now_us);
 
   std::unique_ptr<Transport> transport_;
   const std::uint64_t session_;
   Introduction introduction_;
   std::int64_t sent_us_ = 0;
+  std::int64_t heard_us_ = 0;
   std::uint32_t number_ = 0;
   std::optional<protocol::DrainState> state_;
   std::string refusal_;

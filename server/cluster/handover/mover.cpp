@@ -38,7 +38,8 @@ Mover::Progress Mover::progress() const {
 void Mover::Note(bool moved, const std::string& why) {
   const std::lock_guard lock(mutex_);
   if (moved) ++progress_.moved;
-  progress_.why = why;
+  // Others may stay although this one has moved.
+  if (!moved) progress_.why = why;
 }
 
 // No wait outlasts the end by much.
@@ -73,10 +74,13 @@ asio::awaitable<void> Mover::Run() {
 // True if any subject was moved.
 asio::awaitable<bool> Mover::MoveAll() {
   bool any = false;
+  silent_.clear();
   for (const std::string& subject : hub_->SubjectNames()) {
     if (end_ && ReadClock() >= *end_) break;
     const Status status = co_await Move(subject);
-    any |= status.ok();
+    const bool has_left = status.code() == StatusCode::kNotFound;
+    any |= status.ok() || has_left;
+    if (has_left) continue;
     Note(status.ok(), status.ok() ? "" : "'" + subject + "': " + status.what());
     // Rounds are short, and most subjects stay for the same reason.
     if (!status.ok() && logged_ != status.what()) {
@@ -87,36 +91,67 @@ asio::awaitable<bool> Mover::MoveAll() {
   co_return any;
 }
 
+// To the node with the most room; if that one does not take it, to the next one.
 asio::awaitable<Status> Mover::Move(std::string subject) {
-  const Place place = hub_->SuccessorOf(subject);
-  if (place.kind != Place::Kind::kElsewhere) {
-    co_return Status(StatusCode::kUnavailable, place.why);
+  std::set<std::string> without = silent_;
+  Status failure;
+  while (!end_ || ReadClock() < *end_) {
+    const Place place = hub_->SuccessorOf(subject, ReadClock(), without);
+    // A lease may name a node that has refused.
+    if (place.kind != Place::Kind::kElsewhere || without.contains(place.node.name)) {
+      if (!failure.ok()) break;
+      co_return Status(StatusCode::kUnavailable,
+                       place.why.empty() ? "no other node answers" : place.why);
+    }
+    Status status = co_await MoveTo(place.node, subject);
+    if (status.code() != StatusCode::kUnavailable) co_return status;
+    failure = std::move(status);
+    without.insert(place.node.name);
   }
-  const auto link = co_await LinkTo(place.node);
-  if (!link.ok()) co_return link.status();
+  co_return failure.ok() ? Status(StatusCode::kUnavailable, "the time is over") : failure;
+}
+
+// Errors: kUnavailable, another node may take it; kNotFound, it has left; others: it stays.
+asio::awaitable<Status> Mover::MoveTo(NodeAddress node, std::string subject) {
+  const auto link = co_await LinkTo(node);
+  if (!link.ok()) {
+    silent_.insert(node.name);
+    co_return link.status();
+  }
   std::vector<std::uint8_t> message;
   const std::uint32_t number = next_number_++;
-  if (!hub_->WriteState(subject, number, message)) co_return Status();  // it has left
+  if (!hub_->WriteState(subject, number, message)) {
+    co_return Status(StatusCode::kNotFound, "it has left");
+  }
   if (message.size() > protocol::kMaxUdpMessageBytes) {
-    co_return Status(StatusCode::kLimit, "its state is too large");
+    co_return Status(StatusCode::kLimit,
+                     "its state has " + std::to_string(message.size()) + " bytes, more than the " +
+                         std::to_string(protocol::kMaxUdpMessageBytes) + " that fit");
   }
   Send(*link, number, std::move(message), /*is_last=*/false);
   while (sent_.contains(number) && !sent_.at(number).accepted) co_await Pause(kLook);
   if (!sent_.contains(number)) {
-    links_.erase(place.node.name);  // it may have another address by now
-    co_return Status(StatusCode::kUnavailable,
-                     "the node '" + place.node.name + "' does not answer");
+    Unlink(node.name);  // it may have another address by now
+    silent_.insert(node.name);
+    co_return Status(StatusCode::kUnavailable, "the node '" + node.name + "' does not answer");
   }
   const Sent answer = std::move(sent_.extract(number).mapped());
   if (!*answer.accepted) {
+    if ((*link)->failed()) Unlink(node.name);
     co_return Status(StatusCode::kUnavailable,
-                     "the node '" + place.node.name + "' refuses it: " + answer.why);
+                     "the node '" + node.name + "' refuses it: " + answer.why);
   }
   const std::uint32_t last = next_number_++;
-  if (hub_->HandOver(subject, place.node, last, message, ReadClock())) {
-    Send(*link, last, std::move(message), /*is_last=*/true);
-  }
-  co_return Status();
+  Status status = hub_->HandOver(subject, node, last, message, ReadClock());
+  if (status.ok()) Send(*link, last, std::move(message), /*is_last=*/true);
+  co_return status;
+}
+
+void Mover::Unlink(const std::string& node) {
+  const auto known = links_.find(node);
+  if (known == links_.end()) return;
+  known->second->Close();
+  links_.erase(known);
 }
 
 asio::awaitable<Result<std::shared_ptr<NodeLink>>> Mover::LinkTo(NodeAddress node) {

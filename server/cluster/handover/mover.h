@@ -7,6 +7,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -64,6 +65,8 @@ class Mover {
 
   asio::awaitable<bool> MoveAll();
   asio::awaitable<Status> Move(std::string subject);
+  asio::awaitable<Status> MoveTo(NodeAddress node, std::string subject);
+  void Unlink(const std::string& node);
   asio::awaitable<Result<std::shared_ptr<NodeLink>>> LinkTo(NodeAddress node);
   asio::awaitable<void> Pause(Time time);
   void Send(const std::shared_ptr<NodeLink>& link, std::uint32_t number,
@@ -78,6 +81,7 @@ class Mover {
   Hub* const hub_;
   const std::function<std::uint64_t()> random_;
   std::map<std::string, std::shared_ptr<NodeLink>> links_;  // by node
+  std::set<std::string> silent_;                            // nodes that failed in this round
   std::map<std::uint32_t, Sent> sent_;                      // by number
   std::uint32_t next_number_ = 1;
   std::optional<Time> end_;

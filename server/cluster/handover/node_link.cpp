@@ -32,29 +32,57 @@ NodeLink::NodeLink(asio::io_context& io, Options options)
 
 secure::Now NodeLink::At() const { return {.us = ToMicroseconds(ReadClock())}; }
 
-asio::awaitable<Status> NodeLink::Connect(Time patience) {
-  const NodeAddress& node = options_.node;
-  const auto fault = [&node](const std::string& why) {
-    return Status(StatusCode::kUnavailable, "the node '" + node.name + "' " + why);
+// Finds the address and opens the socket. The system's look-up of names cannot be interrupted, so
+// it is left alone after `patience`.
+asio::awaitable<Status> NodeLink::Open(Time patience) {
+  struct Found {
+    bool done = false;
+    asio::error_code error;
+    udp::resolver::results_type results;
   };
-  udp::resolver resolver(socket_.get_executor());
-  auto [error, found] =
-      co_await resolver.async_resolve(node.host, std::to_string(node.udp), kAwaitTuple);
-  if (!error) {
-    for (const auto& entry : found) {
-      asio::error_code ignored;
-      socket_.close(ignored);
-      socket_.open(entry.endpoint().protocol(), error);
-      if (!error) socket_.connect(entry.endpoint(), error);  // sends nothing
-      if (!error) socket_.non_blocking(true, error);
-      if (!error) break;
-    }
+  const auto found = std::make_shared<Found>();
+  // Numeric addresses do not wait behind names.
+  const auto address = asio::ip::make_address(options_.node.host, found->error);
+  found->done = !found->error;
+  if (found->done) {
+    found->results = udp::resolver::results_type::create(udp::endpoint(address, options_.node.udp),
+                                                         options_.node.host, "");
   }
-  if (error) co_return fault("cannot be reached: " + error.message());
+  const auto timer = std::make_shared<asio::steady_timer>(socket_.get_executor());
+  timer->expires_after(patience);
+  udp::resolver resolver(socket_.get_executor());
+  if (!found->done) {
+    resolver.async_resolve(
+        options_.node.host, std::to_string(options_.node.udp),
+        [found, timer](const asio::error_code& error, udp::resolver::results_type results) {
+          *found = {true, error, std::move(results)};
+          timer->cancel();
+        });
+    co_await timer->async_wait(kAwaitTuple);
+  }
+  asio::error_code error = found->done ? found->error : asio::error::timed_out;
+  for (const auto& entry : found->results) {
+    asio::error_code ignored;
+    socket_.close(ignored);
+    socket_.open(entry.endpoint().protocol(), error);
+    if (!error) socket_.connect(entry.endpoint(), error);  // sends nothing
+    if (!error) socket_.non_blocking(true, error);
+    if (!error) break;
+  }
+  if (!error) co_return Status();
+  co_return Fault("cannot be reached: " + error.message());
+}
+
+Status NodeLink::Fault(const std::string& why) const {
+  return {StatusCode::kUnavailable, "the node '" + options_.node.name + "' " + why};
+}
+
+asio::awaitable<Status> NodeLink::Connect(Time patience) {
+  const Time end = ReadClock() + patience;
+  if (Status opened = co_await Open(patience); !opened.ok()) co_return opened;
   StartCriticalTask(static_cast<asio::io_context&>(socket_.get_executor().context()),
                     Read(shared_from_this()));
   asio::steady_timer timer(socket_.get_executor());
-  const Time end = ReadClock() + patience;
   Time next{0};
   while (!connected_ && refusal_.empty() && ReadClock() < end) {
     if (secure_) {
@@ -67,7 +95,7 @@ asio::awaitable<Status> NodeLink::Connect(Time patience) {
     co_await timer.async_wait(kAwaitTuple);
   }
   if (connected_) co_return Status();
-  co_return fault(refusal_.empty() ? "does not answer" : "refuses this one: " + refusal_);
+  co_return Fault(refusal_.empty() ? "does not answer" : "refuses this one: " + refusal_);
 }
 
 void NodeLink::Close() {
@@ -180,6 +208,7 @@ void NodeLink::OnMessage(std::span<const std::uint8_t> message) {
                        reply.message);
   } else if (protocol::Decode(view, error) == protocol::DecodeStatus::kOk) {
     if (!connected_) refusal_ = error.message;
+    failed_ = true;
     options_.on_answer(view.header.sequence, false, error.message);
   }
 }

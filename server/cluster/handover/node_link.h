@@ -44,11 +44,15 @@ class NodeLink : public std::enable_shared_from_this<NodeLink> {
   // Sends a message that Encode() has written, at once. May be lost: the caller repeats it until
   // it is answered.
   void Send(std::span<const std::uint8_t> message);
+  // True after an error of the node, which may answer nothing more: begin another conversation.
+  [[nodiscard]] bool failed() const { return failed_; }
   // Ends the conversation. Nothing is called afterwards.
   void Close();
 
  private:
+  asio::awaitable<Status> Open(Time patience);
   static asio::awaitable<void> Read(std::shared_ptr<NodeLink> self);
+  [[nodiscard]] Status Fault(const std::string& why) const;
   [[nodiscard]] protocol::secure::Now At() const;
   void Maintain();
   void SendHello();
@@ -60,6 +64,7 @@ class NodeLink : public std::enable_shared_from_this<NodeLink> {
   const Options options_;
   std::optional<protocol::secure::SecureClient> secure_;
   bool connected_ = false;
+  bool failed_ = false;
   std::string refusal_;
   std::uint64_t token_ = 0;         // of the node's Welcome
   std::uint64_t node_session_ = 0;  // of the node; its later messages carry it

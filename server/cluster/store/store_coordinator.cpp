@@ -125,7 +125,9 @@ void StoreCoordinator::TakeRequests() {
     wanted.swap(requests_.wanted);
     heirs.swap(requests_.heirs);
     draining_ = requests_.draining;
-    if (!expected_.empty()) hurries_until_ = now_() + kHurry;
+    const Time now = now_();
+    std::erase_if(expected_, [now](const auto& known) { return now >= known.second; });
+    if (!expected_.empty()) hurries_until_ = now + kHurry;
   }
   const bool has_rival = nodes_.HasRival(now_());
   for (const auto& [subject, is_wanted] : wanted) {
@@ -238,12 +240,25 @@ void StoreCoordinator::Release(std::string_view subject) {
   if (const auto known = expected_.find(subject); known != expected_.end()) expected_.erase(known);
 }
 
+// Subjects that are on their way here have a place, although the view does not show them yet.
+bool StoreCoordinator::HasRoomFor(const View& view, std::string_view subject) const {
+  const std::lock_guard lock(mutex_);
+  const auto most = static_cast<std::size_t>(std::max(0, capacity_));
+  if (view.own.size() + expected_.size() < most) return true;
+  const Time now = now_();
+  std::size_t taken = view.own.size();
+  for (const auto& [name, until] : expected_) {
+    if (now < until && name != subject && !view.own.contains(name)) ++taken;
+  }
+  return taken < most;
+}
+
 Place StoreCoordinator::Expect(std::string_view subject, Time now) {
   const auto seen = view();
   Place place;
   if (is_draining()) {
     place.why = "this node is draining";
-  } else if (static_cast<int>(seen->own.size()) >= capacity_) {
+  } else if (!HasRoomFor(*seen, subject)) {
     place.why = "this node is full";
   } else if (!seen->may_take) {
     place.why = seen->fault;
@@ -251,7 +266,6 @@ Place StoreCoordinator::Expect(std::string_view subject, Time now) {
     place.kind = Place::Kind::kPending;
     Request(subject, true);
     const std::lock_guard lock(mutex_);
-    std::erase_if(expected_, [now](const auto& known) { return now >= known.second; });
     expected_.insert_or_assign(std::string(subject), now + kExpected);
   }
   return place;
@@ -287,13 +301,15 @@ void StoreCoordinator::SetDraining() {
 
 // The node with the largest part of its places free. Nodes announce themselves once per second, so
 // what this one has given to them counts, too.
-const Announcement* StoreCoordinator::RoomElsewhere(const View& view) const {
+const Announcement* StoreCoordinator::RoomElsewhere(const View& view,
+                                                    const std::set<std::string>& without) const {
   const Announcement* best = nullptr;
   double least = 0.0;
   if (!view.reachable) return best;  // no node takes anything
   const std::lock_guard lock(mutex_);
   for (const auto& [name, node] : view.others) {
     if (node.draining || !node.ready || node.subjects >= node.capacity) continue;
+    if (without.contains(name)) continue;
     const auto given = given_to_.find(name);
     const double load =
         LoadOf(node.subjects + (given == given_to_.end() ? 0 : given->second), node.capacity);
@@ -360,7 +376,7 @@ Place StoreCoordinator::Propose(std::string_view subject, Time now) const {
   const bool draining = is_draining();
   const Announcement* const other = RoomElsewhere(*seen);
   const auto own = static_cast<int>(seen->own.size());
-  const bool has_room = !draining && seen->may_take && own < capacity_;
+  const bool has_room = !draining && seen->may_take && HasRoomFor(*seen, subject);
   // Offered to the emptier node.
   const bool is_emptier =
       other == nullptr || LoadOf(own, capacity_) <= LoadOf(other->subjects, other->capacity);
@@ -387,7 +403,7 @@ Place StoreCoordinator::Ask(std::string_view subject, Time now) {
   }
   const auto seen = view();
   const bool draining = is_draining();
-  const bool has_room = !draining && static_cast<int>(seen->own.size()) < capacity_;
+  const bool has_room = !draining && HasRoomFor(*seen, subject);
   const bool is_held = seen->foreign.contains(subject) || IsExpected(subject);
   const bool waits =
       seen->reachable && !seen->has_rival && (is_held || RoomElsewhere(*seen) == nullptr);
@@ -398,11 +414,12 @@ Place StoreCoordinator::Ask(std::string_view subject, Time now) {
 }
 
 // Not Propose(), which names this node while it holds the lease.
-Place StoreCoordinator::Successor(std::string_view subject) const {
+Place StoreCoordinator::Successor(std::string_view subject,
+                                  const std::set<std::string>& without) const {
   const auto seen = view();
   Place place = ForeignPlace(*seen, subject);
   if (place.kind == Place::Kind::kElsewhere) return place;
-  if (const Announcement* const other = RoomElsewhere(*seen); other != nullptr) {
+  if (const Announcement* const other = RoomElsewhere(*seen, without); other != nullptr) {
     place.kind = Place::Kind::kElsewhere;
     place.node = other->address;
   } else {

@@ -43,7 +43,8 @@ class StoreCoordinator : public Coordinator {
   [[nodiscard]] Place Find(std::string_view subject, Time now) const override;
   [[nodiscard]] Place Elsewhere(std::string_view subject) const override;
   [[nodiscard]] Place Propose(std::string_view subject, Time now) const override;
-  [[nodiscard]] Place Successor(std::string_view subject) const override;
+  [[nodiscard]] Place Successor(std::string_view subject,
+                                const std::set<std::string>& without) const override;
   [[nodiscard]] std::vector<NodeAddress> Others() const override;
   [[nodiscard]] Place Expect(std::string_view subject, Time now) override;
   void HandOver(std::string_view subject, const NodeAddress& heir) override;
@@ -83,7 +84,9 @@ class StoreCoordinator : public Coordinator {
   [[nodiscard]] bool IsExpected(std::string_view subject) const;
   [[nodiscard]] std::optional<NodeAddress> HeirOf(std::string_view subject) const;
   [[nodiscard]] Place ForeignPlace(const View& view, std::string_view subject) const;
-  [[nodiscard]] const Announcement* RoomElsewhere(const View& view) const;
+  [[nodiscard]] const Announcement* RoomElsewhere(const View& view,
+                                                  const std::set<std::string>& without = {}) const;
+  [[nodiscard]] bool HasRoomFor(const View& view, std::string_view subject) const;
 
   NodeAddress self_;  // set by Start()
   const std::uint64_t run_;

@@ -21,8 +21,6 @@ constexpr char kNeutral[] = "neutral";
 // Enough to undo a guided capture of all poses of a face. Each entry may hold a whole rig (half a
 // megabyte for the default one), so the history is bounded; the oldest entry goes first.
 constexpr std::size_t kMaxUndo = 64;
-// Every solve of every subject evaluates the added poses, too.
-constexpr int kMaxAdded = 32;
 // The name becomes part of the rig file.
 constexpr std::size_t kMaxPoseName = 64;
 
@@ -130,17 +128,19 @@ bool IsPoseName(const std::string& name) {
 
 }  // namespace
 
-Json CaptureApi::History() const {
+Json CaptureApi::History(const Hub& hub) const {
   Json list = Json::array();
   for (const Capture& capture : captures_) {
+    if (capture.adoptions != hub.num_adoptions()) continue;
     list.push_back({{"pose", capture.pose}, {"subject", capture.subject}});
   }
   return list;
 }
 
-bool CaptureApi::has_changed_rig() const {
-  return std::ranges::any_of(captures_,
-                             [](const Capture& capture) { return capture.rig != nullptr; });
+bool CaptureApi::has_changed_rig(const Hub& hub) const {
+  return hub.num_adoptions() > 0 || std::ranges::any_of(captures_, [](const Capture& capture) {
+           return capture.rig != nullptr;
+         });
 }
 
 void CaptureApi::Remember(Capture capture) {
@@ -196,7 +196,8 @@ ApiReply CaptureApi::CaptureNeutral(Hub& hub, Subject& subject, std::optional<Ne
     // Taken before SetNeutral() replaces it; Undo() puts it back.
     std::optional<wrinkle::LocalPose> former = pipeline.neutral_pose();
     hub.SetNeutral(subject, neutral, now);
-    Remember({kNeutral, subject.name, subject.skeleton_hash, std::move(former), nullptr, false});
+    Remember({kNeutral, subject.name, subject.skeleton_hash, std::move(former), nullptr, false,
+              hub.num_adoptions()});
   }
   return JsonReply(
       {{"pose", kNeutral},
@@ -204,7 +205,7 @@ ApiReply CaptureApi::CaptureNeutral(Hub& hub, Subject& subject, std::optional<Ne
        {"preview", preview},
        {"added", false},
        {"weights", ChangesJson(pipeline.stream().binding->weight_names(), before, *after)},
-       {"captures", History()}});
+       {"captures", History(hub)}});
 }
 
 ApiReply CaptureApi::CapturePose(Hub& hub, Subject& subject, const std::string& pose, bool preview,
@@ -212,9 +213,9 @@ ApiReply CaptureApi::CapturePose(Hub& hub, Subject& subject, const std::string& 
   bool added = false;
   Result<wrinkle::Rig> changed = WithReferencePose(hub.rig(), subject, pose, &added);
   if (!changed.ok()) return ErrorReply(changed.status());
-  if (added && num_added_ >= kMaxAdded) {
+  if (added && hub.num_added_poses() >= Hub::kMaxAddedPoses) {
     return ErrorReply(409, "limit", "pose",
-                      "the rig has " + std::to_string(kMaxAdded) +
+                      "the rig has " + std::to_string(Hub::kMaxAddedPoses) +
                           " poses that were captured since the start; capture one of them again");
   }
   const SubjectPipeline& pipeline = *subject.pipeline;
@@ -238,15 +239,16 @@ ApiReply CaptureApi::CapturePose(Hub& hub, Subject& subject, const std::string& 
       return ErrorReply(status);
     }
     spdlog::info("captured reference pose '{}' from '{}'", pose, subject.name);
-    num_added_ += added ? 1 : 0;
+    hub.AddToAddedPoses(added ? 1 : 0);
     subject.captures.insert(pose);
-    Remember({pose, subject.name, subject.skeleton_hash, std::nullopt, std::move(former), added});
+    Remember({pose, subject.name, subject.skeleton_hash, std::nullopt, std::move(former), added,
+              hub.num_adoptions()});
   }
   return JsonReply({{"pose", pose},
                     {"preview", preview},
                     {"added", added},
                     {"weights", std::move(changes)},
-                    {"captures", History()}});
+                    {"captures", History(hub)}});
 }
 
 // An earlier capture of the same pose stays with its subject.
@@ -261,12 +263,15 @@ void CaptureApi::Forget(const Capture& last, Hub& hub) {
 }
 
 ApiReply CaptureApi::Undo(Hub& hub, Time now) {
+  std::erase_if(captures_, [&hub](const Capture& capture) {
+    return capture.adoptions != hub.num_adoptions();
+  });
   if (captures_.empty()) return ErrorReply(409, "conflict", "", "there is nothing to undo");
   const Capture& last = captures_.back();
   // Entries are undone in reverse order, so the rig before this capture is the right one.
   if (last.rig != nullptr) {
     if (Status status = hub.SetRig(last.rig, now); !status.ok()) return ErrorReply(status);
-    num_added_ -= last.added ? 1 : 0;
+    hub.AddToAddedPoses(last.added ? -1 : 0);
     Forget(last, hub);
   } else if (Subject* subject = hub.RequireAllDrivers(last.subject);
              subject != nullptr && subject->skeleton_hash == last.skeleton_hash) {
@@ -274,7 +279,7 @@ ApiReply CaptureApi::Undo(Hub& hub, Time now) {
   }
   // Also if the subject has left or has another skeleton: its neutral has gone with it.
   captures_.pop_back();
-  return JsonReply({{"captures", History()}});
+  return JsonReply({{"captures", History(hub)}});
 }
 
 }  // namespace furrow::server

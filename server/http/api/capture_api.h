@@ -25,10 +25,11 @@ class CaptureApi {
   [[nodiscard]] ApiReply PostCapture(const ApiRequest& request, Hub& hub, Time now);
   [[nodiscard]] ApiReply Undo(Hub& hub, Time now);
 
-  // The captures that Undo() can revert, oldest first, as JSON.
-  [[nodiscard]] Json History() const;
-  // True if a capture in the history has changed the rig.
-  [[nodiscard]] bool has_changed_rig() const;
+  // The captures that Undo() can revert, oldest first, as JSON. Those before captures that came
+  // from another node cannot be undone: that would remove the others, too.
+  [[nodiscard]] Json History(const Hub& hub) const;
+  // True if a capture in the history, or one that came from another node, has changed the rig.
+  [[nodiscard]] bool has_changed_rig(const Hub& hub) const;
 
  private:
   struct Capture {
@@ -38,6 +39,7 @@ class CaptureApi {
     std::optional<wrinkle::LocalPose> neutral;  // the neutral pose before
     std::shared_ptr<const wrinkle::Rig> rig;    // the rig before; null: a neutral was captured
     bool added = false;                         // the rig had no such reference pose before
+    std::uint64_t adoptions = 0;                // Hub::num_adoptions() at the time
   };
 
   // `wanted`: empty for DefaultNeutralPart().
@@ -49,7 +51,6 @@ class CaptureApi {
   void Forget(const Capture& last, Hub& hub);
 
   std::vector<Capture> captures_;  // newest last
-  int num_added_ = 0;              // reference poses that captures have added to the rig
 };
 
 }  // namespace furrow::server

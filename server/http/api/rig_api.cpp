@@ -194,8 +194,8 @@ ApiReply RigApi::ShowRig(const Hub& hub) const {
                     {"regions", std::move(regions)},
                     {"drivers", std::move(drivers)},
                     {"reference_poses", std::move(poses)},
-                    {"captures", captures_->History()},
-                    {"changed", captures_->has_changed_rig()}});
+                    {"captures", captures_->History(hub)},
+                    {"changed", captures_->has_changed_rig(hub)}});
 }
 
 ApiReply RigApi::RigFile(const Hub& hub) const {

@@ -62,14 +62,15 @@ class Link {
 // The name of a peer in the log, and the host that it counts to in fair shares.
 struct PeerLabel {
   PeerLabel(const char* name) : text(name) {}  // NOLINT: implicit, for peers without a host
-  PeerLabel(std::string name, std::string address = {},
+  PeerLabel(std::string name, std::string its_host = {},
             bool is_shielded = true)  // NOLINT: implicit
-      : text(std::move(name)), host(std::move(address)), shielded(is_shielded) {}
+      : text(std::move(name)), host(std::move(its_host)), shielded(is_shielded) {}
 
   std::string text;  // for the log: "udp 127.0.0.1 port 50112"
   std::string host;  // the address without the port; empty: this program itself
   // Nobody on the network can read what it sends: it is on this computer or speaks TLS.
   bool shielded = true;
+  std::string address;  // numeric; empty: not known, or this program itself
 };
 
 // The other end of a connection, or a proven UDP address.
@@ -85,6 +86,7 @@ struct Peer {
   static constexpr double kRequestBurst = 2048.0;
   std::string host;         // PeerLabel::host
   bool shielded = true;     // PeerLabel::shielded
+  std::string address;      // PeerLabel::address
   Access access;            // what it may do; change it by Permit()
   double rate_share = 1.0;  // part of Limits::packets_per_second that its token leaves
   Consent consent;          // UDP: whether the address still wants what it is sent

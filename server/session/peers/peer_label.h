@@ -13,8 +13,10 @@ namespace furrow::server {
 // address counts to. `address`: numeric.
 inline PeerLabel LabelOf(const std::string& transport, const std::string& address,
                          std::uint16_t port) {
-  return {transport + " " + address + " port " + std::to_string(port), HostOf(address),
-          IsLoopback(address)};
+  PeerLabel label(transport + " " + address + " port " + std::to_string(port), HostOf(address),
+                  IsLoopback(address));
+  label.address = address;
+  return label;
 }
 
 }  // namespace furrow::server

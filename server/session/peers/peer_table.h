@@ -30,6 +30,7 @@ class PeerTable {
     peer->name = std::move(name.text);
     peer->host = std::move(name.host);
     peer->shielded = name.shielded;
+    peer->address = std::move(name.address);
     peer->link = link;
     peer->bucket = bucket;
     peer->last_heard = peer->last_used = now;

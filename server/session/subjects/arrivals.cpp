@@ -24,16 +24,41 @@ Arrivals::States::iterator Arrivals::Forget(States::iterator kept) {
   return states_.erase(kept);
 }
 
-bool Arrivals::Add(const std::string& subject, const protocol::MessageView& view, Time now) {
-  if (const auto known = states_.find(subject); known != states_.end()) (void)Forget(known);
+bool Arrivals::Add(const protocol::SubjectState& state, const protocol::MessageView& view,
+                   Time now) {
   Expire(now);
   if (view.payload.size() > protocol::kMaxUdpMessageBytes) return false;
-  States::value_type kept(
-      subject, {view.header, {view.payload.begin(), view.payload.end()}, now + kPatience});
-  if (bytes_ + BytesOf(kept) > kMaxBytes) return false;
+  const auto known = states_.find(state.subject);
+  if (known != states_.end() && known->second.header.session == view.header.session &&
+      view.header.sequence < known->second.header.sequence) {
+    return true;
+  }
+  States::value_type kept(state.subject, {.header = view.header,
+                                          .payload = {view.payload.begin(), view.payload.end()},
+                                          .publisher_session = state.publisher_session,
+                                          .reserved_until = now + kReserved,
+                                          .until = now + kPatience});
+  const std::size_t former = known == states_.end() ? 0 : BytesOf(*known);
+  if (bytes_ - former + BytesOf(kept) > kMaxBytes) return false;
+  if (known != states_.end()) (void)Forget(known);
   bytes_ += BytesOf(kept);
   states_.insert(std::move(kept));
+  // Another sender that asked first gets no place before the publisher.
+  const auto waiting = waiting_.find(state.subject);
+  if (waiting != waiting_.end() && waiting->second.offer.session != state.publisher_session) {
+    waiting_.erase(waiting);
+  }
   return true;
+}
+
+void Arrivals::Drop(std::string_view subject) {
+  if (const auto kept = states_.find(subject); kept != states_.end()) (void)Forget(kept);
+}
+
+bool Arrivals::IsReserved(std::string_view subject, std::uint64_t session, Time now) const {
+  const auto kept = states_.find(subject);
+  return kept != states_.end() && kept->second.publisher_session != session &&
+         now < kept->second.reserved_until;
 }
 
 std::optional<Arrivals::Arrived> Arrivals::Take(std::string_view subject, Time now) {

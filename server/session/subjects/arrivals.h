@@ -28,9 +28,18 @@ class Arrivals {
   // A publisher that lost its way needs time to find this node.
   static constexpr Time kPatience = std::chrono::seconds(10);
 
-  // Keeps a state that Decode() has accepted, instead of an older one of the subject. False: there
-  // is too little room.
-  [[nodiscard]] bool Add(const std::string& subject, const protocol::MessageView& view, Time now);
+  // For this long after the last state of a subject, only its publisher may offer it here.
+  static constexpr Time kReserved = std::chrono::seconds(1);
+
+  // Keeps a state that Decode() has read from `view`, instead of an older one of the subject. A
+  // copy of an older one of the same node changes nothing. False: there is too little room.
+  [[nodiscard]] bool Add(const protocol::SubjectState& state, const protocol::MessageView& view,
+                         Time now);
+  // True if the subject is on its way here with a publisher of another session, which had no time
+  // to follow it yet.
+  [[nodiscard]] bool IsReserved(std::string_view subject, std::uint64_t session, Time now) const;
+  // Forgets the state of the subject.
+  void Drop(std::string_view subject);
   struct Arrived {
     protocol::Header header;
     protocol::SubjectState state;
@@ -60,6 +69,8 @@ class Arrivals {
   struct Kept {
     protocol::Header header;
     std::vector<std::uint8_t> payload;
+    std::uint64_t publisher_session = 0;
+    Time reserved_until{0};
     Time until{0};
   };
   using States = std::map<std::string, Kept, std::less<>>;

@@ -42,8 +42,8 @@ Place Places::Elsewhere(std::string_view subject) const {
   return coordinator_ == nullptr || subject.empty() ? Place() : coordinator_->Elsewhere(subject);
 }
 
-Place Places::Successor(std::string_view subject) const {
-  return coordinator_ == nullptr ? Place() : coordinator_->Successor(subject);
+Place Places::Successor(std::string_view subject, const std::set<std::string>& without) const {
+  return coordinator_ == nullptr ? Place() : coordinator_->Successor(subject, without);
 }
 
 std::vector<std::string> Places::Others() const {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,8 +32,15 @@ class Places {
   [[nodiscard]] Place Renew(std::string_view subject, Time now);
   // Where another node serves the subject; kNowhere if none does.
   [[nodiscard]] Place Elsewhere(std::string_view subject) const;
-  // The node that should take the subject instead of this one; kNowhere if there is none.
-  [[nodiscard]] Place Successor(std::string_view subject) const;
+  // The node that should take the subject instead of this one, but none of `without`; kNowhere if
+  // there is none.
+  [[nodiscard]] Place Successor(std::string_view subject,
+                                const std::set<std::string>& without = {}) const;
+  // Why subjects never move from here to another node; empty: they do.
+  [[nodiscard]] std::string WhyNothingMoves() const {
+    return coordinator_ == nullptr ? "this daemon is in no cluster"
+                                   : coordinator_->WhyNothingMoves();
+  }
   // Other nodes as Welcome lists them.
   [[nodiscard]] std::vector<std::string> Others() const;
   void Release(std::string_view subject);

@@ -45,8 +45,9 @@ Publishers::Publishers(const Limits& limits, JitterDelays delays, StreamDefiniti
       random_(std::move(random)),
       metrics_(metrics) {}
 
-// Decides between four cases: a repeated offer, a subject that another sender is sending, too many
-// subjects, and a stream that starts, restarts or takes over its subject.
+// Decides between five cases: a repeated offer, a subject that another sender is sending, or that
+// comes here with another sender, too many subjects, and a stream that starts, restarts or takes
+// over its subject.
 Subject* Publishers::OnOffer(Peer& peer, const protocol::Header& header,
                              const protocol::SkeletonOffer& offer, Time now) {
   metrics_->Add(Counter::kSkeletonsOffered);
@@ -60,6 +61,11 @@ Subject* Publishers::OnOffer(Peer& peer, const protocol::Header& header,
   Subject* subject = subjects_->Find(offer.subject);
   const bool is_owner = subject != nullptr && subject->owner == key;
   const bool is_repeated = is_owner && subject->skeleton_hash == offer.skeleton_hash;
+  // Before anything else: such an offer must neither ask for the place nor wait for it.
+  if (subject == nullptr && arrivals_->IsReserved(offer.subject, header.session, now)) {
+    Contest(peer, header, offer.subject);
+    return nullptr;
+  }
   const bool is_contested =
       subject != nullptr && !is_owner && IsContested(*subject, peer, key, now);
   // First: a node that is full sends the publisher to another one.
@@ -68,12 +74,7 @@ Subject* Publishers::OnOffer(Peer& peer, const protocol::Header& header,
   if (is_repeated) {
     subject->ended = false;  // a repeated offer, or the sender is back after its goodbye
   } else if (is_contested) {
-    metrics_->Add(Counter::kSubjectsContested);
-    // Not a rejection: the sender repeats its offer, and takes over when the present one falls
-    // silent.
-    messages_->SendError(
-        peer, header, protocol::ErrorCode::kSubjectTaken,
-        "another sender is sending '" + offer.subject + "'; stop it, or send under another name");
+    Contest(peer, header, offer.subject);
     return nullptr;
   } else {
     auto definition = DefinitionFor(peer, header, offer, now);
@@ -93,14 +94,27 @@ Subject* Publishers::OnOffer(Peer& peer, const protocol::Header& header,
   return subject;
 }
 
+// Not a rejection: the sender repeats its offer, and takes over when the present one stops.
+void Publishers::Contest(Peer& peer, const protocol::Header& header, const std::string& subject) {
+  metrics_->Add(Counter::kSubjectsContested);
+  messages_->SendError(
+      peer, header, protocol::ErrorCode::kSubjectTaken,
+      "another sender is sending '" + subject + "'; stop it, or send under another name");
+}
+
 // Null: the offer is answered, or must be repeated.
 std::shared_ptr<const StreamDefinition> Publishers::DefinitionFor(
     Peer& peer, const protocol::Header& header, const protocol::SkeletonOffer& offer, Time now) {
   if (subjects_->Find(offer.subject) == nullptr && !subjects_->HasRoomFor(peer.host)) {
-    Reject(peer, header, offer.skeleton_hash,
-           "this address has its share of the " + std::to_string(limits_.max_subjects) +
-               " subjects; see limits.max_subjects",
-           now);
+    const std::string why = "this address has its share of the " +
+                            std::to_string(limits_.max_subjects) +
+                            " subjects; see limits.max_subjects";
+    // The publisher may have come from another node, and would keep a rejection for ever.
+    if (places_->in_cluster()) {
+      messages_->SendError(peer, header, protocol::ErrorCode::kLimit, why);
+    } else {
+      Reject(peer, header, offer.skeleton_hash, why, now);
+    }
     return nullptr;
   }
   // Binding a skeleton to the rig takes milliseconds under the exclusive lock. Known skeletons
@@ -145,8 +159,15 @@ std::optional<Place> Publishers::TakePlace(Peer& peer, const protocol::Header& h
 
 // Sooner than the publisher would repeat its offer by itself.
 void Publishers::AskAgain(const std::function<Peer*(PeerId)>& find_peer, Time now) {
+  // Runs every 10 ms under the exclusive lock, so the others have their turn at the next call.
+  constexpr std::size_t kMostAtOnce = 64;
+  const auto& all = arrivals_->waiting();
   std::vector<std::string> here;
-  for (const auto& [subject, waiting] : arrivals_->waiting()) {
+  auto next = all.upper_bound(asked_again_);
+  for (std::size_t i = 0; i < std::min(kMostAtOnce, all.size()); ++i) {
+    if (next == all.end()) next = all.begin();
+    const auto& [subject, waiting] = *next++;
+    asked_again_ = subject;
     if (places_->Renew(subject, now).kind != Place::Kind::kHere) continue;
     here.push_back(subject);
     Peer* const peer = find_peer(waiting.peer);

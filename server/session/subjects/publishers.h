@@ -84,7 +84,8 @@ class Publishers {
   // The place of a subject in a cluster, which the hub asks for every Places::kRefresh. kElsewhere:
   // the publisher has been sent there. `owner`: the peer that publishes it; null: it has left.
   [[nodiscard]] Place RenewPlace(Subject& subject, Peer* owner, Time now);
-  // Asks the publishers for their offers again that wait for places which are here now.
+  // Asks the publishers for their offers again that wait for places which are here now. With many,
+  // some of them at each call.
   // `find_peer`: null if the peer has left.
   void AskAgain(const std::function<Peer*(PeerId)>& find_peer, Time now);
   // Sends the publisher of the subject to the node. `owner`: as for RenewPlace().
@@ -107,6 +108,7 @@ class Publishers {
       Peer& peer, const protocol::Header& header, const protocol::SkeletonOffer& offer, Time now);
   [[nodiscard]] std::optional<Place> TakePlace(Peer& peer, const protocol::Header& header,
                                                const protocol::SkeletonOffer& offer, Time now);
+  void Contest(Peer& peer, const protocol::Header& header, const std::string& subject);
   void Reject(Peer& peer, const protocol::Header& header, std::uint64_t hash, std::string why,
               Time now);
   [[nodiscard]] bool IsContested(const Subject& subject, const Peer& peer, const StreamKey& key,
@@ -128,6 +130,7 @@ class Publishers {
   std::map<std::uint64_t, std::weak_ptr<const protocol::SkeletonOffer>> offers_;
   std::map<std::string, TokenBucket, std::less<>> new_skeletons_of_;  // by host
   TokenBucket new_skeletons_{kNewSkeletonsPerSecond, kNewSkeletonsBurst};
+  std::string asked_again_;            // the subject that AskAgain() looked at last
   Time awake_since_{0};                // end of the last stall
   TokenBucket log_bucket_{2.0, 20.0};  // repeated bad offers must not flood the log
 };

@@ -80,9 +80,7 @@ std::string CapturesOf(const Subject& subject) {
 }
 
 Result<std::optional<wrinkle::Rig>> WithCaptures(const wrinkle::Rig& rig,
-                                                 const std::string& captures) {
-  // Every solve of every subject evaluates the added poses, too.
-  constexpr std::size_t kMaxPoses = 512;
+                                                 const std::string& captures, std::size_t most) {
   auto captured = rig::ParseRig(captures, "captures", {});
   FURROW_RETURN_IF_ERROR(captured);
   wrinkle::Rig changed = rig;
@@ -98,8 +96,8 @@ Result<std::optional<wrinkle::Rig>> WithCaptures(const wrinkle::Rig& rig,
       differs = true;
     }
   }
-  if (changed.reference_poses.size() > kMaxPoses) {
-    return Status(StatusCode::kLimit, "too many reference poses", "captures");
+  if (changed.reference_poses.size() - rig.reference_poses.size() > most) {
+    return Status(StatusCode::kLimit, "too many reference poses were captured", "captures");
   }
   if (!differs) return std::optional<wrinkle::Rig>();
   return std::optional(std::move(changed));

@@ -22,9 +22,10 @@ namespace furrow::server {
 // there are none. Poses that do not fit the state are left out.
 [[nodiscard]] std::string CapturesOf(const Subject& subject);
 // The rig with these captures; nothing if it has them already. Errors: those of rig::ParseRig(),
-// and kLimit.
+// and kLimit: they would add more than `most` poses.
 [[nodiscard]] Result<std::optional<wrinkle::Rig>> WithCaptures(const wrinkle::Rig& rig,
-                                                               const std::string& captures);
+                                                               const std::string& captures,
+                                                               std::size_t most);
 
 // Lets the subject, which has just been offered here, go on from the state of another node. The
 // neutral pose belongs to the performer; poses, filter and sequence belong to the publisher's

@@ -25,5 +25,16 @@ TEST(OwnAddresses, AnyAddressMeansThoseOfTheInterfaces) {
   }
 }
 
+TEST(OwnAddresses, OtherComputersHaveOtherAddresses) {
+  for (const char* own : {"127.0.0.1", "::1", "::ffff:127.0.0.1"}) EXPECT_TRUE(IsOwnAddress(own));
+  for (const std::string& own : ReachableAddresses("0.0.0.0")) {
+    EXPECT_TRUE(IsOwnAddress(own));
+    EXPECT_TRUE(IsOwnAddress("::ffff:" + own));
+  }
+  for (const char* other : {"192.0.2.1", "::ffff:192.0.2.1", "2001:db8::1", "", "ada"}) {
+    EXPECT_FALSE(IsOwnAddress(other)) << other;
+  }
+}
+
 }  // namespace
 }  // namespace furrow::server

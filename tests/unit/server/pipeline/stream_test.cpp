@@ -450,7 +450,6 @@ TEST(SubjectPipeline, ACaptureTimeThatGoesBackRestartsTheFilter) {
   EXPECT_EQ(solve(2.0f, 2, 1'000), bent) << "a first pose passes unchanged";
 }
 
-// Cloth that is slack at rest keeps its weight. The subject counts as neutral all the same.
 TEST(SubjectPipeline, AnotherPipelineGoesOnAsIfNothingHadHappened) {
   const auto stream = Define(/*filter=*/true);
   SubjectPipeline former(stream);

@@ -71,5 +71,20 @@ TEST_F(DispatcherRequests, EndingNothingStopsNoOtherThread) {
   EXPECT_TRUE(viewer.inbox.empty());
 }
 
+TEST_F(DispatcherRequests, AStateOfOthersThanOperatorsStopsNoOtherThread) {
+  MakeWith(MakeRig(false), {}, /*shards=*/2);
+  Connect(&viewer);  // of shard 0
+  const protocol::secure::Grant grant{.roles = protocol::secure::Role::kPublish};
+  hub->SetAccess(viewer.id, Access::Of(grant, 1, now + FromSeconds(60)));
+  const Hub::ShardLock other(*hub, 1);
+  std::thread([this] { Send(viewer, protocol::SubjectState{.subject = "ann"}, 0); }).join();
+  ExpectError(viewer, protocol::ErrorCode::kNotPermitted);
+}
+
+TEST_F(DispatcherRequests, StatesAreRequests) {
+  for (int i = 0; i < 3'000; ++i) Send(viewer, protocol::SubjectState{.subject = "ann"}, 0);
+  EXPECT_GT(Count(Counter::kRequestsThrottled), 0u);
+}
+
 }  // namespace
 }  // namespace furrow::server

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,7 +29,11 @@ class FakeCluster : public Coordinator {
     return place.kind == Place::Kind::kElsewhere ? place : Place();
   }
   Place Propose(std::string_view subject, Time now) const override { return Find(subject, now); }
-  Place Successor(std::string_view /*subject*/) const override { return successor; }
+  Place Successor(std::string_view /*subject*/,
+                  const std::set<std::string>& without) const override {
+    return without.contains(successor.node.name) ? Place() : successor;
+  }
+  std::string WhyNothingMoves() const override { return why_nothing_moves; }
   std::vector<NodeAddress> Others() const override { return {kOther}; }
   Place Expect(std::string_view subject, Time /*now*/) override {
     expected.emplace_back(subject);
@@ -59,6 +64,7 @@ class FakeCluster : public Coordinator {
 
   std::map<std::string, Place> places;
   Place successor;
+  std::string why_nothing_moves;
   std::vector<std::string> asked;
   std::vector<std::string> released;
   std::vector<std::string> expected;

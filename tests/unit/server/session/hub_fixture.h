@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -126,6 +127,8 @@ class HubTest : public testing::Test {
     parts.metrics = &metrics;
     parts.gate = gate;
     parts.cluster = cluster;
+    parts.drain = drain;
+    parts.is_own_address = [](const std::string& address) { return address == "127.0.0.1"; };
     parts.random = [this] { return ++last_token; };
     parts.clock = [this] { return now + ++clock_reads * FromSeconds(0.001); };
     hub = std::make_unique<Hub>(std::move(parts));
@@ -178,6 +181,7 @@ class HubTest : public testing::Test {
   Metrics metrics;
   const TokenGate* gate = nullptr;  // this and the next: of hubs that are made from now on
   Coordinator* cluster = nullptr;
+  std::function<protocol::DrainState(bool begin)> drain;
   std::vector<JitterRule> jitter;
   FakePictures pictures;
   std::unique_ptr<Hub> hub;

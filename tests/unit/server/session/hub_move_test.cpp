@@ -85,6 +85,13 @@ class HubMoveTest : public HubPeersTest {
     EXPECT_EQ(reply->header.sequence, 1u);
   }
 
+  // A peer on this computer.
+  static PeerLabel Here() {
+    PeerLabel label("fake");
+    label.address = "127.0.0.1";
+    return label;
+  }
+
   FakeCluster nodes;
   FakePeer node;  // the one that hands the subject over
 };
@@ -123,12 +130,40 @@ TEST_F(HubMoveTest, AnotherSessionGetsTheNeutralPoseAlone) {
   Receive(state);
   Serve(11);
   sender.session = 78;
+  now += Arrivals::kReserved;
   Publish(sender, "ada");
   const Subject* subject = hub->RequireAllDrivers("ada");
   EXPECT_TRUE(subject->pipeline->neutral_pose().has_value());
   EXPECT_FALSE(subject->pipeline->has_pose());
   Send(sender, Pose(0.5f), 1, 0, 0);
   EXPECT_TRUE(subject->pipeline->has_pose());
+}
+
+TEST_F(HubMoveTest, AnotherSenderCannotTakeASubjectOnItsWay) {
+  Perform();
+  const std::vector<std::uint8_t> state = State();
+  NextNode();
+  FakePeer thief;
+  thief.session = 78;
+  Connect(&thief);
+  Place pending;
+  pending.kind = Place::Kind::kPending;
+  nodes.places["ada"] = pending;
+  Send(thief, Offer("ada"), 1);  // waits before the state comes
+  EXPECT_TRUE(thief.inbox.empty());
+  Receive(state);
+  Send(sender, Offer("ada"), 1);
+  Send(thief, Offer("ada"), 1);
+  ExpectError(thief, protocol::ErrorCode::kSubjectTaken);
+  Serve(11);
+  hub->Tick(now);
+  // The publisher is asked again, and nobody else.
+  EXPECT_TRUE(thief.inbox.empty());
+  ASSERT_TRUE(sender.Take<protocol::SkeletonReply>().has_value());
+  Send(thief, Offer("ada"), 1);
+  ExpectError(thief, protocol::ErrorCode::kSubjectTaken);
+  Publish(sender, "ada");
+  EXPECT_TRUE(hub->FindSubject("ada")->pipeline->has_pose()) << "the state is still there";
 }
 
 TEST_F(HubMoveTest, DriversStayUntilTheSubscribersHaveFollowed) {
@@ -154,10 +189,10 @@ TEST_F(HubMoveTest, TheOldNodeSendsEverybodyAway) {
   SendPose(10);
   EXPECT_FALSE(Weights().empty());
   EXPECT_EQ(hub->SubjectNames(), std::vector<std::string>{"ada"});
-  const Place place = hub->SuccessorOf("ada");
+  const Place place = hub->SuccessorOf("ada", now);
   ASSERT_EQ(place.kind, Place::Kind::kElsewhere);
   std::vector<std::uint8_t> state;
-  ASSERT_TRUE(hub->HandOver("ada", place.node, 7, state, now));
+  ASSERT_TRUE(hub->HandOver("ada", place.node, 7, state, now).ok());
   for (FakePeer* peer : {&sender, &viewer}) {
     const auto error = peer->Take<protocol::ErrorMessage>();
     ASSERT_TRUE(error.has_value());
@@ -179,21 +214,124 @@ TEST_F(HubMoveTest, TheOldNodeSendsEverybodyAway) {
   sender.inbox.clear();
   Send(sender, Offer("ada"), 1);
   EXPECT_TRUE(sender.Take<protocol::ErrorMessage>().has_value());
-  EXPECT_FALSE(hub->HandOver("ada", place.node, 8, state, now));
+  EXPECT_EQ(hub->HandOver("ada", place.node, 8, state, now).code(), StatusCode::kNotFound);
 }
 
 TEST_F(HubMoveTest, ASubjectWithoutASuccessorStays) {
   Publish(sender, "ada");
   nodes.successor = Place();
-  EXPECT_EQ(hub->SuccessorOf("ada").why, "no other node has room");
-  EXPECT_EQ(hub->SuccessorOf("bob").why, "it has left");
+  EXPECT_EQ(hub->SuccessorOf("ada", now).why, "no other node has room");
+  EXPECT_EQ(hub->SuccessorOf("bob", now).why, "it has left");
 }
 
 TEST_F(HubMoveTest, ForeignWiresCannotBeSentElsewhere) {
   FakePeer wire;
   Connect(&wire, Transport::kMocap);
   Publish(wire, "ada");
-  EXPECT_EQ(hub->SuccessorOf("ada").why, "its sender cannot be sent to another daemon");
+  EXPECT_EQ(hub->SuccessorOf("ada", now).why, "its sender cannot be sent to another daemon");
+}
+
+TEST_F(HubMoveTest, WebPagesAndSendersOfSeveralSubjectsStay) {
+  FakePeer page;
+  Connect(&page, Transport::kWeb);
+  Publish(page, "ada");
+  EXPECT_EQ(hub->SuccessorOf("ada", now).why, "its sender cannot be sent to another daemon");
+  for (const char* subject : {"bob", "eve"}) {
+    nodes.places[subject] = FakeCluster::Here(now + FromSeconds(60.0), 1);
+  }
+  Publish(sender, "bob", 1);
+  EXPECT_EQ(hub->SuccessorOf("bob", now).why, "");
+  Publish(sender, "eve", 2);
+  for (const char* subject : {"bob", "eve"}) {
+    EXPECT_EQ(hub->SuccessorOf(subject, now).why,
+              "its sender has several subjects on one connection");
+  }
+  Send(sender, protocol::Goodbye{}, 2);
+  EXPECT_EQ(hub->SuccessorOf("bob", now).why, "");
+}
+
+TEST_F(HubMoveTest, ASubjectStaysIfItsLeaseWasNotConfirmedLately) {
+  nodes.places["ada"] = FakeCluster::Here(now + FromSeconds(2.0), 10);
+  Publish(sender, "ada");
+  EXPECT_EQ(hub->SuccessorOf("ada", now).kind, Place::Kind::kElsewhere);
+  now += FromSeconds(1.6);
+  EXPECT_EQ(hub->SuccessorOf("ada", now).why, "the store of the cluster does not answer");
+  std::vector<std::uint8_t> state;
+  EXPECT_EQ(hub->HandOver("ada", FakeCluster::kOther, 7, state, now).code(),
+            StatusCode::kUnavailable);
+  EXPECT_EQ(hub->SubjectNames(), std::vector<std::string>{"ada"});
+}
+
+TEST_F(HubMoveTest, ManyWaitingOffersAreAskedForOneAfterTheOther) {
+  nodes.places.clear();
+  Place pending;
+  pending.kind = Place::Kind::kPending;
+  for (int i = 0; i < 100; ++i) {
+    const std::string subject = "s" + std::to_string(i);
+    nodes.places[subject] = pending;
+    Send(sender, Offer(subject), static_cast<std::uint16_t>(i));
+  }
+  nodes.asked.clear();
+  hub->Tick(now);
+  EXPECT_LE(nodes.asked.size(), 64u);
+  hub->Tick(now += FromSeconds(0.01));
+  EXPECT_EQ(std::set<std::string>(nodes.asked.begin(), nodes.asked.end()).size(), 100u);
+}
+
+TEST_F(HubMoveTest, AFixedListMovesNothing) {
+  nodes.why_nothing_moves = "a fixed list of nodes decides where subjects are served";
+  drain = [](bool) { return protocol::DrainState{}; };
+  Make({});
+  sender.id = hub->AddPeer(Transport::kTcp, Here(), &sender, now);
+  Send(sender, protocol::Drain{true}, 0, 3);
+  const auto error = sender.Take<protocol::ErrorMessage>();
+  ASSERT_TRUE(error.has_value());
+  EXPECT_EQ(error->message.code, protocol::ErrorCode::kUnsupported);
+  EXPECT_EQ(error->message.message,
+            "a fixed list of nodes decides where subjects are served; end the daemon with SIGTERM");
+}
+
+TEST_F(HubMoveTest, OnlyThisComputerOrAnOperatorOfAllSubjectsDrains) {
+  int drained = 0;
+  drain = [&drained](bool) { return ++drained, protocol::DrainState{}; };
+  Make({});
+  sender.id = hub->AddPeer(Transport::kTcp, "elsewhere", &sender, now);
+  const auto tries = [&](const char* subjects) {
+    if (subjects != nullptr) {
+      const protocol::secure::Grant grant{.roles = protocol::secure::Role::kOperate,
+                                          .subjects = subjects};
+      hub->SetAccess(sender.id, Access::Of(grant, 1, now + FromSeconds(60)));
+    }
+    sender.inbox.clear();
+    Send(sender, protocol::Drain{true}, 0, 3);
+  };
+  tries(nullptr);
+  ExpectError(sender, protocol::ErrorCode::kNotPermitted);
+  tries("stage-*");
+  ExpectError(sender, protocol::ErrorCode::kNotPermitted);
+  EXPECT_EQ(drained, 0);
+  tries("*");
+  EXPECT_EQ(drained, 1);
+  sender.id = hub->AddPeer(Transport::kTcp, Here(), &sender, now);
+  tries(nullptr);
+  EXPECT_EQ(drained, 2);
+}
+
+TEST_F(HubMoveTest, ArrivingCapturesAreLimited) {
+  Perform();
+  wrinkle::Rig rig = hub->rig();
+  for (int i = 0; i <= Hub::kMaxAddedPoses; ++i) {
+    const std::string name = "p" + std::to_string(i);
+    rig.reference_poses.push_back({.name = name, .joints = {}, .shapes = {{"brow", 0.75f}}});
+    hub->FindSubject("ada")->captures.insert(name);
+  }
+  ASSERT_TRUE(hub->SetRig(std::make_shared<const wrinkle::Rig>(std::move(rig)), now).ok());
+  const std::vector<std::uint8_t> state = State();
+  NextNode();
+  const std::size_t before = hub->rig().reference_poses.size();
+  Receive(state);
+  EXPECT_EQ(hub->rig().reference_poses.size(), before);
+  EXPECT_EQ(hub->num_adoptions(), 0u);
 }
 
 TEST_F(HubMoveTest, ANodeMayRefuseASubject) {

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/server/session/fake_cluster.h"
 #include "tests/unit/server/session/hub_fixture.h"
 
 namespace furrow::server {
@@ -122,6 +123,31 @@ TEST_F(ShardsTest, GoodbyesReachAllShards) {
   for (int shard = 0; shard < kShards; ++shard) ConnectIn(shard, &peers[shard]);
   hub->Drain(Time{0});
   for (FakePeer& peer : peers) EXPECT_TRUE(peer.Take<protocol::Goodbye>().has_value());
+}
+
+// The redirect takes the way of the replies, so the last frames must, too.
+TEST_F(ShardsTest, HeldPosesOfAnotherShardLeaveBeforeTheRedirect) {
+  FakeCluster nodes;
+  nodes.places["ada"] = FakeCluster::Here(now + FromSeconds(60.0), 1);
+  cluster = &nodes;
+  jitter = {{"*", 50.0}};
+  MakeWith(MakeRig(/*filter=*/false), {}, kShards);
+  FakePeer sender;
+  SharedPeer viewer;
+  ConnectIn(1, &sender);
+  const PeerId watching = hub->AddPeer(Transport::kTcp, "viewer", &viewer, now, 2);
+  Publish(sender, "ada");
+  std::vector<std::uint8_t> request;
+  encoder.Encode({.session = 5, .sequence = 1}, protocol::SubscribeWeights{.subject = "ada"},
+                 request);
+  hub->OnMessage(watching, request, now);
+  ASSERT_EQ(hub->num_subscriptions(), 1u);
+  Send(sender, Pose(0.5f), 1, 1, 1'000'000);
+  EXPECT_TRUE(viewer.by_shard.empty()) << "held";
+  std::vector<std::uint8_t> state;
+  ASSERT_TRUE(hub->HandOver("ada", FakeCluster::kOther, 7, state, now).ok());
+  EXPECT_EQ(viewer.by_shard, (std::map<int, int>{{Link::kExclusive, 1}}));
+  hub.reset();
 }
 
 TEST_F(ShardsTest, BufferedMessagesLeaveBeforeALockIsReleased) {

@@ -235,12 +235,25 @@ TEST_F(StoreCoordinatorTest, SubjectsThatAreHandedOverAreSpread) {
   ASSERT_TRUE(Becomes([&] { return a.Others().size() == 2; }));
   for (const char* subject : {"s1", "s2", "s3", "s4"}) {
     ASSERT_TRUE(Takes(a, subject));
-    ASSERT_TRUE(Becomes([&] { return a.Successor(subject).kind == Place::Kind::kElsewhere; }));
-    const NodeAddress heir = a.Successor(subject).node;
+    ASSERT_TRUE(Becomes([&] { return a.Successor(subject, {}).kind == Place::Kind::kElsewhere; }));
+    const NodeAddress heir = a.Successor(subject, {}).node;
     a.HandOver(subject, heir);
     ++given[heir.name];
   }
   EXPECT_EQ(given, (std::map<std::string, int>{{"b", 2}, {"c", 2}}));
+  ASSERT_TRUE(Takes(a, "s5"));
+  EXPECT_EQ(a.Successor("s5", {"b"}).node.name, "c");
+  EXPECT_EQ(a.Successor("s5", {"b", "c"}).why, "no other node has room");
+}
+
+TEST_F(StoreCoordinatorTest, ANodeExpectsNoMoreSubjectsThanItHasRoomFor) {
+  StoreCoordinator& a = Add("a", 2);
+  ASSERT_TRUE(IsReady(a));
+  // At once, so the leases are not there yet.
+  EXPECT_EQ(a.Expect("s1", world_.Now()).kind, Place::Kind::kPending);
+  EXPECT_EQ(a.Expect("s2", world_.Now()).kind, Place::Kind::kPending);
+  EXPECT_EQ(a.Expect("s2", world_.Now()).kind, Place::Kind::kPending) << "again";
+  EXPECT_EQ(a.Expect("s3", world_.Now()).why, "this node is full");
 }
 
 TEST_F(StoreCoordinatorTest, ANodeThatEndsGivesItsLeasesBack) {
@@ -287,11 +300,11 @@ TEST_F(StoreCoordinatorTest, ASubjectThatIsServedHereHasASuccessorElsewhere) {
   ASSERT_TRUE(Takes(a, "ada"));
   a.SetDraining();
   EXPECT_TRUE(Becomes([&] {
-    const Place place = a.Successor("ada");
+    const Place place = a.Successor("ada", {});
     return place.kind == Place::Kind::kElsewhere && place.node.name == "b";
   }));
   b.SetDraining();
-  EXPECT_TRUE(Becomes([&] { return a.Successor("ada").kind == Place::Kind::kNowhere; }));
+  EXPECT_TRUE(Becomes([&] { return a.Successor("ada", {}).kind == Place::Kind::kNowhere; }));
 }
 
 TEST_F(StoreCoordinatorTest, WithoutTheStoreSubjectsStayAndNothingIsTaken) {

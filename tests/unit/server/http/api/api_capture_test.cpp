@@ -12,6 +12,7 @@
 #include "server/http/api/api.h"
 #include "tests/unit/rig/shapes/shipped_shape_maps.h"
 #include "tests/unit/rig/shipped_matcher.h"
+#include "tests/unit/server/session/fake_cluster.h"
 #include "tests/unit/server/session/hub_fixture.h"
 
 namespace furrow::server {
@@ -82,6 +83,23 @@ TEST_F(ApiCaptureTest, UnknownPartsAreRefused) {
   const Json other = {{"subject", "ann"}, {"pose", "squash"}, {"part", "face"}};
   EXPECT_EQ(Ask("/api/capture", other, 400)["error"]["field"], "part");
   EXPECT_FALSE(pipeline().neutral_pose().has_value());
+}
+
+// Undo would put back a rig without them.
+TEST_F(ApiCaptureTest, CapturesThatArriveEmptyTheHistory) {
+  Capture("smile");
+  std::vector<std::uint8_t> state;
+  ASSERT_TRUE(hub->WriteState("ann", 1, state));
+  FakeCluster nodes;
+  nodes.expects.kind = Place::Kind::kPending;
+  cluster = &nodes;
+  Make({});
+  Connect(&sender);
+  hub->OnMessage(sender.id, state, now);
+  EXPECT_EQ(hub->num_adoptions(), 1u);
+  EXPECT_EQ(hub->num_added_poses(), 1);
+  Ask("/api/capture/undo", Json::object(), 409);
+  hub.reset();
 }
 
 TEST_F(ApiCaptureTest, UndoIgnoresTheNeutralOfAnotherSkeleton) {

@@ -15,16 +15,20 @@ using std::chrono::seconds;
 
 class ArrivalsTest : public ::testing::Test {
  protected:
-  bool Add(const std::string& subject, std::int64_t captured_us = 0, std::size_t extra = 0) {
+  bool Add(const std::string& subject, std::int64_t captured_us = 0, std::size_t extra = 0,
+           std::uint32_t number = 0) {
     protocol::SubjectState state;
     state.subject = subject;
+    state.publisher_session = kPublisher;
     state.captures = std::string(extra, ' ');
-    protocol::Encoder().Encode({.session = 1, .capture_time_us = captured_us}, state, bytes_);
+    protocol::Encoder().Encode({.session = 1, .sequence = number, .capture_time_us = captured_us},
+                               state, bytes_);
     protocol::MessageView view;
     EXPECT_EQ(protocol::OpenMessage(bytes_, view), protocol::DecodeStatus::kOk);
-    return arrivals_.Add(subject, view, now_);
+    return arrivals_.Add(state, view, now_);
   }
 
+  static constexpr std::uint64_t kPublisher = 5;
   Arrivals arrivals_;
   Time now_ = seconds(100);
   std::vector<std::uint8_t> bytes_;
@@ -42,6 +46,20 @@ TEST_F(ArrivalsTest, AStateIsTakenOnceAndTheNewestCounts) {
   EXPECT_EQ(arrivals_.bytes(), 0u);
 }
 
+TEST_F(ArrivalsTest, ALateCopyOfAnOlderStateChangesNothing) {
+  ASSERT_TRUE(Add("ada", 2, 0, 8));
+  ASSERT_TRUE(Add("ada", 1, 0, 7));
+  EXPECT_EQ(arrivals_.Take("ada", now_)->header.capture_time_us, 2);
+}
+
+TEST_F(ArrivalsTest, AStateThatDoesNotFitLeavesTheFormerOne) {
+  ASSERT_TRUE(Add("ada", 1));
+  while (Add("subject " + std::to_string(arrivals_.bytes()), 0, protocol::kMaxCaptureBytes)) {
+  }
+  EXPECT_FALSE(Add("ada", 2, protocol::kMaxCaptureBytes));
+  EXPECT_EQ(arrivals_.Take("ada", now_)->header.capture_time_us, 1);
+}
+
 TEST_F(ArrivalsTest, StatesEnd) {
   ASSERT_TRUE(Add("ada"));
   ASSERT_TRUE(Add("bob"));
@@ -50,6 +68,19 @@ TEST_F(ArrivalsTest, StatesEnd) {
   EXPECT_GT(arrivals_.bytes(), 0u);
   arrivals_.Expire(now_);
   EXPECT_EQ(arrivals_.bytes(), 0u);
+}
+
+TEST_F(ArrivalsTest, OnlyThePublisherMayComeAtFirst) {
+  arrivals_.Await("ada", 1, {.session = kPublisher + 1}, 2, now_);
+  arrivals_.Await("bob", 1, {.session = kPublisher}, 2, now_);
+  ASSERT_TRUE(Add("ada"));
+  ASSERT_TRUE(Add("bob"));
+  EXPECT_FALSE(arrivals_.waiting().contains("ada"));
+  EXPECT_TRUE(arrivals_.waiting().contains("bob"));
+  EXPECT_TRUE(arrivals_.IsReserved("ada", kPublisher + 1, now_));
+  EXPECT_FALSE(arrivals_.IsReserved("ada", kPublisher, now_));
+  EXPECT_FALSE(arrivals_.IsReserved("eve", kPublisher + 1, now_));
+  EXPECT_FALSE(arrivals_.IsReserved("ada", kPublisher + 1, now_ + Arrivals::kReserved));
 }
 
 TEST_F(ArrivalsTest, TheirMemoryIsBounded) {
