@@ -9,8 +9,13 @@ namespace furrow::server {
 namespace {
 
 constexpr double kTooSlow = 1.05;  // times the target
-constexpr double kSpare = 0.75;    // a step up costs at most a sixth
-constexpr double kBusy = 0.9;      // with more idle time, somebody else limits the rate
+constexpr double kSpare = 0.75;    // times the target; a step up costs at most a sixth
+constexpr double kBusy = 0.7;      // of the time; with more idle time, the viewer limits the rate
+constexpr double kIdle = 0.6;      // of the time; remains below kBusy after a step up
+// Times the mean work of the streams: with less, others make it slow, and with half of it, a larger
+// size costs them little.
+constexpr double kItsPart = 0.9;
+constexpr double kLittle = 0.5;
 constexpr int kMostStepsAtOnce = 4;
 constexpr int kSoon = 2 * PictureScale::kQuick;  // pictures
 
@@ -20,18 +25,22 @@ float PictureScale::scale() const {
   return 1.0f - (1.0f - render::kMinScale) * static_cast<float>(step_) / kSteps;
 }
 
-void PictureScale::Observe(Time busy, Time passed) {
-  if (passed > kPause) return;
+void PictureScale::Observe(const Interval& interval) {
+  if (interval.passed - interval.busy > kPause) return;
   if (since_raised_ >= 0 && ++since_raised_ > kSoon) {
     since_raised_ = -1;
     patience_ = 1;
   }
-  const double work = ToSeconds(busy);
-  const bool slow = work > kTooSlow * ToSeconds(kTarget) && work > kBusy * ToSeconds(passed);
-  const bool quick = work < kSpare * ToSeconds(std::max(kTarget, passed));
+  const double target = ToSeconds(kTarget);
+  const double busy = ToSeconds(interval.busy);
+  const double passed = ToSeconds(interval.passed);
+  // The work if all streams took as long as this one.
+  const double alike = interval.num_streams * ToSeconds(interval.own);
+  const bool slow = busy > kTooSlow * target && busy > kBusy * passed && alike >= kItsPart * busy;
+  const bool quick = busy < std::max(kSpare * target, kIdle * passed) || alike < kLittle * busy;
   num_slow_ = slow ? num_slow_ + 1 : 0;
   num_quick_ = quick ? num_quick_ + 1 : 0;
-  if (num_slow_ >= kSlow) Lower(busy);
+  if (num_slow_ >= kSlow) Lower(interval.busy);
   if (num_quick_ >= patience_ * kQuick) Raise();
 }
 

@@ -21,13 +21,28 @@ PictureStreams::Place PictureStreams::Find(const RenderJob& job) {
 }
 
 void PictureStreams::OnDrawn(std::uint64_t stream, Time busy, Time now) {
-  for (auto& [viewer, each] : streams_) {
-    if (each.number != stream) continue;
-    if (each.has_drawn) each.scale.Observe(busy - each.busy, now - each.drawn);
-    each.has_drawn = true;
-    each.busy = busy;
-    each.drawn = now;
+  const Time own = busy - busy_;
+  busy_ = busy;
+  ++num_drawn_;
+  const auto found = std::ranges::find_if(
+      streams_, [stream](const auto& item) { return item.second.number == stream; });
+  if (found == streams_.end()) {
+    other_drawn_ = num_drawn_;
+    return;
   }
+  Stream& drawn = found->second;
+  if (drawn.drawn != 0) {
+    const auto others = std::ranges::count_if(
+        streams_, [&](const auto& item) { return item.second.drawn > drawn.drawn; });
+    const int more = other_drawn_ > drawn.drawn ? 1 : 0;
+    drawn.scale.Observe({.own = own,
+                         .busy = busy - drawn.busy,
+                         .passed = now - drawn.drawn_at,
+                         .num_streams = 1 + static_cast<int>(others) + more});
+  }
+  drawn.drawn = num_drawn_;
+  drawn.busy = busy;
+  drawn.drawn_at = now;
 }
 
 void PictureStreams::ForgetOldest() {

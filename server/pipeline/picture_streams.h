@@ -26,8 +26,8 @@ class PictureStreams {
   };
   // Where the picture of a job with moving pictures belongs.
   [[nodiscard]] Place Find(const RenderJob& job);
-  // A picture of the stream was completed at `now`. `busy`: how long the renderer has worked since
-  // it began. Unknown streams are ignored.
+  // A picture was completed at `now`. `stream`: 0 if it belongs to none; all these count as one
+  // more stream. `busy`: how long the renderer has worked since it began.
   void OnDrawn(std::uint64_t stream, Time busy, Time now);
 
   [[nodiscard]] std::size_t num_streams() const { return streams_.size(); }
@@ -37,9 +37,9 @@ class PictureStreams {
     std::uint64_t number = 0;
     std::uint64_t subject = 0;
     PictureScale scale;
-    bool has_drawn = false;
-    Time busy{0};  // at the last picture
-    Time drawn{0};
+    std::uint64_t drawn = 0;  // number of the last picture, of all that were drawn; 0: none
+    Time busy{0};             // at the last picture
+    Time drawn_at{0};
     std::uint64_t used = 0;  // counts up with each job
   };
   void ForgetOldest();
@@ -47,6 +47,9 @@ class PictureStreams {
   std::map<std::uint64_t, Stream> streams_;  // by subscription
   std::uint64_t last_number_ = kPreparation;
   std::uint64_t num_jobs_ = 0;
+  Time busy_{0};  // at the last picture of any stream
+  std::uint64_t num_drawn_ = 0;
+  std::uint64_t other_drawn_ = 0;  // number of the last picture without a stream
 };
 
 }  // namespace furrow::server

@@ -288,11 +288,11 @@ void RenderThread::Collect(bool wait) {
   // Read-backs finish in the order of Submit(), so the oldest job belongs to this image.
   RenderJob job = std::move(in_flight_.front());
   in_flight_.pop_front();
+  job.drawn = clock_();
+  streams_.OnDrawn(job.stream, job.drawn - idle_, job.drawn);
   if (job.prepares) return;
   metrics_->Add(Counter::kPicturesRendered);
-  job.drawn = clock_();
   metrics_->Observe(Timing::kPictureDraw, job.drawn - job.taken);
-  if (job.stream != 0) streams_.OnDrawn(job.stream, job.drawn - idle_, job.drawn);
   Finish(*image, std::move(job));
 }
 
