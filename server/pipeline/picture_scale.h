@@ -15,7 +15,6 @@ namespace furrow::server {
 class PictureScale {
  public:
   static constexpr Time kTarget = std::chrono::microseconds(1'000'000 / 24);
-  static constexpr int kSteps = 8;  // from the full size down to render::kMinScale
   // Pictures in a row that are too slow, and that would leave time for a larger size.
   static constexpr int kSlow = 3;
   static constexpr int kQuick = 24;
@@ -37,7 +36,7 @@ class PictureScale {
   void Lower(Time busy);
   void Raise();
 
-  int step_ = 0;  // 0: the full size
+  int step_ = 0;  // 0: the full size; the next is three quarters of it
   int num_slow_ = 0;
   int num_quick_ = 0;
   int patience_ = 1;       // times kQuick

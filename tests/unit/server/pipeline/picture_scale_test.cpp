@@ -42,6 +42,13 @@ TEST(PictureScale, ASlowMachineReachesTheTargetWithinASecond) {
   EXPECT_GT(scale.scale(), render::kMinScale);
 }
 
+// Sizes in between would cost more than the full one.
+TEST(PictureScale, TheFirstStepSavesMoreThanCompletingCosts) {
+  PictureScale scale;
+  for (int i = 0; i < 3; ++i) See(&scale, Times(1.1, kTarget), Times(1.1, kTarget));
+  EXPECT_EQ(scale.scale(), 0.75f);
+}
+
 TEST(PictureScale, NeverLeavesItsRange) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> load(0.1, 5.0);
