@@ -9,15 +9,25 @@ namespace furrow::server {
 
 PictureStreams::Place PictureStreams::Find(const RenderJob& job) {
   if (job.tickets.empty()) return {kPreparation, render::kMinScale};
+  Stream* stream = nullptr;
+  for (const PictureTicket& ticket : job.tickets) {
+    if (!ticket.acknowledges) return {};
+    const auto found = streams_.find(ticket.subscription);
+    if (found == streams_.end() || found->second.subject != job.subject) continue;
+    if (stream == nullptr || found->second.used > stream->used) stream = &found->second;
+  }
+  if (stream == nullptr) stream = &Begin(job);
+  stream->used = ++num_jobs_;
+  return {stream->number, stream->scale.scale()};
+}
+
+PictureStreams::Stream& PictureStreams::Begin(const RenderJob& job) {
   const std::uint64_t viewer =
       std::ranges::min_element(job.tickets, {}, &PictureTicket::subscription)->subscription;
   if (!streams_.contains(viewer) && streams_.size() >= kMaxStreams) ForgetOldest();
   Stream& stream = streams_[viewer];
-  if (stream.number == 0 || stream.subject != job.subject) {
-    stream = {.number = ++last_number_, .subject = job.subject};
-  }
-  stream.used = ++num_jobs_;
-  return {stream.number, stream.scale.scale()};
+  stream = {.number = ++last_number_, .subject = job.subject};
+  return stream;
 }
 
 void PictureStreams::OnDrawn(std::uint64_t stream, Time busy, Time now) {

@@ -261,11 +261,11 @@ Status RenderThread::Render(RenderJob* taken) {
   const bool refines = samples == 0 && job.IsStill();
   if (refines) samples = kStillSamples;
   request.is_moving = is_software_ && job.IsLossy();
-  if (request.is_moving) {
+  if (render::CanBeCompleted(request, is_software_)) {
     const PictureStreams::Place place = streams_.Find(job);
     request.stream = place.stream;
     request.scale = place.scale;
-    if (render::IsCompleted(request, is_software_)) taken->stream = place.stream;
+    taken->stream = place.stream;
   }
   const Status status = renderer_->Submit(request);
   // A large still with this number of samples needs too much memory.

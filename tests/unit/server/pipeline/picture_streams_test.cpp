@@ -14,7 +14,7 @@ RenderJob JobFor(std::uint64_t subject, std::initializer_list<std::uint64_t> sub
   RenderJob job;
   job.subject = subject;
   for (const std::uint64_t subscription : subscriptions) {
-    job.tickets.push_back({.subscription = subscription});
+    job.tickets.push_back({.subscription = subscription, .acknowledges = true});
   }
   return job;
 }
@@ -37,11 +37,35 @@ TEST(PictureStreams, ViewersAndSubjectsShareNoStream) {
   }
 }
 
-TEST(PictureStreams, ASharedPictureContinuesThatOfTheFirstViewer) {
+TEST(PictureStreams, ASharedPictureContinuesTheStreamThatWasUsedLast) {
   PictureStreams streams;
   const auto first = streams.Find(JobFor(7, {3}));
-  EXPECT_EQ(streams.Find(JobFor(7, {5, 3})).stream, first.stream);
-  EXPECT_NE(streams.Find(JobFor(7, {5})).stream, first.stream);
+  EXPECT_EQ(streams.Find(JobFor(7, {5, 3})).stream, first.stream) << "5 has none";
+  const auto second = streams.Find(JobFor(7, {5}));
+  EXPECT_NE(second.stream, first.stream);
+  // The two viewers are not always ready at the same time.
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(streams.Find(JobFor(7, {3, 5})).stream, second.stream);
+    EXPECT_EQ(streams.Find(JobFor(7, {5})).stream, second.stream);
+  }
+}
+
+TEST(PictureStreams, ASharedPictureContinuesNoneOfAnotherSubject) {
+  PictureStreams streams;
+  const auto first = streams.Find(JobFor(7, {3}));
+  const auto other = streams.Find(JobFor(8, {5}));
+  EXPECT_EQ(streams.Find(JobFor(7, {3, 5})).stream, first.stream);
+  EXPECT_EQ(streams.Find(JobFor(8, {5})).stream, other.stream);
+}
+
+// They would never get the refined picture.
+TEST(PictureStreams, ViewersThatAcknowledgeNothingGetFullPictures) {
+  PictureStreams streams;
+  RenderJob job = JobFor(7, {1, 2});
+  job.tickets.back().acknowledges = false;
+  EXPECT_EQ(streams.Find(job).stream, 0u);
+  EXPECT_EQ(streams.Find(job).scale, 1.0f);
+  EXPECT_EQ(streams.num_streams(), 0u);
 }
 
 TEST(PictureStreams, PreparationsAreApart) {
