@@ -18,8 +18,8 @@ namespace furrow::render {
 //           combine -> bloom -> composite -> fxaa
 //   skin, one sample per pixel: shadows -> scene (facets) -> occlusion, blur -> light -> scatter ->
 //           combine -> bloom -> composite -> fxaa
-//   skin, a picture of a stream: the same with fewer pixels up to composite -> neighbours ->
-//           surround -> accumulate
+//   skin, a picture of a stream: the same with fewer pixels up to composite (the first: up to fxaa)
+//           -> neighbours -> surround -> accumulate
 //
 // The frame graph culls the passes that a view does not need.
 class Pipeline {

@@ -333,8 +333,8 @@ struct ImageFrame {
   // a file of `format`.
   std::string codec;
   bool key = false;  // a video picture that needs no earlier one
-  // Share of the width and height at which the scene was drawn, [1, 100]. Below 100, former
-  // pictures completed it.
+  // Share of the width and height at which the scene was drawn, [1, 100]. Below 100, the picture is
+  // enlarged, with the help of former pictures if there are any.
   std::uint8_t drawn_percent = 100;
 };
 

@@ -441,6 +441,13 @@ void AddRefused(Files& files) {
   const std::string name = "spine";
   *std::search(bytes.begin(), bytes.end(), name.begin(), name.end()) = 'S';
   add("hash", bytes, "an offer whose hash is not that of its content");
+  ImageFrame image = VideoPicture();
+  image.drawn_percent = 0;
+  encoder.Encode(kHeader, image, bytes);
+  add("drawn_0", bytes, "a picture of which no share was drawn");
+  image.drawn_percent = 101;
+  encoder.Encode(kHeader, image, bytes);
+  add("drawn_101", bytes, "a picture of which more than all was drawn");
 }
 
 }  // namespace

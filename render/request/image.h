@@ -12,7 +12,9 @@ struct Image {
   int height = 0;
   std::vector<std::uint8_t> rgb;  // 3 * width * height bytes
   std::uint64_t token = 0;        // FrameRequest::token
-  int drawn_percent = 100;        // of the width and height; less: completed from former pictures
+  // Of the width and height. Below 100, the picture is enlarged, with the help of former pictures if
+  // there are any.
+  int drawn_percent = 100;
 };
 
 }  // namespace furrow::render

@@ -61,45 +61,60 @@ void Histories::Prepare(KeptTexture* kept, const TextureDesc& desc) {
   *kept = {desc, device_->CreateTexture(desc)};
 }
 
-// Drops histories until `bytes` of `stream` fit.
-void Histories::MakeRoom(std::uint64_t stream, std::size_t bytes) {
-  const auto others = [&] {
-    const auto own = histories_.find(stream);
-    return num_bytes() - (own == histories_.end() ? 0 : own->second.num_bytes());
-  };
-  while (others() + bytes > kMaxBytes) {
-    auto oldest = histories_.end();
-    for (auto it = histories_.begin(); it != histories_.end(); ++it) {
-      if (it->first == stream) continue;
-      if (oldest == histories_.end() || it->second.used < oldest->second.used) oldest = it;
+void Histories::Drop(std::uint64_t stream) {
+  const auto found = histories_.find(stream);
+  if (found == histories_.end()) return;
+  Release(&found->second);
+  histories_.erase(found);
+}
+
+void Histories::DropResting() {
+  for (auto it = histories_.begin(); it != histories_.end();) {
+    if (num_pictures_ - it->second.used <= kMaxRest) {
+      ++it;
+      continue;
     }
-    if (oldest == histories_.end()) return;
-    Release(&oldest->second);
-    histories_.erase(oldest);
+    Release(&it->second);
+    it = histories_.erase(it);
   }
+}
+
+// Whether the history fits beside the others, each at its full scale: a change of the scale takes
+// no stream its history.
+bool Histories::HasRoom(const FrameRequest& request) {
+  const auto most_bytes = [](int width, int height) {
+    return 4 * TextureBytes({width, height, PixelFormat::kRgba16F, 1});
+  };
+  std::size_t bytes = most_bytes(request.width, request.height);
+  for (auto& [stream, history] : histories_) {
+    most_vertices_ = std::max(most_vertices_, history.vertices.num_bytes());
+    if (stream != request.stream) bytes += most_bytes(history.shot.width, history.shot.height);
+  }
+  const std::size_t others = histories_.size() - histories_.count(request.stream);
+  return bytes + (others + 1) * most_vertices_ <= kMaxBytes;
 }
 
 const TemporalFrame* Histories::Begin(const FrameRequest& request, bool is_software) {
   frame_ = {};
-  if (!IsCompleted(request, is_software)) return nullptr;
+  ++num_pictures_;
+  DropResting();
+  if (!IsCompleted(request, is_software) || !HasRoom(request)) {
+    Drop(request.stream);
+    return nullptr;
+  }
+  const auto found = histories_.find(request.stream);
+  if (found != histories_.end() && !Continues(found->second.shot, ShotOf(request))) {
+    Drop(request.stream);
+  }
   const TextureDesc whole{request.width, request.height, PixelFormat::kRgba16F, 1};
   const TextureDesc drawn{Scaled(request.width, request.scale),
                           Scaled(request.height, request.scale), PixelFormat::kRgba16F, 1};
-  const std::size_t bytes = 2 * (TextureBytes(whole) + TextureBytes(drawn));
-  if (bytes > kMaxBytes) return nullptr;
-  const auto found = histories_.find(request.stream);
-  MakeRoom(request.stream,
-           bytes + (found == histories_.end() ? 0 : found->second.vertices.num_bytes()));
   History& history = histories_[request.stream];
-  if (history.is_valid && !Continues(history.shot, ShotOf(request))) {
-    history.is_valid = false;
-    history.number = 0;
-    history.vertices.meshes.clear();
-  }
+  if (!history.is_valid) history.shot = ShotOf(request);
   const auto next = static_cast<std::size_t>(1 - history.newest);
   Prepare(&history.colours[next], whole);
   Prepare(&history.places[next], drawn);
-  history.used = ++num_pictures_;
+  history.used = num_pictures_;
   frame_ = {.history = &history,
             .width = drawn.width,
             .height = drawn.height,

@@ -30,7 +30,7 @@ struct History {
   Shot shot;
   CameraFrame camera;
   FormerVertices vertices;
-  std::uint64_t used = 0;  // counts up with each picture of any stream
+  std::uint64_t used = 0;  // the last picture's number among those of all streams
 
   [[nodiscard]] std::size_t num_bytes() const;
 };
@@ -52,11 +52,14 @@ struct TemporalFrame {
 [[nodiscard]] SceneMotion MotionOf(const TemporalFrame& frame);
 
 // Keeps the histories of streams. A history is used by its stream alone, and is dropped when the
-// stream cuts (Continues()). Together they take at most kMaxBytes; the one that was used longest
-// ago goes first. Needs a current context.
+// stream cuts (Continues()), draws a picture that stands alone, or rests. Together they take at
+// most kMaxBytes, and new streams get none while the others need these: if the least recent one
+// made room, many streams that take turns would all lose their histories. Needs a current context.
 class Histories {
  public:
   static constexpr std::size_t kMaxBytes = std::size_t{96} << 20;
+  // A stream that has no picture among this many of all streams rests.
+  static constexpr std::uint64_t kMaxRest = 256;
 
   // `device` outlives this object.
   explicit Histories(FrameGraphDevice* device) : device_(device) {}
@@ -64,8 +67,8 @@ class Histories {
   Histories(const Histories&) = delete;
   Histories& operator=(const Histories&) = delete;
 
-  // Prepares the next picture of a stream. Null textures in the result: it stands alone, because it
-  // is not one that IsCompleted(), or too large. The result is valid until the next call.
+  // Prepares the next picture of a stream. Null: the picture stands alone, because IsCompleted() is
+  // false or there is no room for its history. The result is valid until the next call.
   [[nodiscard]] const TemporalFrame* Begin(const FrameRequest& request, bool is_software);
   // The picture of the last Begin() has been drawn, with `camera`. Without this call, the history
   // remains as it was.
@@ -78,11 +81,14 @@ class Histories {
  private:
   void Prepare(KeptTexture* kept, const TextureDesc& desc);
   void Release(History* history);
-  void MakeRoom(std::uint64_t stream, std::size_t bytes);
+  void Drop(std::uint64_t stream);
+  void DropResting();
+  [[nodiscard]] bool HasRoom(const FrameRequest& request);
 
   FrameGraphDevice* device_;
   std::map<std::uint64_t, History> histories_;  // by stream
   std::uint64_t num_pictures_ = 0;
+  std::size_t most_vertices_ = 0;  // bytes, of any history: what a new one will need
   TemporalFrame frame_;
 };
 

@@ -22,12 +22,16 @@ bool MovesOn(const Camera& former, const Camera& next) {
 
 }  // namespace
 
-bool IsCompleted(const FrameRequest& request, bool is_software) {
+bool CanBeCompleted(const FrameRequest& request, bool is_software) {
   const Settings& settings = request.settings;
-  return is_software && request.is_moving && request.stream != 0 && request.others.empty() &&
+  return is_software && request.is_moving && request.others.empty() &&
          settings.view == View::kFinal && settings.shading == Shading::kSkin &&
          settings.anti_aliasing.samples == 0 && !settings.displacement.enabled &&
          settings.strip.views.empty();
+}
+
+bool IsCompleted(const FrameRequest& request, bool is_software) {
+  return request.stream != 0 && request.scale < 1.0f && CanBeCompleted(request, is_software);
 }
 
 bool Continues(const Shot& former, const Shot& next) {

@@ -9,25 +9,50 @@ namespace furrow::server {
 
 PictureStreams::Place PictureStreams::Find(const RenderJob& job) {
   if (job.tickets.empty()) return {kPreparation, render::kMinScale};
+  Stream* stream = nullptr;
+  for (const PictureTicket& ticket : job.tickets) {
+    if (!ticket.acknowledges) return {};
+    const auto found = streams_.find(ticket.subscription);
+    if (found == streams_.end() || found->second.subject != job.subject) continue;
+    if (stream == nullptr || found->second.used > stream->used) stream = &found->second;
+  }
+  if (stream == nullptr) stream = &Begin(job);
+  stream->used = ++num_jobs_;
+  return {stream->number, stream->scale.scale()};
+}
+
+PictureStreams::Stream& PictureStreams::Begin(const RenderJob& job) {
   const std::uint64_t viewer =
       std::ranges::min_element(job.tickets, {}, &PictureTicket::subscription)->subscription;
   if (!streams_.contains(viewer) && streams_.size() >= kMaxStreams) ForgetOldest();
   Stream& stream = streams_[viewer];
-  if (stream.number == 0 || stream.subject != job.subject) {
-    stream = {.number = ++last_number_, .subject = job.subject};
-  }
-  stream.used = ++num_jobs_;
-  return {stream.number, stream.scale.scale()};
+  stream = {.number = ++last_number_, .subject = job.subject};
+  return stream;
 }
 
 void PictureStreams::OnDrawn(std::uint64_t stream, Time busy, Time now) {
-  for (auto& [viewer, each] : streams_) {
-    if (each.number != stream) continue;
-    if (each.has_drawn) each.scale.Observe(busy - each.busy, now - each.drawn);
-    each.has_drawn = true;
-    each.busy = busy;
-    each.drawn = now;
+  const Time own = busy - busy_;
+  busy_ = busy;
+  ++num_drawn_;
+  const auto found = std::ranges::find_if(
+      streams_, [stream](const auto& item) { return item.second.number == stream; });
+  if (found == streams_.end()) {
+    other_drawn_ = num_drawn_;
+    return;
   }
+  Stream& drawn = found->second;
+  if (drawn.drawn != 0) {
+    const auto others = std::ranges::count_if(
+        streams_, [&](const auto& item) { return item.second.drawn > drawn.drawn; });
+    const int more = other_drawn_ > drawn.drawn ? 1 : 0;
+    drawn.scale.Observe({.own = own,
+                         .busy = busy - drawn.busy,
+                         .passed = now - drawn.drawn_at,
+                         .num_streams = 1 + static_cast<int>(others) + more});
+  }
+  drawn.drawn = num_drawn_;
+  drawn.busy = busy;
+  drawn.drawn_at = now;
 }
 
 void PictureStreams::ForgetOldest() {

@@ -50,6 +50,7 @@ struct PictureTicket {
   std::uint32_t view_request = 0;  // sequence of the request that set the view
   std::uint8_t tier = 0;           // ViewerFlow::tier() that chose the encoding
   bool still = false;              // the refined picture of a pose at rest
+  bool acknowledges = false;       // flow control: the viewer gets a still when the pose rests
   std::uint64_t viewer = 0;        // Peer::id
   std::uint64_t host = 0;          // HostKey() of the viewer's host
   // Set: the viewer has a video encoder (PictureSource::OpenVideo()). A still is a file all the

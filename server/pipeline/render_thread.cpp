@@ -261,11 +261,11 @@ Status RenderThread::Render(RenderJob* taken) {
   const bool refines = samples == 0 && job.IsStill();
   if (refines) samples = kStillSamples;
   request.is_moving = is_software_ && job.IsLossy();
-  if (request.is_moving) {
+  if (render::CanBeCompleted(request, is_software_)) {
     const PictureStreams::Place place = streams_.Find(job);
     request.stream = place.stream;
     request.scale = place.scale;
-    if (render::IsCompleted(request, is_software_)) taken->stream = place.stream;
+    taken->stream = place.stream;
   }
   const Status status = renderer_->Submit(request);
   // A large still with this number of samples needs too much memory.
@@ -288,11 +288,11 @@ void RenderThread::Collect(bool wait) {
   // Read-backs finish in the order of Submit(), so the oldest job belongs to this image.
   RenderJob job = std::move(in_flight_.front());
   in_flight_.pop_front();
+  job.drawn = clock_();
+  streams_.OnDrawn(job.stream, job.drawn - idle_, job.drawn);
   if (job.prepares) return;
   metrics_->Add(Counter::kPicturesRendered);
-  job.drawn = clock_();
   metrics_->Observe(Timing::kPictureDraw, job.drawn - job.taken);
-  if (job.stream != 0) streams_.OnDrawn(job.stream, job.drawn - idle_, job.drawn);
   Finish(*image, std::move(job));
 }
 

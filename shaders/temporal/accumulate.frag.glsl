@@ -34,7 +34,9 @@ void main() {
   vec4 place = texelFetch(u_place, pixel, 0);
   float speed = min(length(place.xy * size) / FAST, 1.0);
 
-  vec4 former = textureLod(u_former, gl_FragCoord.xy / size + place.xy, 0.0);
+  // Half a texel inside: beyond, the filter would mix in the opposite edge.
+  vec2 there = clamp(gl_FragCoord.xy + place.xy * size, vec2(0.5), size - 0.5) / size;
+  vec4 former = textureLod(u_former, there, 0.0);
   vec3 mean = texelFetch(u_mean, pixel, 0).rgb;
   vec3 spread = max(texelFetch(u_spread, pixel, 0).rgb, vec3(LEAST_SPREAD));
   vec3 offset = toYcocg(former.rgb) - mean;

@@ -153,13 +153,18 @@ test('a single change at rest is not movement, several in a row are', () => {
 
 test('slow pictures reduce the pixels, which return after a while', () => {
   const scale = new AdaptiveScale();
-  assert(scale.observe(5, 60, 0, 100));
-  assert(scale.observe(5, 60, 1, 100));
+  for (let s = 0; s < 4; ++s) assert.equal(scale.observe(5, 60, s, 100), s % 2 === 1);
   assert.equal(scale.scale, 0.5);
-  assert(!scale.observe(20, 60, 2, 100)); // neither slow nor fast
-  for (let s = 3; s < 7; ++s) assert(!scale.observe(50, 60, s, 100));
-  assert(scale.observe(50, 60, 7, 100));
+  assert(!scale.observe(20, 60, 4, 100)); // neither slow nor fast
+  for (let s = 5; s < 9; ++s) assert(!scale.observe(50, 60, s, 100));
+  assert(scale.observe(50, 60, 9, 100));
   assert.equal(scale.scale, 0.75);
+});
+
+test('one slow second changes nothing', () => {
+  const scale = new AdaptiveScale();
+  for (let s = 0; s < 20; ++s) assert(!scale.observe(s % 2 === 0 ? 5 : 50, 60, s, 100));
+  assert.equal(scale.scale, 1);
 });
 
 test('a slow publisher is not the renderer’s fault', () => {
@@ -170,12 +175,12 @@ test('a slow publisher is not the renderer’s fault', () => {
 
 test('a daemon that draws fewer pixels than it sends gets time for it', () => {
   const scale = new AdaptiveScale();
-  assert(!scale.observe(15, 60, 0, 75)); // it may still go down to a half
+  for (let s = -5; s < 1; ++s) assert(!scale.observe(15, 60, s, 75)); // it may still go down to a half
   assert(scale.observe(15, 60, 1, 50));
   assert.equal(scale.scale, 0.75);
-  for (let s = 2; s < 20; ++s) assert(!scale.observe(50, 60, s, 75)); // it has no time for more
-  for (let s = 20; s < 24; ++s) assert(!scale.observe(50, 60, s, 100));
-  assert(scale.observe(50, 60, 24, 100));
+  for (let s = 2; s < 20; ++s) assert(!scale.observe(50, 60, s, 69)); // it has no time for more
+  for (let s = 20; s < 24; ++s) assert(!scale.observe(50, 60, s, 75));
+  assert(scale.observe(50, 60, 24, 75));
 });
 
 test('the share that was drawn is that of the picture on the screen', () => {
@@ -188,13 +193,13 @@ test('the share that was drawn is that of the picture on the screen', () => {
 
 test('failed attempts become rarer', () => {
   const scale = new AdaptiveScale();
-  scale.observe(5, 60, 0, 100);
+  for (const s of [-1, 0]) scale.observe(5, 60, s, 100);
   let raised = 0;
   for (let s = 1; raised === 0; ++s) if (scale.observe(50, 60, s, 100)) raised = s;
-  scale.observe(5, 60, raised + 1, 100); // the larger size was too slow
+  for (const s of [1, 2]) scale.observe(5, 60, raised + s, 100); // the larger size was too slow
   let again = 0;
-  for (let s = raised + 2; again === 0; ++s) if (scale.observe(50, 60, s, 100)) again = s;
-  assert(again - raised - 2 >= 2 * (raised - 1));
+  for (let s = raised + 3; again === 0; ++s) if (scale.observe(50, 60, s, 100)) again = s;
+  assert(again - raised - 3 >= 2 * (raised - 1));
 });
 
 test('pictures have the screen’s pixels, within the wire’s limits', () => {

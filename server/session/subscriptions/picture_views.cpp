@@ -218,6 +218,7 @@ void PictureViews::AddFlowControlledJob(Subscription& subscription, PictureReque
                        // while it is rendered.
                        .tier = static_cast<std::uint8_t>(flow.tier()),
                        .still = at_rest,
+                       .acknowledges = true,
                        .viewer = subscription.peer->id,
                        .host = HostKey(subscription.peer->host)};
   if (request.encoding.format == render::ImageFormat::kJpeg) {

@@ -15,7 +15,7 @@ export interface Figures {
   isAtRest: boolean;
   width: number;
   height: number;
-  /** Share of the width and height that was drawn; below 100, former pictures completed it. */
+  /** Share of the width and height that was drawn; below 100, the picture is enlarged. */
   drawnPercent: number;
   limit: Limit;
   /** How the pictures come; empty: this browser draws them. */

@@ -26,7 +26,7 @@ export interface ShownPicture {
   width: number;
   height: number;
   isStill: boolean;
-  /** Below 100, former pictures completed it. */
+  /** Below 100, the picture is enlarged. */
   drawnPercent: number;
   /** Time since the pose reached the daemon; null: unknown. */
   ageMs: number | null;

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // The number of pixels to request. "sharp" uses the density of the screen. If the daemon cannot draw
-// that fast enough, "auto" requests fewer pixels while the picture moves and all of them at rest. Before that, a
-// daemon without a GPU draws fewer pixels than it sends, and completes them from former pictures.
+// that fast enough, "auto" requests fewer pixels while the picture moves and all of them at rest. A daemon
+// without a GPU first draws fewer pixels than it sends, and completes them from former pictures.
 
 export type Sharpness = 'auto' | 'sharp' | 'fast';
 
 /** Share of the width and height, percent, below which a daemon draws no picture. */
 const LEAST_DRAWN = 50;
+/** From this share on, the daemon has time for more pixels. */
+const SPARE_DRAWN = 75;
+/** Seconds in a row; in the first one, the daemon may still be about to draw fewer pixels. */
+const SLOW_S = 2;
 const STEPS = [1, 0.75, 0.5, 0.35, 0.25] as const;
 /** Below this, the eye sees single pictures rather than motion. */
 const TOO_SLOW_HZ = 20;
@@ -18,6 +22,7 @@ const MAX_PATIENCE_S = 64;
 /** Chooses one of STEPS from the picture rate of a moving pose. */
 export class AdaptiveScale {
   private step = 0;
+  private slowSeconds = 0;
   private fastSinceS: number | null = null;
   private raisedAtS = -Infinity;
   private patienceS = 4;
@@ -37,12 +42,14 @@ export class AdaptiveScale {
    * the scale changed.
    */
   observe(picturesHz: number, posesHz: number, nowS: number, drawnPercent: number): boolean {
-    const isDrawnInFull = drawnPercent === 100;
     if (picturesHz < Math.min(TOO_SLOW_HZ, 0.8 * posesHz)) {
-      // The daemon has something left to do about it.
-      return isDrawnInFull || drawnPercent <= LEAST_DRAWN ? this.lower(nowS) : false;
+      this.fastSinceS = null;
+      if (++this.slowSeconds < SLOW_S) return false;
+      // In between, the daemon has something left to do about it.
+      return drawnPercent === 100 || drawnPercent <= LEAST_DRAWN ? this.lower(nowS) : false;
     }
-    if (picturesHz < Math.min(FAST_HZ, 0.9 * posesHz) || this.step === 0 || !isDrawnInFull) {
+    this.slowSeconds = 0;
+    if (picturesHz < Math.min(FAST_HZ, 0.9 * posesHz) || this.step === 0 || drawnPercent < SPARE_DRAWN) {
       this.fastSinceS = null;
       return false;
     }
@@ -55,7 +62,7 @@ export class AdaptiveScale {
   }
 
   private lower(nowS: number): boolean {
-    this.fastSinceS = null;
+    this.slowSeconds = 0;
     if (this.step === STEPS.length - 1) return false;
     if (nowS - this.raisedAtS < SOON_S) this.patienceS = Math.min(MAX_PATIENCE_S, this.patienceS * 2);
     ++this.step;

@@ -181,6 +181,11 @@ TEST(PictureMessages, ImagesOfAVideo) {
   ImageFrame bad = sent;
   bad.still = true;
   EXPECT_EQ(OpenAndDecode(Encoded(bad), out), DecodeStatus::kBadValue);
+  for (const std::uint8_t percent : {0, 101}) {
+    bad = sent;
+    bad.drawn_percent = percent;
+    EXPECT_EQ(OpenAndDecode(Encoded(bad), out), DecodeStatus::kBadValue);
+  }
   bad = sent;
   bad.codec.clear();
   bad.key = true;

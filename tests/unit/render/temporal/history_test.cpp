@@ -84,16 +84,70 @@ TEST_F(HistoriesTest, APictureThatFailedLeavesTheHistoryAlone) {
   EXPECT_EQ(frame->jitter, jitter);
 }
 
-TEST_F(HistoriesTest, MemoryIsBounded) {
-  for (std::uint64_t stream = 1; stream < 100; ++stream) {
-    EXPECT_FALSE(Draw(Moving(stream, 1280, 720)));
-    EXPECT_FALSE(stream > 1 && !Draw(Moving(stream, 1280, 720))) << "the newest is kept";
-    ASSERT_LE(histories_.num_bytes(), Histories::kMaxBytes);
+TEST_F(HistoriesTest, MemoryIsBoundedAndFirstStreamsKeepTheirHistories) {
+  int num_completed = 0;
+  for (int turn = 0; turn < 3; ++turn) {
+    num_completed = 0;
+    for (std::uint64_t stream = 1; stream < 50; ++stream) {
+      const bool continues = Draw(Moving(stream, 1280, 720));
+      num_completed += continues ? 1 : 0;
+      EXPECT_EQ(continues, turn > 0 && stream <= 3) << stream;
+      ASSERT_LE(histories_.num_bytes(), Histories::kMaxBytes);
+    }
   }
-  EXPECT_LT(device_.num_alive(), device_.num_created());
+  EXPECT_EQ(num_completed, 3) << "the others are drawn in full";
   EXPECT_EQ(device_.num_bad_destroys(), 0);
-  EXPECT_TRUE(Draw(Moving(99, 1280, 720)));
-  EXPECT_FALSE(Draw(Moving(1, 1280, 720))) << "dropped long ago";
+}
+
+// The bound holds whatever the scales become.
+TEST_F(HistoriesTest, RoomDoesNotDependOnTheScale) {
+  for (const float scale : {0.5f, 0.9f}) {
+    for (std::uint64_t stream = 1; stream < 10; ++stream) {
+      for (int picture = 0; picture < 2; ++picture) {
+        FrameRequest request = Moving(stream, 1280, 720);
+        request.scale = scale;
+        (void)Draw(request);
+        ASSERT_LE(histories_.num_bytes(), Histories::kMaxBytes);
+      }
+    }
+  }
+  EXPECT_TRUE(Draw(Moving(1, 1280, 720)));
+}
+
+TEST_F(HistoriesTest, VerticesCount) {
+  const TemporalFrame* frame = histories_.Begin(Moving(1), true);
+  ASSERT_NE(frame, nullptr);
+  frame->history->vertices.meshes[0].capacity = Histories::kMaxBytes / 2;
+  histories_.End(Moving(1), {});
+  EXPECT_EQ(histories_.Begin(Moving(2), true), nullptr) << "it would need as many";
+  EXPECT_TRUE(Draw(Moving(1)));
+}
+
+TEST_F(HistoriesTest, ANewSizeReleasesTheOldPair) {
+  for (int picture = 0; picture < 2; ++picture) (void)Draw(Moving(1, 1280, 720));
+  (void)Draw(Moving(1));
+  const std::size_t pixels = 640 * 400 + 320 * 200;
+  EXPECT_EQ(histories_.num_bytes(), 8 * pixels);
+}
+
+TEST_F(HistoriesTest, AStreamThatRestsLosesItsHistory) {
+  (void)Draw(Moving(1));
+  for (int picture = 0; picture < 2; ++picture) (void)Draw(Moving(2));
+  const std::size_t both = histories_.num_bytes();
+  for (std::uint64_t i = 2; i < Histories::kMaxRest; ++i) EXPECT_TRUE(Draw(Moving(2)));
+  EXPECT_EQ(histories_.num_bytes(), both);
+  EXPECT_TRUE(Draw(Moving(2)));
+  EXPECT_LT(histories_.num_bytes(), both);
+  EXPECT_FALSE(Draw(Moving(1)));
+}
+
+TEST_F(HistoriesTest, AFullPictureEndsTheHistoryOfItsStream) {
+  (void)Draw(Moving(1));
+  FrameRequest full = Moving(1);
+  full.scale = 1.0f;
+  EXPECT_EQ(histories_.Begin(full, true), nullptr);
+  EXPECT_EQ(histories_.num_bytes(), 0u);
+  EXPECT_FALSE(Draw(Moving(1)));
 }
 
 TEST_F(HistoriesTest, APictureThatIsTooLargeStandsAlone) {

@@ -64,9 +64,15 @@ TEST(IsCompleted, OnlyMovingPicturesOfAStreamWithSkin) {
   EXPECT_TRUE(IsCompleted(Moving(1), true));
   EXPECT_FALSE(IsCompleted(Moving(1), false)) << "a GPU";
   EXPECT_FALSE(IsCompleted(Moving(0), true)) << "no stream";
+  EXPECT_TRUE(CanBeCompleted(Moving(0), true));
+  FrameRequest full = Moving(1);
+  full.scale = 1.0f;
+  EXPECT_FALSE(IsCompleted(full, true)) << "at the full size";
+  EXPECT_TRUE(CanBeCompleted(full, true));
   const auto changed = [](auto change) {
     FrameRequest request = Moving(1);
     change(request);
+    EXPECT_EQ(IsCompleted(request, true), CanBeCompleted(request, true));
     return IsCompleted(request, true);
   };
   EXPECT_FALSE(changed([](FrameRequest& r) { r.is_moving = false; })) << "a still or a PNG";

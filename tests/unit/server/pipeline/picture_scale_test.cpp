@@ -14,12 +14,17 @@ constexpr Time kTarget = PictureScale::kTarget;
 
 Time Times(double share, Time time) { return FromSeconds(share * ToSeconds(time)); }
 
+// The renderer works for one stream alone.
+void See(PictureScale* scale, Time busy, Time passed) {
+  scale->Observe({.own = busy, .busy = busy, .passed = passed});
+}
+
 // A machine on which a full picture takes `full` times the target, of which two fifths do not
 // depend on the size, and which always has the next pose.
 Time Draw(PictureScale* scale, double full) {
   const double s = scale->scale();
   const Time taken = Times(full * (0.4 + 0.6 * s * s), kTarget);
-  scale->Observe(taken, taken);
+  See(scale, taken, taken);
   return taken;
 }
 
@@ -37,13 +42,20 @@ TEST(PictureScale, ASlowMachineReachesTheTargetWithinASecond) {
   EXPECT_GT(scale.scale(), render::kMinScale);
 }
 
+// Sizes in between would cost more than the full one.
+TEST(PictureScale, TheFirstStepSavesMoreThanCompletingCosts) {
+  PictureScale scale;
+  for (int i = 0; i < 3; ++i) See(&scale, Times(1.1, kTarget), Times(1.1, kTarget));
+  EXPECT_EQ(scale.scale(), 0.75f);
+}
+
 TEST(PictureScale, NeverLeavesItsRange) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> load(0.1, 5.0);
   PictureScale scale;
   for (int i = 0; i < 5000; ++i) {
     const double busy = load(random);
-    scale.Observe(Times(busy, kTarget), Times(busy * (1.0 + 0.1 * (i % 3)), kTarget));
+    See(&scale, Times(busy, kTarget), Times(busy * (1.0 + 0.1 * (i % 3)), kTarget));
     ASSERT_GE(scale.scale(), render::kMinScale);
     ASSERT_LE(scale.scale(), 1.0f);
   }
@@ -75,7 +87,7 @@ TEST(PictureScale, SingleSlowPicturesChangeNothing) {
   PictureScale scale;
   for (int i = 0; i < 300; ++i) {
     const Time taken = Times(i % 3 == 0 ? 3.0 : 0.9, kTarget);
-    scale.Observe(taken, taken);
+    See(&scale, taken, taken);
   }
   EXPECT_EQ(scale.scale(), 1.0f);
 }
@@ -83,14 +95,56 @@ TEST(PictureScale, SingleSlowPicturesChangeNothing) {
 // The viewer asks for few pictures, or its network is slow.
 TEST(PictureScale, AnIdleRendererIsNotTooSlow) {
   PictureScale scale;
-  for (int i = 0; i < 300; ++i) scale.Observe(Times(2.0, kTarget), Times(4.0, kTarget));
+  for (int i = 0; i < 300; ++i) See(&scale, Times(2.0, kTarget), Times(4.0, kTarget));
   EXPECT_EQ(scale.scale(), 1.0f);
 }
 
 TEST(PictureScale, APauseSaysNothing) {
   PictureScale scale;
-  const Time longer = PictureScale::kPause + std::chrono::milliseconds(1);
-  for (int i = 0; i < 100; ++i) scale.Observe(longer, longer);
+  for (int i = 0; i < 3; ++i) See(&scale, 2 * kTarget, 2 * kTarget);
+  const float low = scale.scale();
+  ASSERT_LT(low, 1.0f);
+  for (int i = 0; i < 100; ++i) {
+    See(&scale, Time(0), PictureScale::kPause + std::chrono::milliseconds(1));
+  }
+  EXPECT_EQ(scale.scale(), low);
+}
+
+TEST(PictureScale, ARendererThatWorksForSecondsDoesNotPause) {
+  PictureScale scale;
+  const Time taken = 2 * PictureScale::kPause;
+  for (int i = 0; i < 20; ++i) See(&scale, taken, taken);
+  EXPECT_EQ(scale.scale(), render::kMinScale);
+}
+
+// The viewer waits a little for each picture, such as for the network.
+TEST(PictureScale, AShortWaitBetweenSlowPicturesDoesNotHideThem) {
+  PictureScale scale;
+  for (int i = 0; i < 20; ++i) See(&scale, 2 * kTarget, Times(2.5, kTarget));
+  EXPECT_LT(scale.scale(), 1.0f);
+}
+
+// A small picture once per second, beside a stream that takes all of the renderer's time.
+TEST(PictureScale, OnlyTheStreamWithMostOfTheWorkGetsSmaller) {
+  PictureScale small;
+  PictureScale large;
+  for (int i = 0; i < 100; ++i) {
+    const Time second = std::chrono::seconds(1);
+    small.Observe({.own = kTarget / 8, .busy = second, .passed = second, .num_streams = 2});
+    large.Observe({.own = 2 * kTarget, .busy = 2 * kTarget, .passed = 2 * kTarget});
+  }
+  EXPECT_EQ(small.scale(), 1.0f);
+  EXPECT_EQ(large.scale(), render::kMinScale);
+}
+
+TEST(PictureScale, AStreamWithLittleWorkRisesBesideABusyOne) {
+  PictureScale scale;
+  for (int i = 0; i < 20; ++i) See(&scale, 2 * kTarget, 2 * kTarget);
+  ASSERT_EQ(scale.scale(), render::kMinScale);
+  const Time second = std::chrono::seconds(1);
+  for (int i = 0; i < 1000; ++i) {
+    scale.Observe({.own = kTarget / 8, .busy = second, .passed = second, .num_streams = 2});
+  }
   EXPECT_EQ(scale.scale(), 1.0f);
 }
 
@@ -98,10 +152,10 @@ TEST(PictureScale, APauseSaysNothing) {
 TEST(PictureScale, FailedAttemptsBecomeRare) {
   PictureScale scale;
   const auto pictures_until_raised = [&scale] {
-    for (int i = 0; i < 3; ++i) scale.Observe(Times(1.1, kTarget), Times(1.1, kTarget));
+    for (int i = 0; i < 3; ++i) See(&scale, Times(1.1, kTarget), Times(1.1, kTarget));
     const float low = scale.scale();
     int pictures = 0;
-    for (; scale.scale() == low; ++pictures) scale.Observe(Times(0.5, kTarget), kTarget);
+    for (; scale.scale() == low; ++pictures) See(&scale, Times(0.5, kTarget), kTarget);
     return pictures;
   };
   const int first = pictures_until_raised();

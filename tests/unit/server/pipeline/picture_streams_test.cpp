@@ -14,7 +14,7 @@ RenderJob JobFor(std::uint64_t subject, std::initializer_list<std::uint64_t> sub
   RenderJob job;
   job.subject = subject;
   for (const std::uint64_t subscription : subscriptions) {
-    job.tickets.push_back({.subscription = subscription});
+    job.tickets.push_back({.subscription = subscription, .acknowledges = true});
   }
   return job;
 }
@@ -37,11 +37,35 @@ TEST(PictureStreams, ViewersAndSubjectsShareNoStream) {
   }
 }
 
-TEST(PictureStreams, ASharedPictureContinuesThatOfTheFirstViewer) {
+TEST(PictureStreams, ASharedPictureContinuesTheStreamThatWasUsedLast) {
   PictureStreams streams;
   const auto first = streams.Find(JobFor(7, {3}));
-  EXPECT_EQ(streams.Find(JobFor(7, {5, 3})).stream, first.stream);
-  EXPECT_NE(streams.Find(JobFor(7, {5})).stream, first.stream);
+  EXPECT_EQ(streams.Find(JobFor(7, {5, 3})).stream, first.stream) << "5 has none";
+  const auto second = streams.Find(JobFor(7, {5}));
+  EXPECT_NE(second.stream, first.stream);
+  // The two viewers are not always ready at the same time.
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(streams.Find(JobFor(7, {3, 5})).stream, second.stream);
+    EXPECT_EQ(streams.Find(JobFor(7, {5})).stream, second.stream);
+  }
+}
+
+TEST(PictureStreams, ASharedPictureContinuesNoneOfAnotherSubject) {
+  PictureStreams streams;
+  const auto first = streams.Find(JobFor(7, {3}));
+  const auto other = streams.Find(JobFor(8, {5}));
+  EXPECT_EQ(streams.Find(JobFor(7, {3, 5})).stream, first.stream);
+  EXPECT_EQ(streams.Find(JobFor(8, {5})).stream, other.stream);
+}
+
+// They would never get the refined picture.
+TEST(PictureStreams, ViewersThatAcknowledgeNothingGetFullPictures) {
+  PictureStreams streams;
+  RenderJob job = JobFor(7, {1, 2});
+  job.tickets.back().acknowledges = false;
+  EXPECT_EQ(streams.Find(job).stream, 0u);
+  EXPECT_EQ(streams.Find(job).scale, 1.0f);
+  EXPECT_EQ(streams.num_streams(), 0u);
 }
 
 TEST(PictureStreams, PreparationsAreApart) {
@@ -60,18 +84,51 @@ TEST(PictureStreams, TheirNumberIsBounded) {
   }
 }
 
-// The work for others counts, too: they share the machine.
-TEST(PictureStreams, EachStreamFollowsTheTimeBetweenItsPictures) {
+// The renderer works all the time.
+void Draw(PictureStreams* streams, std::uint64_t stream, Time work, Time* now) {
+  *now += work;
+  streams->OnDrawn(stream, *now, *now);
+}
+
+TEST(PictureStreams, StreamsThatShareASlowRendererAllGetSmaller) {
   PictureStreams streams;
-  const auto slow = streams.Find(JobFor(7, {1})).stream;
-  const auto rare = streams.Find(JobFor(7, {2})).stream;
-  const Time step = 2 * PictureScale::kTarget;
+  Time now{0};
   for (int i = 0; i < 10; ++i) {
-    streams.OnDrawn(slow, i * step, i * step);
-    streams.OnDrawn(rare, i * PictureScale::kTarget / 2, i * step);
+    for (const std::uint64_t viewer : {1, 2}) {
+      Draw(&streams, streams.Find(JobFor(7, {viewer})).stream, PictureScale::kTarget, &now);
+    }
   }
   EXPECT_LT(streams.Find(JobFor(7, {1})).scale, 1.0f);
+  EXPECT_LT(streams.Find(JobFor(7, {2})).scale, 1.0f);
+}
+
+TEST(PictureStreams, ARareSmallPictureIsNotBlamedForTheWorkOfOthers) {
+  PictureStreams streams;
+  Time now{0};
+  for (int i = 0; i < 300; ++i) {
+    const std::uint64_t busy = streams.Find(JobFor(7, {1})).stream;
+    Draw(&streams, busy, 2 * PictureScale::kTarget, &now);
+    if (i % 3 != 0) continue;
+    const std::uint64_t rare = streams.Find(JobFor(7, {2})).stream;
+    Draw(&streams, rare, PictureScale::kTarget / 8, &now);
+  }
+  EXPECT_EQ(streams.Find(JobFor(7, {1})).scale, render::kMinScale);
   EXPECT_EQ(streams.Find(JobFor(7, {2})).scale, 1.0f);
+}
+
+TEST(PictureStreams, PicturesWithoutAStreamHaveTheirPart) {
+  PictureStreams streams;
+  Time now{0};
+  for (int i = 0; i < 20; ++i) {
+    Draw(&streams, streams.Find(JobFor(7, {1})).stream, PictureScale::kTarget / 4, &now);
+    Draw(&streams, 0, 2 * PictureScale::kTarget, &now);
+  }
+  EXPECT_EQ(streams.Find(JobFor(7, {1})).scale, 1.0f) << "its own size would not help";
+  for (int i = 0; i < 20; ++i) {
+    Draw(&streams, streams.Find(JobFor(7, {1})).stream, PictureScale::kTarget, &now);
+    Draw(&streams, 0, PictureScale::kTarget, &now);
+  }
+  EXPECT_LT(streams.Find(JobFor(7, {1})).scale, 1.0f);
 }
 
 }  // namespace

@@ -295,22 +295,31 @@ TEST_F(RenderThreadTest, JpegOfAMovingSubjectMayBeInexactOnTheCpu) {
 TEST_F(RenderThreadTest, MovingPicturesContinueTheStreamOfTheirViewer) {
   script.is_software = true;
   Start();
-  const auto draw = [this](const RenderJob& from, const PictureTicket& ticket) {
+  render::Settings skin;
+  skin.shading = render::Shading::kSkin;
+  const auto draw = [&, settings = std::make_shared<const render::Settings>(skin)](
+                        const RenderJob& from, const PictureTicket& ticket) {
     RenderJob job = from;
     job.tickets = {ticket};
+    job.spec.settings = settings;
     thread->Submit(std::move(job));
     return pictures.Take();
   };
   const RenderJob job = JobOf(1);
-  EXPECT_EQ(draw(job, {.subscription = 1}).drawn_percent, 75) << "as the renderer says";
-  (void)draw(job, {.subscription = 1});
-  (void)draw(job, {.subscription = 2});
+  EXPECT_EQ(draw(job, {.subscription = 1, .acknowledges = true}).drawn_percent, 75)
+      << "as the renderer says";
+  (void)draw(job, {.subscription = 1, .acknowledges = true});
+  (void)draw(job, {.subscription = 2, .acknowledges = true});
   (void)draw(job, {.subscription = 1, .still = true});
   (void)draw(job, {.subscription = 1, .encoding = {.format = render::ImageFormat::kPng}});
-  (void)draw(JobOf(2), {.subscription = 1});  // another subject
+  (void)draw(JobOf(2), {.subscription = 1, .acknowledges = true});  // another subject
+  (void)draw(job, {.subscription = 3});  // nothing would refine it at rest
+  render::Settings diffuse;
+  Submit(1, {.subscription = 1, .acknowledges = true}, diffuse);
+  (void)pictures.Take();
   thread.reset();
   const std::deque<std::uint64_t>& streams = script.streams;
-  ASSERT_EQ(streams.size(), 6u);
+  ASSERT_EQ(streams.size(), 8u);
   EXPECT_NE(streams[0], 0u);
   EXPECT_EQ(streams[1], streams[0]);
   EXPECT_NE(streams[2], streams[0]);
@@ -318,6 +327,8 @@ TEST_F(RenderThreadTest, MovingPicturesContinueTheStreamOfTheirViewer) {
   EXPECT_EQ(streams[4], 0u);
   EXPECT_NE(streams[5], 0u);
   EXPECT_NE(streams[5], streams[0]);
+  EXPECT_EQ(streams[6], 0u);
+  EXPECT_EQ(streams[7], 0u) << "diffuse shading is not completed";
 }
 
 TEST_F(RenderThreadTest, PicturesOfAGpuAreExact) {

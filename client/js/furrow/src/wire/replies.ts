@@ -32,7 +32,7 @@ export interface PictureMessage {
   receivedUs: number;
   /** Sequence of the request that defined the view. */
   viewRequest: number;
-  /** Share of the width and height at which the scene was drawn, [1, 100]. Below 100, former pictures completed it. */
+  /** Share of the width and height at which the scene was drawn, [1, 100]. Below 100, the picture is enlarged, with the help of former pictures if there are any. */
   drawnPercent: number;
 }
 

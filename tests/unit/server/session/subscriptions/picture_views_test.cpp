@@ -99,6 +99,7 @@ TEST_F(PictureViewsFlowTest, ViewersOfOneViewAndTierShareAnEncoding) {
   ASSERT_EQ(pictures.jobs[0].tickets.size(), 16u);
   for (const PictureTicket& ticket : pictures.jobs[0].tickets) {
     EXPECT_EQ(ticket.encoding, pictures.jobs[0].tickets[0].encoding);
+    EXPECT_TRUE(ticket.acknowledges);
   }
 }
 
@@ -544,6 +545,7 @@ TEST_F(PictureViewsTest, TheJobsOfAViewerThatLeavesAreWithdrawn) {
   ASSERT_EQ(pictures.jobs.size(), 1u);
   const PictureTicket& ticket = pictures.jobs.front().tickets.front();
   EXPECT_EQ(ticket.viewer, viewer.id);
+  EXPECT_FALSE(ticket.acknowledges) << "no flow control";
   Send(viewer, protocol::Unsubscribe{}, reply->header.stream);
   EXPECT_EQ(pictures.ended, std::vector<std::uint64_t>{ticket.subscription});
   Send(viewer, protocol::SubscribeWeights{.subject = "ann"}, 0, 2);
