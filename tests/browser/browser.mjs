@@ -6,7 +6,7 @@ import { chromium } from 'playwright-core';
 import { PNG } from 'pngjs';
 
 const ARTEFACTS = process.env.FURROW_ARTEFACTS;
-const PATIENCE_MS = 60_000;
+const PATIENCE_MS = 180_000;
 
 /** `options`: further switches of the browser. */
 export function launch(options = []) {
