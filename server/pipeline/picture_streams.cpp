@@ -8,7 +8,7 @@
 namespace furrow::server {
 
 PictureStreams::Place PictureStreams::Find(const RenderJob& job) {
-  if (job.tickets.empty()) return {kPreparation, render::kMinScale};
+  if (job.tickets.empty()) return {job.stream, job.stream == 0 ? 1.0f : render::kMinScale};
   Stream* stream = nullptr;
   for (const PictureTicket& ticket : job.tickets) {
     if (!ticket.acknowledges) return {};

@@ -19,15 +19,16 @@ class PictureStreams {
  public:
   // More than the renderer keeps histories. The stream that rested longest is forgotten.
   static constexpr std::size_t kMaxStreams = 64;
-  // The stream of jobs that prepare. Those of viewers have higher numbers.
+  // The stream of jobs that prepare completed pictures. Those of viewers have higher numbers.
   static constexpr std::uint64_t kPreparation = 1;
 
   struct Place {
     std::uint64_t stream = 0;  // render::FrameRequest::stream
     float scale = 1.0f;
   };
-  // Where the picture of a job with moving pictures belongs. Stream 0, at the full size: some
-  // viewer does not acknowledge its pictures, so it gets no refined picture at rest either.
+  // Where the picture of a job with moving pictures belongs; a job without viewers says so itself.
+  // Stream 0, at the full size: some viewer does not acknowledge its pictures, so it gets no
+  // refined picture at rest either.
   [[nodiscard]] Place Find(const RenderJob& job);
   // A picture was completed at `now`. `stream`: 0 if it belongs to none; all these count as one
   // more stream. `busy`: how long the renderer has worked since it began.

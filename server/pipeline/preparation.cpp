@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/pipeline/preparation.h"
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
 
+#include "server/pipeline/picture_streams.h"
 #include "server/pipeline/snapshot.h"
 #include "wrinkle/shapes/blend_shape_pose.h"
 #include "wrinkle/skeleton/retarget.h"
@@ -61,13 +63,20 @@ Result<std::vector<RenderJob>> Preparations(const character::Character& characte
   const auto binding = std::make_shared<const wrinkle::RigBinding>(*std::move(made));
   const auto look = std::make_shared<const render::Settings>(settings);
   std::vector<RenderJob> jobs;
-  for (const Wrinkles wrinkles : {Wrinkles::kAll, Wrinkles::kOneMap, Wrinkles::kNone}) {
-    RenderJob job;
-    job.spec = {
-        .view = settings.view, .camera = camera, .width = kSize, .height = kSize, .settings = look};
-    job.snapshot = SnapshotOf(character, binding, wrinkles);
-    job.prepares = true;
-    jobs.push_back(std::move(job));
+  // A stream begins in full. On a GPU, the second three only repeat the first.
+  for (const std::uint64_t stream : {std::uint64_t{0}, PictureStreams::kPreparation}) {
+    for (const Wrinkles wrinkles : {Wrinkles::kAll, Wrinkles::kOneMap, Wrinkles::kNone}) {
+      RenderJob job;
+      job.spec = {.view = settings.view,
+                  .camera = camera,
+                  .width = kSize,
+                  .height = kSize,
+                  .settings = look};
+      job.snapshot = SnapshotOf(character, binding, wrinkles);
+      job.stream = stream;
+      job.prepares = true;
+      jobs.push_back(std::move(job));
+    }
   }
   return jobs;
 }

@@ -13,7 +13,8 @@ namespace furrow::server {
 
 // Jobs for RenderThread::Prepare(): small pictures of `character` at rest, which compile the
 // programs of the pictures that viewers see first, in order of need: with all wrinkles, those of
-// one map, or none. Programs do not depend on the size of a picture or on its pose.
+// one map, or none; first full pictures, then those of a stream that are completed from former
+// ones. Programs do not depend on the size of a picture or on its pose.
 //
 // Stills and other shading are left to those who ask for them. A pass that compiles for seconds
 // cannot be interrupted, so preparing them would make the first viewer wait. Errors: those of

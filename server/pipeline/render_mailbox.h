@@ -73,13 +73,14 @@ struct RenderJob {
   PictureSpec spec;
   std::shared_ptr<const Snapshot> snapshot;
   std::vector<PictureTicket> tickets;
-  Time moved_at{0};          // when the subject last moved; set if a viewer uses flow control
-  Time submitted{0};         // to the renderer
-  Time taken{0};             // by the render thread
-  Time drawn{0};             // by the renderer
-  std::uint64_t stream = 0;  // of PictureStreams; set by the render thread. 0: none
-  bool prepares = false;     // nobody sees the picture: it compiles what later pictures need
-  FairOrder::Entry entry;    // set by the mailbox
+  Time moved_at{0};   // when the subject last moved; set if a viewer uses flow control
+  Time submitted{0};  // to the renderer
+  Time taken{0};      // by the render thread
+  Time drawn{0};      // by the renderer
+  // Of PictureStreams; 0: none. Set by the render thread, unless the job prepares.
+  std::uint64_t stream = 0;
+  bool prepares = false;   // nobody sees the picture: it compiles what later pictures need
+  FairOrder::Entry entry;  // set by the mailbox
 
   // True if at least one ticket wants a still, which is rendered with more samples.
   [[nodiscard]] bool IsStill() const;

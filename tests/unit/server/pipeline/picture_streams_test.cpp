@@ -70,7 +70,12 @@ TEST(PictureStreams, ViewersThatAcknowledgeNothingGetFullPictures) {
 
 TEST(PictureStreams, PreparationsAreApart) {
   PictureStreams streams;
-  EXPECT_EQ(streams.Find(JobFor(0, {})).stream, PictureStreams::kPreparation);
+  RenderJob preparation = JobFor(0, {});
+  EXPECT_EQ(streams.Find(preparation).stream, 0u);
+  EXPECT_EQ(streams.Find(preparation).scale, 1.0f);
+  preparation.stream = PictureStreams::kPreparation;
+  EXPECT_EQ(streams.Find(preparation).stream, PictureStreams::kPreparation);
+  EXPECT_LT(streams.Find(preparation).scale, 1.0f);
   EXPECT_NE(streams.Find(JobFor(0, {1})).stream, PictureStreams::kPreparation);
 }
 
