@@ -18,7 +18,6 @@ namespace furrow::cli {
 namespace {
 
 using client::IoStatus;
-using client::TransportKind;
 
 struct DrainOptions {
   std::string host;
@@ -135,11 +134,7 @@ void TellAddressFromWait(DrainOptions* options) {
 int Drain(const DrainOptions& options) {
   const auto address = ParseHost(options.host, {.udp = !options.tcp, .security = options.security});
   if (!address) return kUsage;
-  const TransportKind kind =
-      options.udp   ? TransportKind::kUdp
-      : options.tcp ? TransportKind::kTcp
-                    : address->transport.value_or(address->token.empty() ? TransportKind::kTcp
-                                                                         : TransportKind::kUdp);
+  const auto kind = ChooseTransport(options.udp, options.tcp, *address);
   int exit_code = kDone;
   auto transport = OpenTransport(*address, kind, /*once=*/true, &exit_code);
   if (!transport) return exit_code;

@@ -14,8 +14,6 @@
 namespace furrow::cli {
 namespace {
 
-using client::TransportKind;
-
 struct WatchOptions {
   SubscriptionOptions listen;
   TableFormat format = TableFormat::kTable;
@@ -73,22 +71,14 @@ class WeightRows {
   int failure_ = kDone;
 };
 
-// The transport that the options choose, or else the address. A token is safe over UDP alone.
-TransportKind KindOf(const WatchOptions& options, const client::Address& address) {
-  if (options.udp) return TransportKind::kUdp;
-  if (options.tcp) return TransportKind::kTcp;
-  return address.transport.value_or(address.token.empty() ? TransportKind::kTcp
-                                                          : TransportKind::kUdp);
-}
-
 int Watch(const WatchOptions& options) {
   const auto address = ParseHost(
       options.listen.host,
       {.pattern = true, .rate = true, .udp = !options.tcp, .security = options.listen.security});
   if (!address) return kUsage;
   int exit_code = kDone;
-  auto transport =
-      OpenTransport(*address, KindOf(options, *address), options.listen.once, &exit_code);
+  auto transport = OpenTransport(*address, ChooseTransport(options.udp, options.tcp, *address),
+                                 options.listen.once, &exit_code);
   if (!transport) return exit_code;
   client::Subscriber subscriber(std::move(transport), "furrow watch " FURROW_VERSION);
   protocol::SubscribeWeights request = options.request;

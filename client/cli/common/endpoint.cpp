@@ -56,6 +56,13 @@ std::optional<client::Address> ParseHost(const std::string& text, const HostKeys
   return std::nullopt;
 }
 
+client::TransportKind ChooseTransport(bool udp, bool tcp, const client::Address& address) {
+  if (udp) return client::TransportKind::kUdp;
+  if (tcp) return client::TransportKind::kTcp;
+  return address.transport.value_or(address.token.empty() ? client::TransportKind::kTcp
+                                                          : client::TransportKind::kUdp);
+}
+
 std::unique_ptr<client::Transport> OpenTransport(const client::Address& address,
                                                  client::TransportKind kind, bool once,
                                                  int* exit_code) {

@@ -35,6 +35,11 @@ struct HostKeys {
 [[nodiscard]] std::optional<client::Address> ParseHost(const std::string& text,
                                                        const HostKeys& keys);
 
+// The transport that the flags --udp and --tcp choose, or else the address. Without either, a token
+// goes over UDP, where it is safe, and all else over TCP.
+[[nodiscard]] client::TransportKind ChooseTransport(bool udp, bool tcp,
+                                                    const client::Address& address);
+
 // Connects to a daemon within 3 seconds, with the token and the TLS of the address. Later losses
 // are repaired by the transport, unless `once`. On failure prints the error, sets `exit_code` and
 // returns null; on success leaves `exit_code` unchanged.
