@@ -76,12 +76,16 @@ test('a subject that moves takes its client along', async () => {
   a.refuse(2, 4, 'elsewhere', B); // of no request
   await settle();
   assert.equal(b.numOpened, 0);
-  for (let sequence = 0; sequence < 8 && b.numOpened === 0; ++sequence) {
-    a.refuse(sequence, 4, 'elsewhere', B);
+  /** The daemon refuses the requests until one of them was the client's, which then leaves. */
+  const sendAway = async (from: FakeDaemon, most: number, server: Server, hasLeft: () => boolean): Promise<void> => {
+    for (let sequence = 0; sequence < most && !hasLeft(); ++sequence) {
+      from.refuse(sequence, 4, 'elsewhere', server);
+      await settle();
+    }
+    await until(machine, hasLeft);
     await settle();
-  }
-  await until(machine, () => b.numOpened === 1);
-  await settle();
+  };
+  await sendAway(a, 8, B, () => b.numOpened === 1);
   // There, weights count.
   b.weights('ada', 98, [0.5]);
   await settle();
@@ -90,12 +94,7 @@ test('a subject that moves takes its client along', async () => {
   b.subjects.delete('ada');
   b.moved = A;
   a.subjects.set('ada', NAMES);
-  for (let sequence = 0; sequence < 16 && a.numOpened === 1; ++sequence) {
-    b.refuse(sequence, 4, 'elsewhere', A);
-    await settle();
-  }
-  await until(machine, () => a.numOpened === 2);
-  await settle();
+  await sendAway(b, 16, A, () => a.numOpened === 2);
   a.weights('ada', 99, [1]);
   await settle();
   assert.deepEqual([...client.weights('ada')!.values], [0.5]);
