@@ -53,8 +53,8 @@ class Coordinator {
   [[nodiscard]] virtual Place Elsewhere(std::string_view subject) const = 0;
   // Where a new subject should be offered: kHere or kElsewhere, or kNowhere.
   [[nodiscard]] virtual Place Propose(std::string_view subject, Time now) const = 0;
-  // The other node that should take the subject from this one, but none of `without`; kNowhere if
-  // there is none.
+  // The other node that should take the subject from this one, but none of `without`; kNowhere,
+  // with the reason, if there is none.
   [[nodiscard]] virtual Place Successor(std::string_view subject,
                                         const std::set<std::string>& without) const = 0;
   // Why subjects never move from this node to another one; empty: they do.

@@ -453,12 +453,7 @@ Place Hub::SuccessorOf(std::string_view name, Time now, const std::set<std::stri
     return place;
   }
   place.why = WhyItStays(*subject, now);
-  if (!place.why.empty()) return place;
-  place = places_.Successor(name, without);
-  if (place.kind != Place::Kind::kElsewhere && place.why.empty()) {
-    place.why = "no other node has room";
-  }
-  return place;
+  return place.why.empty() ? places_.Successor(name, without) : place;
 }
 
 bool Hub::WriteState(std::string_view name, std::uint32_t number,

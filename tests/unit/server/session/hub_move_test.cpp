@@ -220,6 +220,7 @@ TEST_F(HubMoveTest, TheOldNodeSendsEverybodyAway) {
 TEST_F(HubMoveTest, ASubjectWithoutASuccessorStays) {
   Publish(sender, "ada");
   nodes.successor = Place();
+  nodes.successor.why = "no other node has room";
   EXPECT_EQ(hub->SuccessorOf("ada", now).why, "no other node has room");
   EXPECT_EQ(hub->SuccessorOf("bob", now).why, "it has left");
 }
