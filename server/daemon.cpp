@@ -45,6 +45,7 @@
 #include "server/net/clock.h"
 #include "server/net/critical_task.h"
 #include "server/net/mocap_inputs.h"
+#include "server/net/pause.h"
 #include "server/net/run_loop.h"
 #include "server/net/tcp/tcp_server.h"
 #include "server/net/udp/secure_sessions.h"
@@ -137,7 +138,6 @@ class Daemon {
   asio::awaitable<void> Drain();
   asio::awaitable<void> MoveAndEnd();
   asio::awaitable<void> MoveInTime();
-  asio::awaitable<void> Pause(Time time);
   protocol::DrainState OnDrainRequest(bool begin);
   void RequestDrain();
   void MakeVideo();
@@ -585,11 +585,9 @@ asio::awaitable<void> Daemon::TickLoop() {
 }
 
 asio::awaitable<void> Daemon::SecondLoop() {
-  asio::steady_timer timer(io_);
   StatusLine status_line(metrics_);
   while (true) {
-    timer.expires_after(kSecond);
-    co_await timer.async_wait(kAwaitTuple);
+    co_await Pause(kSecond);
     WithinMemory(metrics_, [&] { EverySecond(&status_line); });
   }
 }
@@ -641,12 +639,6 @@ protocol::DrainState Daemon::OnDrainRequest(bool begin) {
   return state;
 }
 
-asio::awaitable<void> Daemon::Pause(Time time) {
-  asio::steady_timer timer(io_);
-  timer.expires_after(time);
-  co_await timer.async_wait(kAwaitTuple);
-}
-
 // Moves all subjects, however long that takes, and ends then.
 asio::awaitable<void> Daemon::MoveAndEnd() {
   if (draining_) co_return;
@@ -686,14 +678,10 @@ asio::awaitable<void> Daemon::Drain() {
   // Connections close by themselves once their queues are empty.
   tcp_->Drain();
   if (http_) http_->Drain();
-  asio::steady_timer timer(io_);
   const auto is_awaited = [this] {
     return tcp_->num_sessions() > 0 || (http_ && http_->viewers() > 0);
   };
-  while (is_awaited() && ReadClock() < drain_deadline_) {
-    timer.expires_after(kDrainPoll);
-    co_await timer.async_wait(kAwaitTuple);
-  }
+  while (is_awaited() && ReadClock() < drain_deadline_) co_await Pause(kDrainPoll);
   // Clients that did not read until the deadline lose what is left.
   tcp_->CloseAll();
   io_.stop();

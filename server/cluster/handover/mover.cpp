@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <utility>
 
-#include <asio/steady_timer.hpp>
 #include <spdlog/spdlog.h>
 
-#include "server/net/await_tuple.h"
 #include "server/net/clock.h"
+#include "server/net/pause.h"
 
 namespace furrow::server {
 namespace {
@@ -37,9 +36,11 @@ Mover::Progress Mover::progress() const {
 
 void Mover::Note(bool moved, const std::string& why) {
   const std::lock_guard lock(mutex_);
-  if (moved) ++progress_.moved;
-  // Others may stay although this one has moved.
-  if (!moved) progress_.why = why;
+  if (moved) {
+    ++progress_.moved;  // others may still stay
+  } else {
+    progress_.why = why;
+  }
 }
 
 // No wait outlasts the end by much.
@@ -48,10 +49,8 @@ Time Mover::Patience(Time most) const {
   return end_ ? std::clamp(*end_ - ReadClock(), kLeast, most) : most;
 }
 
-asio::awaitable<void> Mover::Pause(Time time) {
-  asio::steady_timer timer(io_);
-  timer.expires_after(time);
-  co_await timer.async_wait(kAwaitTuple);
+asio::awaitable<void> Mover::Wait(Time time) {
+  co_await Pause(time);
   Repeat(ReadClock());
 }
 
@@ -62,10 +61,10 @@ asio::awaitable<void> Mover::Run() {
     const bool any = co_await MoveAll();
     if (any) continue;
     if (end_) break;
-    co_await Pause(kNextRound);
+    co_await Wait(kNextRound);
   }
   // The last states are on their way.
-  while (!sent_.empty()) co_await Pause(kLook);  // for at most kAnswerPatience
+  while (!sent_.empty()) co_await Wait(kLook);  // for at most kAnswerPatience
   for (const auto& [name, link] : links_) link->Close();
   links_.clear();
   running_ = false;
@@ -129,7 +128,7 @@ asio::awaitable<Status> Mover::MoveTo(NodeAddress node, std::string subject) {
                          std::to_string(protocol::kMaxUdpMessageBytes) + " that fit");
   }
   Send(*link, number, std::move(message), /*is_last=*/false);
-  while (sent_.contains(number) && !sent_.at(number).accepted) co_await Pause(kLook);
+  while (sent_.contains(number) && !sent_.at(number).accepted) co_await Wait(kLook);
   if (!sent_.contains(number)) {
     Unlink(node.name);  // it may have another address by now
     silent_.insert(node.name);

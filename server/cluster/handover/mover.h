@@ -68,7 +68,7 @@ class Mover {
   asio::awaitable<Status> MoveTo(NodeAddress node, std::string subject);
   void Unlink(const std::string& node);
   asio::awaitable<Result<std::shared_ptr<NodeLink>>> LinkTo(NodeAddress node);
-  asio::awaitable<void> Pause(Time time);
+  asio::awaitable<void> Wait(Time time);  // and repeats what is not answered
   void Send(const std::shared_ptr<NodeLink>& link, std::uint32_t number,
             std::vector<std::uint8_t> message, bool is_last);
   void OnAnswer(std::uint32_t number, bool accepted, const std::string& why);

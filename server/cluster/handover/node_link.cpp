@@ -11,6 +11,7 @@
 #include "server/net/await_tuple.h"
 #include "server/net/clock.h"
 #include "server/net/critical_task.h"
+#include "server/net/pause.h"
 
 namespace furrow::server {
 namespace {
@@ -82,7 +83,6 @@ asio::awaitable<Status> NodeLink::Connect(Time patience) {
   if (Status opened = co_await Open(patience); !opened.ok()) co_return opened;
   StartCriticalTask(static_cast<asio::io_context&>(socket_.get_executor().context()),
                     Read(shared_from_this()));
-  asio::steady_timer timer(socket_.get_executor());
   Time next{0};
   while (!connected_ && refusal_.empty() && ReadClock() < end) {
     if (secure_) {
@@ -91,8 +91,7 @@ asio::awaitable<Status> NodeLink::Connect(Time patience) {
       next = ReadClock() + kHelloRepeat;
       SendHello();
     }
-    timer.expires_after(kConnectLook);
-    co_await timer.async_wait(kAwaitTuple);
+    co_await Pause(kConnectLook);
   }
   if (connected_) co_return Status();
   co_return Fault(refusal_.empty() ? "does not answer" : "refuses this one: " + refusal_);

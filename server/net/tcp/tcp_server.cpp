@@ -23,6 +23,7 @@
 #include "server/net/await_tuple.h"
 #include "server/net/clock.h"
 #include "server/net/critical_task.h"
+#include "server/net/pause.h"
 #include "server/tls/handshake_watch.h"
 
 namespace furrow::server {
@@ -123,8 +124,7 @@ asio::awaitable<void> TcpServer::Accept() {
     if (error) {
       // No descriptors are left, or the peer has gone. The pause keeps the loop from spinning.
       spdlog::warn("cannot accept a connection: {}", error.message());
-      asio::steady_timer pause(io_, kAcceptPause);
-      co_await pause.async_wait(kAwaitTuple);
+      co_await Pause(kAcceptPause);
       continue;
     }
     const tcp::endpoint client = socket.remote_endpoint(error);
@@ -150,7 +150,6 @@ asio::awaitable<void> TcpServer::WaitForPlace(tcp::socket socket, std::string ho
   try {
     const Time begun = ReadClock();
     Time again = begun;
-    asio::steady_timer timer(io_);
     while (acceptor_.is_open() && !shares_.HasRoomFor(host)) {
       const Time now = ReadClock();
       if (now - begun >= Lobby::kPatience) break;
@@ -158,8 +157,7 @@ asio::awaitable<void> TcpServer::WaitForPlace(tcp::socket socket, std::string ho
         if (!hub_->MakeRoom(Transport::kTcp, host, shares_.held(host) == 0, now)) break;
         again = now + Lobby::kAgain;
       }
-      timer.expires_after(Lobby::kPoll);
-      co_await timer.async_wait(kAwaitTuple);
+      co_await Pause(Lobby::kPoll);
     }
     if (acceptor_.is_open()) Admit(std::move(socket), host);
   } catch (const std::bad_alloc&) {
@@ -232,10 +230,8 @@ asio::awaitable<bool> TcpServer::BeginWithTls(std::shared_ptr<StreamSocket> stre
   }
   // The watch ends the wait, too.
   HandshakePlaces::Place place;
-  asio::steady_timer timer(io_);
   while (!watch.expired() && (place = handshake_places_.Enter(host)) == nullptr) {
-    timer.expires_after(HandshakePlaces::kPoll);
-    co_await timer.async_wait(kAwaitTuple);
+    co_await Pause(HandshakePlaces::kPoll);
   }
   const asio::error_code error = co_await stream->Handshake(tls_->for_messages());
   place.reset();
