@@ -95,9 +95,7 @@ Handle Pipeline::Add(FrameGraph* graph, const FrameRequest& request, View view, 
   Handle picture = composite_pass_.Add(graph, shown, desc, settings, bloom);
   if (temporal != nullptr) {
     // Former pictures smooth edges; without one, FXAA must.
-    if (temporal->former_place.texture == 0) {
-      picture = AddFxaaPass(graph, picture, desc, &fullscreen_);
-    }
+    if (!temporal->has_former()) picture = AddFxaaPass(graph, picture, desc, &fullscreen_);
     return AddTemporalPasses(graph, *temporal,
                              {picture, skin.lit.depth, skin.lit.motion, skin.bounds,
                               scene_->setup().camera.focus_distance()},

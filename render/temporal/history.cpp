@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "render/temporal/jitter.h"
 
@@ -61,21 +62,19 @@ void Histories::Prepare(KeptTexture* kept, const TextureDesc& desc) {
   *kept = {desc, device_->CreateTexture(desc)};
 }
 
+std::map<std::uint64_t, History>::iterator Histories::Drop(
+    std::map<std::uint64_t, History>::iterator it) {
+  Release(&it->second);
+  return histories_.erase(it);
+}
+
 void Histories::Drop(std::uint64_t stream) {
-  const auto found = histories_.find(stream);
-  if (found == histories_.end()) return;
-  Release(&found->second);
-  histories_.erase(found);
+  if (const auto found = histories_.find(stream); found != histories_.end()) (void)Drop(found);
 }
 
 void Histories::DropResting() {
   for (auto it = histories_.begin(); it != histories_.end();) {
-    if (num_pictures_ - it->second.used <= kMaxRest) {
-      ++it;
-      continue;
-    }
-    Release(&it->second);
-    it = histories_.erase(it);
+    it = num_pictures_ - it->second.used > kMaxRest ? Drop(it) : std::next(it);
   }
 }
 

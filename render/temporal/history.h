@@ -44,8 +44,11 @@ struct TemporalFrame {
   // Textures of the history.
   KeptTexture colour;
   KeptTexture place;
-  KeptTexture former_colour;  // without a texture: the picture begins the stream
+  KeptTexture former_colour;
   KeptTexture former_place;
+
+  // False: the picture begins the stream.
+  [[nodiscard]] bool has_former() const { return former_colour.texture != 0; }
 };
 
 // How the scene is drawn for `frame`, whose history must outlive the result.
@@ -81,6 +84,8 @@ class Histories {
  private:
   void Prepare(KeptTexture* kept, const TextureDesc& desc);
   void Release(History* history);
+  // Erases a history and returns the next one.
+  std::map<std::uint64_t, History>::iterator Drop(std::map<std::uint64_t, History>::iterator it);
   void Drop(std::uint64_t stream);
   void DropResting();
   [[nodiscard]] bool HasRoom(const FrameRequest& request);

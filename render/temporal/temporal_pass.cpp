@@ -42,7 +42,6 @@ FrameGraph::Handle Import(FrameGraph* graph, const char* name, const KeptTexture
 FrameGraph::Handle AddTemporalPasses(FrameGraph* graph, const TemporalFrame& frame,
                                      const DrawnPicture& drawn, const TextureDesc& whole, int glow,
                                      Fullscreen* fullscreen) {
-  const bool has_former = frame.former_place.texture != 0;
   const FrameGraph::Handle former_place = Import(graph, "former place", frame.former_place);
   const FrameGraph::Handle former_colour = Import(graph, "former picture", frame.former_colour);
   const FrameGraph::Handle place = Import(graph, "place", frame.place);
@@ -52,7 +51,7 @@ FrameGraph::Handle AddTemporalPasses(FrameGraph* graph, const TemporalFrame& fra
       fullscreen->AddPass(graph,
                           {.name = "neighbours",
                            .fragment = "temporal/neighbours.frag.glsl",
-                           .defines = {Define("HAS_FORMER", has_former)},
+                           .defines = {Define("HAS_FORMER", frame.has_former())},
                            .reads = {drawn.picture, drawn.depth, drawn.motion, former_place},
                            .writes = {{"place", small, place}, {"mean", small}, {"spread", small}}},
                           [fullscreen, focus = drawn.focus_distance] {
