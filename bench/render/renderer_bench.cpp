@@ -165,7 +165,6 @@ void BM_Stream(benchmark::State& state) {
 }
 BENCHMARK(BM_Stream)
     ->ArgName("percent")
-    ->Arg(100)
     ->Arg(75)
     ->Arg(60)
     ->Arg(50)
