@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <future>
 #include <span>
+#include <system_error>
+#include <thread>
 
 #include <glm/common.hpp>
 #include <glm/gtc/packing.hpp>
@@ -190,6 +193,28 @@ glm::vec4 Same(const glm::vec4& texel) { return texel; }
 // Tiles at the right and bottom edges may be partly outside the level.
 glm::ivec2 TilesOf(glm::ivec2 size) { return (size + ComposeTile::kSide - 1) / ComposeTile::kSide; }
 
+// Calls `change` for every tile, on up to four threads. Reading all folds of a face takes longer
+// than drawing it, and the first picture waits for it.
+template <class Change>
+void ForTiles(std::vector<ComposeTile>* tiles, const Change& change) {
+  const std::size_t threads = std::clamp(std::thread::hardware_concurrency(), 1u, 4u);
+  const std::size_t share = tiles->size() / threads + 1;
+  const auto change_from = [&](std::size_t first) {
+    const std::size_t end = std::min(first + share, tiles->size());
+    for (std::size_t i = first; i < end; ++i) change(&(*tiles)[i]);
+  };
+  std::vector<std::future<void>> others;
+  for (std::size_t first = share; first < tiles->size(); first += share) {
+    try {
+      others.push_back(std::async(std::launch::async, change_from, first));
+    } catch (const std::system_error&) {  // no further thread may start
+      change_from(first);
+    }
+  }
+  change_from(0);
+  for (std::future<void>& other : others) other.get();
+}
+
 // Adds a mask channel to a tile if it is above 0 there. `number`: of the channel in the selection.
 void AddMask(const Texels& texels, int channel, std::size_t number, ComposeTile* tile) {
   ComposeTile::Mask mask{number, std::vector<std::uint8_t>(ComposeTile::kTexels)};
@@ -217,10 +242,10 @@ std::vector<ComposeTile> ReadMasks(const GpuCharacter& gpu, const ComposeSelecti
     std::size_t end = first;
     while (end < channels.size() && channels[end] / 4 == layer) ++end;
     const LayerReader reader(gpu.masks(), layer, Stored::kBytes, size);
-    for (ComposeTile& tile : tiles) {
-      const Texels texels = reader.ReadTile(tile.place);
-      for (std::size_t i = first; i < end; ++i) AddMask(texels, channels[i] % 4, i, &tile);
-    }
+    ForTiles(&tiles, [&](ComposeTile* tile) {
+      const Texels texels = reader.ReadTile(tile->place);
+      for (std::size_t i = first; i < end; ++i) AddMask(texels, channels[i] % 4, i, tile);
+    });
     first = end;
   }
   if (selection.skinned != nullptr) selection.skinned->AddTo(size, channels.size(), &tiles);
@@ -231,28 +256,27 @@ std::vector<ComposeTile> ReadMasks(const GpuCharacter& gpu, const ComposeSelecti
 
 // Passes each tile its texels of a texture, or `without` for all of them if there is no texture.
 template <class Give>
-void ForTiles(GLuint texture, Stored stored, const glm::vec4& without, glm::ivec2 size,
-              std::vector<ComposeTile>* tiles, Give give) {
+void GiveTexels(GLuint texture, Stored stored, const glm::vec4& without, glm::ivec2 size,
+                std::vector<ComposeTile>* tiles, Give give) {
   if (texture == 0) {
     const Texels none(ComposeTile::kTexels, without);
-    for (ComposeTile& tile : *tiles) give(&tile, none);
-    return;
+    return ForTiles(tiles, [&](ComposeTile* tile) { give(tile, none); });
   }
   const LayerReader reader(texture, 0, stored, size);
-  for (ComposeTile& tile : *tiles) give(&tile, reader.ReadTile(tile.place));
+  ForTiles(tiles, [&](ComposeTile* tile) { give(tile, reader.ReadTile(tile->place)); });
 }
 
 void ReadSurface(const GpuCharacter& gpu, const GpuMaterial& material, glm::ivec2 size,
                  std::vector<ComposeTile>* tiles) {
-  ForTiles(
+  GiveTexels(
       material.derivatives, Stored::kHalves, glm::vec4(0.0f), size, tiles,
       [](ComposeTile* tile, const Texels& texels) { tile->slopes = Planes(texels, 3, SlopeOf); });
   if (gpu.wrinkle_looks() == 0) return;
-  ForTiles(material.base_colour, Stored::kSrgbBytes, glm::vec4(1.0f), size, tiles,
-           [&](ComposeTile* tile, const Texels& texels) {
-             tile->colour = Planes(texels, 3, Same);
-             tile->cavity_albedo = material.cavity_albedo;
-           });
+  GiveTexels(material.base_colour, Stored::kSrgbBytes, glm::vec4(1.0f), size, tiles,
+             [&](ComposeTile* tile, const Texels& texels) {
+               tile->colour = Planes(texels, 3, Same);
+               tile->cavity_albedo = material.cavity_albedo;
+             });
 }
 
 // Every tile gets every map of the selection, so that positions in `maps` agree with
@@ -261,14 +285,14 @@ void ReadMap(const GpuCharacter& gpu, int map, glm::ivec2 size, std::vector<Comp
   // A map without a texture has amplitude 0, so any layer serves.
   const int layer = std::max(gpu.layout().map_layers[static_cast<std::size_t>(map)], 0);
   const LayerReader slopes(gpu.wrinkle_derivatives(), layer, Stored::kHalves, size);
-  for (ComposeTile& tile : *tiles) {
-    tile.maps.push_back({Planes(slopes.ReadTile(tile.place), 3, SlopeOf), {}});
-  }
+  ForTiles(tiles, [&](ComposeTile* tile) {
+    tile->maps.push_back({Planes(slopes.ReadTile(tile->place), 3, SlopeOf), {}});
+  });
   if (gpu.wrinkle_looks() == 0) return;
   const LayerReader looks(gpu.wrinkle_looks(), map, Stored::kSrgbBytes, size);
-  for (ComposeTile& tile : *tiles) {
-    tile.maps.back().looks = Planes(looks.ReadTile(tile.place), 4, Same);
-  }
+  ForTiles(tiles, [&](ComposeTile* tile) {
+    tile->maps.back().looks = Planes(looks.ReadTile(tile->place), 4, Same);
+  });
 }
 
 // RGBA texel by texel, the layout of an upload. ComposeJob needs planes instead. Converts row by
