@@ -70,7 +70,8 @@ Handle Pipeline::Add(FrameGraph* graph, const FrameRequest& request, View view, 
   const bool casts = settings.shadow.filter != ShadowFilter::kOff && settings.shadow.lamps > 0;
   // The picture and all tiles of its strip share the maps, so only the first view adds the pass.
   if (casts && NeedsSkinPipeline(view, settings) && shadows->version < 0) {
-    *shadows = shadow_pass_.Add(graph, request);
+    *shadows = shadow_pass_.Add(graph, request,
+                                temporal == nullptr ? nullptr : &temporal->history->shadows);
   }
   if (view == View::kShadowMaps && casts) {
     desc.samples = 1;
@@ -113,13 +114,17 @@ Pipeline::Skin Pipeline::AddSkin(FrameGraph* graph, const FrameRequest& request,
   const float slope = camera.PixelsPerSlope(desc.height);
   // The pixels that some subject can cover, extended by one pixel, because filters read neighbours,
   // and by one for the jitter.
-  const auto project = [&](const JointBounds& bounds) {
+  const auto project = [&](const JointBounds& bounds, bool skin_only) {
     ScreenRect rect;
-    for (const NamedSubject& named : SubjectsOf(request)) {
-      const PosedSubject& subject = *named.subject;
-      rect = rect.With(bounds.Project({subject.model, subject.shapes},
-                                      camera.view_projection * subject.placement, desc.width,
-                                      desc.height, scene_->displacement_reach()));
+    if (const JointBounds::Extent* seen = scene_->seen_extent(skin_only)) {
+      rect = seen->Pixels(desc.width, desc.height);
+    } else {
+      for (const NamedSubject& named : SubjectsOf(request)) {
+        const PosedSubject& subject = *named.subject;
+        rect = rect.With(bounds.Project({subject.model, subject.shapes},
+                                        camera.view_projection * subject.placement, desc.width,
+                                        desc.height, scene_->displacement_reach()));
+      }
     }
     return rect.Grown(2, desc.width, desc.height);
   };
@@ -127,7 +132,7 @@ Pipeline::Skin Pipeline::AddSkin(FrameGraph* graph, const FrameRequest& request,
                                .height = desc.height,
                                .view_rotation = glm::mat3(camera.view),
                                .pixels_per_slope = slope,
-                               .bounds = project(bounds_),
+                               .bounds = project(bounds_, false),
                                .background = SkinBackground(settings),
                                .jitter = jitter};
   const Surface surface = AddSurface(graph, settings, desc, shadows, view);
@@ -135,7 +140,7 @@ Pipeline::Skin Pipeline::AddSkin(FrameGraph* graph, const FrameRequest& request,
                           .height = desc.height,
                           .focus_distance = camera.focus_distance(),
                           .pixels_per_mm = 0.001f * slope / camera.focus_distance(),
-                          .bounds = project(skin_bounds_),
+                          .bounds = project(skin_bounds_, true),
                           .surface_z = surface.lit.z};
   const Handle scattered =
       subsurface_pass_.Add(graph, surface.lit.irradiance, settings.subsurface, skin);

@@ -64,6 +64,7 @@ class GlRenderer final : public Renderer {
     if (status.ok() && temporal_ != nullptr) {
       histories_.End(request, scene_.setup().camera);
       scene_.KeepVertices(histories_.vertices());
+      histories_.KeepShadows(scene_.setup().shadows, scene_.setup().shadow_resolution);
     }
     return status;
   }

@@ -21,7 +21,7 @@ struct RendererOptions {
   // EGL device index, or "surfaceless". Empty: the first device that provides OpenGL 4.5.
   std::string device;
   // The most memory of the textures that one picture is drawn into, and of those that are kept for
-  // the next pictures, in bytes. 0: no limit. The former pictures of streams need up to 96 MiB more
+  // the next pictures, in bytes. 0: no limit. The former pictures of streams need up to 128 MiB more
   // (Histories::kMaxBytes), on the CPU only.
   std::size_t max_texture_bytes = 0;
 };

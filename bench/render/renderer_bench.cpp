@@ -7,7 +7,9 @@
 
 #include <benchmark/benchmark.h>
 
+#include "bench/report/value_or_exit.h"
 #include "character/package/package.h"
+#include "motion/pose_source.h"
 #include "render/gl/pass_timer.h"
 #include "render/renderer.h"
 #include "render/settings/named_settings.h"
@@ -19,9 +21,7 @@ namespace {
 character::Character LoadSubject() {
   const char* path = std::getenv("FURROW_BENCH_CHARACTER");
   if (path == nullptr) return test::MakeHead();
-  auto loaded = character::LoadCharacter(path);
-  if (!loaded.ok()) std::abort();
-  return std::move(*loaded);
+  return bench::ValueOrExit(character::LoadCharacter(path, {}, motion::CachedPoseSource()));
 }
 
 class Scene {

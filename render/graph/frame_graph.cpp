@@ -19,6 +19,18 @@ std::size_t TextureBytes(const TextureDesc& desc) {
          static_cast<std::size_t>(desc.samples);
 }
 
+bool KeptTexture::Prepare(const TextureDesc& wanted, FrameGraphDevice* device) {
+  if (texture != 0 && desc == wanted) return false;
+  Release(device);
+  *this = {wanted, device->CreateTexture(wanted)};
+  return true;
+}
+
+void KeptTexture::Release(FrameGraphDevice* device) {
+  if (texture != 0) device->DestroyTexture(texture);
+  texture = 0;
+}
+
 TransientPool::~TransientPool() {
   for (const Entry& entry : entries_) device_->DestroyTexture(entry.texture);
 }

@@ -41,6 +41,17 @@ class FrameGraphDevice {
   virtual void DestroyTexture(TextureId texture) = 0;
 };
 
+// A texture that outlives the frame. Its owner calls Release().
+struct KeptTexture {
+  TextureDesc desc;
+  TextureId texture = 0;  // 0: none yet
+
+  // Replaces the texture unless it is of `wanted`. True: it is new, and its content undefined.
+  bool Prepare(const TextureDesc& wanted, FrameGraphDevice* device);
+  void Release(FrameGraphDevice* device);
+  [[nodiscard]] std::size_t num_bytes() const { return texture == 0 ? 0 : TextureBytes(desc); }
+};
+
 // Receives every pass that runs, for timing and for inspecting what the pass wrote.
 class FrameGraphObserver {
  public:

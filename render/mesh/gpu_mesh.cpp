@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/mesh/gpu_mesh.h"
 
+#include <algorithm>
 #include <cstddef>
+#include <functional>
+#include <numeric>
 #include <vector>
 
 #include <glm/geometric.hpp>
@@ -104,6 +107,35 @@ gl::Buffer Expanded(const gl::Buffer& gradients, std::span<const std::uint32_t> 
   return gl::MakeStaticBuffer(expanded.data(), expanded.size() * sizeof(WeightGradient));
 }
 
+// Moves the vertices of coarse levels to the front. Each level uses vertices of the finer ones.
+void SortByLevel(character::Mesh* source, std::vector<MeshLevel>* levels, GpuMesh* mesh) {
+  std::vector<std::size_t> coarsest(source->vertices.size());
+  for (std::size_t level = 0; level < levels->size(); ++level) {
+    for (const std::uint32_t vertex : (*levels)[level].indices) coarsest[vertex] = level;
+  }
+  std::vector<std::uint32_t> order(coarsest.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::ranges::stable_sort(order, std::greater(),
+                           [&](std::uint32_t vertex) { return coarsest[vertex]; });
+  std::vector<Vertex> sorted;
+  std::vector<std::uint32_t> number(order.size());
+  for (const std::uint32_t vertex : order) {
+    number[vertex] = static_cast<std::uint32_t>(sorted.size());
+    sorted.push_back(source->vertices[vertex]);
+  }
+  for (MeshLevel& level : *levels) {
+    for (std::uint32_t& vertex : level.indices) vertex = number[vertex];
+  }
+  for (MeshCluster& cluster : mesh->clusters) {
+    const auto indices = std::span<const std::uint32_t>((*levels)[0].indices)
+                             .subspan(cluster.indices.first, cluster.indices.count);
+    cluster.vertices = VertexBlocks(indices, sorted.size());
+  }
+  ++mesh->order;
+  mesh->vertices = gl::MakeStaticBuffer(sorted.data(), sorted.size() * sizeof(Vertex));
+  DescribeVertices(mesh->vertex_array.name(), mesh->vertices);
+}
+
 }  // namespace
 
 // The mesh is uploaded once and not kept in memory. Variants, which few pictures need, read it
@@ -154,12 +186,15 @@ void AddGradients(const character::Mesh& source, GpuMesh* mesh) {
 }
 
 void AddLevels(GpuMesh* mesh, Borders borders) {
-  std::vector<std::uint32_t> indices;
   character::Mesh source = ReadMesh(*mesh);
   source.morph_targets = mesh->morphs.Positions();
-  for (const MeshLevel& level : MakeMeshLevels(source, borders)) {
+  std::vector<MeshLevel> levels = MakeMeshLevels(source, borders);
+  if (mesh->morphs.empty() && !mesh->gradients) SortByLevel(&source, &levels, mesh);
+  std::vector<std::uint32_t> indices;
+  for (const MeshLevel& level : levels) {
+    const std::uint32_t last = level.indices.empty() ? 0 : std::ranges::max(level.indices);
     mesh->levels.push_back({static_cast<GLsizei>(indices.size()),
-                            static_cast<GLsizei>(level.indices.size()), level.error});
+                            static_cast<GLsizei>(level.indices.size()), level.error, last + 1});
     indices.insert(indices.end(), level.indices.begin(), level.indices.end());
   }
   mesh->indices = gl::MakeStaticBuffer(indices.data(), indices.size() * 4);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "character/character.h"
 #include "render/gl/gl_objects.h"
 #include "render/mesh/joint_bounds.h"
+#include "render/mesh/mesh_clusters.h"
 #include "render/mesh/mesh_levels.h"
 #include "render/mesh/mesh_morphs.h"
 
@@ -23,6 +25,7 @@ struct GpuMesh {
   gl::Buffer morph_rows;  // MeshMorphs::rows(), per vertex of this object; none without morphs
   gl::Buffer gradients;   // WeightGradients(), per vertex; none unless AddGradients() found any
   JointBounds bounds;     // bounds of the posed mesh
+  std::vector<MeshCluster> clusters;  // of level 0
   GLsizei num_vertices = 0;
   GLsizei num_indices = 0;
   int material = 0;           // index into Character::materials
@@ -36,7 +39,9 @@ struct GpuMesh {
     GLsizei first = 0;
     GLsizei count = 0;
     float error = 0.0f;  // RMS distance from the surface of level 0 in the rest pose, metres
+    std::uint32_t num_vertices = 0;  // the level uses none but the first of the mesh
   };
+  int order = 0;              // another one: AddLevels() has sorted the vertices
   std::vector<Level> levels;  // empty until AddLevels(): use the whole mesh
 };
 
@@ -55,7 +60,8 @@ struct GpuPatches {
 // Computes and uploads the gradients of the skin weights (WeightGradients()), so that the normals
 // of the posed mesh follow its surface. `source`: the mesh that `mesh` was made from.
 void AddGradients(const character::Mesh& source, GpuMesh* mesh);
-// Computes the levels of detail (MakeMeshLevels()), uploads them and fills mesh->levels.
+// Computes the levels of detail (MakeMeshLevels()), uploads them and fills mesh->levels. Sorts the
+// vertices of a mesh without morph targets and gradients, so that coarse levels use few of them.
 void AddLevels(GpuMesh* mesh, Borders borders);
 // Reads the whole mesh, without morph targets, back from the GPU, where its only copy is.
 [[nodiscard]] character::Mesh ReadMesh(const GpuMesh& mesh);

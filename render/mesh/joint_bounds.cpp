@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/mesh/joint_bounds.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <tuple>
 #include <utility>
+
+#include <glm/geometric.hpp>
 
 #include "render/mesh/mesh_morphs.h"
 
@@ -24,11 +28,31 @@ JointBounds::JointBounds(const character::Mesh& mesh,
   Add(mesh, inverse_bind_matrices);
 }
 
+JointBounds::JointBounds(const character::Mesh& mesh, std::span<const std::uint32_t> vertices,
+                         std::span<const glm::mat4> inverse_bind_matrices) {
+  AddBoxes(
+      vertices.size(),
+      [&](std::size_t i) -> const character::Vertex& { return mesh.vertices[vertices[i]]; },
+      inverse_bind_matrices);
+}
+
 void JointBounds::Add(const character::Mesh& mesh,
                       std::span<const glm::mat4> inverse_bind_matrices) {
+  const std::size_t first_box = boxes_.size();
+  AddBoxes(
+      mesh.vertices.size(),
+      [&](std::size_t i) -> const character::Vertex& { return mesh.vertices[i]; },
+      inverse_bind_matrices);
+  AddMoves(mesh, inverse_bind_matrices, first_box);
+}
+
+template <class VertexOf>
+void JointBounds::AddBoxes(std::size_t count, const VertexOf& vertex_of,
+                           std::span<const glm::mat4> inverse_bind_matrices) {
   // A map keeps the boxes in joint order, which makes the result independent of the vertex order.
   std::map<int, Box> boxes;
-  for (const character::Vertex& vertex : mesh.vertices) {
+  for (std::size_t number = 0; number < count; ++number) {
+    const character::Vertex& vertex = vertex_of(number);
     for (int i = 0; i < 4; ++i) {
       // Boxes are in the joint's bind space. They rotate with the joint and stay valid in every
       // pose.
@@ -42,9 +66,7 @@ void JointBounds::Add(const character::Mesh& mesh,
       found->second.high = glm::max(found->second.high, place);
     }
   }
-  const std::size_t first_box = boxes_.size();
   for (const auto& [joint, box] : boxes) boxes_.push_back(box);
-  AddMoves(mesh, inverse_bind_matrices, first_box);
 }
 
 void JointBounds::AddMoves(const character::Mesh& mesh,
@@ -109,16 +131,35 @@ JointBounds::Extent JointBounds::Look(const Pose& pose, const glm::mat4& view_pr
   return extent;
 }
 
-ScreenRect JointBounds::Project(const Pose& pose, const glm::mat4& view_projection, int width,
-                                int height, float reach) const {
-  const Extent extent = Look(pose, view_projection, reach);
+bool JointBounds::IsBeyond(const ViewSides& sides, float reach) const {
+  for (std::size_t side = 0; side < std::tuple_size_v<ViewSides::Planes>; ++side) {
+    const bool is_beyond = std::ranges::all_of(boxes_, [&](const Box& box) {
+      const glm::vec4& plane = sides.of(box.joint)[side];
+      const glm::vec3 normal(plane);
+      const glm::vec3 middle = 0.5f * (box.low + box.high);
+      const glm::vec3 half = 0.5f * (box.high - box.low) + reach;
+      // The nearest corner to the inside.
+      return glm::dot(normal, middle) + plane.w + glm::dot(glm::abs(normal), half) < 0.0f;
+    });
+    if (is_beyond) return true;
+  }
+  return false;
+}
+
+ScreenRect JointBounds::Extent::Pixels(int width, int height) const {
+  if (nearest <= 0.0f) return {0, 0, width, height};
   const glm::vec2 size(width, height);
   const auto pixel = [&](const glm::vec2& place) { return (place * 0.5f + 0.5f) * size; };
   // Rounded outwards, so that partly covered pixels count.
-  const glm::vec2 first = glm::clamp(glm::floor(pixel(extent.low)), glm::vec2(0), size);
-  const glm::vec2 last = glm::clamp(glm::ceil(pixel(extent.high)), glm::vec2(0), size);
+  const glm::vec2 first = glm::clamp(glm::floor(pixel(low)), glm::vec2(0), size);
+  const glm::vec2 last = glm::clamp(glm::ceil(pixel(high)), glm::vec2(0), size);
   return {static_cast<int>(first.x), static_cast<int>(first.y), static_cast<int>(last.x),
           static_cast<int>(last.y)};
+}
+
+ScreenRect JointBounds::Project(const Pose& pose, const glm::mat4& view_projection, int width,
+                                int height, float reach) const {
+  return Look(pose, view_projection, reach).Pixels(width, height);
 }
 
 }  // namespace furrow::render

@@ -7,9 +7,27 @@ namespace furrow::render {
 namespace {
 
 // Uniform locations in common/view.glsl and skin/light.frag.glsl.
-enum LightUniform : GLint { kLightViewRotation = 0, kLightLens = 3, kLightRange = 4 };
+enum LightUniform : GLint {
+  kLightViewRotation = 0,
+  kLightLens = 3,
+  kLightRange = 4,
+  kBeforeRotation = 5,
+  kBeforePosition = 8,
+  kBeforeLens = 9
+};
 constexpr std::size_t kOpenUnit = 10;
 constexpr std::size_t kStoredEmissionUnit = 11;
+constexpr std::size_t kMotionUnit = 12;
+
+// `camera`: of the former picture. `aspect`: width / height.
+void SetFormerView(const CameraFrame& camera, float aspect) {
+  const glm::mat3 rotation(camera.view);
+  const float slope = 1.0f / camera.cot_half_fov;
+  glUniformMatrix3fv(kBeforeRotation, 1, GL_FALSE, &rotation[0].x);
+  glUniform4f(kBeforePosition, camera.position.x, camera.position.y, camera.position.z,
+              camera.focus_distance());
+  glUniform2f(kBeforeLens, aspect * slope, slope);
+}
 
 }  // namespace
 
@@ -21,14 +39,17 @@ SkinTargets AddLightPass(FrameGraph* graph, const FacetTargets& facets, FrameGra
   defines.push_back(Define("OCCLUSION", open.target.version >= 0));
   defines.push_back(Define("SCALE", open.scale));
   defines.push_back(Define("EMISSION", facets.emission.version >= 0));
+  const CameraFrame* before = scene->shadow_camera();
+  defines.push_back(Define("SHADOWS_BEFORE", before != nullptr));
   std::vector<FrameGraph::Handle> reads = {facets.colour, facets.normal, facets.geometric,
                                            facets.matter, facets.depth};
   // The index is the texture unit. Units without a handle stay free for the look-up tables of
   // SceneDraw.
-  reads.resize(kStoredEmissionUnit + 1);
+  reads.resize(kMotionUnit + 1);
   for (const GLuint unit : SceneDraw::kShadowUnits) reads[unit] = shadows;
   reads[kOpenUnit] = open.target;
   reads[kStoredEmissionUnit] = facets.emission;
+  if (before != nullptr) reads[kMotionUnit] = facets.motion;
   const auto target = [&](std::string_view name, PixelFormat format) {
     return FullscreenPass::Target{name, {geometry.width, geometry.height, format, 1}};
   };
@@ -50,6 +71,10 @@ SkinTargets AddLightPass(FrameGraph* graph, const FacetTargets& facets, FrameGra
         glUniform4f(kLightLens, geometry.pixels_per_slope, geometry.axis().x, geometry.axis().y,
                     0.0f);
         glUniform1f(kLightRange, OcclusionPass::BlurDepthLimit(settings.occlusion));
+        if (const CameraFrame* former = scene->shadow_camera()) {
+          SetFormerView(*former,
+                        static_cast<float>(geometry.width) / static_cast<float>(geometry.height));
+        }
         fullscreen->Clear(0, 0.0f, 0.0f, 0.0f, kFarAway);
         fullscreen->Clear(1, back.r, back.g, back.b, 0.0f);
         fullscreen->Draw(geometry.bounds);

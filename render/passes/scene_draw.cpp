@@ -28,6 +28,16 @@ enum TextureUnit : GLuint {
   kWrinkleHeightsUnit = 12,
   kEmissionUnit = 14
 };
+// Normalised device coordinates: the jitter of a small picture, and rounding.
+constexpr float kCameraMargin = 0.1f;
+// How far a look-up of a shadow map is from the surface (shaders/shadow/shadow.glsl): a few texels,
+// and metres, the largest radius of the filter and the way along the normal.
+constexpr float kShadowMargin = 0.03f;
+constexpr float kShadowRadius = 0.05f;
+constexpr float kShadowOffset = 0.01f;
+constexpr float kMetresPerMm = 0.001f;
+// Allowed RMS error of hair in moving pictures, drawn pixels.
+constexpr float kMovingHairPixels = 0.5f;
 constexpr GLint kLightLocation = 0;        // of shadow.vert.glsl and displace.tese.glsl
 constexpr GLint kHeightTexelLocation = 1;  // of displace.tese.glsl
 
@@ -95,6 +105,22 @@ bool TakesComposed(const Settings& settings, View view) {
          view != View::kMaskTexture && settings.normal_blend == NormalBlend::kPartialDerivative;
 }
 
+// Metres from a surface to the farthest texel that its look-up of a shadow map may use.
+float ShadowReach(const Settings& settings) {
+  const ShadowSettings& shadow = settings.shadow;
+  const float filter = shadow.filter == ShadowFilter::kPcf
+                           ? 1.5f * kMetresPerMm * shadow.softness_mm
+                           : std::max(kShadowRadius, kMetresPerMm * shadow.lamp_mm);
+  return filter + kShadowOffset + kMetresPerMm * shadow.normal_offset_mm +
+         kMetresPerMm * settings.translucency.shrink_mm;
+}
+
+// Returns true if some view needs shadow maps.
+bool HasShadows(const Settings& settings) {
+  return settings.shadow.filter != ShadowFilter::kOff &&
+         AnyView(settings, [&](View view) { return NeedsSkinPipeline(view, settings); });
+}
+
 // The same for the picture's view or any view of its strip.
 bool SomeViewTakesComposed(const Settings& settings) {
   return AnyView(settings, [&](View view) { return TakesComposed(settings, view); });
@@ -153,6 +179,12 @@ SceneDraw::SceneDraw(const wrinkle::Skeleton& skeleton,
 Status SceneDraw::Update(const FrameRequest& request, const SceneMotion* motion) {
   FURROW_RETURN_IF_ERROR(tables_->Update(request));
   setup_ = SetUpFrame(request, skeleton_, &ambient_);
+  shadow_camera_.reset();
+  if (motion != nullptr && motion->shadows != nullptr) {
+    shadow_camera_ = *motion->camera;
+    setup_.shadows = motion->shadows->views;
+    setup_.shadow_resolution = motion->shadows->resolution;
+  }
   const Settings& settings = request.settings;
   // Bounds of the skinned surface must be enlarged by the highest possible fold. The height map's
   // unit is millimetres.
@@ -162,8 +194,12 @@ Status SceneDraw::Update(const FrameRequest& request, const SceneMotion* motion)
                             : 0.0f;
   const std::vector<NamedSubject> subjects = SubjectsOf(request);
   is_crowd_ = subjects.size() > 1;
+  hair_pixels_ = request.is_moving ? kMovingHairPixels / request.scale : 0.0f;
   // Later steps use the results of earlier ones: tables, frame set-up, visibility, composing.
-  FindVisible(subjects, settings);
+  // The next picture of a stream may use this one's shadow maps, and a camera that turns sees more.
+  const bool turns = motion != nullptr && motion->camera != nullptr &&
+                     motion->camera->view_projection != setup_.camera.view_projection;
+  FindVisible(subjects, settings, turns);
   has_motion_ = motion != nullptr;
   FrameBlock frame = MakeFrameBlock(setup_, settings);
   if (has_motion_) {
@@ -193,21 +229,31 @@ void SceneDraw::PlanComposing(const FrameRequest& request) {
                .list = &draw_list_});
 }
 
-void SceneDraw::FindVisible(std::span<const NamedSubject> subjects, const Settings& settings) {
+void SceneDraw::FindVisible(std::span<const NamedSubject> subjects, const Settings& settings,
+                            bool turns) {
   std::array<DrawList::View, DrawList::kNumViews> views;
   views[DrawList::kCamera].projection = setup_.camera.view_projection;
   views[DrawList::kCamera].pixels = setup_.pixels_per_slope;
+  views[DrawList::kCamera].margin = kCameraMargin;
+  const bool casts = HasShadows(settings) && !shadow_camera_.has_value();
   for (int light = 0; light < kNumLights; ++light) {
     views[light].projection = FlatProjection(setup_.shadows[light]);
     views[light].pixels =
         0.5f * static_cast<float>(setup_.shadow_resolution) * setup_.shadows[light].scale;
     // A dark lamp needs no shadow map.
-    views[light].is_active = setup_.lighting.lights[light].radiance != glm::vec3(0.0f);
+    views[light].is_active = casts && light < settings.shadow.lamps &&
+                             setup_.lighting.lights[light].radiance != glm::vec3(0.0f);
+    views[light].margin = kShadowMargin;
+    views[light].margin_at_1 = setup_.shadows[light].scale * ShadowReach(settings);
   }
   draw_list_.Build(gpu_, subjects, views,
                    {.reach = displacement_reach_,
                     .error_pixels = is_crowd_ ? settings.detail.error_pixels : 0.0f,
-                    .hair_shadow = setup_.hair_shadow_error});
+                    .hair_pixels = hair_pixels_,
+                    .hair_shadow = setup_.hair_shadow_error,
+                    .all_casters = turns || AnyView(settings, [](View view) {
+                                     return view == View::kShadowMaps;
+                                   })});
 }
 
 void SceneDraw::BindMasks() {
@@ -269,7 +315,10 @@ Result<PosedMeshes::Vertices> SceneDraw::Pose(std::size_t index, PosedMeshes::Fo
   if (morphs_.Moves(index, draw_list_.subjects(index))) {
     shader.morph_parts = static_cast<int>(gpu_->meshes()[index].morphs.num_parts());
   }
-  return posed_.Get(index, form, shader, part, draw_list_.subjects(index));
+  const DrawList::Parts* parts =
+      form == PosedMeshes::Form::kIndexed ? draw_list_.parts(index) : nullptr;
+  return posed_.Get(index, form, shader, part, draw_list_.subjects(index),
+                    parts == nullptr ? std::span<const ElementRange>() : parts->vertices);
 }
 
 void SceneDraw::DrawSubjects(const PosedMeshes::Vertices& posed, std::size_t index,
@@ -292,26 +341,37 @@ void SceneDraw::DrawSubjects(const PosedMeshes::Vertices& posed, std::size_t ind
 // of a multi-draw with its own base vertex and its own level of detail.
 void SceneDraw::DrawAlike(const PosedMeshes::Vertices& posed, std::size_t index,
                           PosedMeshes::Form form, int view, std::span<const std::uint32_t> seen) {
-  const auto num_draws = static_cast<GLsizei>(seen.size());
   std::vector<GLint> first(seen.size());  // first vertex of each subject
   std::ranges::transform(seen, first.begin(), [&](std::uint32_t subject) {
     return static_cast<GLint>(subject) * posed.per_subject;
   });
   if (form == PosedMeshes::Form::kUnindexed) {
     const std::vector<GLsizei> counts(seen.size(), gpu_->meshes()[index].num_indices);
-    glMultiDrawArrays(GL_TRIANGLES, first.data(), counts.data(), num_draws);
+    glMultiDrawArrays(GL_TRIANGLES, first.data(), counts.data(), static_cast<GLsizei>(seen.size()));
     return;
   }
   std::vector<GLsizei> counts;
   std::vector<const void*> offsets;
-  for (const std::uint32_t subject : seen) {
-    const GpuMesh::Level level = LevelOf(index, form, draw_list_.levels(view, index)[subject]);
-    counts.push_back(level.count);
-    offsets.push_back(reinterpret_cast<const void*>(std::uintptr_t{4} * level.first));
+  const auto add = [&](std::size_t first_index, std::size_t count) {
+    counts.push_back(static_cast<GLsizei>(count));
+    offsets.push_back(reinterpret_cast<const void*>(std::uintptr_t{4} * first_index));
+  };
+  const DrawList::Parts* parts =
+      form == PosedMeshes::Form::kIndexed ? draw_list_.parts(index) : nullptr;
+  if (parts != nullptr && draw_list_.levels(view, index)[0] == 0) {
+    for (const ElementRange& range : parts->indices[static_cast<std::size_t>(view)]) {
+      add(range.first, range.count);
+    }
+    first.assign(counts.size(), 0);
+  } else {
+    for (const std::uint32_t subject : seen) {
+      const GpuMesh::Level level = LevelOf(index, form, draw_list_.levels(view, index)[subject]);
+      add(static_cast<std::size_t>(level.first), static_cast<std::size_t>(level.count));
+    }
   }
   const GLenum kind = form == PosedMeshes::Form::kPatches ? GL_PATCHES : GL_TRIANGLES;
-  glMultiDrawElementsBaseVertex(kind, counts.data(), GL_UNSIGNED_INT, offsets.data(), num_draws,
-                                first.data());
+  glMultiDrawElementsBaseVertex(kind, counts.data(), GL_UNSIGNED_INT, offsets.data(),
+                                static_cast<GLsizei>(counts.size()), first.data());
 }
 
 // Patches have no levels: tessellation adapts them to the screen.
@@ -357,6 +417,21 @@ Status SceneDraw::DrawCaster(const Settings& settings, int light, std::size_t in
   glUniform1i(kLightLocation, light);
   DrawSubjects(*posed, index, form, light);
   return {};
+}
+
+void SceneDraw::AppendCasters(int light, std::vector<float>* values) const {
+  for (std::size_t index = 0; index < gpu_->meshes().size(); ++index) {
+    values->push_back(static_cast<float>(draw_list_.seen(light, index).size()));
+    for (const int level : draw_list_.levels(light, index)) {
+      values->push_back(static_cast<float>(level));
+    }
+    const DrawList::Parts* parts = draw_list_.parts(index);
+    if (parts == nullptr) continue;
+    for (const ElementRange& range : parts->indices[static_cast<std::size_t>(light)]) {
+      values->insert(values->end(),
+                     {static_cast<float>(range.first), static_cast<float>(range.count)});
+    }
+  }
 }
 
 Status SceneDraw::DrawScene(const Settings& settings, SceneKind kind) {

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
+#include <vector>
 
 #include "render/compose/wrinkle_cache.h"
 #include "render/gl/shader_library.h"
@@ -43,6 +45,14 @@ class SceneDraw {
   // Keeps the posed vertices of this frame for the next picture of its stream. Call it when the
   // frame has been drawn.
   void KeepVertices(FormerVertices* former) { posed_.EndFrame(former); }
+  // Where the camera sees the subject, or its skin alone; null: not known closely.
+  [[nodiscard]] const JointBounds::Extent* seen_extent(bool skin_only) const {
+    return draw_list_.seen_extent(skin_only);
+  }
+  // The camera of the former picture if this frame uses its shadow maps, otherwise null.
+  [[nodiscard]] const CameraFrame* shadow_camera() const {
+    return shadow_camera_.has_value() ? &*shadow_camera_ : nullptr;
+  }
   // True if this frame has motion: kFacets has one more target, the last.
   [[nodiscard]] bool has_motion() const { return has_motion_; }
   [[nodiscard]] const FrameSetup& setup() const { return setup_; }
@@ -65,6 +75,8 @@ class SceneDraw {
   // Draws the depth of every mesh as lamp `light`, in [0, kNumLights), sees it, into the viewport
   // of the bound framebuffer. Errors: those of ShaderLibrary and PosedMeshes.
   [[nodiscard]] Status DrawShadow(const Settings& settings, int light);
+  // Appends numbers that state which parts of the meshes lamp `light` sees.
+  void AppendCasters(int light, std::vector<float>* values) const;
   // True if the character sends out light, so that kFacets has a sixth target.
   [[nodiscard]] bool emits() const { return gpu_->emits(); }
   // Draws every mesh for settings.view into the bound framebuffer, which has one target for kPlain
@@ -73,7 +85,8 @@ class SceneDraw {
 
  private:
   void PlanComposing(const FrameRequest& request);
-  void FindVisible(std::span<const NamedSubject> subjects, const Settings& settings);
+  // `turns`: the camera of a stream moves.
+  void FindVisible(std::span<const NamedSubject> subjects, const Settings& settings, bool turns);
   void BindMasks();
   [[nodiscard]] WrinkleCache::Composed ComposedOf(int material, const Settings& settings) const;
   void BindMaterial(const GpuMaterial& material, const WrinkleCache::Composed& composed);
@@ -108,6 +121,8 @@ class SceneDraw {
   AmbientCache ambient_;
   FrameSetup setup_;
   float displacement_reach_ = 0.0f;
+  float hair_pixels_ = 0.0f;  // DrawList::Tolerance::hair_pixels
+  std::optional<CameraFrame> shadow_camera_;
   bool is_crowd_ = false;
   bool has_motion_ = false;
   DrawList draw_list_;

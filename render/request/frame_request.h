@@ -46,8 +46,9 @@ struct FrameRequest : PosedSubject {
   int height = 640;
   std::uint64_t token = 0;  // returned unchanged in Image::token
   // Seen in motion and compressed, so that it may differ a little from the exact picture, at most
-  // by a root mean square of 1/255 on the face: coarser shadow maps (shadow.fit) and fewer samples
-  // of the scattered light. Saves about a tenth of the work of a renderer on the CPU.
+  // by a root mean square of 1/255 on the face: coarser shadow maps (shadow.fit), hair with fewer
+  // triangles, and fewer samples of the scattered light. Saves about a tenth of the work of a
+  // renderer on the CPU.
   bool is_moving = false;
   // The stream of pictures of one subject and one viewer that a moving picture continues; 0: none.
   // A renderer on the CPU draws such a picture with skin shading at `scale` of its width and

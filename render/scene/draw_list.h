@@ -14,8 +14,9 @@
 
 namespace furrow::render {
 
-// Selects the subjects of each mesh that the camera and the lamps can see, and their level of
-// detail.
+// Selects the subjects of each mesh that the camera and the lamps can see, their level of detail,
+// and the parts of a single subject's meshes. A lamp sees what may cast a shadow on a surface that
+// the camera sees.
 class DrawList {
  public:
   static constexpr int kCamera = kNumLights;  // index of the camera's view; the lamps' views come
@@ -25,11 +26,17 @@ class DrawList {
     glm::mat4 projection{1.0f};  // model space to clip space
     float pixels = 0.0f;         // pixels per metre where clip space's w is 1
     bool is_active = true;       // false: a lamp that casts no shadow
+    // How far beyond the part that matters a surface counts, in normalised device coordinates: the
+    // first at any distance, the second where clip space's w is 1.
+    float margin = 0.0f;
+    float margin_at_1 = 0.0f;
   };
   struct Tolerance {
     float reach = 0.0f;         // metres between the drawn and the skinned surface, at most
     float error_pixels = 0.0f;  // allowed RMS error of simplified meshes, picture pixels
+    float hair_pixels = 0.0f;   // allowed RMS error of hair in the picture, picture pixels
     float hair_shadow = 0.0f;   // allowed RMS error of hair in shadow maps, metres
+    bool all_casters = false;   // also those whose shadows the camera does not see
   };
 
   // Replaces the list. `views`: those of the lamps, then the camera's. The other arguments are only
@@ -58,6 +65,22 @@ class DrawList {
   [[nodiscard]] std::span<const std::uint32_t> seen(int view, std::size_t mesh) const {
     return meshes_[mesh].seen[static_cast<std::size_t>(view)];
   }
+  // The parts of a mesh that a picture needs. Only a picture of one subject without displacement
+  // has any.
+  struct Parts {
+    // The triangles that each view sees at level 0, as ranges of the mesh's indices.
+    std::array<std::vector<ElementRange>, kNumViews> indices;
+    std::vector<ElementRange> vertices;  // those that some view needs
+  };
+  // Null: the picture needs the whole mesh.
+  [[nodiscard]] const Parts* parts(std::size_t mesh) const {
+    return has_parts_ ? &meshes_[mesh].parts : nullptr;
+  }
+  // Where the parts that the camera sees are, of all meshes or of skin alone. Null: the picture
+  // needs whole meshes. Without parts, `low` is above `high`.
+  [[nodiscard]] const JointBounds::Extent* seen_extent(bool skin_only) const {
+    return has_parts_ ? &extents_[skin_only ? 1 : 0] : nullptr;
+  }
 
  private:
   struct Mesh {
@@ -66,8 +89,27 @@ class DrawList {
     std::vector<int> shadow_levels;
     Sight sight;
     std::array<std::vector<std::uint32_t>, kNumViews> seen;
+    std::array<std::vector<std::uint32_t>, kNumViews> clusters;  // seen; of GpuMesh::clusters
+    std::vector<float> reaches;  // MeshCluster::MorphReach() of each of GpuMesh::clusters
+    Parts parts;
   };
+  using Views = std::array<View, kNumViews>;
+  struct Rect;
+  void FindParts(const GpuCharacter& gpu, const PosedSubject& subject, const Views& views,
+                 bool all_casters);
+  void FindParts(const GpuCharacter& gpu, const PosedSubject& subject, const Views& views, int view,
+                 const Rect& rect);
+  [[nodiscard]] Rect Shaded(const GpuCharacter& gpu, const PosedSubject& subject,
+                            const View& lamp) const;
+  void FindReaches(const GpuCharacter& gpu, const PosedSubject& subject);
+  [[nodiscard]] std::array<JointBounds::Extent, 2> Extents(const GpuCharacter& gpu,
+                                                           const PosedSubject& subject,
+                                                           const View& view) const;
+  void FindVertices(const GpuCharacter& gpu);
+
   std::vector<Mesh> meshes_;
+  bool has_parts_ = false;
+  std::array<JointBounds::Extent, 2> extents_;  // see seen_extent()
 };
 
 }  // namespace furrow::render

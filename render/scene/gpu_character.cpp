@@ -264,8 +264,15 @@ Status GpuCharacter::AddMeshes(const Character& character) {
   std::ranges::stable_sort(order, {}, [&](const character::Mesh* mesh) {
     return LayerOf(character.materials[static_cast<std::size_t>(mesh->material)].kind);
   });
-  for (const character::Mesh* source : order) {
+  for (const character::Mesh* original : order) {
+    // Cards of hair lie on one another, and each shade darkens what is drawn.
+    const GpuMaterial& material = materials_[static_cast<std::size_t>(original->material)];
+    const bool is_solid = !material.alpha_test && material.kind != Material::Kind::kShade;
+    ClusteredMesh clustered = MakeClusters(*original, character.inverse_bind_matrices,
+                                           is_solid ? Sorting::kByPlace : Sorting::kNone);
+    const character::Mesh* source = &clustered.mesh;
     meshes_.push_back(MakeGpuMesh(*source, character.inverse_bind_matrices));
+    meshes_.back().clusters = std::move(clustered.clusters);
     // Cloth does not follow its joints' weights as closely: its folds are maps.
     if (materials_[source->material].kind == Material::Kind::kSkin) {
       AddGradients(*source, &meshes_.back());

@@ -7,7 +7,7 @@ namespace furrow::render {
 namespace {
 
 // Of shaders/scene/morph.glsl.
-constexpr GLuint kMorphSums = 5;
+constexpr GLuint kMorphSumsUnit = 16;
 constexpr GLint kRowsLocation = 0;
 // Sums of this size stay in the processor's cache between their computation and their use.
 constexpr std::size_t kBytesAtATime = std::size_t{1} << 22;
@@ -39,7 +39,10 @@ void MorphSums::Bind(std::size_t mesh, std::span<const std::uint32_t> subjects) 
   Sums& sums = sums_[mesh];
   weights_.clear();
   for (const std::uint32_t subject : subjects) morphs.AppendWeights(shapes_[subject], &weights_);
-  if (!sums.buffer) sums.buffer = gl::MakeBuffer();
+  if (!sums.buffer) {
+    sums.buffer = gl::MakeBuffer();
+    sums.view = gl::MakeTexture(GL_TEXTURE_BUFFER);
+  }
   if (weights_ != sums.weights) {
     const std::size_t size = morphs.num_floats();
     values_.resize(subjects.size() * size);
@@ -47,9 +50,10 @@ void MorphSums::Bind(std::size_t mesh, std::span<const std::uint32_t> subjects) 
       morphs.Sum(shapes_[subjects[i]], std::span(values_).subspan(i * size, size));
     }
     gl::Upload(sums.buffer, values_.data(), values_.size() * sizeof(float));
+    glTextureBuffer(sums.view.name(), GL_RGB32F, sums.buffer.name());
     sums.weights = weights_;
   }
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kMorphSums, sums.buffer.name());
+  glBindTextureUnit(kMorphSumsUnit, sums.view.name());
   glUniform1ui(kRowsLocation, static_cast<GLuint>(morphs.num_rows()));
 }
 

@@ -37,6 +37,7 @@ class MorphSums {
  private:
   struct Sums {
     gl::Buffer buffer;
+    gl::Texture view;            // of `buffer`
     std::vector<float> weights;  // from which `buffer` was computed; drawn weights per subject
   };
   const GpuCharacter* gpu_;

@@ -54,6 +54,21 @@ void DescribePosed(GLuint array, const gl::Buffer& vertices, const PoseShader& s
   }
 }
 
+// Copies the vertices in `needed` that `former` does not know, for this frame alone. False: they
+// have another layout.
+bool AddUnknown(std::span<const ElementRange> needed, const gl::Buffer& vertices, GLuint stride,
+                FormerVertices::Mesh* former) {
+  const std::vector<ElementRange> unknown = Difference(needed, former->known);
+  if (unknown.empty()) return true;
+  if (former->stride != stride) return false;
+  for (const ElementRange& range : unknown) {
+    const auto first = static_cast<GLintptr>(range.first) * stride;
+    glCopyNamedBufferSubData(vertices.name(), former->vertices.name(), first, first,
+                             static_cast<GLsizeiptr>(range.count) * stride);
+  }
+  return true;
+}
+
 }  // namespace
 
 std::size_t FormerVertices::num_bytes() const {
@@ -62,7 +77,7 @@ std::size_t FormerVertices::num_bytes() const {
   return bytes;
 }
 
-void PosedMeshes::BeginFrame(const FormerVertices* former) {
+void PosedMeshes::BeginFrame(FormerVertices* former) {
   for (auto& [key, posed] : posed_) posed.is_fresh = false;
   former_ = former;
 }
@@ -79,6 +94,8 @@ void PosedMeshes::EndFrame(FormerVertices* former) {
     std::swap(mesh.capacity, posed.capacity);
     mesh.count = posed.per_subject;
     mesh.stride = posed.stride;
+    mesh.order = gpu_->meshes()[key.first].order;
+    mesh.known = std::move(posed.needed);
     posed.is_fresh = false;
   }
   former_ = nullptr;
@@ -102,13 +119,18 @@ PosedMeshes::Source PosedMeshes::SourceOf(std::size_t mesh, Form form) {
 
 Result<PosedMeshes::Vertices> PosedMeshes::Get(std::size_t mesh, Form form,
                                                const PoseShader& shader, WrinklePart part,
-                                               std::span<const std::uint32_t> subjects) {
+                                               std::span<const std::uint32_t> subjects,
+                                               std::span<const ElementRange> needed) {
   Posed& posed = posed_[{mesh, form}];
   const auto masks = shader.dynamic ? std::optional(part) : std::nullopt;
   // Passes that need other masks, or none, cannot use these vertices, because the layout differs.
   if (!posed.is_fresh || posed.masks != masks) {
     posed.masks = masks;
     const Source source = SourceOf(mesh, form);
+    posed.needed.assign(needed.begin(), needed.end());
+    if (needed.empty()) {
+      posed.needed = {{0, static_cast<std::uint32_t>(source.num_vertices)}};
+    }
     FURROW_RETURN_IF_ERROR(Pose(source, shader, subjects, &posed));
   }
   return Vertices{posed.vertex_array.name(), posed.per_subject};
@@ -152,7 +174,7 @@ Status PosedMeshes::Pose(const Source& source, const PoseShader& shader,
 
   glUseProgram(*program);
   glBindVertexArray(source.vertex_array);
-  Capture(source, shader, subjects, posed->vertices);
+  Capture(source, shader, subjects, *posed);
   DescribePosed(posed->vertex_array.name(), posed->vertices, shader);
   glVertexArrayElementBuffer(posed->vertex_array.name(), source.indices);
   posed->per_subject = source.num_vertices;
@@ -163,7 +185,7 @@ Status PosedMeshes::Pose(const Source& source, const PoseShader& shader,
 }
 
 // The former vertices have a layout of their own, because other masks may have been active.
-void PosedMeshes::DescribeFormer(const Source& source, const Posed& posed) const {
+void PosedMeshes::DescribeFormer(const Source& source, const Posed& posed) {
   const GLuint array = posed.vertex_array.name();
   if (former_ == nullptr) {
     glDisableVertexArrayAttrib(array, kFormerAttribute);
@@ -171,8 +193,10 @@ void PosedMeshes::DescribeFormer(const Source& source, const Posed& posed) const
     return;
   }
   const auto found = former_->meshes.find(source.mesh);
-  const bool is_known =
-      found != former_->meshes.end() && found->second.count == source.num_vertices;
+  const bool is_known = found != former_->meshes.end() &&
+                        found->second.count == source.num_vertices &&
+                        found->second.order == gpu_->meshes()[source.mesh].order &&
+                        AddUnknown(posed.needed, posed.vertices, posed.stride, &found->second);
   glVertexArrayVertexBuffer(array, kFormerBinding,
                             is_known ? found->second.vertices.name() : posed.vertices.name(), 0,
                             static_cast<GLsizei>(is_known ? found->second.stride : posed.stride));
@@ -184,8 +208,9 @@ void PosedMeshes::DescribeFormer(const Source& source, const Posed& posed) const
 // A crowd of morphed faces is captured in parts, because the sums of all faces may not fit one
 // buffer. The vertices of the parts follow one another.
 void PosedMeshes::Capture(const Source& source, const PoseShader& shader,
-                          std::span<const std::uint32_t> subjects, const gl::Buffer& vertices) {
-  const auto subject_bytes = static_cast<std::size_t>(source.num_vertices) * Layout(shader).stride;
+                          std::span<const std::uint32_t> subjects, const Posed& posed) {
+  const std::size_t stride = Layout(shader).stride;
+  const auto subject_bytes = static_cast<std::size_t>(source.num_vertices) * stride;
   const bool is_morphed = shader.morph_parts > 0;
   const std::size_t most = is_morphed ? morphs_->MaxSubjects(source.mesh) : subjects.size();
   // Points make transform feedback write each vertex once, in order, whatever the triangles share.
@@ -194,13 +219,18 @@ void PosedMeshes::Capture(const Source& source, const PoseShader& shader,
   for (std::size_t first = 0; first < subjects.size(); first += most) {
     const std::size_t count = std::min(most, subjects.size() - first);
     if (is_morphed) morphs_->Bind(source.mesh, subjects.subspan(first, count));
-    glBindBufferRange(GL_TRANSFORM_FEEDBACK_BUFFER, 0, vertices.name(),
-                      static_cast<GLintptr>(first * subject_bytes),
-                      static_cast<GLsizeiptr>(count * subject_bytes));
-    glBeginTransformFeedback(GL_POINTS);
-    glDrawArraysInstancedBaseInstance(GL_POINTS, 0, source.num_vertices,
-                                      static_cast<GLsizei>(count), static_cast<GLuint>(first));
-    glEndTransformFeedback();
+    for (const ElementRange& range : posed.needed) {
+      // Several subjects need all vertices.
+      const std::size_t bytes = (count - 1) * subject_bytes + range.count * stride;
+      glBindBufferRange(GL_TRANSFORM_FEEDBACK_BUFFER, 0, posed.vertices.name(),
+                        static_cast<GLintptr>(first * subject_bytes + range.first * stride),
+                        static_cast<GLsizeiptr>(bytes));
+      glBeginTransformFeedback(GL_POINTS);
+      glDrawArraysInstancedBaseInstance(GL_POINTS, static_cast<GLint>(range.first),
+                                        static_cast<GLsizei>(range.count),
+                                        static_cast<GLsizei>(count), static_cast<GLuint>(first));
+      glEndTransformFeedback();
+    }
   }
   glDisable(GL_RASTERIZER_DISCARD);
   // Later passes read the buffer as vertices, so it must not stay bound for feedback.

@@ -6,8 +6,10 @@
 #include <optional>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "render/gl/shader_library.h"
+#include "render/mesh/mesh_clusters.h"
 #include "render/scene/gpu_character.h"
 #include "render/scene/morph_sums.h"
 #include "render/wrinkles/wrinkle_table.h"
@@ -20,7 +22,9 @@ struct FormerVertices {
     gl::Buffer vertices;
     std::size_t capacity = 0;  // bytes
     GLsizei count = 0;
-    GLuint stride = 0;  // bytes
+    GLuint stride = 0;                // bytes
+    int order = 0;                    // GpuMesh::order
+    std::vector<ElementRange> known;  // the vertices that have been posed
   };
   std::map<std::size_t, Mesh> meshes;
 
@@ -41,8 +45,9 @@ class PosedMeshes {
 
   // Marks all posed vertices as outdated. `former`: vertices that the shaders compare with those of
   // this frame (a_former of scene.vert.glsl), and which must live until the frame ends; null: none.
-  // A mesh that is missing there, or has another number of vertices, is compared with itself.
-  void BeginFrame(const FormerVertices* former);
+  // A mesh that is missing there, or has another number of vertices, is compared with itself, and
+  // so are vertices that `former` does not know; it receives them.
+  void BeginFrame(FormerVertices* former);
   // Moves the vertices of this frame (kIndexed) to `former` in exchange for the buffers there.
   void EndFrame(FormerVertices* former);
 
@@ -55,9 +60,11 @@ class PosedMeshes {
   // they have dynamic masks for the maps of `part`. Repeated calls within a frame reuse the
   // vertices unless they ask for other masks. Requires that SceneBuffers has bound joints and
   // dynamic masks, and that MorphSums has this frame's weights; changes the current program.
-  // Errors: kLimit (kMaxVertices), kInternal (a shader).
+  // `needed`: the vertices of a single subject that the frame needs, ascending; the others are
+  // undefined. Empty: all. Errors: kLimit (kMaxVertices), kInternal (a shader).
   [[nodiscard]] Result<Vertices> Get(std::size_t mesh, Form form, const PoseShader& shader,
-                                     WrinklePart part, std::span<const std::uint32_t> subjects);
+                                     WrinklePart part, std::span<const std::uint32_t> subjects,
+                                     std::span<const ElementRange> needed = {});
 
  private:
   struct Posed {
@@ -67,6 +74,7 @@ class PosedMeshes {
     gl::Buffer subjects;       // one subject number per instance
     GLsizei per_subject = 0;
     GLuint stride = 0;                 // of `vertices`, in bytes
+    std::vector<ElementRange> needed;  // the vertices that are posed
     std::optional<WrinklePart> masks;  // the part whose masks the vertices hold
     bool is_fresh = false;
   };
@@ -81,15 +89,15 @@ class PosedMeshes {
   [[nodiscard]] Status Pose(const Source& source, const PoseShader& shader,
                             std::span<const std::uint32_t> subjects, Posed* posed);
 
-  void DescribeFormer(const Source& source, const Posed& posed) const;
+  void DescribeFormer(const Source& source, const Posed& posed);
   void Capture(const Source& source, const PoseShader& shader,
-               std::span<const std::uint32_t> subjects, const gl::Buffer& vertices);
+               std::span<const std::uint32_t> subjects, const Posed& posed);
 
   GpuCharacter* gpu_;
   MorphSums* morphs_;
   ShaderLibrary* shaders_;
   std::map<std::pair<std::size_t, Form>, Posed> posed_;
-  const FormerVertices* former_ = nullptr;
+  FormerVertices* former_ = nullptr;
 };
 
 }  // namespace furrow::render

@@ -9,13 +9,13 @@ namespace {
 // Binding points of the shaders in shaders/scene/ and shaders/wrinkles/.
 enum UniformBinding : GLuint { kFrameBlock = 0, kWrinkleTable = 2, kMotionBlock = 3 };
 enum StorageBinding : GLuint {
-  kJointRows = 0,
   kJointInfluences = 1,
   kMaskPalette = 2,
   kDynamicMasks = 3,
   kFirstMasks = 4
 };
 constexpr GLuint kSubjectWeightsUnit = 13;
+constexpr GLuint kJointRowsUnit = 15;
 
 // Index of GroupBuffers::dynamic_masks and first_masks.
 std::size_t MasksIndex(WrinklePart part) { return part == WrinklePart::kSliding ? 1 : 0; }
@@ -26,6 +26,7 @@ SceneBuffers::SceneBuffers(std::span<const glm::mat4> inverse_bind_matrices,
                            const WrinkleTables* tables)
     : inverse_bind_matrices_(inverse_bind_matrices), tables_(tables) {
   for (gl::Buffer* buffer : {&frame_, &motion_, &joints_, &influences_}) *buffer = gl::MakeBuffer();
+  joints_view_ = gl::MakeTexture(GL_TEXTURE_BUFFER);
   for (GroupBuffers& group : groups_) {
     for (auto* buffers : {&group.dynamic_masks, &group.first_masks}) {
       for (gl::Buffer& buffer : *buffers) buffer = gl::MakeBuffer();
@@ -62,6 +63,7 @@ void SceneBuffers::UploadJoints(std::span<const NamedSubject> subjects) {
     }
   }
   gl::Upload(joints_, rows.data(), rows.size() * sizeof(glm::vec4));
+  glTextureBuffer(joints_view_.name(), GL_RGBA32F, joints_.name());
 }
 
 void SceneBuffers::UploadWrinkles(const WrinkleLayout& layout) {
@@ -95,7 +97,7 @@ void SceneBuffers::UploadMasks(const WrinkleTable& table, WrinklePart part, Grou
 void SceneBuffers::Bind() const {
   glBindBufferBase(GL_UNIFORM_BUFFER, kFrameBlock, frame_.name());
   glBindBufferBase(GL_UNIFORM_BUFFER, kMotionBlock, motion_.name());
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kJointRows, joints_.name());
+  glBindTextureUnit(kJointRowsUnit, joints_view_.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kJointInfluences, influences_.name());
 }
 

@@ -47,6 +47,7 @@ class SceneBuffers {
   gl::Buffer frame_;
   gl::Buffer motion_;
   gl::Buffer joints_;
+  gl::Texture joints_view_;
   gl::Buffer influences_;
   GroupBuffers groups_[kNumWrinkleGroups];
   gl::Buffer palettes_[kNumWrinkleGroups + 1];  // by group, including kNone

@@ -123,7 +123,8 @@ struct DisplacementSettings {
 
 struct DetailSettings {
   // With several subjects, allowed surface error (RMS, pixels) of the simplified meshes of small
-  // ones, [0, 8]. 0: always draw all triangles. A single subject always has all triangles.
+  // ones, [0, 8]. 0: always draw all triangles. A single subject has all triangles,
+  // but for its hair in motion.
   float error_pixels = 0.5f;
   // Allowed error (RMS, shadow-map texels) of hair in shadow maps, [0, 4]. An error above
   // ShadowSettings::normal_offset_mm, which hides smaller ones, is never allowed. 0: shadow maps

@@ -18,21 +18,24 @@ int Scaled(int side, float scale) {
 
 SceneMotion MotionOf(const TemporalFrame& frame) {
   const glm::vec2 size(static_cast<float>(frame.width), static_cast<float>(frame.height));
-  const History& history = *frame.history;
+  History& history = *frame.history;
   const float scale =
       static_cast<float>(frame.height) / static_cast<float>(frame.colour.desc.height);
   return {.jitter = 2.0f * frame.jitter / size,
           .detail = std::log2(scale),
+          .shadows = frame.keeps_shadows ? &history.shadows : nullptr,
           .camera = history.is_valid ? &history.camera : nullptr,
           .vertices = &history.vertices};
 }
 
+std::size_t History::num_other_bytes() const {
+  return vertices.num_bytes() + shadows.maps.num_bytes();
+}
+
 std::size_t History::num_bytes() const {
-  std::size_t bytes = vertices.num_bytes();
+  std::size_t bytes = num_other_bytes();
   for (const auto* pair : {&colours, &places}) {
-    for (const KeptTexture& kept : *pair) {
-      if (kept.texture != 0) bytes += TextureBytes(kept.desc);
-    }
+    for (const KeptTexture& kept : *pair) bytes += kept.num_bytes();
   }
   return bytes;
 }
@@ -49,17 +52,9 @@ Histories::~Histories() {
 
 void Histories::Release(History* history) {
   for (auto* pair : {&history->colours, &history->places}) {
-    for (KeptTexture& kept : *pair) {
-      if (kept.texture != 0) device_->DestroyTexture(kept.texture);
-      kept.texture = 0;
-    }
+    for (KeptTexture& kept : *pair) kept.Release(device_);
   }
-}
-
-void Histories::Prepare(KeptTexture* kept, const TextureDesc& desc) {
-  if (kept->texture != 0 && kept->desc == desc) return;
-  if (kept->texture != 0) device_->DestroyTexture(kept->texture);
-  *kept = {desc, device_->CreateTexture(desc)};
+  history->shadows.maps.Release(device_);
 }
 
 std::map<std::uint64_t, History>::iterator Histories::Drop(
@@ -86,11 +81,11 @@ bool Histories::HasRoom(const FrameRequest& request) {
   };
   std::size_t bytes = most_bytes(request.width, request.height);
   for (auto& [stream, history] : histories_) {
-    most_vertices_ = std::max(most_vertices_, history.vertices.num_bytes());
+    most_others_ = std::max(most_others_, history.num_other_bytes());
     if (stream != request.stream) bytes += most_bytes(history.shot.width, history.shot.height);
   }
   const std::size_t others = histories_.size() - histories_.count(request.stream);
-  return bytes + (others + 1) * most_vertices_ <= kMaxBytes;
+  return bytes + (others + 1) * most_others_ <= kMaxBytes;
 }
 
 const TemporalFrame* Histories::Begin(const FrameRequest& request, bool is_software) {
@@ -111,8 +106,8 @@ const TemporalFrame* Histories::Begin(const FrameRequest& request, bool is_softw
   History& history = histories_[request.stream];
   if (!history.is_valid) history.shot = ShotOf(request);
   const auto next = static_cast<std::size_t>(1 - history.newest);
-  Prepare(&history.colours[next], whole);
-  Prepare(&history.places[next], drawn);
+  history.colours[next].Prepare(whole, device_);
+  history.places[next].Prepare(drawn, device_);
   history.used = num_pictures_;
   frame_ = {.history = &history,
             .width = drawn.width,
@@ -123,6 +118,7 @@ const TemporalFrame* Histories::Begin(const FrameRequest& request, bool is_softw
   if (history.is_valid) {
     frame_.former_colour = history.colours[1 - next];
     frame_.former_place = history.places[1 - next];
+    frame_.keeps_shadows = history.number % 2 == 1 && history.shadows.is_drawn;
   }
   return &frame_;
 }
@@ -134,6 +130,12 @@ void Histories::End(const FrameRequest& request, const CameraFrame& camera) {
   history.newest = 1 - history.newest;
   history.shot = ShotOf(request);
   history.camera = camera;
+}
+
+void Histories::KeepShadows(const std::array<ShadowView, kNumLights>& views, int resolution) {
+  if (frame_.keeps_shadows) return;
+  frame_.history->shadows.views = views;
+  frame_.history->shadows.resolution = resolution;
 }
 
 }  // namespace furrow::render

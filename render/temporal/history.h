@@ -14,12 +14,6 @@
 
 namespace furrow::render {
 
-// A texture that outlives the frame.
-struct KeptTexture {
-  TextureDesc desc;
-  TextureId texture = 0;  // 0: none yet
-};
-
 // The former picture of a stream, and what the next one needs to find its surfaces there.
 struct History {
   bool is_valid = false;               // there is a former picture that the next one may continue
@@ -30,8 +24,11 @@ struct History {
   Shot shot;
   CameraFrame camera;
   FormerVertices vertices;
+  KeptShadows shadows;
   std::uint64_t used = 0;  // the last picture's number among those of all streams
 
+  // Of vertices and shadow maps.
+  [[nodiscard]] std::size_t num_other_bytes() const;
   [[nodiscard]] std::size_t num_bytes() const;
 };
 
@@ -47,6 +44,8 @@ struct TemporalFrame {
   KeptTexture former_colour;
   KeptTexture former_place;
 
+  bool keeps_shadows = false;  // the picture uses the shadow maps of the former one
+
   // False: the picture begins the stream.
   [[nodiscard]] bool has_former() const { return former_colour.texture != 0; }
 };
@@ -60,7 +59,7 @@ struct TemporalFrame {
 // made room, many streams that take turns would all lose their histories. Needs a current context.
 class Histories {
  public:
-  static constexpr std::size_t kMaxBytes = std::size_t{96} << 20;
+  static constexpr std::size_t kMaxBytes = std::size_t{128} << 20;
   // A stream that has no picture among this many of all streams rests.
   static constexpr std::uint64_t kMaxRest = 256;
 
@@ -78,11 +77,12 @@ class Histories {
   void End(const FrameRequest& request, const CameraFrame& camera);
   // The history of the last Begin(), which gets the vertices of the picture.
   [[nodiscard]] FormerVertices* vertices() { return &frame_.history->vertices; }
+  // States how the lamps saw the picture of the last Begin(), for the next one.
+  void KeepShadows(const std::array<ShadowView, kNumLights>& views, int resolution);
 
   [[nodiscard]] std::size_t num_bytes() const;
 
  private:
-  void Prepare(KeptTexture* kept, const TextureDesc& desc);
   void Release(History* history);
   // Erases a history and returns the next one.
   std::map<std::uint64_t, History>::iterator Drop(std::map<std::uint64_t, History>::iterator it);
@@ -93,7 +93,7 @@ class Histories {
   FrameGraphDevice* device_;
   std::map<std::uint64_t, History> histories_;  // by stream
   std::uint64_t num_pictures_ = 0;
-  std::size_t most_vertices_ = 0;  // bytes, of any history: what a new one will need
+  std::size_t most_others_ = 0;  // bytes, of any history: what a new one will need
   TemporalFrame frame_;
 };
 

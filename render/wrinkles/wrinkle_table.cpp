@@ -118,7 +118,7 @@ std::vector<glm::vec4> SubjectWeights(const WrinkleTable& table, int num_maps,
   const std::size_t subjects = table.first_masks.size() - 1;
   std::vector<glm::vec4> weights(subjects * padded, glm::vec4(0.0f));
   for (std::size_t subject = 0; subject < subjects; ++subject) {
-    std::copy_n(&table.mask_weights[subject * row], row, &weights[subject * padded]);
+    std::copy_n(table.mask_weights.data() + subject * row, row, weights.data() + subject * padded);
   }
   return weights;
 }

@@ -3,13 +3,13 @@
 // MORPH_PARTS  what the sums hold: 1 positions, 2 also normals, 3 also tangents
 
 // Sums of the morph targets, instance after instance, row after row, part after part. Model space,
-// rest pose, metres. Row 0 is zero.
-layout(std430, binding = 5) readonly buffer MorphSums { float u_morph_sums[]; };
+// rest pose, metres. Row 0 is zero. A texture for the reason of u_joint_rows (scene/skinning.glsl).
+layout(binding = 16) uniform samplerBuffer u_morph_sums;
 layout(location = 0) uniform uint u_morph_rows;  // per instance
 
 vec3 morphSum(uint row, uint part) {
-  uint first = 3u * ((uint(gl_InstanceID) * u_morph_rows + row) * uint(MORPH_PARTS) + part);
-  return vec3(u_morph_sums[first], u_morph_sums[first + 1u], u_morph_sums[first + 2u]);
+  uint texel = (uint(gl_InstanceID) * u_morph_rows + row) * uint(MORPH_PARTS) + part;
+  return texelFetch(u_morph_sums, int(texel)).xyz;
 }
 
 // Turns a unit direction by a sum. Returns a unit vector, and `direction` if the sum cancels it.

@@ -44,7 +44,8 @@ layout(location = 6, xfb_offset = 52 + 4 * DISPLACED) out vec4 p_dynamic_masks[M
 #endif
 
 void main() {
-  SkinMatrix skin = blendJoints(a_subject, a_joints, a_skin_weights);
+  JointMatrices joints = jointMatrices(a_subject, a_joints);
+  SkinMatrix skin = blendJoints(joints, a_skin_weights);
   vec3 position = a_position;
   vec3 normal = a_normal;
   vec3 tangent = a_tangent.xyz;
@@ -65,7 +66,7 @@ void main() {
   vec3 along = skinDirection(skin, normalizeOrZero(cross(restAcross, normal)));
   vec3 turnedAlong = along;
   vec3 turnedAcross = across;
-  addWeightChanges(a_subject, a_joints, position, p_position, a_weights_along, a_weights_across,
+  addWeightChanges(joints, position, p_position, a_weights_along, a_weights_across,
                    along, across);
   p_normal = surfaceNormal(p_normal, along, across);
   vec2 stretch = stretchOf(along, across, turnedAlong, turnedAcross);

@@ -4,8 +4,9 @@
 // NUM_JOINTS  joints of the character's skeleton
 
 // Skinning matrices (placement * model * inverse_bind) of the joints, subject after subject. Each
-// is an affine 3x4 matrix in three rows.
-layout(std430, binding = 0) readonly buffer Joints { vec4 u_joint_rows[]; };
+// is an affine 3x4 matrix in three texels, row by row. A texture rather than a storage buffer: each
+// vertex reads other places, which llvmpipe does one by one for buffers.
+layout(binding = 15) uniform samplerBuffer u_joint_rows;
 
 struct SkinMatrix {
   vec4 row0;
@@ -13,14 +14,28 @@ struct SkinMatrix {
   vec4 row2;
 };
 
+// The matrices of a vertex's joints.
+struct JointMatrices {
+  SkinMatrix of[4];
+};
+
+JointMatrices jointMatrices(uint subject, uvec4 joints) {
+  JointMatrices matrices;
+  for (int i = 0; i < 4; ++i) {
+    int row = int(3u * (subject * uint(NUM_JOINTS) + joints[i]));
+    matrices.of[i] = SkinMatrix(texelFetch(u_joint_rows, row), texelFetch(u_joint_rows, row + 1),
+                                texelFetch(u_joint_rows, row + 2));
+  }
+  return matrices;
+}
+
 // Linear blend of up to four joints. `skinWeights` sum to 1.
-SkinMatrix blendJoints(uint subject, uvec4 joints, vec4 skinWeights) {
+SkinMatrix blendJoints(JointMatrices matrices, vec4 skinWeights) {
   SkinMatrix m = SkinMatrix(vec4(0.0), vec4(0.0), vec4(0.0));
   for (int i = 0; i < 4; ++i) {
-    uint row = 3u * (subject * uint(NUM_JOINTS) + joints[i]);
-    m.row0 += skinWeights[i] * u_joint_rows[row];
-    m.row1 += skinWeights[i] * u_joint_rows[row + 1u];
-    m.row2 += skinWeights[i] * u_joint_rows[row + 2u];
+    m.row0 += skinWeights[i] * matrices.of[i].row0;
+    m.row1 += skinWeights[i] * matrices.of[i].row1;
+    m.row2 += skinWeights[i] * matrices.of[i].row2;
   }
   return m;
 }
@@ -33,14 +48,11 @@ vec3 skinPoint(SkinMatrix m, vec3 p) {
 
 // Adds to the tangents of the surface at the rest point `p`, which is posed to `posed`, how far the
 // changes of the skin weights move the points beside it (render/mesh/weight_gradients.h).
-void addWeightChanges(uint subject, uvec4 joints, vec3 p, vec3 posed, vec4 weightsAlong,
+void addWeightChanges(JointMatrices matrices, vec3 p, vec3 posed, vec4 weightsAlong,
                       vec4 weightsAcross, inout vec3 along, inout vec3 across) {
-  vec4 point = vec4(p, 1.0);
   for (int i = 0; i < 4; ++i) {
-    uint row = 3u * (subject * uint(NUM_JOINTS) + joints[i]);
     // Relative to the posed point, so that a motion that all joints share adds nothing.
-    vec3 apart = vec3(dot(u_joint_rows[row], point), dot(u_joint_rows[row + 1u], point),
-                      dot(u_joint_rows[row + 2u], point)) - posed;
+    vec3 apart = skinPoint(matrices.of[i], p) - posed;
     along += weightsAlong[i] * apart;
     across += weightsAcross[i] * apart;
   }

@@ -9,6 +9,7 @@
 //
 // OCCLUSION  1: u_open is bound
 // EMISSION   1: u_emission is bound
+// SHADOWS_BEFORE  1: the shadow maps are those of the former picture, and u_motion is bound
 
 layout(binding = 0) uniform sampler2D u_colour;     // see struct StoredFacet
 layout(binding = 1) uniform sampler2D u_normal;
@@ -20,6 +21,12 @@ layout(binding = 10) uniform sampler2D u_open;
 #endif
 #if EMISSION
 layout(binding = 11) uniform sampler2D u_emission;
+#endif
+#if SHADOWS_BEFORE
+layout(binding = 12) uniform sampler2D u_motion;      // see motionOf() of scene/motion.glsl
+layout(location = 5) uniform mat3 u_before_rotation;  // model space to the former view space
+layout(location = 8) uniform vec4 u_before_position;  // the former camera; w: metres to its focus
+layout(location = 9) uniform vec2 u_before_lens;      // slopes at the right and upper edges
 #endif
 layout(location = 4) uniform float u_range;         // largest depth difference that mixes, metres
 
@@ -36,6 +43,17 @@ Facet facetAt(ivec2 pixel, float metres) {
   return loadFacet(stored, u_camera_position.xyz + inView * u_view_rotation);
 }
 
+#if SHADOWS_BEFORE
+// Where the former picture had the surface of a pixel, model space.
+vec3 positionBefore(ivec2 pixel) {
+  vec2 here = 2.0 * (vec2(pixel) + 0.5 - u_lens.yz) / vec2(textureSize(u_depth, 0));
+  vec3 motion = texelFetch(u_motion, pixel, 0).xyz;
+  float metres = motion.z + u_before_position.w;
+  vec3 inView = metres * vec3((here + motion.xy) * u_before_lens, -1.0);
+  return u_before_position.xyz + inView * u_before_rotation;
+}
+#endif
+
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   float metres = texelFetch(u_depth, pixel, 0).r;
@@ -43,7 +61,12 @@ void main() {
 #if EMISSION
   facet.emission = texelFetch(u_emission, pixel, 0).rgb;
 #endif
-  Lit lit = lightFacet(facet);
+#if SHADOWS_BEFORE
+  vec3 mapped = positionBefore(pixel);
+#else
+  vec3 mapped = facet.position;
+#endif
+  Lit lit = lightFacet(facet, mapped);
 #if OCCLUSION
   float open = openAt(u_open, u_depth, pixel, metres, u_range);
   lit.sky *= facet.kind == MATERIAL_SKIN ? openForDiffuse(open) : withBounces(open, facet.colour);

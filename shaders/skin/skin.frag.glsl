@@ -19,7 +19,7 @@ float share(vec3 part, vec3 whole) {
 
 void main() {
   Facet facet = facetHere();
-  Lit lit = lightFacet(facet);
+  Lit lit = lightFacet(facet, facet.position);
   float metres = depthOf(facet.position);
   Leaving leaving = leavingLight(facet, lit, metres);
   float skyOfDiffuse = share(lit.sky, lit.direct + lit.sky + lit.through);

@@ -69,8 +69,8 @@ vec3 diffuseOf(Facet facet, Arrival arrival, float cosine) {
   return arrival.radiance * facing;
 }
 
-// Adds the light of lamp `i`. `toCamera`: unit.
-void addLamp(int i, Facet facet, vec3 toCamera, inout Lit lit) {
+// Adds the light of lamp `i`. `mapped`: the facet's position in the shadow maps. `toCamera`: unit.
+void addLamp(int i, Facet facet, vec3 mapped, vec3 toCamera, inout Lit lit) {
   Arrival arrival = arrivalOf(u_lights[i], facet.position);
   float f0 = reflectanceOf(facet.kind);
   float cosine = dot(facet.normal, arrival.toLight);
@@ -79,7 +79,7 @@ void addLamp(int i, Facet facet, vec3 toCamera, inout Lit lit) {
     // Noise from rotated discs is invisible on skin, which scatters it. Other materials would show
     // a dot pattern, so their discs are not rotated.
     vec2 turned = facet.kind == MATERIAL_SKIN ? gl_FragCoord.xy : vec2(0.0);
-    seen = shadowOf(i, facet.position, facet.geometric, arrival.toLight, turned);
+    seen = shadowOf(i, mapped, facet.geometric, arrival.toLight, turned);
   }
   lit.visible[i] = seen * saturate(sign(cosine));
   if (facet.kind != MATERIAL_HAIR) seen *= bumpShadow(facet, arrival.toLight);
@@ -107,21 +107,22 @@ void addLamp(int i, Facet facet, vec3 toCamera, inout Lit lit) {
   float behind = saturate(0.3 - dot(facet.geometric, arrival.toLight));
   int sides = behind > 0.0 && facet.kind == MATERIAL_SKIN ? 1 : 0;
   for (int side = 0; side < sides; ++side) {
-    float metres = thicknessOf(i, facet.position, facet.geometric, u_translucency.z);
+    float metres = thicknessOf(i, mapped, facet.geometric, u_translucency.z);
     lit.through += arrival.radiance * (u_translucency.x * behind) *
                    transmittance(1000.0 * u_translucency.y * max(metres, facet.thickness));
   }
 #endif
 }
 
-// Lights a facet. The lamps are unrolled by hand, because compilers do not unroll a loop around
-// loops, and indexing the lamps by its counter would then be done per pixel.
-Lit lightFacet(Facet facet) {
+// Lights a facet. `mapped`: its position when the shadow maps were drawn. The lamps are unrolled by
+// hand, because compilers do not unroll a loop around loops, and indexing the lamps by its counter
+// would then be done per pixel.
+Lit lightFacet(Facet facet, vec3 mapped) {
   Lit lit = Lit(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
   vec3 toCamera = normalize(u_camera_position.xyz - facet.position);
-  addLamp(0, facet, toCamera, lit);
-  addLamp(1, facet, toCamera, lit);
-  addLamp(2, facet, toCamera, lit);
+  addLamp(0, facet, mapped, toCamera, lit);
+  addLamp(1, facet, mapped, toCamera, lit);
+  addLamp(2, facet, mapped, toCamera, lit);
   float nv = saturate(dot(facet.normal, toCamera));
   float f0 = reflectanceOf(facet.kind);
   float reflects = saturate(u_gloss.x * specularAlbedo(nv, facet.m, u_gloss.z, f0));

@@ -152,10 +152,11 @@ TEST_F(ShaderLibraryTest, EveryFacetConfigurationCompiles) {
         "specular.mode=gems", "specular.conserve_energy=off"}) {
     Settings settings;
     ASSERT_TRUE(SetSetting(setting, &settings).ok());
-    for (const int bits : {0, 1, 2, 3}) {
+    for (const int bits : {0, 1, 2, 3, 4, 7}) {
       std::vector<std::string> defines = Defines(SceneDraw::LightShader(settings));
       defines.insert(defines.end(), {"OCCLUSION " + std::to_string(bits & 1),
-                                     "EMISSION " + std::to_string(bits >> 1), "SCALE 2"});
+                                     "EMISSION " + std::to_string(bits >> 1 & 1),
+                                     "SHADOWS_BEFORE " + std::to_string(bits >> 2), "SCALE 2"});
       const Result<GLuint> program = library_.GetFullscreen("skin/light.frag.glsl", defines);
       ASSERT_TRUE(program.ok()) << setting << "\n" << program.status().ToString();
     }

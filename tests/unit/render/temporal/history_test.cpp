@@ -41,6 +41,26 @@ TEST_F(HistoriesTest, TheSecondPictureOfAStreamContinuesTheFirst) {
   EXPECT_TRUE(Draw(Moving(1)));
 }
 
+TEST_F(HistoriesTest, EverySecondPictureKeepsTheShadowMapsThatTheFormerOneHasDrawn) {
+  for (const bool is_drawn : {true, false, true, true}) {
+    for (const bool keeps : {false, is_drawn}) {
+      const TemporalFrame* frame = histories_.Begin(Moving(1), true);
+      ASSERT_NE(frame, nullptr);
+      EXPECT_EQ(frame->keeps_shadows, keeps);
+      EXPECT_EQ(MotionOf(*frame).shadows != nullptr, keeps);
+      if (!keeps) frame->history->shadows.is_drawn = is_drawn;
+      histories_.End(Moving(1), {});
+      std::array<ShadowView, kNumLights> views;
+      views[0].scale = keeps ? 3.0f : 2.0f;
+      histories_.KeepShadows(views, 256);
+      if (is_drawn) EXPECT_EQ(frame->history->shadows.views[0].scale, 2.0f);
+    }
+  }
+  const FrameRequest cut = Moving(1, 320, 200);
+  EXPECT_FALSE(Draw(cut));
+  EXPECT_FALSE(histories_.Begin(cut, true)->keeps_shadows);
+}
+
 TEST_F(HistoriesTest, StreamsShareNothing) {
   EXPECT_FALSE(Draw(Moving(1)));
   EXPECT_FALSE(Draw(Moving(2)));
@@ -91,11 +111,11 @@ TEST_F(HistoriesTest, MemoryIsBoundedAndFirstStreamsKeepTheirHistories) {
     for (std::uint64_t stream = 1; stream < 50; ++stream) {
       const bool continues = Draw(Moving(stream, 1280, 720));
       num_completed += continues ? 1 : 0;
-      EXPECT_EQ(continues, turn > 0 && stream <= 3) << stream;
+      EXPECT_EQ(continues, turn > 0 && stream <= 4) << stream;
       ASSERT_LE(histories_.num_bytes(), Histories::kMaxBytes);
     }
   }
-  EXPECT_EQ(num_completed, 3) << "the others are drawn in full";
+  EXPECT_EQ(num_completed, 4) << "the others are drawn in full";
   EXPECT_EQ(device_.num_bad_destroys(), 0);
 }
 

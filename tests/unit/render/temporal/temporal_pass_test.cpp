@@ -209,6 +209,46 @@ TEST_F(TemporalPassTest, OnlyPicturesWithoutAFormerOneNeedFxaa) {
   EXPECT_FALSE(smooths(cut));
 }
 
+TEST_F(TemporalPassTest, EverySecondPictureUsesTheShadowMapsOfTheFormerOne) {
+  const auto draws_shadows = [this](const FrameRequest& request) {
+    PassNames names;
+    renderer_->SetObserver(&names);
+    (void)Draw(request);
+    renderer_->SetObserver(nullptr);
+    return names.has("shadows");
+  };
+  EXPECT_TRUE(draws_shadows(Request(1)));
+  EXPECT_FALSE(draws_shadows(Request(1)));
+  EXPECT_TRUE(draws_shadows(Request(2))) << "each stream has maps of its own";
+  EXPECT_TRUE(draws_shadows(Request(1)));
+  EXPECT_FALSE(draws_shadows(Request(1)));
+  EXPECT_FALSE(draws_shadows(Request(2)));
+  FrameRequest cut = Request(1);
+  cut.settings.exposure = 0.3f;
+  EXPECT_TRUE(draws_shadows(cut));
+  FrameRequest large = Request(3);
+  large.settings.shadow.fit = false;
+  large.settings.shadow.resolution = 2048;
+  EXPECT_TRUE(draws_shadows(large));
+  Move(0.01f);
+  EXPECT_TRUE(draws_shadows(large)) << "large maps are not kept";
+}
+
+// Subject, camera and lamps move together, so the picture stays, if each surface finds its place in
+// the shadow maps of the former picture.
+TEST_F(TemporalPassTest, FormerShadowsMoveWithTheSurface) {
+  FrameRequest moving = Request(1);
+  for (int picture = 0; picture < 6; ++picture) {
+    const Image stays = Draw(2);
+    FrameRequest still = Request(2);
+    Move(0.02f * static_cast<float>(picture));
+    moving.camera.position.x = still.camera.position.x + 0.02f * static_cast<float>(picture);
+    moving.camera.target.x = still.camera.target.x + 0.02f * static_cast<float>(picture);
+    EXPECT_LT(Rmse(Draw(moving), stays), 0.5) << "picture " << picture;
+    Move(-0.02f * static_cast<float>(picture));
+  }
+}
+
 TEST_F(TemporalPassTest, AFullPictureIsThatOfNoStream) {
   FrameRequest request = Request(1);
   request.scale = 1.0f;
