@@ -61,7 +61,7 @@ void BM_Reassemble(benchmark::State& state) {
   const Allocations allocations;
   for (auto _ : state) {
     FragmentStatus status = FragmentStatus::kPending;
-    for (const Bytes& datagram : datagrams) status = reassembler.Push(1, datagram, 0, whole);
+    for (const Bytes& datagram : datagrams) status = reassembler.Push({}, datagram, 0, whole);
     if (status != FragmentStatus::kComplete) {
       state.SkipWithError("the message is incomplete");
       break;

@@ -120,7 +120,7 @@ IoStatus SecureTransport::Receive(std::span<const std::uint8_t>& message,
       if (inner_.empty()) continue;
     }
     const auto datagram = std::exchange(inner_, {});
-    switch (reassembler_.Push(0, datagram, Microseconds(now), message)) {
+    switch (reassembler_.Push({}, datagram, Microseconds(now), message)) {
       case protocol::FragmentStatus::kWhole: (void)unbundler_.Open(datagram); break;
       case protocol::FragmentStatus::kComplete: return IoStatus::kOk;
       default: break;  // an incomplete message or a foreign datagram

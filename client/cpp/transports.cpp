@@ -46,7 +46,7 @@ class UdpTransport : public Transport {
       std::span<std::uint8_t> datagram;
       const IoStatus read = socket_.Receive(deadline, datagram);
       if (read != IoStatus::kOk) return read;
-      switch (reassembler_.Push(0, datagram, Microseconds(Clock::now()), message)) {
+      switch (reassembler_.Push({}, datagram, Microseconds(Clock::now()), message)) {
         case protocol::FragmentStatus::kWhole: (void)unbundler_.Open(datagram); break;
         case protocol::FragmentStatus::kComplete: return IoStatus::kOk;
         default: break;  // an incomplete message or a foreign datagram

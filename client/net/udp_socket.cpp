@@ -120,7 +120,7 @@ IoStatus UdpSocket::Receive(std::span<const std::uint8_t>& message,
       datagram = Open(datagram);
       if (datagram.empty()) continue;
     }
-    switch (reassembler_.Push(0, datagram, SteadyNanoseconds() / 1000, message)) {
+    switch (reassembler_.Push({}, datagram, SteadyNanoseconds() / 1000, message)) {
       case protocol::FragmentStatus::kWhole: (void)unbundler_.Open(datagram); break;
       case protocol::FragmentStatus::kComplete: return IoStatus::kOk;
       default: break;  // an incomplete message or a foreign datagram

@@ -107,7 +107,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::size_t length = std::min<std::size_t>(rest[0] | rest[1] << 8, rest.size() - 2);
     std::span<const std::uint8_t> message;
     using furrow::protocol::FragmentStatus;
-    const FragmentStatus status = reassembler.Push(1, rest.subspan(2, length), now_us, message);
+    const FragmentStatus status = reassembler.Push({}, rest.subspan(2, length), now_us, message);
     if (status == FragmentStatus::kComplete) DecodeAny(message);
     if (status == FragmentStatus::kWhole) TakeApart({message.begin(), message.end()});
     rest = rest.subspan(2 + length);

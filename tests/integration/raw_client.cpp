@@ -130,7 +130,7 @@ bool UdpClient::Fill() {
   ++datagrams_;
   const auto datagram = std::span(buffer).first(static_cast<std::size_t>(size));
   std::span<const std::uint8_t> message;
-  const auto status = reassembler_.Push(1, datagram, 0, message);
+  const auto status = reassembler_.Push({}, datagram, 0, message);
   if (status == protocol::FragmentStatus::kWhole && bundles_) {
     protocol::Unbundler unbundler;
     if (unbundler.Open(datagram) != protocol::BundleStatus::kOk) return false;

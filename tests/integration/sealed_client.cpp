@@ -142,7 +142,7 @@ bool SealedClient::Exchange() {
   renewed_ = renewed_ || event.renewed;
   if (event.inner.empty()) return false;
   std::span<const std::uint8_t> message;
-  const auto status = reassembler_.Push(1, event.inner, 0, message);
+  const auto status = reassembler_.Push({}, event.inner, 0, message);
   if (status != protocol::FragmentStatus::kWhole && status != protocol::FragmentStatus::kComplete) {
     return false;
   }

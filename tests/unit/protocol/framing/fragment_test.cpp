@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <map>
+#include <new>
 #include <random>
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/allocation_counter.h"
 #include "tests/unit/protocol/drill.h"
 #include "tests/unit/protocol/samples.h"
 
@@ -34,12 +36,22 @@ Bytes MediumMessage(std::uint16_t stream, std::uint32_t sequence) {
   return bytes;
 }
 
+// A message of any size. The reassembler does not look into the payload.
+Bytes MessageOfSize(std::size_t bytes) {
+  Bytes message(bytes);
+  Envelope envelope;
+  envelope.header.session = 7;
+  envelope.payload_bytes = static_cast<std::uint32_t>(bytes - kEnvelopeBytes);
+  WriteEnvelope(envelope, std::span<std::uint8_t, kEnvelopeBytes>(message.data(), kEnvelopeBytes));
+  return message;
+}
+
 Bytes LargeMessage() { return test::Encoded(test::MakeOffer(163, 0)); }
 
 class Fragments : public ::testing::Test {
  protected:
   FragmentStatus Push(const Bytes& datagram, std::uint64_t peer = 1, std::int64_t now = 0) {
-    return reassembler_.Push(peer, datagram, now, message_);
+    return reassembler_.Push({.host = peer, .peer = peer}, datagram, now, message_);
   }
   Reassembler reassembler_;
   std::span<const std::uint8_t> message_;
@@ -84,7 +96,7 @@ TEST_F(Fragments, PeersAndMessagesDoNotMix) {
   }
   EXPECT_EQ(reassembler_.pending_messages(), 3u);
   EXPECT_EQ(Push(first.back(), 2), FragmentStatus::kComplete);
-  reassembler_.ForgetPeer(1);
+  reassembler_.ForgetPeer({.host = 1, .peer = 1});
   EXPECT_EQ(reassembler_.pending_messages(), 0u);
 }
 
@@ -106,7 +118,7 @@ TEST_F(Fragments, RejectContradictoryNumbers) {
   needless[5] = kFlagFragment;
   EXPECT_EQ(Push(needless), FragmentStatus::kMalformed);
   test::ForEveryTruncation(good, [this](std::span<const std::uint8_t> cut) {
-    const FragmentStatus status = reassembler_.Push(1, cut, 0, message_);
+    const FragmentStatus status = reassembler_.Push({}, cut, 0, message_);
     EXPECT_EQ(status,
               cut.size() < kEnvelopeBytes ? FragmentStatus::kWhole : FragmentStatus::kMalformed);
   });
@@ -143,7 +155,7 @@ TEST_F(Fragments, MemoryIsBoundedPerStreamPeerAndInTotal) {
     ASSERT_LE(reassembler_.pending_bytes(), limits.max_peer_bytes);
   }
   EXPECT_GT(reassembler_.pending_bytes(), limits.max_peer_bytes / 2);
-  reassembler_.ForgetPeer(1);
+  reassembler_.ForgetPeer({.host = 1, .peer = 1});
   EXPECT_EQ(reassembler_.pending_bytes(), 0u);
   (void)reassembler_.Expire(250);
   // First fragments from many peers evict each other. A complete message still gets through.
@@ -157,6 +169,77 @@ TEST_F(Fragments, MemoryIsBoundedPerStreamPeerAndInTotal) {
   // Started: 4,990 messages and one more. Completed: one.
   const std::size_t left = reassembler_.pending_messages();
   EXPECT_EQ(reassembler_.Expire(300), 4990u + 1u - 1u - left);
+}
+
+TEST_F(Fragments, AFloodFromAFewPeersTakesNothingFromOthers) {
+  const Bytes message = LargeMessage();
+  const std::vector<Bytes> datagrams = Split(message, 1);
+  ASSERT_EQ(Push(datagrams[0]), FragmentStatus::kPending);
+  std::uint32_t id = 0;
+  // Twice the memory of all peers, in streams that do not shrink each other.
+  for (std::size_t sent = 0; sent < 2 * ReassemblyLimits().max_total_bytes; ++id) {
+    const Bytes flood = MediumMessage(static_cast<std::uint16_t>(id % 4096), id);
+    (void)Push(Split(flood, id).front(), 10 + id % 9, 100);
+    sent += flood.size();
+  }
+  EXPECT_GT(reassembler_.pending_bytes(), ReassemblyLimits().max_total_bytes * 9 / 10);
+  for (std::size_t i = 1; i + 1 < datagrams.size(); ++i) (void)Push(datagrams[i], 1, 200);
+  EXPECT_EQ(Push(datagrams.back(), 1, 200), FragmentStatus::kComplete);
+  EXPECT_EQ(Bytes(message_.begin(), message_.end()), message);
+}
+
+// The peer of the other host has more than each of the ports.
+TEST_F(Fragments, AHostWithManyPortsTakesNothingFromOthers) {
+  const Bytes message = MessageOfSize(100 * 1024);
+  const std::vector<Bytes> datagrams = Split(message, 1);
+  ASSERT_EQ(Push(datagrams[0]), FragmentStatus::kPending);
+  const Bytes flood = Split(MessageOfSize(16 * 1024), 1).front();
+  for (std::uint64_t port = 0; port < 2 * 512; ++port) {
+    ASSERT_EQ(reassembler_.Push({.host = 2, .peer = 10 + port}, flood, 100, message_),
+              FragmentStatus::kPending);
+    ASSERT_LE(reassembler_.pending_bytes(), ReassemblyLimits().max_total_bytes);
+  }
+  EXPECT_GT(reassembler_.pending_bytes(), ReassemblyLimits().max_total_bytes * 9 / 10);
+  for (std::size_t i = 1; i + 1 < datagrams.size(); ++i) (void)Push(datagrams[i], 1, 200);
+  EXPECT_EQ(Push(datagrams.back(), 1, 200), FragmentStatus::kComplete);
+  EXPECT_EQ(Bytes(message_.begin(), message_.end()), message);
+}
+
+TEST_F(Fragments, OfAHostThePeerWithTheMostGives) {
+  const std::vector<Bytes> datagrams = Split(MessageOfSize(8 * 1024), 1);
+  ASSERT_EQ(reassembler_.Push({.host = 2, .peer = 1}, datagrams[0], 0, message_),
+            FragmentStatus::kPending);
+  const Bytes flood = Split(MessageOfSize(16 * 1024), 1).front();
+  for (std::uint64_t port = 0; port < 2 * 512; ++port) {
+    (void)reassembler_.Push({.host = 2, .peer = 10 + port}, flood, 100, message_);
+  }
+  FragmentStatus status = FragmentStatus::kPending;
+  for (std::size_t i = 1; i < datagrams.size(); ++i) {
+    status = reassembler_.Push({.host = 2, .peer = 1}, datagrams[i], 200, message_);
+  }
+  EXPECT_EQ(status, FragmentStatus::kComplete);
+}
+
+TEST_F(Fragments, LackOfMemoryLeavesEverythingAsItWas) {
+  const std::vector<Bytes> datagrams = Split(LargeMessage(), 1);
+  ASSERT_EQ(Push(datagrams[0], 2), FragmentStatus::kPending);
+  const std::size_t before = reassembler_.pending_bytes();
+  std::uint64_t allowed = 0;
+  for (bool failed = true; failed; ++allowed) {
+    try {
+      const furrow::test::AllocationLimit limit(allowed);
+      (void)Push(datagrams[0]);
+      failed = false;
+    } catch (const std::bad_alloc&) {
+      ASSERT_EQ(reassembler_.pending_bytes(), before) << allowed;
+      ASSERT_EQ(reassembler_.pending_messages(), 1u) << allowed;
+    }
+  }
+  EXPECT_GT(allowed, 5u);
+  for (std::size_t i = 1; i + 1 < datagrams.size(); ++i) (void)Push(datagrams[i]);
+  EXPECT_EQ(Push(datagrams.back()), FragmentStatus::kComplete);
+  reassembler_.ForgetPeer({.host = 2, .peer = 2});
+  EXPECT_EQ(reassembler_.pending_bytes(), 0u);
 }
 
 // 40 subjects of one sender, two fragments a pose, 60 poses per second, 10% loss and up to 50 ms of
@@ -195,7 +278,7 @@ TEST_F(Fragments, ManyStreamsOfOnePeerDoNotDropEachOther) {
 TEST(ReassemblerLimits, RejectsAMessageAboveTheTotal) {
   Reassembler small({.max_total_bytes = 2000});
   std::span<const std::uint8_t> message;
-  EXPECT_EQ(small.Push(1, Split(LargeMessage(), 1).front(), 0, message),
+  EXPECT_EQ(small.Push({}, Split(LargeMessage(), 1).front(), 0, message),
             FragmentStatus::kOverLimit);
   EXPECT_EQ(small.pending_bytes(), 0u);
 }
