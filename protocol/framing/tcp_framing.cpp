@@ -44,4 +44,12 @@ FrameStatus FrameReader::Push(std::span<const std::uint8_t>& bytes,
   return FrameStatus::kFrame;
 }
 
+std::vector<std::uint8_t> FrameReader::unfinished() const {
+  std::vector<std::uint8_t> bytes(prefix_.begin(),
+                                  prefix_.begin() + static_cast<std::ptrdiff_t>(prefix_bytes_));
+  // Between two frames, frame_ still has the last one.
+  if (prefix_bytes_ == kFramePrefixBytes) bytes.insert(bytes.end(), frame_.begin(), frame_.end());
+  return bytes;
+}
+
 }  // namespace furrow::protocol

@@ -45,6 +45,10 @@ class FrameReader {
   [[nodiscard]] FrameStatus Push(std::span<const std::uint8_t>& bytes,
                                  std::span<const std::uint8_t>& frame);
 
+  // The bytes of the frame that is not complete yet, its length included. Another reader that gets
+  // them goes on in this one's place.
+  [[nodiscard]] std::vector<std::uint8_t> unfinished() const;
+
  private:
   std::size_t max_frame_bytes_;
   std::array<std::uint8_t, kFramePrefixBytes> prefix_{};

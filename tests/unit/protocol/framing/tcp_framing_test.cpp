@@ -87,5 +87,27 @@ TEST(FrameReader, ClaimedLengthTakesNoMemory) {
   EXPECT_EQ(furrow::test::NumAllocations(), before);
 }
 
+// Wherever the stream is cut.
+TEST(FrameReader, AnotherReaderGoesOnInItsPlace) {
+  const Bytes stream = Framed({test::Encoded(Ping{1}), test::Encoded(Ping{2})});
+  for (std::size_t cut = 0; cut <= stream.size(); ++cut) {
+    std::vector<Bytes> frames;
+    const auto push = [&frames](FrameReader& reader, std::span<const std::uint8_t> bytes) {
+      std::span<const std::uint8_t> frame;
+      while (!bytes.empty() && reader.Push(bytes, frame) == FrameStatus::kFrame) {
+        frames.emplace_back(frame.begin(), frame.end());
+      }
+    };
+    FrameReader first(1000);
+    push(first, std::span(stream).first(cut));
+    FrameReader second(1000);
+    const std::size_t before = frames.size();
+    push(second, first.unfinished());
+    EXPECT_EQ(frames.size(), before) << cut;
+    push(second, std::span(stream).subspan(cut));
+    EXPECT_EQ(frames, (std::vector<Bytes>{test::Encoded(Ping{1}), test::Encoded(Ping{2})})) << cut;
+  }
+}
+
 }  // namespace
 }  // namespace furrow::protocol
