@@ -8,6 +8,23 @@ namespace furrow::protocol::secure {
 PacketOpener::PacketOpener(const Key& key, std::uint64_t max_failures)
     : current_(key), next_(NextKey(key)), max_failures_(max_failures) {}
 
+PacketOpener::PacketOpener(const State& state, std::uint64_t max_failures)
+    : previous_(state.previous),
+      current_(state.current),
+      next_(NextKey(state.current)),
+      phase_(state.phase),
+      has_previous_(state.has_previous),
+      phase_first_counter_(state.phase_first_counter),
+      turned_us_(state.turned_us),
+      window_(state.window),
+      failures_(state.failures),
+      max_failures_(max_failures) {}
+
+PacketOpener::State PacketOpener::state() const {
+  return {previous_,  current_,        phase_,   has_previous_, phase_first_counter_,
+          turned_us_, window_.state(), failures_};
+}
+
 OpenStatus PacketOpener::Open(ByteSpan packet, std::int64_t now_us, OpenedPacket& opened) {
   if (failures_ >= max_failures_) return OpenStatus::kExhausted;
   PacketHeader header;

@@ -39,6 +39,20 @@ class PacketOpener {
  public:
   explicit PacketOpener(const Key& key, std::uint64_t max_failures = kMaxFailedOpens);
 
+  // What another process needs to go on with the session.
+  struct State {
+    Key previous;
+    Key current;
+    bool phase = false;
+    bool has_previous = false;
+    std::uint64_t phase_first_counter = 0;
+    std::int64_t turned_us = 0;
+    ReplayWindow::State window;
+    std::uint64_t failures = 0;
+  };
+  explicit PacketOpener(const State& state, std::uint64_t max_failures = kMaxFailedOpens);
+  [[nodiscard]] State state() const;
+
   // On failure, the inner bytes are unspecified (never plain text).
   [[nodiscard]] OpenStatus Open(ByteSpan packet, std::int64_t now_us, OpenedPacket& opened);
 

@@ -9,6 +9,19 @@ PacketSealer::PacketSealer(const Key& key, std::uint32_t index, std::int64_t now
                            RekeyLimits limits, std::uint64_t first_counter)
     : key_(key), index_(index), limits_(limits), counter_(first_counter), phase_began_us_(now_us) {}
 
+PacketSealer::PacketSealer(const State& state, RekeyLimits limits)
+    : key_(state.key),
+      index_(state.index),
+      limits_(limits),
+      counter_(state.counter),
+      phase_(state.phase),
+      phase_packets_(state.phase_packets),
+      phase_began_us_(state.phase_began_us) {}
+
+PacketSealer::State PacketSealer::state() const {
+  return {key_, index_, counter_, phase_, phase_packets_, phase_began_us_};
+}
+
 SealStatus PacketSealer::Seal(PacketKind kind, ByteSpan packet, std::int64_t now_us) {
   if (packet.size() < kPacketOverheadBytes || packet.size() > kMaxPacketBytes) {
     return SealStatus::kBadSize;

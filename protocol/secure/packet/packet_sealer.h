@@ -29,6 +29,19 @@ class PacketSealer {
   PacketSealer(const Key& key, std::uint32_t index, std::int64_t now_us, RekeyLimits limits = {},
                std::uint64_t first_counter = 0);
 
+  // What another process needs to go on with the session. Whoever takes it must not seal again:
+  // two packets with the same counter would reveal both.
+  struct State {
+    Key key;
+    std::uint32_t index = 0;
+    std::uint64_t counter = 0;
+    bool phase = false;
+    std::uint64_t phase_packets = 0;
+    std::int64_t phase_began_us = 0;
+  };
+  explicit PacketSealer(const State& state, RekeyLimits limits = {});
+  [[nodiscard]] State state() const;
+
   // `packet` holds the inner bytes after kPacketHeaderBytes, and room for the tag at its end.
   // Writes header and tag, and encrypts the inner bytes.
   [[nodiscard]] SealStatus Seal(PacketKind kind, ByteSpan packet, std::int64_t now_us);

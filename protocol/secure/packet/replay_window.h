@@ -14,6 +14,18 @@ class ReplayWindow {
 
   enum class Answer : std::uint8_t { kNew, kDuplicate, kTooOld };
 
+  // What another process needs to go on with the window.
+  static constexpr std::size_t kWords = kSize / 64;
+  struct State {
+    std::array<std::uint64_t, kWords> words{};
+    std::uint64_t newest = 0;
+    bool any = false;
+  };
+  ReplayWindow() = default;
+  explicit ReplayWindow(const State& state)
+      : words_(state.words), newest_(state.newest), any_(state.any) {}
+  [[nodiscard]] State state() const { return {words_, newest_, any_}; }
+
   // Whether `counter` was received. Changes nothing, so a forged packet cannot move the window.
   [[nodiscard]] Answer Check(std::uint64_t counter) const {
     if (!any_ || counter > newest_) return Answer::kNew;
@@ -29,8 +41,6 @@ class ReplayWindow {
   }
 
  private:
-  static constexpr std::size_t kWords = kSize / 64;
-
   [[nodiscard]] static std::uint64_t bit(std::uint64_t counter) {
     return std::uint64_t{1} << (counter % 64);
   }

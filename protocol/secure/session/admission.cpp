@@ -176,6 +176,15 @@ Refusal Admission::Renew(ByteView renewal, const Hash& handshake_hash, std::uint
   return Refusal::kNone;
 }
 
+TokenUse& Admission::Resume(const SessionState& state) {
+  const TokenHead head{
+      .key_id = state.key_id, .expires = state.expires, .nonce = state.token_nonce};
+  TokenUse& use = UseOf(head, state.token_host);
+  use.last_heard_us = std::max(use.last_heard_us, state.last_heard_us);
+  use.sessions.push_back(state.index);
+  return use;
+}
+
 void Admission::Release(const PublicKey& client_key, TokenUse* use, std::uint32_t index) {
   responses_.erase(client_key);
   Detach(use, index);

@@ -14,6 +14,7 @@
 #include "protocol/secure/session/host_budgets.h"
 #include "protocol/secure/session/now.h"
 #include "protocol/secure/session/rate_budget.h"
+#include "protocol/secure/session/session_state.h"
 #include "protocol/secure/token/connect_token.h"
 #include "protocol/secure/token/key_ring.h"
 
@@ -96,6 +97,9 @@ class Admission {
   // is updated with `grant`. On a refusal nothing changes.
   [[nodiscard]] Refusal Renew(ByteView renewal, const Hash& handshake_hash, std::uint32_t index,
                               Now now, Grant& grant, std::uint64_t& expires, TokenUse*& use);
+
+  // Goes on with a session that another server has admitted. Returns the use of its token.
+  [[nodiscard]] TokenUse& Resume(const SessionState& state);
 
   // Forgets a session. Its token is free when it was the last one.
   void Release(const PublicKey& client_key, TokenUse* use, std::uint32_t index);

@@ -39,6 +39,10 @@ struct Channel {
         opener(keys.receive),
         handshake_hash(keys.handshake_hash) {}
 
+  // Goes on where another process has stopped.
+  Channel(const PacketSealer::State& seals, const PacketOpener::State& opens, const Hash& hash)
+      : sealer(seals), opener(opens), handshake_hash(hash) {}
+
   // Writes a control packet to the beginning of `packet`, which has room for it. Returns its size,
   // or 0 if the session is exhausted.
   [[nodiscard]] std::size_t SealControl(ControlType type, ByteView content, ByteSpan packet,

@@ -22,6 +22,33 @@ struct SecureServer::Session {
         last_heard_us(now.us),
         last_challenge_us(now.us - kChallengeMicroseconds) {}
 
+  Session(const SessionState& state, TokenUse* token)
+      : index(state.index),
+        channel(state.sealer, state.opener, state.handshake_hash),
+        address(state.address),
+        grant(state.grant),
+        expires(state.expires),
+        client_key(state.client_key),
+        use(token),
+        confirmed(true),
+        last_heard_us(state.last_heard_us),
+        last_challenge_us(state.last_heard_us) {}
+
+  [[nodiscard]] SessionState state() const {
+    return {.index = index,
+            .sealer = channel.sealer.state(),
+            .opener = channel.opener.state(),
+            .handshake_hash = channel.handshake_hash,
+            .address = address,
+            .grant = grant,
+            .expires = expires,
+            .client_key = client_key,
+            .token_nonce = use->nonce,
+            .key_id = use->key_id,
+            .token_host = use->host,
+            .last_heard_us = last_heard_us};
+  }
+
   // Cookies of a path belong to one session.
   [[nodiscard]] CookieMaker::Context PathContext() const {
     return ByteView(channel.handshake_hash).first<CookieMaker::kContextBytes>();
@@ -259,6 +286,33 @@ const PeerAddress* SecureServer::AddressOf(std::uint32_t index) const {
 
 void SecureServer::Close(std::uint32_t index) {
   if (Session* const session = Find(index)) End(*session, /*report=*/false);
+}
+
+std::vector<SessionState> SecureServer::TakeAll() {
+  std::vector<SessionState> states;
+  for (const auto& session : sessions_) {
+    if (session == nullptr) continue;
+    if (session->confirmed) states.push_back(session->state());
+    End(*session, /*report=*/false);
+  }
+  return states;
+}
+
+bool SecureServer::Resume(const SessionState& state, Now now) {
+  const std::size_t place = state.index & 0xFFFF;
+  if (place >= settings_.max_sessions || state.index >> 16 == 0 || now.unix_s >= state.expires ||
+      !admission_.HasKey(state.key_id)) {
+    return false;
+  }
+  if (place < sessions_.size() && sessions_[place] != nullptr) return false;
+  while (sessions_.size() <= place) {
+    free_places_.push_back(static_cast<std::uint16_t>(sessions_.size()));
+    sessions_.emplace_back();
+  }
+  sessions_[place] = std::make_unique<Session>(state, &admission_.Resume(state));
+  std::erase(free_places_, static_cast<std::uint16_t>(place));
+  ++num_sessions_;
+  return true;
 }
 
 void SecureServer::Expire(Now now) {

@@ -9,6 +9,7 @@
 
 #include "protocol/secure/session/admission.h"
 #include "protocol/secure/session/channel.h"
+#include "protocol/secure/session/session_state.h"
 
 namespace furrow::protocol::secure {
 
@@ -77,6 +78,13 @@ class SecureServer {
 
   // Ends a session at once. Packets of its client are answered as those of an unknown session.
   void Close(std::uint32_t session);
+  // Ends all sessions. Returns those that have begun, for a server that goes on with them: their
+  // clients notice nothing. This server seals nothing more.
+  [[nodiscard]] std::vector<SessionState> TakeAll();
+  // Goes on with a session of another server. False, and nothing has changed: its number is taken
+  // or too high, it has expired, or the key of its token is unknown.
+  [[nodiscard]] bool Resume(const SessionState& state, Now now);
+
   // Ends sessions that are silent or whose tokens have expired. Call it about once per second.
   void Expire(Now now);
   // The sessions that have ended since the last call, except those that the caller closed and those

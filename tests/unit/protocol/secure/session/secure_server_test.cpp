@@ -2,6 +2,8 @@
 #include "protocol/secure/session/secure_server.h"
 
 #include <set>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -370,6 +372,125 @@ TEST(SecureServer, PacketsOfASessionAllocateNothing) {
   }
   EXPECT_EQ(furrow::test::NumAllocations(), before);
   EXPECT_TRUE(ok);
+}
+
+// A second server, as after a restart, with the keys of `m`.
+class NextServer : public SecureServer {
+ public:
+  explicit NextServer(Meeting& m, SecureServerSettings settings = {})
+      : SecureServer(settings, m.random) {
+    SetKeys(m.ring);
+  }
+};
+
+TEST(SecureServer, AnotherServerGoesOnWithItsSessions) {
+  Meeting m;
+  const std::uint32_t session = m.Connect();
+  const Bytes late = m.FromClient("late");
+  Bytes repeated = m.FromClient("pose");
+  Bytes first = test::Packet(Text("first"));
+  PeerAddress to;
+  ASSERT_EQ(m.server.Seal(session, first, m.now, to), SealStatus::kOk);
+  ASSERT_EQ(m.ToServer(repeated).session, session);
+
+  const std::vector<SessionState> states = m.server.TakeAll();
+  ASSERT_EQ(states.size(), 1u);
+  Bytes never = test::Packet(Text("never"));
+  EXPECT_EQ(m.server.Seal(session, never, m.now, to), SealStatus::kNotConnected);
+  EXPECT_EQ(m.server.num_sessions(), 0u);
+  EXPECT_EQ(m.server.admission().num_tokens_in_use(), 0u);
+
+  NextServer next(m);
+  ASSERT_TRUE(next.Resume(states[0], m.now));
+  EXPECT_FALSE(next.Resume(states[0], m.now)) << "the number is taken";
+  EXPECT_EQ(next.admission().num_tokens_in_use(), 1u);
+  EXPECT_EQ(next.InfoOf(session).grant->subjects, "stage-*");
+  // The server knows the counters that its predecessor has received. Others are new.
+  EXPECT_EQ(next.OnDatagram(repeated, kHome, m.now).open_status, OpenStatus::kDuplicate);
+  Bytes arrives = late;
+  ServerEvent event = next.OnDatagram(arrives, kHome, m.now);
+  EXPECT_EQ(event.session, session);
+  EXPECT_FALSE(event.opened);
+  EXPECT_EQ(Bytes(event.inner.begin(), event.inner.end()), Text("late"));
+  // No counter is used twice, so the client takes both packets.
+  Bytes second = test::Packet(Text("second"));
+  ASSERT_EQ(next.Seal(session, second, m.now, to), SealStatus::kOk);
+  EXPECT_EQ(to, kHome);
+  for (const auto& [packet, text] : {std::pair(second, "second"), std::pair(first, "first")}) {
+    const ClientEvent received = m.ToClient(packet);
+    EXPECT_EQ(Bytes(received.inner.begin(), received.inner.end()), Text(text));
+  }
+  // New sessions get other numbers.
+  const ClientToken token = test::MakeTestToken(m.ring, m.random);
+  SecureClient other(token, Text("hello"), m.random);
+  for (int i = 0; i < 2; ++i) {
+    Bytes initiation = m.Poll(other);
+    const ServerEvent answer = next.OnDatagram(initiation, kAway, m.now);
+    (void)m.ToClient(other, answer.reply());
+  }
+  EXPECT_EQ(next.num_sessions(), 2u);
+  next.Close(session);
+  EXPECT_EQ(next.admission().num_tokens_in_use(), 1u);
+}
+
+// The key changes by time, so the next server must know when it changed last.
+TEST(SecureServer, AnotherServerGoesOnWithTheKeysInForce) {
+  Meeting m;
+  const std::uint32_t session = m.Connect();
+  for (int i = 0; i < 3; ++i) {
+    m.now = test::Later(m.now, RekeyLimits().microseconds);
+    ASSERT_EQ(m.ToServer(m.FromClient("pose")).session, session);
+    NextServer next(m);
+    const auto states = m.server.TakeAll();
+    ASSERT_EQ(states.size(), 1u);
+    ASSERT_TRUE(next.Resume(states[0], m.now));
+    Bytes packet = m.FromClient("again");
+    EXPECT_EQ(next.OnDatagram(packet, kHome, m.now).session, session);
+    Bytes reply = test::Packet(Text("weights"));
+    PeerAddress to;
+    ASSERT_EQ(next.Seal(session, reply, m.now, to), SealStatus::kOk);
+    EXPECT_FALSE(m.ToClient(reply).inner.empty());
+    const auto back = next.TakeAll();
+    ASSERT_EQ(back.size(), 1u);
+    ASSERT_TRUE(m.server.Resume(back[0], m.now));
+  }
+}
+
+TEST(SecureServer, GoesOnWithNoSessionThatMayNotBeHere) {
+  Meeting m;
+  (void)m.Connect();
+  const auto states = m.server.TakeAll();
+  ASSERT_EQ(states.size(), 1u);
+  const SessionState& good = states[0];
+  NextServer next(m, {.max_sessions = 2});
+  SessionState high = good;
+  high.index = good.index | 2;
+  EXPECT_FALSE(next.Resume(high, m.now));
+  SessionState unnumbered = good;
+  unnumbered.index = 1;
+  EXPECT_FALSE(next.Resume(unnumbered, m.now));
+  SessionState unknown = good;
+  ++unknown.key_id;
+  EXPECT_FALSE(next.Resume(unknown, m.now));
+  Now later = m.now;
+  later.unix_s = good.expires;
+  EXPECT_FALSE(next.Resume(good, later));
+  EXPECT_EQ(next.num_sessions(), 0u);
+  // Places below one in use stay free.
+  SessionState second = good;
+  second.index = good.index | 1;
+  EXPECT_TRUE(next.Resume(second, m.now));
+  EXPECT_TRUE(next.Resume(good, m.now));
+  EXPECT_EQ(next.num_sessions(), 2u);
+}
+
+// A handshake that its client has not continued is begun again.
+TEST(SecureServer, LeavesNoSessionThatHasNotBegun) {
+  Meeting m;
+  (void)m.ToClient(m.ToServer(m.Poll()).reply());
+  (void)m.ToServer(m.Poll());
+  EXPECT_EQ(m.server.num_sessions(), 1u);
+  EXPECT_TRUE(m.server.TakeAll().empty());
 }
 
 }  // namespace
