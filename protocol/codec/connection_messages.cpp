@@ -72,6 +72,8 @@ DecodeStatus ReadTable(const wire::Error& table, ErrorMessage& message) {
   FURROW_CHECK_DECODE(ReadText(table.host(), kMaxHostBytes, message.host));
   message.tcp = table.tcp();
   message.udp = table.udp();
+  message.web = table.web();
+  message.web_tls = table.web_tls();
   const bool has_ports = message.tcp != 0 && message.udp != 0;
   return message.host.empty() || has_ports ? DecodeStatus::kOk : DecodeStatus::kBadValue;
 }
@@ -80,7 +82,7 @@ flatbuffers::Offset<wire::Error> WriteTable(PayloadBuilder& payload, const Error
   const auto text = WriteText(payload, message.message);
   const auto host = WriteText(payload, message.host);
   return wire::CreateError(payload.builder, static_cast<std::uint16_t>(message.code), text, host,
-                           message.tcp, message.udp);
+                           message.tcp, message.udp, message.web, message.web_tls);
 }
 
 }  // namespace furrow::protocol::internal

@@ -113,6 +113,8 @@ struct ErrorMessage {
   std::string host = {};  // a name or a numeric address, without brackets; at most kMaxHostBytes
   std::uint16_t tcp = 0;  // ports; not 0 with a host
   std::uint16_t udp = 0;
+  std::uint16_t web = 0;  // of its web server; 0: it has none
+  bool web_tls = false;   // HTTPS, not HTTP
 };
 
 // --- Publishing ---------------------------------------------------------------------------------

@@ -35,6 +35,10 @@ inline Fields FieldsOf(const ErrorMessage& m) {
     fields.emplace_back("tcp", Json(static_cast<int>(m.tcp)));
     fields.emplace_back("udp", Json(static_cast<int>(m.udp)));
   }
+  if (!m.host.empty() && m.web != 0) {
+    fields.emplace_back("web", Json(static_cast<int>(m.web)));
+    fields.emplace_back("web_tls", Json(m.web_tls));
+  }
   return fields;
 }
 

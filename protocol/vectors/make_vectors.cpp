@@ -186,6 +186,9 @@ void AddMeeting(Files& files) {
   Add(files, "error_elsewhere",
       ErrorMessage{ErrorCode::kUnknownSubject, "'anna' is served by the node 'b'", "10.0.0.2", 7400,
                    7401});
+  Add(files, "error_elsewhere_web",
+      ErrorMessage{ErrorCode::kUnknownSubject, "'anna' is served by the node 'b'", "node-b", 7400,
+                   7401, 7480, true});
 }
 
 void AddPublishing(Files& files) {

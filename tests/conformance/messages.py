@@ -103,7 +103,10 @@ def error(t):
     fields = {"code": code, "message": t.text(1, limit=1024)}
     host, tcp, udp = t.text(2), t.scalar(3, "H"), t.scalar(4, "H")
     require(host == "" or (tcp != 0 and udp != 0), "another server without ports")
-    return {**fields, "host": host, "tcp": tcp, "udp": udp} if host else fields
+    if not host:
+        return fields
+    web = {"web": t.scalar(5, "H"), "web_tls": t.flag(6)} if t.scalar(5, "H") else {}
+    return {**fields, "host": host, "tcp": tcp, "udp": udp, **web}
 
 
 def skeleton_offer(t):

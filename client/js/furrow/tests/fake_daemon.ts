@@ -186,11 +186,11 @@ export class FakeDaemon implements TransportOpener {
     this.send(stream, sequence, builder.asUint8Array());
   }
 
-  refuse(sequence: number, code: number, text: string, to: Server = { host: '', tcp: 0, udp: 0 }): void {
+  refuse(sequence: number, code: number, text: string, to: Server = { host: '', tcp: 0, udp: 0, web: 0, isWebTls: false }): void {
     const builder = new Builder(64);
     const words = builder.createString(text);
     const host = to.host === '' ? 0 : builder.createString(to.host);
-    WireError.finishErrorBuffer(builder, WireError.createError(builder, code, words, host, to.tcp, to.udp));
+    WireError.finishErrorBuffer(builder, WireError.createError(builder, code, words, host, to.tcp, to.udp, to.web, to.isWebTls));
     this.send(0, sequence, builder.asUint8Array());
   }
 

@@ -52,7 +52,7 @@ test('bytes that are not a message are malformed', () => {
 test('texts keep every character, a byte order mark too', () => {
   const builder = new Builder(64);
   const words = builder.createString('\ufeffada');
-  WireError.finishErrorBuffer(builder, WireError.createError(builder, 5, words, 0, 0, 0));
+  WireError.finishErrorBuffer(builder, WireError.createError(builder, 5, words, 0, 0, 0, 0, false));
   assert.equal(readError(builder.asUint8Array()).message, '\ufeffada');
 });
 
@@ -65,6 +65,7 @@ test('requests for weights and poses have all their fields, and wait for their s
   assert.deepEqual([all.subject(), all.pattern(), all.maxRateHz(), all.format()], ['', null, 0, 0]);
   const poses = SubscribePoses.getRootAsSubscribePoses(new ByteBuffer(subscribePoses({ subject: 'ada', maxRateHz: 30 })));
   assert.deepEqual([poses.subject(), poses.maxRateHz(), poses.wait(), poses.every()], ['ada', 30, true, false]);
+  assert.equal(SubscribePoses.getRootAsSubscribePoses(new ByteBuffer(subscribePoses({ subject: '', every: true }))).every(), true);
 });
 
 test('the first hello is large enough to prove an address', () => {

@@ -8,7 +8,7 @@ import { Datagrams, splitMessage } from '../src/wire/datagrams.js';
 import { readMessage } from '../src/wire/envelope.js';
 import { Malformed } from '../src/wire/flat_table.js';
 import { readPose, readSkeleton } from '../src/wire/poses.js';
-import { readError, readGoodbye, readPicture, readPong, readReply, readWeights, readWelcome } from '../src/wire/replies.js';
+import { readDropped, readError, readGoodbye, readPicture, readPong, readReply, readWeights, readWelcome } from '../src/wire/replies.js';
 
 const FOLDER = join(process.env.FURROW_SOURCE!, 'protocol/vectors');
 const hex = (value: bigint): string => `0x${value.toString(16).padStart(16, '0')}`;
@@ -28,16 +28,19 @@ const READERS: Record<string, (payload: Uint8Array) => unknown> = {
   FBYE: (p) => ({ reason: readGoodbye(p) }),
   FERR: (p) => {
     const { code, message, elsewhere } = readError(p);
-    return { code, message, ...elsewhere };
+    if (elsewhere === null) return { code, message };
+    const { host, tcp, udp, web, isWebTls } = elsewhere;
+    return { code, message, host, tcp, udp, ...(web !== 0 && { web, web_tls: isWebTls }) };
   },
   FWGT: (p) => {
     const { namesHash, ageUs, values } = readWeights(p);
     return { names_hash: hex(namesHash), age_us: ageUs, values: [...values] };
   },
   FSUR: (p) => {
-    const { subject, namesHash, names, epoch } = readReply(p);
-    return { subject, names_hash: hex(namesHash), names, ...(epoch !== 0n && { epoch: hex(epoch) }) };
+    const { subject, namesHash, names, publisherSession, epoch } = readReply(p);
+    return { subject, names_hash: hex(namesHash), names, publisher_session: hex(publisherSession), ...(epoch !== 0n && { epoch: hex(epoch) }) };
   },
+  FDRP: (p) => ({ frames: readDropped(p) }),
   FIMG: (p) => {
     const m = readPicture(p);
     return {

@@ -44,6 +44,19 @@ TEST(ConnectionMessages, RoundTrip) {
             DecodeStatus::kOk);
 }
 
+TEST(ConnectionMessages, AnErrorNamesTheWebServerOfAnotherServer) {
+  ErrorMessage error;
+  const ErrorMessage sent{ErrorCode::kUnknownSubject, "", "node-b", 7400, 7401, 7480, true};
+  ASSERT_EQ(OpenAndDecode(Encoded(sent), error), DecodeStatus::kOk);
+  EXPECT_EQ(error.host, "node-b");
+  EXPECT_EQ(error.web, 7480);
+  EXPECT_TRUE(error.web_tls);
+  // The message before is forgotten.
+  ASSERT_EQ(OpenAndDecode(Encoded(ErrorMessage{ErrorCode::kLimit, ""}), error), DecodeStatus::kOk);
+  EXPECT_EQ(error.web, 0);
+  EXPECT_FALSE(error.web_tls);
+}
+
 TEST(ConnectionMessages, WelcomeIsNeverLargerThanHello) {
   const std::string longest(kMaxProgramBytes, 'x');
   for (const std::string& name : {std::string(), std::string("a"), longest}) {

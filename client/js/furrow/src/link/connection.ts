@@ -9,7 +9,7 @@ import { hello, ping, pong, unsubscribe } from '../wire/requests.js';
 import { Backoff } from './backoff.js';
 import { ServerClock } from './clock.js';
 import { type Environment, MACHINE } from './environment.js';
-import { Servers } from './servers.js';
+import { Servers, webAddress } from './servers.js';
 
 /** A datagram may be lost, so requests and the Hello are repeated. */
 const REPEAT_MS = 200;
@@ -41,6 +41,11 @@ const TIMED_OUT = 3;
 export interface Subscriber {
   /** The subject that it asks for. Absent: the connection stays at its server. */
   asksFor?(): string;
+  /**
+   * Another server of the cluster serves the subject, and the connection stays at this one. `web`: the address of the
+   * other one's web server, "https://host:7480". Called instead of onRefused(), if the other server has a web server.
+   */
+  onElsewhere?(web: string): void;
   /** Returns the current request. Called for every connection. */
   request(): Uint8Array;
   onReply(reply: ReplyMessage, requestSequence: number): void;
@@ -446,7 +451,9 @@ export class Connection {
     for (const entry of this.entries) {
       if (!entry.requests.delete(message.sequence)) continue;
       if (message.sequence === entry.sequence) entry.waiting = false;
-      entry.subscriber.onRefused(code, text, message.sequence);
+      const web = this.isProven && elsewhere !== null && code === ERROR.unknownSubject ? webAddress(elsewhere) : null;
+      if (web !== null && entry.subscriber.onElsewhere !== undefined) entry.subscriber.onElsewhere(web);
+      else entry.subscriber.onRefused(code, text, message.sequence);
       return;
     }
   }
@@ -460,7 +467,7 @@ export class Connection {
     const subject = entries[0]?.subscriber.asksFor?.();
     const isAsked = entries.some((entry) => entry.sequence === sequence);
     const isOne = subject !== undefined && entries.every(({ subscriber }) => subscriber.asksFor?.() === subject);
-    if (!this.servers.canFollow || !this.isProven || !isAsked || !isOne) return false;
+    if (!this.servers.canFollow(server) || !this.isProven || !isAsked || !isOne) return false;
     if (this.servers.goTo(server, this.environment.nowMs())) {
       this.letGo();
       this.connect();

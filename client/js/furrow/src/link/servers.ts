@@ -17,7 +17,13 @@ export function parseServer(text: string): Server | null {
   const found = /^(.+):(\d{1,5}):(\d{1,5})$/.exec(text);
   const [tcp, udp] = [Number(found?.[2]), Number(found?.[3])];
   const isPort = (port: number): boolean => port >= 1 && port <= 65535;
-  return found !== null && isPort(tcp) && isPort(udp) ? { host: found[1]!, tcp, udp } : null;
+  return found !== null && isPort(tcp) && isPort(udp) ? { host: found[1]!, tcp, udp, web: 0, isWebTls: false } : null;
+}
+
+/** The address of the server's web server, "https://host:7480"; null if there is none, or if it is not an address. */
+export function webAddress({ host, web, isWebTls }: Server): string | null {
+  if (web === 0 || !/^[\w.:-]+$/.test(host)) return null;
+  return `${isWebTls ? 'https' : 'http'}://${host.includes(':') ? `[${host}]` : host}:${web}`;
 }
 
 export class Servers {
@@ -29,9 +35,9 @@ export class Servers {
 
   constructor(private readonly first: TransportOpener) {}
 
-  /** False: the client must show nothing to a server that others have named. */
-  get canFollow(): boolean {
-    return this.first.elsewhere !== undefined;
+  /** False: the client must not show its token to the server, or this transport cannot reach it. */
+  canFollow(server: Server): boolean {
+    return (this.first.elsewhere?.(server) ?? null) !== null;
   }
 
   get hasOthers(): boolean {
@@ -41,7 +47,7 @@ export class Servers {
   /** Opens connections to the present server. */
   get opener(): TransportOpener {
     const server = this.all[this.present]!;
-    return server === null ? this.first : this.first.elsewhere!(server);
+    return (server === null ? null : this.first.elsewhere?.(server)) ?? this.first;
   }
 
   /** The daemon sends the client to a server. False: it stays for now, and should ask again later. */
@@ -67,10 +73,9 @@ export class Servers {
 
   /** The servers of a Welcome. */
   remember(texts: readonly string[]): void {
-    if (!this.canFollow) return;
     const present = this.all[this.present]!;
     const others = texts.slice(0, MOST_SERVERS).map(parseServer)
-      .filter((server) => server !== null && !isSame(server, present));
+      .filter((server) => server !== null && !isSame(server, present) && this.canFollow(server));
     this.all = [null, ...others];
     this.present = present === null ? 0 : this.all.push(present) - 1;
   }

@@ -30,6 +30,10 @@ export interface Server {
   host: string;
   tcp: number;
   udp: number;
+  /** The port of its web server; 0: it has none, or nobody has said so. */
+  web: number;
+  /** The web server speaks HTTPS, not HTTP. */
+  isWebTls: boolean;
 }
 
 /** Starts one attempt. */
@@ -43,9 +47,9 @@ export interface TransportOpener {
   /** The text of the connect token that each Hello shows; absent or empty: none. */
   access?: string;
   /**
-   * The same for a server that the daemon has named. Absent if the client must not follow: the token would be shown to
-   * a server that nobody has proved to be one of them.
+   * The same for a server that the daemon has named. Null if this kind of transport does not reach it. Absent if the
+   * client must not follow: the token would be shown to a server that nobody has proved to be one of them.
    */
-  elsewhere?(server: Server): TransportOpener;
+  elsewhere?(server: Server): TransportOpener | null;
   open(events: TransportEvents): Transport;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The browser's WebSocket.
+import { webAddress } from '../link/servers.js';
 import { MAX_UNSENT_BYTES, type Transport, type TransportEvents, type TransportOpener } from './transport.js';
 
 export const WEB_SOCKET_PROTOCOL = 'furrow.1';
@@ -9,9 +10,20 @@ export function offeredProtocols(token: string): string[] {
   return token === '' ? [WEB_SOCKET_PROTOCOL] : [WEB_SOCKET_PROTOCOL, token];
 }
 
-/** `token`: returns the text of a connect token, or an empty text; asked at each attempt. */
+/**
+ * `token`: returns the text of a connect token, or an empty text; asked at each attempt. With a token, the client stays
+ * at its server: a browser would show it to any server with a certificate.
+ */
 export function browserSocket(url: string, token: () => string = () => ''): TransportOpener {
-  return { kind: 'ws', open: (events) => openSocket(url, token(), events) };
+  return {
+    kind: 'ws',
+    open: (events) => openSocket(url, token(), events),
+    elsewhere: (server) => {
+      const web = webAddress(server);
+      const isWeaker = url.startsWith('wss:') && !server.isWebTls;
+      return web === null || isWeaker || token() !== '' ? null : browserSocket(`${web.replace(/^http/, 'ws')}/ws`, token);
+    },
+  };
 }
 
 function openSocket(url: string, token: string, events: TransportEvents): Transport {

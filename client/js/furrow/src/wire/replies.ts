@@ -50,6 +50,8 @@ export interface ReplyMessage {
   /** Equal names in equal order have equal hashes; 0n: no names. */
   namesHash: bigint;
   names: string[];
+  /** Poses: changes with the session that sends them. Otherwise 0n. */
+  publisherSession: bigint;
   /** Grows with each server of a cluster that gets the subject; 0n without a cluster. */
   epoch: bigint;
 }
@@ -104,7 +106,7 @@ export function readReply(payload: Uint8Array): ReplyMessage {
   const names = table.names(2, MAX_NAMES);
   const hash = table.u64(1);
   require(hash === namesHash(names), 'a hash that does not match the names');
-  return { subject: table.text(0), namesHash: hash, names, epoch: table.u64(4) };
+  return { subject: table.text(0), namesHash: hash, names, publisherSession: table.u64(3), epoch: table.u64(4) };
 }
 
 /** The time of the sender, microseconds. A Pong repeats it. */
@@ -130,7 +132,13 @@ export function readError(payload: Uint8Array): { code: number; message: string;
   require(code >= 1 && code <= NUM_ERROR_CODES, 'an unknown error code');
   const [host, tcp, udp] = [table.text(2), table.u16(3), table.u16(4)];
   require(host === '' || (tcp !== 0 && udp !== 0), 'another server without ports');
-  return { code, message: table.text(1, MAX_ERROR_BYTES), elsewhere: host === '' ? null : { host, tcp, udp } };
+  const elsewhere = { host, tcp, udp, web: table.u16(5), isWebTls: table.flag(6) };
+  return { code, message: table.text(1, MAX_ERROR_BYTES), elsewhere: host === '' ? null : elsewhere };
+}
+
+/** How many frames of a subscription with `every` the server has dropped since it began. */
+export function readDropped(payload: Uint8Array): number {
+  return Number(new FlatTable(payload).u64(0));
 }
 
 /** 0 done, 1 subject gone, 2 draining, 3 timed out. */

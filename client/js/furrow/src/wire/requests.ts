@@ -63,6 +63,8 @@ export interface WeightsRequest {
 export interface PosesRequest {
   subject: string;
   maxRateHz?: number;
+  /** For recorders over streams: poses queue instead of being replaced by newer ones. See readDropped(). */
+  every?: boolean;
 }
 
 const HELLO_PADDING_BYTES = 224; // a Hello without a token has at least 256 bytes (section 4)
@@ -147,6 +149,7 @@ export function subscribePoses(request: PosesRequest): Uint8Array {
   SubscribePoses.addSubject(builder, subject);
   SubscribePoses.addWait(builder, true);
   SubscribePoses.addMaxRateHz(builder, request.maxRateHz ?? 0);
+  SubscribePoses.addEvery(builder, request.every ?? false);
   SubscribePoses.finishSubscribePosesBuffer(builder, SubscribePoses.endSubscribePoses(builder));
   return builder.asUint8Array();
 }

@@ -39,6 +39,14 @@ export function securityOf(address: Address, token: string): StreamSecurity {
   return { token, tls: files, tokenInClear };
 }
 
+/**
+ * True if the client may go to a server that others have named. Any server has a certificate of a public authority, so
+ * a token needs one that the user has named.
+ */
+export function mayShowTokenElsewhere({ token, tls, tokenInClear }: StreamSecurity): boolean {
+  return token === '' || (tls?.ca !== undefined && !tokenInClear);
+}
+
 const isLoopback = (address = ''): boolean => /^(::ffff:)?127\.|^::1$/.test(address);
 
 const UNKNOWN = 'no known authority has signed its certificate (give the authority, or the certificate itself, with ' +

@@ -3,15 +3,13 @@
 import { ENVELOPE_BYTES, MAX_REPLY_BYTES } from '../../wire/envelope.js';
 import { MAX_UNSENT_BYTES, type Transport, type TransportEvents, type TransportOpener } from '../transport.js';
 import { ByteQueue } from './byte_queue.js';
-import { connectStream, failureText, NO_SECURITY, type StreamSecurity } from './stream.js';
+import { connectStream, failureText, mayShowTokenElsewhere, NO_SECURITY, type StreamSecurity } from './stream.js';
 
 export function tcpSocket(host: string, port: number, security = NO_SECURITY): TransportOpener {
   const opener: TransportOpener = {
     kind: 'tcp', access: security.token, open: (events) => openTcp(host, port, security, events),
   };
-  // Any server has a certificate of a public authority, so a token needs one that the user has named.
-  const isSafe = security.token === '' || (security.tls?.ca !== undefined && !security.tokenInClear);
-  if (isSafe) opener.elsewhere = (server) => tcpSocket(server.host, server.tcp, security);
+  if (mayShowTokenElsewhere(security)) opener.elsewhere = (server) => tcpSocket(server.host, server.tcp, security);
   return opener;
 }
 

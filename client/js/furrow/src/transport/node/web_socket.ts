@@ -3,11 +3,12 @@
 // extensions.
 import { createHash, randomBytes } from 'node:crypto';
 import type { Socket } from 'node:net';
+import { webAddress } from '../../link/servers.js';
 import { MAX_REPLY_BYTES } from '../../wire/envelope.js';
 import { MAX_UNSENT_BYTES, type Transport, type TransportEvents, type TransportOpener } from '../transport.js';
 import { offeredProtocols } from '../web_socket.js';
 import { ByteQueue } from './byte_queue.js';
-import { connectStream, failureText, NO_SECURITY, type StreamSecurity } from './stream.js';
+import { connectStream, failureText, mayShowTokenElsewhere, NO_SECURITY, type StreamSecurity } from './stream.js';
 
 const GUID = '258EAFA5-E914-47DA-95CA-C5AB0DC85B11';
 const MAX_HEAD_BYTES = 8192;
@@ -17,7 +18,13 @@ const MAX_CONTROL_BYTES = 125;
 const MAX_PARTS = 4096;
 
 export function nodeWebSocket(host: string, port: number, security = NO_SECURITY, path = '/ws'): TransportOpener {
-  return { kind: 'ws', open: (events) => new NodeWebSocket(host, port, security, path, events) };
+  const opener: TransportOpener = { kind: 'ws', open: (events) => new NodeWebSocket(host, port, security, path, events) };
+  if (!mayShowTokenElsewhere(security)) return opener;
+  opener.elsewhere = (server) => {
+    const reaches = webAddress(server) !== null && server.isWebTls === (security.tls !== null);
+    return reaches ? nodeWebSocket(server.host, server.web, security) : null;
+  };
+  return opener;
 }
 
 class NodeWebSocket implements Transport {
