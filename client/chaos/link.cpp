@@ -63,10 +63,12 @@ bool InBlackHole(std::span<const BlackHole> holes, double seconds) {
 void FaultCounts::Add(const FaultCounts& other) {
   packets += other.packets;
   lost += other.lost;
+  lost_data += other.lost_data;
   swallowed += other.swallowed;
   reordered += other.reordered;
   duplicated += other.duplicated;
   delayed += other.delayed;
+  delayed_data += other.delayed_data;
   falsified += other.falsified;
   swapped += other.swapped;
 }
@@ -81,9 +83,10 @@ double Link::Roll(Dice dice) const {
   return static_cast<double>(bits >> 11) * 0x1p-53;
 }
 
-std::int64_t Link::DueUs(std::int64_t now_us) {
+std::int64_t Link::DueUs(std::span<const std::uint8_t> packet, std::int64_t now_us) {
   if (Hits(Dice::kDelay, options_.delay)) {
     ++counts_.delayed;
+    if (IsTamperable(packet)) ++counts_.delayed_data;
     return now_us + std::llround(options_.delay_ms * 1e3);
   }
   return now_us + std::llround(options_.jitter_ms * 1e3 * Roll(Dice::kJitter));
@@ -94,6 +97,7 @@ void Link::Push(std::span<const std::uint8_t> bytes, std::int64_t now_us) {
     ++counts_.swallowed;
   } else if (Hits(Dice::kLoss, options_.loss)) {
     ++counts_.lost;
+    if (IsTamperable(bytes)) ++counts_.lost_data;
   } else {
     Take(bytes, now_us);
   }
@@ -106,7 +110,7 @@ void Link::Take(std::span<const std::uint8_t> bytes, std::int64_t now_us) {
   if (!options_.tampers()) return Handle(bytes, now_us);
   (void)gathered_.Expire(now_us);
   std::span<const std::uint8_t> message;
-  switch (gathered_.Push(0, bytes, now_us, message)) {
+  switch (gathered_.Push({}, bytes, now_us, message)) {
     case protocol::FragmentStatus::kPending: return;
     case protocol::FragmentStatus::kWhole:
     case protocol::FragmentStatus::kComplete: return Handle(message, now_us);
@@ -118,7 +122,7 @@ void Link::Handle(std::span<const std::uint8_t> bytes, std::int64_t now_us) {
   std::vector<std::uint8_t> packet(bytes.begin(), bytes.end());
   if (Hits(Dice::kFalsify, options_.falsify) && Falsify(&packet, Roll(Dice::kAmount)))
     ++counts_.falsified;
-  const std::int64_t due_us = DueUs(now_us);
+  const std::int64_t due_us = DueUs(packet, now_us);
   if (Hits(Dice::kDuplicate, options_.duplicate)) {
     ++counts_.duplicated;
     // The copy is queued at once and takes no part in the faults below.

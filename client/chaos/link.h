@@ -51,10 +51,12 @@ struct Faults {
 struct FaultCounts {
   std::uint64_t packets = 0;
   std::uint64_t lost = 0;
+  std::uint64_t lost_data = 0;  // of `lost`: packets in which IsTamperable() found poses or weights
   std::uint64_t swallowed = 0;  // lost in a black hole
   std::uint64_t reordered = 0;
   std::uint64_t duplicated = 0;
   std::uint64_t delayed = 0;
+  std::uint64_t delayed_data = 0;  // of `delayed`, as in `lost_data`
   std::uint64_t falsified = 0;
   std::uint64_t swapped = 0;
 
@@ -103,7 +105,7 @@ class Link {
   [[nodiscard]] bool Hits(Dice dice, double probability) const {
     return probability > 0.0 && Roll(dice) < probability;
   }
-  [[nodiscard]] std::int64_t DueUs(std::int64_t now_us);
+  [[nodiscard]] std::int64_t DueUs(std::span<const std::uint8_t> packet, std::int64_t now_us);
   // Handles a packet, whole or a fragment, that was not lost.
   void Take(std::span<const std::uint8_t> bytes, std::int64_t now_us);
   void Handle(std::span<const std::uint8_t> bytes, std::int64_t now_us);

@@ -19,13 +19,16 @@ struct Fault {
   // Pointers to members, so that one list serves text, JSON and the check below.
   double Faults::*probability;
   std::uint64_t FaultCounts::*count;
+  // Those among them that carried poses or weights; null: the fault strikes nothing else, or the
+  // count is not kept.
+  std::uint64_t FaultCounts::*data = nullptr;
 };
 
 constexpr std::array kFaults = {
-    Fault{"--loss", "lost", &Faults::loss, &FaultCounts::lost},
+    Fault{"--loss", "lost", &Faults::loss, &FaultCounts::lost, &FaultCounts::lost_data},
     Fault{"--reorder", "reordered", &Faults::reorder, &FaultCounts::reordered},
     Fault{"--duplicate", "duplicated", &Faults::duplicate, &FaultCounts::duplicated},
-    Fault{"--delay", "delayed", &Faults::delay, &FaultCounts::delayed},
+    Fault{"--delay", "delayed", &Faults::delay, &FaultCounts::delayed, &FaultCounts::delayed_data},
     Fault{"--falsify", "falsified", &Faults::falsify, &FaultCounts::falsified},
     Fault{"--swap", "swapped", &Faults::swap, &FaultCounts::swapped}};
 
@@ -48,8 +51,10 @@ std::string ToText(const std::string& direction, const Outcome& outcome) {
   const FaultCounts& counts = outcome.counts;
   std::string text = direction + ": " + Counted(counts.packets, "datagram");
   for (const Fault& fault : kFaults) {
-    if (Asked(outcome.options, fault))
-      text += ", " + std::string(fault.done) + " " + std::to_string(counts.*fault.count);
+    if (!Asked(outcome.options, fault)) continue;
+    text += ", " + std::string(fault.done) + " " + std::to_string(counts.*fault.count);
+    if (fault.data)
+      text += " (" + std::to_string(counts.*fault.data) + " with readable poses or weights)";
   }
   if (!outcome.options.black_holes.empty())
     text += ", swallowed " + std::to_string(counts.swallowed);
@@ -101,7 +106,10 @@ nlohmann::json ToJson(const Outcome& outcome) {
                         {"bytes", outcome.stream_counts.bytes},
                         {"held", outcome.stream_counts.held},
                         {"still_us", outcome.stream_counts.still_us}}}};
-  for (const Fault& fault : kFaults) json[fault.done] = outcome.counts.*fault.count;
+  for (const Fault& fault : kFaults) {
+    json[fault.done] = outcome.counts.*fault.count;
+    if (fault.data) json[std::string(fault.done) + "_data"] = outcome.counts.*fault.data;
+  }
   return json;
 }
 

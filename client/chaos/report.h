@@ -17,8 +17,9 @@ struct Outcome {
   RelayCounts stream_counts;  // of TCP
 };
 
-// Returns "up: 1000 datagrams, lost 3, ...", with a count for each requested fault. `direction`:
-// the word before the colon. If there were TCP connections, a second line follows: "up over TCP: 2
+// Returns "up: 1000 datagrams, lost 3 (2 with readable poses or weights), ...", with a count for
+// each requested fault. Readable are whole messages that are not encrypted. `direction`: the word
+// before the colon. If there were TCP connections, a second line follows: "up over TCP: 2
 // connections, 5000 bytes, ...".
 [[nodiscard]] std::string ToText(const std::string& direction, const Outcome& outcome);
 

@@ -55,6 +55,20 @@ TEST(Link, LosesTheRequestedShare) {
   EXPECT_EQ(out.size() + link.counts().lost, 10000u);
 }
 
+TEST(Link, LostAndDelayedWeightsAreCountedApart) {
+  Link losing({.loss = 1.0}, 0, 0);
+  Link delaying({.delay = 1.0}, 0, 0);
+  for (Link* link : {&losing, &delaying}) {
+    link->Push(Weights(1, {0.5f}), 0);
+    link->Push(Numbered(7), 0);  // not a message
+    link->Push(Weights(2, {0.5f}), 0);
+  }
+  EXPECT_EQ(losing.counts().lost, 3u);
+  EXPECT_EQ(losing.counts().lost_data, 2u);
+  EXPECT_EQ(delaying.counts().delayed, 3u);
+  EXPECT_EQ(delaying.counts().delayed_data, 2u);
+}
+
 TEST(Link, AReorderedPacketFollowsTheNextPacket) {
   Link link({.reorder = 0.05}, 0, 0);
   const auto out = Pass(link, 2000);
@@ -165,7 +179,7 @@ std::vector<Packet> Leave(Link& link, std::int64_t now_us) {
   Packet packet;
   while (link.Pop(now_us, &packet)) {
     EXPECT_LE(packet.size(), protocol::kMaxDatagramBytes);
-    const auto status = reassembler.Push(0, packet, now_us, message);
+    const auto status = reassembler.Push({}, packet, now_us, message);
     if (status == protocol::FragmentStatus::kPending) continue;
     EXPECT_TRUE(status == protocol::FragmentStatus::kWhole ||
                 status == protocol::FragmentStatus::kComplete);

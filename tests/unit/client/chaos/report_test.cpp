@@ -22,6 +22,14 @@ TEST(ChaosReport, RequestedFaultsAreListedEvenWithACountOfZero) {
             "down: 7 datagrams");
 }
 
+TEST(ChaosReport, LostPosesAndWeightsAreCountedApart) {
+  const Outcome outcome{.options = {.loss = 0.1},
+                        .counts = {.packets = 50, .lost = 3, .lost_data = 2},
+                        .stream_counts = {}};
+  EXPECT_EQ(ToText("up", outcome), "up: 50 datagrams, lost 3 (2 with readable poses or weights)");
+  EXPECT_EQ(ToJson(outcome)["lost_data"], 2);
+}
+
 TEST(ChaosReport, TcpHasItsOwnLine) {
   Outcome outcome = Falsifying(3);
   outcome.stream_counts = {.connections = 2, .bytes = 10, .held = 4, .still_us = 5000};
