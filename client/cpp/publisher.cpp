@@ -60,6 +60,24 @@ void Publisher::SendOffer(Stream& stream, std::int64_t now_us) {
   if (transport_->Send(stream.offer) == IoStatus::kTooLarge) OnOversized(stream);
 }
 
+// The daemon drops offers beyond 1,000 per second, so those of many streams take turns.
+void Publisher::RepeatOffers(std::int64_t now_us) {
+  if (now_us - round_us_ >= protocol::kOfferResendMicroseconds) {
+    round_us_ = now_us;
+    offers_left_ = kOffersPerRound;
+  }
+  const std::size_t first = next_offer_;
+  for (std::size_t i = 0; i < streams_.size() && offers_left_ > 0; ++i) {
+    const std::size_t number = (first + i) % streams_.size();
+    Stream& stream = streams_[number];
+    const bool due = now_us - stream.offered_us >= protocol::kOfferResendMicroseconds;
+    if (stream.accepted || !stream.rejection.empty() || !due) continue;
+    SendOffer(stream, now_us);
+    --offers_left_;
+    next_offer_ = number + 1;
+  }
+}
+
 IoStatus Publisher::Send(std::uint16_t number, protocol::PoseFrame& pose,
                          std::int64_t capture_time_us, const protocol::PoseEncoding& encoding,
                          bool repeat_previous) {
@@ -150,10 +168,7 @@ void Publisher::EndMove() {
 IoStatus Publisher::Poll(std::int64_t now_us, std::chrono::milliseconds wait) {
   WatchServer(now_us);
   if (introduction_.proven()) {
-    for (Stream& stream : streams_) {
-      const bool due = now_us - stream.offered_us >= protocol::kOfferResendMicroseconds;
-      if (!stream.accepted && stream.rejection.empty() && due) SendOffer(stream, now_us);
-    }
+    RepeatOffers(now_us);
   } else if (introduced_us_ && now_us - *introduced_us_ >= protocol::kOfferResendMicroseconds) {
     Introduce(now_us);
   }

@@ -36,7 +36,8 @@ class Publisher {
   explicit Publisher(std::unique_ptr<Transport> transport, std::string name = "furrow publisher");
 
   // Offers a subject and returns its stream number. Poll() repeats the offer until the daemon
-  // answers, and again whenever the daemon asks for it, for example after a restart.
+  // answers, those of more than 160 unanswered streams in turn, and again whenever the daemon asks
+  // for it, for example after a restart.
   std::uint16_t AddSubject(const protocol::SkeletonOffer& offer, std::int64_t now_us);
 
   // Sends one pose of a stream that AddSubject() returned. Poses are numbered from 0 per stream.
@@ -91,6 +92,7 @@ class Publisher {
   void RepeatPrevious(Stream& stream, const protocol::Header& header, protocol::PoseFrame& pose);
   void SendOffer(Stream& stream, std::int64_t now_us);
   void OfferAll(std::int64_t now_us);
+  void RepeatOffers(std::int64_t now_us);
   void Introduce(std::int64_t now_us);
   void StartOver(std::int64_t now_us);
   void OnError(const protocol::Header& header, std::int64_t now_us);
@@ -103,6 +105,7 @@ class Publisher {
   static void OnOversized(Stream& stream);
   static constexpr std::int64_t kMovePatience = 1'000'000;  // microseconds
   static constexpr std::size_t kMostWaiting = 64;
+  static constexpr std::size_t kOffersPerRound = 160;  // 800 per second
   void SendGoodbye(std::size_t stream);
   void Handle(std::span<const std::uint8_t> message, std::int64_t now_us);
 
@@ -114,6 +117,10 @@ class Publisher {
   std::optional<std::int64_t> introduced_us_;  // when the last Hello was sent
   std::uint64_t generation_;  // of the transport's connection that the offers went to
   std::vector<Stream> streams_;
+  // Of repeated offers: when the round began, how many it may still send, and the next stream.
+  std::int64_t round_us_ = 0;
+  std::size_t offers_left_ = kOffersPerRound;
+  std::size_t next_offer_ = 0;
   std::vector<std::uint8_t> bytes_;
   std::vector<std::uint8_t> alone_;  // a message without the pose that it could repeat
   protocol::SkeletonReply reply_;

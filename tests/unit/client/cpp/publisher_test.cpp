@@ -59,6 +59,25 @@ TEST_F(PublisherTest, OfferIsRepeatedUntilItIsAnswered) {
   EXPECT_TRUE(far_->sent.empty());
 }
 
+// The daemon drops offers beyond 1,000 per second.
+TEST_F(PublisherTest, OffersOfManyStreamsTakeTurns) {
+  constexpr std::size_t kStreams = 500;
+  for (std::size_t i = 0; i < kStreams; ++i) (void)publisher_.AddSubject(OneJoint(), 0);
+  Prove();
+  far_->sent.clear();
+  for (std::int64_t now = 10'000; now <= 1'000'000; now += 10'000) {
+    publisher_.Poll(now, milliseconds(0));
+  }
+  EXPECT_LE(far_->sent.size(), 1'000u);
+  std::set<std::uint16_t> offered;
+  for (const auto& bytes : far_->sent) {
+    protocol::MessageView view;
+    ASSERT_EQ(protocol::OpenMessage(bytes, view), protocol::DecodeStatus::kOk);
+    offered.insert(view.header.stream);
+  }
+  EXPECT_EQ(offered.size(), kStreams);
+}
+
 // The pose that the last message of the far end carries.
 protocol::PoseFrame LastPose(const FarEnd& far) {
   protocol::MessageView view;
