@@ -12,12 +12,14 @@
 #include "client/cli/common/exit_code.h"
 #include "client/cli/common/interrupt.h"
 #include "client/cli/common/progress.h"
+#include "client/cpp/operate/drain_watch.h"
 #include "client/cpp/operate/drainer.h"
 
 namespace furrow::cli {
 namespace {
 
 using client::IoStatus;
+using Verdict = client::DrainWatch::Verdict;
 
 struct DrainOptions {
   std::string host;
@@ -28,12 +30,6 @@ struct DrainOptions {
   bool waits = false;
   double wait_seconds = 0.0;  // 0: without limit
 };
-
-// The time for the first answer.
-constexpr std::int64_t kPatienceUs = 3'000'000;
-// After this time without an answer, the daemon or its computer is gone. Over UDP, nothing else
-// says so.
-constexpr std::int64_t kSilenceUs = 10'000'000;
 
 std::string Listed(const protocol::DrainState& state) {
   std::string text;
@@ -77,10 +73,33 @@ int OnEnd(const client::Drainer& drainer) {
   return kDone;
 }
 
+void Show(const protocol::DrainState& state, std::unique_ptr<Progress>* progress) {
+  const auto total = static_cast<std::int64_t>(state.moved) + state.left;
+  if (!*progress) *progress = std::make_unique<Progress>("moved", total);
+  (*progress)->Set(std::min<std::int64_t>(state.moved, total));
+}
+
+int Conclude(Verdict verdict, const client::Drainer& drainer) {
+  const auto& state = drainer.state();
+  switch (verdict) {
+    case Verdict::kNoAnswer:
+      std::fprintf(stderr, "furrow: the daemon does not answer\n");
+      return kNoConnection;
+    case Verdict::kAgreed:
+      std::printf("drains: %s left\n", Count(state->left).c_str());
+      return kDone;
+    case Verdict::kSilent: return FailLeft(*state, "the daemon no longer answers", kNoConnection);
+    case Verdict::kTimedOut: return FailLeft(*state, "timed out");
+    case Verdict::kEmpty:
+    case Verdict::kGoesOn: break;
+  }
+  return OnEnd(drainer);
+}
+
 int Follow(client::Drainer& drainer, const DrainOptions& options) {
   CatchInterrupts();
-  const std::int64_t start_us = client::SteadyMicroseconds();
-  const auto limit_us = static_cast<std::int64_t>(options.wait_seconds * 1e6);
+  const client::DrainWatch watch(client::SteadyMicroseconds(), options.waits,
+                                 static_cast<std::int64_t>(options.wait_seconds * 1e6));
   std::unique_ptr<Progress> progress;
   while (!Interrupted()) {
     const IoStatus status =
@@ -90,29 +109,12 @@ int Follow(client::Drainer& drainer, const DrainOptions& options) {
       return kFailed;
     }
     if (status != IoStatus::kOk && status != IoStatus::kTimeout) return OnEnd(drainer);
-    const std::int64_t passed_us = client::SteadyMicroseconds() - start_us;
-    const auto& state = drainer.state();
-    if (!state) {
-      if (passed_us < kPatienceUs) continue;
-      std::fprintf(stderr, "furrow: the daemon does not answer\n");
-      return kNoConnection;
-    }
-    if (!options.waits) {
-      std::printf("drains: %s left\n", Count(state->left).c_str());
-      return kDone;
-    }
-    if (state->draining && state->left == 0) return OnEnd(drainer);
-    if (client::SteadyMicroseconds() - drainer.heard_us() > kSilenceUs) {
-      progress.reset();
-      return FailLeft(*state, "the daemon no longer answers", kNoConnection);
-    }
-    const auto total = static_cast<std::int64_t>(state->moved) + state->left;
-    if (!progress) progress = std::make_unique<Progress>("moved", total);
-    progress->Set(std::min<std::int64_t>(state->moved, total));
-    if (limit_us > 0 && passed_us > limit_us) {
-      progress.reset();
-      return FailLeft(*state, "timed out");
-    }
+    const Verdict verdict =
+        watch.Judge(drainer.state(), drainer.heard_us(), client::SteadyMicroseconds());
+    if (drainer.state() && options.waits) Show(*drainer.state(), &progress);
+    if (verdict == Verdict::kGoesOn) continue;
+    progress.reset();
+    return Conclude(verdict, drainer);
   }
   return kFailed;
 }
