@@ -8,7 +8,7 @@ struct Demand {
   double performers = 0.0;
   int joints = 51;
   int blend_shapes = 0;
-  int weights = 37;        // of the default character's rig
+  int weights = 37;        // the default character has 97
   double rate = 60.0;      // poses per second of a performer
   int subscribers = 1;     // of a performer's weights
   bool floats = false;     // poses and blend shapes as floats; else packed

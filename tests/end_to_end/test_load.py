@@ -6,13 +6,12 @@ import pathlib
 import re
 import signal
 import socket
-import subprocess
 import tempfile
 import time
 import unittest
 import xml.etree.ElementTree
 
-from furrow_testing import GUARD, SHARE, Daemon, commands, finish, furrow, spawn, spawn_watch
+from furrow_testing import GUARD, SHARE, Daemon, commands, finish, furrow, make_certificate, spawn, spawn_watch
 
 PERFORMANCE = SHARE / "recordings" / "performance.bvh"
 # Keeps the tests independent of the speed of the machine: only minutes count as late.
@@ -45,6 +44,8 @@ class Chaos:
         for line in self.said.splitlines():
             way, _, what = line.partition(": ")
             self.injected[way] = {name: int(count) for name, count in re.findall(r"(\w+) (\d+)", what)}
+            for name, count in re.findall(r"(\w+) \d+ \((\d+) with readable poses or weights\)", what):
+                self.injected[way][name + " data"] = int(count)
 
 
 class LoadTest(unittest.TestCase):
@@ -76,16 +77,8 @@ class LoadTest(unittest.TestCase):
                 self.assertLess(run["largest_difference"], 1e-5)
                 self.assertIn("| offered | sent | expected | received | lost | late | wrong", text)
 
-    def certificate(self):
-        """A certificate for localhost that signs itself; the files of it and of its key."""
-        files = self.folder / "daemon.crt", self.folder / "daemon.key"
-        subprocess.run(["openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256", "-nodes", "-days",
-                        "2", "-subj", "/CN=furrow", "-addext", "subjectAltName=DNS:localhost", "-keyout", files[1], "-out",
-                        files[0]], check=True, capture_output=True)
-        return files
-
     def test_tls_reaches_the_daemon_directly_and_through_proxies(self):
-        certificate, key = self.certificate()
+        certificate, key = make_certificate(self.folder)
         short = ("--subjects", "4", "--rate", "50", "--duration", "1", "--strict")
         with Daemon("--no-render", "--tls-certificate", certificate, "--tls-key", key) as daemon:
             port = daemon.ports["tcp"]
@@ -165,10 +158,11 @@ class LoadTest(unittest.TestCase):
         one = "0.0001"
         # With fewer weights, more of them share a datagram, and the first 1,502 last for the whole run.
         rig = json.loads(re.sub(r"^\s*//.*$", "", (SHARE / "default.rig.json").read_text(), flags=re.M))
-        early = ("slack", "onset")
+        kept = ("stretch", "squash", "folds")
         for region in rig["regions"]:
-            region["feeds"] = [feed for feed in region["feeds"] if feed["map"] not in early]
-        rig["wrinkle_maps"] = [wrinkle_map for wrinkle_map in rig["wrinkle_maps"] if wrinkle_map["name"] not in early]
+            region["feeds"] = [feed for feed in region["feeds"] if feed["map"] in kept]
+        rig["regions"] = [region for region in rig["regions"] if region["feeds"]]
+        rig["wrinkle_maps"] = [wrinkle_map for wrinkle_map in rig["wrinkle_maps"] if wrinkle_map["name"] in kept]
         few = self.folder / "few.rig.json"
         few.write_text(json.dumps(rig))
         with Daemon("--no-render", "--rig", few) as daemon:
@@ -181,14 +175,15 @@ class LoadTest(unittest.TestCase):
         injected = chaos.injected["down"]
         for fault in ("lost", "delayed", "falsified", "swapped"):
             self.assertGreater(injected[fault], 0, injected)
-        self.assertGreaterEqual(run["late"], injected["delayed"], text)
-        self.assertLessEqual(run["late"], 20 * injected["delayed"], text)
+        # A fault may strike an answer to a ping or to a subscription instead of weights.
+        self.assertGreaterEqual(run["late"], injected["delayed data"], text)
+        self.assertLessEqual(run["late"], 20 * injected["delayed data"], text)
         self.assertEqual(run["falsified"], injected["falsified"], text)
         self.assertEqual(run["swapped"], injected["swapped"], text)
         # A slow machine may lose more, but never fewer.
-        self.assertGreaterEqual(run["lost"], injected["lost"], text)
-        if run["lost"] > injected["lost"]:
-            print(f"this machine lost {run['lost'] - injected['lost']} more")
+        self.assertGreaterEqual(run["lost"], injected["lost data"], text)
+        if run["lost"] > injected["lost data"]:
+            print(f"this machine lost {run['lost'] - injected['lost data']} more")
 
     def test_falsified_poses_give_wrong_weights(self):
         # A packed pose of this recording takes one datagram, an unpacked pose two.

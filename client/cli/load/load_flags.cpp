@@ -27,6 +27,11 @@ void AddTrafficOptions(CLI::App& command, LoadFlags& options) {
                   "--find-max)")
       ->check(CLI::Range(1, 65535));
   command
+      .add_option("--first", options.run.first,
+                  "Number in the name of the first subject, for several generators at a time "
+                  "(default: 0)")
+      ->check(CLI::Range(0, 900000));
+  command
       .add_option("--rate", options.run.plan.rate,
                   "Poses per second for each subject (default: the rate of the recording)")
       ->check(Within(0.01, 100000.0));

@@ -70,6 +70,7 @@ nlohmann::json SettingsOf(const LoadFlags& flags) {
       {"scale", flags.input.scale},
       {"path", NameOf(run.path)},
       {"subjects", run.plan.subjects},
+      {"first", run.first},
       {"rate", run.plan.rate > 0.0 ? nlohmann::json(run.plan.rate) : nlohmann::json()},
       {"duration_seconds", run.plan.seconds},
       {"clock_step_seconds", run.plan.clock_step},

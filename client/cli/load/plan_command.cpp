@@ -63,7 +63,7 @@ void AddDemandOptions(CLI::App& command, plan::Demand& demand) {
       ->capture_default_str();
   command
       .add_option("--weights", demand.weights,
-                  "Wrinkle weights of a performer (default: those of the default character)")
+                  "Wrinkle weights of a performer (the default character has 97)")
       ->check(CLI::Range(1, protocol::kMaxWeights))
       ->capture_default_str();
   command

@@ -26,8 +26,8 @@ bool IsCut(int descriptor) {
 
 Result<MisbehavingSubscribers> MisbehavingSubscribers::Open(SocketOpener open,
                                                             const MisbehaviorOptions& options,
-                                                            int subjects) {
-  MisbehavingSubscribers all(std::move(open), std::min(subjects, kSubjectsEach));
+                                                            std::uint32_t first, int subjects) {
+  MisbehavingSubscribers all(std::move(open), first, std::min(subjects, kSubjectsEach));
   const std::pair<Kind, int> wanted[] = {{Kind::kSlow, options.slow},
                                          {Kind::kStalled, options.stalled},
                                          {Kind::kChurn, options.churn}};
@@ -56,7 +56,7 @@ Status MisbehavingSubscribers::Connect(Member& member) {
   for (int i = 0; i < subjects_; ++i) {
     // Answers are not awaited: a stalled subscriber never reads them.
     (void)member.subscriber->Subscribe(protocol::SubscribeWeights{
-        .subject = SubjectName(static_cast<std::uint32_t>(i)), .wait = true});
+        .subject = SubjectName(first_ + static_cast<std::uint32_t>(i)), .wait = true});
   }
   return {};
 }

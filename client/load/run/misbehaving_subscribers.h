@@ -27,10 +27,11 @@ struct MisbehaviorOptions {
 class MisbehavingSubscribers {
  public:
   // Opens the subscribers. `open(i)` opens the TCP socket of subscriber i. `subjects`: number of
-  // subjects of the run. Errors: those of `open`.
+  // subjects of the run, and `first` the number in the name of the first one. Errors: those of
+  // `open`.
   [[nodiscard]] static Result<MisbehavingSubscribers> Open(SocketOpener open,
                                                            const MisbehaviorOptions& options,
-                                                           int subjects);
+                                                           std::uint32_t first, int subjects);
 
   // Performs the actions of all subscribers that are due. Call it several times per second.
   // `now_us`: microseconds of a monotonic clock.
@@ -51,13 +52,14 @@ class MisbehavingSubscribers {
     std::unique_ptr<client::Subscriber> subscriber;  // null: disconnected
   };
 
-  MisbehavingSubscribers(SocketOpener open, int subjects)
-      : open_(std::move(open)), subjects_(subjects) {}
+  MisbehavingSubscribers(SocketOpener open, std::uint32_t first, int subjects)
+      : open_(std::move(open)), first_(first), subjects_(subjects) {}
   [[nodiscard]] Status Connect(Member& member);
   void Churn(Member& member);
   void ReadLittle(Member& member, std::int64_t now_us);
 
   SocketOpener open_;
+  std::uint32_t first_;
   int subjects_;
   std::vector<Member> members_;
   std::uint64_t returns_ = 0;

@@ -170,15 +170,17 @@ Status Runner::OpenSockets() {
   if (options_.redundant) senders_->RepeatPrevious(plan_);
   if (target_.echo) return {};
   // Subjects before watchers: a subscription to an unknown subject is refused.
-  FURROW_RETURN_IF_ERROR(senders_->Offer(plan_.num_subjects(), hooks_.keep_going));
+  FURROW_RETURN_IF_ERROR(senders_->Offer(options_.first, plan_.num_subjects(), hooks_.keep_going));
   const auto names =
       workload_.binding ? workload_.binding->weight_names() : std::span<const std::string>();
-  auto watchers = Watchers::Open(open, options_.watchers, plan_.num_subjects(), names);
+  auto watchers =
+      Watchers::Open(open, options_.watchers, options_.first, plan_.num_subjects(), names);
   FURROW_RETURN_IF_ERROR(watchers);
   watchers_.emplace(*std::move(watchers));
   FURROW_RETURN_IF_ERROR(watchers_->Subscribe(hooks_.keep_going));
-  auto misbehaving = MisbehavingSubscribers::Open(ResolvedOpener(target_, Path::kTcp),
-                                                  options_.misbehavior, plan_.num_subjects());
+  auto misbehaving =
+      MisbehavingSubscribers::Open(ResolvedOpener(target_, Path::kTcp), options_.misbehavior,
+                                   options_.first, plan_.num_subjects());
   FURROW_RETURN_IF_ERROR(misbehaving);
   misbehaving_.emplace(*std::move(misbehaving));
   return {};

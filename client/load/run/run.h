@@ -37,7 +37,8 @@ struct Target {
 struct RunOptions {
   Path path = Path::kUdp;
   PlanOptions plan;
-  int watchers = 1;  // each receives all subjects
+  std::uint32_t first = 0;  // the number in the name of the first subject
+  int watchers = 1;         // each receives all subjects
   MisbehaviorOptions misbehavior;
   std::int64_t late_us = 16'667;  // latency limit, microseconds: one frame at 60 Hz
   float tolerance = 1e-4f;        // largest accepted difference of a weight

@@ -18,9 +18,9 @@ namespace furrow::load {
 using client::IoStatus;
 using std::chrono::milliseconds;
 
-std::string SubjectName(std::uint32_t subject) {
+std::string SubjectName(std::uint32_t number) {
   char name[32];
-  std::snprintf(name, sizeof(name), "load-%06u", subject);
+  std::snprintf(name, sizeof(name), "load-%06u", number);
   return name;
 }
 
@@ -58,11 +58,11 @@ Result<Senders> Senders::Open(const SocketOpener& open, int sockets, const Workl
   return senders;
 }
 
-Status Senders::Offer(int count, const std::function<bool()>& keep_going) {
+Status Senders::Offer(std::uint32_t first, int count, const std::function<bool()>& keep_going) {
   protocol::SkeletonOffer offer = workload_->offer;
   for (int subject = 0; subject < count && keep_going(); ++subject) {
     const auto number = static_cast<std::uint32_t>(subject);
-    offer.subject = SubjectName(number);
+    offer.subject = SubjectName(first + number);
     Sender& sender = senders_[number % senders_.size()];
     const std::uint16_t stream = sender.publisher->AddSubject(offer, SteadyMicroseconds());
     // Offers one skeleton at a time; a thousand at once would overflow the server's receive buffer.

@@ -20,7 +20,7 @@ namespace furrow::load {
 using SocketOpener = std::function<Result<std::unique_ptr<net::Socket>>(int i)>;
 
 // The name of a subject: "load-000017".
-[[nodiscard]] std::string SubjectName(std::uint32_t subject);
+[[nodiscard]] std::string SubjectName(std::uint32_t number);
 
 // Publishes the subjects of a plan, spread over several sockets because the server limits the
 // message rate per peer.
@@ -33,7 +33,9 @@ class Senders {
   // Offers the subjects [0, count) and waits until all are accepted or `keep_going` returns false.
   // An echo server does not answer offers and needs none. Errors: kUnavailable (no answer),
   // kInvalidArgument (rejected, with the reason).
-  [[nodiscard]] Status Offer(int count, const std::function<bool()>& keep_going);
+  // `first`: the number in the name of the first one.
+  [[nodiscard]] Status Offer(std::uint32_t first, int count,
+                             const std::function<bool()>& keep_going);
 
   // From now on, datagrams repeat the previous pose where both fit. `plan`: of the poses.
   void RepeatPrevious(const Plan& plan);

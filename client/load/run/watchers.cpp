@@ -24,9 +24,10 @@ std::int64_t NowUs() { return net::SteadyNanoseconds() / 1000; }
 
 }  // namespace
 
-Result<Watchers> Watchers::Open(const SocketOpener& open, int watchers, int subjects,
-                                std::span<const std::string> names) {
+Result<Watchers> Watchers::Open(const SocketOpener& open, int watchers, std::uint32_t first_number,
+                                int subjects, std::span<const std::string> names) {
   Watchers all;
+  all.first_ = first_number;
   all.names_hash_ = protocol::NamesHash(names);
   for (int watcher = 0; watcher < watchers; ++watcher) {
     for (int first = 0; first < subjects; first += kSubscriptionsPerPeer) {
@@ -46,8 +47,8 @@ Result<Watchers> Watchers::Open(const SocketOpener& open, int watchers, int subj
 Status Watchers::Subscribe(const std::function<bool()>& keep_going) {
   for (Link& link : links_) {
     for (const std::uint32_t subject : link.subjects) {
-      const std::uint32_t request =
-          link.subscriber->Subscribe(protocol::SubscribeWeights{.subject = SubjectName(subject)});
+      const std::uint32_t request = link.subscriber->Subscribe(
+          protocol::SubscribeWeights{.subject = SubjectName(first_ + subject)});
       link.asked.emplace(request, subject);
     }
     FURROW_RETURN_IF_ERROR(WaitForReplies(link, keep_going));
@@ -84,9 +85,10 @@ void Watchers::OnReply(Link& link, const protocol::Header& header) {
   const protocol::SubscribeReply& reply = link.subscriber->reply();
   // Weights of another rig cannot be compared with the solver's.
   names_match_ = names_match_ && reply.names_hash == names_hash_;
-  if (reply.subject != SubjectName(asked->second))
-    complaint_ =
-        "subscribed to '" + SubjectName(asked->second) + "' and received '" + reply.subject + "'";
+  const std::string name = SubjectName(first_ + asked->second);
+  if (reply.subject != name) {
+    complaint_ = "subscribed to '" + name + "' and received '" + reply.subject + "'";
+  }
 }
 
 void Watchers::OnWeights(Link& link, const protocol::Header& header,

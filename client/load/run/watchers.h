@@ -32,9 +32,11 @@ class Watchers {
     bool aged = false;
   };
 
-  // Opens the sockets of `watchers` watchers, each for all of `subjects` subjects. `names`: the
-  // expected weight names. Errors: those of `open`.
-  [[nodiscard]] static Result<Watchers> Open(const SocketOpener& open, int watchers, int subjects,
+  // Opens the sockets of `watchers` watchers, each for all of `subjects` subjects. `first`: the
+  // number in the name of the first one. `names`: the expected weight names. Errors: those of
+  // `open`.
+  [[nodiscard]] static Result<Watchers> Open(const SocketOpener& open, int watchers,
+                                             std::uint32_t first, int subjects,
                                              std::span<const std::string> names);
 
   // Subscribes to all subjects and waits for the answers; `keep_going` cancels the wait by
@@ -71,6 +73,7 @@ class Watchers {
   void OnWeights(Link& link, const protocol::Header& header,
                  const std::function<void(const Arrival&)>& use);
 
+  std::uint32_t first_ = 0;  // the number in the name of subject 0
   std::uint64_t names_hash_ = 0;
   bool names_match_ = true;
   std::string complaint_;
