@@ -110,6 +110,47 @@ reference_poses() {
   sheet reference_poses 3x2 1080 "${names[@]}"
 }
 
+# The reference poses under the lights of the thesis, with diffuse shading, above their blended normals.
+thesis_poses() {
+  local names=() pose view
+  for view in final normal; do
+    for pose in neutral stretch squash; do
+      size=480x480 shading=diffuse still "thesis_${pose}_$view" --pose "$pose" --view "$view" --camera face --lights thesis
+      names+=("thesis_${pose}_$view")
+    done
+  done
+  sheet thesis_poses 3x2 1080 "${names[@]}"
+}
+
+# Three emotions under the lights of the thesis with skin shading, without and with wrinkles.
+thesis_wrinkles() {
+  local names=() wrinkles options=(--camera face --lights thesis)
+  for wrinkles in off on; do
+    size=480x480 still "thesis_anger_$wrinkles" "$recordings/anger.bvh" --frames 140 --wrinkles "$wrinkles" "${options[@]}"
+    size=480x480 still "thesis_smile_$wrinkles" "$recordings/happiness.bvh" --frames 85 --wrinkles "$wrinkles" "${options[@]}"
+    size=480x480 still "thesis_brows_$wrinkles" --pose stretch --wrinkles "$wrinkles" "${options[@]}"
+    names+=("thesis_anger_$wrinkles" "thesis_smile_$wrinkles" "thesis_brows_$wrinkles")
+  done
+  sheet thesis_wrinkles 3x2 1080 "${names[@]}"
+}
+
+# The outer corner of an eye at four times the size of a face of 512 pixels, in squash: without wrinkles, with the
+# character's own maps of 1024 texels, and with maps of 4096 texels.
+eye_corner() {
+  local names=() way rig=$work/eye-maps/default.rig.json
+  "$furrow" bake "$share/default.glb" --strokes rig/rigs/default.strokes.json --map squash --size 4096 \
+    --out "$work/eye-maps"
+  local options=(--character "$share/default.glb" --pose squash --camera face)
+  size=2048x2048 still corner_off "${options[@]}" --wrinkles off
+  size=2048x2048 still corner_1024 "${options[@]}"
+  size=2048x2048 still corner_4096 "${options[@]}" --rig "$rig"
+  for way in off 1024 4096; do
+    oiiotool "$work/corner_$way.png" --cut 400x400+540+900 -o "$work/cut_$way.png"
+    names+=("cut_$way")
+  done
+  sheet eye_corner 3x1 1200 "${names[@]}"
+}
+
 # Close-ups of clothing at hinge and ball joints, without and with wrinkles: arm, then leg.
 cloth_joints() {
   local names=() wrinkles
@@ -285,6 +326,9 @@ performance
 views
 masks
 reference_poses
+thesis_poses
+thesis_wrinkles
+eye_corner
 cloth_joints
 shading
 wrinkles

@@ -9,6 +9,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "base/ascii.h"
 #include "base/scalar.h"
 #include "tests/unit/render/test_character.h"
 #include "wrinkle/rig/driver_values.h"
@@ -58,13 +59,29 @@ Result<wrinkle::LocalPose> PoseOf(const Character& character, const wrinkle::Ref
   return pose;
 }
 
-// The full pose of the strongest source that poses joints; the rest pose if none does.
-Result<wrinkle::LocalPose> PoseOf(const Character& character, const Feed& feed) {
+// The character's shape of a blend-shape driver at full strength; empty without such a shape.
+std::vector<float> ShapesOf(const Character& character, const Driver& driver) {
+  if (driver.kind != Driver::Kind::kBlendShape) return {};
+  const auto shape = std::ranges::find_if(character.shapes, [&](const std::string& name) {
+    return EqualsIgnoreCase(name, driver.blend_shape.blend_shape);
+  });
+  if (shape == character.shapes.end()) return {};
+  std::vector<float> weights(character.shapes.size());
+  weights[static_cast<std::size_t>(shape - character.shapes.begin())] = driver.blend_shape.full;
+  return weights;
+}
+
+// The full pose of the strongest source that has one; the rest pose if none does. `shapes` receives
+// the weights of the character's shapes, if they pose it.
+Result<wrinkle::LocalPose> PoseOf(const Character& character, const Feed& feed,
+                                  std::vector<float>* shapes) {
   std::vector<Feed::Source> sources = feed.sources;
   std::ranges::stable_sort(sources, std::ranges::greater(), &Feed::Source::gain);
   for (const Feed::Source& source : sources) {
     const Driver* driver = FindDriver(character.rig, source.driver);
     if (driver == nullptr) continue;
+    *shapes = ShapesOf(character, *driver);
+    if (!shapes->empty()) break;
     const auto full = wrinkle::FullPose(character.rig, *driver, source.value, character.skeleton);
     if (full.status().code() == StatusCode::kUnsupported) continue;
     FURROW_RETURN_IF_ERROR(full);
@@ -175,7 +192,8 @@ Result<std::vector<FoldCase>> FaceCases(const Character& character) {
   Status failure;
   ForEachFeed(character.rig, [&](std::size_t region, const Feed& feed, std::size_t weight) {
     if (IsCloth(character.rig, feed) || !failure.ok()) return;
-    Result<wrinkle::LocalPose> pose = PoseOf(character, feed);
+    std::vector<float> shapes;
+    Result<wrinkle::LocalPose> pose = PoseOf(character, feed, &shapes);
     if (!pose.ok()) {
       failure = pose.status();
       return;
@@ -183,6 +201,7 @@ Result<std::vector<FoldCase>> FaceCases(const Character& character) {
     FoldCase one{.name = character.rig.regions[region].name + "." + feed.map,
                  .regions = {region},
                  .pose = std::move(*pose),
+                 .shapes = std::move(shapes),
                  .wrinkle_weights = std::vector<float>(NumWeights(character.rig))};
     one.wrinkle_weights[weight] = 1.0f;
     cases.push_back(std::move(one));

@@ -18,6 +18,7 @@ struct FoldCase {
   std::string name;                  // "brow_l.squash" (a weight) or "elbow_l.flexed" (a bend)
   std::vector<std::size_t> regions;  // indices into Rig::regions: where folds are looked for
   wrinkle::LocalPose pose;
+  std::vector<float> shapes;           // weights of the character's shapes; empty: all 0
   std::vector<float> wrinkle_weights;  // all of the rig, [0, 1]; 0 except those of the case
   // The side of the body that the posed joints are on: 1: the subject's left, -1: right, 0: middle.
   int side = 0;
@@ -25,7 +26,8 @@ struct FoldCase {
 
 // One case per feed of a region that is not cloth: its wrinkle weight is 1, and all others are 0.
 // The pose is the full pose of the feed's source with the largest gain that has one; without such a
-// source, the rest pose. A map is cloth if its `surface` is. Errors: those of FullPose(), except
+// source, the rest pose. A driver of a blend shape poses the character's shape of that name, if
+// there is one. A map is cloth if its `surface` is. Errors: those of FullPose(), except
 // kUnsupported.
 [[nodiscard]] Result<std::vector<FoldCase>> FaceCases(const character::Character& character);
 

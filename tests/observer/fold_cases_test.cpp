@@ -95,6 +95,15 @@ TEST(FaceCases, RaisesOneWeightInItsOwnPose) {
   EXPECT_NEAR(cases[0].pose.joints[1].translation.y, 0.61f, 1e-5f);
 }
 
+TEST(FaceCases, PosesShapesOfTheCharacter) {
+  character::Character arm = MakeArm();
+  arm.shapes = {"jawOpen", "BrowUp"};
+  const auto cases = Take(FaceCases(arm));
+  ASSERT_EQ(cases.size(), 1u);
+  EXPECT_THAT(cases[0].shapes, ElementsAre(0.0f, 1.0f));
+  EXPECT_NEAR(cases[0].pose.joints[1].translation.y, 0.6f, 1e-5f);
+}
+
 TEST(FaceCases, RestsWithoutAPose) {
   character::Character arm = MakeArm();
   arm.rig.regions[0].feeds[0].sources.pop_back();

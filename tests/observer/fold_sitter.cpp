@@ -42,6 +42,24 @@ Plane Mapped(const render::Image& image, const Function& function) {
   return plane;
 }
 
+// The largest value within `reach` pixels of each pixel along x, as the transpose.
+Plane WidenedTranspose(const Plane& plane, int reach) {
+  Plane out{plane.height, plane.width, {}};
+  for (int x = 0; x < plane.width; ++x) {
+    const int first = std::max(0, x - reach);
+    const int count = std::min(plane.width - 1, x + reach) - first + 1;
+    for (int y = 0; y < plane.height; ++y) {
+      const float* const row = &plane.values[static_cast<std::size_t>(y * plane.width + first)];
+      out.values.push_back(*std::max_element(row, row + count));
+    }
+  }
+  return out;
+}
+
+Plane Widened(const Plane& plane, int reach) {
+  return WidenedTranspose(WidenedTranspose(plane, reach), reach);
+}
+
 // The character of FoldSitter::mask_renderer_. Cut-out surfaces (hair) keep their textures.
 Character MaskCharacterOf(const Character& character) {
   Character mask = character;
@@ -105,6 +123,7 @@ render::FrameRequest FoldSitter::RequestOf(const Shot& shot,
                                            const std::vector<float>& weights) const {
   render::FrameRequest request;
   request.model = subject_.model;
+  request.shapes = held_->shapes;
   request.binding = &subject_.binding;
   request.wrinkle_weights = weights;
   request.filtered_values = subject_.driver_values;
@@ -138,6 +157,14 @@ void FoldSitter::DrawMasks(const Shot& shot, FoldPictures* pictures) {
   });
   pictures->subject =
       Mapped(image, [](float, float g, float) { return g > kLeastAlbedo ? 1.0f : 0.0f; });
+  const Plane folded = Widened(
+      Mapped(image,
+             [](float r, float g, float) { return g > kLeastAlbedo && r < g ? 1.0f : 0.0f; }),
+      kFoldReach);
+  pictures->control = pictures->subject;
+  for (std::size_t i = 0; i < folded.values.size(); ++i) {
+    if (folded.values[i] > 0.0f) pictures->control.values[i] = 0.0f;
+  }
 }
 
 FoldPictures FoldSitter::Draw(const Shot& shot) {

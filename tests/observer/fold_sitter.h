@@ -33,7 +33,8 @@ class FoldSitter {
     std::string camera;
     int size = 512;
   };
-  // The held pose with the weights of its case, and with all weights 0.
+  // The held pose with the weights of its case, and with all weights 0. `control` is any surface
+  // that is far enough from the masks of the case's regions.
   [[nodiscard]] FoldPictures Draw(const Shot& shot);
   // The luminance of the held pose with wrinkles turned off in the settings.
   [[nodiscard]] Plane DrawWithoutWrinkles(const Shot& shot);

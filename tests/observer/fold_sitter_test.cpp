@@ -74,6 +74,23 @@ TEST_F(EggSitter, FoldsTheRegionAlone) {
   EXPECT_LT(other_half, 0.01f);
 }
 
+TEST_F(EggSitter, ControlsWhereNoFoldReaches) {
+  const FoldPictures pictures = sitter_.Draw({"face", 256});
+  int control = 0;
+  for (int y = 0; y < 256; ++y) {
+    for (int x = 0; x < 256; ++x) {
+      if (pictures.control.at(x, y) < 0.5f) continue;
+      ++control;
+      EXPECT_EQ(pictures.subject.at(x, y), 1.0f) << x << ", " << y;
+      for (int i = std::max(0, x - kFoldReach); i <= std::min(255, x + kFoldReach); ++i) {
+        ASSERT_EQ(pictures.region.at(i, y), 0.0f) << x << ", " << y;
+      }
+      EXPECT_NEAR(pictures.on.at(x, y), pictures.off.at(x, y), 0.01f);
+    }
+  }
+  EXPECT_GT(control, 200);
+}
+
 TEST_F(EggSitter, WeightsOfZeroAreNoWrinkles) {
   EXPECT_EQ(sitter_.Draw(front_).off.values, sitter_.DrawWithoutWrinkles(front_).values);
 }

@@ -19,6 +19,7 @@ constexpr double kMaskWavelengths = 0.25;
 constexpr double kBandOverlap = 1.2;
 constexpr double kPlaceBandOverlap = 1.07;
 constexpr double kReach = 4.0;  // of a sampled Gaussian, in sigmas
+static_assert(kReach * 2.0 * kSigmas[2] <= kFoldReach);
 
 // exp(-u) - exp(-4 u), u = 2 pi^2 sigma^2 f^2, is largest at u = ln(4) / 3.
 const double kPeak = std::log(4.0) / 3.0;

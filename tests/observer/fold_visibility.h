@@ -59,7 +59,13 @@ struct FoldPictures {
   Plane off;      // the same pose without the folds
   Plane region;   // 1: a visible pixel of the region; 0: any other pixel
   Plane subject;  // 1: any surface; 0: background
+  // 1: a surface that has no folds, so far from those of the region that no band reaches them
+  // (kFoldReach). Optional: MeasureFolds() measures it if it takes the place of `region`.
+  Plane control = {};
 };
+
+// What the coarsest band reads around a pixel, pixels.
+inline constexpr int kFoldReach = 32;
 
 struct Viewing {
   double millimetres_per_pixel = 1.0;  // at the distance of the region, > 0

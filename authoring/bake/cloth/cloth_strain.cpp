@@ -104,7 +104,7 @@ class Spread {
     std::vector<mat3> lost = Changes(cut, posed), pulled = lost;
     if (flows_.empty()) return strain;
     for (std::size_t i = 0; i < lost.size(); ++i) {
-      pulled[i] = PositiveAcross(-1.0f * lost[i], normals_[i]);
+      pulled[i] = PositiveAcross(-1.0f * lost[i] - mat3(slip.stretches), normals_[i]);
       lost[i] = PositiveAcross(lost[i], normals_[i]);
     }
     const float edge = kEvenEdge * mean_edge_;

@@ -17,6 +17,7 @@ struct ClothSlip {
   float pulled = 0.0f;   // around a pull
   float fed = 0.0f;      // to where it is pulled
   float feeds = 1.0f;    // how much length a pull gets from around, relative to what it needs, >= 0
+  float stretches = 0.0f;  // the share of its length by which cloth stretches before it slips, >= 0
 };
 
 // How a pose changes the lengths of the surface below cloth, spread over the cloth.
@@ -29,7 +30,8 @@ struct ClothSlip {
 //
 // Nor does woven cloth stretch like skin: over the outside of a bend it is hardly longer than it
 // was cut, because the garment slips along the limb to feed it. So the cloth within about
-// `slip.fed` of a pull loses length, in proportion to how far it is pulled less itself.
+// `slip.fed` of a pull loses length, in proportion to how far it is pulled less itself. A pull of
+// up to `slip.stretches` counts as none.
 //
 // `cut`, `posed`: the positions of the mesh's vertices as the cloth was cut and in the pose.
 // `room`: one per vertex; vertices with 0 take no part.

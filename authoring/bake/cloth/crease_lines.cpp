@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
+#include <optional>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -19,7 +19,6 @@ namespace {
 
 using glm::vec3;
 
-constexpr std::uint32_t kNone = 0xffffffffu;
 constexpr int kMostWalks = 4000;
 // A crease ends this near to another, in spacings.
 constexpr float kMeets = 0.4f;
@@ -29,38 +28,11 @@ constexpr float kJoins = 0.75f;
 constexpr float kFade = 2.5f;
 constexpr float kJoint = 0.4f;  // likewise, where it joins another
 // The least length of shallow creases, and of creases without neighbours, in spacings.
-constexpr float kShallow = 2.0f;
+constexpr float kShallow = 3.5f;
 constexpr float kAlone = 4.5f;
 constexpr float kStep = 0.005f;  // between points, metres
-
-// The triangles across the edges of each triangle.
-std::vector<std::array<std::uint32_t, 3>> NeighboursOf(const FineMesh& mesh) {
-  struct Side {
-    std::uint64_t key;
-    std::uint32_t triangle, edge;
-  };
-  std::vector<Side> sides;
-  const auto triangles = mesh.triangles();
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      const std::uint32_t a = triangles[t].vertices[k], b = triangles[t].vertices[(k + 1) % 3];
-      if (a == b) continue;
-      sides.push_back({std::uint64_t{std::min(a, b)} << 32 | std::max(a, b), t, k});
-    }
-  }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return a.key != b.key ? a.key < b.key : a.triangle < b.triangle;
-  });
-  std::vector<std::array<std::uint32_t, 3>> neighbours(triangles.size(), {kNone, kNone, kNone});
-  for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
-    const Side &a = sides[i], &b = sides[i + 1];
-    if (a.key != b.key) continue;
-    neighbours[a.triangle][a.edge] = b.triangle;
-    neighbours[b.triangle][b.edge] = a.triangle;
-    ++i;
-  }
-  return neighbours;
-}
+// The standard deviation over which a crest averages what it hides, in spacings.
+constexpr float kPersists = 2.0f;
 
 // Finds points of creases within a distance.
 class PointGrid {
@@ -91,25 +63,15 @@ class Layer {
         field_(field),
         excess_(excess),
         options_(options),
-        neighbours_(NeighboursOf(mesh)),
+        walk_(mesh, field, options.seed),
         normals_(NormalsOf(mesh)),
-        first_triangle_(mesh.vertices().size(), kNone),
-        grid_(0.05f) {
-    for (std::uint32_t t = 0; t < mesh.triangles().size(); ++t) {
-      const auto& v = mesh.triangles()[t].vertices;
-      const vec3 area = AreaOf(t);
-      for (const std::uint32_t corner : v) {
-        if (first_triangle_[corner] == kNone && glm::length(area) > 1e-12f)
-          first_triangle_[corner] = t;
-      }
-    }
-  }
+        grid_(0.05f) {}
 
   std::vector<Crease> Lay() {
     std::vector<std::uint32_t> order;
     std::vector<float> rank(mesh_.vertices().size(), 0.0f);
     for (std::uint32_t v = 0; v < rank.size(); ++v) {
-      if (field_.excess[v] < options_.start || first_triangle_[v] == kNone) continue;
+      if (field_.excess[v] < options_.start) continue;
       const float noise = RandomAt(static_cast<int>(v), static_cast<int>(options_.seed), 71);
       rank[v] = field_.excess[v] * (0.85f + 0.3f * noise);
       order.push_back(v);
@@ -119,37 +81,18 @@ class Layer {
     });
     for (const std::uint32_t v : order) {
       if (!IsFree(mesh_.positions()[v], normals_[v], SpacingAt(v))) continue;
-      Trace(v);
+      if (const std::optional<Spot> start = walk_.StartAt(v)) Trace(v, *start);
     }
     MeasureSides();
     Discard();
+    Persist();
     Fade();
     return std::move(creases_);
   }
 
  private:
-  struct Spot {
-    std::uint32_t triangle = 0;
-    vec3 corners{1.0f, 0.0f, 0.0f};
-    vec3 direction{0.0f};
-  };
+  using Spot = CreaseWalk::Spot;
 
-  [[nodiscard]] vec3 AreaOf(std::uint32_t t) const {
-    const auto& v = mesh_.triangles()[t].vertices;
-    const auto p = mesh_.positions();
-    return glm::cross(p[v[1]] - p[v[0]], p[v[2]] - p[v[0]]);
-  }
-  template <class T>
-  [[nodiscard]] T At(std::span<const T> values, const Spot& spot) const {
-    const auto& v = mesh_.triangles()[spot.triangle].vertices;
-    return values[v[0]] * spot.corners.x + values[v[1]] * spot.corners.y +
-           values[v[2]] * spot.corners.z;
-  }
-  [[nodiscard]] vec3 PlaceOf(const Spot& spot) const {
-    const auto& v = mesh_.triangles()[spot.triangle].vertices;
-    const auto p = mesh_.positions();
-    return p[v[0]] * spot.corners.x + p[v[1]] * spot.corners.y + p[v[2]] * spot.corners.z;
-  }
   [[nodiscard]] float SpacingAt(std::uint32_t v) const {
     const float noise =
         SignedNoise(mesh_.positions()[v] / (2.0f * field_.spacing[v]) +
@@ -166,82 +109,13 @@ class Layer {
     return free;
   }
 
-  // The direction of creases at a spot, in the plane of its triangle.
-  [[nodiscard]] vec3 DirectionAt(const Spot& spot, const vec3& normal) const {
-    const auto& v = mesh_.triangles()[spot.triangle].vertices;
-    vec3 sum(0.0f);
-    for (int k = 0; k < 3; ++k) {
-      const vec3& along = field_.along[v[static_cast<std::size_t>(k)]];
-      sum += spot.corners[k] * (glm::dot(along, spot.direction) < 0.0f ? -along : along);
-    }
-    const vec3 place = PlaceOf(spot);
-    const float noise =
-        SignedNoise(place / (2.5f * At<float>(field_.spacing, spot)) +
-                    vec3(1.0f, 5.3f * static_cast<float>(options_.seed % 89), 7.0f));
-    const float angle = 1.5f * At<float>(field_.tilt, spot) * noise;
-    sum = std::cos(angle) * sum + std::sin(angle) * glm::cross(normal, sum);
-    sum -= normal * glm::dot(sum, normal);
-    // A crease bends no more sharply than cloth does.
-    const vec3 before = UnitOr(spot.direction - normal * glm::dot(spot.direction, normal), sum);
-    return UnitOr(0.7f * before + 0.3f * UnitOr(sum, before), before);
-  }
-
-  // Walks through the spot's triangle. False at a border.
-  bool Walk(Spot* spot, float* walked) const {
-    const auto& v = mesh_.triangles()[spot->triangle].vertices;
-    const auto p = mesh_.positions();
-    const vec3 area = AreaOf(spot->triangle);
-    const float square = glm::dot(area, area);
-    if (!(square > 1e-20f)) return false;
-    const vec3 normal = area / std::sqrt(square);
-    spot->direction = DirectionAt(*spot, normal);
-    float least = 1e9f;
-    int exit = -1;
-    for (int i = 0; i < 3; ++i) {
-      const vec3& a = p[v[static_cast<std::size_t>((i + 1) % 3)]];
-      const vec3& b = p[v[static_cast<std::size_t>((i + 2) % 3)]];
-      const float change = glm::dot(glm::cross(area, b - a), spot->direction) / square;
-      if (!(change < -1e-9f)) continue;
-      const float until = std::max(spot->corners[i], 0.0f) / -change;
-      if (until < least) least = until, exit = i;
-    }
-    if (exit < 0) return false;
-    vec3 corners = spot->corners;
-    for (int i = 0; i < 3; ++i) {
-      const vec3& a = p[v[static_cast<std::size_t>((i + 1) % 3)]];
-      const vec3& b = p[v[static_cast<std::size_t>((i + 2) % 3)]];
-      corners[i] += least * glm::dot(glm::cross(area, b - a), spot->direction) / square;
-    }
-    corners[exit] = 0.0f;
-    corners = glm::max(corners, vec3(0.0f));
-    corners /= std::max(corners.x + corners.y + corners.z, 1e-9f);
-    *walked = least;
-    // The edge across corner i begins at corner i + 1.
-    const std::uint32_t next =
-        neighbours_[spot->triangle][static_cast<std::size_t>((exit + 1) % 3)];
-    if (next == kNone) return false;
-    const auto& w = mesh_.triangles()[next].vertices;
-    vec3 there(0.0f);
-    for (int i = 0; i < 3; ++i) {
-      for (int k = 0; k < 3; ++k) {
-        if (w[static_cast<std::size_t>(k)] == v[static_cast<std::size_t>(i)]) there[k] = corners[i];
-      }
-    }
-    const vec3 turned = UnitOr(AreaOf(next), normal);
-    spot->triangle = next;
-    spot->corners = there;
-    spot->direction =
-        UnitOr(spot->direction - turned * glm::dot(turned, spot->direction), spot->direction);
-    return true;
-  }
-
   [[nodiscard]] Crease::Point PointAt(const Spot& spot) const {
-    return {.place = PlaceOf(spot),
-            .normal = UnitOr(At<vec3>(normals_, spot), vec3(0, 0, 1)),
+    return {.place = walk_.PlaceOf(spot),
+            .normal = UnitOr(walk_.At(std::span<const vec3>(normals_), spot), vec3(0, 0, 1)),
             .along = spot.direction,
-            .excess = At<float>(excess_, spot),
-            .laid = At<float>(field_.excess, spot),
-            .spacing = At<float>(field_.spacing, spot)};
+            .excess = walk_.At(excess_, spot),
+            .laid = walk_.At(std::span<const float>(field_.excess), spot),
+            .spacing = walk_.At(std::span<const float>(field_.spacing), spot)};
   }
 
   // Follows the field one way from a spot. Returns whether the line joins another crease.
@@ -249,7 +123,7 @@ class Layer {
     float length = 0.0f, since = 0.0f;
     for (int k = 0; k < kMostWalks; ++k) {
       float walked = 0.0f;
-      if (!Walk(&spot, &walked)) return false;
+      if (!walk_.Step(&spot, &walked)) return false;
       length += walked;
       since += walked;
       if (since < kStep) continue;
@@ -281,14 +155,7 @@ class Layer {
     return false;
   }
 
-  void Trace(std::uint32_t v) {
-    Spot spot{.triangle = first_triangle_[v], .corners = vec3(0.0f), .direction = field_.along[v]};
-    const auto& corners = mesh_.triangles()[spot.triangle].vertices;
-    for (int k = 0; k < 3; ++k) {
-      if (corners[static_cast<std::size_t>(k)] == v) spot.corners[k] = 1.0f;
-    }
-    // The line begins inside the triangle, from where all directions lead out.
-    spot.corners = 0.9f * spot.corners + vec3(0.1f / 3.0f);
+  void Trace(std::uint32_t v, const Spot& spot) {
     const float random = RandomAt(static_cast<int>(v), static_cast<int>(options_.seed), 72);
     const float longest = 0.5f * options_.longest * (0.6f + 0.8f * random);
     std::vector<Crease::Point> ahead, behind;
@@ -376,6 +243,33 @@ class Layer {
     lengths_ = std::move(lengths);
   }
 
+  // A crest is stiff along its way: where it leaves the hollow of a bend, it goes on at nearly the
+  // same height.
+  void Persist() {
+    for (std::size_t c = 0; c < creases_.size(); ++c) {
+      std::vector<Crease::Point>& points = creases_[c].points;
+      if (points.size() < 2) continue;
+      float spacing = 0.0f;
+      for (const Crease::Point& point : points) spacing += point.spacing;
+      const auto count = static_cast<float>(points.size());
+      const float step = lengths_[c] / (count - 1.0f);
+      // A pass adds half a squared step to the variance. More passes than that leave the mean.
+      const float steps = std::min(kPersists * spacing / (count * std::max(step, 1e-6f)), count);
+      const int passes = static_cast<int>(2.0f * steps * steps);
+      std::vector<float> now, next;
+      for (const Crease::Point& point : points) now.push_back(point.excess);
+      next = now;
+      for (int pass = 0; pass < passes; ++pass) {
+        for (std::size_t i = 0; i < now.size(); ++i) {
+          const float before = now[i > 0 ? i - 1 : 0], after = now[std::min(i + 1, now.size() - 1)];
+          next[i] = 0.25f * before + 0.5f * now[i] + 0.25f * after;
+        }
+        now.swap(next);
+      }
+      for (std::size_t i = 0; i < points.size(); ++i) points[i].excess = now[i];
+    }
+  }
+
   // Creases swell and shrink along their way.
   [[nodiscard]] float VariedAt(const Crease::Point& point) const {
     const float noise =
@@ -411,9 +305,8 @@ class Layer {
   const CreaseField& field_;
   std::span<const float> excess_;
   const CreaseOptions& options_;
-  std::vector<std::array<std::uint32_t, 3>> neighbours_;
+  CreaseWalk walk_;
   std::vector<vec3> normals_;
-  std::vector<std::uint32_t> first_triangle_;
   PointGrid grid_;
   std::vector<Crease> creases_;
   std::vector<float> lengths_;

@@ -7,17 +7,10 @@
 
 #include <glm/vec3.hpp>
 
+#include "authoring/bake/cloth/crease_walk.h"
 #include "authoring/bake/surface/fine_mesh.h"
 
 namespace furrow::authoring {
-
-// Where and how cloth has length to hide. One entry per vertex of a mesh.
-struct CreaseField {
-  std::vector<glm::vec3> along;  // unit vector along which creases run, of either sign
-  std::vector<float> excess;     // share of the length across the creases that they hide, [0, 1)
-  std::vector<float> spacing;    // from crease to crease, metres, > 0
-  std::vector<float> tilt;       // how far noise turns a crease, radians
-};
 
 // A crest of cloth, as a line on the surface at rest.
 struct Crease {
@@ -50,8 +43,8 @@ struct CreaseOptions {
 // about a spacing apart. A crease that runs into another at a small angle joins it. Creases that
 // are short or alone are left out.
 //
-// `excess`: what the points report, one per vertex. Where it is less than the field's, the creases
-// are those of a deeper fold, and fade where it ends.
+// `excess`: what the points report, one per vertex, averaged along each crease. Where it is less
+// than the field's, the creases are those of a deeper fold, and fade where it ends.
 [[nodiscard]] std::vector<Crease> LayCreases(const FineMesh& mesh, const CreaseField& field,
                                              std::span<const float> excess,
                                              const CreaseOptions& options);

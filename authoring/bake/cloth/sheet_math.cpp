@@ -43,4 +43,14 @@ std::vector<vec3> SlopesOf(const FineMesh& mesh, const std::vector<float>& value
   return slopes;
 }
 
+float MeanSquaredEdge(const FineMesh& mesh) {
+  double sum = 0.0;
+  for (const auto& [a, b] : mesh.edges()) {
+    const vec3 edge = mesh.positions()[b] - mesh.positions()[a];
+    sum += static_cast<double>(glm::dot(edge, edge));
+  }
+  return static_cast<float>(sum /
+                            static_cast<double>(std::max<std::size_t>(mesh.edges().size(), 1)));
+}
+
 }  // namespace furrow::authoring

@@ -26,6 +26,8 @@ inline constexpr float kSameSide = 0.2f;
 // The gradient of a value per vertex over a mesh at rest, per metre: means of its triangles.
 [[nodiscard]] std::vector<glm::vec3> SlopesOf(const FineMesh& mesh,
                                               const std::vector<float>& values);
+// The mean of the squared lengths of a mesh's edges, square metres; 0 without edges.
+[[nodiscard]] float MeanSquaredEdge(const FineMesh& mesh);
 // Averages each value with those around it, `passes` times.
 template <class T>
 void SmoothOver(const FineMesh& mesh, int passes, std::vector<T>* values) {

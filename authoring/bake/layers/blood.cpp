@@ -7,13 +7,17 @@
 #include <glm/common.hpp>
 #include <glm/exponential.hpp>
 
+#include "base/scalar.h"
+
 namespace furrow::authoring {
 namespace {
 
 constexpr float kMaxChange =
     2.0f;  // largest factor of the area, or its inverse; more is a skinning artefact
 constexpr float kPressedOut =
-    0.25f;  // fraction of the blood that leaves the bottom of a deep furrow
+    0.25f;  // fraction of the blood that leaves the bottom of a deep furrow of other skin
+constexpr float kMostStretch = 0.5f;
+constexpr float kMostPressedOut = 0.5f;
 constexpr float kAbsorbance = 0.36f;  // absorbance of green light by the blood at rest
 const glm::vec3 kBlood(0.30f, 1.0f,
                        0.95f);  // absorption per colour channel: haemoglobin absorbs green and blue
@@ -39,8 +43,14 @@ std::vector<float> BloodSum::Take() const {
   return blood;
 }
 
-float BloodInFurrow(float blood, float cavity) {
-  return blood * (1.0f - kPressedOut * (1.0f - cavity));
+float RidgeStretch(float arm_mm, float height_mm, float wavelength_mm) {
+  const float wave = 2.0f * kPi / wavelength_mm;
+  return std::clamp(arm_mm * height_mm * wave * wave, 0.0f, kMostStretch);
+}
+
+float PressedOut(float arm_mm, float cavity) {
+  const float share = kPressedOut * arm_mm / BendArm(kOtherSkin) * (1.0f - cavity);
+  return std::clamp(share, 0.0f, kMostPressedOut);
 }
 
 glm::vec3 BloodTint(float blood) {

@@ -2,15 +2,14 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
+#include "authoring/bake/cloth/cloth_effect.h"
 #include "authoring/bake/cloth/crease_lines.h"
 #include "authoring/bake/layers/stroke_layer.h"
 #include "authoring/bake/request/bake_progress.h"
@@ -22,11 +21,12 @@ namespace furrow::authoring {
 // The folds that the poses of one wrinkle map press into cloth.
 //
 // - Each pose gives the excess of every place: the share of its length that cloth must hide, and
-// the
-//   direction of it. It is the length that the pose takes from the surface (MeasureClothStrain()),
-//   the ease of the cloth, and what cloth is too wide across a pull.
+//   the direction of it. It is the length that the pose takes from the surface
+//   (MeasureClothStrain()), the ease of the cloth, what cloth is too wide across a pull, and what
+//   stacks on something below (MeasureClothEffect()).
 // - The poses are joined to one field, in which creases are laid (LayCreases()): large forms where
-//   a pose deforms the cloth, folds of the fabric's wavelength, and small ones in sharp bends.
+//   a pose deforms the cloth, folds of the fabric's wavelength, and in sharp bends small ones and
+//   diamonds.
 // - The creases are drawn as crests (DrawCreases()).
 class ClothFolds {
  public:
@@ -38,13 +38,11 @@ class ClothFolds {
       : mesh_(mesh), drawn_(drawn), ease_(ease), depth_(depth), seed_(seed) {}
 
   // Adds a pose: the ends of BakePose::path, shape_weights and weight count. `mask`: where it
-  // counts, one per welded vertex, [0, 1]. `wavelength`: from fold to fold where the pose deforms
-  // cloth, metres, > 0. Where cloth hangs, it is wider, by HangingWidth(). Masks of one pose with
-  // one wavelength are joined, so that its folds cross the borders of regions. `ease`: inside the
-  // mask; where masks of one pose overlap, the loosest counts. `further`: a pose that goes on where
-  // this one ends, or null. Creases are laid for that one, so that both poses have the same creases
-  // at other depths.
-  void Add(const BakePose& pose, std::span<const float> mask, float wavelength,
+  // counts, one per welded vertex, [0, 1]. Masks of one pose with one fabric are joined, so that
+  // its folds cross the borders of regions. `ease`: inside the mask; where masks of one pose
+  // overlap, the loosest counts. `further`: a pose that goes on where this one ends, or null.
+  // Creases are laid for that one, so that both poses have the same creases at other depths.
+  void Add(const BakePose& pose, std::span<const float> mask, const FabricFolds& fabric,
            const ClothEase& ease = {}, const BakePose* further = nullptr);
 
   // Measures all poses and draws their folds. Where several poses meet, the strongest excess
@@ -61,40 +59,24 @@ class ClothFolds {
 
  private:
   using SkinMatrices = std::vector<glm::mat4>;  // one per joint of the skeleton
-  // What a pose does to cloth, per vertex of the mesh.
-  struct Effect {
-    // Symmetric tensors across the normal at rest: cloth along the unit vector d hides the share
-    // dot(d, slack d) of its length; less than 0 where it is pulled.
-    std::vector<glm::mat3> slack;
-    std::vector<float> pressed;  // 1 where the pose presses cloth together, 0 where it pulls or not
-    std::vector<float> width;    // from crease to crease, in wavelengths
-    std::vector<float> height;   // of creases, multiplier
-  };
   struct Pose {
-    SkinMatrices cut;
+    WornCloth cloth;
     SkinMatrices bent;
     SkinMatrices further;  // empty: none
     std::vector<float> shape_weights;
-    // Per vertex of the mesh.
-    std::vector<float> room;    // the mask
-    std::vector<float> shares;  // the mask times the weight
-    std::vector<ClothEase> eases;
-    float wavelength = 0.0f;
-    std::optional<float> feeds;  // ClothEase::feeds, the least of the regions
-    Effect own;
-    Effect laid;  // of `further` if there is one, else empty
+    std::vector<float> shares;  // the mask times the weight, per vertex of the mesh
+    ClothEffect own;
+    ClothEffect laid;  // of `further` if there is one, else empty
   };
   // A size of creases.
   struct Size;
 
-  [[nodiscard]] Effect EffectOf(const Pose& pose, const SkinMatrices& bent) const;
-  [[nodiscard]] float LoosenessAt(std::uint32_t vertex, const glm::vec3& down, float wavelength,
-                                  float least) const;
   void Join();
   void Steer();
   void Add(const Size& size);
   [[nodiscard]] bool Draw(BakeProgress* progress);
   void LimitSlopes();
+  void RoundFolds();
   void MeasureCavities();
 
   const FineMesh& mesh_;
@@ -103,8 +85,11 @@ class ClothFolds {
   float depth_;
   std::uint32_t seed_;
   std::vector<Pose> poses_;
-  std::vector<float> mask_;  // per welded vertex of the surface: the largest of all poses
+  // Per welded vertex of the surface: the largest of all poses.
+  std::vector<float> mask_;
+  std::vector<float> radii_;  // FabricFolds::radius, fading out with the mask, metres
   // Per vertex of the mesh, by Join().
+  std::vector<glm::vec3> normals_;
   CreaseField field_;          // for which creases are laid
   std::vector<float> excess_;  // for which they are drawn
   std::vector<float> pressed_;

@@ -8,6 +8,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "authoring/bake/layers/blood_layer.h"
 #include "authoring/bake/layers/parallel_for.h"
 #include "authoring/paint/dilate.h"
 #include "base/scalar.h"
@@ -63,10 +64,6 @@ std::set<int> JointsOf(const character::Character& character, const wrinkle::Reg
   return joints;
 }
 
-SurfacePoint PlaceOf(const SurfaceTexel& texel) {
-  return {texel.triangle, texel.corners, texel.position};
-}
-
 }  // namespace
 
 MapBaker::MapBaker(const character::Character& character, const BakeSurface& surface,
@@ -104,7 +101,7 @@ void MapBaker::AddPose(const BakePose& pose, const BakePose* further) {
   std::vector<float> weights = MaskOf(pose.region);
   if (weights.empty()) weights.assign(field.tensors.size(), 1.0f);
   if (cloth_folds_ != nullptr) {
-    cloth_folds_->Add(pose, ClothMask(pose.region, weights), ClothWavelength(pose.region),
+    cloth_folds_->Add(pose, ClothMask(pose.region, weights), FabricOf(pose.region),
                       EaseOf(pose.region), further);
   }
   for (float& weight : weights) weight *= pose.weight;
@@ -144,18 +141,19 @@ std::vector<float> MapBaker::ClothMask(const std::string& name, std::vector<floa
   return painted;
 }
 
-// Metres. Folds that the mesh's edges or the texels cannot hold are wider.
-float MapBaker::ClothWavelength(const std::string& region) const {
+// Folds that the mesh's edges or the texels cannot hold are wider.
+FabricFolds MapBaker::FabricOf(const std::string& region) const {
   const auto entry = std::ranges::find_if(
       options_.fabrics, [&](const RegionFabric& one) { return one.Covers(region); });
-  const Fabric& fabric = entry == options_.fabrics.end() ? options_.fabric : entry->fabric;
+  FabricFolds folds = FoldsOf(entry == options_.fabrics.end() ? options_.fabric : entry->fabric);
   const std::span<const float> sides = surface_.texel_metres();
   double sum = 0.0;
   for (const float side : sides) sum += static_cast<double>(side);
   const auto texel =
       static_cast<float>(sum / static_cast<double>(std::max<std::size_t>(sides.size(), 1)));
-  return std::max({FoldWavelength(fabric), kEdgesPerFold * surface_.fine_mesh()->edge(),
-                   kTexelsPerWave * texel});
+  folds.wavelength = std::max(
+      {folds.wavelength, kEdgesPerFold * surface_.fine_mesh()->edge(), kTexelsPerWave * texel});
+  return folds;
 }
 
 ClothEase MapBaker::EaseOf(const std::string& region) const {
@@ -164,27 +162,39 @@ ClothEase MapBaker::EaseOf(const std::string& region) const {
   return entry == options_.eases.end() ? ClothEase() : entry->ease;
 }
 
-// Metres per welded vertex. Regions mix by their masks in the logarithm, so 4 mm and 16 mm meet at
-// 8 mm. What the masks leave over counts as the material's own wavelength.
-std::vector<float> MapBaker::Wavelengths() const {
+// A value per welded vertex from values of regions, by name without side. Regions mix by their
+// masks; what the masks leave over counts as `other`.
+std::vector<float> MapBaker::ByRegion(std::span<const std::pair<std::string, float>> values,
+                                      float other) const {
   const std::size_t count = surface_.surface().positions().size();
-  const float base = std::log(material_.wavelength_mm * kMetresPerMillimetre);
   std::vector<float> sums(count, 0.0f), shares(count, 0.0f);
-  for (const BakeRegionWavelength& entry : options_.wavelengths) {
+  for (const auto& [name, value] : values) {
     for (const wrinkle::Region& region : character_.rig.regions) {
-      if (!Matches(region.name, entry.region) || !Feeds(region, map_)) continue;
+      if (!Matches(region.name, name) || !Feeds(region, map_)) continue;
       const std::vector<float> mask = surface_.MaskOf(character_, region);
       for (std::size_t v = 0; v < mask.size(); ++v) {
-        sums[v] += mask[v] * std::log(entry.wavelength_mm * kMetresPerMillimetre);
+        sums[v] += mask[v] * value;
         shares[v] += mask[v];
       }
     }
   }
   for (std::size_t v = 0; v < count; ++v) {
     const float rest = std::max(1.0f - shares[v], 0.0f);
-    sums[v] = std::exp((sums[v] + rest * base) / (shares[v] + rest));
+    sums[v] = (sums[v] + rest * other) / (shares[v] + rest);
   }
   return sums;
+}
+
+// Metres per welded vertex. Regions mix in the logarithm, so 4 mm and 16 mm meet at 8 mm.
+std::vector<float> MapBaker::Wavelengths() const {
+  const auto log_of = [](float mm) { return std::log(mm * kMetresPerMillimetre); };
+  std::vector<std::pair<std::string, float>> values;
+  for (const BakeRegionWavelength& entry : options_.wavelengths) {
+    values.emplace_back(entry.region, log_of(entry.wavelength_mm));
+  }
+  std::vector<float> wavelengths = ByRegion(values, log_of(material_.wavelength_mm));
+  for (float& wavelength : wavelengths) wavelength = std::exp(wavelength);
+  return wavelengths;
 }
 
 // Metres per welded vertex: a shorter wave would have too few texels and alias.
@@ -264,9 +274,7 @@ bool MapBaker::FillTexels(const StrokeLayer& strokes, BakeProgress* progress, Ba
     for (std::size_t i = first; i < last; ++i) {
       const SurfaceTexel& texel = texels[i];
       const FoldSample fold = TexelFold(texel, strokes);
-      const std::size_t at =
-          static_cast<std::size_t>(texel.y) * static_cast<std::size_t>(map->width) +
-          static_cast<std::size_t>(texel.x);
+      const std::size_t at = map->IndexOf(texel.x, texel.y);
       map->height_mm[at] = fold.height / kMetresPerMillimetre;
       // A normal map's x / z is minus the slope of the height.
       map->derivative[2 * at] = -fold.slope.x;
@@ -279,17 +287,19 @@ bool MapBaker::FillTexels(const StrokeLayer& strokes, BakeProgress* progress, Ba
                      [&](float done) { return progress->Report(done); });
 }
 
-// After the cavities, because a furrow presses the blood out.
-void MapBaker::FillBlood(BakedMap* map) const {
-  const std::vector<float> blood = blood_.Take();
-  map->blood.assign(map->cavity.size(), 1.0f);
-  for (const SurfaceTexel& texel : surface_.texels()) {
-    const std::size_t at =
-        static_cast<std::size_t>(texel.y) * static_cast<std::size_t>(map->width) +
-        static_cast<std::size_t>(texel.x);
-    map->blood[at] =
-        BloodInFurrow(surface_.surface().Interpolate(blood, PlaceOf(texel)), map->cavity[at]);
+// After heights and cavities, because folds move the blood.
+void MapBaker::AddBlood(BakedMap* map) const {
+  std::vector<std::pair<std::string, float>> arms, amounts;
+  for (const SkinSite& site : kSkinSites) {
+    arms.emplace_back(site.region, BendArm(site));
+    amounts.emplace_back(site.region, site.blood);
   }
+  FillBlood(surface_,
+            {.blood = blood_.Take(),
+             .arms = ByRegion(arms, BendArm(kOtherSkin)),
+             .amounts = ByRegion(amounts, kOtherSkin.blood),
+             .wavelengths = Wavelengths()},
+            map);
 }
 
 void MapBaker::Measure(const std::vector<float>& compression, const StrokeLayer& strokes,
@@ -300,9 +310,7 @@ void MapBaker::Measure(const std::vector<float>& compression, const StrokeLayer&
   double sum = 0.0, sides = 0.0;
   std::vector<char> seen(strokes.num_strokes(), 0);
   for (const SurfaceTexel& texel : surface_.texels()) {
-    const std::size_t at =
-        static_cast<std::size_t>(texel.y) * static_cast<std::size_t>(map->width) +
-        static_cast<std::size_t>(texel.x);
+    const std::size_t at = map->IndexOf(texel.x, texel.y);
     ++statistics.covered_texels;
     strokes.MarkFolds(PlaceOf(texel), &seen);
     const float height = map->height_mm[at];
@@ -340,9 +348,7 @@ void MapBaker::MeasureWavelengths(BakedMap* map) const {
   const float scale = material_.fine_lines > 0.0f ? kFineLines : 1.0f;
   float widened = 1.0f;
   for (const SurfaceTexel& texel : surface_.texels()) {
-    const std::size_t at =
-        static_cast<std::size_t>(texel.y) * static_cast<std::size_t>(map->width) +
-        static_cast<std::size_t>(texel.x);
+    const std::size_t at = map->IndexOf(texel.x, texel.y);
     if (std::abs(map->height_mm[at]) < kFoldedMillimetres) continue;
     const SurfacePoint place = PlaceOf(texel);
     const float wavelength =
@@ -413,7 +419,7 @@ Result<std::unique_ptr<BakedMap>> MapBaker::Bake(float from, float to, BakeProgr
   map->width = map->height = options_.size;
   progress->BeginPart(at(folds_end), to);
   if (!FillTexels(**strokes, progress, map.get())) return BakeProgress::CancelledStatus();
-  FillBlood(map.get());
+  AddBlood(map.get());
   Measure(compression, **strokes, map.get());
   MeasureWavelengths(map.get());
   // Grows the planes beyond UV borders, where filtering and mip levels read them.

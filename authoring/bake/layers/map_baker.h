@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "authoring/bake/layers/blood.h"
@@ -49,9 +50,11 @@ class MapBaker {
   [[nodiscard]] std::vector<float> MaskOf(const std::string& region) const;
   [[nodiscard]] std::vector<float> ClothMask(const std::string& region,
                                              std::vector<float> painted) const;
-  [[nodiscard]] float ClothWavelength(const std::string& region) const;
+  [[nodiscard]] FabricFolds FabricOf(const std::string& region) const;
   [[nodiscard]] ClothEase EaseOf(const std::string& region) const;
   [[nodiscard]] float Depth() const { return options_.depth * material_.depth; }
+  [[nodiscard]] std::vector<float> ByRegion(std::span<const std::pair<std::string, float>> values,
+                                            float other) const;
   [[nodiscard]] std::vector<float> Wavelengths() const;
   // The shortest wavelength that the map's texels can show, per welded vertex, metres.
   [[nodiscard]] std::vector<float> Smallest() const;
@@ -63,7 +66,7 @@ class MapBaker {
   // The folds at a texel, with the grain of the skin.
   [[nodiscard]] FoldSample TexelFold(const SurfaceTexel& texel, const StrokeLayer& strokes) const;
   bool FillTexels(const StrokeLayer& strokes, BakeProgress* progress, BakedMap* map) const;
-  void FillBlood(BakedMap* map) const;
+  void AddBlood(BakedMap* map) const;
   void Measure(const std::vector<float>& compression, const StrokeLayer& strokes,
                BakedMap* map) const;
   void MeasureWavelengths(BakedMap* map) const;

@@ -13,13 +13,15 @@ namespace {
 using glm::vec2;
 using glm::vec3;
 
-// The cells of the net, and groups of cells, which change the height along a fold.
+// The cells of the net with their own lines, and groups of cells, which change the height along a
+// fold.
 struct Octave {
   float size;  // metres; noise of size 1 has a wavelength of about 2
   float share;
   vec3 offset;
 };
-constexpr Octave kOctaves[] = {{0.0006f, 0.6f, {3.0f, 0.0f, 7.0f}},
+constexpr Octave kOctaves[] = {{0.00025f, 0.5f, {9.0f, 2.0f, 4.0f}},
+                               {0.0006f, 0.6f, {3.0f, 0.0f, 7.0f}},
                                {0.0015f, 0.8f, {0.0f, 11.0f, 0.0f}},
                                {0.0040f, 0.6f, {5.0f, 0.0f, 0.0f}}};
 constexpr float kStep = 0.05f;   // of an octave's size, for derivatives

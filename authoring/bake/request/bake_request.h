@@ -96,14 +96,16 @@ struct BakeOptions {
   BakeMaterial skin;
   BakeMaterial cloth{.max_compression = 0.5f, .threshold = 0.03f, .smoothing_mm = 40.0f};
   Fabric fabric = kFabrics[0];  // of all cloth but that of these regions
-  std::vector<RegionFabric> fabrics = {{"knee", kFabrics[1]}, {"hip", kFabrics[1]}};
+  std::vector<RegionFabric> fabrics = {
+      {"knee", kFabrics[1]}, {"hip", kFabrics[1]}, {"ankle", kFabrics[1]}};
   float ease = 0.15f;  // how much wider cloth is than the surface that it lies on, [0, 0.3]
   // Where clothes are cut otherwise. Sleeves are long and wide for their arm; no sleeves are tight
   // all along it, nor trousers all over the hips; a bent knee draws trousers up as a whole, too.
-  std::vector<RegionEase> eases = {
-      {"elbow", {.looser = 1.6f, .least = 0.2f, .feeds = 1.5f}},
-      {"hip", {.least = 0.3f}},
-      {"knee", {.feeds = 0.4f}}};
+  // Trousers are a little longer than the leg above the shoe.
+  std::vector<RegionEase> eases = {{"elbow", {.looser = 1.6f, .least = 0.2f, .feeds = 1.5f}},
+                                   {"hip", {.least = 0.3f}},
+                                   {"knee", {.feeds = 0.4f}},
+                                   {"ankle", {.least = 0.4f, .stacks = 0.3f}}};
   std::vector<BakeRegionWavelength> wavelengths = {
       {"brow", 8.0f}, {"glabella", 6.5f}, {"nose", 3.5f}, {"eye", 3.5f}, {"mouth", 5.5f}};
   float depth = 1.0f;      // multiplier for every height of both materials, [0, 4]

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -26,9 +27,16 @@ struct BakedMap {
   std::vector<float> derivative;  // two per texel: n.xy / n.z = -dh/d(tangent), -dh/d(bitangent).
                                   // The bitangent points up the picture (glTF's green channel).
   std::vector<float> cavity;      // how open a valley is to the sky, [0, 1]; 1 on flat surface
-  std::vector<float> blood;       // blood per area relative to rest: 1 at rest, more if compressed
+  std::vector<float> blood;       // 1 plus the blood that is added, or missing, per area, relative
+                                  // to the mean skin of a face: 1 at rest, more if compressed
   std::vector<std::uint8_t> covered;  // 1 under a triangle; other texels hold dilated values
   std::vector<BakedMask> masks;       // one per region with poses that feed the map
+
+  // The index of a texel in a plane; column `x`, row `y` from the top.
+  [[nodiscard]] std::size_t IndexOf(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+           static_cast<std::size_t>(x);
+  }
 
   struct Statistics {
     std::int64_t covered_texels = 0;

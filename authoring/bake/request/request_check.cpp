@@ -87,10 +87,21 @@ Status CheckPose(const character::Character& character, const BakePose& pose,
 }
 
 Status CheckFabric(const Fabric& fabric) {
-  if (In(fabric.bending, 0.1f, 1000.0f)) return Status();
-  return Refuse("the bending stiffness of fabric '" + std::string(fabric.name) + "' is " +
-                    Text(fabric.bending) + "; it must be in [0.1, 1000]",
-                "options.fabric");
+  struct Number {
+    const char* name;
+    float value, least, most;
+  };
+  for (const Number& number : {Number{"bending stiffness", fabric.bending, 0.1f, 1000.0f},
+                               Number{"weight", fabric.weight, 20.0f, 2000.0f},
+                               Number{"thickness", fabric.thickness, 0.05f, 5.0f},
+                               Number{"membrane stiffness", fabric.stretching, 10.0f, 1e5f}}) {
+    if (In(number.value, number.least, number.most)) continue;
+    return Refuse("the " + std::string(number.name) + " of fabric '" + std::string(fabric.name) +
+                      "' is " + Text(number.value) + "; it must be in [" + Text(number.least) +
+                      ", " + Text(number.most) + "]",
+                  "options.fabric");
+  }
+  return Status();
 }
 
 Status CheckStroke(const wrinkle::Rig& rig, const BakeStroke& stroke, const std::string& where) {
@@ -169,6 +180,9 @@ Status CheckOptions(const BakeOptions& options) {
     }
     if (!In(region.ease.feeds, 0.0f, 4.0f)) {
       return Refuse("feeds is " + Text(region.ease.feeds) + "; it must be in [0, 4]", where);
+    }
+    if (!In(region.ease.stacks, 0.0f, 0.8f)) {
+      return Refuse("stacks is " + Text(region.ease.stacks) + "; it must be in [0, 0.8]", where);
     }
   }
   return CheckMaterial(options.cloth, "options.cloth");

@@ -16,6 +16,11 @@
 
 namespace furrow::authoring {
 
+// The point of a surface at the centre of a texel.
+[[nodiscard]] inline SurfacePoint PlaceOf(const SurfaceTexel& texel) {
+  return {texel.triangle, texel.corners, texel.position};
+}
+
 // The skin or the clothes of a character, with the data that all maps of this surface share.
 class BakeSurface {
  public:

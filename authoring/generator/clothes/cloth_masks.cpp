@@ -69,19 +69,31 @@ vec4 Waist(const vec3& p) {
   return near * vec4(square(ahead), square(-ahead), square(across), square(-across));
 }
 
-vec4 Neck(const vec3& p) {
-  const float near = Smoothstep(1.38f, 1.44f, p.y) * Smoothstep(0.15f, 0.09f, std::abs(p.x));
+// The collar, and the ends of the trousers. They stack on the shoes, most in front, and the hem
+// itself is stiff.
+vec4 Ends(const vec3& p) {
+  const float collar = Smoothstep(1.38f, 1.44f, p.y) * Smoothstep(0.15f, 0.09f, std::abs(p.x));
+  const float stack = Smoothstep(0.26f, 0.10f, p.y) * Smoothstep(0.05f, 0.07f, p.y) *
+                      std::lerp(0.6f, 1.0f, Side(p.z + 0.004f, 0.05f));
   const float left = Side(p.x, 0.03f);
+  return {collar * left, collar * (1.0f - left), stack * left, stack * (1.0f - left)};
+}
+
+// From the elbow to the cuff.
+vec4 Forearms(const vec3& p) {
+  const float x = std::abs(p.x);
+  const float near = Smoothstep(0.40f, 0.48f, x) * Smoothstep(0.665f, 0.60f, x);
+  const float left = Side(p.x, 0.01f);
   return {near * left, near * (1.0f - left), 0.0f, 0.0f};
 }
 
 }  // namespace
 
-std::array<character::Picture, 6> PaintClothMasks(const Clothes& clothes, int size) {
+std::array<character::Picture, 7> PaintClothMasks(const Clothes& clothes, int size) {
   using Regions = vec4 (*)(const vec3&);
-  constexpr Regions kRegions[] = {Elbows, Knees, Hips, Shoulders, Waist, Neck};
+  constexpr Regions kRegions[] = {Elbows, Knees, Hips, Shoulders, Waist, Ends, Forearms};
   const std::vector<SurfaceTexel> texels = RasterizeSurface(clothes.mesh, size, size);
-  std::array<character::Picture, 6> masks;
+  std::array<character::Picture, 7> masks;
   for (std::size_t i = 0; i < masks.size(); ++i) {
     const auto regions = [&](const SurfaceTexel& texel) { return kRegions[i](texel.position); };
     masks[i] = FillPicture(kClothMaskNames[i], texels, size, 4, regions);

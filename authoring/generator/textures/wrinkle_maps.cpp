@@ -24,6 +24,7 @@ namespace {
 
 constexpr int kWrinkleNormalBits = 10;  // a tenth of a degree is enough, since folds are smooth
 constexpr float kFineLines = 0.8f;      // for skin that folds twice as deep as at 30 years
+constexpr float kNarrow = 4.0f;         // millimetres: strokes with ridges of about 1 mm radius
 constexpr float kResting = 0.4f;        // share of the folds that such skin keeps at rest
 
 Status AddPictures(const BakedMap& baked, character::Character* character) {
@@ -59,8 +60,12 @@ character::Picture* SkinNormals(character::Character* character) {
 std::vector<BakeStroke> AgedStrokes(std::span<const BakeStroke> strokes, float depth) {
   std::vector<BakeStroke> aged(strokes.begin(), strokes.end());
   for (BakeStroke& stroke : aged) {
-    const bool lid = stroke.name.starts_with("lid_");
-    if (lid && depth > 1.0f) stroke.depth_mm /= depth;
+    if (!(depth > 1.0f)) continue;
+    if (stroke.name.starts_with("lid_")) {
+      stroke.depth_mm /= depth;  // and its ridges with it
+    } else if (stroke.width_mm < kNarrow) {
+      stroke.ridge /= depth;
+    }
   }
   return aged;
 }
@@ -83,6 +88,7 @@ BakeOptions WrinkleMapOptions(int size, float depth) {
   options.size = size;
   options.skin.depth = depth;
   options.skin.fine_lines = std::clamp(kFineLines * (depth - 1.0f), 0.0f, 1.0f);
+  if (depth > 1.0f) options.skin.crossing = 0.0f;
   return options;
 }
 

@@ -12,13 +12,14 @@ namespace furrow::authoring {
 
 // The options that bake the wrinkle maps of a generated character. `size`: width and height of the
 // maps, texels. `depth`: multiplier for the height of skin folds, as WrinkleDepth() returns it;
-// above 1 (older than 30 years), the skin also gets fine lines. All others are the defaults of
-// BakeOptions.
+// above 1 (older than 30 years), the skin gets fine lines instead of folds that cross others. All
+// others are the defaults of BakeOptions.
 [[nodiscard]] BakeOptions WrinkleMapOptions(int size, float depth);
 
 // The strokes of a face whose folds WrinkleMapOptions() makes `depth` times as deep. The skin of
 // upper lids is thin: the creases there (strokes named "lid_...") keep the depth of a young face,
-// because deeper ones are gashes.
+// because deeper ones are gashes. So do the ridges of strokes narrower than 4 mm, because skin does
+// not fold more sharply outwards.
 [[nodiscard]] std::vector<BakeStroke> AgedStrokes(std::span<const BakeStroke> strokes, float depth);
 
 // Bakes the wrinkle maps of the character's rig from the rig's reference poses and from `strokes`,

@@ -140,10 +140,12 @@ class BodyPart {
   }
 
   // Skin folds where cloth does at a full bend, by a map of its own that follows the driver's
-  // value. A gain above 1 lets cloth fold early; skin does not.
+  // value. A gain above 1 lets cloth fold early; skin does not. Nor does it fold in spirals.
   void DrawOnSkin(wrinkle::Region* region) const {
     std::vector<wrinkle::Feed> feeds = region->feeds;
-    std::erase_if(feeds, [](const wrinkle::Feed& feed) { return !IsDeepest(feed); });
+    std::erase_if(feeds, [](const wrinkle::Feed& feed) {
+      return !IsDeepest(feed) || feed.map.starts_with("twist_");
+    });
     for (wrinkle::Feed& feed : feeds) {
       feed.map = OnSkin(feed.map);
       feed.angles.clear();

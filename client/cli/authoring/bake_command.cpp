@@ -268,7 +268,7 @@ void AddMaterialOptions(CLI::App& command, BakeArguments& arguments) {
           [&arguments](const std::vector<std::string>& texts) { SetFabrics(texts, &arguments); },
           "Fabric of all cloth, or REGION=FABRIC for a region, for example knee=denim "
           "(repeatable): " +
-              authoring::FabricNames() + " (default: cotton knee=wool hip=wool)")
+              authoring::FabricNames() + " (default: cotton knee=wool hip=wool ankle=wool)")
       ->type_name("[REGION=]FABRIC")
       ->allow_extra_args(false);
   command

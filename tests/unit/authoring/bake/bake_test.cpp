@@ -73,6 +73,13 @@ TEST(Bake, RejectsInvalidRequests) {
       [](Request* r) {
         r->options.eases = {{"knee", {.feeds = 4.1f}}};
       },
+      [](Request* r) {
+        r->options.eases = {{"ankle", {.stacks = 0.9f}}};
+      },
+      [](Request* r) { r->options.fabric.bending = 0.0f; },
+      [](Request* r) { r->options.fabric.weight = 0.0f; },
+      [](Request* r) { r->options.fabric.thickness = std::numeric_limits<float>::infinity(); },
+      [](Request* r) { r->options.fabrics = {{"knee", {.name = "air", .stretching = 0.0f}}}; },
       [](Request* r) { r->options.depth = -1.0f; },
       [](Request* r) { r->options.skin.wavelength_mm = 0.0f; },
       [](Request* r) { r->options.skin.share = 1.1f; },

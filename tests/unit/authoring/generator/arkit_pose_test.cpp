@@ -89,6 +89,7 @@ TEST_F(ArkitPoseTest, LeftIsTheSubjectsLeft) {
     }
   }
   EXPECT_GT(Moved("jawLeft", "mentalis").x, 0.004f);
+  EXPECT_LT(Moved("jawLeft", "jaw").x, 0.002f) << "the jaw turns; its corners stay below the ears";
   EXPECT_GT(Moved("mouthLeft", "risorius_l").x, 0.004f);
 }
 

@@ -242,7 +242,8 @@ TEST_F(PackageTest, ContainsEveryPictureOfTheRig) {
   for (const wrinkle::WrinkleMap& map : c.rig.wrinkle_maps) {
     EXPECT_GE(c.FindRigPicture(map.normal), 0) << map.name;
     EXPECT_GE(c.FindRigPicture(map.height), 0) << map.name;
-    EXPECT_GE(c.FindRigPicture(map.cavity), 0) << map.name;
+    // Twists have none, because engines have few textures.
+    EXPECT_EQ(c.FindRigPicture(map.cavity) < 0, map.name.starts_with("twist_")) << map.name;
     const bool skin = map.surface == wrinkle::WrinkleMap::Surface::kSkin;
     EXPECT_EQ(c.FindRigPicture(map.colour) >= 0, skin) << map.name;
   }

@@ -105,6 +105,12 @@ TEST_F(FaceJointsTest, EachPoseOfTheJointsRaisesItsOwnShape) {
   }
 }
 
+TEST_F(FaceJointsTest, AnOpenJawDoesNotMoveToTheSides) {
+  const auto weights = WeightsFor(Match(jointed_->skeleton), "jawOpen");
+  EXPECT_LT(weights.at("jawLeft"), 0.1f);
+  EXPECT_LT(weights.at("jawRight"), 0.1f);
+}
+
 TEST_F(FaceJointsTest, RestGivesNothing) {
   const wrinkle::JointShapes shapes = Match(jointed_->skeleton);
   std::vector<float> weights(shaped_->shapes.size(), 1.0f);

@@ -110,6 +110,22 @@ TEST_F(Strain, ClothBesideAPullFeedsIt) {
               0.5 * lost(0.05f, kLast + 0.02f, kLast + 0.06f), 1e-3);
 }
 
+// Knitted cloth stretches by as much as it can, so less of it slips.
+TEST_F(Strain, ClothThatStretchesIsPulledLess) {
+  const auto measured = [&](float share, float stretches) {
+    return MeasureClothStrain(
+        *fine_, cut_, Pressed(-share), Room(),
+        {.pressed = kReach, .pulled = 0.01f, .fed = 0.05f, .stretches = stretches});
+  };
+  const ClothStrain knitted = measured(0.1f, 0.125f);
+  // At the ends of the band, single edges are pulled further.
+  EXPECT_LT(Mean(knitted.pulled, kX, 0.0f, kWidth), 1e-3);
+  EXPECT_LT(Mean(knitted.lost, kX, 0.0f, kWidth), 1e-3);
+  const double woven = Mean(measured(0.3f, 0.0f).pulled, kX, 0.0f, kWidth);
+  const double left = Mean(measured(0.3f, 0.125f).pulled, kX, 0.0f, kWidth);
+  EXPECT_NEAR(left, woven * (0.3 - 0.125) / 0.3, 0.1 * woven);
+}
+
 // What feeds a pull is the part of the lost length that would not be lost without it.
 TEST_F(Strain, TellsWhatFeedsAPull) {
   const auto measured = [&](float feeds) {

@@ -77,6 +77,27 @@ TEST_F(Creases, RunAlongTheField) {
   }
 }
 
+// Cloth is stiff along a crest: one that leaves the hollow of a bend goes on.
+TEST_F(Creases, HideTheirExcessEvenlyAlongTheirWay) {
+  const auto half = [](const vec3& p) { return p.y < 0.2f ? 0.5f : 0.1f; };
+  int crossing = 0;
+  for (const Crease& crease : Lay(FieldOf(half))) {
+    float sum = 0.0f, laid = 0.0f, beyond = 0.0f;
+    for (const Crease::Point& point : crease.points) {
+      sum += point.excess;
+      laid += point.laid;
+      if (point.place.y > 0.22f && point.place.y < 0.24f) beyond = point.excess;
+    }
+    EXPECT_NEAR(sum, laid, 0.02f * laid);
+    const auto [low, high] =
+        std::minmax(crease.points.front().place.y, crease.points.back().place.y);
+    if (low > 0.15f || high < 0.25f) continue;
+    ++crossing;
+    EXPECT_GT(beyond, 0.15f);
+  }
+  EXPECT_GT(crossing, 3);
+}
+
 // Where the row at `y` crosses creases, in order.
 std::vector<float> CrossingsAt(const std::vector<Crease>& creases, float y) {
   std::vector<float> places;

@@ -37,6 +37,9 @@ class Garment : public testing::Test {
     }
     return pose;
   }
+  [[nodiscard]] static FabricFolds Fabric(float wavelength, float radius = 0.0f) {
+    return {.wavelength = wavelength, .radius = radius};
+  }
   [[nodiscard]] ClothFolds Folds() const { return {*fine_, *fine_, 0.05f, 1.0f, 1}; }
   // The root of the mean square of the heights, metres.
   [[nodiscard]] double Depth(const ClothFolds& folds) const {
@@ -69,7 +72,7 @@ TEST_F(Garment, FoldsOnlyInsideItsMask) {
   for (std::size_t v = 0; v < left.size(); ++v) {
     if (surface_->positions()[v].x > 0.1f) left[v] = 0.0f;
   }
-  folds.Add(Pressed(), left, 0.03f);
+  folds.Add(Pressed(), left, Fabric(0.03f));
   ASSERT_TRUE(folds.Solve(1, &progress_));
   EXPECT_GT(Depth(folds), 1e-4);
   for (std::uint32_t t = 0; t < surface_->triangles().size(); ++t) {
@@ -84,8 +87,8 @@ TEST_F(Garment, FoldsOnlyInsideItsMask) {
 
 TEST_F(Garment, WeakPosesHaveShallowFolds) {
   ClothFolds full = Folds(), half = Folds();
-  full.Add(Pressed(), Everywhere(), 0.03f);
-  half.Add(Pressed(0.5f), Everywhere(), 0.03f);
+  full.Add(Pressed(), Everywhere(), Fabric(0.03f));
+  half.Add(Pressed(0.5f), Everywhere(), Fabric(0.03f));
   ASSERT_TRUE(full.Solve(1, &progress_) && half.Solve(1, &progress_));
   EXPECT_NEAR(Depth(half), 0.5 * Depth(full), 1e-6);
 }
@@ -97,7 +100,7 @@ TEST_F(Garment, SlopesAreLimited) {
     pose.path.emplace_back(2, toys::Squeeze(0.0f, 0.0f));
     pose.path.emplace_back(2, toys::Squeeze(pressed, 0.0f));
     ClothFolds folds = Folds();
-    folds.Add(pose, Everywhere(), 0.03f);
+    folds.Add(pose, Everywhere(), Fabric(0.03f));
     ASSERT_TRUE(folds.Solve(1, &progress_));
     float steepest = 0.0f;
     for (std::uint32_t t = 0; t < surface_->triangles().size(); ++t) {
@@ -111,6 +114,25 @@ TEST_F(Garment, SlopesAreLimited) {
   }
 }
 
+// By the largest change of slope within a triangle of 2 cm.
+TEST_F(Garment, FoldsAreAsRoundAsTheFabric) {
+  const auto sharpest = [&](float radius) {
+    ClothFolds folds = Folds();
+    folds.Add(Pressed(), Everywhere(), Fabric(0.03f, radius));
+    EXPECT_TRUE(folds.Solve(1, &progress_));
+    float most = 0.0f;
+    for (std::uint32_t t = 0; t < surface_->triangles().size(); ++t) {
+      const auto slope = [&](const vec3& corners) {
+        return folds.At({t, corners, vec3(0.0f)}, vec3(1, 0, 0), vec3(0, 1, 0)).slope.x;
+      };
+      most = std::max(most, std::abs(slope({0.7f, 0.2f, 0.1f}) - slope({0.3f, 0.6f, 0.1f})));
+    }
+    return most;
+  };
+  EXPECT_LT(sharpest(0.008f), 0.8f * sharpest(0.002f));
+  EXPECT_LT(sharpest(0.016f), 0.8f * sharpest(0.008f));
+}
+
 // Two regions of one pose are one piece of cloth.
 TEST_F(Garment, MasksOfOnePoseAreJoined) {
   ClothFolds whole = Folds(), parts = Folds();
@@ -118,9 +140,9 @@ TEST_F(Garment, MasksOfOnePoseAreJoined) {
   for (std::size_t v = 0; v < left.size(); ++v) {
     (surface_->positions()[v].x > 0.1f ? left : right)[v] = 0.0f;
   }
-  whole.Add(Pressed(), Everywhere(), 0.03f);
-  parts.Add(Pressed(), left, 0.03f);
-  parts.Add(Pressed(), right, 0.03f);
+  whole.Add(Pressed(), Everywhere(), Fabric(0.03f));
+  parts.Add(Pressed(), left, Fabric(0.03f));
+  parts.Add(Pressed(), right, Fabric(0.03f));
   ASSERT_TRUE(whole.Solve(1, &progress_) && parts.Solve(1, &progress_));
   EXPECT_NEAR(Depth(parts), Depth(whole), 0.2 * Depth(whole));
 }
@@ -130,9 +152,9 @@ TEST_F(Garment, TheDeepestFoldsPrevail) {
   ClothFolds alone = Folds(), both = Folds();
   BakePose still = toys::Pose(toys::Squeeze(0.01f, 0.0f));
   still.path.emplace_back(2, toys::Squeeze(0.01f, 0.0f));
-  alone.Add(Pressed(), Everywhere(), 0.03f);
-  both.Add(Pressed(), Everywhere(), 0.03f);
-  both.Add(still, Everywhere(), 0.03f);
+  alone.Add(Pressed(), Everywhere(), Fabric(0.03f));
+  both.Add(Pressed(), Everywhere(), Fabric(0.03f));
+  both.Add(still, Everywhere(), Fabric(0.03f));
   ASSERT_TRUE(alone.Solve(1, &progress_) && both.Solve(1, &progress_));
   EXPECT_GT(Depth(both), 0.8 * Depth(alone));
 }
@@ -141,7 +163,7 @@ TEST_F(Garment, DoesNotDependOnTheNumberOfThreads) {
   ClothFolds one = Folds(), four = Folds();
   for (ClothFolds* folds : {&one, &four}) {
     for (const float wavelength : {0.03f, 0.04f, 0.05f}) {
-      folds->Add(Pressed(), Everywhere(), wavelength);
+      folds->Add(Pressed(), Everywhere(), Fabric(wavelength));
     }
     ASSERT_TRUE(folds->Solve(folds == &one ? 1 : 4, &progress_));
     EXPECT_EQ(folds->Wavelengths(), std::pair(0.03f, 0.05f));
@@ -160,7 +182,7 @@ TEST_F(Garment, CanBeCancelledWithinAPose) {
   int calls = 0;
   BakeProgress progress([&](float) { return ++calls < 3; });
   ClothFolds folds = Folds();
-  folds.Add(Pressed(), Everywhere(), 0.03f);
+  folds.Add(Pressed(), Everywhere(), Fabric(0.03f));
   EXPECT_FALSE(folds.Solve(1, &progress));
   EXPECT_EQ(calls, 3);
 }

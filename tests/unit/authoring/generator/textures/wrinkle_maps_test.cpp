@@ -40,6 +40,22 @@ TEST(AgedStrokes, CreasesOfLidsDoNotDeepen) {
   }
 }
 
+// Nor do the ridges of narrow strokes, which would be sharper than skin can fold.
+TEST(AgedStrokes, NarrowRidgesDoNotSharpen) {
+  const BakeStroke narrow{.name = "bunny_1_l", .width_mm = 3.0f, .depth_mm = 1.0f, .ridge = 0.6f};
+  const BakeStroke wide{.name = "nasolabial_l", .width_mm = 6.0f, .depth_mm = 1.0f, .ridge = 0.6f};
+  const BakeStroke strokes[] = {narrow, wide};
+  const std::vector<BakeStroke> aged = AgedStrokes(strokes, 1.6f);
+  EXPECT_FLOAT_EQ(1.6f * aged[0].depth_mm * aged[0].ridge, 0.6f);
+  EXPECT_EQ(aged[0].depth_mm, 1.0f);
+  EXPECT_EQ(aged[1].ridge, 0.6f);
+  EXPECT_EQ(AgedStrokes(strokes, 0.8f)[0].ridge, 0.6f);
+  // The creases of lids keep their depth, and so do their ridges.
+  const BakeStroke lid{.name = "lid_1_l", .width_mm = 2.6f, .depth_mm = 0.3f, .ridge = 0.5f};
+  const BakeStroke old = AgedStrokes(std::span(&lid, 1), 1.6f)[0];
+  EXPECT_FLOAT_EQ(1.6f * old.depth_mm * old.ridge, 0.3f * 0.5f);
+}
+
 TEST(RestingFolds, AddAShareOfTheSlopes) {
   BakedMap map;
   map.width = 2;
