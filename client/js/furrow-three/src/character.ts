@@ -2,7 +2,7 @@
 // A character of Furrow in a scene of three.js.
 import {
   Color, CustomBlending, DoubleSide, FrontSide, Group, type IUniform, type Material, type MeshStandardMaterial, MeshPhysicalMaterial,
-  NoBlending, NoColorSpace, NormalBlending, type Object3D, OneFactor, SkinnedMesh, SrcAlphaFactor, SrcColorFactor, type Texture,
+  NoBlending, NormalBlending, type Object3D, OneFactor, SkinnedMesh, SrcAlphaFactor, SrcColorFactor, type Texture,
   type WebGLRenderer, type WebGLRenderTarget, ZeroFactor,
 } from 'three';
 import { type CharacterFile, readCharacter } from './character_file.js';
@@ -12,7 +12,7 @@ import { type Joint, JointPoser, type Pose, type PoseSkeleton } from './pose/joi
 import { type Kind, KINDS } from './skin/materials.js';
 import { SkinParts } from './skin/skin_parts.js';
 import { whyNoSkin } from './skin/support.js';
-import { SlopeMaker } from './wrinkles/slopes.js';
+import { type Relief, SlopeMaker } from './wrinkles/slopes.js';
 import { Studio } from './view/studio.js';
 import { addWrinkles, type View, type WrinkleInput, type WrinkleTextures } from './wrinkles/wrinkle_material.js';
 import { WrinkleSet } from './wrinkles/wrinkle_set.js';
@@ -48,6 +48,8 @@ const ROUGHEST_EYE = 0.3;
 const CAVITY_ALBEDO = 0.02;
 /** Textures that three and its shadow maps use themselves. */
 const OTHER_TEXTURES = 6;
+/** The slopes of all maps are layers of one texture. */
+const SLOPES = 1;
 
 interface Part {
   mesh: SkinnedMesh;
@@ -204,15 +206,18 @@ function keepOpaque(material: Material): void {
   material.blendDstAlpha = OneFactor;
 }
 
+/** What the materials of a surface share. */
+type MapInput = Pick<WrinkleInput, 'masks' | 'slopes' | 'maps'>;
+
 class Builder {
   private readonly parts: Part[] = [];
   private readonly targets: WebGLRenderTarget[] = [];
   private readonly textures = new Set<Texture>();
   private readonly bound: BoundMaterial[] = [];
   private readonly slopes: SlopeMaker;
-  private readonly slopesOf = new Map<Texture, Texture>();
+  private readonly basesOf = new Map<Texture, Texture>();
   private readonly sets: Record<'skin' | 'cloth', WrinkleSet>;
-  private readonly inputs = new Map<WrinkleSet, Promise<Pick<WrinkleInput, 'masks' | 'maps'>>>();
+  private readonly inputs = new Map<WrinkleSet, Promise<MapInput>>();
   private readonly materials = new Map<string, { material: MeshPhysicalMaterial; input: WrinkleInput }>();
   private readonly studio = new Studio();
   private readonly skin: SkinParts | null;
@@ -313,8 +318,8 @@ class Builder {
     else setCutOut(material, this.softEdges, false);
     const set = this.setOf(kind, source);
     const input: WrinkleInput = {
-      base: source.normalMap ? this.slopeOf(source.normalMap, 0) : null,
-      ...(set ? await this.inputOf(set, material) : { masks: [], maps: [] }),
+      base: source.normalMap ? this.baseOf(source.normalMap) : null,
+      ...(set ? await this.inputOf(set, material) : { masks: [], slopes: null, maps: [] }),
       weights: set?.weights ?? [],
       gradients,
       oneNormal: kind === 'hair',
@@ -356,20 +361,16 @@ class Builder {
     this.bound.push(new BoundMaterial(material, binds));
   }
 
-  private slopeOf(source: Texture, scale: number): Texture {
-    const known = this.slopesOf.get(source);
+  private baseOf(picture: Texture): Texture {
+    const known = this.basesOf.get(picture);
     if (known) return known;
-    const texture = source.clone();
-    texture.colorSpace = NoColorSpace;
-    texture.needsUpdate = true;
-    const target = this.slopes.make(texture, scale);
-    texture.dispose();
+    const target = this.slopes.make({ picture, scale: 0 });
     this.targets.push(target);
-    this.slopesOf.set(source, target.texture);
+    this.basesOf.set(picture, target.texture);
     return target.texture;
   }
 
-  private inputOf(set: WrinkleSet, material: MeshPhysicalMaterial): Promise<Pick<WrinkleInput, 'masks' | 'maps'>> {
+  private inputOf(set: WrinkleSet, material: MeshPhysicalMaterial): Promise<MapInput> {
     const known = this.inputs.get(set);
     if (known) return known;
     const made = this.loadSet(set, material);
@@ -377,7 +378,7 @@ class Builder {
     return made;
   }
 
-  private async loadSet(set: WrinkleSet, material: MeshPhysicalMaterial): Promise<Pick<WrinkleInput, 'masks' | 'maps'>> {
+  private async loadSet(set: WrinkleSet, material: MeshPhysicalMaterial): Promise<MapInput> {
     const load = async (name: string, kind: 'mask' | 'data' | 'colour'): Promise<Texture> => {
       const texture = await this.file.picture(name, kind);
       this.textures.add(texture);
@@ -385,21 +386,26 @@ class Builder {
     };
     const masks = await Promise.all(set.masks.map((name) => load(name, 'mask')));
     const own = [material.map, material.normalMap, material.roughnessMap, material.emissiveMap].filter(Boolean).length;
-    let free = this.renderer.capabilities.maxTextures - OTHER_TEXTURES - own - masks.length - set.maps.length;
+    const reliefs: Relief[] = [];
+    let free = this.renderer.capabilities.maxTextures - OTHER_TEXTURES - own - masks.length - SLOPES;
     const maps: WrinkleTextures[] = [];
     for (const map of set.maps) {
       const relief = map.derivative || map.normal;
       // Colours and cavities are drawn as far as the GPU's texture units reach.
       const take = (name: string): boolean => name !== '' && free-- > 0;
+      if (relief !== '') reliefs.push({ picture: await this.file.picture(relief, 'data'), scale: map.derivative ? map.derivativeScale : 0 });
       maps.push({
-        slope: relief === '' ? null : this.slopeOf(await this.file.picture(relief, 'data'), map.derivative ? map.derivativeScale : 0),
+        slope: relief === '' ? null : reliefs.length - 1,
         amplitude: map.amplitude,
         colour: take(map.colour) ? await load(map.colour, 'colour') : null,
         colourScale: map.colourScale,
         cavity: take(map.cavity) ? await load(map.cavity, 'data') : null,
       });
     }
-    return { masks, maps };
+    if (reliefs.length === 0) return { masks, slopes: null, maps };
+    const target = this.slopes.makeLayers(reliefs);
+    this.targets.push(target);
+    return { masks, slopes: target.texture, maps };
   }
 }
 

@@ -184,7 +184,7 @@ export class SkinView {
         SHADOW_FILTER: FILTERS[settings.shadow.filter], SHADOW_TAPS: settings.shadow.taps, SHADOW_LAMPS: lamps,
         TRANSLUCENCY: settings.translucency.enabled && lamps > 0, PREINTEGRATED: 0, BECKMANN_TABLE: 0,
         SPECULAR_GEMS: settings.specular.mode === 'gems', CONSERVE: settings.specular.conserve_energy,
-        OCCLUSION: open !== null, SCALE: occlusionScale, EMISSION: emits,
+        OCCLUSION: open !== null, SCALE: occlusionScale, EMISSION: emits, SHADOWS_BEFORE: false,
       },
       uniforms: {
         ...uniforms, ...this.lens(frame),

@@ -3,7 +3,8 @@
 // add up, and the base map's pores survive (docs/ALGORITHM.md). Squares of the slopes beside them are for skin.
 import {
   GLSL3, HalfFloatType, LinearFilter, LinearMipmapLinearFilter, Mesh, NoBlending, NoColorSpace, OrthographicCamera,
-  PlaneGeometry, RepeatWrapping, RGBAFormat, RGFormat, Scene, ShaderMaterial, type Texture, type WebGLRenderer, WebGLRenderTarget,
+  PlaneGeometry, RepeatWrapping, RGBAFormat, RGFormat, Scene, ShaderMaterial, type Texture, WebGLArrayRenderTarget, type WebGLRenderer,
+  type RenderTargetOptions, Vector2, WebGLRenderTarget,
 } from 'three';
 
 const VERTEX = 'void main() { gl_Position = vec4(position.xy, 0.0, 1.0); }';
@@ -12,10 +13,11 @@ const VERTEX = 'void main() { gl_Position = vec4(position.xy, 0.0, 1.0); }';
 const FRAGMENT = `
 precision highp float;
 uniform highp sampler2D source;
+uniform vec2 size;    // of the target, texels
 uniform float scale;  // 0: the source holds normals; else the derivative of a full texel
 out vec4 slope;       // zw: squares; their mip levels give the variance of the slopes
 void main() {
-  vec3 texel = texelFetch(source, ivec2(gl_FragCoord.xy), 0).xyz * 2.0 - 1.0;
+  vec3 texel = textureLod(source, gl_FragCoord.xy / size, 0.0).xyz * 2.0 - 1.0;
   vec2 value = scale > 0.0 ? texel.xy * scale : texel.xy / max(texel.z, 1e-3);
   value = clamp(value, vec2(-16.0), vec2(16.0));
   slope = vec4(value, value * value);
@@ -26,13 +28,19 @@ interface Picture {
   height: number;
 }
 
+export interface Relief {
+  picture: Texture;
+  /** 0: a normal map; else the scale of a derivative map. */
+  scale: number;
+}
+
 /** Converts pictures on the GPU. Throws an Error if the GPU cannot draw into half floats. */
 export class SlopeMaker {
   private readonly scene = new Scene();
   private readonly camera = new OrthographicCamera(-1, 1, 1, -1, 0, 1);
   private readonly material = new ShaderMaterial({
     glslVersion: GLSL3, vertexShader: VERTEX, fragmentShader: FRAGMENT, blending: NoBlending, depthTest: false, depthWrite: false,
-    uniforms: { source: { value: null }, scale: { value: 0 } },
+    uniforms: { source: { value: null }, size: { value: new Vector2() }, scale: { value: 0 } },
   });
   private readonly plane = new PlaneGeometry(2, 2);
 
@@ -46,22 +54,48 @@ export class SlopeMaker {
     this.scene.add(mesh);
   }
 
-  /** `scale`: 0 for a normal map, else that of a derivative map. The caller disposes of the target. */
-  make(source: Texture, scale = 0): WebGLRenderTarget {
-    const { width, height } = source.image as Picture;
-    const target = new WebGLRenderTarget(width, height, {
+  /** The caller disposes of the target. */
+  make(relief: Relief): WebGLRenderTarget {
+    const { width, height } = relief.picture.image as Picture;
+    const target = new WebGLRenderTarget(width, height, this.options());
+    this.draw(relief, target, 0);
+    return target;
+  }
+
+  /**
+   * The slopes of several pictures as the layers of one texture, because a GPU has few texture units. All layers are as
+   * large as the largest picture. The caller disposes of the target.
+   */
+  makeLayers(reliefs: Relief[]): WebGLArrayRenderTarget {
+    const pictures = reliefs.map(({ picture }) => picture.image as Picture);
+    const target = new WebGLArrayRenderTarget(
+      Math.max(...pictures.map(({ width }) => width)), Math.max(...pictures.map(({ height }) => height)), reliefs.length, this.options());
+    reliefs.forEach((relief, layer) => this.draw(relief, target, layer));
+    return target;
+  }
+
+  private options(): RenderTargetOptions {
+    return {
       format: this.moments ? RGBAFormat : RGFormat, type: HalfFloatType, colorSpace: NoColorSpace, depthBuffer: false, generateMipmaps: true,
       minFilter: LinearMipmapLinearFilter, magFilter: LinearFilter, wrapS: RepeatWrapping, wrapT: RepeatWrapping,
-    });
+    };
+  }
+
+  private draw({ picture, scale }: Relief, target: WebGLRenderTarget, layer: number): void {
     const { renderer } = this;
     const former = renderer.getRenderTarget();
-    source.colorSpace = NoColorSpace;
-    this.material.uniforms.source!.value = source;
-    this.material.uniforms.scale!.value = scale;
-    renderer.setRenderTarget(target);
+    const { source, size, scale: scaled } = this.material.uniforms;
+    // A copy, because the picture itself may be in use as a colour.
+    const texture = picture.clone();
+    texture.colorSpace = NoColorSpace;
+    texture.needsUpdate = true;
+    source!.value = texture;
+    size!.value.set(target.width, target.height);
+    scaled!.value = scale;
+    renderer.setRenderTarget(target, layer);
     renderer.render(this.scene, this.camera);
     renderer.setRenderTarget(former);
-    return target;
+    texture.dispose();
   }
 
   dispose(): void {

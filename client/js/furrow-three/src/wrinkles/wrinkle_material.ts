@@ -8,8 +8,8 @@ import { STUDIO_GLSL } from '../view/studio.js';
 
 /** Textures of one wrinkle map; null: it has none. */
 export interface WrinkleTextures {
-  /** Slopes (SlopeMaker). */
-  slope: Texture | null;
+  /** Its layer of `slopes`. */
+  slope: number | null;
   amplitude: number;
   /** sRGB, decoded; multiplied by `colourScale`. */
   colour: Texture | null;
@@ -22,6 +22,8 @@ export interface WrinkleInput {
   /** Slopes of the material's own normal map; null: it has none. */
   base: Texture | null;
   masks: Texture[];
+  /** The slopes of all maps, in layers (SlopeMaker); null: no map has any. */
+  slopes: Texture | null;
   maps: WrinkleTextures[];
   /** Row `map * masks.length + mask`; changed every frame by the caller. */
   weights: Vector4[];
@@ -134,6 +136,8 @@ const ALPHA_TEST = `
 /** Pores and folds flatten along a stretch and steepen along a compression (stretchedSlope() of shaders/common/normals.glsl). */
 const STRETCHED = 'p /= vec2(vFurrowStretch.x + clamp(1.0 - vFurrowStretch.x, 0.0, 0.04), vFurrowStretch.y);';
 
+const slopeAt = (layer: number): string => `texture(furrowSlopes, vec3(vFurrowUv, ${layer}.0))`;
+
 /** `moments`: slope textures hold squares, too, which give the variance of the slopes within a pixel. */
 function tangentNormal({ base, maps, gradients }: WrinkleInput, moments: boolean): string[] {
   const stretched = gradients ? [`  ${STRETCHED}`] : [];
@@ -141,7 +145,7 @@ function tangentNormal({ base, maps, gradients }: WrinkleInput, moments: boolean
     // Partial derivatives: p = p_base + sum w_i p_i. Heights add up, so the sum is exact.
     const lines = ['vec3 furrowTangentNormal(vec2 baseUv) {', `  vec2 p = ${base ? 'texture2D(furrowBase, baseUv).xy' : 'vec2(0.0)'};`];
     maps.forEach(({ slope, amplitude }, i) => {
-      if (slope) lines.push(`  p += furrowCoefficient[${i}] * ${amplitude.toFixed(6)} * texture2D(furrowSlope${i}, vFurrowUv).xy;`);
+      if (slope !== null) lines.push(`  p += furrowCoefficient[${i}] * ${amplitude.toFixed(6)} * ${slopeAt(slope)}.xy;`);
     });
     return [...lines, ...stretched, '  return normalize(vec3(p, 1.0));', '}'];
   }
@@ -157,7 +161,7 @@ function tangentNormal({ base, maps, gradients }: WrinkleInput, moments: boolean
     ...(base ? ['  furrowAddSlope(texture2D(furrowBase, baseUv), 1.0, p);'] : []),
   ];
   maps.forEach(({ slope, amplitude }, i) => {
-    if (slope) lines.push(`  furrowAddSlope(texture2D(furrowSlope${i}, vFurrowUv), furrowCoefficient[${i}] * furrowShown.y * ${amplitude.toFixed(6)}, p);`);
+    if (slope !== null) lines.push(`  furrowAddSlope(${slopeAt(slope)}, furrowCoefficient[${i}] * furrowShown.y * ${amplitude.toFixed(6)}, p);`);
   });
   return [...lines, ...stretched, '  return normalize(vec3(p, 1.0));', '}'];
 }
@@ -171,8 +175,8 @@ function fragmentHead(input: WrinkleInput, view: View): string {
   const strength = view === 'facets' ? { all: 'furrowShown.x * ', colour: ' * furrowShown.z', cavity: ' * furrowShown.w' } : { all: '', colour: '', cavity: '' };
   if (input.base) lines.push('uniform sampler2D furrowBase;');
   masks.forEach((_, i) => lines.push(`uniform sampler2D furrowMask${i};`));
-  maps.forEach(({ slope, colour, cavity }, i) => {
-    if (slope) lines.push(`uniform sampler2D furrowSlope${i};`);
+  if (input.slopes) lines.push('uniform highp sampler2DArray furrowSlopes;');
+  maps.forEach(({ colour, cavity }, i) => {
     if (colour) lines.push(`uniform sampler2D furrowColour${i};`);
     if (cavity) lines.push(`uniform sampler2D furrowCavity${i};`);
   });
@@ -218,8 +222,8 @@ function addUniforms(uniforms: Record<string, IUniform>, input: WrinkleInput): v
   input.masks.forEach((mask, i) => {
     uniforms[`furrowMask${i}`] = { value: mask };
   });
-  input.maps.forEach(({ slope, colour, cavity }, i) => {
-    if (slope) uniforms[`furrowSlope${i}`] = { value: slope };
+  if (input.slopes) uniforms.furrowSlopes = { value: input.slopes };
+  input.maps.forEach(({ colour, cavity }, i) => {
     if (colour) uniforms[`furrowColour${i}`] = { value: colour };
     if (cavity) uniforms[`furrowCavity${i}`] = { value: cavity };
   });
@@ -293,7 +297,7 @@ export function addWrinkles(material: MeshStandardMaterial, input: WrinkleInput,
   };
   const key = JSON.stringify([view, input.masks.length, input.base !== null, input.oneNormal, input.gradients,
     input.facets?.kind, input.facets?.uniforms.furrowThicknessMap !== undefined,
-    input.maps.map(({ slope, colour, cavity, amplitude, colourScale }) => [!slope, !colour, !cavity, amplitude, colourScale])]);
+    input.maps.map(({ slope, colour, cavity, amplitude, colourScale }) => [slope, !colour, !cavity, amplitude, colourScale])]);
   material.customProgramCacheKey = () => `furrow ${key}`;
   material.needsUpdate = true;
 }
