@@ -16,9 +16,9 @@ constexpr std::size_t kPrefetchAhead = 8;
 
 }  // namespace
 
-void BatchSolver::PrefetchUpdate(const BatchUpdate& update) {
+void BatchSolver::Prefetch(const BatchUpdate& update) {
   if (update.solver == nullptr || update.pose == nullptr) return;
-  Prefetch<Transform>(update.pose->joints);
+  wrinkle::Prefetch<Transform>(update.pose->joints);
   update.solver->PrefetchState();
 }
 
@@ -26,7 +26,7 @@ void BatchSolver::Run(std::span<BatchUpdate> updates) {
   const SubjectKernel& kernel = BestSubjectKernel();
   const bool is_long = updates.size() >= kPrefetchFrom;
   for (std::size_t i = 0; i < updates.size(); ++i) {
-    if (is_long && i + kPrefetchAhead < updates.size()) PrefetchUpdate(updates[i + kPrefetchAhead]);
+    if (is_long && i + kPrefetchAhead < updates.size()) Prefetch(updates[i + kPrefetchAhead]);
     BatchUpdate& update = updates[i];
     const bool is_complete = update.solver != nullptr && update.pose != nullptr;
     update.status = is_complete ? update.solver->Solve(*update.pose, update.dt, kernel, &scratch_)

@@ -28,10 +28,10 @@ struct BatchUpdate {
 class BatchSolver {
  public:
   void Run(std::span<BatchUpdate> updates);
+  // Requests the memory of an update that comes soon.
+  static void Prefetch(const BatchUpdate& update);
 
  private:
-  static void PrefetchUpdate(const BatchUpdate& update);
-
   RowList scratch_;
 };
 

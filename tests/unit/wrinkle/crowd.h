@@ -16,7 +16,8 @@
 namespace furrow::wrinkle {
 
 inline bool SameBits(std::span<const float> a, std::span<const float> b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
+  if (a.size() != b.size()) return false;
+  return a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
 }
 
 inline bool SameBits(const SubjectSolver& a, const SubjectSolver& b) {
