@@ -30,7 +30,12 @@ void SetIfUnset(const char* variable, const std::string& value) {
 }  // namespace
 
 fs::path CacheFolder() {
-  if (fs::path folder = FolderIn("CACHE_DIRECTORY"); !folder.empty()) return folder;
+  if (fs::path folder = FolderIn("CACHE_DIRECTORY"); !folder.empty()) {
+    // systemd's, which is a link if the user of the service is a dynamic one.
+    std::error_code error;
+    fs::path real = fs::canonical(folder, error);
+    return error ? folder : real;
+  }
   if (const fs::path folder = FolderIn("XDG_CACHE_HOME"); !folder.empty()) {
     return folder / "furrow";
   }

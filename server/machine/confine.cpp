@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
+#include <utility>
 
 #include <fcntl.h>
 #include <linux/capability.h>
@@ -14,43 +15,49 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include "base/process/descriptor.h"
 #include "server/machine/syscall_filter.h"
 
 namespace furrow::server {
 namespace {
 
 constexpr std::uint64_t kRead = LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_READ_DIR;
+// Since the third version of Landlock; older headers lack it.
+constexpr std::uint64_t kTruncate = std::uint64_t{1} << 14;
+// In the first version of Landlock, nothing moves from folder to folder (REFER).
 constexpr std::uint64_t kWrite = LANDLOCK_ACCESS_FS_WRITE_FILE | LANDLOCK_ACCESS_FS_REMOVE_DIR |
                                  LANDLOCK_ACCESS_FS_REMOVE_FILE | LANDLOCK_ACCESS_FS_MAKE_DIR |
                                  LANDLOCK_ACCESS_FS_MAKE_REG | LANDLOCK_ACCESS_FS_MAKE_SOCK |
-                                 LANDLOCK_ACCESS_FS_MAKE_FIFO | LANDLOCK_ACCESS_FS_MAKE_SYM;
-// What the first version of Landlock knows; all of it is forbidden unless a rule allows it.
-constexpr std::uint64_t kHandled = kRead | kWrite | LANDLOCK_ACCESS_FS_EXECUTE |
-                                   LANDLOCK_ACCESS_FS_MAKE_CHAR | LANDLOCK_ACCESS_FS_MAKE_BLOCK;
+                                 LANDLOCK_ACCESS_FS_MAKE_FIFO | LANDLOCK_ACCESS_FS_MAKE_SYM |
+                                 LANDLOCK_ACCESS_FS_REFER | kTruncate;
+constexpr std::uint64_t kRun = LANDLOCK_ACCESS_FS_EXECUTE;
+// All of it is forbidden unless a rule allows it.
+constexpr std::uint64_t kHandled =
+    kRead | kWrite | kRun | LANDLOCK_ACCESS_FS_MAKE_CHAR | LANDLOCK_ACCESS_FS_MAKE_BLOCK;
 // The rights that concern files; the kernel refuses the others in a rule for a file.
-constexpr std::uint64_t kOfFiles = LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_WRITE_FILE;
-
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-  ~Descriptor() {
-    if (number_ >= 0) close(number_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  [[nodiscard]] int number() const { return number_; }
-  [[nodiscard]] bool ok() const { return number_ >= 0; }
-
- private:
-  const int number_;
-};
+constexpr std::uint64_t kOfFiles =
+    LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_WRITE_FILE | kRun | kTruncate;
 
 // glibc has no functions for these system calls.
-Descriptor CreateRuleset() {
+Descriptor CreateRuleset(std::uint64_t handled) {
   landlock_ruleset_attr attributes{};
-  attributes.handled_access_fs = kHandled;
+  attributes.handled_access_fs = handled;
   return Descriptor(
       static_cast<int>(syscall(SYS_landlock_create_ruleset, &attributes, sizeof(attributes), 0)));
+}
+
+// What this kernel's version of Landlock can forbid; it refuses a ruleset that handles more.
+std::uint64_t KnownAccess() {
+  const long version =
+      syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION);
+  std::uint64_t known = ~std::uint64_t{0};
+  if (version < 2) known &= ~std::uint64_t{LANDLOCK_ACCESS_FS_REFER};
+  if (version < 3) known &= ~kTruncate;
+  return known;
+}
+
+bool Restrict(const Descriptor& ruleset) {
+  return syscall(SYS_landlock_restrict_self, ruleset.number(), 0) == 0;
 }
 
 bool Allow(const Descriptor& ruleset, const std::filesystem::path& path, std::uint64_t access) {
@@ -67,16 +74,17 @@ bool Allow(const Descriptor& ruleset, const std::filesystem::path& path, std::ui
 
 // Returns why it was not possible; empty: it was.
 std::string ConfineFiles(const Confinement& allowed) {
-  const Descriptor ruleset = CreateRuleset();
+  const std::uint64_t known = KnownAccess();
+  const Descriptor ruleset = CreateRuleset(kHandled & known);
   if (!ruleset.ok()) return std::strerror(errno);
-  for (const auto& path : allowed.read) {
-    if (!Allow(ruleset, path, kRead)) return path.string() + ": " + std::strerror(errno);
+  for (const auto& [paths, access] :
+       {std::pair(&allowed.read, kRead), std::pair(&allowed.write, kRead | kWrite),
+        std::pair(&allowed.run, kRead | kRun)}) {
+    for (const auto& path : *paths) {
+      if (!Allow(ruleset, path, access & known)) return path.string() + ": " + std::strerror(errno);
+    }
   }
-  for (const auto& path : allowed.write) {
-    if (!Allow(ruleset, path, kRead | kWrite)) return path.string() + ": " + std::strerror(errno);
-  }
-  if (syscall(SYS_landlock_restrict_self, ruleset.number(), 0) != 0) return std::strerror(errno);
-  return {};
+  return Restrict(ruleset) ? std::string() : std::strerror(errno);
 }
 
 bool DropCapabilities() {
@@ -102,14 +110,18 @@ std::string Confine(const Confinement& allowed) {
   const rlimit none{0, 0};
   if (setrlimit(RLIMIT_CORE, &none) == 0) add("no core dumps");
   const std::string why = ConfineFiles(allowed);
-  if (why.empty()) add("no programs, no files but its own");
+  add(why.empty() ? "no files but its own" : "all files, because Landlock is unavailable: " + why);
   if (DropCapabilities()) add("no capabilities");
-  const std::string unfiltered = FilterSystemCalls();  // last: it forbids the calls above
-  if (unfiltered.empty()) add("only the system calls that it needs");
-  if (!why.empty()) held += "; all files, because Landlock is unavailable: " + why;
-  if (!unfiltered.empty())
-    held += "; all system calls, because seccomp is unavailable: " + unfiltered;
   return held;
+}
+
+std::string FinishConfinement() {
+  const Descriptor no_programs = CreateRuleset(kRun);
+  const bool forbidden = no_programs.ok() && Restrict(no_programs);
+  const std::string why = FilterSystemCalls();
+  if (why.empty()) return "no programs, only the system calls that it needs";
+  return std::string(forbidden ? "no programs in the threads that serve, " : "") +
+         "all system calls, because seccomp is unavailable: " + why;
 }
 
 }  // namespace furrow::server

@@ -58,7 +58,7 @@ constexpr std::string_view kProcess =
     "getrandom getresgid getresuid getrlimit getrusage getuid getuid32 ioctl prlimit64 "
     "setrlimit sysinfo ugetrlimit uname";
 #ifdef __SANITIZE_ADDRESS__  // the leak checker stops all threads with it
-constexpr std::string_view kDebugging = "ptrace";
+constexpr std::string_view kDebugging = "ptrace wait4 waitid";
 #else
 constexpr std::string_view kDebugging;
 #endif
@@ -109,6 +109,8 @@ std::string FilterSystemCalls() {
   // A binary search instead of one comparison after the other, for kernels that do not remember
   // which calls are always allowed (before 5.11).
   if (error == 0) error = seccomp_attr_set(filter.get(), SCMP_FLTATR_CTL_OPTIMIZE, 2);
+  // All threads of the process get the filter, also those of libraries and drivers.
+  if (error == 0) error = seccomp_attr_set(filter.get(), SCMP_FLTATR_CTL_TSYNC, 1);
   if (error == 0) error = seccomp_load(filter.get());
   return error == 0 ? std::string() : std::strerror(-error);
 }

@@ -15,7 +15,7 @@
 #include "motion/clip/clip.h"
 #include "protocol/messages/messages.h"
 #include "raw_client.h"
-#include "server/daemon.h"
+#include "server/run.h"
 
 namespace furrow::testing_net {
 

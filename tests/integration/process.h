@@ -25,6 +25,7 @@ class Process {
 
   // The next line of stdout without its line end; nullopt at the end.
   std::optional<std::string> ReadLine();
+  [[nodiscard]] pid_t id() const { return pid_; }
   void Signal(int signal) const;
   // Closes the reading end of stderr.
   void CloseErrors();

@@ -4,6 +4,8 @@
 
 #include <csignal>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <regex>
 #include <string>
 #include <vector>
@@ -18,6 +20,7 @@
 namespace furrow::testing_net {
 namespace {
 
+using testing::ContainsRegex;
 using testing::HasSubstr;
 
 const char kProgram[] = FURROW_BINARY_DIR "/bin/furrowd";
@@ -113,6 +116,23 @@ TEST(Furrowd, SaysWhetherItIsConfined) {
   }
 }
 
+// Also the threads of the driver, of libraries and of the log.
+void ExpectAllThreadsConfined(pid_t process) {
+  std::size_t num_threads = 0;
+  const auto tasks = std::filesystem::path("/proc") / std::to_string(process) / "task";
+  for (const auto& task : std::filesystem::directory_iterator(tasks)) {
+    std::ifstream file(task.path() / "status");
+    const std::string status{std::istreambuf_iterator<char>(file), {}};
+    if (status.empty()) continue;  // the thread has ended
+    ++num_threads;
+    EXPECT_THAT(status, HasSubstr("\nNoNewPrivs:\t1\n"));
+    EXPECT_THAT(status, HasSubstr("\nSeccomp:\t2\n"));
+    // At most that of opening ports below 1024.
+    EXPECT_THAT(status, ContainsRegex("\nCapEff:\t0000000000000[04]00\n"));
+  }
+  EXPECT_GT(num_threads, 3u);
+}
+
 // The driver of OpenGL, the module of pictures and the recording need files after the start.
 TEST(Furrowd, DrawsAndRecordsWhileItIsConfined) {
   const TemporaryFolder folder;
@@ -129,6 +149,7 @@ TEST(Furrowd, DrawsAndRecordsWhileItIsConfined) {
     answer = WebClient(port).Ask("GET", "/snapshot.png?width=64&height=64");
   }
   EXPECT_EQ(answer.status, 200) << answer.body;
+  ExpectAllThreadsConfined(daemon.id());
   daemon.Signal(SIGTERM);
   EXPECT_EQ(daemon.Wait(), 0);
   EXPECT_FALSE(std::filesystem::is_empty(folder / "takes"));

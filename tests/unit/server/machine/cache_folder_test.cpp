@@ -50,6 +50,16 @@ TEST_F(CacheFolderTest, TheServiceManagersFolderComesFirst) {
   EXPECT_EQ(CacheFolder(), "");
 }
 
+// As systemd makes it for a service with DynamicUser=.
+TEST_F(CacheFolderTest, TheServiceManagersFolderMayBeALink) {
+  const fs::path link = folder_ / "furrow";
+  fs::create_directory(folder_ / "private");
+  fs::create_directory_symlink("private", link);
+  Set("CACHE_DIRECTORY", link.c_str());
+  EXPECT_EQ(CacheFolder(), fs::canonical(folder_ / "private"));
+  EXPECT_TRUE(PrepareCacheFolder(CacheFolder()).ok());
+}
+
 TEST_F(CacheFolderTest, TheFolderIsItsOwnersAlone) {
   const fs::path folder = folder_ / "a" / "furrow";
   ASSERT_TRUE(PrepareCacheFolder(folder).ok());
