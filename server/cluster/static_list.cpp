@@ -28,6 +28,7 @@ std::uint64_t Weight(std::string_view node, std::string_view subject) {
 
 Status StaticList::Start(const NodeAddress& self) {
   for (NodeAddress& node : nodes_) {
+    node.https = self.https;
     if (node.name == self_) node = self;
   }
   return {};

@@ -15,7 +15,8 @@ namespace furrow::server {
 // moves only its own share). Nobody takes over from a node that is gone.
 class StaticList : public Coordinator {
  public:
-  // `nodes` includes one named `self`, which Start() replaces.
+  // `nodes` includes one named `self`, which Start() replaces. The others speak HTTPS if this one
+  // has TLS.
   StaticList(std::string self, std::vector<NodeAddress> nodes)
       : self_(std::move(self)), nodes_(std::move(nodes)) {}
 

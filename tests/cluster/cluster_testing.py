@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Shared by the tests and the measurement of clusters: a NATS server, nodes, a performer and a viewer."""
+import contextlib
 import json
-import os
 import pathlib
 import shutil
 import signal
@@ -13,7 +13,7 @@ import time
 import urllib.error
 import urllib.request
 
-from furrow_testing import BIN, GUARD, SHARE, Daemon, spawn
+from furrow_testing import GUARD, SHARE, Daemon, spawn
 
 PERFORMANCE = SHARE / "recordings" / "performance.bvh"
 NATS = shutil.which("nats-server") or shutil.which("nats-server", path="/usr/sbin")
@@ -69,6 +69,60 @@ class NatsServer:
     @property
     def url(self):
         return f"nats://127.0.0.1:{self.port}"
+
+
+class Wire:
+    """A cable to a port of this computer, which can be cut: connections stay, and nothing arrives."""
+
+    def __init__(self, port):
+        self.far = port
+        self.whole = threading.Event()
+        self.whole.set()
+        self.listener = socket.create_server(("127.0.0.1", 0))
+        self.port = self.listener.getsockname()[1]
+        threading.Thread(target=self._accept, daemon=True).start()
+
+    @property
+    def url(self):
+        return f"nats://127.0.0.1:{self.port}"
+
+    def cut(self):
+        self.whole.clear()
+
+    def mend(self):
+        self.whole.set()
+
+    def close(self):
+        self.mend()
+        with contextlib.suppress(OSError):
+            self.listener.shutdown(socket.SHUT_RDWR)
+        self.listener.close()
+
+    def _accept(self):
+        with contextlib.suppress(OSError):
+            while True:
+                near, _ = self.listener.accept()
+                threading.Thread(target=self._join, args=(near,), daemon=True).start()
+
+    def _join(self, near):
+        self.whole.wait()
+        try:
+            far = socket.create_connection(("127.0.0.1", self.far))
+        except OSError:
+            near.close()
+            return
+        for one, other in ((near, far), (far, near)):
+            threading.Thread(target=self._pass, args=(one, other), daemon=True).start()
+
+    def _pass(self, source, target):
+        with contextlib.suppress(OSError):
+            while data := source.recv(65536):
+                self.whole.wait()
+                target.sendall(data)
+        for end in (source, target):
+            with contextlib.suppress(OSError):
+                end.shutdown(socket.SHUT_RDWR)
+            end.close()
 
 
 class Node(Daemon):
@@ -167,19 +221,3 @@ class Performer(Program):
         self.lines = []  # nobody reads them; the pipes stay empty
         super().__init__(spawn("play", PERFORMANCE, "--to", address, "--udp", "--subject", subject, "--loop", *args),
                          self.lines.extend, self.lines.extend)
-
-
-def repetitions(frames):
-    """How many numbers of frames came again."""
-    return len(frames) - len({number for _, number in frames})
-
-
-def missing(frames):
-    """How many numbers are missing between the first and the last frame."""
-    numbers = {number for _, number in frames}
-    return max(numbers) - min(numbers) + 1 - len(numbers) if numbers else 0
-
-
-def reorderings(frames):
-    """How often a frame came after a later one. Decaying frames repeat a number."""
-    return sum(b < a for (_, a), (_, b) in zip(frames, frames[1:]))

@@ -2,14 +2,24 @@
 # SPDX-License-Identifier: Apache-2.0
 """Three daemons share subjects through NATS: placement, redirects, and what happens when a part of it fails."""
 import contextlib
+import http.client
+import json
+import os
 import pathlib
+import shutil
 import signal
+import subprocess
 import sys
 import tempfile
+import threading
 import unittest
+import urllib.request
 
-from cluster_testing import NATS, NatsServer, Node, Performer, Viewer, reorderings, repetitions, wait_until
-from furrow_testing import GUARD, SOURCE, finish, furrow, spawn
+from cluster_testing import NATS, NatsServer, Node, Performer, Viewer, wait_until
+from furrow_testing import GUARD, SOURCE, finish, furrow, reorderings, repetitions, spawn
+
+JS = os.environ.get("FURROW_JS", "")  # the npm packages, built
+NODE = shutil.which("node") or shutil.which("nodejs") if pathlib.Path(JS, "furrow", "dist", "node.js").is_file() else None
 
 if NATS is None:
     print("skipped: nats-server is not installed")
@@ -122,6 +132,56 @@ class ClusterTest(unittest.TestCase):
         self.assertEqual(status, 200)
         self.assertEqual([node["node"] for node in cluster["nodes"]], ["b", "a", "c"])
         self.assertEqual({s["name"]: s["node"] for s in cluster["subjects"]}, {"ada": "a", "bob": "a"})
+
+    def ask(self, node, target):
+        """The status of a request, and its header fields; follows nothing."""
+        connection = http.client.HTTPConnection("127.0.0.1", node.ports["http"], timeout=GUARD)
+        self.addCleanup(connection.close)
+        connection.request("GET", target)
+        reply = connection.getresponse()
+        return reply.status, reply.headers
+
+    def test_the_web_sends_its_clients_to_the_right_node(self):
+        a, b, _ = self.nodes.values()
+        self.perform(a)
+        self.watch(a).wait_for(5)
+        self.holder()
+        web = f"http://127.0.0.1:{a.ports['http']}"
+        self.assertEqual(b.get("/api/place?subject=ada")[1]["web"], web)
+        self.assertEqual({node["web"] for node in b.get("/api/cluster")[1]["nodes"]},
+                         {f"http://127.0.0.1:{node.ports['http']}" for node in self.nodes.values()})
+        for path in ("/mjpeg?subject=ada&width=320", "/snapshot.png?subject=ada", "/weights?subject=ada&pattern=brow_l.%2A"):
+            status, headers = self.ask(b, path)
+            self.assertEqual((status, headers["Location"]), (307, web + path))
+        # A client that follows gets the weights of the other node.
+        with urllib.request.urlopen(f"http://127.0.0.1:{b.ports['http']}/weights?subject=ada", timeout=GUARD) as lines:
+            self.assertEqual(lines.url, f"{web}/weights?subject=ada")
+            names, weights = json.loads(lines.readline()), json.loads(lines.readline())
+        self.assertEqual((names["type"], weights["type"], weights["subject"]), ("names", "weights", "ada"))
+        # No node serves it: the node that was asked answers.
+        self.assertEqual(self.ask(b, "/snapshot.png?subject=nobody")[0], 503)
+
+    @unittest.skipIf(NODE is None, "Node is missing")
+    def test_a_web_socket_follows_its_subject(self):
+        a, b, _ = self.nodes.values()
+        self.perform(a)
+        self.watch(a).wait_for(5)
+        self.holder()
+        client = subprocess.Popen([NODE, pathlib.Path(__file__).with_name("follow.mjs"), JS, f"127.0.0.1:{b.ports['http']}"],
+                                  stdout=subprocess.PIPE, text=True)
+        self.addCleanup(client.stdout.close)
+        self.addCleanup(client.wait)
+        self.addCleanup(client.kill)
+        lines = []
+        reader = threading.Thread(target=lambda: lines.extend(iter(client.stdout.readline, "")), daemon=True)
+        reader.start()
+        wait_until(lambda: len(lines) >= 20, "the client gets weights")
+        # The subject moves, and the client goes along.
+        self.drain(self.nodes.pop("a"))
+        before = len(lines)
+        wait_until(lambda: len(lines) >= before + 60, "the client gets more weights")
+        sequences = [int(line) for line in lines]
+        self.assertEqual(sequences, sorted(set(sequences)))
 
     def test_a_full_node_sends_performers_away(self):
         full = self.add_node("full", "--config", self.config("[limits]\nmax_subjects = 1\n"))

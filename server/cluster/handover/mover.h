@@ -8,6 +8,7 @@
 #include <mutex>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,8 @@
 #include <asio/io_context.hpp>
 
 #include "base/status.h"
+#include "protocol/secure/session/secure_client.h"
+#include "server/cluster/handover/handovers.h"
 #include "server/cluster/handover/node_link.h"
 #include "server/core/time.h"
 #include "server/session/access/token_gate.h"
@@ -22,27 +25,22 @@
 
 namespace furrow::server {
 
-// Gives the subjects of this node to other nodes, one after the other:
-//
-// 1. The other node gets the state of the subject and says whether it takes it. The subject goes on
-//    here meanwhile.
-// 2. The last state leaves, the lease goes to the other node, and so do the publisher and the
-//    subscribers, at the same moment.
-//
-// Runs on the thread of shard 0.
-class Mover {
+// Runs Handovers on an event loop, between a hub and links to other nodes. Runs on the thread of
+// shard 0.
+class Mover : private DepartingSubjects, private NodeLinks {
  public:
   // `gate`, `hub`: not null; outlive the mover.
   Mover(asio::io_context& io, const TokenGate* gate, Hub* hub,
         std::function<std::uint64_t()> random)
       : io_(io), gate_(gate), hub_(hub), random_(std::move(random)) {}
-  ~Mover();
+  ~Mover() override;
+  Mover(const Mover&) = delete;
+  Mover& operator=(const Mover&) = delete;
 
-  // Takes nothing new and moves all subjects. Ends when no subject is left; after EndBy(), also
-  // when no other one can be moved, or at that time.
+  // Moves all subjects (Handovers::Begin()).
   [[nodiscard]] asio::awaitable<void> Run();
-  void EndBy(Time end) { end_ = end; }
-  [[nodiscard]] bool running() const { return running_; }
+  void EndBy(Time end) { handovers_.EndBy(end); }
+  [[nodiscard]] bool running() const { return handovers_.running(); }
 
   // For people. Safe on any thread.
   struct Progress {
@@ -52,42 +50,41 @@ class Mover {
   [[nodiscard]] Progress progress() const;
 
  private:
-  // A message that the node has not answered yet.
-  struct Sent {
-    std::shared_ptr<NodeLink> link;
-    std::vector<std::uint8_t> message;
-    Time sent{0};
-    Time give_up{0};
-    std::optional<bool> accepted;
-    std::string why;
-    bool is_last = false;  // nobody waits for the answer
-  };
+  // Of DepartingSubjects.
+  void TakeNothingNew() override { hub_->TakeNothingNew(); }
+  [[nodiscard]] std::vector<std::string> SubjectNames() override { return hub_->SubjectNames(); }
+  [[nodiscard]] Place SuccessorOf(const std::string& subject, Time now,
+                                  const std::set<std::string>& without) override {
+    return hub_->SuccessorOf(subject, now, without);
+  }
+  [[nodiscard]] bool WriteState(const std::string& subject, std::uint32_t number,
+                                std::vector<std::uint8_t>& message) override {
+    return hub_->WriteState(subject, number, message);
+  }
+  [[nodiscard]] Status HandOver(const std::string& subject, const NodeAddress& node,
+                                std::uint32_t number, std::vector<std::uint8_t>& message,
+                                Time now) override {
+    return hub_->HandOver(subject, node, number, message, now);
+  }
+  // Of NodeLinks.
+  void Open(const NodeAddress& node, Time patience) override;
+  void Send(const std::string& node, std::span<const std::uint8_t> message) override;
+  [[nodiscard]] bool HasFailed(const std::string& node) const override;
+  void Close(const std::string& node) override;
 
-  asio::awaitable<bool> MoveAll();
-  asio::awaitable<Status> Move(std::string subject);
-  asio::awaitable<Status> MoveTo(NodeAddress node, std::string subject);
-  void Unlink(const std::string& node);
-  asio::awaitable<Result<std::shared_ptr<NodeLink>>> LinkTo(NodeAddress node);
-  asio::awaitable<void> Wait(Time time);  // and repeats what is not answered
-  void Send(const std::shared_ptr<NodeLink>& link, std::uint32_t number,
-            std::vector<std::uint8_t> message, bool is_last);
-  void OnAnswer(std::uint32_t number, bool accepted, const std::string& why);
-  void Repeat(Time now);
-  void Note(bool moved, const std::string& why);
-  [[nodiscard]] Time Patience(Time most) const;
+  asio::awaitable<void> Connect(NodeAddress node, Time patience);
+  [[nodiscard]] Result<std::optional<protocol::secure::ClientToken>> TokenFor(
+      const NodeAddress& node) const;
+  void Note();
 
   asio::io_context& io_;
   const TokenGate* const gate_;
   Hub* const hub_;
   const std::function<std::uint64_t()> random_;
   std::map<std::string, std::shared_ptr<NodeLink>> links_;  // by node
-  std::set<std::string> silent_;                            // nodes that failed in this round
-  std::map<std::uint32_t, Sent> sent_;                      // by number
-  std::uint32_t next_number_ = 1;
-  std::optional<Time> end_;
-  std::string logged_;  // why a subject stays
-  bool running_ = false;
-  mutable std::mutex mutex_;  // guards progress_
+  Handovers handovers_{this, this};
+  Handovers::Progress noted_;  // what progress_ says
+  mutable std::mutex mutex_;   // guards progress_
   Progress progress_;
 };
 

@@ -53,13 +53,17 @@ asio::awaitable<Status> NodeLink::Open(Time patience) {
   timer->expires_after(patience);
   udp::resolver resolver(socket_.get_executor());
   if (!found->done) {
-    resolver.async_resolve(
-        options_.node.host, std::to_string(options_.node.udp),
-        [found, timer](const asio::error_code& error, udp::resolver::results_type results) {
-          *found = {true, error, std::move(results)};
-          timer->cancel();
-        });
-    co_await timer->async_wait(kAwaitTuple);
+    const auto on_found = [found, timer](const asio::error_code& error,
+                                         const udp::resolver::results_type& results) {
+      *found = {true, error, results};
+      timer->cancel();
+    };
+    if (options_.look_up) {
+      options_.look_up(options_.node, on_found);
+    } else {
+      resolver.async_resolve(options_.node.host, std::to_string(options_.node.udp), on_found);
+    }
+    if (!found->done) co_await timer->async_wait(kAwaitTuple);
   }
   asio::error_code error = found->done ? found->error : asio::error::timed_out;
   for (const auto& entry : found->results) {
@@ -175,7 +179,7 @@ void NodeLink::OnDatagram(std::span<std::uint8_t> datagram) {
   }
   if (inner.empty()) return;
   std::span<const std::uint8_t> message;
-  switch (reassembler_.Push(0, inner, ToMicroseconds(ReadClock()), message)) {
+  switch (reassembler_.Push({}, inner, ToMicroseconds(ReadClock()), message)) {
     case protocol::FragmentStatus::kWhole:
     case protocol::FragmentStatus::kComplete: return OnMessage(message);
     default: return;

@@ -33,6 +33,10 @@ class NodeLink : public std::enable_shared_from_this<NodeLink> {
     NodeAddress node;
     std::uint64_t session = 0;                           // random, not 0
     std::optional<protocol::secure::ClientToken> token;  // none: the node needs none
+    // Finds the addresses of the node's host. Empty: the system does, which cannot be interrupted.
+    using Found = std::function<void(const asio::error_code& error,
+                                     const asio::ip::udp::resolver::results_type& results)>;
+    std::function<void(const NodeAddress& node, Found found)> look_up = {};
     // An answer of the node to the message with this number; `why`: the reason if it refuses.
     std::function<void(std::uint32_t number, bool accepted, const std::string& why)> on_answer;
   };

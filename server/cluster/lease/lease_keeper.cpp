@@ -164,11 +164,17 @@ void LeaseKeeper::OnWritten(std::string_view subject, std::uint64_t write, Write
 
 void LeaseKeeper::OnDone(const std::string& subject, Own& own, const Pending& done,
                          Revision revision, Time now) {
+  // Its revision means nothing in a store that was emptied since. It would hide the records of other
+  // nodes until their revisions have grown beyond it.
+  if (done.incarnation != incarnation_) {
+    needs_listing_ = true;
+    return;
+  }
   const Record* const known = Find(subject);
   if (known == nullptr || known->revision < revision) {
     Learn({subject, done.lease, revision}, now);
   }
-  if (!own.wanted || !IsOwn(done.lease) || done.incarnation != incarnation_) return;
+  if (!own.wanted || !IsOwn(done.lease)) return;
   if (done.inherits && done.lease.epoch > own.epoch) {
     // It replaced a record of a certain revision, which an emptied store does not have. So the
     // write reached the store in which the holder gave the lease away.
@@ -268,9 +274,13 @@ std::vector<LeaseWrite> LeaseKeeper::Tick(Time now, std::int64_t unix_ms) {
   return writes;
 }
 
-// What the store said before a freeze proves nothing any more.
+// What the store said before a freeze proves nothing any more. If it was emptied meanwhile, a record
+// of another node may have the revision that this node would replace.
 void LeaseKeeper::NoticeFreeze(Time now) {
-  if (last_tick_ && now - *last_tick_ > kLeaseFreeze) heard_ = last_tick_.emplace(now);
+  if (!last_tick_ || now - *last_tick_ <= kLeaseFreeze) return;
+  heard_ = last_tick_.emplace(now);
+  needs_listing_ = true;
+  for (auto& [subject, own] : own_) own.stale = true;
 }
 
 void LeaseKeeper::EndIsolation() {

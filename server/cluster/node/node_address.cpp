@@ -40,13 +40,22 @@ bool IsHost(std::string_view host) {
          host.find_first_not_of(kHostLetters) == std::string_view::npos;
 }
 
+std::string WebAddressOf(const NodeAddress& node) {
+  // Browsers know no zones of IPv6 addresses.
+  if (node.http == 0 || node.host.find('%') != std::string::npos) return {};
+  const bool is_v6 = node.host.find(':') != std::string::npos;
+  return (node.https ? "https://" : "http://") + (is_v6 ? "[" + node.host + "]" : node.host) + ":" +
+         std::to_string(node.http);
+}
+
 Result<NodeAddress> ParseNode(std::string_view text) {
   const std::size_t equals = std::min(text.find('='), text.size());
   NodeAddress node{.name = std::string(text.substr(0, equals)),
                    .host = {},
                    .tcp = protocol::kDefaultTcpPort,
                    .udp = protocol::kDefaultUdpPort,
-                   .http = kHttpPort};
+                   .http = kHttpPort,
+                   .https = false};
   std::string_view rest = text.substr(std::min(equals + 1, text.size()));
   const bool bracketed = rest.starts_with('[');
   if (bracketed) rest.remove_prefix(1);

@@ -16,6 +16,7 @@ struct NodeAddress {
   std::uint16_t tcp = 0;
   std::uint16_t udp = 0;
   std::uint16_t http = 0;  // 0: the node has no web port
+  bool https = false;      // a web port speaks HTTPS, not HTTP
   friend bool operator==(const NodeAddress&, const NodeAddress&) = default;
 };
 
@@ -25,6 +26,9 @@ struct NodeAddress {
 // True for names and numeric addresses of hosts: 1 to 255 letters, digits and '.', ':', '-', '_',
 // '%'.
 [[nodiscard]] bool IsHost(std::string_view host);
+
+// Where browsers reach the node: "https://10.0.0.2:7480"; empty if they do not.
+[[nodiscard]] std::string WebAddressOf(const NodeAddress& node);
 
 // "NAME=HOST" or "NAME=HOST:TCP:UDP:HTTP", with brackets around an IPv6 address. Error:
 // kInvalidArgument.

@@ -102,9 +102,10 @@ std::optional<Lease> ParseLease(std::string_view text) {
 }
 
 std::string ToText(const Announcement& node) {
-  return fmt::format("1 {:x} {} {} {} {} {} {} {} {}", node.run, node.address.host,
+  return fmt::format("1 {:x} {} {} {} {} {} {} {} {} {}", node.run, node.address.host,
                      node.address.tcp, node.address.udp, node.address.http, node.capacity,
-                     node.subjects, node.draining ? 1 : 0, node.ready ? 1 : 0);
+                     node.subjects, node.draining ? 1 : 0, node.ready ? 1 : 0,
+                     node.address.https ? 1 : 0);
 }
 
 std::optional<Announcement> ParseAnnouncement(std::string_view name, std::string_view text) {
@@ -116,11 +117,14 @@ std::optional<Announcement> ParseAnnouncement(std::string_view name, std::string
       !TakeHost(&text, &node.address.host) || !TakePort(&text, &node.address.tcp) ||
       !TakePort(&text, &node.address.udp) || !TakePort(&text, &node.address.http) ||
       !Take(&text, 10, kMost, &node.capacity) || !Take(&text, 10, kMost, &node.subjects) ||
-      !TakeFlag(&text, &node.draining) || !TakeFlag(&text, &node.ready) ||
-      !TakeToken(&text).empty() || node.address.tcp == 0 || node.address.udp == 0) {
+      !TakeFlag(&text, &node.draining) || !TakeFlag(&text, &node.ready) || node.address.tcp == 0 ||
+      node.address.udp == 0) {
     return std::nullopt;
   }
-  return node;
+  // Nodes of an older version do not write `https`, and those of a newer one may write more.
+  std::string_view rest = text;
+  if (TakeToken(&rest).empty() || TakeFlag(&text, &node.address.https)) return node;
+  return std::nullopt;
 }
 
 }  // namespace furrow::server

@@ -125,11 +125,10 @@ void StoreCoordinator::TakeRequests() {
     wanted.swap(requests_.wanted);
     heirs.swap(requests_.heirs);
     draining_ = requests_.draining;
-    const Time now = now_();
-    std::erase_if(expected_, [now](const auto& known) { return now >= known.second; });
-    if (!expected_.empty()) hurries_until_ = now + kHurry;
   }
-  const bool has_rival = nodes_.HasRival(now_());
+  const Time now = now_();
+  if (transits_.ExpectsAny(now)) hurries_until_ = now + kHurry;
+  const bool has_rival = nodes_.HasRival(now);
   for (const auto& [subject, is_wanted] : wanted) {
     if (!is_wanted) {
       leases_.Release(subject);
@@ -137,7 +136,7 @@ void StoreCoordinator::TakeRequests() {
       leases_.Want(subject);
     }
   }
-  const auto others = nodes_.Others(now_(), leases_.reachable());
+  const auto others = nodes_.Others(now, leases_.reachable());
   for (const auto& [subject, node] : heirs) {
     const auto heir = others.find(node);
     if (heir == others.end()) {
@@ -236,21 +235,14 @@ void StoreCoordinator::Request(std::string_view subject, bool wanted) {
 
 void StoreCoordinator::Release(std::string_view subject) {
   Request(subject, false);
-  const std::lock_guard lock(mutex_);
-  if (const auto known = expected_.find(subject); known != expected_.end()) expected_.erase(known);
+  transits_.ForgetExpected(subject);
 }
 
 // Subjects that are on their way here have a place, although the view does not show them yet.
 bool StoreCoordinator::HasRoomFor(const View& view, std::string_view subject) const {
-  const std::lock_guard lock(mutex_);
   const auto most = static_cast<std::size_t>(std::max(0, capacity_));
-  if (view.own.size() + expected_.size() < most) return true;
-  const Time now = now_();
-  std::size_t taken = view.own.size();
-  for (const auto& [name, until] : expected_) {
-    if (now < until && name != subject && !view.own.contains(name)) ++taken;
-  }
-  return taken < most;
+  const auto is_here = [&view](const std::string& name) { return view.own.contains(name); };
+  return view.own.size() + transits_.CountExpected(subject, is_here, now_()) < most;
 }
 
 Place StoreCoordinator::Expect(std::string_view subject, Time now) {
@@ -265,33 +257,15 @@ Place StoreCoordinator::Expect(std::string_view subject, Time now) {
   } else {
     place.kind = Place::Kind::kPending;
     Request(subject, true);
-    const std::lock_guard lock(mutex_);
-    expected_.insert_or_assign(std::string(subject), now + kExpected);
+    transits_.Expect(subject, now);
   }
   return place;
 }
 
 void StoreCoordinator::HandOver(std::string_view subject, const NodeAddress& heir) {
+  transits_.Give(subject, heir, now_());
   const std::lock_guard lock(mutex_);
   requests_.heirs.insert_or_assign(std::string(subject), heir.name);
-  const Time now = now_();
-  std::erase_if(given_, [now](const auto& given) { return now >= given.second.until; });
-  given_.insert_or_assign(std::string(subject), Given{heir, now + kExpected});
-  ++given_to_[heir.name];
-}
-
-bool StoreCoordinator::IsExpected(std::string_view subject) const {
-  const std::lock_guard lock(mutex_);
-  const auto known = expected_.find(subject);
-  return known != expected_.end() && now_() < known->second;
-}
-
-// The view still shows this node as the holder until its thread has written the record.
-std::optional<NodeAddress> StoreCoordinator::HeirOf(std::string_view subject) const {
-  const std::lock_guard lock(mutex_);
-  const auto known = given_.find(subject);
-  if (known == given_.end() || now_() >= known->second.until) return std::nullopt;
-  return known->second.heir;
 }
 
 void StoreCoordinator::SetDraining() {
@@ -306,13 +280,10 @@ const Announcement* StoreCoordinator::RoomElsewhere(const View& view,
   const Announcement* best = nullptr;
   double least = 0.0;
   if (!view.reachable) return best;  // no node takes anything
-  const std::lock_guard lock(mutex_);
   for (const auto& [name, node] : view.others) {
     if (node.draining || !node.ready || node.subjects >= node.capacity) continue;
     if (without.contains(name)) continue;
-    const auto given = given_to_.find(name);
-    const double load =
-        LoadOf(node.subjects + (given == given_to_.end() ? 0 : given->second), node.capacity);
+    const double load = LoadOf(node.subjects + transits_.NumGivenTo(name), node.capacity);
     if (best == nullptr || load < least) {
       best = &node;
       least = load;
@@ -323,12 +294,13 @@ const Announcement* StoreCoordinator::RoomElsewhere(const View& view,
 
 Place StoreCoordinator::ForeignPlace(const View& view, std::string_view subject) const {
   Place place;
-  if (const auto heir = HeirOf(subject)) {
+  // The view still shows this node as the holder until its thread has written the record.
+  if (const auto heir = transits_.HeirOf(subject, now_())) {
     place.kind = Place::Kind::kElsewhere;
     place.node = *heir;
     return place;
   }
-  if (IsExpected(subject)) {
+  if (transits_.IsExpected(subject, now_())) {
     place.why = "the subject is on its way to this node";
     return place;
   }
@@ -357,7 +329,7 @@ Place StoreCoordinator::Elsewhere(std::string_view subject) const {
 Place StoreCoordinator::Find(std::string_view subject, Time now) const {
   const auto seen = view();
   const auto own = seen->own.find(subject);
-  if (own == seen->own.end() || now >= own->second.until || HeirOf(subject)) {
+  if (own == seen->own.end() || now >= own->second.until || transits_.HeirOf(subject, now_())) {
     return ForeignPlace(*seen, subject);
   }
   Place place;
@@ -404,7 +376,7 @@ Place StoreCoordinator::Ask(std::string_view subject, Time now) {
   const auto seen = view();
   const bool draining = is_draining();
   const bool has_room = !draining && HasRoomFor(*seen, subject);
-  const bool is_held = seen->foreign.contains(subject) || IsExpected(subject);
+  const bool is_held = seen->foreign.contains(subject) || transits_.IsExpected(subject, now_());
   const bool waits =
       seen->reachable && !seen->has_rival && (is_held || RoomElsewhere(*seen) == nullptr);
   if (!has_room || !(seen->may_take || waits)) return Propose(subject, now);

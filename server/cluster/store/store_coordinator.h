@@ -6,7 +6,6 @@
 #include <map>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -16,6 +15,7 @@
 #include "server/cluster/lease/lease_keeper.h"
 #include "server/cluster/store/node_table.h"
 #include "server/cluster/store/store.h"
+#include "server/cluster/store/transits.h"
 
 namespace furrow::server {
 
@@ -36,7 +36,7 @@ class StoreCoordinator : public Coordinator {
   explicit StoreCoordinator(Parts parts);
   // Gives all leases back, for at most kFarewell.
   ~StoreCoordinator() override;
-  static constexpr Time kFarewell = std::chrono::milliseconds(500);
+  static constexpr Time kFarewell = std::chrono::seconds(2);
 
   [[nodiscard]] Status Start(const NodeAddress& self) override;
   [[nodiscard]] Place Ask(std::string_view subject, Time now) override;
@@ -81,8 +81,6 @@ class StoreCoordinator : public Coordinator {
   [[nodiscard]] bool is_draining() const;
   [[nodiscard]] std::shared_ptr<const View> view() const;
   void Request(std::string_view subject, bool wanted);
-  [[nodiscard]] bool IsExpected(std::string_view subject) const;
-  [[nodiscard]] std::optional<NodeAddress> HeirOf(std::string_view subject) const;
   [[nodiscard]] Place ForeignPlace(const View& view, std::string_view subject) const;
   [[nodiscard]] const Announcement* RoomElsewhere(const View& view,
                                                   const std::set<std::string>& without = {}) const;
@@ -111,17 +109,11 @@ class StoreCoordinator : public Coordinator {
   std::string why_;                        // the store could not be read
   std::string logged_;
 
+  Transits transits_;         // has a lock of its own
   mutable std::mutex mutex_;  // guards those below, for moments
   std::shared_ptr<const View> view_ = std::make_shared<const View>();
   Requests requests_;
-  std::map<std::string, Time, std::less<>> expected_;  // by subject: until when
-  struct Given {
-    NodeAddress heir;
-    Time until{0};  // by then the record says so
-  };
-  std::map<std::string, Given, std::less<>> given_;  // by subject
-  std::map<std::string, int> given_to_;              // by node: how many it got in all
-  std::jthread thread_;                              // last: it uses all of the above
+  std::jthread thread_;  // last: it uses all of the above
 };
 
 }  // namespace furrow::server

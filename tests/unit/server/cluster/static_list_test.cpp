@@ -52,6 +52,19 @@ TEST(StaticList, ANodeMoreMovesOnlyWhatItGets) {
   }
 }
 
+// A node without a web server may have a certificate, for its TCP port.
+TEST(StaticList, TheOtherNodesSpeakHttpsIfThisOneHasTls) {
+  for (const bool https : {false, true}) {
+    StaticList list("a", Nodes(3));
+    NodeAddress self = Nodes(1).front();
+    self.http = 0;
+    self.https = https;
+    ASSERT_TRUE(list.Start(self).ok());
+    EXPECT_EQ(list.Others().size(), 2u);
+    for (const NodeAddress& other : list.Others()) EXPECT_EQ(other.https, https) << other.name;
+  }
+}
+
 TEST(StaticList, ADrainingNodeTakesNothing) {
   StaticList list("a", Nodes(1));
   EXPECT_EQ(list.Ask("ada", Time{0}).kind, Place::Kind::kHere);

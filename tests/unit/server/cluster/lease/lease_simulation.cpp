@@ -8,12 +8,12 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <queue>
 #include <random>
 #include <utility>
 #include <vector>
 
 #include "server/cluster/lease/lease_keeper.h"
+#include "tests/unit/server/cluster/event_queue.h"
 
 namespace furrow::server::testing {
 namespace {
@@ -42,11 +42,7 @@ class Simulation {
   LeaseOutcome Run(unsigned faults, int most_faults) {
     PlanFaults(faults, most_faults);
     At(0, [this] { Publish(); });
-    while (!events_.empty() && events_.top().time <= kEndMs && out_.fault.empty()) {
-      const Event event = events_.top();
-      events_.pop();
-      now_ = event.time;
-      (*event.action)();
+    while (out_.fault.empty() && events_.Run(kEndMs)) {
     }
     NoteGap(kEndMs);
     if (out_.fault.empty() && last_used_ < kEndMs - 1500) {
@@ -58,14 +54,6 @@ class Simulation {
   }
 
  private:
-  struct Event {
-    Ms time = 0;
-    std::uint64_t order = 0;
-    std::shared_ptr<std::function<void()>> action;
-    bool operator<(const Event& other) const {
-      return std::pair(time, order) > std::pair(other.time, other.order);
-    }
-  };
   struct Node {
     std::unique_ptr<LeaseKeeper> keeper;  // null: crashed
     std::uint64_t life = 0;
@@ -85,16 +73,15 @@ class Simulation {
   // Mostly short, sometimes long enough to be overtaken by everything else.
   Ms Delay() { return Number(0, 19) == 0 ? Number(50, 600) : Number(1, 30); }
 
-  void At(Ms time, std::function<void()> action) {
-    events_.push({time, next_order_++, std::make_shared<std::function<void()>>(std::move(action))});
-  }
+  [[nodiscard]] Ms now_ms() const { return events_.now(); }
+  void At(Ms time, std::function<void()> action) { events_.At(time, std::move(action)); }
   // Runs on a node: not in a later life, and not while it is frozen.
   void OnNode(int index, Ms time, std::function<void(Node&)> action) {
     const std::uint64_t life = nodes_[index].life;
     At(time, [this, index, life, action = std::move(action)]() mutable {
       Node& node = nodes_[index];
       if (node.life != life || node.keeper == nullptr) return;
-      if (node.frozen_until > now_) {
+      if (node.frozen_until > now_ms()) {
         return OnNode(index, node.frozen_until + Number(0, 3), std::move(action));
       }
       action(node);
@@ -102,23 +89,25 @@ class Simulation {
   }
 
   Time Clock(const Node& node) const {
-    const Ms elapsed = now_ - node.origin;
+    const Ms elapsed = now_ms() - node.origin;
     return std::chrono::milliseconds(1000 + elapsed + elapsed * node.drift / 1000);
   }
-  Ms Wall(const Node& node) const { return kUnixMs + now_ + node.wall_offset; }
-  bool Hears(const Node& node) const { return now_ >= node.cut_until && now_ >= store_down_until_; }
+  Ms Wall(const Node& node) const { return kUnixMs + now_ms() + node.wall_offset; }
+  bool Hears(const Node& node) const {
+    return now_ms() >= node.cut_until && now_ms() >= store_down_until_;
+  }
 
   void Boot(int index) {
     Node& node = nodes_[index];
     node.keeper = std::make_unique<LeaseKeeper>(std::string(1, static_cast<char>('a' + index)),
                                                 Number(1, 1'000'000'000), strict_);
     ++node.life;
-    node.origin = now_ - Number(0, 100'000);
+    node.origin = now_ms() - Number(0, 100'000);
     node.drift = Number(-10, 10);
     node.told = false;
     node.unheard_since = -1;
     node.listed_at = -kListMs;
-    OnNode(index, now_ + Number(0, kTickMs), [this, index](Node& each) { Tick(index, each); });
+    OnNode(index, now_ms() + Number(0, kTickMs), [this, index](Node& each) { Tick(index, each); });
   }
 
   void Tick(int index, Node& node) {
@@ -126,33 +115,33 @@ class Simulation {
     if (hears) {
       node.unheard_since = -1;
     } else if (node.unheard_since < 0) {
-      node.unheard_since = now_;
+      node.unheard_since = now_ms();
     }
-    const bool reachable = hears || (node.told && now_ - node.unheard_since < kNoticeMs);
+    const bool reachable = hears || (node.told && now_ms() - node.unheard_since < kNoticeMs);
     if (reachable != node.told) {
       node.told = reachable;
       node.keeper->OnReachable(reachable, Clock(node));
     }
-    if (node.told && (now_ - node.listed_at >= kListMs ||
-                      (node.keeper->needs_listing() && now_ - node.listed_at >= 2 * kTickMs))) {
+    if (node.told && (now_ms() - node.listed_at >= kListMs ||
+                      (node.keeper->needs_listing() && now_ms() - node.listed_at >= 2 * kTickMs))) {
       RequestListing(index, node);
     }
     for (LeaseWrite& write : node.keeper->Tick(Clock(node), Wall(node))) {
       SendWrite(index, node, std::move(write));
     }
     CheckServing();
-    OnNode(index, now_ + kTickMs, [this, index](Node& each) { Tick(index, each); });
+    OnNode(index, now_ms() + kTickMs, [this, index](Node& each) { Tick(index, each); });
   }
 
   void RequestListing(int index, Node& node) {
-    node.listed_at = now_;
+    node.listed_at = now_ms();
     const std::uint64_t number = ++node.list_number;
     if (!Hears(node)) return;
-    At(now_ + Delay(), [this, index, number] {
+    At(now_ms() + Delay(), [this, index, number] {
       if (!Hears(nodes_[index])) return;
       LeaseListing listing{incarnation_, {}};
       for (const auto& [subject, entry] : store_) listing.entries.push_back(entry);
-      OnNode(index, now_ + Delay(), [this, listing, number](Node& each) {
+      OnNode(index, now_ms() + Delay(), [this, listing, number](Node& each) {
         if (!Hears(each) || number < each.list_used) return;
         each.list_used = number;
         each.keeper->OnListing(listing, Clock(each));
@@ -163,8 +152,8 @@ class Simulation {
   void SendWrite(int index, Node& node, LeaseWrite write) {
     if (!Hears(node)) return;
     const std::uint64_t life = node.life;
-    At(now_ + Delay(), [this, index, life, write = std::move(write)] {
-      if (now_ < nodes_[index].cut_until || now_ < store_down_until_) return;
+    At(now_ms() + Delay(), [this, index, life, write = std::move(write)] {
+      if (now_ms() < nodes_[index].cut_until || now_ms() < store_down_until_) return;
       LeaseEntry& entry = store_[write.subject];
       const bool done = entry.revision == write.expected;
       if (done) {
@@ -174,7 +163,7 @@ class Simulation {
       const Revision revision = entry.revision;
       if (entry.revision == 0) store_.erase(write.subject);
       if (nodes_[index].life != life) return;
-      OnNode(index, now_ + Delay(),
+      OnNode(index, now_ms() + Delay(),
              [this, subject = write.subject, id = write.id, done, revision](Node& each) {
                if (!Hears(each)) return;
                each.keeper->OnWritten(subject, id,
@@ -188,7 +177,7 @@ class Simulation {
   void Hint(const LeaseEntry& entry) {
     for (int i = 0; i < kNodes; ++i) {
       if (Number(0, 9) == 0 || nodes_[i].keeper == nullptr) continue;
-      OnNode(i, now_ + Delay(), [this, entry, incarnation = incarnation_](Node& each) {
+      OnNode(i, now_ms() + Delay(), [this, entry, incarnation = incarnation_](Node& each) {
         if (Hears(each) && incarnation == incarnation_) {
           each.keeper->OnEntry(entry, Clock(each));
         }
@@ -198,23 +187,23 @@ class Simulation {
 
   // One publisher sends to one node, and goes on to the next one if that does not answer.
   void Publish() {
-    if (now_ - answered_ > 500) {
-      answered_ = now_;
+    if (now_ms() - answered_ > 500) {
+      answered_ = now_ms();
       target_ = static_cast<int>(Number(0, kNodes - 1));
     }
     const std::uint64_t sequence = next_sequence_++;
     const int target = target_;
-    if (now_ >= publisher_cut_until_[target]) {
-      OnNode(target, now_ + Delay(),
+    if (now_ms() >= publisher_cut_until_[target]) {
+      OnNode(target, now_ms() + Delay(),
              [this, target, sequence](Node& node) { OnPose(target, node, sequence); });
     }
     // Somebody else offers the subject elsewhere now and then.
     if (Number(0, 19) == 0) {
-      OnNode(static_cast<int>(Number(0, kNodes - 1)), now_, [this](Node& node) {
+      OnNode(static_cast<int>(Number(0, kNodes - 1)), now_ms(), [this](Node& node) {
         if (node.keeper->HolderOf(kSubject, Clock(node)).empty()) node.keeper->Want(kSubject);
       });
     }
-    At(now_ + kPoseMs, [this] { Publish(); });
+    At(now_ms() + kPoseMs, [this] { Publish(); });
   }
 
   void OnPose(int index, Node& node, std::uint64_t sequence) {
@@ -222,21 +211,21 @@ class Simulation {
     const std::string_view holder = node.keeper->HolderOf(kSubject, now);
     if (!holder.empty()) {
       node.keeper->Release(kSubject);
-      At(now_ + Delay(), [this, index, next = holder[0] - 'a'] {
+      At(now_ms() + Delay(), [this, index, next = holder[0] - 'a'] {
         if (target_ != index) return;
         target_ = next;
-        answered_ = now_;
+        answered_ = now_ms();
       });
       return;
     }
     node.keeper->Want(kSubject);
-    At(now_ + Delay(), [this, index] {
-      if (target_ == index) answered_ = now_;
+    At(now_ms() + Delay(), [this, index] {
+      if (target_ == index) answered_ = now_ms();
     });
     const auto serving = node.keeper->ServingOf(kSubject, now);
     if (!serving) return;
     NoteServing(index, serving->epoch);
-    At(now_ + Delay(), [this, epoch = serving->epoch, sequence] { OnFrame(epoch, sequence); });
+    At(now_ms() + Delay(), [this, epoch = serving->epoch, sequence] { OnFrame(epoch, sequence); });
   }
 
   void NoteServing(int index, std::uint64_t epoch) {
@@ -252,7 +241,7 @@ class Simulation {
     int serving = 0;
     for (int i = 0; i < kNodes; ++i) {
       const Node& node = nodes_[i];
-      if (node.keeper == nullptr || node.frozen_until > now_) continue;
+      if (node.keeper == nullptr || node.frozen_until > now_ms()) continue;
       const auto found = node.keeper->ServingOf(kSubject, Clock(node));
       if (!found) continue;
       ++serving;
@@ -271,8 +260,8 @@ class Simulation {
     }
     newest_ = frame;
     ++out_.frames;
-    NoteGap(now_);
-    last_used_ = now_;
+    NoteGap(now_ms());
+    last_used_ = now_ms();
   }
 
   void NoteGap(Ms now) {
@@ -309,37 +298,37 @@ class Simulation {
       case kCrash:
         node.keeper.reset();
         ++node.life;
-        At(now_ + length, [this, index] {
+        At(now_ms() + length, [this, index] {
           if (nodes_[index].keeper == nullptr) Boot(index);
         });
         break;
-      case kFreeze: node.frozen_until = std::max(node.frozen_until, now_ + length); break;
-      case kCut: node.cut_until = std::max(node.cut_until, now_ + length); break;
-      case kStoreDown: store_down_until_ = std::max(store_down_until_, now_ + length); break;
+      case kFreeze: node.frozen_until = std::max(node.frozen_until, now_ms() + length); break;
+      case kCut: node.cut_until = std::max(node.cut_until, now_ms() + length); break;
+      case kStoreDown: store_down_until_ = std::max(store_down_until_, now_ms() + length); break;
       case kStoreEmptied:
         store_.clear();
         revision_ = 0;
         ++incarnation_;
-        store_down_until_ = std::max(store_down_until_, now_ + (Number(0, 1) == 0 ? 0 : length));
+        store_down_until_ =
+            std::max(store_down_until_, now_ms() + (Number(0, 1) == 0 ? 0 : length));
         break;
       case kClockStep:
         node.wall_offset = emptied_runs_ ? Number(-1200, 1200) : Number(-40'000'000, 40'000'000);
         break;
-      case kPublisherCut: publisher_cut_until_[index] = now_ + length; break;
+      case kPublisherCut: publisher_cut_until_[index] = now_ms() + length; break;
       case kAllFaults: break;
     }
   }
 
   void Fail(std::string fault) {
-    if (out_.fault.empty()) out_.fault = std::move(fault) + " at " + std::to_string(now_) + " ms";
+    if (out_.fault.empty())
+      out_.fault = std::move(fault) + " at " + std::to_string(now_ms()) + " ms";
   }
 
   std::mt19937_64 random_;
   const bool strict_;
   bool emptied_runs_ = false;
-  Ms now_ = 0;
-  std::priority_queue<Event> events_;
-  std::uint64_t next_order_ = 0;
+  EventQueue events_;
   std::array<Node, kNodes> nodes_;
   std::map<std::string, LeaseEntry> store_;
   Revision revision_ = 0;

@@ -19,6 +19,19 @@ TEST(ParseNode, RefusesOtherText) {
   }
 }
 
+TEST(WebAddressOf, IsAUrlThatBrowsersOpen) {
+  NodeAddress node{"b", "10.0.0.2", 7400, 7401, 7480};
+  EXPECT_EQ(WebAddressOf(node), "http://10.0.0.2:7480");
+  node.https = true;
+  EXPECT_EQ(WebAddressOf(node), "https://10.0.0.2:7480");
+  node.host = "::1";
+  EXPECT_EQ(WebAddressOf(node), "https://[::1]:7480");
+  node.host = "fe80::1%eth0";
+  EXPECT_EQ(WebAddressOf(node), "") << "browsers know no zones";
+  node = {"b", "node-b", 7400, 7401, 0};
+  EXPECT_EQ(WebAddressOf(node), "") << "it has no web port";
+}
+
 TEST(IsNodeName, AllowsWhatFitsIntoATokenAndAKey) {
   EXPECT_TRUE(IsNodeName("Stage_1-b"));
   EXPECT_TRUE(IsNodeName(std::string(47, 'a')));

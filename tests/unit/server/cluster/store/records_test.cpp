@@ -11,7 +11,8 @@ namespace {
 const Lease kLease{.node = "stage-1", .run = 0xFEDCBA9876543210, .epoch = 42, .deadline_ms = 7};
 
 Announcement Node() {
-  return {.address = {.name = "b", .host = "fe80::1%eth0", .tcp = 1, .udp = 2, .http = 0},
+  return {.address =
+              {.name = "b", .host = "fe80::1%eth0", .tcp = 1, .udp = 2, .http = 3, .https = true},
           .run = 9,
           .capacity = 2048,
           .subjects = 3,
@@ -45,18 +46,31 @@ TEST(LeaseRecord, InvalidTextIsRefused) {
 
 TEST(NodeRecord, ComesBackAsItWas) { EXPECT_EQ(ParseAnnouncement("b", ToText(Node())), Node()); }
 
+// Without the last word, which older nodes do not write.
 TEST(NodeRecord, EveryTruncationIsRefused) {
   const std::string text = ToText(Node());
-  for (std::size_t size = 0; size < text.size(); ++size) {
+  for (std::size_t size = 0; size < text.rfind(' '); ++size) {
     EXPECT_FALSE(ParseAnnouncement("b", text.substr(0, size))) << text.substr(0, size);
   }
+}
+
+// From now on, nodes may add words to their records.
+TEST(NodeRecord, OlderNodesSpeakHttpAndNewerOnesMayWriteMore) {
+  const auto older = ParseAnnouncement("b", "1 9 h 1 2 3 4 5 0 1");
+  ASSERT_TRUE(older);
+  EXPECT_FALSE(older->address.https);
+  EXPECT_TRUE(older->ready);
+  EXPECT_EQ(ParseAnnouncement("b", "1 9 h 1 2 3 4 5 0 1 "), older);
+  EXPECT_EQ(ParseAnnouncement("b", "1 9 h 1 2 3 4 5 0 1 0"), older);
+  EXPECT_EQ(ParseAnnouncement("b", ToText(Node()) + " anything else"), Node());
 }
 
 TEST(NodeRecord, InvalidTextIsRefused) {
   for (const char* text :
        {"", "1 9 h 0 2 3 4 5 0 0", "1 9 h 1 0 3 4 5 0 0", "1 9 h 65536 2 3 4 5 0 0",
         "1 9 h 1 2 3 1000001 5 0 0", "1 9 h 1 2 3 4 -5 0 0", "1 9 h 1 2 3 4 5 2 0",
-        "1 9 h@x 1 2 3 4 5 0 0", "1 9 h/ 1 2 3 4 5 0 0", "1 9 h 1 2 3 4 5 0 0 0"}) {
+        "1 9 h@x 1 2 3 4 5 0 0", "1 9 h/ 1 2 3 4 5 0 0", "1 9 h 1 2 3 4 5 0 0 2",
+        "1 9 h 1 2 3 4 5 0 0 x"}) {
     EXPECT_FALSE(ParseAnnouncement("b", text)) << text;
   }
 }
