@@ -141,6 +141,11 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
          "(default: 1)")
       ->check(Within(1, kMaxThreads, "number of threads"))
       ->type_name("N");
+  app->add_option("--busy-poll", config->busy_poll_us,
+                  "Look for UDP datagrams for US microseconds after the last ones before a thread\n"
+                  "sleeps, which uses a whole core per thread and lowers the latency (default: 0)")
+      ->check(Within(0, kMaxBusyPollUs, "time in microseconds"))
+      ->type_name("US");
   app->add_option(
          "--jitter-buffer", flags->jitter,
          "Hold poses of subjects for MS milliseconds, so that they leave in order and evenly\n"

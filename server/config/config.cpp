@@ -25,11 +25,13 @@ std::string NumberText(double value) {
 // Values from a file are not trusted: zero would refuse everybody, and huge ones overflow durations
 // in nanoseconds.
 Status ValidateLimits(const Limits& limits) {
-  const std::pair<const char*, int> counts[] = {{"max_connections", limits.max_connections},
-                                                {"max_udp_peers", limits.max_udp_peers},
-                                                {"max_subjects", limits.max_subjects},
-                                                {"max_skeletons", limits.max_skeletons},
-                                                {"outbox_messages", limits.outbox_messages}};
+  const std::pair<const char*, int> counts[] = {
+      {"max_connections", limits.max_connections},
+      {"max_udp_peers", limits.max_udp_peers},
+      {"max_subjects", limits.max_subjects},
+      {"max_skeletons", limits.max_skeletons},
+      {"max_all_subscriptions", limits.max_all_subscriptions},
+      {"outbox_messages", limits.outbox_messages}};
   for (const auto& [name, value] : counts) {
     if (value < 1 || value > 1'000'000) {
       return Invalid(std::string("limits.") + name + " is " + std::to_string(value) +
@@ -40,6 +42,12 @@ Status ValidateLimits(const Limits& limits) {
   if (limits.max_subscriptions < 1 || limits.max_subscriptions > 65'535) {
     return Invalid("limits.max_subscriptions is " + std::to_string(limits.max_subscriptions) +
                    "; it must be 1 to 65535");
+  }
+  if (limits.max_all_subscriptions < limits.max_subscriptions) {
+    return Invalid("limits.max_all_subscriptions is " +
+                   std::to_string(limits.max_all_subscriptions) +
+                   "; it must be at least limits.max_subscriptions, " +
+                   std::to_string(limits.max_subscriptions));
   }
   const std::pair<const char*, double> numbers[] = {
       {"packets_per_second", limits.packets_per_second},
@@ -154,6 +162,10 @@ Status ValidateConfig(const Config& config) {
   if (config.threads < 1 || config.threads > kMaxThreads) {
     return Invalid("--threads is " + std::to_string(config.threads) + "; it must be 1 to " +
                    std::to_string(kMaxThreads));
+  }
+  if (config.busy_poll_us < 0 || config.busy_poll_us > kMaxBusyPollUs) {
+    return Invalid("--busy-poll is " + std::to_string(config.busy_poll_us) + "; it must be 0 to " +
+                   std::to_string(kMaxBusyPollUs) + " microseconds");
   }
   if (config.rest_frame < -1) {
     return Invalid("--rest-frame: " + std::to_string(config.rest_frame) +

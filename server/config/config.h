@@ -34,6 +34,8 @@ struct RecordConfig {
 
 // Maximum of Config::threads; also the largest number of shards of a hub.
 inline constexpr int kMaxThreads = 64;
+// Maximum of Config::busy_poll_us: enough for 10 poses per second.
+inline constexpr int kMaxBusyPollUs = 100'000;
 
 // The whole configuration of furrowd, from flags or a TOML file (furrow.example.toml lists every
 // key).
@@ -52,6 +54,8 @@ struct Config {
   std::uint16_t udp = 7401;
   std::vector<JitterRule> jitter;  // jitter buffers; later rules come first
   int threads = 1;  // threads that receive UDP, [1, kMaxThreads]; see docs/CAPACITY.md
+  // How long these threads look for datagrams before they sleep, [0, kMaxBusyPollUs].
+  int busy_poll_us = 0;
   bool render = true;
   bool require_render = false;                 // fail if OpenGL is unavailable
   std::string render_device;                   // see render::RendererOptions::device

@@ -56,6 +56,7 @@ void AddInputs(const Config& config, std::vector<ConfigEntry>* entries) {
   add("listen.tcp", config.tcp);
   add("listen.udp", config.udp);
   add("listen.threads", config.threads);
+  add("listen.busy_poll_us", config.busy_poll_us);
   add("listen.jitter_buffer", config.jitter);
   add("security.mode", config.security.mode);
   add("security.keys", config.security.keys);
@@ -116,6 +117,7 @@ void AddLimits(const Limits& limits, std::vector<ConfigEntry>* entries) {
   add("limits.max_subjects", limits.max_subjects);
   add("limits.max_skeletons", limits.max_skeletons);
   add("limits.max_subscriptions", limits.max_subscriptions);
+  add("limits.max_all_subscriptions", limits.max_all_subscriptions);
   add("limits.packets_per_second", limits.packets_per_second);
   add("limits.packet_burst", limits.packet_burst);
   add("limits.outbox_messages", limits.outbox_messages);

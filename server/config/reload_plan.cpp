@@ -50,6 +50,10 @@ constexpr LiveKey kLiveKeys[] = {
      [](Config* r, const Config& w) { r->limits.max_skeletons = w.limits.max_skeletons; }},
     {"limits.max_subscriptions",
      [](Config* r, const Config& w) { r->limits.max_subscriptions = w.limits.max_subscriptions; }},
+    {"limits.max_all_subscriptions",
+     [](Config* r, const Config& w) {
+       r->limits.max_all_subscriptions = w.limits.max_all_subscriptions;
+     }},
     {"limits.packets_per_second",
      [](Config* r, const Config& w) {
        r->limits.packets_per_second = w.limits.packets_per_second;

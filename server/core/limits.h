@@ -8,11 +8,13 @@ namespace furrow::server {
 // unless its comment names something smaller.
 struct Limits {
   // Shared between hosts (FairShare): one host alone gets half.
-  int max_connections = 512;          // TCP connections
-  int max_udp_peers = 8192;           // proven UDP addresses, over all threads
-  int max_subjects = 2048;            // subjects published at a time
-  int max_skeletons = 256;            // bound skeletons kept for reuse
-  int max_subscriptions = 64;         // per peer, at most 65,535
+  int max_connections = 512;   // TCP connections
+  int max_udp_peers = 8192;    // proven UDP addresses, over all threads
+  int max_subjects = 2048;     // subjects published at a time
+  int max_skeletons = 256;     // bound skeletons kept for reuse
+  int max_subscriptions = 64;  // per peer, at most 65,535
+  // Shared between hosts, at least max_subscriptions.
+  int max_all_subscriptions = 16'384;
   double packets_per_second = 20000;  // per peer: datagrams or TCP messages
   double packet_burst = 4000;         // per peer: messages accepted at once
   int outbox_messages = 64;   // per TCP peer: queued frames; newer frames replace older ones

@@ -85,6 +85,7 @@ void Dispatcher::DispatchVerified(Shard& shard, Peer& peer, const protocol::Mess
   Shard::Incoming& in = shard.in;
   switch (view.kind) {
     case MessageKind::kPose:
+      parts_.router->Prefetch(peer, header);
       return Decode(shard, peer, view, in.pose, [&] {
         // A partial pose cannot be relayed as it came: a subscriber that lost the pose before it
         // would complete it wrongly.
@@ -135,16 +136,18 @@ void Dispatcher::RecoverPrevious(Shard& shard, const Peer& peer, const protocol:
 }
 
 // Requests stop the other threads and are answered, so each peer has a budget of them; a long
-// pattern costs as much as several. UDP clients repeat a request that is not answered.
+// pattern costs as much as several. Offers have a budget of their own. UDP clients repeat a request
+// that is not answered.
 bool Dispatcher::TakeRequest(Shard& shard, Peer& peer, const protocol::MessageView& view,
                              Time now) {
-  const bool is_free = view.kind == MessageKind::kSkeletonOffer ||  // has a limit of its own
-                       view.kind == MessageKind::kFrameAck || view.kind == MessageKind::kGoodbye;
-  // States are large by nature, and Arrivals limits their bytes.
-  const double size =
-      view.kind == MessageKind::kSubjectState ? 0.0 : static_cast<double>(view.payload.size());
+  const bool is_free = view.kind == MessageKind::kFrameAck || view.kind == MessageKind::kGoodbye;
+  // Offers and states are large by nature; Publishers and Arrivals limit what large ones cost.
+  const bool is_large =
+      view.kind == MessageKind::kSkeletonOffer || view.kind == MessageKind::kSubjectState;
+  const double size = is_large ? 0.0 : static_cast<double>(view.payload.size());
   const double cost = 1.0 + size / kBytesPerRequest;
-  if (is_free || peer.requests.Take(now, cost)) return true;
+  TokenBucket& budget = view.kind == MessageKind::kSkeletonOffer ? peer.offers : peer.requests;
+  if (is_free || budget.Take(now, cost)) return true;
   parts_.metrics->Add(Counter::kRequestsThrottled);
   if (peer.transport != Transport::kUdp) {
     shard.context.messages.SendError(peer, view.header, ErrorCode::kLimit,

@@ -51,6 +51,12 @@ class Outbox {
   void DropReplaceableFrames();
 
   [[nodiscard]] bool empty() const { return ordered_.empty() && frames_.empty(); }
+  // Of all queued messages.
+  [[nodiscard]] std::size_t bytes() const {
+    return reply_bytes_ + ordered_frame_bytes_ + frame_bytes_;
+  }
+  // True if kKeepAll frames are queued.
+  [[nodiscard]] bool owes_frames() const { return ordered_frame_bytes_ > 0; }
   [[nodiscard]] std::size_t num_frames() const { return frames_.size(); }
 
  private:

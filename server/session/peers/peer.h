@@ -84,6 +84,10 @@ struct Peer {
   TokenBucket requests{kRequestsPerSecond, kRequestBurst};
   static constexpr double kRequestsPerSecond = 1000.0;
   static constexpr double kRequestBurst = 2048.0;
+  // Limits its offers, which are repeated until they are answered: those of many streams must not
+  // use up the requests. A burst is enough for twice the default of Limits::max_subjects.
+  TokenBucket offers{kRequestsPerSecond, kOfferBurst};
+  static constexpr double kOfferBurst = 4096.0;
   std::string host;         // PeerLabel::host
   bool shielded = true;     // PeerLabel::shielded
   std::string address;      // PeerLabel::address
@@ -97,6 +101,7 @@ struct Peer {
   int num_subscriptions = 0;
   // At the last tick: the peer has stopped reading (Link::IsStuck()), or its consent has expired.
   bool stuck = false;
+  bool goes_on_elsewhere = false;                // the next daemon goes on with it: no goodbye
   bool token_ended = false;                      // nothing is accepted from it any more
   bool publishes = false;                        // the hub has accepted an offer of this peer
   std::uint16_t last_subscription = 0;           // the newest subscription id

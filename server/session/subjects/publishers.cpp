@@ -80,17 +80,35 @@ Subject* Publishers::OnOffer(Peer& peer, const protocol::Header& header,
     auto definition = DefinitionFor(peer, header, offer, now);
     if (definition == nullptr) return nullptr;
     subject = Accept(peer, key, offer, std::move(definition), now);
-    if (const auto arrived = arrivals_->Take(subject->name, now)) {
-      ResumeFrom(arrived->header, arrived->state, subject);
-      subject->level_kept_until = now + kLevelKept;
-      subject->keeps_level = true;
-    }
+    if (const auto arrived = arrivals_->Take(subject->name, now)) GoOn(*arrived, subject, now);
   }
   subject->served_until = place->until;
   subject->epoch = place->epoch;
   messages_->SendReply(
       peer, MessageSender::ReplyHeader(header),
       protocol::SkeletonReply{offer.skeleton_hash, protocol::SkeletonStatus::kAccepted, {}});
+  return subject;
+}
+
+void Publishers::GoOn(const Arrivals::Arrived& arrived, Subject* subject, Time now) {
+  ResumeFrom(arrived.header, arrived.state, subject);
+  subject->level_kept_until = now + kLevelKept;
+  subject->keeps_level = true;
+}
+
+Subject* Publishers::Resume(Peer& peer, const protocol::Header& header,
+                            const protocol::SkeletonOffer& offer, const Arrivals::Arrived& arrived,
+                            Time now) {
+  const StreamKey key{peer.id, header.session, header.stream};
+  if (subjects_->Find(offer.subject) != nullptr || subjects_->Find(key) != nullptr ||
+      !peer.access.MayPublish(offer.subject) || !subjects_->HasRoomFor(peer.host)) {
+    return nullptr;
+  }
+  // The former daemon has admitted the skeleton already.
+  auto definition = definitions_->Get(ToStreamOffer(offer), [] { return true; });
+  if (!definition.ok() || *definition == nullptr) return nullptr;
+  Subject* const subject = Accept(peer, key, offer, *std::move(definition), now);
+  GoOn(arrived, subject, now);
   return subject;
 }
 
@@ -208,8 +226,9 @@ bool Publishers::TakeNewSkeleton(const std::string& host, Time now) {
     new_skeletons_of_.clear();
   }
   const TokenBucket full(kShareOfHost * kNewSkeletonsPerSecond, kShareOfHost * kNewSkeletonsBurst);
-  return new_skeletons_of_.try_emplace(host, full).first->second.Take(now) &&
-         new_skeletons_.Take(now);
+  const bool common =
+      new_skeletons_of_.try_emplace(host, full).first->second.Take(now) && new_skeletons_.Take(now);
+  return common || (reserved_of_.Take(host, now) && reserved_.Take(now));
 }
 
 // Makes the stream the owner of the subject `offer.subject`, with a new pipeline.

@@ -10,6 +10,7 @@
 
 #include "protocol/codec/codec.h"
 #include "protocol/messages/messages.h"
+#include "server/core/host_rates.h"
 #include "server/core/limits.h"
 #include "server/core/metrics.h"
 #include "server/pipeline/stream_definition.h"
@@ -49,11 +50,19 @@ class Publishers {
   static constexpr double kNewSkeletonsPerSecond = 20.0;
   static constexpr double kNewSkeletonsBurst = 256.0;
   static constexpr double kShareOfHost = 0.5;
+  // Hosts that offer little get these in addition, so that a few hosts that flood shut nobody out.
+  static constexpr double kReservedPerSecond = 10.0;
+  static constexpr std::uint32_t kReservedPerHost = 1;  // per second
 
   // Replies to the offer, unless it has to wait for a place; senders then repeat it. Returns the
   // subject that was started or changed; null if the offer was refused or not answered.
   Subject* OnOffer(Peer& peer, const protocol::Header& header, const protocol::SkeletonOffer& offer,
                    Time now);
+  // Goes on with a subject of the daemon that was here before, as if `peer` had sent the offer. No
+  // replies. Null: there is such a subject, it is not permitted, or there is no room.
+  [[nodiscard]] Subject* Resume(Peer& peer, const protocol::Header& header,
+                                const protocol::SkeletonOffer& offer,
+                                const Arrivals::Arrived& arrived, Time now);
   // The subject of the pose; null if no accepted offer matches (see OnUnknownStream()).
   [[nodiscard]] Subject* FindSubject(const Peer& peer, const protocol::Header& header,
                                      const protocol::PoseFrame& pose);
@@ -102,6 +111,7 @@ class Publishers {
   Change AgeSubject(Subject& subject, Time now);
 
  private:
+  void GoOn(const Arrivals::Arrived& arrived, Subject* subject, Time now);
   Subject* Accept(Peer& peer, const StreamKey& key, const protocol::SkeletonOffer& offer,
                   std::shared_ptr<const StreamDefinition> stream, Time now);
   [[nodiscard]] std::shared_ptr<const StreamDefinition> DefinitionFor(
@@ -130,6 +140,8 @@ class Publishers {
   std::map<std::uint64_t, std::weak_ptr<const protocol::SkeletonOffer>> offers_;
   std::map<std::string, TokenBucket, std::less<>> new_skeletons_of_;  // by host
   TokenBucket new_skeletons_{kNewSkeletonsPerSecond, kNewSkeletonsBurst};
+  HostRates reserved_of_{kReservedPerHost};
+  TokenBucket reserved_{kReservedPerSecond, kReservedPerSecond};
   std::string asked_again_;            // the subject that AskAgain() looked at last
   Time awake_since_{0};                // end of the last stall
   TokenBucket log_bucket_{2.0, 20.0};  // repeated bad offers must not flood the log

@@ -42,6 +42,8 @@ struct StreamKeyHash {
   }
 };
 
+struct Subscription;
+
 using SubjectId = std::uint64_t;  // unique for the life of the daemon; 0: no subject
 
 // A captured performer: a name, the stream that feeds it now, and its pipeline to wrinkle weights.
@@ -56,6 +58,8 @@ struct Subject {
   std::shared_ptr<const protocol::SkeletonOffer> offer;
   protocol::SequenceWindow window;
   std::unique_ptr<SubjectPipeline> pipeline;
+  // Those that are bound to it, in the order in which they came (SubscriptionTable).
+  std::vector<Subscription*> subscriptions;
   Time served_until{Time::max()};  // in a cluster: the end of this node's right to serve it
   std::uint64_t epoch = 0;         // of that right; 0 without a cluster
   Time hold{0};                    // delay of its jitter buffer; 0: none

@@ -22,7 +22,7 @@ void FanOut::Publish(Subject& subject, std::span<const std::uint8_t> pose, std::
   // Subscriptions change only under the exclusive lock, so the span is stable here. Their delivery
   // state (gate, owed, flow) belongs to the subject's shard: a subscription has one subject, and a
   // subject is published by one shard at a time.
-  const std::span<Subscription* const> subscriptions = table_->Of(subject.id);
+  const std::span<Subscription* const> subscriptions = subject.subscriptions;
   if (subscriptions.empty()) return;
   // The encoding of the subject before this one must not be reused.
   context->encoded_key.reset();

@@ -41,6 +41,7 @@ class PictureViews {
         metrics_(metrics) {}
 
   [[nodiscard]] bool can_render() const { return pictures_ != nullptr; }
+  [[nodiscard]] std::string fault() const { return can_render() ? pictures_->fault() : ""; }
   [[nodiscard]] bool is_stuck() const { return can_render() && pictures_->is_stuck(); }
   // Checks a request. Errors: unknown view, camera or setting, or values out of range.
   // Precondition: can_render().

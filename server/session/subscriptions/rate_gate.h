@@ -22,6 +22,11 @@ class RateGate {
     period_ = period;
   }
 
+  // Events per second; 0: all pass.
+  [[nodiscard]] double max_rate() const {
+    return period_ == Time{0} ? 0.0 : 1.0 / ToSeconds(period_);
+  }
+
   [[nodiscard]] bool Pass(Time now) {
     if (period_ == Time{0}) return true;
     // Events may come a tenth of a period early. Without this tolerance, jitter would reduce 60 Hz

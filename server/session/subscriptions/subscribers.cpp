@@ -5,6 +5,7 @@
 #include <utility>
 #include <variant>
 
+#include "protocol/codec/codec.h"
 #include "protocol/messages/hash.h"
 #include "protocol/messages/limits.h"
 
@@ -57,6 +58,7 @@ Subscribers::Subscribers(const Limits& limits, SubjectRegistry* subjects, Pictur
       places_(places),
       messages_(&context->messages),
       metrics_(metrics),
+      table_(static_cast<std::size_t>(limits.max_all_subscriptions)),
       poses_(messages_),
       pictures_(&table_, pictures, settings, messages_, metrics),
       fan_out_(&table_, &poses_, &pictures_, context, metrics) {}
@@ -90,9 +92,17 @@ void Subscribers::Subscribe(Peer& peer, const protocol::Header& header,
     return RefuseRequest(peer, header, ErrorCode::kNotRendering,
                          "this daemon renders no pictures: it has no character or no OpenGL");
   }
+  // The renderer has no cameras while it starts.
+  if (pictures_.is_stuck() &&
+      pictures_.MakeRequest(protocol::SubscribePictures()).status().code() ==
+          StatusCode::kUnavailable) {
+    // Clients that come back by themselves do so, as after a restart of the whole daemon.
+    RefuseRequest(peer, header, ErrorCode::kDraining, "the renderer is starting; connect again");
+    return peer.link->Finish();
+  }
   if (pictures_.is_stuck()) {
     return RefuseRequest(peer, header, ErrorCode::kNotRendering,
-                         "the renderer does not respond; pictures are off until it does");
+                         pictures_.fault() + ": pictures are off");
   }
   Result<PictureRequest> pictures = pictures_.MakeRequest(request);
   if (!pictures.ok()) {
@@ -133,6 +143,13 @@ bool Subscribers::CheckRequest(Peer& peer, const protocol::Header& header) {
     RefuseRequest(peer, header, ErrorCode::kLimit,
                   "at most " + std::to_string(limits_.max_subscriptions) +
                       " subscriptions per peer; see limits.max_subscriptions");
+    return false;
+  }
+  if (!table_.HasRoomFor(peer)) {
+    RefuseRequest(peer, header, ErrorCode::kLimit,
+                  "one host gets at most half of the " +
+                      std::to_string(limits_.max_all_subscriptions) +
+                      " subscriptions; see limits.max_all_subscriptions");
     return false;
   }
   return true;
@@ -240,7 +257,7 @@ void Subscribers::UpdateDriverLevel(Subject& subject) {
   std::size_t needed = all_drivers_ || subject.needs_all_drivers ? wrinkle::kAllDrivers : 0;
   // Poses are relayed unsolved and need no drivers. Pictures need all, because a shader reads any
   // weight.
-  for (const Subscription* subscription : table_.Of(subject.id)) {
+  for (const Subscription* subscription : subject.subscriptions) {
     if (const auto* weights = std::get_if<WeightsRequest>(&subscription->request)) {
       needed = std::max(needed, weights->num_drivers);
     } else if (std::holds_alternative<PictureRequest>(subscription->request)) {
@@ -249,6 +266,10 @@ void Subscribers::UpdateDriverLevel(Subject& subject) {
   }
   if (subject.keeps_level) needed = std::max(needed, subject.pipeline->level());
   subject.pipeline->SetLevel(needed);
+}
+
+void Subscribers::OnLimits() {
+  table_.SetPlaces(static_cast<std::size_t>(limits_.max_all_subscriptions));
 }
 
 void Subscribers::SetAllDrivers(bool all_drivers) {
@@ -366,6 +387,58 @@ void Subscribers::RemovePeer(Peer& peer, protocol::GoodbyeReason goodbye) {
   RemovePeer(peer);
 }
 
+std::optional<std::vector<SavedSubscription>> Subscribers::Save(const Peer& peer) const {
+  std::vector<SavedSubscription> saved;
+  protocol::Encoder encoder;
+  for (const Subscription* each : table_.Of(peer)) {
+    const protocol::Header header{.session = each->request_session,
+                                  .sequence = each->request_sequence};
+    const auto rate = static_cast<float>(
+        std::min(each->gate.max_rate(), static_cast<double>(protocol::kMaxRateHz)));
+    SavedMessage request;
+    if (const auto* weights = std::get_if<WeightsRequest>(&each->request)) {
+      encoder.Encode(header,
+                     protocol::SubscribeWeights{.subject = each->subject_name,
+                                                .wait = each->wait,
+                                                .pattern = weights->pattern,
+                                                .max_rate_hz = rate,
+                                                .format = weights->format,
+                                                .source = weights->source,
+                                                .every = each->every},
+                     request);
+    } else if (std::holds_alternative<PoseRequest>(each->request)) {
+      encoder.Encode(header,
+                     protocol::SubscribePoses{.subject = each->subject_name,
+                                              .wait = each->wait,
+                                              .max_rate_hz = rate,
+                                              .every = each->every},
+                     request);
+    } else {
+      return std::nullopt;
+    }
+    saved.push_back({each->id, std::move(request)});
+  }
+  return saved;
+}
+
+void Subscribers::Resume(Peer& peer, const SavedSubscription& saved) {
+  protocol::MessageView view;
+  if (protocol::OpenMessage(saved.request, view) != protocol::DecodeStatus::kOk) return;
+  // The table gives the next number.
+  peer.last_subscription = static_cast<std::uint16_t>(saved.id - 1);
+  if (view.kind == protocol::MessageKind::kSubscribeWeights) {
+    protocol::SubscribeWeights request;
+    if (Decode(view, request) == protocol::DecodeStatus::kOk) {
+      Subscribe(peer, view.header, request);
+    }
+  } else if (view.kind == protocol::MessageKind::kSubscribePoses) {
+    protocol::SubscribePoses request;
+    if (Decode(view, request) == protocol::DecodeStatus::kOk) {
+      Subscribe(peer, view.header, request);
+    }
+  }
+}
+
 void Subscribers::OnSubjectReady(Subject& subject) {
   const auto needs_reply = [&subject](Subscription& subscription) {
     // A waiting subscription: it accepts this subject by name, or any.
@@ -411,8 +484,7 @@ void Subscribers::SendElsewhere(Subscription& subscription, const NodeAddress& n
 }
 
 void Subscribers::OnSubjectMoved(Subject& subject, const NodeAddress& node) {
-  const std::span<Subscription* const> bound = table_.Of(subject.id);
-  const std::vector<Subscription*> subscriptions(bound.begin(), bound.end());
+  const std::vector<Subscription*> subscriptions = subject.subscriptions;
   for (Subscription* subscription : subscriptions) {
     // One for the oldest subject finds another one here.
     if (subscription->subject_name.empty()) continue;
@@ -434,7 +506,7 @@ void Subscribers::SendWaitingElsewhere() {
 }
 
 void Subscribers::OnEpoch(Subject& subject) {
-  for (Subscription* subscription : table_.Of(subject.id)) ReplyAgain(*subscription);
+  for (Subscription* subscription : subject.subscriptions) ReplyAgain(*subscription);
 }
 
 void Subscribers::BindWaiting() {

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "server/core/limits.h"
 #include "server/core/metrics.h"
 #include "server/pipeline/picture_source.h"
+#include "server/saved/saved_state.h"
 #include "server/session/delivery/publish_context.h"
 #include "server/session/peers/peer.h"
 #include "server/session/subjects/places.h"
@@ -62,6 +64,12 @@ class Subscribers {
   void RemovePeer(Peer& peer);
   void RemovePeer(Peer& peer, protocol::GoodbyeReason goodbye);
 
+  // The subscriptions of a peer, for another process; nothing if one cannot go there, because it is
+  // for pictures.
+  [[nodiscard]] std::optional<std::vector<SavedSubscription>> Save(const Peer& peer) const;
+  // Subscribes a peer that had these subscriptions at another process. Replies as Subscribe().
+  void Resume(Peer& peer, const SavedSubscription& saved);
+
   // Call after a subject appeared or changed its skeleton or rig. Binds the subscriptions that wait
   // for it, and sends new names or a new skeleton to its subscribers.
   void OnSubjectReady(Subject& subject);
@@ -85,6 +93,8 @@ class Subscribers {
   // The daemon's settings for pictures; a view may override some of them.
   [[nodiscard]] const render::Settings& own_settings() const { return pictures_.own_settings(); }
   void SetOwnSettings(const render::Settings& settings, Time now);
+  // Call after the limits of the constructor have changed.
+  void OnLimits();
   // Changes `all_drivers` of the constructor.
   void SetAllDrivers(bool all_drivers);
 

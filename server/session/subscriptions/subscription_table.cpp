@@ -16,24 +16,39 @@ Subscription& SubscriptionTable::Add(Peer& peer, const protocol::Header& request
   subscription->request_session = request.session;
   subscription->request_sequence = request.sequence;
   Subscription& added = *subscription;
-  by_uid_.emplace(added.uid, std::move(subscription));
-  by_peer_[&peer].emplace(added.id, &added);
+  // Lack of memory leaves everything as it was.
+  const auto by_uid = by_uid_.emplace(added.uid, std::move(subscription)).first;
+  try {
+    by_peer_[&peer].emplace(added.id, &added);
+    (void)places_.Enter(peer.host);  // HasRoomFor() was true
+  } catch (...) {
+    Unlist(peer, added.id);
+    by_uid_.erase(by_uid);
+    throw;
+  }
   ++peer.num_subscriptions;
   return added;
 }
 
 void SubscriptionTable::Erase(Subscription& subscription) {
   if (subscription.subject != nullptr) {
-    std::erase(by_subject_[subscription.subject->id], &subscription);
+    std::erase(subscription.subject->subscriptions, &subscription);
     --subscription.peer->num_bound;
   }
   // A client must not receive frames of a subscription that it has ended.
   subscription.peer->link->DropFrames(subscription.uid);
   --subscription.peer->num_subscriptions;
-  const auto of_peer = by_peer_.find(subscription.peer);
-  of_peer->second.erase(subscription.id);
-  if (of_peer->second.empty()) by_peer_.erase(of_peer);
+  places_.Leave(subscription.peer->host);
+  Unlist(*subscription.peer, subscription.id);
   by_uid_.erase(subscription.uid);
+}
+
+// Takes an id, if it is there, from the list of the peer.
+void SubscriptionTable::Unlist(const Peer& peer, std::uint16_t id) {
+  const auto of_peer = by_peer_.find(&peer);
+  if (of_peer == by_peer_.end()) return;
+  of_peer->second.erase(id);
+  if (of_peer->second.empty()) by_peer_.erase(of_peer);
 }
 
 Subscription* SubscriptionTable::Find(std::uint64_t uid) const {
@@ -74,26 +89,17 @@ void SubscriptionTable::Attach(Subscription& subscription, Subject& subject) {
   if (subscription.subject == &subject) return;
   if (subscription.subject == nullptr) ++subscription.peer->num_bound;
   subscription.subject = &subject;
-  by_subject_[subject.id].push_back(&subscription);
+  subject.subscriptions.push_back(&subscription);
 }
 
-std::vector<Subscription*> SubscriptionTable::DetachAll(const Subject& subject) {
-  const auto found = by_subject_.find(subject.id);
-  if (found == by_subject_.end()) return {};
+std::vector<Subscription*> SubscriptionTable::DetachAll(Subject& subject) {
   // Returned by value: the caller erases some of them, which changes the table.
-  std::vector<Subscription*> detached = std::move(found->second);
-  by_subject_.erase(found);
+  std::vector<Subscription*> detached = std::exchange(subject.subscriptions, {});
   for (Subscription* subscription : detached) {
     subscription->subject = nullptr;
     --subscription->peer->num_bound;
   }
   return detached;
-}
-
-std::span<Subscription* const> SubscriptionTable::Of(SubjectId subject) const {
-  const auto found = by_subject_.find(subject);
-  if (found == by_subject_.end()) return {};
-  return found->second;
 }
 
 void SubscriptionTable::SortByRequest(std::vector<Subscription*>* subscriptions) {

@@ -141,6 +141,8 @@ TEST(CommandLine, InvalidUsageExitsWithTwo) {
                                              {"--allow-host", "stage:7480"},
                                              {"--threads", "0"},
                                              {"--threads", "65"},
+                                             {"--busy-poll", "-1"},
+                                             {"--busy-poll", "100001"},
                                              {"--require-render", "--no-render"}}) {
     const CommandLine line = Parse(args);
     EXPECT_FALSE(line.config.has_value()) << args[0];
@@ -161,6 +163,8 @@ TEST(CommandLine, ErrorsNameWhatWasMeantAndTheRange) {
               HasSubstr("--tcp: '70000' is not a port from 0 to 65535"));
   EXPECT_THAT(Parse({"--threads", "65"}).text,
               HasSubstr("--threads: '65' is not a number of threads from 1 to 64"));
+  EXPECT_THAT(Parse({"--busy-poll", "1s"}).text,
+              HasSubstr("--busy-poll: '1s' is not a time in microseconds from 0 to 100000"));
   EXPECT_THAT(Parse({"--record-rotate-seconds", "nan"}).text, HasSubstr("from 0 to 1e+09"));
 }
 
@@ -255,7 +259,7 @@ TEST(ParseConfig, ReadsEveryTable) {
   const Status status = ParseText(
       "character = 'face.glb'\nrig = '/abs/rig.json'\nskeleton_map = 'cmu'\nshape_map = 'cc4'\n"
       "rest_frame = 7\nup_axis = 'y'\n"
-      "[listen]\nbind = '0.0.0.0'\nopen = true\ntcp = 0\nudp = 1\nthreads = 3\n"
+      "[listen]\nbind = '0.0.0.0'\nopen = true\ntcp = 0\nudp = 1\nthreads = 3\nbusy_poll_us = 50\n"
       "[security]\nmode = 'required'\nkeys = '/abs/a.keys'\nname = 'n'\ntokens_in_clear = true\n"
       "[render]\nenabled = true\nrequired = true\ndevice = '1'\nmax_video_encoders = 3\n"
       "[mocap]\nvmc = 39539\nlivelink_face = 11111\n"
@@ -270,6 +274,7 @@ TEST(ParseConfig, ReadsEveryTable) {
   ASSERT_TRUE(status.ok()) << status.ToString();
   EXPECT_EQ(config.character, "face.glb");
   EXPECT_EQ(config.threads, 3);
+  EXPECT_EQ(config.busy_poll_us, 50);
   EXPECT_EQ(config.security, (SecurityConfig{Security::kRequired, "/abs/a.keys", "n", true}));
   EXPECT_EQ(config.rig, "/abs/rig.json");
   EXPECT_EQ(config.skeleton_map, "cmu");
@@ -371,6 +376,15 @@ TEST(ValidateConfig, NamesTheLimitThatIsOutOfRange) {
   Config config;
   config.limits.max_subjects = 0;
   EXPECT_THAT(ValidateConfig(config).what(), HasSubstr("limits.max_subjects"));
+  config = {};
+  config.limits.max_subscriptions = 20'000;
+  EXPECT_THAT(ValidateConfig(config).what(),
+              HasSubstr("limits.max_all_subscriptions is 16384; it must be at least "
+                        "limits.max_subscriptions, 20000"));
+  config.limits.max_all_subscriptions = 20'000;
+  EXPECT_TRUE(ValidateConfig(config).ok());
+  config.limits.max_all_subscriptions = 1'000'001;
+  EXPECT_THAT(ValidateConfig(config).what(), HasSubstr("limits.max_all_subscriptions"));
   config = {};
   config.limits.loss_seconds = 0.0;
   EXPECT_THAT(ValidateConfig(config).what(), HasSubstr("limits.loss_seconds"));

@@ -52,6 +52,7 @@ TEST(PlanReload, EveryLimitButOneChanges) {
                    .max_subjects = 3,
                    .max_skeletons = 4,
                    .max_subscriptions = 5,
+                   .max_all_subscriptions = 12,
                    .packets_per_second = 6,
                    .packet_burst = 7,
                    .outbox_messages = 8,

@@ -57,9 +57,24 @@ TEST_F(DispatcherRequests, LongPatternsCostMore) {
   EXPECT_LT(answered, 50);
 }
 
-TEST_F(DispatcherRequests, PosesAndOffersAreNotRequests) {
-  for (int i = 0; i < 3'000; ++i) Send(sender, Offer("ann"), 1);
+TEST_F(DispatcherRequests, PosesAreNotRequests) {
+  Publish(sender, "ann");
+  for (std::uint32_t i = 1; i <= 3'000; ++i) Send(sender, Pose(0.5f), 1, i);
   EXPECT_EQ(Count(Counter::kRequestsThrottled), 0u);
+}
+
+// An offer that is repeated changes nothing, and still stops the other threads.
+TEST_F(DispatcherRequests, OffersHaveABudgetOfTheirOwn) {
+  Limits limits;
+  limits.packet_burst = 20'000;
+  Make(limits);
+  Connect(&sender);
+  for (int i = 0; i < 4'000; ++i) Send(sender, Offer("ann"), 1);
+  EXPECT_EQ(Count(Counter::kRequestsThrottled), 0u);
+  for (int i = 0; i < 2'000; ++i) Send(sender, Offer("ann"), 1);
+  EXPECT_GT(Count(Counter::kRequestsThrottled), 1'000u);
+  sender.inbox.clear();
+  EXPECT_EQ(Flood(sender, {.subject = "nobody"}, 100), 100) << "other requests";
 }
 
 // Another thread holds its shard: a request that needed the exclusive lock would wait for it.

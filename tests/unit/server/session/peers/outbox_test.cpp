@@ -30,6 +30,20 @@ TEST(Outbox, RepliesGoFirstAndInOrder) {
   EXPECT_TRUE(outbox.empty());
 }
 
+TEST(Outbox, CountsWhatWaits) {
+  Outbox outbox(4, 4);
+  EXPECT_EQ(outbox.bytes(), 0u);
+  outbox.PushFrame(1, Bytes(10));
+  ASSERT_TRUE(outbox.PushReply(Bytes(100)));
+  EXPECT_FALSE(outbox.owes_frames());
+  outbox.PushFrame(2, Bytes(1000), kKeepAll);
+  EXPECT_EQ(outbox.bytes(), 1110u);
+  EXPECT_TRUE(outbox.owes_frames());
+  Bytes bytes;
+  while (outbox.Pop(&bytes)) EXPECT_EQ(outbox.owes_frames(), bytes.size() == 100);
+  EXPECT_EQ(outbox.bytes(), 0u);
+}
+
 TEST(Outbox, FramesAreAlsoBoundedInBytes) {
   Outbox outbox(4, 100, 1000, 1000);
   const std::vector<std::uint8_t> half(500, 1);

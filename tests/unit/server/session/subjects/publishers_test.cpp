@@ -81,12 +81,40 @@ TEST_F(PublishersTest, NewSkeletonsAreThrottled) {
   };
   int accepted = 0;
   while (accepted < 1000 && offer_another(accepted)) ++accepted;
-  EXPECT_EQ(accepted, static_cast<int>(Publishers::kNewSkeletonsBurst / 2));
+  EXPECT_EQ(accepted, static_cast<int>(Publishers::kNewSkeletonsBurst / 2) +
+                          static_cast<int>(Publishers::kReservedPerHost));
   EXPECT_EQ(Count(Counter::kSkeletonsThrottled), 1u);
   EXPECT_TRUE(offer_another(accepted - 1)) << "one that is known";
   Advance(2.1 / Publishers::kNewSkeletonsPerSecond);
   EXPECT_TRUE(offer_another(accepted));
   EXPECT_FALSE(offer_another(accepted + 1));
+}
+
+// Each of them may use up half of what is common.
+TEST_F(PublishersTest, FloodsOfSomeHostsLeaveNewSkeletonsToOthers) {
+  FakePeer floods[3];
+  int number = 0;
+  const auto offer_another = [&](FakePeer& peer) {
+    protocol::SkeletonOffer offer = Offer("subject" + std::to_string(number));
+    offer.blend_shape_names = {"brow", "shape" + std::to_string(number++)};
+    Send(peer, offer, 1);
+    const auto reply = peer.Take<protocol::SkeletonReply>();
+    return reply.has_value() && reply->message.status == SkeletonStatus::kAccepted;
+  };
+  const auto connect = [this](FakePeer* peer, const std::string& host) {
+    peer->id = hub->AddPeer(Transport::kTcp, {"fake", host}, peer, now);
+  };
+  for (int i = 0; i < 3; ++i) connect(&floods[i], "192.0.2." + std::to_string(i + 1));
+  for (int second = 0; second < 3; ++second) {
+    for (FakePeer& flood : floods) {
+      for (int i = 0; i < 200; ++i) (void)offer_another(flood);
+    }
+    FakePeer newcomer;
+    connect(&newcomer, "198.51.100." + std::to_string(second + 1));
+    EXPECT_TRUE(offer_another(newcomer)) << second;
+    hub->RemovePeer(newcomer.id);
+    Advance(1.0);
+  }
 }
 
 TEST_F(PublishersTest, TheNeutralSurvivesARestartWithTheSameSkeleton) {

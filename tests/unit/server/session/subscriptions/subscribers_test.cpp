@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Subscriptions: patterns, rates, waiting, proof of address, limits.
+#include <list>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "server/session/subscriptions/subscription_table.h"
 #include "tests/unit/server/session/hub_fixture.h"
 
 namespace furrow::server {
@@ -186,6 +189,52 @@ TEST_F(SubscribersTest, LimitsAreEnforced) {
   for (int i = 0; i < 10; ++i) Send(viewer, protocol::Ping{});
   EXPECT_EQ(viewer.inbox.size(), 3u);
   EXPECT_EQ(Count(Counter::kMessagesThrottled), 7u);
+}
+
+// A host may have many connections.
+TEST_F(SubscribersTest, NoHostTakesAllSubscriptions) {
+  Limits limits;
+  limits.max_all_subscriptions = 300;
+  Make(limits);
+  const auto connect = [this](FakePeer* peer, const char* host) {
+    peer->id = hub->AddPeer(Transport::kTcp, {"fake", host}, peer, now);
+  };
+  const auto watches = [this](FakePeer& peer, std::uint32_t sequence) {
+    const std::size_t before = hub->num_subscriptions();
+    Send(peer, protocol::SubscribeWeights{.wait = true}, 0, sequence);
+    return hub->num_subscriptions() > before;
+  };
+  std::list<FakePeer> crowd;
+  std::size_t taken = 0;
+  bool is_refused = false;
+  while (!is_refused && taken <= 300) {
+    connect(&crowd.emplace_back(), "192.0.2.1");
+    for (std::uint32_t i = 0; i < 64 && !is_refused; ++i) {
+      is_refused = !watches(crowd.back(), i);
+      if (!is_refused) ++taken;
+    }
+  }
+  EXPECT_EQ(taken, 150u);
+  auto& inbox = crowd.back().inbox;
+  inbox.erase(inbox.begin(), inbox.end() - 1);
+  const auto refusal = crowd.back().Take<protocol::ErrorMessage>();
+  ASSERT_TRUE(refusal.has_value());
+  EXPECT_EQ(refusal->message.code, ErrorCode::kLimit);
+  EXPECT_EQ(refusal->message.message,
+            "one host gets at most half of the 300 subscriptions; see "
+            "limits.max_all_subscriptions");
+  FakePeer newcomer;
+  connect(&newcomer, "192.0.2.2");
+  EXPECT_TRUE(watches(newcomer, 1));
+  hub->RemovePeer(crowd.front().id);
+  EXPECT_TRUE(watches(crowd.back(), 99)) << "there is room again";
+  limits.max_all_subscriptions = 2;
+  hub->SetLimits(limits);
+  EXPECT_FALSE(watches(newcomer, 2));
+  EXPECT_GT(hub->num_subscriptions(), 2u) << "whatever is there stays";
+  limits.max_all_subscriptions = 1'000;
+  hub->SetLimits(limits);
+  EXPECT_TRUE(watches(newcomer, 3));
 }
 
 TEST_F(SubscribersTest, TooManyNamesAreAnError) {

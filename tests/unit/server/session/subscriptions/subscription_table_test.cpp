@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/session/subscriptions/subscription_table.h"
 
+#include <cstdint>
 #include <memory>
+#include <new>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/unit/allocation_counter.h"
 #include "tests/unit/server/session/hub_fixture.h"
 
 namespace furrow::server {
@@ -23,7 +27,7 @@ class SubscriptionTableTest : public testing::Test {
   FakePeer link;
   Peer peer;
   Subject subject{.id = 5};
-  SubscriptionTable table;
+  SubscriptionTable table{1'000};
 };
 
 TEST_F(SubscriptionTableTest, FindsByUidByIdAndByRequest) {
@@ -45,14 +49,41 @@ TEST_F(SubscriptionTableTest, IdsSkipZeroAndThoseInUse) {
   EXPECT_EQ(Add(2).id, 2);
 }
 
+TEST_F(SubscriptionTableTest, LackOfMemoryLeavesEverythingAsItWas) {
+  std::uint64_t allowed = 0;
+  for (bool failed = true; failed; ++allowed) {
+    auto subscription = std::make_unique<Subscription>();
+    try {
+      const furrow::test::AllocationLimit limit(allowed);
+      (void)table.Add(peer, {.session = 7, .sequence = 1}, std::move(subscription));
+      failed = false;
+    } catch (const std::bad_alloc&) {
+      ASSERT_EQ(table.size(), 0u) << allowed;
+      ASSERT_EQ(peer.num_subscriptions, 0) << allowed;
+      ASSERT_TRUE(table.Of(peer).empty()) << allowed;
+      ASSERT_EQ(table.num_places_taken(), 0u) << allowed;
+    }
+  }
+  EXPECT_GT(allowed, 3u);
+  EXPECT_EQ(table.size(), 1u);
+  EXPECT_EQ(table.num_places_taken(), 1u);
+}
+
+TEST_F(SubscriptionTableTest, ErasingGivesThePlaceBack) {
+  Subscription& first = Add(1);
+  (void)Add(2);
+  table.Erase(first);
+  EXPECT_EQ(table.num_places_taken(), 1u);
+}
+
 TEST_F(SubscriptionTableTest, AttachedSubscriptionsAreListedOnceInOrder) {
   Subscription& first = Add(1);
   Subscription& second = Add(2);
-  EXPECT_TRUE(table.Of(subject.id).empty());
+  EXPECT_TRUE(subject.subscriptions.empty());
   table.Attach(second, subject);
   table.Attach(first, subject);
   table.Attach(second, subject);
-  EXPECT_THAT(table.Of(subject.id), ElementsAre(&second, &first));
+  EXPECT_THAT(subject.subscriptions, ElementsAre(&second, &first));
 }
 
 TEST_F(SubscriptionTableTest, ErasingDetachesAndDropsQueuedFrames) {
@@ -63,7 +94,7 @@ TEST_F(SubscriptionTableTest, ErasingDetachesAndDropsQueuedFrames) {
   const std::uint64_t uid = first.uid;
   table.Erase(first);
   EXPECT_THAT(link.dropped_keys, ElementsAre(uid));
-  EXPECT_THAT(table.Of(subject.id), ElementsAre(&second));
+  EXPECT_THAT(subject.subscriptions, ElementsAre(&second));
   EXPECT_EQ(peer.num_subscriptions, 1);
   EXPECT_EQ(table.Find(uid), nullptr);
 }
