@@ -42,23 +42,13 @@ Status LoadRigAlone(const fs::path& path, const wrinkle::PoseSource& poses, Asse
   return rig.status();
 }
 
-// The package for browsers; empty if there is none, or if it was made of another version.
-fs::path WebPackageOf(const fs::path& character) {
-  const fs::path packed = character::WebPackageBeside(character);
-  std::error_code error;
-  if (!fs::exists(packed, error)) return {};
-  const Status status = character::CheckWebPackage(packed, character);
-  if (status.ok()) return packed;
-  spdlog::warn("browsers do not draw the character: {}", status.ToString());
-  return {};
-}
-
-// Null without shapes, and if neither pictures nor the rig show them.
+// Null if nothing is drawn and the rig reads no shapes.
 std::shared_ptr<const CharacterShapes> ShapesOf(const character::Character& character, bool draws) {
   const bool reads = !wrinkle::BlendShapesOf(character.rig).empty();
-  if (character.shapes.empty() || !(draws || reads)) return nullptr;
-  return std::make_shared<const CharacterShapes>(CharacterShapes{
-      character.skeleton, character.shapes, character::FindMovedSurface(character.meshes)});
+  if (!draws && (character.shapes.empty() || !reads)) return nullptr;
+  return std::make_shared<const CharacterShapes>(
+      CharacterShapes{character.skeleton, character.shapes, character.shape_rules,
+                      character::FindMovedSurface(character.meshes)});
 }
 
 // Shipped maps are optional; only a map that the user asks for must exist.
@@ -76,9 +66,17 @@ Result<rig::ShapeMatcher> LoadShapeMaps(const std::string& map) {
   return rig::ShapeMatcher();
 }
 
+// True if streams, shapes and wrinkle weights of one fit the other, which may be null.
+bool DrawsTheSame(const character::Character* one, const character::Character& other) {
+  return one != nullptr && one->skeleton.hash() == other.skeleton.hash() &&
+         one->shapes == other.shapes &&
+         std::ranges::equal(one->rig.regions, other.rig.regions, {}, &wrinkle::Region::name,
+                            &wrinkle::Region::name);
+}
+
 }  // namespace
 
-Result<Assets> LoadAssets(const Config& config) {
+Result<Assets> LoadAssets(const Config& config, bool with_pictures) {
   const fs::path chosen_rig = config.rig.empty() ? fs::path() : rig::FindRigFile(config.rig);
   Assets assets;
   auto matcher = LoadMatcher(config.skeleton_map);
@@ -132,9 +130,10 @@ Result<Assets> LoadAssets(const Config& config) {
     }
   }
   spdlog::info("loading the character {}", glb.string());
+  assets.lacks_pictures = !(config.render && with_pictures);
   auto loaded = character::LoadCharacter(
       glb, chosen_rig, poses,
-      config.render ? character::Pictures::kLoad : character::Pictures::kLeaveOut);
+      assets.lacks_pictures ? character::Pictures::kLeaveOut : character::Pictures::kLoad);
   FURROW_RETURN_IF_ERROR(loaded);
   assets.skeletons.SetCharacterRoles(loaded->skeleton, loaded->roles);
   assets.shapes = ShapesOf(*loaded, config.render);
@@ -142,12 +141,32 @@ Result<Assets> LoadAssets(const Config& config) {
     assets.rig = std::make_shared<const wrinkle::Rig>(std::move(loaded->rig));
     return assets;
   }
-  auto shared = std::make_shared<const character::Character>(*std::move(loaded));
-  // The aliasing constructor: the pointer to the rig keeps the whole character alive.
-  assets.rig = std::shared_ptr<const wrinkle::Rig>(shared, &shared->rig);
-  assets.character = std::move(shared);
-  if (chosen_rig.empty()) assets.web_package = WebPackageOf(glb);
+  // A copy, because weights go on when the character is gone.
+  assets.rig = std::make_shared<const wrinkle::Rig>(loaded->rig);
+  assets.character = std::make_shared<const character::Character>(*std::move(loaded));
+  if (chosen_rig.empty()) assets.package = glb;
   return assets;
+}
+
+Result<Assets> LoadWithPictures(const Config& config, const character::Character& former) {
+  auto assets = LoadAssets(config);
+  FURROW_RETURN_IF_ERROR(assets);
+  if (!DrawsTheSame(assets->character.get(), former)) {
+    return Status(StatusCode::kUnavailable,
+                  "the files of the character have changed since the daemon started", "",
+                  "restart it");
+  }
+  return assets;
+}
+
+fs::path FindWebPackage(const fs::path& package) {
+  const fs::path packed = character::WebPackageBeside(package);
+  std::error_code error;
+  if (!fs::exists(packed, error)) return {};
+  const Status status = character::CheckWebPackage(packed, package);
+  if (status.ok()) return packed;
+  spdlog::warn("browsers do not draw the character: {}", status.ToString());
+  return {};
 }
 
 }  // namespace furrow::server

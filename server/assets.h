@@ -14,14 +14,17 @@
 #include "server/config/config.h"
 #include "wrinkle/rig/rig.h"
 #include "wrinkle/shapes/joint_shapes.h"
+#include "wrinkle/shapes/shape_rules.h"
 #include "wrinkle/skeleton/skeleton.h"
 
 namespace furrow::server {
 
-// What weights need of a character with shapes, which a stream's joints may move.
+// What streams need of a character: where its joints are, and its shapes, which a stream's joints
+// may move.
 struct CharacterShapes {
   wrinkle::Skeleton skeleton;
   std::vector<std::string> names;  // of the shapes
+  std::vector<wrinkle::ShapeRule> rules;
   wrinkle::MovedSurface surface;
 };
 
@@ -29,10 +32,11 @@ struct CharacterShapes {
 struct Assets {
   std::shared_ptr<const wrinkle::Rig> rig;
   std::shared_ptr<const character::Character> character;  // null: weights only
-  // The character for browsers, "<stem>.web.glb" beside it, with the rig in it. Empty: there is
-  // none, it was made of another version of the character, or the daemon uses another rig.
-  std::filesystem::path web_package;
-  std::shared_ptr<const CharacterShapes> shapes;  // null: joints move no shapes
+  bool lacks_pictures = false;                            // the character's were left out
+  // The file of the character with the rig beside it. Empty: there is none, or the daemon uses
+  // another rig.
+  std::filesystem::path package;
+  std::shared_ptr<const CharacterShapes> shapes;  // null: weights only, and joints move no shapes
   // Finds the rig's joints by other names. It knows the roles that the character's package states.
   rig::SkeletonMatcher skeletons;
   rig::ShapeMatcher shape_matcher;  // finds its blend shapes by other names
@@ -47,6 +51,18 @@ struct Assets {
 // Errors: those of LoadCharacter(), LoadRig() and render::LoadSettings(), and of
 // SkeletonMatcher::Create() and ShapeMatcher::Create() if `config` names a map; kNotFound without a
 // default character, with a hint how to get one.
-[[nodiscard]] Result<Assets> LoadAssets(const Config& config);
+// `with_pictures`: false leaves out the pictures of the character, which take most of the time.
+// Nothing can be drawn with it then.
+[[nodiscard]] Result<Assets> LoadAssets(const Config& config, bool with_pictures = true);
+
+// Loads the same files again with pictures. `former`: the character that was loaded without.
+// Errors: those of LoadAssets(); kUnavailable, the files are no longer those of that character.
+[[nodiscard]] Result<Assets> LoadWithPictures(const Config& config,
+                                              const character::Character& former);
+
+// The character for browsers, "<stem>.web.glb" beside `package`, with the rig in it. Reads the
+// whole of both files, which takes longer than everything else that weights need. Empty: there is
+// none, or it was made of another version of the character, which is logged.
+[[nodiscard]] std::filesystem::path FindWebPackage(const std::filesystem::path& package);
 
 }  // namespace furrow::server

@@ -2,48 +2,114 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
-#include <optional>
-#include <stop_token>
+#include <memory>
+#include <utility>
 
+#include <asio/awaitable.hpp>
+#include <asio/io_context.hpp>
+#include <asio/signal_set.hpp>
+
+#include "base/status.h"
+#include "server/assets.h"
+#include "server/cluster/coordinator.h"
 #include "server/config/config.h"
-#include "server/core/exit_code.h"
 #include "server/core/metrics.h"
-#include "server/machine/service_manager.h"
+#include "server/core/status_line.h"
+#include "server/credentials.h"
+#include "server/http/api/api.h"
+#include "server/http/http_server.h"
+#include "server/osc/osc_targets.h"
+#include "server/pipeline/picture_source.h"
+#include "server/playback/player.h"
+#include "server/ports.h"
+#include "server/recording/recorder.h"
 #include "server/reload.h"
+#include "server/reload_loop.h"
+#include "server/rendering.h"
+#include "server/restart/inheritance.h"
+#include "server/restart/shutdown.h"
+#include "server/run_options.h"
+#include "server/session/hub.h"
+#include "server/session_transfer.h"
+#include "server/startup.h"
 
 namespace furrow::server {
 
-// What a running daemon serves. A port that is absent: the service is off.
-struct Ready {
-  std::uint16_t tcp = 0;
-  std::uint16_t udp = 0;
-  std::optional<std::uint16_t> vmc;
-  std::optional<std::uint16_t> livelink_face;
-  std::optional<std::uint16_t> http;
-  bool render = false;  // a renderer is running
-};
+// The parts of one daemon. Members are declared in the order of their dependencies.
+class Daemon {
+ public:
+  // Keeps a reference to `options`, which outlives it. `former`: not null; outlives it, too.
+  Daemon(const Config& config, const RunOptions& options, Assets assets, OscOutputs osc_outputs,
+         Inheritance* former)
+      : config_(config),
+        options_(options),
+        assets_(std::move(assets)),
+        osc_outputs_(std::move(osc_outputs)),
+        metrics_(options.metrics != nullptr ? options.metrics : &own_metrics_),
+        signals_(io_),
+        credentials_(config, metrics_),
+        rig_files_(config),
+        former_(former) {}
 
-// The options of Run() that are not part of the configuration.
-struct RunOptions {
-  std::stop_token stop;         // requests a shutdown, as SIGTERM does
-  bool handle_signals = false;  // shut down on SIGTERM and SIGINT, reload on SIGHUP
-  ReadConfig reload;            // how SIGHUP reads the configuration again; empty: not at all
-  bool confine = false;         // the process is the daemon's own: SecurityConfig::confine applies
-  std::function<void(const Ready&)>
-      on_ready;                         // called on the calling thread once the daemon serves
-  Metrics* metrics = nullptr;           // used instead of the daemon's own; optional
-  ServiceManager* manager = nullptr;    // hears how the daemon is; optional
-  ServiceManager::Listeners listeners;  // used instead of the configured addresses
-};
+  // Call these in this order. Each leaves out what the configuration does not ask for.
+  Status LoadPlayer();
+  Status StartRendering();
+  Status LoadCluster();
+  void FinishConfinement();
+  Status StartRecording();
+  Status LoadCredentials() { return credentials_.Load(); }
+  Status Listen();
+  void Serve();
 
-// Runs a daemon: loads its files, listens, prints 'furrowd ready ...' on stdout, serves until it is
-// asked to stop, then sends what is still queued and closes the connections. Errors are logged
-// before the function returns.
-//
-// The calling thread becomes the network thread of shard 0 (a shard is one network thread's share
-// of the subjects). Further threads: Config::threads - 1 that receive UDP, one that renders, one
-// for the web server, one for the recorder. Several daemons may run in one process.
-[[nodiscard]] ExitCode Run(const Config& config, const RunOptions& options = {});
+ private:
+  void MakeHub();
+  void MakeShutdown();
+  [[nodiscard]] TransferParts Transfer() const;
+  bool Leave();
+  void OnRenderer();
+  void ServeWeb();
+  asio::awaitable<void> ServeWebInTime();
+  Status StartCluster();
+  Status StartOsc();
+  Status ListenToWeb();
+  void Announce() const;
+  asio::awaitable<void> TickLoop();
+  asio::awaitable<void> SecondLoop();
+  void EverySecond(StatusLine* status_line);
+  asio::awaitable<void> PlayLoop();
+  void HandleSignals();
+  ReloadRequest MakeReloadRequest();
+  Status TakeOver(Reload* reload);
+  void DeliverPicture(const FinishedPicture& picture);
+  void EndRendering();
+  [[noreturn]] void EndProcess();
+
+  Config config_;  // TakeOver() changes it; only the main thread uses it after the start
+  const RunOptions& options_;
+  Assets assets_;
+  OscOutputs osc_outputs_;
+  Metrics own_metrics_;
+  Metrics* const metrics_;
+  std::uint64_t session_ = 0;
+  asio::io_context io_{1};  // run by the calling thread, which owns shard 0
+  asio::signal_set signals_;
+  std::unique_ptr<Recorder> recorder_;
+  Rendering rendering_;
+  std::unique_ptr<Player> player_;   // a peer of the hub, so it outlives the hub
+  std::unique_ptr<OscTargets> osc_;  // called by the hub, so it outlives the hub
+  Credentials credentials_;
+  RigFiles rig_files_;
+  Inheritance* const former_;
+  bool loads_later_ = false;              // the renderer loads the character; confinement waits
+  bool has_left_ = false;                 // the next daemon goes on with the sessions
+  std::unique_ptr<Coordinator> cluster_;  // null: alone; used by the hub, so it outlives it
+  std::unique_ptr<Hub> hub_;
+  std::unique_ptr<Shutdown> shutdown_;
+  std::unique_ptr<Ports> ports_;
+  std::unique_ptr<Api> api_;
+  std::unique_ptr<HttpServer> http_;
+  bool serves_web_ = false;
+  std::unique_ptr<ReloadLoop> reload_;  // its thread ends before the members above
+};
 
 }  // namespace furrow::server

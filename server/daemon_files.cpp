@@ -6,6 +6,8 @@
 
 #include "base/asset_path.h"
 #include "base/data_dir.h"
+#include "character/package/package.h"
+#include "server/config/osc_profile_file.h"
 #include "server/machine/cache_folder.h"
 
 namespace furrow::server {
@@ -18,10 +20,13 @@ fs::path FromEnvironment(const char* name) {
   return value == nullptr ? fs::path() : fs::path(value);
 }
 
-// The folder of a file, because editors replace files instead of writing to them.
-fs::path FolderOf(const fs::path& file) {
+// The folder of a file, because editors replace files instead of writing to them, and the folder
+// of what it links to.
+void AppendFoldersOf(const fs::path& file, std::vector<fs::path>* folders) {
   std::error_code error;
-  return fs::absolute(file, error).parent_path();
+  folders->push_back(fs::absolute(file, error).parent_path());
+  const fs::path target = fs::canonical(file, error);
+  if (!error && target.parent_path() != folders->back()) folders->push_back(target.parent_path());
 }
 
 }  // namespace
@@ -43,9 +48,15 @@ Confinement FilesOf(const Config& config) {
         fs::path(config.shape_map), config.security.keys, config.play, config.render_settings,
         config.http.page, tls.certificate, tls.key, tls.client_authority,
         config.cluster.credentials, config.cluster.authority}) {
-    if (!file.empty()) files.read.push_back(FolderOf(file));
+    if (!file.empty()) AppendFoldersOf(file, &files.read);
+  }
+  if (!config.character.empty()) {
+    AppendFoldersOf(character::RigBeside(config.character), &files.read);
   }
   if (!config.http.page.empty()) files.read.push_back(config.http.page);
+  for (const OscTargetConfig& target : config.osc.targets) {
+    if (!IsShippedOscProfile(target.profile)) AppendFoldersOf(target.profile, &files.read);
+  }
   // The GPU, shared memory, and the drivers' temporary files and caches of compiled shaders.
   std::error_code error;
   files.write = {"/dev",
@@ -62,6 +73,7 @@ Confinement FilesOf(const Config& config) {
     if (cache.empty()) files.write.push_back(home / ".cache");
     files.write.push_back(home / ".nv");
   }
+  files.run = {"/usr", "/lib", "/lib64", "/nix/store", InstallPrefix()};
   std::erase_if(files.read, [](const fs::path& path) { return path.empty(); });
   std::erase_if(files.write, [](const fs::path& path) { return path.empty(); });
   return files;

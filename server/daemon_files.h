@@ -6,8 +6,8 @@
 
 namespace furrow::server {
 
-// The files that a daemon needs after it has loaded its assets: those of the configuration, its
-// data, the system's libraries and drivers, recordings, and the drivers' caches.
+// The files that a daemon needs: those of the configuration, its data, the system's libraries and
+// drivers, recordings, and the drivers' caches; and, as long as it loads, its helper programs.
 [[nodiscard]] Confinement FilesOf(const Config& config);
 
 }  // namespace furrow::server

@@ -3,32 +3,46 @@
 #include <cstdio>
 #include <filesystem>
 #include <string>
+#include <system_error>
+#include <utility>
 #include <vector>
 
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include "base/status.h"
 #include "base/utc_time.h"
 #include "character/pictures/picture_codec.h"
 #include "server/config/config.h"
 #include "server/config/config_entries.h"
 #include "server/config/log.h"
-#include "server/daemon.h"
+#include "server/daemon_files.h"
 #include "server/machine/cache_folder.h"
+#include "server/machine/confine.h"
 #include "server/machine/journal.h"
 #include "server/net/clock.h"
+#include "server/run.h"
 
 namespace {
 
 // The environment belongs to the process, so this is not the business of Run().
-void PrepareCaches() {
+furrow::Status PrepareCaches(const furrow::server::Config& config) {
+  if (!config.render || !furrow::character::IsPictureCodecInstalled()) return {};
   const std::filesystem::path folder = furrow::server::CacheFolder();
-  if (folder.empty()) return;
-  if (const furrow::Status status = furrow::server::PrepareCacheFolder(folder); !status.ok()) {
-    spdlog::warn("shaders are compiled at every start: {}", status.ToString());
-    return;
-  }
+  if (folder.empty()) return {};
+  FURROW_RETURN_IF_ERROR(furrow::server::PrepareCacheFolder(folder));
   furrow::server::LetDriversCache(folder);
+  return {};
+}
+
+// Returns what holds now, for the log.
+std::string ConfineAs(const furrow::server::Config& config) {
+  if (!config.security.confine) return {};
+  std::error_code ignored;  // the recorder reports it
+  if (!config.record.folder.empty()) {
+    std::filesystem::create_directories(config.record.folder, ignored);
+  }
+  return furrow::server::Confine(furrow::server::FilesOf(config));
 }
 
 // The first line of the log: what has started, when, and how it is configured.
@@ -58,17 +72,23 @@ int main(int argc, char** argv) {
   }
   // The readers of the log and of the ready line may close their pipes. The daemon continues.
   std::signal(SIGPIPE, SIG_IGN);
+  const furrow::Status caches = PrepareCaches(*line.config);
+  // Before the first thread, that of the log, because threads inherit it.
+  const std::string confined = ConfineAs(*line.config);
   const furrow::server::Log log({.json = line.config->log_json,
                                  .level = line.config->log_level,
                                  .journal = furrow::server::StderrIsJournal()});
   LogStart(*line.config);
-  if (line.config->render && furrow::character::IsPictureCodecInstalled()) PrepareCaches();
+  if (!caches.ok()) spdlog::warn("shaders are compiled at every start: {}", caches.ToString());
   furrow::server::RunOptions options;
   options.handle_signals = true;
-  options.confine = true;
+  options.owns_process = true;
+  options.confined = confined;
   options.reload = [&args] { return ReadConfigAgain(args); };
   furrow::server::ServiceManager manager;
   if (furrow::server::ServiceManager::IsPresent()) options.manager = &manager;
-  options.listeners = furrow::server::ServiceManager::TakeListeners();
+  furrow::server::ServiceManager::Passed passed = furrow::server::ServiceManager::TakeSockets();
+  options.listeners = std::move(passed.listeners);
+  options.kept = std::move(passed.kept);
   return static_cast<int>(furrow::server::Run(*line.config, options));
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -25,10 +26,15 @@ class LimitedSink : public spdlog::sinks::base_sink<std::mutex> {
   // `below`: receives the lines that pass; not null.
   explicit LimitedSink(spdlog::sink_ptr below) : below_(std::move(below)) {}
   ~LimitedSink() override;
+  // How often everything before was written; thread-safe.
+  [[nodiscard]] std::uint64_t flushes() const { return flushes_; }
 
  protected:
   void sink_it_(const spdlog::details::log_msg& message) override;
-  void flush_() override { below_->flush(); }
+  void flush_() override {
+    below_->flush();
+    ++flushes_;
+  }
   void set_pattern_(const std::string& pattern) override { below_->set_pattern(pattern); }
   void set_formatter_(std::unique_ptr<spdlog::formatter> formatter) override {
     below_->set_formatter(std::move(formatter));
@@ -40,6 +46,7 @@ class LimitedSink : public spdlog::sinks::base_sink<std::mutex> {
   const spdlog::sink_ptr below_;
   TokenBucket bucket_{kLinesPerSecond, kBurst};
   std::uint64_t dropped_ = 0;
+  std::atomic<std::uint64_t> flushes_ = 0;
   spdlog::log_clock::time_point last_time_{};
 };
 

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/config/log.h"
 
+#include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
+#include <thread>
 
 #include <spdlog/async.h>
 #include <spdlog/pattern_formatter.h>
@@ -96,6 +99,20 @@ Log::Log(const Settings& settings) {
 }
 
 void Log::SetLevel(LogLevel level) { spdlog::set_level(LevelOf(level)); }
+
+void Log::WriteOut(std::chrono::milliseconds patience) {
+  const auto logger = spdlog::default_logger();
+  const auto* const sink =
+      logger->sinks().empty() ? nullptr : dynamic_cast<LimitedSink*>(logger->sinks()[0].get());
+  if (sink == nullptr) return;
+  const std::uint64_t before = sink->flushes();
+  // Takes its turn behind the lines that wait.
+  logger->flush();
+  const auto end = std::chrono::steady_clock::now() + patience;
+  while (sink->flushes() == before && std::chrono::steady_clock::now() < end) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
 
 // Writes what is queued and joins the background thread.
 Log::~Log() { spdlog::shutdown(); }

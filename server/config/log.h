@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <memory>
 
 #include "server/core/log_level.h"
@@ -27,6 +28,9 @@ class Log {
   ~Log();
   // Changes the level while the daemon runs.
   static void SetLevel(LogLevel level);
+  // Waits until the lines so far are written, at most for `patience`: for a process that ends
+  // without the destructor. Does nothing without a Log.
+  static void WriteOut(std::chrono::milliseconds patience);
   Log(const Log&) = delete;
   Log& operator=(const Log&) = delete;
 

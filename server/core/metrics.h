@@ -22,6 +22,8 @@ enum class Counter {
   kDatagramsMalformed,
   kDatagramsUnsendable,
   kDatagramsUnproven,
+  kWakeUps,
+  kWakeUpsSpared,
   kHandshakes,
   kHandshakeRetries,
   kSealedForged,
@@ -143,8 +145,9 @@ class Metrics {
  public:
   // Adds `count` to a counter. Never blocks.
   void Add(Counter counter, std::uint64_t count = 1) {
-    slots_[SlotOfThread()].values[static_cast<std::size_t>(counter)].fetch_add(
-        count, std::memory_order_relaxed);
+    if (count == 0) return;
+    const std::size_t slot = SlotOfThread();
+    AddInSlot(slot, slots_[slot].values[static_cast<std::size_t>(counter)], count);
   }
   // The value of a counter since the start.
   [[nodiscard]] std::uint64_t Get(Counter counter) const {

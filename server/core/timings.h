@@ -47,11 +47,10 @@ class Timings {
   void Observe(Timing timing, Time duration) {
     const std::int64_t nanoseconds = std::max<std::int64_t>(duration.count(), 0);
     const auto bound = std::lower_bound(kBounds.begin(), kBounds.end(), ToSeconds(duration));
-    Histogram& histogram = slots_[SlotOfThread()].histograms[static_cast<std::size_t>(timing)];
-    histogram.counts[static_cast<std::size_t>(bound - kBounds.begin())].fetch_add(
-        1, std::memory_order_relaxed);
-    histogram.nanoseconds.fetch_add(static_cast<std::uint64_t>(nanoseconds),
-                                    std::memory_order_relaxed);
+    const std::size_t slot = SlotOfThread();
+    Histogram& histogram = slots_[slot].histograms[static_cast<std::size_t>(timing)];
+    AddInSlot(slot, histogram.counts[static_cast<std::size_t>(bound - kBounds.begin())], 1);
+    AddInSlot(slot, histogram.nanoseconds, static_cast<std::uint64_t>(nanoseconds));
   }
 
   struct Sum {

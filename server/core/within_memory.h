@@ -3,6 +3,7 @@
 
 #include <new>
 
+#include "base/status.h"
 #include "server/core/metrics.h"
 
 namespace furrow::server {
@@ -17,6 +18,17 @@ bool WithinMemory(Metrics* metrics, const Work& work) {
   } catch (const std::bad_alloc&) {
     metrics->Add(Counter::kAllocationsFailed);
     return false;
+  }
+}
+
+// Runs `work`, which returns a Status or a Result. Lack of memory becomes its error.
+template <class Work>
+auto OrOutOfMemory(Metrics* metrics, const char* where, const Work& work) -> decltype(work()) {
+  try {
+    return work();
+  } catch (const std::bad_alloc&) {
+    metrics->Add(Counter::kAllocationsFailed);
+    return Status(StatusCode::kInternal, "out of memory", where);
   }
 }
 

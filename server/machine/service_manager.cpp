@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/machine/service_manager.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <ctime>
@@ -34,34 +36,91 @@ std::optional<ServiceManager::Listener> ListenerOf(int socket) {
   return ServiceManager::Listener{socket, is_v6, text};
 }
 
+// False: the place is taken, or this is not a listening TCP socket.
+bool Fill(std::optional<ServiceManager::Listener>& place, int socket) {
+  if (place) return false;
+  place = ListenerOf(socket);
+  return place.has_value();
+}
+
+// False: nobody uses a descriptor of this name and kind.
+bool Sort(std::string_view name, int descriptor, ServiceManager::Passed& passed) {
+  ServiceManager::Kept& kept = passed.kept;
+  if (name == "tcp") return Fill(passed.listeners.tcp, descriptor);
+  if (name == "http") return Fill(passed.listeners.http, descriptor);
+  if (name == ServiceManager::kKeptTcp) return Fill(kept.tcp, descriptor);
+  if (name == ServiceManager::kKeptHttp) return Fill(kept.http, descriptor);
+  if (name == ServiceManager::kKeptUdp &&
+      sd_is_socket(descriptor, AF_UNSPEC, SOCK_DGRAM, /*listening=*/-1) > 0) {
+    kept.udp.push_back(descriptor);
+    return true;
+  }
+  if (name == ServiceManager::kKeptConnection &&
+      sd_is_socket(descriptor, AF_UNSPEC, SOCK_STREAM, /*listening=*/0) > 0) {
+    kept.connections.push_back(descriptor);
+    return true;
+  }
+  if (name == ServiceManager::kKeptState && kept.state < 0) {
+    kept.state = descriptor;
+    return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 bool ServiceManager::IsPresent() { return std::getenv("NOTIFY_SOCKET") != nullptr; }
 
-ServiceManager::Listeners ServiceManager::TakeListeners() {
-  Listeners listeners;
+std::size_t ServiceManager::StoreSize() {
+  const char* const most = std::getenv("FDSTORE");
+  if (!IsPresent() || most == nullptr) return 0;
+  return static_cast<std::size_t>(std::max(std::atoi(most), 0));
+}
+
+ServiceManager::Passed ServiceManager::TakeSockets() {
+  Passed passed;
   char** names = nullptr;
   const int count = sd_listen_fds_with_names(/*unset_environment=*/1, &names);
   for (int i = 0; i < count; ++i) {
-    const int socket = SD_LISTEN_FDS_START + i;
+    const int descriptor = SD_LISTEN_FDS_START + i;
     const std::string_view name = names[i];
-    std::optional<Listener>* const place = name == "tcp"    ? &listeners.tcp
-                                           : name == "http" ? &listeners.http
-                                                            : nullptr;
-    std::optional<Listener> listener = ListenerOf(socket);
-    if (place != nullptr && !*place && listener) {
-      *place = std::move(listener);
-    } else {
+    if (!Sort(name, descriptor, passed)) {
       spdlog::warn(
           "the service manager passes socket '{}', which is not used: the listening TCP sockets "
           "'tcp' and 'http' are",
           name);
-      close(socket);
+      close(descriptor);
     }
     std::free(names[i]);
   }
   std::free(names);
-  return listeners;
+  return passed;
+}
+
+bool ServiceManager::Keep(std::string_view name, std::span<const int> descriptors) {
+  // The kernel passes at most 253 descriptors at once (SCM_MAX_FD).
+  constexpr std::size_t kAtOnce = 128;
+  const std::string state = "FDSTORE=1\nFDNAME=" + std::string(name);
+  while (!descriptors.empty()) {
+    const auto some = descriptors.first(std::min(kAtOnce, descriptors.size()));
+    descriptors = descriptors.subspan(some.size());
+    const int sent = sd_pid_notify_with_fds(0, /*unset_environment=*/0, state.c_str(), some.data(),
+                                            static_cast<unsigned>(some.size()));
+    if (sent <= 0) return false;
+  }
+  return true;
+}
+
+void ServiceManager::ForgetAll() {
+  for (const std::string_view name : {kKeptState, kKeptTcp, kKeptHttp, kKeptUdp, kKeptConnection}) {
+    const std::string state = "FDSTOREREMOVE=1\nFDNAME=" + std::string(name);
+    (void)sd_notify(/*unset_environment=*/0, state.c_str());
+  }
+}
+
+bool ServiceManager::Await(std::chrono::microseconds patience) {
+  return sd_notify_barrier(/*unset_environment=*/0, static_cast<std::uint64_t>(patience.count())) >
+         0;
 }
 
 void ServiceManager::Ready(const std::string& status) { Send("READY=1\n", status); }

@@ -1,8 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 namespace furrow::server {
 
@@ -23,9 +30,42 @@ class ServiceManager {
     std::optional<Listener> tcp;   // FileDescriptorName=tcp
     std::optional<Listener> http;  // FileDescriptorName=http
   };
+  // Descriptors that the daemon before this one has left with the manager, by Keep(). They belong
+  // to whoever takes them.
+  struct Kept {
+    std::optional<Listener> tcp;
+    std::optional<Listener> http;
+    std::vector<int> udp;
+    std::vector<int> connections;  // TCP
+    int state = -1;                // a file in memory; -1: none
+  };
+  struct Passed {
+    Listeners listeners;
+    Kept kept;
+  };
   // Once per process: the environment forgets them. Sockets with other names are closed, with a
   // warning.
-  [[nodiscard]] static Listeners TakeListeners();
+  [[nodiscard]] static Passed TakeSockets();
+
+  // How many descriptors the manager keeps while the daemon restarts (FileDescriptorStoreMax=, and
+  // $FDSTORE as systemd 254 sets it). 0: none, or there is no manager.
+  [[nodiscard]] static std::size_t StoreSize();
+
+  // What the daemon leaves.
+  static constexpr std::string_view kKeptTcp = "kept-tcp";
+  static constexpr std::string_view kKeptHttp = "kept-http";
+  static constexpr std::string_view kKeptUdp = "kept-udp";
+  static constexpr std::string_view kKeptConnection = "kept-connection";
+  static constexpr std::string_view kKeptState = "kept-state";
+  // Leaves descriptors with the manager, which hands them to the next daemon in any order. The
+  // caller still has to close its own. False: they could not be sent. Nobody learns which of them
+  // the manager keeps: it closes those beyond StoreSize().
+  [[nodiscard]] bool Keep(std::string_view name, std::span<const int> descriptors);
+  // The manager gives up what is left under all names above.
+  void ForgetAll();
+  // Waits until the manager has read everything. It attributes messages to living processes only,
+  // so a process that is about to end must wait. False: it has not, after `patience`.
+  [[nodiscard]] bool Await(std::chrono::microseconds patience);
 
   // The daemon serves. `status`: one line for people, here and below.
   void Ready(const std::string& status);

@@ -63,11 +63,18 @@ class PictureSource {
   };
   // Absent: nothing is being drawn.
   [[nodiscard]] virtual std::optional<Drawing> drawing() const { return std::nullopt; }
+  // The renderer and its device, for people.
+  [[nodiscard]] virtual std::string description() const { return {}; }
   // True if pictures are drawn on the processor.
   [[nodiscard]] virtual bool is_software() const { return false; }
-  // True while the renderer does not respond; every request fails.
+  // True while the renderer starts or does not respond; every request fails.
   [[nodiscard]] virtual bool is_stuck() const { return false; }
-  // A camera preset of the character. Errors: kNotFound; the hint lists the presets.
+  // Why is_stuck() is true, for people; else empty.
+  [[nodiscard]] virtual std::string fault() const {
+    return is_stuck() ? "the renderer does not respond" : "";
+  }
+  // A camera preset of the character. Errors: kNotFound, the hint lists the presets; kUnavailable,
+  // the renderer is starting.
   [[nodiscard]] virtual Result<render::Camera> Preset(std::string_view name) const = 0;
 };
 

@@ -2,8 +2,6 @@
 #include "server/pipeline/render_thread.h"
 
 #include <algorithm>
-#include <cstdlib>
-#include <new>
 
 #include <spdlog/spdlog.h>
 #include <sys/resource.h>
@@ -24,39 +22,6 @@ constexpr double kLargeWork = 2.5e6;
 // Weights matter more than pictures where both need the same core.
 constexpr int kNiceness = 5;
 
-// Runs `work`, which returns a Status or a Result. Lack of memory becomes its error.
-template <class Work>
-auto OrOutOfMemory(Metrics* metrics, const Work& work) -> decltype(work()) {
-  try {
-    return work();
-  } catch (const std::bad_alloc&) {
-    metrics->Add(Counter::kAllocationsFailed);
-    return Status(StatusCode::kInternal, "out of memory", "renderer");
-  }
-}
-
-// The picture of a job without what an encoding adds.
-FinishedPicture FinishedOf(const render::Image& image, const RenderJob& job, Time encoded,
-                           std::vector<PictureTicket> tickets) {
-  return {.subject = job.subject,
-          .sequence = job.snapshot->sequence,
-          .capture_time_us = job.snapshot->capture_time_us,
-          .age_us = job.snapshot->age_us,
-          .received_us = job.snapshot->received_us,
-          .submitted = job.submitted,
-          .taken = job.taken,
-          .drawn = job.drawn,
-          .encoded = encoded,
-          .width = image.width,
-          .height = image.height,
-          .drawn_percent = image.drawn_percent,
-          .encoding = {},
-          .bytes = {},
-          .codec = {},
-          .key = false,
-          .tickets = std::move(tickets)};
-}
-
 // Counts the steps of the renderer for Watch(): odd within a step.
 class Step {
  public:
@@ -75,15 +40,24 @@ Result<std::unique_ptr<RenderThread>> RenderThread::Start(const wrinkle::Skeleto
                                                           Factory make_renderer, Metrics* metrics,
                                                           Clock clock, OnPicture deliver,
                                                           VideoEncoders* video) {
-  std::unique_ptr<RenderThread> self(new RenderThread(skeleton, std::move(make_renderer), metrics,
-                                                      clock, std::move(deliver), video));
   // EGL binds a context to the thread that makes it current, so the render thread creates the
   // renderer and reports back.
   std::promise<Status> started;
   std::future<Status> status = started.get_future();
-  self->thread_ = std::thread(&RenderThread::Run, self.get(), std::move(started));
+  auto self = StartLater(skeleton, std::move(make_renderer), metrics, clock, std::move(deliver),
+                         video, [&started](const Status& done) { started.set_value(done); });
   // The thread has ended in this case; the destructor of `self` joins it.
   FURROW_RETURN_IF_ERROR(status.get());
+  return self;
+}
+
+std::unique_ptr<RenderThread> RenderThread::StartLater(const wrinkle::Skeleton* skeleton,
+                                                       Factory make_renderer, Metrics* metrics,
+                                                       Clock clock, OnPicture deliver,
+                                                       VideoEncoders* video, OnStarted on_started) {
+  std::unique_ptr<RenderThread> self(new RenderThread(skeleton, std::move(make_renderer), metrics,
+                                                      clock, std::move(deliver), video));
+  self->thread_ = std::thread(&RenderThread::Run, self.get(), std::move(on_started));
   return self;
 }
 
@@ -96,7 +70,8 @@ RenderThread::RenderThread(const wrinkle::Skeleton* skeleton, Factory make_rende
       video_(video),
       mailbox_(kMaxWaitingJobs),
       progress_(&mailbox_, &steps_),
-      drawn_(skeleton) {}
+      drawn_(skeleton),
+      encoder_(metrics, clock, &deliver_, video) {}
 
 RenderThread::~RenderThread() {
   mailbox_.Close();
@@ -133,7 +108,7 @@ void RenderThread::Prepare(std::vector<RenderJob> jobs) {
 }
 
 void RenderThread::Submit(RenderJob job) {
-  if (stuck_) return Refuse(std::move(job));
+  if (is_stuck()) return Refuse(std::move(job));
   job.submitted = clock_();
   switch (mailbox_.Put(std::move(job))) {
     case RenderMailbox::PutResult::kQueued:
@@ -153,7 +128,14 @@ void RenderThread::Withdraw(std::uint64_t subscription) {
   CloseVideo(subscription);
 }
 
+std::string RenderThread::fault() const {
+  if (failed_) return "the renderer could not start";
+  return started_ ? PictureSource::fault() : "the renderer is starting";
+}
+
 Result<render::Camera> RenderThread::Preset(std::string_view name) const {
+  if (failed_) return Status(StatusCode::kInternal, fault());
+  if (!started_) return Status(StatusCode::kUnavailable, fault());
   std::string names;
   for (const auto& [known, camera] : presets_) {
     if (known == name) return camera;
@@ -164,14 +146,14 @@ Result<render::Camera> RenderThread::Preset(std::string_view name) const {
 }
 
 Status RenderThread::CreateRenderer() {
-  auto renderer = OrOutOfMemory(metrics_, make_renderer_);
+  auto renderer = OrOutOfMemory(metrics_, "renderer", make_renderer_);
   FURROW_RETURN_IF_ERROR(renderer);
   renderer_ = *std::move(renderer);
   renderer_->SetObserver(&progress_);
   return {};
 }
 
-void RenderThread::Run(std::promise<Status> started) {
+void RenderThread::Run(const OnStarted& on_started) {
   // Of this thread alone, and of those that a software renderer starts from it.
   (void)setpriority(PRIO_PROCESS, 0, kNiceness);
   const Status status = CreateRenderer();
@@ -183,10 +165,15 @@ void RenderThread::Run(std::promise<Status> started) {
       if (auto camera = renderer_->Preset(name); camera.ok()) presets_.emplace_back(name, *camera);
     }
   }
-  // Everything above happens before Start() returns and is read-only afterwards, so it needs no
-  // lock.
-  started.set_value(status);
-  if (!status.ok()) return;
+  // Everything above is read-only from here on, so it needs no lock.
+  (status.ok() ? started_ : failed_) = true;
+  on_started(status);
+  if (status.ok()) DrawUntilClosed();
+  make_renderer_ = nullptr;
+  ended_ = true;
+}
+
+void RenderThread::DrawUntilClosed() {
   while (!mailbox_.closed()) {
     // What could not be reported; see Deliver().
     WithinMemory(metrics_, [this] { DrawAndCollect(); });
@@ -223,7 +210,8 @@ void RenderThread::Draw(RenderJob job) {
   // In flight before it is drawn, so that nothing can fail between the two.
   in_flight_.push_back(std::move(job));
   progress_.Begin(&in_flight_.back());
-  const Status status = OrOutOfMemory(metrics_, [this] { return Render(&in_flight_.back()); });
+  const Status status =
+      OrOutOfMemory(metrics_, "renderer", [this] { return Render(&in_flight_.back()); });
   progress_.End();
   if (status.ok()) return;
   job = std::move(in_flight_.back());
@@ -277,7 +265,7 @@ Status RenderThread::Render(RenderJob* taken) {
 void RenderThread::Collect(bool wait) {
   const Step step(&steps_);
   Result<render::Image> image =
-      OrOutOfMemory(metrics_, [this, wait] { return renderer_->Poll(wait); });
+      OrOutOfMemory(metrics_, "renderer", [this, wait] { return renderer_->Poll(wait); });
   if (!image.ok()) {
     Rebuild(image.status());
     return;
@@ -340,91 +328,9 @@ void RenderThread::Deliver(FinishedPicture picture) {
   WithinMemory(metrics_, [&] { deliver_(std::move(picture)); });
 }
 
-// Viewers with equal encodings share the bytes.
 void RenderThread::Finish(const render::Image& image, RenderJob job) {
   (void)mailbox_.Complete(&job);
-  EncodeVideos(image, &job);
-  std::vector<std::pair<Encoding, std::vector<PictureTicket>>> groups;
-  for (const PictureTicket& ticket : job.tickets) {
-    const Encoding wanted = EncodingOf(ticket);
-    auto group = groups.end();
-    for (auto it = groups.begin(); it != groups.end(); ++it) {
-      if (it->first.format != wanted.format) continue;
-      const auto distance = [&wanted](const auto& to) {
-        return std::abs(to->first.quality - wanted.quality);
-      };
-      if (group == groups.end() || distance(it) < distance(group)) group = it;
-    }
-    const bool is_new =
-        group == groups.end() || (group->first != wanted && groups.size() < kMaxEncodings);
-    if (is_new) group = groups.insert(groups.end(), {wanted, {}});
-    group->second.push_back(ticket);
-  }
-  for (auto& [encoding, tickets] : groups) Encode(image, job, encoding, std::move(tickets));
-}
-
-// Delivers the picture to the viewers with video. The others stay in `job`.
-void RenderThread::EncodeVideos(const render::Image& image, RenderJob* job) {
-  const auto wants_video = [](const PictureTicket& ticket) {
-    return ticket.video && !ticket.still;
-  };
-  if (video_ == nullptr || std::ranges::none_of(job->tickets, wants_video)) return;
-  // Once for all of them.
-  const Status status = OrOutOfMemory(metrics_, [&] { return render::ToPlanes(image, &planes_); });
-  if (!status.ok()) return;
-  std::erase_if(job->tickets, [&](const PictureTicket& ticket) {
-    return wants_video(ticket) && EncodeVideo(image, *job, ticket);
-  });
-}
-
-// False: the viewer gets a file.
-bool RenderThread::EncodeVideo(const render::Image& image, const RenderJob& job,
-                               const PictureTicket& ticket) {
-  const Time begun = clock_();
-  auto picture = OrOutOfMemory(
-      metrics_, [&] { return video_->Encode(ticket.subscription, planes_, *ticket.video); });
-  const Time encoded = clock_();
-  metrics_->Observe(Timing::kPictureEncode, encoded - begun);
-  if (!picture.ok()) {
-    if (picture.status().code() != StatusCode::kNotFound) {
-      spdlog::warn("a viewer gets JPEG instead of H.264: {}", picture.status().ToString());
-    }
-    return false;
-  }
-  metrics_->Add(Counter::kPicturesEncoded);
-  metrics_->Add(Counter::kVideoPictures);
-  if (picture->key) metrics_->Add(Counter::kVideoKeyPictures);
-  picture->bytes.shrink_to_fit();  // they may wait in queues
-  // No decoder could follow a video whose picture was lost without a gap in the numbers.
-  const bool delivered = WithinMemory(metrics_, [&] {
-    FinishedPicture finished = FinishedOf(image, job, encoded, {ticket});
-    finished.bytes = std::move(picture->bytes);
-    finished.codec = std::move(picture->codec);
-    finished.key = picture->key;
-    deliver_(std::move(finished));
-  });
-  if (!delivered) video_->Restart(ticket.subscription);
-  return true;
-}
-
-void RenderThread::Encode(const render::Image& image, const RenderJob& job,
-                          const Encoding& encoding, std::vector<PictureTicket> tickets) {
-  const Time begun = clock_();
-  auto bytes = OrOutOfMemory(
-      metrics_, [&] { return render::EncodeImage(image, encoding.format, encoding.quality); });
-  const Time encoded = clock_();
-  metrics_->Observe(Timing::kPictureEncode, encoded - begun);
-  metrics_->Add(bytes.ok() ? Counter::kPicturesEncoded : Counter::kPicturesFailed);
-  if (!bytes.ok()) {
-    spdlog::warn("cannot encode a picture: {}", bytes.status().ToString());
-    // Without bytes the picture reports a failure to its viewers.
-    bytes = std::vector<std::uint8_t>();
-  }
-  bytes->shrink_to_fit();  // they may wait in queues
-  FinishedPicture finished = FinishedOf(image, job, encoded, std::move(tickets));
-  finished.encoding = encoding;
-  finished.bytes = *std::move(bytes);
-  Deliver(std::move(finished));
+  encoder_.Encode(image, std::move(job));
 }
 
 // Drops the context with everything in flight. The next job that may try creates it again.

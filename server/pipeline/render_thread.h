@@ -20,6 +20,7 @@
 #include "render/renderer.h"
 #include "server/core/metrics.h"
 #include "server/core/time.h"
+#include "server/pipeline/picture_encoder.h"
 #include "server/pipeline/picture_source.h"
 #include "server/pipeline/picture_streams.h"
 #include "server/pipeline/render_mailbox.h"
@@ -52,18 +53,19 @@ namespace furrow::server {
 class RenderThread : public PictureSource {
  public:
   static constexpr int kMaxJobsSkipped = 255;
-  // Different encodings of one picture. Further JPEG qualities get the nearest of these.
-  static constexpr std::size_t kMaxEncodings = 4;
 
   // Receives finished pictures. Called on the render thread, or on the submitting thread if the
   // mailbox is full. Must not block. Every ticket of every job is returned, in a picture with bytes
   // or, after a failure, without.
-  using OnPicture = std::function<void(FinishedPicture)>;
+  using OnPicture = PictureEncoder::Deliver;
 
   using Clock = Time (*)();
 
   // Creates the renderer, at the start and after each loss. Called on the render thread.
   using Factory = std::function<Result<std::unique_ptr<render::Renderer>>()>;
+
+  // Called once on the render thread, when the first renderer is there or has failed.
+  using OnStarted = std::function<void(const Status&)>;
 
   // Starts the thread and waits for the first renderer. `skeleton`: the character's. `clock`: for
   // the histograms of the stages; called on any thread. `video`: null means that all pictures are
@@ -71,6 +73,10 @@ class RenderThread : public PictureSource {
   [[nodiscard]] static Result<std::unique_ptr<RenderThread>> Start(
       const wrinkle::Skeleton* skeleton, Factory make_renderer, Metrics* metrics, Clock clock,
       OnPicture deliver, VideoEncoders* video = nullptr);
+  // The same, but does not wait: the renderer is stuck until it is there, and for good if it fails.
+  [[nodiscard]] static std::unique_ptr<RenderThread> StartLater(
+      const wrinkle::Skeleton* skeleton, Factory make_renderer, Metrics* metrics, Clock clock,
+      OnPicture deliver, VideoEncoders* video, OnStarted on_started);
   ~RenderThread() override;  // drops waiting jobs and joins the thread
   RenderThread(const RenderThread&) = delete;
   RenderThread& operator=(const RenderThread&) = delete;
@@ -90,10 +96,13 @@ class RenderThread : public PictureSource {
     if (video_ != nullptr) video_->Close(subscription);
   }
   [[nodiscard]] std::optional<Drawing> drawing() const override { return progress_.drawing(); }
-  [[nodiscard]] bool is_software() const override { return is_software_; }
-  [[nodiscard]] bool is_stuck() const override { return stuck_; }
+  [[nodiscard]] bool is_software() const override { return started_ && is_software_; }
+  [[nodiscard]] bool is_stuck() const override { return stuck_ || !started_; }
+  [[nodiscard]] std::string fault() const override;
   // Draws nothing more; the picture that is being drawn is completed. Does not wait for it.
   void Stop() { mailbox_.Close(); }
+  // True once the thread draws nothing any more, and its renderer and its factory are gone.
+  [[nodiscard]] bool ended() const { return ended_; }
   // Call it about once per second, always on the same thread. A renderer that does not come back
   // for kStuckAfter, because the driver or the GPU hangs, is stuck: waiting and new jobs fail until
   // it comes back. OpenGL calls cannot be interrupted, so the thread itself waits.
@@ -101,8 +110,9 @@ class RenderThread : public PictureSource {
   // Longer than a fence is waited for (render/gl/read_back.cpp) takes a driver that hangs.
   static constexpr Time kStuckAfter = std::chrono::seconds(30);
   [[nodiscard]] Result<render::Camera> Preset(std::string_view name) const override;
-  // The renderer and its device, for people.
-  [[nodiscard]] const std::string& description() const { return description_; }
+  [[nodiscard]] std::string description() const override {
+    return started_ ? description_ : std::string("starting");
+  }
 
  private:
   // Counts the passes of the frame, for drawing(), and ends it if nobody wants it.
@@ -140,32 +150,32 @@ class RenderThread : public PictureSource {
   Status CreateRenderer();
   bool Revive();
   void BackOff();
-  void Run(std::promise<Status> started);
+  void Run(const OnStarted& on_started);
+  void DrawUntilClosed();
   void DrawAndCollect();
   void Draw(RenderJob job);
   Status Render(RenderJob* job);
   [[nodiscard]] std::optional<RenderJob> TakeJob();
   void Collect(bool wait);
   void Finish(const render::Image& image, RenderJob job);
-  void EncodeVideos(const render::Image& image, RenderJob* job);
-  bool EncodeVideo(const render::Image& image, const RenderJob& job, const PictureTicket& ticket);
-  void Encode(const render::Image& image, const RenderJob& job, const Encoding& encoding,
-              std::vector<PictureTicket> tickets);
   void Abandon(RenderJob job);
   void Fail(RenderJob job);
   void Refuse(RenderJob job);
   void Deliver(FinishedPicture picture);
   void Rebuild(const Status& reason);
 
-  const Factory make_renderer_;
+  Factory make_renderer_;
   Metrics* const metrics_;
   const Clock clock_;
   const OnPicture deliver_;
   VideoEncoders* const video_;  // may be null
   RenderMailbox mailbox_;
-  std::vector<std::pair<std::string, render::Camera>> presets_;  // written before Start() returns
+  std::atomic<bool> ended_ = false;
+  std::atomic<bool> failed_ = false;   // the first renderer
+  std::atomic<bool> started_ = false;  // the next three are written before, and stay
+  std::vector<std::pair<std::string, render::Camera>> presets_;
   std::string description_;
-  bool is_software_ = false;  // written before Start() returns
+  bool is_software_ = false;
   Progress progress_;
 
   std::atomic<std::uint64_t> steps_ = 0;  // odd while the renderer works
@@ -183,7 +193,7 @@ class RenderThread : public PictureSource {
   PictureStreams streams_;
   Time idle_{0};  // without anything to draw, altogether
   wrinkle::CharacterPose drawn_;
-  render::Planes planes_;  // of the picture that is being encoded; its memory is reused
+  PictureEncoder encoder_;
 
   std::thread thread_;
 };

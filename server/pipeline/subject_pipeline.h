@@ -57,6 +57,8 @@ class SubjectPipeline {
   // goes back (a looping recording, a clock that was set) restarts the filter.
   [[nodiscard]] wrinkle::JobStatus Solve(std::uint32_t sequence, std::int64_t capture_time_us);
 
+  // Requests the memory that a pose uses, so that it arrives while the pose is decoded.
+  void Prefetch() { wrinkle::BatchSolver::Prefetch({.solver = &solver_, .pose = &pose_}); }
   // Solve() in two parts, between which BatchSolver solves many subjects together. Between them,
   // the pose must not change and only accessors may be called.
   [[nodiscard]] wrinkle::BatchUpdate Prepare(std::uint32_t sequence, std::int64_t capture_time_us);

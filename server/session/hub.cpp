@@ -12,9 +12,7 @@
 #include <spdlog/spdlog.h>
 
 #include "protocol/messages/limits.h"
-#include "server/cluster/lease/lease.h"
 #include "server/session/peers/peer_access.h"
-#include "server/session/subjects/subject_state.h"
 
 namespace furrow::server {
 namespace {
@@ -72,9 +70,32 @@ Hub::Hub(Parts parts)
                    .limits = &limits_,
                    .drain = std::move(parts.drain),
                    .is_own_address = std::move(parts.is_own_address),
-                   .adopt_captures = [this](const protocol::SubjectState& state,
-                                            Time now) { AdoptCaptures(state, now); }}),
+                   .adopt_captures =
+                       [this](const protocol::SubjectState& state, Time now) {
+                         live_rig_.AdoptCaptures(state, kMaxAddedPoses, now);
+                       }}),
       mocap_(limits_, &shards_, &router_, metrics_),
+      live_rig_({.definitions = &definitions_,
+                 .subjects = &subjects_,
+                 .subscribers = &subscribers_,
+                 .router = &router_,
+                 .shards = &shards_}),
+      departures_({.places = &places_,
+                   .subjects = &subjects_,
+                   .publishers = &publishers_,
+                   .subscribers = &subscribers_,
+                   .router = &router_,
+                   .shards = &shards_,
+                   .messages = &exclusive_context_.messages,
+                   .remove = [this](Subject& subject) { RemoveSubject(subject); }}),
+      restart_({.subjects = &subjects_,
+                .subscribers = &subscribers_,
+                .router = &router_,
+                .shards = &shards_,
+                .adopt_captures =
+                    [this](const protocol::SubjectState& state, Time now) {
+                      live_rig_.AdoptCaptures(state, kMaxAddedPoses, now);
+                    }}),
       holds_poses_(JitterDelays(std::move(parts.jitter)).any()) {}
 
 PeerId Hub::AddPeer(Transport transport, PeerLabel name, Link* link, Time now, int shard,
@@ -153,17 +174,18 @@ void Hub::OnMessage(PeerId id, std::span<const std::uint8_t> bytes, Time now) {
 }
 
 void Hub::GatherMessage(PeerId id, std::span<const std::uint8_t> bytes, Time now) {
-  Shard& shard = shards_.Of(id);
-  Peer* peer = shard.peers.Find(id);
-  if (peer == nullptr) return;
+  if (Peer* peer = FindPeer(id); peer != nullptr) GatherMessage(*peer, bytes, now);
+}
+
+void Hub::GatherMessage(Peer& peer, std::span<const std::uint8_t> bytes, Time now) {
   metrics_->Add(Counter::kMessagesReceived);
   // Before anything is verified or decoded: a flood must cost less than the work that it asks for.
-  if (!peer->bucket.Take(now)) {
+  if (!peer.bucket.Take(now)) {
     metrics_->Add(Counter::kMessagesThrottled);
     return;
   }
-  peer->last_heard = now;
-  dispatcher_.Dispatch(shard, *peer, bytes, now);
+  peer.last_heard = now;
+  dispatcher_.Dispatch(shards_.Of(peer.id), peer, bytes, now);
 }
 
 void Hub::OnBadFrame(PeerId id) {
@@ -254,7 +276,7 @@ void Hub::Tick(Time now, Time late) {
   if (late >= kStall) OnStall(now, late);
   AgeSubjects(now);
   if (places_.in_cluster() && !draining_) {
-    publishers_.AskAgain([this](PeerId id) { return shards_.Of(id).peers.Find(id); }, now);
+    publishers_.AskAgain([this](PeerId id) { return shards_.FindPeer(id); }, now);
     if (now - places_refreshed_ >= Places::kRefresh) RefreshPlaces(now);
   }
   mocap_.ForgetRejected(now);
@@ -311,22 +333,9 @@ void Hub::RemoveSubject(Subject& subject) {
   subjects_.Remove(subject.id);
 }
 
-Peer* Hub::OwnerOf(const Subject& subject) {
-  return shards_.Of(subject.owner.peer).peers.Find(subject.owner.peer);
-}
-
-// A subject without a place stays: the node may get it back, and its publisher goes on.
 void Hub::RefreshPlaces(Time now) {
   places_refreshed_ = now;
-  std::vector<std::pair<Subject*, NodeAddress>> moved;
-  for (const auto& subject : subjects_.all()) {
-    const std::uint64_t epoch = subject->epoch;
-    const Place place = publishers_.RenewPlace(*subject, OwnerOf(*subject), now);
-    if (place.kind == Place::Kind::kElsewhere) moved.emplace_back(subject.get(), place.node);
-    if (subject->epoch != epoch) subscribers_.OnEpoch(*subject);
-  }
-  for (const auto& [subject, node] : moved) MoveSubject(*subject, node);
-  if (!moved.empty()) subscribers_.BindWaiting();
+  departures_.RenewPlaces(now);
   subscribers_.SendWaitingElsewhere();
   arrivals_.Expire(now);
   FreeLevels(now);
@@ -341,12 +350,6 @@ void Hub::FreeLevels(Time now) {
     subject->keeps_level = false;
     subscribers_.UpdateDriverLevel(*subject);
   }
-}
-
-// The publisher has been sent away already.
-void Hub::MoveSubject(Subject& subject, const NodeAddress& node) {
-  subscribers_.OnSubjectMoved(subject, node);
-  RemoveSubject(subject);
 }
 
 // A UDP address has no connection that could close. Publishing needs no consent: silence ends a
@@ -365,49 +368,17 @@ void Hub::RenewConsent(Peer& peer, Time now) {
 
 void Hub::Drain(Time now) {
   const ExclusiveLock lock(*this, 0);
-  places_.Close();
-  for (const auto& subject : subjects_.all()) {
-    const Place place = places_.Successor(subject->name);
-    if (place.kind != Place::Kind::kElsewhere) continue;
-    publishers_.SendAway(*subject, OwnerOf(*subject), place.node);
-    subscribers_.OnSubjectMoved(*subject, place.node);
-  }
-  for (const auto& subject : subjects_.all()) {
-    places_.Release(subject->name);
-    // Another node may serve it from now on. A right that never ends has no other node.
-    if (subject->served_until != kNoEnd) subject->served_until = now;
-  }
+  departures_.SendAllAway(now);
   // Stop all frames before the goodbye, which must be the last message that a peer receives.
   draining_ = true;
   router_.StopFanOut();
   dispatcher_.RefuseSubscriptions();
   shards_.ForEachPeer([&](Peer& peer) {
-    if (peer.transport == Transport::kMocap) return;
+    if (peer.transport == Transport::kMocap || peer.goes_on_elsewhere) return;
     // Stream 0 addresses the whole peer, not one of its subscriptions.
     exclusive_context_.messages.SendReply(peer, {},
                                           protocol::Goodbye{protocol::GoodbyeReason::kDraining});
   });
-}
-
-// A capture changes the rig of the daemon, on this node as on the one before.
-void Hub::AdoptCaptures(const protocol::SubjectState& state, Time now) {
-  auto changed = WithCaptures(rig(), state.captures,
-                              static_cast<std::size_t>(kMaxAddedPoses - num_added_poses_));
-  Status status = changed.status();
-  int added = 0;
-  if (changed.ok()) {
-    if (!changed->has_value()) return;
-    added = static_cast<int>((*changed)->reference_poses.size() - rig().reference_poses.size());
-    status = SetRig(std::make_shared<const wrinkle::Rig>(**std::move(changed)), now);
-  }
-  if (status.ok()) {
-    num_added_poses_ += added;
-    ++num_adoptions_;
-    spdlog::info("took over the captured poses of subject '{}'", state.subject);
-  } else {
-    spdlog::warn("cannot take over the captured poses of subject '{}': {}", state.subject,
-                 status.ToString());
-  }
 }
 
 void Hub::TakeNothingNew() {
@@ -422,66 +393,58 @@ std::vector<std::string> Hub::SubjectNames() {
   return names;
 }
 
-// Empty: it may move.
-std::string Hub::WhyItStays(const Subject& subject, Time now) {
-  // The store has not confirmed the lease for longer than it takes. The other node would not get
-  // the lease either.
-  constexpr Time kLeast = kLeaseStop - kLeaseRenewal - std::chrono::milliseconds(500);
-  if (subject.served_until - now < kLeast) return "the store of the cluster does not answer";
-  const Peer* owner = OwnerOf(subject);
-  if (owner == nullptr) return {};
-  // Foreign wires, web pages, and a recording that this daemon plays itself.
-  if (owner->transport == Transport::kMocap || owner->transport == Transport::kWeb) {
-    return "its sender cannot be sent to another daemon";
-  }
-  // Its other subjects may go elsewhere, so such a client follows nobody.
-  const auto is_of_owner = [owner](const std::unique_ptr<Subject>& other) {
-    return other->owner.peer == owner->id && !other->ended;
-  };
-  const auto& all = subjects_.all();
-  return std::count_if(all.begin(), all.end(), is_of_owner) > 1
-             ? "its sender has several subjects on one connection"
-             : "";
-}
-
 Place Hub::SuccessorOf(std::string_view name, Time now, const std::set<std::string>& without) {
   const ExclusiveLock lock(*this, 0);
-  const Subject* subject = subjects_.Find(name);
-  Place place;
-  if (subject == nullptr) {
-    place.why = "it has left";
-    return place;
-  }
-  place.why = WhyItStays(*subject, now);
-  return place.why.empty() ? places_.Successor(name, without) : place;
+  return departures_.SuccessorOf(name, now, without);
 }
 
 bool Hub::WriteState(std::string_view name, std::uint32_t number,
                      std::vector<std::uint8_t>& message) {
   const ExclusiveLock lock(*this, 0);
-  Subject* subject = subjects_.Find(name);
-  if (subject == nullptr) return false;
-  exclusive_context_.messages.Encode(StateHeader(*subject, number), StateOf(*subject), message);
-  return true;
+  return departures_.WriteState(name, number, message);
 }
 
 Status Hub::HandOver(std::string_view name, const NodeAddress& node, std::uint32_t number,
                      std::vector<std::uint8_t>& message, Time now) {
   const ExclusiveLock lock(*this, 0);
-  Subject* subject = subjects_.Find(name);
-  if (subject == nullptr) return {StatusCode::kNotFound, "it has left"};
-  if (std::string why = WhyItStays(*subject, now); !why.empty()) {
-    return {StatusCode::kUnavailable, std::move(why)};
+  return departures_.HandOver(name, node, number, message, now);
+}
+
+bool Hub::MaySavePeer(PeerId id) {
+  const ExclusiveLock lock(*this, 0);
+  const Peer* const peer = shards_.FindPeer(id);
+  return peer != nullptr && restart_.MaySave(*peer);
+}
+
+std::optional<SavedPeer> Hub::SavePeer(PeerId id) {
+  const ExclusiveLock lock(*this, 0);
+  Peer* const peer = shards_.FindPeer(id);
+  return peer == nullptr ? std::nullopt : restart_.Save(*peer);
+}
+
+void Hub::KeepPeers() {
+  const ExclusiveLock lock(*this, 0);
+  shards_.ForEachPeer([](Peer& peer) { peer.goes_on_elsewhere = false; });
+}
+
+std::vector<SavedSubject> Hub::SaveSubjects(Time now) {
+  const ExclusiveLock lock(*this, 0);
+  return restart_.SaveSubjects(now);
+}
+
+void Hub::Resume(const std::vector<SavedSubject>& subjects, const ResumedPeers& peers, Time away,
+                 Time now) {
+  const ExclusiveLock lock(*this, 0);
+  for (const SavedSubject& subject : subjects) {
+    const auto owner = peers.find(subject.owner);
+    Peer* const peer = owner == peers.end() ? nullptr : shards_.FindPeer(owner->second.id);
+    restart_.Resume(subject, peer, away, now);
   }
-  // Poses that wait for their time are used now, because the publisher does not send them again.
-  Shard& shard = shards_.Of(subject->owner.peer);
-  router_.ReleaseStream(shard, subject->owner, now);
-  exclusive_context_.messages.Encode(StateHeader(*subject, number), StateOf(*subject), message);
-  publishers_.SendAway(*subject, OwnerOf(*subject), node);
-  places_.HandOver(name, node);
-  MoveSubject(*subject, node);
-  subscribers_.BindWaiting();
-  return {};
+  for (const auto& [former, known] : peers) {
+    if (Peer* const peer = shards_.FindPeer(known.id); peer != nullptr) {
+      restart_.Resume(*peer, *known.saved, away);
+    }
+  }
 }
 
 // An empty name: the oldest subject.
@@ -508,61 +471,20 @@ const Subject* Hub::Trace(std::string_view name, const Access& access) {
 
 std::string_view Hub::SourceOf(const Subject& subject) {
   // A subject outlives its publisher while it decays, so the peer may be gone.
-  const Peer* peer = OwnerOf(subject);
+  const Peer* peer = shards_.FindPeer(subject.owner.peer);
   return peer == nullptr ? std::string_view() : std::string_view(peer->name);
-}
-
-Status Hub::SetRig(std::shared_ptr<const wrinkle::Rig> rig, Time now) {
-  const std::shared_ptr<const wrinkle::Rig> former = definitions_.shared_rig();
-  definitions_.SetRig(std::move(rig));
-  // Bind every subject first, so that an error changes nothing.
-  std::vector<std::shared_ptr<const StreamDefinition>> bound;
-  for (const auto& subject : subjects_.all()) {
-    auto definition = definitions_.Rebind(subject->pipeline->stream());
-    if (!definition.ok()) {
-      definitions_.SetRig(former);
-      return definition.status().At(subject->name);
-    }
-    // Subjects with equal streams share the definition that the first of them made.
-    bound.push_back(*std::move(definition));
-  }
-  // From here on nothing can fail.
-  for (std::size_t i = 0; i < bound.size(); ++i) {
-    Subject& subject = *subjects_.all()[i];
-    subject.pipeline->SetStream(std::move(bound[i]));
-    subscribers_.OnSubjectReady(subject);
-    RepublishWeights(subject, now);
-  }
-  return {};
-}
-
-Status Hub::SetRigAndMaps(std::shared_ptr<const wrinkle::Rig> rig, StreamMaps maps, Time now) {
-  StreamMaps former = definitions_.SetMaps(std::move(maps));
-  Status status = SetRig(std::move(rig), now);
-  if (!status.ok()) (void)definitions_.SetMaps(std::move(former));
-  return status;
 }
 
 void Hub::SetLimits(const Limits& limits) {
   limits_ = limits;
   subjects_.SetMaxSubjects(static_cast<std::size_t>(limits.max_subjects));
+  subscribers_.OnLimits();
   definitions_.SetCapacity(static_cast<std::size_t>(limits.max_skeletons));
-}
-
-void Hub::SetNeutral(Subject& subject, std::optional<wrinkle::LocalPose> neutral, Time now) {
-  if (subject.pipeline->SetNeutral(std::move(neutral))) RepublishWeights(subject, now);
 }
 
 void Hub::SetOnWeights(OnWeights on_weights) {
   subscribers_.SetAllDrivers(recording_ != nullptr || on_weights != nullptr);
   router_.SetOnWeights(std::move(on_weights));
-}
-
-// The age is at least 1: only a new pose has age 0.
-void Hub::RepublishWeights(Subject& subject, Time now) {
-  if (!subject.pipeline->has_pose()) return;
-  router_.PublishAged(shards_.at(0), subject,
-                      std::max<std::int64_t>(1, ToMicroseconds(now - subject.last_pose)), now);
 }
 
 }  // namespace furrow::server

@@ -5,12 +5,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/status.h"
@@ -24,12 +26,16 @@
 #include "server/core/time.h"
 #include "server/pipeline/picture_source.h"
 #include "server/pipeline/stream_definition.h"
+#include "server/saved/saved_state.h"
 #include "server/session/access/token_gate.h"
 #include "server/session/delivery/publish_context.h"
+#include "server/session/departures.h"
 #include "server/session/dispatcher.h"
+#include "server/session/live_rig.h"
 #include "server/session/mocap_streams.h"
 #include "server/session/peers/address_proof.h"
 #include "server/session/recording_tap.h"
+#include "server/session/restart.h"
 #include "server/session/shards.h"
 #include "server/session/stream_router.h"
 #include "server/session/subjects/arrivals.h"
@@ -124,6 +130,11 @@ class Hub {
   // ends, so that many poses are solved together; `bytes` must stay valid until then. The output
   // and its order are those of OnMessage(). Requires the shard's lock.
   void GatherMessage(PeerId id, std::span<const std::uint8_t> bytes, Time now);
+  // The same for a peer that the caller has looked up with FindPeer().
+  void GatherMessage(Peer& peer, std::span<const std::uint8_t> bytes, Time now);
+  // The peer, which only the thread of its shard may use, until RemovePeer(). Null: it is not
+  // there.
+  [[nodiscard]] Peer* FindPeer(PeerId id) { return shards_.FindPeer(id); }
   // UDP: the consent of a peer, for the program that uses its address next. Require the shard's
   // lock.
   [[nodiscard]] std::optional<Consent> ConsentOf(PeerId id);
@@ -195,6 +206,28 @@ class Hub {
   [[nodiscard]] Status HandOver(std::string_view subject, const NodeAddress& node,
                                 std::uint32_t number, std::vector<std::uint8_t>& message, Time now);
 
+  // The functions of a restart (server/saved). Each takes the exclusive lock.
+
+  // False: the peer cannot go to the next daemon, because it watches pictures or was not admitted.
+  [[nodiscard]] bool MaySavePeer(PeerId id);
+  // Saves a peer for the next daemon; Drain() says no goodbye to it then. Nothing: it cannot go
+  // there.
+  [[nodiscard]] std::optional<SavedPeer> SavePeer(PeerId id);
+  // Takes back all peers that were saved: Drain() says goodbye to them.
+  void KeepPeers();
+  // Saves all subjects for the next daemon. Poses that wait for their time are used before.
+  [[nodiscard]] std::vector<SavedSubject> SaveSubjects(Time now);
+  // Peers of the former daemon that are here: their present numbers, and what was saved of them,
+  // by the numbers that they had there.
+  struct ResumedPeer {
+    PeerId id = 0;
+    const SavedPeer* saved = nullptr;
+  };
+  using ResumedPeers = std::map<std::uint64_t, ResumedPeer>;
+  // Goes on with what the former daemon has saved. `away`: the time since then.
+  void Resume(const std::vector<SavedSubject>& subjects, const ResumedPeers& peers, Time away,
+              Time now);
+
   // The functions below require the exclusive lock, and so does every use of the objects that they
   // return.
 
@@ -221,26 +254,32 @@ class Hub {
   // Replaces the rig for all subjects. Poses and subscriptions stay. Errors: those of
   // RigBinding::Create() for a subject's skeleton, with the subject's name as `where`; the old rig
   // then stays in use.
-  [[nodiscard]] Status SetRig(std::shared_ptr<const wrinkle::Rig> rig, Time now);
+  [[nodiscard]] Status SetRig(std::shared_ptr<const wrinkle::Rig> rig, Time now) {
+    return live_rig_.Set(std::move(rig), now);
+  }
   // The same, and replaces the maps that find the rig's joints and blend shapes.
   [[nodiscard]] Status SetRigAndMaps(std::shared_ptr<const wrinkle::Rig> rig, StreamMaps maps,
-                                     Time now);
+                                     Time now) {
+    return live_rig_.SetWithMaps(std::move(rig), std::move(maps), now);
+  }
   [[nodiscard]] const std::shared_ptr<const wrinkle::Rig>& shared_rig() const {
     return definitions_.shared_rig();
   }
   // At most this many reference poses come to the rig by captures, here or on the way here: every
   // solve of every subject evaluates them.
   static constexpr int kMaxAddedPoses = 32;
-  [[nodiscard]] int num_added_poses() const { return num_added_poses_; }
-  void AddToAddedPoses(int number) { num_added_poses_ += number; }
+  [[nodiscard]] int num_added_poses() const { return live_rig_.num_added_poses(); }
+  void AddToAddedPoses(int number) { live_rig_.AddToAddedPoses(number); }
   // How often the rig got captures of subjects that came from other nodes.
-  [[nodiscard]] std::uint64_t num_adoptions() const { return num_adoptions_; }
+  [[nodiscard]] std::uint64_t num_adoptions() const { return live_rig_.num_adoptions(); }
   // Replaces the limits. Whatever exceeds them already stays. The rate of messages counts for peers
   // that come from now on; max_udp_peers is not the hub's.
   void SetLimits(const Limits& limits);
   // Measures the subject's weights from this pose instead of the rest pose; nullopt: from the rest
   // pose. A pose with other joint or blend-shape counts is ignored.
-  void SetNeutral(Subject& subject, std::optional<wrinkle::LocalPose> neutral, Time now);
+  void SetNeutral(Subject& subject, std::optional<wrinkle::LocalPose> neutral, Time now) {
+    live_rig_.SetNeutral(subject, std::move(neutral), now);
+  }
   // Calls `on_weights` with each subject's new weights, for OSC output; empty: calls nobody, as at
   // first. With a function, all drivers of all subjects are evaluated. Requires the exclusive lock.
   void SetOnWeights(OnWeights on_weights);
@@ -255,15 +294,10 @@ class Hub {
   void AgeSubjects(Time now);
   void RemoveSubject(Subject& subject);
   [[nodiscard]] Subject* FindFor(std::string_view name, const Access& access);
-  [[nodiscard]] Peer* OwnerOf(const Subject& subject);
   void RefreshPlaces(Time now);
   void FreeLevels(Time now);
-  void AdoptCaptures(const protocol::SubjectState& state, Time now);
-  [[nodiscard]] std::string WhyItStays(const Subject& subject, Time now);
-  void MoveSubject(Subject& subject, const NodeAddress& node);
   void RenewConsent(Peer& peer, Time now);
   void EndIfTokenEnded(Peer& peer, Time now);
-  void RepublishWeights(Subject& subject, Time now);
 
   Limits limits_;  // the parts refer to it; changes under the exclusive lock
   const std::uint64_t session_;
@@ -285,9 +319,10 @@ class Hub {
   Shards shards_;
   Dispatcher dispatcher_;
   MocapStreams mocap_;
+  LiveRig live_rig_;
+  Departures departures_;
+  Restart restart_;
   const bool holds_poses_;
-  int num_added_poses_ = 0;
-  std::uint64_t num_adoptions_ = 0;
   bool draining_ = false;
 };
 

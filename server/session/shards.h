@@ -23,6 +23,8 @@ class Shards {
 
   [[nodiscard]] Shard& at(int index) { return *shards_[static_cast<std::size_t>(index)]; }
   [[nodiscard]] Shard& Of(PeerId id) { return *shards_[PeerTable::TableOf(id, shards_.size())]; }
+  // Null: the peer has left.
+  [[nodiscard]] Peer* FindPeer(PeerId id) { return Of(id).peers.Find(id); }
   [[nodiscard]] std::size_t size() const { return shards_.size(); }
   // The peers of all shards. Requires the exclusive lock.
   template <class Function>

@@ -33,6 +33,21 @@ bool StreamRouter::OnOffer(Peer& peer, const protocol::Header& header,
   return true;
 }
 
+Subject* StreamRouter::Resume(Peer& peer, const protocol::Header& header,
+                              const protocol::SkeletonOffer& offer,
+                              const Arrivals::Arrived& arrived, Time now) {
+  Subject* const subject = parts_.publishers->Resume(peer, header, offer, arrived, now);
+  if (subject != nullptr && parts_.recording != nullptr) {
+    parts_.recording->OnOffer(*subject, offer, now);
+  }
+  return subject;
+}
+
+void StreamRouter::Prefetch(const Peer& peer, const protocol::Header& header) {
+  const Subject* subject = parts_.subjects->Find(StreamKey{peer.id, header.session, header.stream});
+  if (subject != nullptr) subject->pipeline->Prefetch();
+}
+
 void StreamRouter::AcceptPose(Shard& shard, Peer& peer, const protocol::Header& header,
                               const protocol::PoseFrame& pose,
                               std::span<const std::uint8_t> payload, Time now) {

@@ -43,6 +43,15 @@ class StreamRouter {
   bool OnOffer(Peer& peer, const protocol::Header& header, const protocol::SkeletonOffer& offer,
                Time now);
 
+  // Goes on with a subject of the daemon that was here before (Publishers::Resume()). Requires the
+  // exclusive lock.
+  [[nodiscard]] Subject* Resume(Peer& peer, const protocol::Header& header,
+                                const protocol::SkeletonOffer& offer,
+                                const Arrivals::Arrived& arrived, Time now);
+
+  // Requests the memory that a pose of the stream uses. Call it before the pose is decoded.
+  // Requires the lock of the stream's shard.
+  void Prefetch(const Peer& peer, const protocol::Header& header);
   // Copies a pose into its subject's pipeline and adds it to the shard's batch, where it waits for
   // PublishGathered(). If the subject has a jitter buffer, the pose waits there for ReleaseHeld().
   // Without one, a pose may wait for an earlier one, for kEarlierPatience at most.

@@ -178,3 +178,31 @@ def picture_difference(a, b):
     """The mean difference of two pictures of png_rows() over all channels, 0 to 255."""
     pairs = [(x, y) for row_a, row_b in zip(a, b) for p, q in zip(row_a, row_b) for x, y in zip(p, q)]
     return sum(abs(x - y) for x, y in pairs) / len(pairs)
+
+
+def make_certificate(folder):
+    """A certificate for localhost and 127.0.0.1 that signs itself; the files of it and of its key."""
+    certificate, key = pathlib.Path(folder) / "furrow.crt", pathlib.Path(folder) / "furrow.key"
+    subprocess.run(["openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256", "-nodes", "-days", "2",
+                    "-subj", "/CN=furrow", "-addext", "subjectAltName=DNS:localhost,IP:127.0.0.1", "-keyout", key, "-out",
+                    certificate], check=True, capture_output=True)
+    return certificate, key
+
+
+# What a viewer noticed. Frames are (time of arrival, number).
+
+
+def repetitions(frames):
+    """How many numbers of frames came again."""
+    return len(frames) - len({number for _, number in frames})
+
+
+def missing(frames):
+    """How many numbers are missing between the first and the last frame."""
+    numbers = {number for _, number in frames}
+    return max(numbers) - min(numbers) + 1 - len(numbers) if numbers else 0
+
+
+def reorderings(frames):
+    """How often a frame came after a later one. Decaying frames repeat a number."""
+    return sum(b < a for (_, a), (_, b) in zip(frames, frames[1:]))

@@ -2,45 +2,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """A daemon that requires tokens, and every command that connects to it."""
 import os
-import pathlib
 import shutil
 import signal
-import tempfile
 import unittest
 import urllib.error
 import urllib.request
 
-from furrow_testing import GUARD, SHARE, Daemon, furrow, spawn
+from furrow_testing import GUARD, SHARE, Daemon, furrow
 from test_reconnect import LOST, Killed, Output, rows_after
+from token_testing import TokenTest
 
 PERFORMANCE = SHARE / "recordings" / "performance.bvh"
 SHORT = ("--pattern", "brow_l.*", "--format", "csv")
 FAILED, BAD_INPUT, NO_CONNECTION = 1, 3, 4
 
 
-class SecureTest(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.root = pathlib.Path(folder.name)
-        self.keys = self.root / "keys"
-        furrow("token", "key", "new", "--key", self.keys, check=0)
-        self.strict = ("--security", "required", "--keys", self.keys)
-
-    def token(self, role, subjects="*", time="1h", keys=None):
-        path = self.root / f"{role}-{len(list(self.root.iterdir()))}.token"
-        furrow("token", "new", "--role", role, "--subjects", subjects, "--for", time, "--key", keys or self.keys,
-               "--out", path, check=0)
-        return path
-
-    def start(self, *args):
-        process = spawn(*args)
-        self.addCleanup(process.stdout.close)
-        self.addCleanup(process.stderr.close)
-        self.addCleanup(process.wait, GUARD)
-        self.addCleanup(process.kill)
-        return process
-
+class SecureTest(TokenTest):
     def end(self, process):
         process.send_signal(signal.SIGINT)
         self.assertEqual(process.wait(timeout=GUARD), 0)

@@ -3,15 +3,22 @@
 
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <new>
 
 namespace {
 
 std::atomic<std::uint64_t> num_allocations{0};
+constexpr std::uint64_t kUnlimited = UINT64_MAX;
+thread_local std::uint64_t num_allowed = kUnlimited;
 
 void* Allocate(std::size_t size, std::size_t alignment) {
   num_allocations.fetch_add(1, std::memory_order_relaxed);
+  if (num_allowed != kUnlimited) {
+    if (num_allowed == 0) throw std::bad_alloc();
+    --num_allowed;
+  }
   const std::size_t rounded = (size + alignment - 1) / alignment * alignment;
   void* const memory = std::aligned_alloc(alignment, rounded == 0 ? alignment : rounded);
   if (memory == nullptr) throw std::bad_alloc();
@@ -41,5 +48,8 @@ void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std
 namespace furrow::test {
 
 std::uint64_t NumAllocations() { return num_allocations.load(std::memory_order_relaxed); }
+
+AllocationLimit::AllocationLimit(std::uint64_t count) { num_allowed = count; }
+AllocationLimit::~AllocationLimit() { num_allowed = kUnlimited; }
 
 }  // namespace furrow::test

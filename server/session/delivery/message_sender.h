@@ -82,7 +82,9 @@ class MessageSender {
                                      .message = Truncate(std::move(text)),
                                      .host = node.host,
                                      .tcp = node.tcp,
-                                     .udp = node.udp});
+                                     .udp = node.udp,
+                                     .web = node.http,
+                                     .web_tls = node.https});
   }
 
   // The header of a reply: the stream and sequence of the request.

@@ -24,18 +24,25 @@ Arrivals::States::iterator Arrivals::Forget(States::iterator kept) {
   return states_.erase(kept);
 }
 
+// A copy may be late: of the same conversation, or of an earlier one, whose numbers do not compare.
+bool Arrivals::IsOlder(const protocol::SubjectState& state, const protocol::Header& header,
+                       const Kept& kept) {
+  if (header.session == kept.header.session) return header.sequence < kept.header.sequence;
+  // The numbers of poses wrap around.
+  return state.publisher_session == kept.publisher_session &&
+         static_cast<std::int32_t>(state.newest_sequence - kept.newest_sequence) < 0;
+}
+
 bool Arrivals::Add(const protocol::SubjectState& state, const protocol::MessageView& view,
                    Time now) {
   Expire(now);
   if (view.payload.size() > protocol::kMaxUdpMessageBytes) return false;
   const auto known = states_.find(state.subject);
-  if (known != states_.end() && known->second.header.session == view.header.session &&
-      view.header.sequence < known->second.header.sequence) {
-    return true;
-  }
+  if (known != states_.end() && IsOlder(state, view.header, known->second)) return true;
   States::value_type kept(state.subject, {.header = view.header,
                                           .payload = {view.payload.begin(), view.payload.end()},
                                           .publisher_session = state.publisher_session,
+                                          .newest_sequence = state.newest_sequence,
                                           .reserved_until = now + kReserved,
                                           .until = now + kPatience});
   const std::size_t former = known == states_.end() ? 0 : BytesOf(*known);

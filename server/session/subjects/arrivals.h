@@ -28,11 +28,13 @@ class Arrivals {
   // A publisher that lost its way needs time to find this node.
   static constexpr Time kPatience = std::chrono::seconds(10);
 
-  // For this long after the last state of a subject, only its publisher may offer it here.
+  // For this long after the newest state of a subject, only its publisher may offer it here.
   static constexpr Time kReserved = std::chrono::seconds(1);
 
-  // Keeps a state that Decode() has read from `view`, instead of an older one of the subject. A
-  // copy of an older one of the same node changes nothing. False: there is too little room.
+  // Keeps a state that Decode() has read from `view`, instead of the one that is kept of the
+  // subject, if any. A late copy changes nothing: a state with a lower sequence in the same
+  // session, or in another session one of the same publisher with an earlier newest pose. False:
+  // there is too little room, or the state is larger than a message over UDP.
   [[nodiscard]] bool Add(const protocol::SubjectState& state, const protocol::MessageView& view,
                          Time now);
   // True if the subject is on its way here with a publisher of another session, which had no time
@@ -70,10 +72,13 @@ class Arrivals {
     protocol::Header header;
     std::vector<std::uint8_t> payload;
     std::uint64_t publisher_session = 0;
+    std::uint32_t newest_sequence = 0;
     Time reserved_until{0};
     Time until{0};
   };
   using States = std::map<std::string, Kept, std::less<>>;
+  [[nodiscard]] static bool IsOlder(const protocol::SubjectState& state,
+                                    const protocol::Header& header, const Kept& kept);
   [[nodiscard]] static std::size_t BytesOf(const States::value_type& kept);
   States::iterator Forget(States::iterator kept);
 

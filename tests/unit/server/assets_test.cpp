@@ -42,11 +42,7 @@ std::string Stated(const std::filesystem::path& file) {
          std::to_string(character::Checksum(bytes)) + "}";
 }
 
-TEST(Assets, BrowsersGetThePackageOfThisCharacterOnly) {
-  setenv("FURROW_DATA_DIR", FURROW_SOURCE_DIR "/rig", 1);
-  const TemporaryFolder folder;
-  Config config;
-  config.character = folder / "ada.glb";
+character::Character Ada() {
   character::Character ada;
   ada.skeleton = rig::BodyWithBrow();
   ada.inverse_bind_matrices.assign(static_cast<std::size_t>(ada.skeleton.num_joints()),
@@ -54,13 +50,62 @@ TEST(Assets, BrowsersGetThePackageOfThisCharacterOnly) {
   ada.meshes.push_back(
       {.name = "triangle", .vertices = std::vector<character::Vertex>(3), .indices = {0, 1, 2}});
   ada.materials.emplace_back();
+  return ada;
+}
+
+// Poses that stream already are for the character that was loaded first.
+TEST(Assets, PicturesThatComeLaterAreOfTheSameCharacter) {
+  setenv("FURROW_DATA_DIR", FURROW_SOURCE_DIR "/rig", 1);
+  const TemporaryFolder folder;
+  Config config;
+  config.character = folder / "ada.glb";
+  ASSERT_TRUE(character::SaveCharacterGlb(Ada(), config.character).ok());
+  ASSERT_TRUE(motion::SaveClip(rig::RaisedBrow({1, 0, 0, 0}), folder / "face.glb").ok());
+  std::ofstream(folder / "ada.rig.json") << rig::RaisedBrowRig("face.glb");
+  const auto former = LoadAssets(config, /*with_pictures=*/false);
+  ASSERT_TRUE(former.ok()) << former.status().ToString();
+  EXPECT_TRUE(former->lacks_pictures);
+  const auto same = LoadWithPictures(config, *former->character);
+  ASSERT_TRUE(same.ok()) << same.status().ToString();
+  EXPECT_FALSE(same->lacks_pictures);
+
+  character::Character moved = Ada();
+  std::vector<wrinkle::JointDesc> joints;
+  for (int joint = 0; joint < moved.skeleton.num_joints(); ++joint) {
+    const auto at = static_cast<std::size_t>(joint);
+    joints.push_back({.name = moved.skeleton.joint_names()[at],
+                      .parent = moved.skeleton.joint_parents()[at],
+                      .rest = moved.skeleton.rest_pose()[at]});
+  }
+  joints.back().rest.translation.y += 0.1f;
+  moved.skeleton = *wrinkle::Skeleton::Create(joints);
+  ASSERT_TRUE(character::SaveCharacterGlb(moved, config.character).ok());
+  EXPECT_EQ(LoadWithPictures(config, *former->character).status().code(), StatusCode::kUnavailable);
+
+  ASSERT_TRUE(character::SaveCharacterGlb(Ada(), config.character).ok());
+  Config without = config;
+  without.character.clear();
+  without.render = false;
+  without.rig = folder / "ada.rig.json";
+  EXPECT_EQ(LoadWithPictures(without, *former->character).status().code(), StatusCode::kUnavailable)
+      << "no character at all";
+  unsetenv("FURROW_DATA_DIR");
+}
+
+TEST(Assets, BrowsersGetThePackageOfThisCharacterOnly) {
+  setenv("FURROW_DATA_DIR", FURROW_SOURCE_DIR "/rig", 1);
+  const TemporaryFolder folder;
+  Config config;
+  config.character = folder / "ada.glb";
+  const character::Character ada = Ada();
   ASSERT_TRUE(character::SaveCharacterGlb(ada, config.character).ok());
   ASSERT_TRUE(motion::SaveClip(rig::RaisedBrow({1, 0, 0, 0}), folder / "face.glb").ok());
   std::ofstream(folder / "ada.rig.json") << rig::RaisedBrowRig("face.glb");
   const auto web_package = [&] {
     const auto assets = LoadAssets(config);
     EXPECT_TRUE(assets.ok()) << assets.status().ToString();
-    return assets.ok() ? assets->web_package : std::filesystem::path("failed");
+    if (!assets.ok()) return std::filesystem::path("failed");
+    return assets->package.empty() ? assets->package : FindWebPackage(assets->package);
   };
   EXPECT_EQ(web_package(), "") << "there is none";
   std::ofstream(folder / "ada.web.glb")

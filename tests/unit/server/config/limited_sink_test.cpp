@@ -54,6 +54,13 @@ TEST_F(LimitedSinkTest, AFloodIsCutAndTheDropsAreReported) {
   EXPECT_EQ(Take(), "info calm\n");
 }
 
+TEST_F(LimitedSinkTest, CountsItsFlushes) {
+  EXPECT_EQ(sink->flushes(), 0u);
+  Log(0, "one");
+  sink->flush();
+  EXPECT_EQ(sink->flushes(), 1u);
+}
+
 TEST_F(LimitedSinkTest, DropsAtTheEndAreReportedAtTheEnd) {
   for (int i = 0; i < 1003; ++i) Log(0, "flood");
   Take();

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <future>
 #include <latch>
 #include <map>
 #include <memory>
@@ -15,6 +16,7 @@
 #include <new>
 #include <optional>
 #include <string>
+#include <thread>
 #include <utility>
 
 #include <gtest/gtest.h>
@@ -204,6 +206,47 @@ TEST_F(RenderThreadTest, TheRequestHasTheWeightsOfTheShapes) {
   EXPECT_EQ(pictures.Take().sequence, 2u);
   thread.reset();
   EXPECT_EQ(script.shapes, (std::vector<std::vector<float>>{{}, {0.0f, 0.25f}}));
+}
+
+TEST_F(RenderThreadTest, ARendererThatStartsLaterIsStuckUntilThen) {
+  std::promise<void> may_start;
+  std::promise<Status> started;
+  thread = RenderThread::StartLater(
+      &skeleton,
+      [this, &may_start] {
+        may_start.get_future().wait();
+        return Create();
+      },
+      &metrics, &Now, [this](FinishedPicture picture) { pictures.Put(std::move(picture)); },
+      nullptr, [&started](const Status& status) { started.set_value(status); });
+  EXPECT_TRUE(thread->is_stuck());
+  EXPECT_EQ(thread->description(), "starting");
+  EXPECT_EQ(thread->fault(), "the renderer is starting");
+  EXPECT_EQ(thread->Preset("face").status().code(), StatusCode::kUnavailable);
+  Submit(1);
+  EXPECT_EQ(pictures.num_failed_tickets(), 1u);
+  may_start.set_value();
+  EXPECT_TRUE(started.get_future().get().ok());
+  EXPECT_FALSE(thread->is_stuck());
+  EXPECT_NE(thread->description(), "starting");
+  EXPECT_EQ(thread->fault(), "");
+  Submit(2);
+  EXPECT_EQ(pictures.Take().sequence, 2u);
+}
+
+TEST_F(RenderThreadTest, ARendererThatFailsToStartLaterStaysStuck) {
+  script.create = {kLost};
+  std::promise<Status> started;
+  thread = RenderThread::StartLater(
+      &skeleton, [this] { return Create(); }, &metrics, &Now,
+      [this](FinishedPicture picture) { pictures.Put(std::move(picture)); }, nullptr,
+      [&started](const Status& status) { started.set_value(status); });
+  EXPECT_FALSE(started.get_future().get().ok());
+  EXPECT_TRUE(thread->is_stuck());
+  EXPECT_EQ(thread->Preset("face").status().code(), StatusCode::kInternal);
+  EXPECT_EQ(thread->fault(), "the renderer could not start");
+  Submit(1);
+  EXPECT_EQ(pictures.num_failed_tickets(), 1u);
 }
 
 TEST_F(RenderThreadTest, ALostContextIsCreatedAgain) {
@@ -452,7 +495,7 @@ TEST_F(RenderThreadTest, TheEncodingsOfAPictureAreLimited) {
       EXPECT_EQ(ticket.encoding.format, picture.encoding.format);
     }
   }
-  EXPECT_EQ(encodings, RenderThread::kMaxEncodings + 1) << "and one PNG";
+  EXPECT_EQ(encodings, PictureEncoder::kMaxEncodings + 1) << "and one PNG";
 }
 
 // Two viewers with video, one of a still and one without: one picture, three encodings.
@@ -564,6 +607,21 @@ TEST_F(RenderThreadTest, AfterStopNothingIsDrawn) {
   Submit(1);
   EXPECT_EQ(pictures.num_failed_tickets(), 1u);
   EXPECT_EQ(Count(Counter::kPicturesRendered), 0u);
+}
+
+// The factory holds the character, which is large.
+TEST_F(RenderThreadTest, AfterStopTheFactoryIsGone) {
+  auto character = std::make_shared<int>(0);
+  const std::weak_ptr<int> watched = character;
+  const auto started = RenderThread::Start(
+      &skeleton, [this, held = std::move(character)] { return Create(); }, &metrics, &Now,
+      [](FinishedPicture) {});
+  ASSERT_TRUE(started.ok());
+  EXPECT_FALSE((*started)->ended());
+  EXPECT_FALSE(watched.expired());
+  (*started)->Stop();
+  while (!(*started)->ended()) std::this_thread::yield();
+  EXPECT_TRUE(watched.expired());
 }
 
 TEST_F(RenderThreadTest, StartFailsWithoutARenderer) {

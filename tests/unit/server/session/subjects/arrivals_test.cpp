@@ -52,6 +52,30 @@ TEST_F(ArrivalsTest, ALateCopyOfAnOlderStateChangesNothing) {
   EXPECT_EQ(arrivals_.Take("ada", now_)->header.capture_time_us, 2);
 }
 
+// The numbers of two conversations do not compare, but those of poses do.
+TEST_F(ArrivalsTest, ALateCopyOfAnEarlierConversationChangesNothing) {
+  const auto add = [this](std::uint64_t session, std::uint64_t publisher, std::uint32_t newest) {
+    protocol::SubjectState state;
+    state.subject = "ada";
+    state.publisher_session = publisher;
+    state.newest_sequence = newest;
+    protocol::Encoder().Encode({.session = session, .sequence = 1}, state, bytes_);
+    protocol::MessageView view;
+    EXPECT_EQ(protocol::OpenMessage(bytes_, view), protocol::DecodeStatus::kOk);
+    EXPECT_TRUE(arrivals_.Add(state, view, now_));
+  };
+  const auto newest = [this] { return arrivals_.Take("ada", now_)->state.newest_sequence; };
+  add(2, kPublisher, 25);
+  add(1, kPublisher, 3);
+  EXPECT_EQ(newest(), 25u);
+  add(2, kPublisher, 0xFFFFFFFF);
+  add(3, kPublisher, 4);
+  EXPECT_EQ(newest(), 4u) << "the numbers have wrapped around";
+  add(2, kPublisher, 25);
+  add(3, kPublisher + 1, 3);
+  EXPECT_EQ(newest(), 3u) << "another publisher counts from anywhere";
+}
+
 TEST_F(ArrivalsTest, AStateThatDoesNotFitLeavesTheFormerOne) {
   ASSERT_TRUE(Add("ada", 1));
   while (Add("subject " + std::to_string(arrivals_.bytes()), 0, protocol::kMaxCaptureBytes)) {

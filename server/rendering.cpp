@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/rendering.h"
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <string>
+#include <utility>
+
+#include <malloc.h>
+#include <spdlog/spdlog.h>
+
+#include "render/renderer.h"
+#include "render/video/video_codec.h"
+#include "server/net/clock.h"
+#include "server/pipeline/preparation.h"
+#include "server/session/subscriptions/picture_views.h"
+
+namespace furrow::server {
+namespace {
+
+// The time that joining a thread may take after it has ended.
+constexpr Time kJoinTime = std::chrono::milliseconds(50);
+
+}  // namespace
+
+void Rendering::MakeVideo(int max_encoders) {
+  if (max_encoders == 0) {
+    video_ = std::make_unique<VideoEncoders>(nullptr, 0, "render.max_video_encoders is 0");
+    return;
+  }
+  const auto codec = render::GetVideoCodec();
+  if (codec.ok()) {
+    spdlog::info("H.264 by {}, for at most {} viewers", (*codec)->library, max_encoders);
+    video_ = std::make_unique<VideoEncoders>(*codec, max_encoders);
+    return;
+  }
+  spdlog::warn("pictures are sent as JPEG only: {}", codec.status().ToString());
+  // Without the paths of this machine, because viewers read it.
+  video_ = std::make_unique<VideoEncoders>(nullptr, 0, "its library cannot be loaded; see its log");
+}
+
+namespace {
+
+Result<std::unique_ptr<render::Renderer>> CreateRenderer(const character::Character& character,
+                                                         const std::string& device) {
+  return render::Renderer::Create(
+      character, {.device = device, .max_texture_bytes = PictureViews::kMaxTextureBytes});
+}
+
+// An exception on the render thread would end the daemon, which can serve weights.
+Result<Rendering::SharedCharacter> WithoutExceptions(
+    const std::function<Result<Rendering::SharedCharacter>()>& load) {
+  try {
+    return load();
+  } catch (const std::exception& error) {
+    return Status(StatusCode::kInternal, std::string("cannot load the character: ") + error.what());
+  }
+}
+
+}  // namespace
+
+RenderThread::Factory Rendering::MakeFactory(const Parts& parts) {
+  return [this, character = parts.character, load = parts.later.load,
+          device = parts.device]() mutable -> Result<std::unique_ptr<render::Renderer>> {
+    if (const auto load_once = std::exchange(load, nullptr)) {
+      auto loaded = WithoutExceptions(load_once);
+      FURROW_RETURN_IF_ERROR(loaded);
+      character = loaded_ = *std::move(loaded);
+    }
+    return CreateRenderer(*character, device);
+  };
+}
+
+Status Rendering::Start(Parts parts) {
+  character_ = parts.character;
+  MakeVideo(parts.max_video_encoders);
+  spdlog::info("starting the renderer");
+  if (parts.later.load) {
+    thread_ = RenderThread::StartLater(
+        parts.skeleton, MakeFactory(parts), parts.metrics, &ReadClock, std::move(parts.deliver),
+        video_.get(), [on_started = std::move(parts.later.on_started)](const Status& status) {
+          if (!status.ok()) spdlog::error("cannot render pictures: {}", status.ToString());
+          on_started();
+        });
+    return {};
+  }
+  auto started = RenderThread::Start(parts.skeleton, MakeFactory(parts), parts.metrics, &ReadClock,
+                                     std::move(parts.deliver), video_.get());
+  if (started.ok()) {
+    thread_ = *std::move(started);
+    spdlog::info("rendering on {}", thread_->description());
+    return {};
+  }
+  // Weights work without OpenGL, so the daemon serves them unless the user insists on pictures.
+  if (parts.required) return started.status();
+  spdlog::error("cannot render pictures: {}", started.status().ToString());
+  return {};
+}
+
+void Rendering::Prepare(const wrinkle::Rig& rig, const render::Settings& settings) {
+  const auto camera = thread_->Preset("face");
+  if (!camera.ok()) return;
+  const character::Character& drawn = loaded_ != nullptr ? *loaded_ : *character_;
+  auto jobs = Preparations(drawn, rig, settings, *camera);
+  if (jobs.ok()) thread_->Prepare(*std::move(jobs));
+}
+
+bool Rendering::LetGo() {
+  if (thread_ == nullptr) return true;
+  if (!thread_->ended()) return false;
+  if (!freed_.valid()) {
+    freed_ = std::async(std::launch::async, [drawn = std::exchange(character_, nullptr),
+                                             loaded = std::exchange(loaded_, nullptr)]() mutable {
+      drawn.reset();
+      loaded.reset();
+      malloc_trim(0);
+    });
+  }
+  return freed_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+}
+
+void Rendering::End(std::optional<Time> deadline, const std::function<void()>& give_up) {
+  if (thread_ == nullptr) return;
+  const std::future<void> ended = std::async(std::launch::async, [this] { thread_.reset(); });
+  if (!deadline) return;  // the future waits
+  // The thread has been stopped already, so it has usually ended by now, and is only joined.
+  const Time left = std::max(*deadline - ReadClock(), kJoinTime);
+  if (ended.wait_for(left) != std::future_status::ready) give_up();
+}
+
+}  // namespace furrow::server

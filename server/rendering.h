@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "base/status.h"
+#include "character/character.h"
+#include "render/settings/settings.h"
+#include "server/core/metrics.h"
+#include "server/core/time.h"
+#include "server/pipeline/picture_source.h"
+#include "server/pipeline/render_thread.h"
+#include "server/pipeline/video_encoders.h"
+#include "wrinkle/rig/rig.h"
+#include "wrinkle/skeleton/skeleton.h"
+
+namespace furrow::server {
+
+// The renderer of a daemon with its thread and its video encoders, or none.
+class Rendering {
+ public:
+  using SharedCharacter = std::shared_ptr<const character::Character>;
+  // Not empty: Start() does not wait for the renderer. Both functions are called on the render
+  // thread.
+  struct Later {
+    std::function<Result<SharedCharacter>()> load;  // the character with its pictures
+    std::function<void()> on_started;               // the renderer is there, or has failed
+  };
+  struct Parts {
+    std::shared_ptr<const character::Character> character;  // not null
+    const wrinkle::Skeleton* skeleton = nullptr;  // its own; not null; outlives this object
+    std::string device;
+    int max_video_encoders = 0;
+    bool required = false;                         // without a renderer, Start() fails
+    Metrics* metrics = nullptr;                    // not null; outlives this object
+    std::function<void(FinishedPicture)> deliver;  // called on the render thread
+    Later later;
+  };
+
+  // Without OpenGL, nothing is drawn, which is only logged unless a renderer is required.
+  [[nodiscard]] Status Start(Parts parts);
+  // While nobody watches yet, so that the first viewer does not wait for the shader compiler.
+  void Prepare(const wrinkle::Rig& rig, const render::Settings& settings);
+  // After RenderThread::Stop(): frees what was drawn with, while other threads go on. That takes
+  // the kernel a tenth of a second, which would otherwise belong to the end of the process. False:
+  // not yet; call it again soon.
+  [[nodiscard]] bool LetGo();
+  // Ends the thread. It may be in the middle of a large picture, which nothing can interrupt. From
+  // `deadline` on, calls `give_up`, which must end the process; without a deadline, waits.
+  void End(std::optional<Time> deadline, const std::function<void()>& give_up);
+
+  // Null: nothing is drawn.
+  [[nodiscard]] RenderThread* thread() const { return thread_.get(); }
+  [[nodiscard]] const VideoEncoders* video() const { return video_.get(); }
+
+ private:
+  [[nodiscard]] RenderThread::Factory MakeFactory(const Parts& parts);
+  void MakeVideo(int max_encoders);
+
+  SharedCharacter character_;
+  SharedCharacter loaded_;  // later, by the render thread; written before Later::on_started
+  std::unique_ptr<VideoEncoders> video_;  // used by the thread
+  std::unique_ptr<RenderThread> thread_;
+  std::future<void> freed_;  // valid: LetGo() has begun
+};
+
+}  // namespace furrow::server

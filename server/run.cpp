@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/run.h"
+
+#include <exception>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include "base/status.h"
+#include "server/assets.h"
+#include "server/daemon.h"
+#include "server/net/clock.h"
+#include "server/restart/inheritance.h"
+#include "server/startup.h"
+
+namespace furrow::server {
+namespace {
+
+ExitCode Fail(ExitCode code, const Status& status) {
+  spdlog::error("{}", status.ToString());
+  return code;
+}
+
+ExitCode LoadAndServe(const Config& asked, const RunOptions& options) {
+  // Tests and embedders call Run() without ParseCommandLine(), which has validated already.
+  if (Status status = ValidateConfig(asked); !status.ok()) return Fail(ExitCode::kUsage, status);
+  const Config config = WithoutMissingParts(asked);
+  if (asked.render && !config.render) {
+    spdlog::warn("no pictures: the package furrow-pictures is not installed; weights go on");
+  }
+  Inheritance former(options.kept, options.manager);
+  // In a cluster, the store says which subjects a node serves.
+  if (!config.cluster.enabled()) former.ReadState(ReadClock());
+  // Clients of the former daemon wait for weights, also where they must connect again. Pictures
+  // take seconds.
+  const bool waits_for_pictures = !former.exists() || config.require_render;
+  Result<Assets> assets = LoadAssets(config, waits_for_pictures);
+  if (!assets.ok()) return Fail(ExitCode::kBadInput, assets.status());
+  WarnAboutSecurity(config);
+  WarnAboutAssets(*assets);
+  auto osc_outputs = LoadOscOutputs(config);
+  if (!osc_outputs.ok()) return Fail(ExitCode::kBadInput, osc_outputs.status());
+  Daemon daemon(config, options, *std::move(assets), *std::move(osc_outputs), &former);
+  if (Status status = daemon.LoadPlayer(); !status.ok()) {
+    return Fail(ExitCode::kBadInput, status.At("--play"));
+  }
+  if (Status status = daemon.StartRendering(); !status.ok()) {
+    return Fail(ExitCode::kFailed, status);
+  }
+  if (Status status = daemon.LoadCluster(); !status.ok()) {
+    return Fail(status.code() == StatusCode::kUnavailable ? ExitCode::kFailed : ExitCode::kBadInput,
+                status);
+  }
+  daemon.FinishConfinement();
+  if (Status status = daemon.StartRecording(); !status.ok()) {
+    return Fail(ExitCode::kFailed, status);
+  }
+  if (Status status = daemon.LoadCredentials(); !status.ok()) {
+    return Fail(ExitCode::kBadInput, status);
+  }
+  if (Status status = daemon.Listen(); !status.ok()) return Fail(ExitCode::kFailed, status);
+  daemon.Serve();
+  return ExitCode::kOk;
+}
+
+}  // namespace
+
+ExitCode Run(const Config& config, const RunOptions& options) {
+  try {
+    return LoadAndServe(config, options);
+  } catch (const std::exception& error) {  // such as out of memory or threads
+    // Parts report errors as Status. Only the standard library and the event loop throw here.
+    return Fail(ExitCode::kFailed, Status(StatusCode::kInternal, error.what(), "furrowd"));
+  }
+}
+
+}  // namespace furrow::server

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/daemon_files.h"
+
+#include <filesystem>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/temporary_folder.h"
+
+namespace furrow::server {
+namespace {
+
+using testing::Contains;
+using testing::Not;
+
+// The kernel asks where a file is, not what it is called.
+TEST(DaemonFiles, IncludeWhatALinkLeadsTo) {
+  const TemporaryFolder folder;
+  const std::filesystem::path root = std::filesystem::canonical(folder.path());
+  for (const char* name : {"current", "releases", "other"}) {
+    std::filesystem::create_directory(root / name);
+  }
+  for (const char* name : {"ada.glb", "ada.rig.json"}) std::ofstream(root / "releases" / name);
+  std::filesystem::create_symlink(root / "releases" / "ada.glb", root / "current" / "ada.glb");
+  Config config;
+  config.character = root / "current" / "ada.glb";
+  const Confinement files = FilesOf(config);
+  EXPECT_THAT(files.read, Contains(root / "current"));
+  EXPECT_THAT(files.read, Contains(root / "releases"));
+  EXPECT_THAT(files.read, Not(Contains(root / "other")));
+}
+
+}  // namespace
+}  // namespace furrow::server
