@@ -6,6 +6,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "server/core/within_memory.h"
 #include "server/machine/listen_error.h"
 #include "server/net/await_tuple.h"
 #include "server/net/clock.h"
@@ -66,7 +67,9 @@ asio::awaitable<void> MocapInput::Read() {
     if (error == asio::error::operation_aborted || !socket_.is_open()) co_return;
     if (error) continue;  // an error of one datagram; the socket still works
     metrics_->Add(Counter::kMocapPackets);
-    OnDatagram({buffer_.data(), size}, sender.address(), ReadClock());
+    WithinMemory(metrics_, [&] {
+      OnDatagram({buffer_.data(), size}, sender.address(), ReadClock());
+    });
   }
 }
 

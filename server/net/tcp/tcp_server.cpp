@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/net/tcp/tcp_server.h"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <exception>
@@ -16,9 +17,11 @@
 #include <asio/detached.hpp>
 #include <asio/steady_timer.hpp>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include "protocol/framing/tcp_framing.h"
 #include "server/core/network_address.h"
+#include "server/core/within_memory.h"
 #include "server/machine/listen_error.h"
 #include "server/net/await_tuple.h"
 #include "server/net/clock.h"
@@ -31,6 +34,10 @@ namespace {
 
 using asio::ip::tcp;
 constexpr auto kAcceptPause = std::chrono::milliseconds(100);
+// For a restart: the most that may wait for one client and for all. Clients that are further behind
+// connect again.
+constexpr std::size_t kMaxSavedBytesOfOne = std::size_t{256} << 10;
+constexpr std::size_t kMaxSavedBytes = std::size_t{64} << 20;
 
 // Sends one reply on a connection that is refused. The buffer of a new socket has room for it. If
 // the send fails, the client only sees the connection close.
@@ -117,10 +124,11 @@ void TcpServer::SetLimits(const Limits& limits) {
 void TcpServer::Start() { StartCriticalTask(io_, Accept()); }
 
 asio::awaitable<void> TcpServer::Accept() {
-  while (acceptor_.is_open()) {
-    // Completes with an error when Drain() closes the acceptor.
+  while (acceptor_.is_open() && !leaves_) {
+    // Completes with an error when Drain() closes the acceptor, or Leave() cancels this.
     auto [error, socket] = co_await acceptor_.async_accept(kAwaitTuple);
-    if (!acceptor_.is_open()) co_return;
+    // A connection that was accepted before has its place, also if the daemon leaves.
+    if (!acceptor_.is_open() || (leaves_ && error)) co_return;
     if (error) {
       // No descriptors are left, or the peer has gone. The pause keeps the loop from spinning.
       spdlog::warn("cannot accept a connection: {}", error.message());
@@ -131,7 +139,9 @@ asio::awaitable<void> TcpServer::Accept() {
     try {
       const std::string host = error ? std::string() : HostOf(client.address().to_string());
       Lobby::Stay stay;
-      if (!shares_.HasRoomFor(host)) stay = lobby_.Enter(ReadClock());
+      if (lobby_.HasQueue(host) || !shares_.HasRoomFor(host)) {
+        stay = lobby_.Enter(host, ReadClock());
+      }
       if (stay == nullptr) {
         Admit(std::move(socket), host);
       } else {
@@ -146,11 +156,11 @@ asio::awaitable<void> TcpServer::Accept() {
 
 // Waits until a connection without use has given way to the newcomer.
 asio::awaitable<void> TcpServer::WaitForPlace(tcp::socket socket, std::string host,
-                                              [[maybe_unused]] Lobby::Stay stay) {
+                                              Lobby::Stay stay) {
   try {
     const Time begun = ReadClock();
     Time again = begun;
-    while (acceptor_.is_open() && !shares_.HasRoomFor(host)) {
+    while (acceptor_.is_open() && !(lobby_.IsFirst(host, stay) && shares_.HasRoomFor(host))) {
       const Time now = ReadClock();
       if (now - begun >= Lobby::kPatience) break;
       if (now >= again) {
@@ -194,7 +204,18 @@ void TcpServer::Admit(tcp::socket socket, const std::string& host) {
 // The session has the place of the host in `shares_` once it is in `sessions_`.
 void TcpServer::Begin(std::shared_ptr<StreamSocket> stream, const std::string& host) {
   metrics_->Add(Counter::kConnectionsAccepted);
-  const auto session = std::make_shared<TcpSession>(
+  const auto session = Add(std::move(stream), host);
+  try {
+    session->Start();
+  } catch (const std::bad_alloc&) {
+    metrics_->Add(Counter::kAllocationsFailed);
+    session->Close();  // gives the place back
+  }
+}
+
+std::shared_ptr<TcpSession> TcpServer::Add(std::shared_ptr<StreamSocket> stream,
+                                           const std::string& host) {
+  auto session = std::make_shared<TcpSession>(
       std::move(stream), limits_, hub_, metrics_,
       // Runs on this thread, in Close(). The server outlives its sessions: the daemon destroys it
       // after the event loop has ended.
@@ -202,12 +223,67 @@ void TcpServer::Begin(std::shared_ptr<StreamSocket> stream, const std::string& h
         if (sessions_.erase(closed) > 0) shares_.Leave(host);
       });
   sessions_.insert(session);
-  try {
-    session->Start();
-  } catch (const std::bad_alloc&) {
-    metrics_->Add(Counter::kAllocationsFailed);
-    session->Close();  // gives the place back
+  return session;
+}
+
+bool TcpServer::Leave() {
+  leaves_ = true;
+  asio::error_code ignored;
+  acceptor_.cancel(ignored);
+  bool have_left = true;
+  for (const auto& session : sessions_) have_left &= session->Leave();
+  return have_left;
+}
+
+std::vector<int> TcpServer::Save(SavedState* state, std::size_t most) {
+  std::vector<int> sockets;
+  std::size_t room = kMaxSavedBytes;
+  for (const auto& session : AllSessions()) {
+    const bool saved = WithinMemory(metrics_, [&] {
+      if (sockets.size() >= most) return session->Stay();
+      auto connection = session->Save(std::min(room, kMaxSavedBytesOfOne));
+      if (!connection) return session->Stay();
+      room -= std::min(room, connection->output.size());
+      state->connections.push_back(*std::move(connection));
+      sockets.push_back(session->socket());
+    });
+    if (!saved) session->Close();
   }
+  return sockets;
+}
+
+void TcpServer::Stay() {
+  for (const auto& session : AllSessions()) {
+    if (!WithinMemory(metrics_, [&] { session->Stay(); })) session->Close();
+  }
+}
+
+bool TcpServer::OwesFrames() const {
+  return std::ranges::any_of(sessions_, [](const auto& session) { return session->OwesFrames(); });
+}
+
+void TcpServer::Resume(const SavedConnection& saved, int number, Hub::ResumedPeers* peers) {
+  asio::error_code error;
+  tcp::socket socket(io_);
+  // Both protocols are the same to a socket that is connected.
+  socket.assign(tcp::v4(), number, error);
+  if (error) {
+    close(number);
+    return;
+  }
+  const tcp::endpoint client = socket.remote_endpoint(error);
+  const SavedPeer& peer = saved.peer;
+  // A new configuration may not let it in any more. The hub ends those whose keys are gone.
+  const bool is_stranger = hub_->RequiresToken() && !peer.access;
+  if (error || is_stranger || tls_->enabled()) return;
+  const std::string host = HostOf(client.address().to_string());
+  if (!shares_.Enter(host)) return;
+  std::optional<Access> access;
+  if (peer.access)
+    access = Access::Of(peer.access->grant, peer.access->key_id, peer.access->expires);
+  const auto session = Add(std::make_shared<StreamSocket>(std::move(socket)), host);
+  const PeerId id = session->Resume(saved, std::move(access));
+  if (id != 0) peers->try_emplace(peer.id, Hub::ResumedPeer{id, &peer});
 }
 
 // Returns whether a session has begun.
@@ -268,8 +344,9 @@ void TcpServer::Refuse(tcp::socket& socket, protocol::ErrorCode code, const std:
 void TcpServer::Drain() {
   asio::error_code error;
   acceptor_.close(error);
-  // CloseAfterFlush() never erases a session at once, so the loop may use the set.
-  for (const auto& session : sessions_) session->CloseAfterFlush(/*linger=*/false);
+  for (const auto& session : AllSessions()) {
+    session->is_saved() ? session->Close() : session->CloseAfterFlush(/*linger=*/false);
+  }
 }
 
 void TcpServer::CloseAll() {

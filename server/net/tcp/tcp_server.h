@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <unordered_set>
+#include <vector>
 
 #include <asio/awaitable.hpp>
 #include <asio/io_context.hpp>
@@ -19,6 +21,7 @@
 #include "server/machine/service_manager.h"
 #include "server/net/tcp/stream_socket.h"
 #include "server/net/tcp/tcp_session.h"
+#include "server/saved/saved_state.h"
 #include "server/session/hub.h"
 #include "server/tls/handshake.h"
 #include "server/tls/handshake_places.h"
@@ -47,8 +50,24 @@ class TcpServer {
   // Uses other limits for connections from now on.
   void SetLimits(const Limits& limits);
 
-  // Stops accepting. Open connections send what is queued and close.
+  // For a restart: stops accepting, and stops reading and writing where the next daemon can go on
+  // (TcpSession::Leave()). False: some of these connections are still busy; call it again.
+  [[nodiscard]] bool Leave();
+  // Saves the connections that have left for the next daemon, `most` of them. Returns their
+  // sockets, which stay open until Drain(). Other connections go on here.
+  [[nodiscard]] std::vector<int> Save(SavedState* state, std::size_t most);
+  // All connections go on here: nobody takes those that were saved.
+  void Stay();
+  [[nodiscard]] int socket() { return acceptor_.native_handle(); }
+  // Goes on with a connection of the former daemon. The socket belongs to this object.
+  void Resume(const SavedConnection& saved, int socket, Hub::ResumedPeers* peers);
+
+  // Stops accepting. Connections that were saved close at once, without an end that the client
+  // would see while the next daemon has the socket. Other open connections send what is queued and
+  // close.
   void Drain();
+  // True if a connection has not sent all frames that may not be left out.
+  [[nodiscard]] bool OwesFrames() const;
   // Closes all connections immediately.
   void CloseAll();
   [[nodiscard]] std::size_t num_sessions() const { return sessions_.size(); }
@@ -59,6 +78,11 @@ class TcpServer {
   asio::awaitable<void> WaitForPlace(asio::ip::tcp::socket socket, std::string host,
                                      Lobby::Stay stay);
   void Begin(std::shared_ptr<StreamSocket> stream, const std::string& host);
+  // A copy, because Close() erases a session.
+  [[nodiscard]] std::vector<std::shared_ptr<TcpSession>> AllSessions() const {
+    return {sessions_.begin(), sessions_.end()};
+  }
+  std::shared_ptr<TcpSession> Add(std::shared_ptr<StreamSocket> stream, const std::string& host);
   asio::awaitable<bool> BeginWithTls(std::shared_ptr<StreamSocket> stream, std::string host);
   asio::awaitable<void> RefusePlain(StreamSocket& stream);
   void Refuse(asio::ip::tcp::socket& socket, protocol::ErrorCode code, const std::string& why);
@@ -71,8 +95,9 @@ class TcpServer {
   const TlsIdentity* const tls_;
   HandshakeBudget handshakes_;
   HandshakePlaces handshake_places_;
-  FairShare shares_;  // of the sessions and handshakes
-  Lobby lobby_;       // of newcomers that wait for a place
+  FairShare shares_;     // of the sessions and handshakes
+  bool leaves_ = false;  // newcomers wait in the listening socket for the next daemon
+  Lobby lobby_;          // of newcomers that wait for a place
   std::unordered_set<std::shared_ptr<TcpSession>> sessions_;
 };
 

@@ -15,6 +15,7 @@
 
 #include "protocol/framing/tcp_framing.h"
 #include "protocol/messages/limits.h"
+#include "server/machine/socket_cookie.h"
 #include "server/net/await_tuple.h"
 #include "server/net/clock.h"
 #include "server/session/peers/peer_label.h"
@@ -63,9 +64,11 @@ TcpSession::TcpSession(std::shared_ptr<StreamSocket> stream, const Limits& limit
       // The reader checks a length before it allocates, so a client can make it hold this much at
       // most.
       frames_(hub->RequiresToken() ? kStrangerBytes : protocol::kMaxRequestBytes),
-      in_(kReadBytes) {}
+      in_(hub->RequiresToken() ? kStrangerBytes : kReadBytes) {}
 
-void TcpSession::Start() {
+void TcpSession::Start() { Begin({}); }
+
+void TcpSession::Begin(std::optional<Access> access) {
   asio::error_code error;
   // Nagle's algorithm would hold a small message back until the last one is acknowledged. The
   // writer joins messages itself.
@@ -74,26 +77,93 @@ void TcpSession::Start() {
   setsockopt(stream_->socket().native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &kUnsentBytes,
              sizeof(kUnsentBytes));
   thread_ = std::this_thread::get_id();
-  peer_ = hub_->AddPeer(Transport::kTcp, NameOf(*stream_), this, ReadClock());
-  // Each coroutine holds the session, which therefore lives until the last of them has ended,
-  // whatever Close() does. The hub has only a pointer to the Link, and RemovePeer() takes it back.
+  peer_ = hub_->AddPeer(Transport::kTcp, NameOf(*stream_), this, ReadClock(), 0, std::move(access));
+  StartTasks();
+}
+
+void TcpSession::StartTasks() {
+  for (const Task task : {kRead, kWrite, kWatch}) {
+    if ((running_ & task) == 0) Spawn(task);
+  }
+}
+
+// Each coroutine holds the session, which therefore lives until the last of them has ended,
+// whatever Close() does. The hub has only a pointer to the Link, and RemovePeer() takes it back.
+void TcpSession::Spawn(Task task) {
   const auto self = shared_from_this();
-  const auto executor = stream_->get_executor();
-  // An exception, such as out of memory, ends this connection only.
-  const auto ended = [self](const std::exception_ptr& failed) {
-    if (failed) self->Close();
-  };
+  running_ |= task;
   asio::co_spawn(
-      executor, [self] { return self->Read(); }, ended);
-  asio::co_spawn(
-      executor, [self] { return self->Write(); }, ended);
-  asio::co_spawn(
-      executor, [self] { return self->Watch(); }, ended);
+      stream_->get_executor(), [self, task] { return self->Perform(task); },
+      [self, task](const std::exception_ptr& failed) {
+        self->running_ &= ~task;
+        // Such as out of memory, which ends this connection only.
+        if (failed) self->Close();
+      });
+}
+
+asio::awaitable<void> TcpSession::Perform(Task task) {
+  if (task == kRead) return Read();
+  return task == kWrite ? Write() : Watch();
+}
+
+PeerId TcpSession::Resume(const SavedConnection& saved, std::optional<Access> access) {
+  if (access || !hub_->RequiresToken()) OnAdmitted();
+  std::span<const std::uint8_t> input = saved.input;
+  std::span<const std::uint8_t> frame;
+  // A frame that is complete would have been read by the former daemon.
+  if (!input.empty() && frames_.Push(input, frame) != protocol::FrameStatus::kNeedMore) {
+    Close();
+    return 0;
+  }
+  unsent_ = saved.output;
+  Begin(std::move(access));
+  return peer_;
+}
+
+bool TcpSession::Leave() {
+  if (!leaves_ && (state_ != State::kOpen || stream_->is_tls() || !hub_->MaySavePeer(peer_))) {
+    return true;
+  }
+  leaves_ = true;
+  if (running_ == 0) return true;
+  // A write that has just succeeded in part goes on after a cancellation, so one may not suffice.
+  asio::error_code ignored;
+  stream_->socket().cancel(ignored);
+  wake_.cancel();
+  watch_.cancel();
+  return false;
+}
+
+std::optional<SavedConnection> TcpSession::Save(std::size_t room) {
+  if (!leaves_ || running_ != 0 || state_ != State::kOpen) return std::nullopt;
+  {
+    const std::lock_guard lock(mutex_);
+    if (unsent_.size() + outbox_.bytes() > room) return std::nullopt;
+  }
+  auto peer = hub_->SavePeer(peer_);
+  if (!peer) return std::nullopt;
+  std::vector<std::uint8_t> output;
+  while (FillWriteBuffer()) output.insert(output.end(), out_.begin(), out_.end());
+  unsent_ = output;  // for Stay()
+  is_saved_ = true;
+  return SavedConnection{.socket = SocketCookie(socket()),
+                         .input = frames_.unfinished(),
+                         .output = std::move(output),
+                         .peer = *std::move(peer)};
+}
+
+void TcpSession::Stay() {
+  if (!std::exchange(leaves_, false)) return;
+  is_saved_ = false;
+  if (state_ != State::kClosed) StartTasks();
 }
 
 asio::awaitable<void> TcpSession::Read() {
   while (state_ != State::kClosed) {
+    if (leaves_) co_return;
+    if (is_admitted_ && in_.size() < kReadBytes) in_.resize(kReadBytes);
     const auto [error, size] = co_await stream_->async_read_some(asio::buffer(in_), kAwaitTuple);
+    if (error == asio::error::operation_aborted) continue;  // by Leave() or Close()
     if (error) break;
     if (state_ != State::kOpen) continue;  // ignore input; wait for the end of the stream
     // Without a valid length the start of the next frame is unknown, so the stream cannot go on.
@@ -122,6 +192,7 @@ bool TcpSession::OnBytes(std::span<const std::uint8_t> bytes, Time now) {
 // the sending direction, and let the reader wait for the peer's end.
 asio::awaitable<void> TcpSession::Write() {
   while (state_ == State::kOpen || state_ == State::kFlushing) {
+    if (leaves_) co_return;
     if (FillWriteBuffer()) {
       write_started_ = ReadClock();
       // While a write is in progress nobody has to wake the writer: it looks again afterwards.
@@ -129,7 +200,11 @@ asio::awaitable<void> TcpSession::Write() {
       const auto [error, size] =
           co_await asio::async_write(*stream_, asio::buffer(out_), kAwaitTuple);
       SetWriting(false);
-      if (error) Close();
+      if (error == asio::error::operation_aborted) {  // by Leave() or Close()
+        unsent_.assign(out_.begin() + static_cast<std::ptrdiff_t>(size), out_.end());
+      } else if (error) {
+        Close();
+      }
     } else if (state_ == State::kFlushing) {
       state_ = State::kLingering;
       co_await stream_->EndSending(linger_);
@@ -147,7 +222,12 @@ asio::awaitable<void> TcpSession::Write() {
 // Moves queued messages into out_, up to kWriteBytes. False: nothing is queued.
 bool TcpSession::FillWriteBuffer() {
   out_.clear();
+  if (!unsent_.empty()) {
+    out_.swap(unsent_);
+    return true;
+  }
   const std::lock_guard lock(mutex_);
+  owes_frames_ = outbox_.owes_frames();
   // Takes little at a time: what stays in the outbox can still be replaced by newer frames, what is
   // in out_ cannot.
   while (out_.size() < kWriteBytes && outbox_.Pop(&message_)) {
@@ -160,11 +240,11 @@ bool TcpSession::FillWriteBuffer() {
 }
 
 asio::awaitable<void> TcpSession::Watch() {
-  while (state_ != State::kClosed) {
+  while (state_ != State::kClosed && !leaves_) {
     // Polls instead of moving a deadline with every message, which would cost each of them a timer.
     watch_.expires_after(kWatchInterval);
     co_await watch_.async_wait(kAwaitTuple);
-    if (state_ != State::kClosed && IsOverdue(ReadClock())) {
+    if (state_ != State::kClosed && !leaves_ && IsOverdue(ReadClock())) {
       metrics_->Add(Counter::kConnectionsIdle);
       Close();
     }
@@ -194,6 +274,11 @@ void TcpSession::CloseAfterFlush(bool linger) {
   hub_->RemovePeer(peer_);
   // The writer may be asleep with an empty outbox; it has to see kFlushing.
   wake_.cancel();
+}
+
+bool TcpSession::OwesFrames() {
+  const std::lock_guard lock(mutex_);
+  return state_ != State::kClosed && (owes_frames_ || outbox_.owes_frames());
 }
 
 void TcpSession::Close() {
@@ -235,7 +320,10 @@ int TcpSession::SendFrame(std::uint64_t key, std::span<const std::uint8_t> messa
 }
 
 // Called while this session reads a message.
-void TcpSession::OnAdmitted() { frames_.SetMaxFrameBytes(protocol::kMaxRequestBytes); }
+void TcpSession::OnAdmitted() {
+  is_admitted_ = true;
+  frames_.SetMaxFrameBytes(protocol::kMaxRequestBytes);
+}
 
 // Later, because the hub is using this peer right now.
 void TcpSession::Finish() {

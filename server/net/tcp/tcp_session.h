@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <thread>
 #include <vector>
@@ -17,6 +18,7 @@
 #include "server/core/limits.h"
 #include "server/core/metrics.h"
 #include "server/net/tcp/stream_socket.h"
+#include "server/saved/saved_state.h"
 #include "server/session/hub.h"
 #include "server/session/peers/outbox.h"
 
@@ -34,9 +36,28 @@ class TcpSession : public Link, public std::enable_shared_from_this<TcpSession> 
 
   // Adds the peer to the hub and starts the coroutines, which keep this object alive.
   void Start();
+  // Goes on with a connection of the former daemon instead of Start(). `access`: by a token that it
+  // has shown there; none: that of everybody. Returns the peer; 0: the connection was closed.
+  [[nodiscard]] PeerId Resume(const SavedConnection& saved, std::optional<Access> access);
+
+  // For a restart: stops reading and writing, so that the next daemon goes on with the connection.
+  // False: something still reads or writes; call it again. Does nothing and returns true if the
+  // connection cannot go there.
+  [[nodiscard]] bool Leave();
+  // What the next daemon needs besides the socket. Nothing: the connection cannot go there, it is
+  // still busy, or more than `room` bytes wait for the client.
+  [[nodiscard]] std::optional<SavedConnection> Save(std::size_t room);
+  // True after Save(), if the next daemon goes on with the connection.
+  [[nodiscard]] bool is_saved() const { return is_saved_; }
+  // Goes on here after Leave() and Save(), with all that waits for the client.
+  void Stay();
+  [[nodiscard]] int socket() { return stream_->socket().native_handle(); }
+
   // Sends what is queued, then closes. `linger`: first reads and ignores input until the peer
   // closes, because closing with unread input would reset the connection and lose the last reply.
   void CloseAfterFlush(bool linger);
+  // True if frames that may not be left out (kKeepAll) still wait for the client.
+  [[nodiscard]] bool OwesFrames();
   // Closes immediately.
   void Close();
 
@@ -52,6 +73,14 @@ class TcpSession : public Link, public std::enable_shared_from_this<TcpSession> 
  private:
   enum class State { kOpen, kFlushing, kLingering, kClosed };
 
+  // The coroutines, as bits.
+  enum Task : unsigned { kRead = 1, kWrite = 2, kWatch = 4 };
+
+  void Begin(std::optional<Access> access);
+  // Starts those that do not run.
+  void StartTasks();
+  void Spawn(Task task);
+  asio::awaitable<void> Perform(Task task);
   asio::awaitable<void> Read();
   asio::awaitable<void> Write();
   bool FillWriteBuffer();
@@ -73,7 +102,13 @@ class TcpSession : public Link, public std::enable_shared_from_this<TcpSession> 
   protocol::FrameReader frames_;
   std::vector<std::uint8_t> in_;
   std::vector<std::uint8_t> message_;
-  std::vector<std::uint8_t> out_;  // frames being written
+  std::vector<std::uint8_t> out_;     // frames being written
+  std::vector<std::uint8_t> unsent_;  // left over, before what is queued
+  bool owes_frames_ = false;          // out_ may hold kKeepAll frames
+  bool is_admitted_ = false;          // OnAdmitted() was called
+  bool leaves_ = false;
+  bool is_saved_ = false;
+  unsigned running_ = 0;  // tasks
   PeerId peer_ = 0;
   std::atomic<State> state_ = State::kOpen;
   bool linger_ = false;

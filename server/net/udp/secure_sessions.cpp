@@ -85,6 +85,33 @@ bool SecureSessions::Seal(std::uint32_t session, std::span<std::uint8_t> packet,
   return true;
 }
 
+std::vector<SavedSecureSession> SecureSessions::TakeAll() {
+  const std::lock_guard lock(mutex_);
+  std::vector<SavedSecureSession> all;
+  for (secure::SessionState& session : server_.TakeAll()) {
+    const std::size_t place = PlaceOf(session.index);
+    all.push_back({.shard = shard_of_[place],
+                   .is_v4 = is_v4_[place],
+                   .scope = scope_of_[place],
+                   .session = std::move(session)});
+  }
+  return all;
+}
+
+std::optional<Access> SecureSessions::Resume(const SavedSecureSession& saved, Time now) {
+  const std::lock_guard lock(mutex_);
+  const std::uint32_t index = saved.session.index;
+  if (saved.shard >= closed_.size() || !server_.Resume(saved.session, At(now))) {
+    return std::nullopt;
+  }
+  const std::size_t place = PlaceOf(index);
+  shard_of_[place] = saved.shard;
+  is_v4_[place] = saved.is_v4;
+  scope_of_[place] = saved.scope;
+  const auto info = server_.InfoOf(index);
+  return Access::Of(*info.grant, info.key_id, gate_->ExpiryOf(info.expires, now));
+}
+
 void SecureSessions::SetKeys(secure::KeyRing keys) {
   const std::lock_guard lock(mutex_);
   server_.SetKeys(std::move(keys));

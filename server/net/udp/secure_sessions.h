@@ -15,6 +15,7 @@
 #include "server/core/metrics.h"
 #include "server/core/time.h"
 #include "server/net/udp/datagram_sealer.h"
+#include "server/saved/saved_state.h"
 #include "server/session/access/access.h"
 #include "server/session/access/token_gate.h"
 
@@ -41,6 +42,12 @@ class SecureSessions : public DatagramSealer {
                                    const asio::ip::udp::endpoint& from, int shard, Time now);
   [[nodiscard]] bool Seal(std::uint32_t session, std::span<std::uint8_t> packet,
                           asio::ip::udp::endpoint& to) override;
+
+  // Ends all sessions and returns those that another process can go on with. Nothing is sealed
+  // afterwards.
+  [[nodiscard]] std::vector<SavedSecureSession> TakeAll();
+  // Goes on with a session of a former process. Nothing: it has ended (SecureServer::Resume()).
+  [[nodiscard]] std::optional<Access> Resume(const SavedSecureSession& saved, Time now);
 
   // Replaces the keys. Sessions end whose keys are no longer there.
   void SetKeys(protocol::secure::KeyRing keys);

@@ -3,11 +3,16 @@
 
 #include <chrono>
 #include <exception>
+#include <map>
+#include <optional>
+#include <utility>
 
 #include <asio/post.hpp>
 #include <asio/steady_timer.hpp>
 
 #include "base/status.h"
+#include "server/core/within_memory.h"
+#include "server/machine/socket_cookie.h"
 #include "server/net/await_tuple.h"
 #include "server/net/clock.h"
 #include "server/net/critical_task.h"
@@ -30,7 +35,7 @@ Limits LimitsOfShard(Limits limits, int shards) {
 
 UdpPort::UdpPort(asio::io_context& io, int shards, const Limits& limits, Hub* hub, Metrics* metrics,
                  RecordingTap* recording, SecureSessions* secure, bool requires_token)
-    : io_(io), hub_(hub), metrics_(metrics) {
+    : io_(io), hub_(hub), metrics_(metrics), secure_(secure) {
   std::vector<UdpServer*> by_shard;
   for (int shard = 0; shard < shards; ++shard) {
     // The hint 1 tells Asio that one thread runs the loop.
@@ -45,6 +50,10 @@ UdpPort::UdpPort(asio::io_context& io, int shards, const Limits& limits, Hub* hu
 }
 
 UdpPort::~UdpPort() { Close(); }
+
+void UdpPort::SetBusyPoll(Time time) {
+  for (const auto& server : servers_) server->SetBusyPoll(time);
+}
 
 // The first socket opens the port exclusively. If another daemon has the port, this is an error,
 // and the two do not share the port by accident.
@@ -63,6 +72,13 @@ Status UdpPort::Open(const asio::ip::udp::endpoint& endpoint) {
   // create a second peer of the same sender in another shard, and the two would fight over a
   // subject.
   for (const auto& server : servers_) server->DropWaiting();
+  return {};
+}
+
+Status UdpPort::Adopt(std::span<const int> sockets) {
+  for (std::size_t shard = 0; shard < servers_.size(); ++shard) {
+    FURROW_RETURN_IF_ERROR(servers_[shard]->Adopt(sockets[shard]));
+  }
   return {};
 }
 
@@ -90,7 +106,7 @@ asio::awaitable<void> UdpPort::ExpireLoop(std::size_t shard) {
   while (true) {
     timer.expires_after(kExpireInterval);
     co_await timer.async_wait(kAwaitTuple);
-    servers_[shard]->Expire(ReadClock());
+    WithinMemory(metrics_, [&] { servers_[shard]->Expire(ReadClock()); });
   }
 }
 
@@ -100,16 +116,68 @@ asio::awaitable<void> UdpPort::ReleaseLoop(std::size_t shard) {
   while (true) {
     timer.expires_after(kReleaseInterval);
     co_await timer.async_wait(kAwaitTuple);
-    hub_->ReleaseHeld(static_cast<int>(shard), ReadClock());
+    WithinMemory(metrics_, [&] { hub_->ReleaseHeld(static_cast<int>(shard), ReadClock()); });
   }
+}
+
+void UdpPort::Save(SavedState* state) {
+  for (const auto& server : servers_) {
+    server->Save(&state->udp);
+    state->udp_sockets.push_back(SocketCookie(server->socket()));
+  }
+  if (secure_ != nullptr) state->secure = secure_->TakeAll();
+}
+
+std::vector<int> UdpPort::sockets() {
+  std::vector<int> all;
+  for (const auto& server : servers_) all.push_back(server->socket());
+  return all;
+}
+
+void UdpPort::Resume(const SavedState& state, Hub::ResumedPeers* peers, Time now) {
+  std::map<std::uint32_t, Access> sessions;
+  for (const SavedSecureSession& saved : state.secure) {
+    if (secure_ == nullptr) break;
+    if (auto access = secure_->Resume(saved, now)) {
+      sessions.emplace(saved.session.index, *std::move(access));
+    }
+  }
+  for (const SavedUdpPeer& saved : state.udp) {
+    if (saved.shard >= servers_.size()) continue;
+    std::optional<Access> access;
+    if (saved.secure_session != 0) {
+      const auto session = sessions.find(saved.secure_session);
+      if (session == sessions.end()) continue;
+      access = session->second;
+    }
+    const PeerId id = servers_[saved.shard]->Resume(saved, std::move(access), now);
+    if (id != 0) peers->try_emplace(saved.peer.id, Hub::ResumedPeer{id, &saved.peer});
+  }
+}
+
+void UdpPort::Leave() {
+  for (const auto& server : servers_) server->StopReading();
+  if (threads_.empty()) return;
+  Join();
+  // Packets that one shard has opened for another one would be lost: their senders do not repeat
+  // them, and the next daemon would refuse them if they did.
+  for (const auto& loop : loops_) {
+    loop->restart();
+    while (!WithinMemory(metrics_, [&loop = *loop] { loop.poll(); })) {
+    }
+  }
+}
+
+void UdpPort::Join() {
+  for (const auto& loop : loops_) loop->stop();
+  for (std::thread& thread : threads_) thread.join();
+  threads_.clear();
 }
 
 void UdpPort::Close() {
   // The sockets close after the threads have ended, since an Asio socket must not be closed on one
   // thread while another uses it.
-  for (const auto& loop : loops_) loop->stop();
-  for (std::thread& thread : threads_) thread.join();
-  threads_.clear();
+  Join();
   for (const auto& server : servers_) server->Close();
 }
 

@@ -191,12 +191,19 @@ void UdpSender::Flush() {
   num_items_ = num_addresses_ = num_slices_ = num_datagrams_ = used_ = num_sealed_ = 0;
 }
 
+// sendmmsg() from message `at` on. One message, the usual case below 20,000 poses per second, takes
+// 0.3 us less with sendmsg().
+int UdpSender::Call(std::size_t at, std::size_t num_messages) {
+  const auto count = static_cast<unsigned>(num_messages - at);
+  if (count > 1) return sendmmsg(socket_, &headers_[at], count, MSG_DONTWAIT);
+  return sendmsg(socket_, &headers_[at].msg_hdr, MSG_DONTWAIT) < 0 ? -1 : 1;
+}
+
 void UdpSender::Send(std::size_t num_messages) {
   std::size_t at = 0;
   while (at < num_messages) {
     ++counts_.calls;
-    const int sent =
-        sendmmsg(socket_, &headers_[at], static_cast<unsigned>(num_messages - at), MSG_DONTWAIT);
+    const int sent = Call(at, num_messages);
     // sendmmsg() stops at the first message that fails. It returns the error only if that message
     // is the first of the call, so the failed one is always headers_[at].
     if (sent < 0 && errno == EINTR) continue;

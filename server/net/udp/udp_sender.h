@@ -114,6 +114,7 @@ class UdpSender {
   void Append(Datagram& datagram, const Item& item);
   [[nodiscard]] std::size_t EndOfRun(std::size_t first) const;
   void Write(std::size_t message);
+  int Call(std::size_t at, std::size_t num_messages);
   void Send(std::size_t num_messages);
   bool Retry(std::size_t message);
   void CountSent(const Datagram& datagram);

@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <cstring>
 #include <optional>
 #include <string>
 
 #include <asio/post.hpp>
 #include <asio/use_awaitable.hpp>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include "protocol/framing/envelope.h"
 #include "server/core/network_address.h"
@@ -18,6 +20,7 @@
 #include "server/net/await_tuple.h"
 #include "server/net/clock.h"
 #include "server/net/critical_task.h"
+#include "server/net/local_endpoint.h"
 #include "server/net/udp/udp_address.h"
 #include "server/session/peers/peer_label.h"
 
@@ -38,6 +41,15 @@ asio::error_code AllowSharing(int socket) {
   return {errno, asio::error::get_system_category()};
 }
 
+// The host of an address, as in HostOf(): its network of 64 bits. In ::/64, which has the mapped
+// IPv4 addresses, it is the other half.
+std::uint64_t HostNumber(const UdpAddress& address) {
+  std::uint64_t host = 0;
+  std::memcpy(&host, address.data(), sizeof(host));
+  if (host == 0) std::memcpy(&host, address.data() + sizeof(host), sizeof(host));
+  return host;
+}
+
 }  // namespace
 
 // One UDP address. Its messages leave when the shard is flushed, as bundles if the peer accepts
@@ -48,6 +60,7 @@ class UdpServer::UdpPeer : public Link {
           std::uint32_t secure_session = 0)
       : session(peer_session),
         address(AddressOf(endpoint)),
+        host_number_(HostNumber(address)),
         server_(server),
         endpoint_(endpoint),
         secure_session_(secure_session) {}
@@ -69,9 +82,28 @@ class UdpServer::UdpPeer : public Link {
   void SetTakesBundles(bool takes) override { takes_bundles_ = takes; }
   void DropFrames(std::uint64_t) override {}  // nothing is queued
 
+  // What the hub does not know of it.
+  [[nodiscard]] SavedUdpPeer Saved(int shard) const {
+    return {.shard = static_cast<std::uint8_t>(shard),
+            .address = address,
+            .scope = ScopeOf(endpoint_),
+            .is_v4 = endpoint_.address().is_v4(),
+            .session = session,
+            .secure_session = secure_session_,
+            .next_message = next_message_id_,
+            .takes_bundles = takes_bundles_,
+            .peer = {}};
+  }
+  void GoOnFrom(const SavedUdpPeer& saved) {
+    next_message_id_ = saved.next_message;
+    takes_bundles_ = saved.takes_bundles;
+  }
+
   [[nodiscard]] std::string host() const { return HostOf(endpoint_.address().to_string()); }
+  [[nodiscard]] protocol::FragmentSource source() const { return {host_number_, id}; }
 
   PeerId id = 0;
+  Peer* entry = nullptr;  // of the hub
   const std::uint64_t
       session;            // in all messages of the peer; 0 for secure ones, which may have any
   const Address address;  // of a secure peer: the first one
@@ -88,6 +120,7 @@ class UdpServer::UdpPeer : public Link {
     }
   }
 
+  const std::uint64_t host_number_;
   UdpServer* server_;
   udp::endpoint endpoint_;
   const std::uint32_t secure_session_;              // 0: plain
@@ -127,10 +160,35 @@ Status UdpServer::Open(const udp::endpoint& endpoint, Port port) {
                        "--udp");
   }
   UdpBatch::CountDropped(socket_.native_handle());
-  sender_.Open(socket_.native_handle());
+  PrepareSocket(/*adopted=*/false);
   // The kernel may grant less; then drops begin earlier.
   socket_.set_option(asio::socket_base::receive_buffer_size(kReceiveBufferBytes), error);
   return {};
+}
+
+Status UdpServer::Adopt(int socket) {
+  asio::error_code error;
+  const udp::endpoint bound = LocalEndpoint(socket, error);
+  if (!error) socket_.assign(bound.protocol(), socket, error);
+  if (error) close(socket);
+  if (!error) socket_.non_blocking(true, error);
+  if (error) {
+    return {StatusCode::kUnavailable,
+            "cannot use the UDP socket of the former daemon: " + error.message()};
+  }
+  PrepareSocket(/*adopted=*/true);
+  return {};
+}
+
+void UdpServer::PrepareSocket(bool adopted) {
+  sender_.Open(socket_.native_handle());
+  // An adopted socket has the option of the former daemon. A new one has that of the system.
+  if (busy_poll_ == Time{0} && !adopted) return;
+  // Lets a look for datagrams ask the network card. Optional: it needs a privilege unless it is 0,
+  // and the loopback has no card.
+  const auto microseconds = static_cast<int>(ToMicroseconds(busy_poll_));
+  setsockopt(socket_.native_handle(), SOL_SOCKET, SO_BUSY_POLL, &microseconds,
+             sizeof(microseconds));
 }
 
 Status UdpServer::Share() {
@@ -160,30 +218,63 @@ void UdpServer::Close() {
 }
 
 asio::awaitable<void> UdpServer::Read() {
-  while (socket_.is_open()) {
+  while (IsReading()) {
     // Asio only waits; recvmmsg() reads, because Asio receives one datagram per call.
     const auto [error] = co_await socket_.async_wait(udp::socket::wait_read, kAwaitTuple);
-    if (error) co_return;
-    bool is_drained = false;
-    for (int batch = 0; batch < kMaxBatches && !is_drained; ++batch) {
-      const std::size_t count = batch_.Receive(socket_.native_handle());
-      // One clock reading per batch. The datagrams of a batch waited for the same system call.
-      const Time now = ReadClock();
-      metrics_->Add(Counter::kDatagramsReceived, count);
-      metrics_->Add(Counter::kDatagramsOverrun, batch_.TakeDropped());
-      // Held for a whole batch: its end solves the poses together and flushes the messages. Not
-      // held across co_await, which would let other coroutines of this thread run inside it.
-      const Hub::ShardLock lock(*hub_, shard_);
-      for (std::size_t i = 0; i < count; ++i) {
-        WithinMemory(metrics_, [&] { OnDatagram(batch_.bytes(i), batch_.sender(i), now); });
-      }
-      ForgetClosed();
-      ReleaseInTime();
-      is_drained = count < UdpBatch::kSize;
-    }
+    if (error || stops_reading_) co_return;
+    metrics_->Add(Counter::kWakeUps);
+    const std::uint64_t before = num_of_peers_;
+    const bool is_drained = ReadBatches();
     // Lets timers and TCP run while datagrams keep arriving.
     if (!is_drained) co_await asio::post(io_, asio::use_awaitable);
+    // Strangers must not keep a core busy.
+    if (busy_poll_ == Time{0} || num_of_peers_ == before) continue;
+    busy_until_ = ReadClock() + busy_poll_;
+    while (IsReading() && ReadClock() < busy_until_) {
+      Poll();
+      co_await asio::post(io_, asio::use_awaitable);
+    }
   }
+}
+
+// True if no datagrams are left.
+bool UdpServer::ReadBatches() {
+  for (int batch = 0; batch < kMaxBatches; ++batch) {
+    const std::size_t count = batch_.Receive(socket_.native_handle());
+    HandleBatch(count);
+    if (count < UdpBatch::kSize) return true;
+  }
+  return false;
+}
+
+// A few looks for datagrams, since the loop's own look at all other work costs as much as several.
+void UdpServer::Poll() {
+  constexpr int kLooks = 16;
+  int batches = 0;
+  for (int look = 0; look < kLooks && batches < kMaxBatches; ++look) {
+    const std::size_t count = batch_.Receive(socket_.native_handle());
+    if (count == 0) continue;
+    ++batches;
+    const std::uint64_t before = num_of_peers_;
+    HandleBatch(count);
+    metrics_->Add(Counter::kWakeUpsSpared);
+    if (num_of_peers_ != before) busy_until_ = ReadClock() + busy_poll_;
+  }
+}
+
+void UdpServer::HandleBatch(std::size_t count) {
+  // One clock reading per batch. The datagrams of a batch waited for the same system call.
+  const Time now = ReadClock();
+  metrics_->Add(Counter::kDatagramsReceived, count);
+  metrics_->Add(Counter::kDatagramsOverrun, batch_.TakeDropped());
+  // Held for a whole batch: its end solves the poses together and flushes the messages. Not held
+  // across co_await, which would let other coroutines of this thread run inside it.
+  const Hub::ShardLock lock(*hub_, shard_);
+  for (std::size_t i = 0; i < count; ++i) {
+    WithinMemory(metrics_, [&] { OnDatagram(batch_.bytes(i), batch_.sender(i), now); });
+  }
+  ForgetClosed();
+  ReleaseInTime();
 }
 
 // Requires the shard's lock. An own timer, because few streams need one, and those to the
@@ -240,6 +331,7 @@ void UdpServer::OnPlain(std::span<const std::uint8_t> bytes, const udp::endpoint
   UdpPeer* peer = Find(address, session);
   if (peer == nullptr) peer = Receive(address, sender, session, bytes, now);
   if (peer == nullptr) return;
+  ++num_of_peers_;
   Deliver(*peer, bytes, Lifetime::kBatch, now);
 }
 
@@ -247,11 +339,11 @@ void UdpServer::Deliver(const UdpPeer& peer, std::span<const std::uint8_t> bytes
                         Time now) {
   if (recording_ != nullptr) recording_->OnDatagram(peer.address, bytes, now);
   std::span<const std::uint8_t> message;
-  switch (reassembler_.Push(peer.id, bytes, ToMicroseconds(now), message)) {
+  switch (reassembler_.Push(peer.source(), bytes, ToMicroseconds(now), message)) {
     // The batch keeps whole datagrams until the lock ends, so poses may wait. The reassembler
     // reuses its buffer, so a reassembled message is handled at once.
     case protocol::FragmentStatus::kWhole:
-      if (lifetime == Lifetime::kBatch) return hub_->GatherMessage(peer.id, message, now);
+      if (lifetime == Lifetime::kBatch) return hub_->GatherMessage(*peer.entry, message, now);
       return hub_->OnMessage(peer.id, message, now);
     case protocol::FragmentStatus::kComplete: return hub_->OnMessage(peer.id, message, now);
     case protocol::FragmentStatus::kPending:
@@ -268,6 +360,7 @@ void UdpServer::OnSealed(std::span<std::uint8_t> bytes, const udp::endpoint& sen
   const protocol::secure::ServerEvent& event = outcome.event;
   if (event.reply_size > 0) SendToStranger(event.reply(), sender);
   if (event.session == 0) return;
+  ++num_of_peers_;
   if (outcome.shard != shard_) {
     return PassOn(
         outcome.shard,
@@ -326,14 +419,16 @@ void UdpServer::PassOn(int shard, SessionPacket packet) {
   });
 }
 
-void UdpServer::AddSealed(std::uint32_t session, const Access& access, const udp::endpoint& sender,
-                          Time now) {
+UdpServer::UdpPeer& UdpServer::AddSealed(std::uint32_t session, const Access& access,
+                                         const udp::endpoint& sender, Time now) {
   try {
     UdpPeer& peer = *sealed_.emplace(session, std::make_unique<UdpPeer>(this, sender, 0, session))
                          .first->second;
     peer.id = hub_->AddPeer(Transport::kUdp,
                             LabelOf("secure udp", sender.address().to_string(), sender.port()),
                             &peer, now, shard_, access);
+    peer.entry = hub_->FindPeer(peer.id);
+    return peer;
   } catch (...) {
     sealed_.erase(session);
     secure_->Close(session);
@@ -409,6 +504,7 @@ UdpServer::UdpPeer* UdpServer::Add(const Address& address, const udp::endpoint& 
     peer.id =
         hub_->AddPeer(Transport::kUdp, LabelOf("udp", sender.address().to_string(), sender.port()),
                       &peer, now, shard_);
+    peer.entry = hub_->FindPeer(peer.id);
     if (consent) hub_->SetConsent(peer.id, *consent);
     return &peer;
   } catch (...) {
@@ -418,11 +514,41 @@ UdpServer::UdpPeer* UdpServer::Add(const Address& address, const udp::endpoint& 
   }
 }
 
+void UdpServer::Save(std::vector<SavedUdpPeer>* peers) {
+  for (const auto& [address, peer] : peers_) SaveOne(*peer, peers);
+  for (const auto& [session, peer] : sealed_) SaveOne(*peer, peers);
+}
+
+void UdpServer::SaveOne(const UdpPeer& peer, std::vector<SavedUdpPeer>* peers) {
+  auto saved = hub_->SavePeer(peer.id);
+  if (!saved) return;
+  peers->push_back(peer.Saved(shard_));
+  peers->back().peer = *std::move(saved);
+}
+
+PeerId UdpServer::Resume(const SavedUdpPeer& saved, std::optional<Access> access, Time now) {
+  protocol::secure::PeerAddress from;
+  std::copy_n(saved.address.begin(), from.host.size(), from.host.begin());
+  from.port = static_cast<std::uint16_t>(saved.address[16] << 8 | saved.address[17]);
+  const udp::endpoint endpoint = ToEndpoint(from, saved.is_v4, saved.scope);
+  UdpPeer* peer = nullptr;
+  if (access) {
+    if (!sealed_.contains(saved.secure_session)) {
+      peer = &AddSealed(saved.secure_session, *access, endpoint, now);
+    }
+  } else if (!hub_->RequiresToken() && !peers_.contains(saved.address)) {
+    peer = Add(saved.address, endpoint, saved.session, now);
+  }
+  if (peer == nullptr) return 0;
+  peer->GoOnFrom(saved);
+  return peer->id;
+}
+
 // The hub first: it may use the Link until then. Messages that the sender still holds have their
 // own copy of the address.
 void UdpServer::Forget(const UdpPeer& peer) {
   hub_->RemovePeer(peer.id);
-  reassembler_.ForgetPeer(peer.id);
+  reassembler_.ForgetPeer(peer.source());
 }
 
 void UdpServer::Expire(Time now) {

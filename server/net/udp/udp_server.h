@@ -25,6 +25,7 @@
 #include "server/net/udp/secure_sessions.h"
 #include "server/net/udp/udp_batch.h"
 #include "server/net/udp/udp_sender.h"
+#include "server/saved/saved_state.h"
 #include "server/session/hub.h"
 #include "server/session/peers/reception.h"
 
@@ -60,13 +61,29 @@ class UdpServer : public BufferedSender {
   // Sets the servers of all shards. What a shard publishes leaves through the shard's own socket,
   // even if the receiving peer belongs to another shard. Call it before Start().
   void Join(std::vector<UdpServer*> by_shard) { by_shard_ = std::move(by_shard); }
+  // Uses a UDP socket that is bound already, instead of Open(). Errors: kUnavailable. The socket is
+  // closed then.
+  [[nodiscard]] Status Adopt(int socket);
   [[nodiscard]] std::uint16_t port() const;
+  [[nodiscard]] int socket() { return socket_.native_handle(); }
   // Drops the datagrams that have arrived since Open(). Call it before Start().
   void DropWaiting();
+  // Looks for datagrams for up to `time` after the last ones of peers before the thread sleeps: a
+  // wake-up takes longer than a pose. 0: never. Call it before Open() or Adopt().
+  void SetBusyPoll(Time time) { busy_poll_ = time; }
   // Starts reading. Fatal errors propagate out of the event loop.
   void Start();
   // Stops reading and closes the socket.
   void Close();
+
+  // For a restart: reads no further datagrams, which wait for the next daemon. Thread-safe.
+  void StopReading() { stops_reading_ = true; }
+  // Saves the peers for the next daemon. Call it on the shard's thread or after that
+  // has ended.
+  void Save(std::vector<SavedUdpPeer>* peers);
+  // Goes on with a peer of the former daemon. `access`: of its secure session, which is here
+  // already. 0: it has no place.
+  [[nodiscard]] PeerId Resume(const SavedUdpPeer& saved, std::optional<Access> access, Time now);
 
   // Sends the shard's messages to UDP peers.
   void Flush() override;
@@ -95,6 +112,11 @@ class UdpServer : public BufferedSender {
   enum class Lifetime : std::uint8_t { kBatch, kCall };
 
   asio::awaitable<void> Read();
+  [[nodiscard]] bool IsReading() const { return socket_.is_open() && !stops_reading_; }
+  void PrepareSocket(bool adopted);
+  bool ReadBatches();
+  void Poll();
+  void HandleBatch(std::size_t count);
   void OnDatagram(std::span<std::uint8_t> bytes, const asio::ip::udp::endpoint& sender, Time now);
   void OnPlain(std::span<const std::uint8_t> bytes, const asio::ip::udp::endpoint& sender,
                Time now);
@@ -105,8 +127,8 @@ class UdpServer : public BufferedSender {
                Time now);
   void DeliverOpened(const UdpPeer& peer, std::span<const std::uint8_t> bytes, Lifetime lifetime,
                      Time now);
-  void AddSealed(std::uint32_t session, const Access& access, const asio::ip::udp::endpoint& sender,
-                 Time now);
+  UdpPeer& AddSealed(std::uint32_t session, const Access& access,
+                     const asio::ip::udp::endpoint& sender, Time now);
   void ForgetSealed(std::uint32_t session);
   void ForgetClosed();
   void SendToStranger(std::span<const std::uint8_t> datagram, const asio::ip::udp::endpoint& to);
@@ -116,6 +138,7 @@ class UdpServer : public BufferedSender {
                    std::uint64_t session, std::span<const std::uint8_t> bytes, Time now);
   UdpPeer* Add(const Address& address, const asio::ip::udp::endpoint& sender, std::uint64_t session,
                Time now);
+  void SaveOne(const UdpPeer& peer, std::vector<SavedUdpPeer>* peers);
   void Forget(const UdpPeer& peer);
   void ReleaseInTime();
 
@@ -138,6 +161,10 @@ class UdpServer : public BufferedSender {
   // Wakes up for poses that wait for an earlier one.
   asio::steady_timer release_;
   std::optional<Time> release_at_;  // none: not armed
+  std::atomic<bool> stops_reading_ = false;
+  Time busy_poll_{0};
+  Time busy_until_{0};
+  std::uint64_t num_of_peers_ = 0;  // datagrams received from peers
   // Packets that other shards have passed on and that wait for this shard's thread.
   std::atomic<int> num_passed_ = 0;
 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // From datagram to weight packet through real sockets, the UDP server and the hub.
+#include <chrono>
 #include <deque>
 #include <memory>
 #include <string>
@@ -19,16 +20,20 @@ namespace {
 
 using asio::ip::udp;
 
+struct Setting {
+  int shards = 1;  // they run in turn here
+  std::chrono::microseconds busy_poll{0};
+};
+
 // Subjects with joints and blend shapes, solved with the filter, each published from a socket of
-// its own, and all watched by one UDP subscriber. Parameter: the number of shards, which run in
-// turn here.
-class UdpPathTest : public HubTest, public testing::WithParamInterface<int> {
+// its own, and all watched by one UDP subscriber.
+class UdpPathTest : public HubTest, public testing::WithParamInterface<Setting> {
  protected:
   static constexpr int kJoints = 12;  // an offer must fit into a datagram
   static constexpr int kSubjects = 8;
 
   void SetUp() override {
-    MakeWith(MakeRig(/*filter=*/true), {}, GetParam());
+    MakeWith(MakeRig(/*filter=*/true), {}, GetParam().shards);
     OpenPort();
     Connect(viewer);
     viewer.set_option(asio::socket_base::receive_buffer_size(1 << 20));
@@ -42,9 +47,10 @@ class UdpPathTest : public HubTest, public testing::WithParamInterface<int> {
   // One socket per shard.
   void OpenPort() {
     std::vector<UdpServer*> by_shard;
-    for (int shard = 0; shard < GetParam(); ++shard) {
+    for (int shard = 0; shard < GetParam().shards; ++shard) {
       auto& server = servers.emplace_back(
           std::make_unique<UdpServer>(io, Limits(), hub.get(), &metrics, nullptr, shard));
+      server->SetBusyPoll(GetParam().busy_poll);
       const std::uint16_t port = shard == 0 ? 0 : servers.front()->port();
       ASSERT_TRUE(
           server->Open({asio::ip::address_v4::loopback(), port}, UdpServer::Port::kShared).ok());
@@ -170,7 +176,9 @@ TEST_P(UdpPathTest, ALostPoseDelaysTheNextOneByATimer) {
   EXPECT_EQ(weights.values.size(), 2u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Shards, UdpPathTest, testing::Values(1, 3));
+INSTANTIATE_TEST_SUITE_P(Settings, UdpPathTest,
+                         testing::Values(Setting{}, Setting{.shards = 3},
+                                         Setting{.busy_poll = std::chrono::microseconds(50)}));
 
 }  // namespace
 }  // namespace furrow::server
