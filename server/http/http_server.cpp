@@ -4,6 +4,8 @@
 #include <array>
 #include <chrono>
 #include <exception>
+#include <filesystem>
+#include <functional>
 #include <new>
 #include <optional>
 #include <span>
@@ -95,14 +97,16 @@ Result<PageFiles> LoadPage(const HttpConfig& config) {
 constexpr std::uintmax_t kMaxCharacterBytes = 4'000'000;
 
 // An installation without the page still has the API, WebSockets and pictures.
-PageFiles PageOrNone(const HttpServer::Parts& parts) {
-  Result<PageFiles> page = LoadPage(parts.config);
+PageFiles PageOrNone(const HttpConfig& config,
+                     const std::function<std::filesystem::path()>& find_character) {
+  Result<PageFiles> page = LoadPage(config);
   if (!page.ok()) {
     spdlog::warn("serving without a web page: {}", page.status().ToString());
     return {};
   }
-  if (!parts.character.empty()) {
-    const Status status = page->Add(kCharacterPath, parts.character, kMaxCharacterBytes);
+  const auto character = find_character ? find_character() : std::filesystem::path();
+  if (!character.empty()) {
+    const Status status = page->Add(kCharacterPath, character, kMaxCharacterBytes);
     if (!status.ok()) spdlog::warn("browsers cannot draw the character: {}", status.ToString());
   }
   return *std::move(page);
@@ -114,12 +118,14 @@ struct HttpServer::Impl {
   explicit Impl(Parts parts)
       : context{.config = parts.config,
                 .guard = RequestGuard(parts.config),
-                .page = PageOrNone(parts),
+                .page = {},
                 .post_to_hub = std::move(parts.post_to_hub),
                 .answer = std::move(parts.answer),
                 .metrics = parts.metrics,
                 .gate = parts.gate,
-                .tls = parts.tls} {
+                .tls = parts.tls,
+                .cluster = parts.cluster},
+        find_character(std::move(parts.find_character)) {
     // Weak: tasks in the hub's queue may hold this function after the web server has gone.
     context.post_to_web = [weak = std::weak_ptr(loop)](std::function<void()> task) {
       if (const auto alive = weak.lock()) net::post(*alive, std::move(task));
@@ -136,6 +142,7 @@ struct HttpServer::Impl {
   void Run();
 
   WebContext context;  // outlives the loop; its connections use it
+  const std::function<std::filesystem::path()> find_character;
   HandshakeBudget handshakes;
   HandshakePlaces handshake_places;
   FairShare shares{static_cast<std::size_t>(context.config.max_connections)};
@@ -157,7 +164,7 @@ Status HttpServer::Impl::Listen(const std::string& bind, std::uint16_t wanted) {
   if (!error) acceptor.listen(net::socket_base::max_listen_connections, error);
   if (error) {
     beast::error_code ignored;
-    // Start() may call this again with another port.
+    // HttpServer::Listen() may call this again with another port.
     acceptor.close(ignored);
     return ListenError("TCP", {bind, wanted}, error.value(), "--http (or use --no-http)");
   }
@@ -191,7 +198,7 @@ net::awaitable<void> HttpServer::Impl::Accept() {
     try {
       std::string host = error ? std::string() : HostOf(client.address().to_string());
       Lobby::Stay stay;
-      if (!shares.HasRoomFor(host)) stay = lobby.Enter(ReadClock());
+      if (lobby.HasQueue(host) || !shares.HasRoomFor(host)) stay = lobby.Enter(host, ReadClock());
       if (stay == nullptr) {
         Admit(std::move(socket), host);
       } else {
@@ -223,13 +230,13 @@ void HttpServer::Impl::Admit(tcp::socket socket, const std::string& host) {
 
 // The hub knows which connections are without use, and ends the one that has been so for longest.
 net::awaitable<void> HttpServer::Impl::WaitForPlace(tcp::socket socket, std::string host,
-                                                    [[maybe_unused]] Lobby::Stay stay) {
+                                                    Lobby::Stay stay) {
   try {
     const auto all_in_use = std::make_shared<bool>(false);
     const Time begun = ReadClock();
     Time again = begun;
     net::steady_timer timer(*loop);
-    while (!*all_in_use && !shares.HasRoomFor(host)) {
+    while (!*all_in_use && !(lobby.IsFirst(host, stay) && shares.HasRoomFor(host))) {
       const Time now = ReadClock();
       if (now - begun >= Lobby::kPatience) break;
       if (now >= again) {
@@ -306,6 +313,8 @@ net::awaitable<bool> HttpServer::Impl::BeginTls(WebStream* stream, const std::st
 // without its web server.
 void HttpServer::Impl::Run() {
   try {
+    // Here, because reading and compressing takes a while, and weights need not wait for it.
+    context.page = PageOrNone(context.config, find_character);
     RunLoop(*loop, context.metrics);
   } catch (...) {
     context.post_to_hub(
@@ -313,7 +322,7 @@ void HttpServer::Impl::Run() {
   }
 }
 
-Result<std::unique_ptr<HttpServer>> HttpServer::Start(Parts parts) {
+Result<std::unique_ptr<HttpServer>> HttpServer::Listen(Parts parts) {
   const std::string bind = parts.bind;
   const std::optional<std::uint16_t> asked = parts.config.port;
   const std::optional<ServiceManager::Listener> listener = parts.listener;
@@ -327,13 +336,16 @@ Result<std::unique_ptr<HttpServer>> HttpServer::Start(Parts parts) {
     status = impl->Listen(bind, 0);
   }
   if (!status.ok()) return status;
-  net::co_spawn(*impl->loop, impl->Accept(), [](const std::exception_ptr& failed) {
+  return std::unique_ptr<HttpServer>(new HttpServer(std::move(impl)));
+}
+
+void HttpServer::Start() {
+  net::co_spawn(*impl_->loop, impl_->Accept(), [](const std::exception_ptr& failed) {
     // Not std::bad_alloc, which RunLoop() takes for the failure of one handler.
     if (failed) throw std::runtime_error("the web server cannot accept connections any more");
   });
   // After co_spawn(), so that run() finds work and does not return at once.
-  impl->thread = std::thread([impl = impl.get()] { impl->Run(); });
-  return std::unique_ptr<HttpServer>(new HttpServer(std::move(impl)));
+  impl_->thread = std::thread([impl = impl_.get()] { impl->Run(); });
 }
 
 HttpServer::HttpServer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -342,8 +354,10 @@ HttpServer::~HttpServer() {
   // The coroutines do not end; they are destroyed with the loop. Their destructors call
   // post_to_hub, so the hub's event loop must still exist.
   impl_->loop->stop();
-  impl_->thread.join();
+  if (impl_->thread.joinable()) impl_->thread.join();
 }
+
+int HttpServer::listening_socket() const { return impl_->acceptor.native_handle(); }
 
 const HostPort& HttpServer::address() const { return impl_->address; }
 int HttpServer::connections() const { return impl_->context.connections; }

@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "base/status.h"
+#include "server/cluster/coordinator.h"
 #include "server/config/http_config.h"
 #include "server/core/network_address.h"
 #include "server/http/request/web_context.h"
@@ -24,26 +26,32 @@ class HttpServer {
     HttpConfig config;
     std::string bind;                                  // numeric address
     std::optional<ServiceManager::Listener> listener;  // used instead of `bind` and the port
-    // The character for browsers that draw it themselves, served as /character.glb; empty: none.
-    std::filesystem::path character;
+    // The file of the character for browsers that draw it themselves, served as /character.glb.
+    // Called once, on the server's thread. Empty, or an empty path: there is none.
+    std::function<std::filesystem::path()> find_character;
     PostToHub post_to_hub;
-    AnswerApi answer;                  // called on the hub's thread
-    Metrics* metrics = nullptr;        // not null; outlives the server
-    const TokenGate* gate = nullptr;   // outlives the server; null: everybody may do everything
-    const TlsIdentity* tls = nullptr;  // outlives the server; null or not enabled: plain HTTP
+    AnswerApi answer;                      // called on the hub's thread
+    Metrics* metrics = nullptr;            // not null; outlives the server
+    const TokenGate* gate = nullptr;       // outlives the server; null: everybody may do everything
+    const TlsIdentity* tls = nullptr;      // outlives the server; null or not enabled: plain HTTP
+    const Coordinator* cluster = nullptr;  // outlives the server; null: the daemon is alone
   };
-  // Starts listening. Errors: kIo, naming the address and the port. A missing page is only logged;
-  // everything else works without it.
-  [[nodiscard]] static Result<std::unique_ptr<HttpServer>> Start(Parts parts);
+  // Opens the port. Clients wait until Start(). Errors: kIo, naming the address and the port. A
+  // missing page is only logged; everything else works without it.
+  [[nodiscard]] static Result<std::unique_ptr<HttpServer>> Listen(Parts parts);
   // Closes all connections and joins the thread. Call it on the hub's thread or after that has
   // ended.
   ~HttpServer();
   HttpServer(const HttpServer&) = delete;
   HttpServer& operator=(const HttpServer&) = delete;
 
+  // Answers clients from now on, on a thread of its own. Call it once, when all of `Parts` is
+  // ready.
+  void Start();
   // Where it listens.
   [[nodiscard]] const HostPort& address() const;
   [[nodiscard]] std::uint16_t port() const { return address().port; }
+  [[nodiscard]] int listening_socket() const;
   // The open connections, and those of them that are WebSockets or picture streams. Thread-safe.
   [[nodiscard]] int connections() const;
   [[nodiscard]] int viewers() const;

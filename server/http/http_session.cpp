@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/http/http_session.h"
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
 #include <memory>
 #include <new>
 #include <optional>
@@ -17,6 +20,7 @@
 #include <boost/beast/websocket/rfc6455.hpp>
 
 #include "server/http/pictures/picture_stream.h"
+#include "server/http/request/elsewhere.h"
 #include "server/http/request/reply_writer.h"
 #include "server/http/request/request_access.h"
 #include "server/http/socket/web_socket.h"
@@ -28,6 +32,7 @@ namespace furrow::server {
 namespace {
 
 constexpr Time kProbeAge = std::chrono::milliseconds(100);
+constexpr Time kSkipTime = std::chrono::seconds(2);  // for a body that nobody reads
 
 // Asks the hub's thread for a reply, or replies with 503 after kWebDeadline. `host`: it pays for
 // the time that the hub's thread needs.
@@ -143,6 +148,7 @@ class HttpSession {
       }
       goes_on = co_await Answer();
     }
+    if (unread_bytes_ > 0 && stream_.is_open()) co_await SkipBody();
     // After an upgrade the socket has moved to the WebSocket. Otherwise tell the client that no
     // reply follows.
     if (stream_.is_open()) co_await stream_.EndSending();
@@ -159,9 +165,24 @@ class HttpSession {
     // It also ends idle connections.
     stream_.expires_after(kWebDeadline);
     beast::error_code error;
-    co_await http::async_read(stream_, buffer_, parser, Redirect(error));
+    co_await http::async_read_header(stream_, buffer_, parser, Redirect(error));
+    bool has_body = false;
     if (!error) {
+      Admit(parser.get());
+      has_body = !parser.is_done();
+    }
+    // A stranger cannot make the daemon hold a body, so the reply does not wait for it.
+    const bool skips_body = has_body && !access_.admitted();
+    if (has_body && !skips_body) {
+      co_await http::async_read(stream_, buffer_, parser, Redirect(error));
+    }
+    if (!error) {
+      if (skips_body) {
+        unread_bytes_ =
+            std::min<std::uint64_t>(parser.content_length().value_or(0), kMaxWebMessageBytes);
+      }
       request_ = parser.release();
+      if (skips_body) request_.keep_alive(false);
       context_->metrics->Add(Counter::kHttpRequests);
       co_return true;
     }
@@ -172,6 +193,54 @@ class HttpSession {
       co_await RejectBytes(error);
     }
     co_return false;
+  }
+
+  // Reads the header: sets the URL, what the client may do, and the reply that refuses the request.
+  void Admit(const WebRequest& request) {
+    url_.reset();
+    access_ = Access();
+    refusal_ = Refuse(request);
+  }
+
+  std::optional<ApiReply> Refuse(const WebRequest& request) {
+    // First of all checks: a foreign web page must not reach any route, not even a WebSocket.
+    const std::string why = context_->guard.Check(ToView(request[http::field::host]),
+                                                  ToView(request[http::field::origin]));
+    if (!why.empty()) {
+      context_->metrics->Add(Counter::kHttpRefused);
+      return ErrorReply(403, "forbidden", "", why);
+    }
+    url_ = ParseUrl(ToView(request.target()));
+    if (!url_) return ErrorReply(400, "parse", "", "the request target is not a valid path");
+    if (LacksCertificate(url_->path)) {
+      context_->metrics->Add(Counter::kTlsNoCertificate);
+      return ErrorReply(403, "forbidden", "", "show a client certificate");
+    }
+    Result<Access> access = AccessOf(request, context_->gate, client_.shielded, &*url_);
+    if (access.ok() && access->admitted()) {
+      access_ = *std::move(access);
+      return std::nullopt;
+    }
+    if (IsForAll(url_->path)) return std::nullopt;
+    if (access.ok()) context_->metrics->Add(Counter::kRefusedNoToken);
+    // 401 asks for a token, and the page then asks its user. Not where it would be disclosed.
+    return access.ok() && !context_->gate->TakesTokens(client_.shielded)
+               ? ErrorReply(403, "forbidden", "", kNoTokenHereText)
+               : NeedsToken(access.ok() ? kNeedsTokenText : access.status().what());
+  }
+
+  // Reads the body of a refused request away. Closing with unread input would reset the connection,
+  // and the client might not get the reply.
+  net::awaitable<void> SkipBody() {
+    std::array<char, 4096> unused;
+    stream_.expires_after(kSkipTime);
+    beast::error_code error;
+    unread_bytes_ -= std::min<std::uint64_t>(unread_bytes_, buffer_.size());
+    while (unread_bytes_ > 0 && !error) {
+      const std::size_t size =
+          co_await stream_.async_read_some(net::buffer(unused), Redirect(error));
+      unread_bytes_ -= std::min<std::uint64_t>(unread_bytes_, size);
+    }
   }
 
   // Replies to invalid bytes. The connection closes afterwards.
@@ -195,36 +264,8 @@ class HttpSession {
 
   // False: the connection must close.
   net::awaitable<bool> Answer() {
-    // First of all checks: a foreign web page must not reach any route, not even a WebSocket.
-    access_ = Access();
-    const std::string why = context_->guard.Check(ToView(request_[http::field::host]),
-                                                  ToView(request_[http::field::origin]));
-    if (!why.empty()) {
-      context_->metrics->Add(Counter::kHttpRefused);
-      co_return co_await WriteReply(stream_, request_, ErrorReply(403, "forbidden", "", why));
-    }
-    std::optional<Url> url = ParseUrl(ToView(request_.target()));
-    if (!url) {
-      co_return co_await WriteReply(
-          stream_, request_,
-          ErrorReply(400, "parse", "", "the request target is not a valid path"));
-    }
-    if (LacksCertificate(url->path)) {
-      context_->metrics->Add(Counter::kTlsNoCertificate);
-      co_return co_await WriteReply(stream_, request_,
-                                    ErrorReply(403, "forbidden", "", "show a client certificate"));
-    }
-    Result<Access> access = AccessOf(request_, context_->gate, client_.shielded, &*url);
-    const bool admitted = access.ok() && access->admitted();
-    if (!admitted && !IsForAll(url->path)) {
-      if (access.ok()) context_->metrics->Add(Counter::kRefusedNoToken);
-      // 401 asks for a token, and the page then asks its user. Not where it would be disclosed.
-      ApiReply reply = access.ok() && !context_->gate->TakesTokens(client_.shielded)
-                           ? ErrorReply(403, "forbidden", "", kNoTokenHereText)
-                           : NeedsToken(access.ok() ? kNeedsTokenText : access.status().what());
-      co_return co_await WriteReply(stream_, request_, std::move(reply));
-    }
-    if (admitted) access_ = *std::move(access);
+    if (refusal_) co_return co_await WriteReply(stream_, request_, *std::move(refusal_));
+    std::optional<Url> url = std::move(url_);
     if (url->path == "/ws") {
       if (beast::websocket::is_upgrade(request_)) {
         // The session gives its socket away and ends with the WebSocket.
@@ -234,6 +275,14 @@ class HttpSession {
       co_return co_await WriteReply(
           stream_, request_,
           ErrorReply(400, "upgrade", "", "/ws accepts WebSocket connections only"));
+    }
+    // A client of WebSockets does not follow such a reply. Its subscriptions are answered instead.
+    if (IsStream(url->path) && IsRead(request_) && !beast::websocket::is_upgrade(request_)) {
+      auto reply = SendElsewhere(context_->cluster, *url, access_, stream_.is_tls(), ReadClock());
+      if (reply) {
+        context_->metrics->Add(Counter::kRedirected);
+        co_return co_await WriteReply(stream_, request_, *std::move(reply));
+      }
     }
     if (IsPicture(url->path) && IsRead(request_)) {
       co_return co_await ServePictures(&stream_, context_, request_, *url, access_);
@@ -341,7 +390,11 @@ class HttpSession {
   WebStream stream_;
   WebContext* context_;
   const PeerLabel client_;
-  Access access_;  // of the present request
+  // Of the present request; see Admit().
+  std::optional<Url> url_;
+  Access access_;
+  std::optional<ApiReply> refusal_;
+  std::uint64_t unread_bytes_ = 0;  // of its body
   beast::flat_buffer buffer_;
   WebRequest request_;
 };

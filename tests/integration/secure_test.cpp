@@ -340,6 +340,12 @@ TEST_F(Secure, EveryWebDoorIsClosedWithoutAToken) {
     EXPECT_EQ(status(path, "frw1_nonsense"), 401) << path;
   }
   EXPECT_EQ(status("/api/settings", "", "PATCH"), 401);
+  // The reply to a stranger does not wait for the body, and it arrives with the body on the way.
+  const std::string large =
+      "PATCH /api/settings HTTP/1.1\r\nHost: localhost\r\n"
+      "Content-Length: 60000\r\n\r\n";
+  EXPECT_EQ(WebClient(*daemon.ready().http).AskRaw(large + "{").status, 401);
+  EXPECT_EQ(WebClient(*daemon.ready().http).AskRaw(large + std::string(60'000, ' ')).status, 401);
   EXPECT_EQ(WebClient(*daemon.ready().http).Upgrade().status, 401);
   EXPECT_EQ(status("/healthz"), 200);
   const std::string watch = ToText(keys.Token(Role::kWatch, "ann"));

@@ -62,7 +62,7 @@ class WebFailure : public testing::Test {
     parts.metrics = &metrics;
     parts.random = [] { return 1; };
     hub = std::make_unique<Hub>(std::move(parts));
-    auto started = server::HttpServer::Start(
+    auto started = server::HttpServer::Listen(
         {.config = {.port = 0},
          .bind = "127.0.0.1",
          .post_to_hub = [this](Door::Task task) { door.Post(std::move(task)); },
@@ -72,6 +72,7 @@ class WebFailure : public testing::Test {
          .metrics = &metrics});
     ASSERT_TRUE(started.ok()) << started.status().ToString();
     http = *std::move(started);
+    http->Start();
   }
 
   server::Metrics metrics;

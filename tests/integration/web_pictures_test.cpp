@@ -140,12 +140,30 @@ TEST_F(WebPictures, MjpegFollowsThePoses) {
             std::string::npos);
   std::string before;
   for (int frame = 10; frame < 12; ++frame) {
-    const std::string picture = client.Take(PartLength(client));
+    std::string picture = client.Take(PartLength(client));
+    // A still comes twice, and on a busy machine the pose may rest for long enough to get one.
+    while (!picture.empty() && picture == before) picture = client.Take(PartLength(client));
     EXPECT_EQ(picture.substr(0, 2), "\xFF\xD8");
-    EXPECT_NE(picture, before);
     before = picture;
     SendPose(frame);
   }
+}
+
+// Browsers show a part when the next one begins, so the still comes twice.
+TEST_F(WebPictures, MjpegEndsWithTheStillOfAPoseAtRest) {
+  WebClient viewer(port());
+  const std::uint16_t stream = View(viewer);
+  SendPose(3);
+  const auto still = AwaitStill(viewer, stream);
+  ASSERT_TRUE(still.has_value());
+  WebClient client(port());
+  const auto answer = client.Ask("GET", "/mjpeg?subject=ann&width=64&height=64&shading=diffuse");
+  ASSERT_EQ(answer.status, 200);
+  const std::string expected(still->bytes.begin(), still->bytes.end());
+  std::string picture = client.Take(PartLength(client));
+  while (!picture.empty() && picture != expected) picture = client.Take(PartLength(client));
+  ASSERT_EQ(picture, expected);
+  EXPECT_EQ(client.Take(PartLength(client)), expected);
 }
 
 TEST_F(WebPictures, MjpegWaitsForASubjectThatHasLeft) {

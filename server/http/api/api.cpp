@@ -14,7 +14,6 @@ Api::Api(Parts parts)
                .pictures = parts.pictures,
                .video = parts.video,
                .plays = parts.player != nullptr,
-               .renderer = std::move(parts.renderer),
                .connections = std::move(parts.connections),
                .viewers = std::move(parts.viewers),
                .recording_is_paused = std::move(parts.recording_is_paused),

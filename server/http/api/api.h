@@ -41,7 +41,6 @@ class Api {
     PictureSource* pictures = nullptr;          // null: the daemon renders nothing
     const VideoEncoders* video = nullptr;       // null: the daemon renders nothing
     bool wants_pictures = false;                // the configuration asks for pictures
-    std::string renderer;                       // description of the renderer, for people
     Player* player = nullptr;                   // null: started without --play
     OscControl* osc = nullptr;                  // not null
     std::function<int()> connections;           // number of HTTP connections

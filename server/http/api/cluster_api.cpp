@@ -23,11 +23,9 @@ ApiReply Alone() {
 }
 
 Json NodeJson(const NodeAddress& node) {
-  return {{"node", node.name},
-          {"host", node.host},
-          {"tcp", node.tcp},
-          {"udp", node.udp},
-          {"http", node.http}};
+  const std::string web = WebAddressOf(node);
+  return {{"node", node.name}, {"host", node.host}, {"tcp", node.tcp},
+          {"udp", node.udp},   {"http", node.http}, {"web", web.empty() ? Json() : Json(web)}};
 }
 
 }  // namespace

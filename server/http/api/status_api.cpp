@@ -85,7 +85,7 @@ ApiReply StatusApi::ShowStatus(const ApiRequest& request, const Hub& hub, Time n
                     {"session", fmt::format("{:016x}", parts_.session)},
                     {"uptime_s", ToSeconds(now - parts_.started)},
                     {"render", parts_.pictures != nullptr},
-                    {"renderer", parts_.renderer},
+                    {"renderer", parts_.pictures == nullptr ? "" : parts_.pictures->description()},
                     {"software", parts_.pictures != nullptr && parts_.pictures->is_software()},
                     {"drawing", DrawingJson(parts_.pictures)},
                     {"video", VideoJson(parts_.video)},
@@ -113,9 +113,8 @@ ApiReply StatusApi::Ready(const Hub& hub, Time now) const {
     return ErrorReply(503, "unavailable", "", "rendering is enabled but no renderer is available");
   }
   if (parts_.pictures != nullptr && parts_.pictures->is_stuck()) {
-    return ErrorReply(
-        503, "unavailable", "",
-        "the renderer does not respond: pictures are off, weights go on; see the log");
+    return ErrorReply(503, "unavailable", "",
+                      parts_.pictures->fault() + ": pictures are off, weights go on; see the log");
   }
   if (parts_.recording_is_paused && parts_.recording_is_paused()) {
     return ErrorReply(503, "unavailable", "",

@@ -26,7 +26,6 @@ class StatusApi {
     const PictureSource* pictures = nullptr;    // the renderer; null: none is running
     const VideoEncoders* video = nullptr;       // null: the daemon renders nothing
     bool plays = false;                         // started with --play
-    std::string renderer;                       // description of the renderer, for people
     std::function<int()> connections;           // HTTP connections
     std::function<int()> viewers;               // WebSockets and picture streams
     std::function<bool()> recording_is_paused;  // by a full disk; empty: nothing is recorded

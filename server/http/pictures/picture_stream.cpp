@@ -191,9 +191,14 @@ net::awaitable<bool> ServeMjpeg(WebStream* stream, PictureStream* pictures,
       co_return co_await WriteReply(*stream, request, *std::move(next.refusal));
     }
     if (!next.has_image) co_return false;
-    const std::string part = (has_begun ? "" : head) + PartHead(pictures->image().bytes.size());
+    const protocol::ImageFrame& image = pictures->image();
+    const std::string part = PartHead(image.bytes.size());
+    const std::string first = has_begun ? part : head + part;
     has_begun = true;
-    if (!co_await WriteAll(stream, part, pictures->image().bytes, "\r\n")) co_return false;
+    if (!co_await WriteAll(stream, first, image.bytes, "\r\n")) co_return false;
+    // Browsers show a part when the next one begins. No picture follows a still until something
+    // changes, so without the repetition they would show the moving picture before it.
+    if (image.still && !co_await WriteAll(stream, part, image.bytes, "\r\n")) co_return false;
     // After the write has ended, so that the speed of the client limits how many pictures are
     // requested.
     pictures->Acknowledge();

@@ -32,6 +32,7 @@ struct ApiReply {
   std::string body;
   std::string file_name;  // suggested name for saving; empty: none
   std::string allow;      // status 405: the allowed methods, "GET, PATCH"
+  std::string location;   // status 307: the URL to ask instead
   int retry_after = 1;    // status 429 and 503: seconds
   bool closes = false;    // the connection ends after the reply
 };

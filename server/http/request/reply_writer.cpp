@@ -49,6 +49,7 @@ net::awaitable<bool> WriteReply(WebStream& stream, const WebRequest& request, Ap
   if (reply.status == 429 || reply.status == 503) {
     response.set(http::field::retry_after, std::to_string(reply.retry_after));
   }
+  if (!reply.location.empty()) response.set(http::field::location, reply.location);
   if (!reply.allow.empty()) response.set(http::field::allow, reply.allow);
   // A HEAD request for a picture renders none, so the length of the body is unknown.
   const bool has_no_length = request.method() == http::verb::head && reply.body.empty();

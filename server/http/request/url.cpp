@@ -2,6 +2,7 @@
 #include "server/http/request/url.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/text.h"
 
@@ -13,6 +14,24 @@ std::optional<std::string> DecodeQuery(std::string_view text) {
   std::string spaced(text);
   std::ranges::replace(spaced, '+', ' ');
   return DecodePercent(spaced);
+}
+
+// Escapes all bytes except letters, digits and those that never mean anything (RFC 3986 section
+// 2.3). `plain`: further bytes that stay.
+std::string Escaped(std::string_view text, std::string_view plain = {}) {
+  constexpr char kDigits[] = "0123456789ABCDEF";
+  constexpr std::string_view kUnreserved =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-._~";
+  std::string escaped;
+  for (const char c : text) {
+    if (kUnreserved.find(c) != std::string_view::npos || plain.find(c) != std::string_view::npos) {
+      escaped += c;
+    } else {
+      const auto byte = static_cast<unsigned char>(c);
+      escaped += {'%', kDigits[byte / 16], kDigits[byte % 16]};
+    }
+  }
+  return escaped;
 }
 
 }  // namespace
@@ -51,6 +70,15 @@ std::optional<Url> ParseUrl(std::string_view target) {
     url.values.emplace_back(*name, *value);
   }
   return url;
+}
+
+std::string TargetOf(const Url& url) {
+  std::string target = Escaped(url.path, "/");
+  char separator = '?';
+  for (const auto& [name, value] : url.values) {
+    target += std::exchange(separator, '&') + Escaped(name) + '=' + Escaped(value);
+  }
+  return target;
 }
 
 }  // namespace furrow::server

@@ -22,4 +22,7 @@ struct Url {
 // nullopt: it is not a path, or has an invalid escape.
 [[nodiscard]] std::optional<Url> ParseUrl(std::string_view target);
 
+// The request target of the URL: its path and query with percent escapes.
+[[nodiscard]] std::string TargetOf(const Url& url);
+
 }  // namespace furrow::server

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "server/cluster/coordinator.h"
 #include "server/config/http_config.h"
 #include "server/core/host_rates.h"
 #include "server/core/metrics.h"
@@ -40,8 +41,9 @@ struct WebContext {
   PostToWeb post_to_web;
   AnswerApi answer;
   Metrics* metrics = nullptr;
-  const TokenGate* gate = nullptr;   // null: everybody may do everything
-  const TlsIdentity* tls = nullptr;  // null or not enabled: plain HTTP
+  const TokenGate* gate = nullptr;       // null: everybody may do everything
+  const TlsIdentity* tls = nullptr;      // null or not enabled: plain HTTP
+  const Coordinator* cluster = nullptr;  // null: the daemon is alone
   std::shared_ptr<RequestBudget> budget =
       std::make_shared<RequestBudget>(config.api_share);  // of API requests
   // Of requests that are answered at once.

@@ -5,6 +5,7 @@
 
 #include "base/numbers.h"
 #include "protocol/codec/codec.h"
+#include "server/cluster/node/node_address.h"
 
 namespace furrow::server {
 namespace {
@@ -96,8 +97,20 @@ WeightLines::Line WeightLines::Translate(std::span<const std::uint8_t> message, 
   protocol::ErrorMessage error;
   if (protocol::Decode(view, error) != DecodeStatus::kOk) return Line::kNone;
   Begin("error", JsonText(Requested(view.header.sequence)), line);
-  *line += R"(,"message":)" + JsonText(error.message) + "}";
-  return Line::kText;
+  *line += R"(,"message":)" + JsonText(error.message);
+  const std::string web = WebAddressOf({.name = {},
+                                        .host = error.host,
+                                        .tcp = error.tcp,
+                                        .udp = error.udp,
+                                        .http = error.web,
+                                        .https = error.web_tls});
+  if (error.host.empty() || web.empty()) {
+    *line += '}';
+    return Line::kText;
+  }
+  // Another daemon serves the subject. Other subjects of the connection go on.
+  *line += R"(,"web":)" + JsonText(web) + "}";
+  return requests_.size() == 1 ? Line::kLast : Line::kText;
 }
 
 }  // namespace furrow::server

@@ -19,7 +19,7 @@ class WeightLines {
   enum class Line {
     kNone = 0,  // nothing to tell the client
     kText,      // `line` is the next line
-    kLast,      // the same, and the daemon shuts down: close the connection after it
+    kLast,      // the same, and nothing follows: close the connection after it
   };
 
   // `requests`: the subscriptions; request i was sent with sequence i + 1.

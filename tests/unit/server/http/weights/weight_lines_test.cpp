@@ -76,6 +76,24 @@ TEST_F(WeightLinesTest, TellsWhoIsAwaitedWhoLeftAndWhatIsWrong) {
   EXPECT_EQ(line_, R"({"type":"bye"})");
 }
 
+TEST_F(WeightLinesTest, ASubjectOfAnotherDaemonNamesItsAddress) {
+  protocol::ErrorMessage error{
+      protocol::ErrorCode::kUnknownSubject, "gone", "10.0.0.2", 7400, 7401, 7480, true};
+  ASSERT_EQ(Translate({.sequence = 2}, error), Line::kText) << "the other subject goes on";
+  EXPECT_EQ(line_,
+            R"({"type":"error","subject":"bob","message":"gone","web":"https://10.0.0.2:7480"})");
+  WeightLines single({{.subject = "ada"}});
+  const auto translate = [&] {
+    std::vector<std::uint8_t> bytes;
+    protocol::Encoder().Encode({.session = 1, .sequence = 1}, error, bytes);
+    return single.Translate(bytes, &line_);
+  };
+  EXPECT_EQ(translate(), Line::kLast) << "nothing else can follow";
+  error.web = 0;
+  EXPECT_EQ(translate(), Line::kText);
+  EXPECT_EQ(line_, R"({"type":"error","subject":"ada","message":"gone"})");
+}
+
 TEST_F(WeightLinesTest, WhatBelongsToNothingIsLeftOut) {
   EXPECT_EQ(Weights({1.0f}), Line::kNone) << "before the names";
   EXPECT_EQ(Translate({.stream = 9}, protocol::Goodbye{}), Line::kNone);
