@@ -52,6 +52,8 @@ export class AppState {
   private timer: ReturnType<typeof setTimeout> | null = null;
   private writesAtMs = Infinity;
   private began = false;
+  /** The state has changed before `begin`, when the address could not follow yet. */
+  private changedEarly = false;
 
   constructor(hash: string) {
     this.wishes = readAddress(hash);
@@ -71,6 +73,8 @@ export class AppState {
     this.follows = new Signal(this.wishes.follows);
     this.against = new Signal(this.wishes.against);
     this.dock = new Signal(this.wishes.dock);
+    this.writeOn([this.subject, this.wipe, this.strip, this.curves, this.panel, this.drawnBy, this.stream, this.kiosk, this.grid,
+      this.follows, this.against, this.dock, this.turning]);
   }
 
   /** Applies the URL once the daemon has replied. Returns names in the URL that the daemon does not know. */
@@ -78,10 +82,8 @@ export class AppState {
     this.began = true;
     const unknown = this.settings.begin(this.wishes.settings);
     this.setPresets(presets);
-    for (const signal of [this.subject, this.wipe, this.strip, this.curves, this.panel, this.drawnBy, this.stream, this.kiosk,
-      this.grid, this.follows, this.against, this.dock, this.turning, this.camera, this.settings.changed]) {
-      (signal as Signal<unknown>).watch(() => this.writeSoon());
-    }
+    this.writeOn([this.camera, this.settings.changed]);
+    if (this.changedEarly) this.writeSoon();
     return unknown;
   }
 
@@ -168,7 +170,15 @@ export class AppState {
     return location.href.replace(/#.*$/, '') + writeAddress(this.page());
   }
 
+  private writeOn(signals: readonly unknown[]): void {
+    for (const signal of signals) (signal as Signal<unknown>).watch(() => this.writeSoon());
+  }
+
   private writeSoon(): void {
+    if (!this.began) {
+      this.changedEarly = true;
+      return;
+    }
     const delayMs = this.turning.value ? TURNING_DELAY_MS : ADDRESS_DELAY_MS;
     const atMs = performance.now() + delayMs;
     if (this.timer !== null) {
