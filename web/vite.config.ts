@@ -10,11 +10,13 @@ function setting(name: string): string {
 }
 
 export default defineConfig({
+  assetsInclude: ['**/*.bfbs'],
   base: './', // relative, because a proxy may serve the page below a path
   cacheDir: `${setting('FURROW_WEB_BUILD')}/vite-cache`,
   resolve: {
     alias: {
       '@wire': `${setting('FURROW_JS_BUILD')}/wire/furrow/protocol/wire`,
+      '@take-schemas': setting('FURROW_TAKE_SCHEMAS'),
       '@shaders': `${setting('FURROW_JS_BUILD')}/shaders.ts`,
       'furrow/protocol': `${setting('FURROW_JS_SOURCE')}/furrow/src/protocol.ts`,
       'furrow-three/settings': `${setting('FURROW_JS_SOURCE')}/furrow-three/src/settings.ts`,

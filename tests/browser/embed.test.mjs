@@ -26,7 +26,7 @@ async function pageWithFrame(source) {
 }
 
 before(async () => {
-  const source = () => `${daemon.address}embed#camera=face`;
+  const source = () => `${daemon.address}embed?camera=body`;
   [stage, stranger] = [await pageWithFrame(source), await pageWithFrame(source)];
   const config = join(folder, 'furrow.toml');
   writeFileSync(config, `[http]\nallow_origins = ["${stage.origin}"]\n`);
@@ -64,6 +64,7 @@ test('a listed page may show the picture in a frame, a stranger may not', async 
   const frame = page.frames()[1];
   await frame.waitForSelector('.app[data-state=live]');
   assert.deepEqual(await alone(frame), { share: 1, others: 0 });
+  await frame.waitForSelector('[data-preset=body][aria-pressed=true]', { state: 'attached' }); // as the query says
   await page.context().close();
   const other = await openPage(browser, stranger.origin);
   await eventually('the refusal', () => other.errors.some((error) => error.includes('frame-ancestors')));

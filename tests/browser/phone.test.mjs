@@ -5,12 +5,12 @@ import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { before, test } from 'node:test';
 import { changedShare, eventually, keep, openPage, PHONE, pixels, still } from './browser.mjs';
+import { smallTargets } from './support/layout_audit.mjs';
 import { browser, daemon } from './played.mjs';
 
 const AXE = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 const ACROSS = { ...PHONE, viewport: { width: 844, height: 390 }, colorScheme: 'light' };
 const TABS = ['view', 'look', 'wrinkles', 'curves', 'capture', 'sources', 'session'];
-const LEAST = 44;
 
 before(() => daemon.hold(2));
 
@@ -19,20 +19,6 @@ const pictureShare = (page) => page.evaluate(() => {
   const { width, height } = document.querySelector('.surface').getBoundingClientRect();
   return (width * height) / (innerWidth * innerHeight);
 });
-
-/** Controls that are visible, and smaller than a finger. A label of a checkbox counts with it. */
-const smallTargets = (page) => page.evaluate((least) => {
-  const found = [];
-  for (const element of document.querySelectorAll('button, select, input, summary, [role=tab], a')) {
-    if (!element.checkVisibility({ visibilityProperty: true, opacityProperty: true }) || element.closest('svg') !== null) continue;
-    const target = element.matches('input[type=checkbox]') ? element.closest('label') ?? element : element;
-    // A slider is as high as a finger; its track is narrower than that.
-    const { width, height } = target.getBoundingClientRect();
-    if (width === 0 || height >= least - 0.5 && width >= least - 0.5) continue;
-    found.push(`${element.outerHTML.slice(0, 100)}: ${Math.round(width)} x ${Math.round(height)}`);
-  }
-  return found;
-}, LEAST);
 
 for (const [name, options, share] of [['upright', PHONE, 0.65], ['across', ACROSS, 0.7]]) {
   test(`the picture comes first: phone ${name}`, async () => {

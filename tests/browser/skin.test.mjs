@@ -8,8 +8,8 @@ import { after, before, test } from 'node:test';
 import { PNG } from 'pngjs';
 import { changedShare, difference, launch, openPage } from './browser.mjs';
 import { SHARE } from './daemon.mjs';
-import { serveModules } from './module_server.mjs';
-import { beside, FRAMES, insideOf, posesOf, rendered, rmse, SIZE, solved } from './parity.mjs';
+import { serveModules } from './support/module_server.mjs';
+import { beside, FRAMES, insideOf, posesOf, rendered, rmse, SIZE, solved } from './support/parity.mjs';
 
 /** Of 255, inside the skin of the face. Measured: 0.8 to 1.1. */
 const MAX_RMSE = 2;

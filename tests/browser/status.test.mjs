@@ -33,6 +33,11 @@ test('the picture of a dead daemon is never live', async () => {
     held = []; // only the pictures of the next daemon arrive later
     assert(await isDimmed(page));
     assert.equal(await figure(page, 'age'), '–');
+    await eventually('the position of the recording stands still', () => page.evaluate(async () => {
+      const before = document.querySelector('.timeline .time').textContent;
+      await new Promise((resolve) => setTimeout(resolve, 400));
+      return document.querySelector('.timeline .time').textContent === before;
+    }));
     await keep(page, 'state-lost');
     second = await Daemon.start(['--play', recording('performance')], first.ports);
     await inState(page, 'loading');
@@ -82,6 +87,9 @@ test('pictures that stop make the picture stale, with its age', async () => {
   await inState(page, 'stale');
   assert.match(await figure(page, 'age'), /^\d+\.\d s$/);
   assert(await isDimmed(page));
+  // The daemon has drawn what it may without an acknowledgement.
+  await eventually('what the pictures wait for', async () => await figure(page, 'limit') === 'network');
+  await page.locator('.notice', { hasText: 'slow network' }).waitFor();
   await page.context().close();
 });
 

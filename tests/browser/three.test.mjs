@@ -8,8 +8,8 @@ import { after, test } from 'node:test';
 import { PNG } from 'pngjs';
 import { changedShare, eventually, keep, launch, openPage } from './browser.mjs';
 import { Daemon, recording } from './daemon.mjs';
-import { serveModules } from './module_server.mjs';
-import { beside, FRAMES, insideOf, posesOf, rendered, rmse, SIZE, solved } from './parity.mjs';
+import { serveModules } from './support/module_server.mjs';
+import { beside, FRAMES, insideOf, posesOf, rendered, rmse, SIZE, solved } from './support/parity.mjs';
 
 const MAX_RMSE = 3; // of 255
 

@@ -22,7 +22,7 @@ test('a moving picture comes as H.264, and the page says so', async () => {
   }));
   await page.setViewportSize({ width: 1440, height: 800 });
   await eventually('H.264', async () => /^H\.264 \d+\.\d\d Mbit\/s$/.test(await streamOf(page).textContent()));
-  assert.equal(await streamOf(page).getAttribute('title'), 'The pictures come as H.264 video');
+  assert.equal(await streamOf(page).getAttribute('title'), 'Moving pictures come as H.264 video');
   assert(kinds.has('h264'));
   assert.equal((await daemon.get('api/status')).video.encoders, 1);
   await page.click('#tab-session');
@@ -119,7 +119,7 @@ test('the user chooses the stream, and the address keeps it', async () => {
   await eventually('JPEG', async () => /^JPEG/.test(await streamOf(page).textContent()));
   await eventually('the address', () => page.url().includes('stream=jpeg'));
   assert.match(await streamOf(page).getAttribute('title'), /you chose JPEG/);
-  await eventually('the reason', () => page.getByText('The pictures come as JPEG: you chose JPEG').isVisible());
+  await eventually('the reason', () => page.getByText('Moving pictures come as JPEG: you chose JPEG').isVisible());
   await eventually('the encoder has gone', async () => (await daemon.get('api/status')).video.encoders === 0);
   await page.selectOption('select[aria-label="Picture stream"]', 'auto');
   await eventually('H.264', async () => /^H\.264/.test(await streamOf(page).textContent()));

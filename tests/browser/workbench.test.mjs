@@ -67,13 +67,13 @@ test('guided capture: get ready, hold, good; then a summary and one undo', async
   const page = await openPage(browser, `${daemon.address}#panel=capture&subject=performance`, SMALL);
   await page.getByRole('button', { name: 'Guided capture' }).click();
   await page.locator('.guide-card', { hasText: 'Relax your face' }).waitFor();
-  await page.locator('.guide h3', { hasText: 'Raise your brows' }).waitFor(); // the pose rests, so it was captured
+  await page.locator('.guide h2', { hasText: 'Raise your brows' }).waitFor(); // the pose rests, so it was captured
   assert.deepEqual(await captures(), ['neutral']);
   await page.locator('.guide[data-phase=move]').waitFor(); // the face is still neutral
   await page.getByRole('button', { name: 'Skip' }).click();
-  await page.locator('.guide h3', { hasText: 'Frown' }).waitFor();
+  await page.locator('.guide h2', { hasText: 'Frown' }).waitFor();
   await daemon.hold(2);
-  await page.locator('.guide h3').filter({ hasNotText: 'Frown' }).waitFor();
+  await page.locator('.guide h2').filter({ hasNotText: 'Frown' }).waitFor();
   assert.deepEqual((await captures()).slice(0, 3), ['neutral', 'brow_lower_l', 'brow_lower_r']);
   await page.getByRole('button', { name: 'Finish' }).click();
   const row = page.locator('.guide-summary tr[data-taken=true]', { hasText: 'Frown' });

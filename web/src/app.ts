@@ -21,7 +21,9 @@ import { SourcesPanel } from './panels/sources';
 import { DebugStrip } from './panels/strip';
 import { Timeline } from './panels/timeline';
 import { ViewBar } from './panels/view_bar';
+import { addressOf } from './state/address';
 import { AppState } from './state/app_state';
+import { Elsewhere } from './state/elsewhere';
 import { isAcross, isCompact } from './state/layout';
 import { browserStore } from './state/presets';
 import { setToken } from './state/token';
@@ -35,7 +37,7 @@ import { Tabs } from './ui/tabs';
 import { Toasts } from './ui/toast';
 import { TokenDialog } from './ui/token_dialog';
 import { CameraInput } from './view/camera_input';
-import { limitOf } from './view/limit';
+import { type Limit, limitOf } from './view/limit';
 import type { ShownPicture } from './view/picture_stats';
 import { isAtRest } from './view/rest';
 import { Viewer } from './view/viewer';
@@ -51,10 +53,11 @@ const LOADING_POLL_MS = 250;
 const POLLS_PER_SETTINGS = 3;
 
 export class App {
-  private readonly state = new AppState(location.hash);
+  private readonly state = new AppState(addressOf(location));
   private readonly toasts = new Toasts();
   private readonly connection: Connection;
   private readonly history = new WeightHistory();
+  private readonly elsewhere: Elsewhere;
   private readonly weights: WeightStream;
   private readonly viewer: Viewer;
   private readonly curves: CurvesPanel;
@@ -97,10 +100,13 @@ export class App {
     const { state, toasts } = this;
     const subject = (): string => this.weights.subject.value || state.subject.value;
     this.connection = new Connection(new URL('ws', document.baseURI.replace(/^http/, 'ws').replace(/#.*$/, '')).href);
-    this.curves = new CurvesPanel(state, this.history);
+    this.curves = new CurvesPanel(state, this.history, this.connection, subject, toasts);
     this.explain = new ExplainPanel(subject, () => this.faceMap.setChosen(''));
     this.faceMap = new FaceMap(this.history, (region, weights) => this.explainRegion(region, weights));
-    this.weights = new WeightStream(this.connection, state.subject.value, this.history, () => this.onWeights());
+    this.elsewhere = new Elsewhere(location.hash, {
+      link: () => state.link(), go: (url) => void this.curves.take.finish().then(() => location.assign(url)), say: (words, kind) => toasts.say(words, kind),
+    });
+    this.weights = new WeightStream(this.connection, state.subject.value, this.history, () => this.onWeights(), (web) => this.elsewhere.follow(web));
     this.viewer = new Viewer(this.connection, state, (words) => toasts.say(words, 'error'), () => this.onPicture());
     this.grid = new SubjectGrid(this.connection, state, this.viewer);
     this.against = new Against(this.connection, state, this.viewer);
@@ -137,7 +143,7 @@ export class App {
       { id: 'wrinkles', label: text.tabs.wrinkles, icon: 'wrinkles', content: wrinkles },
       { id: 'curves', label: text.tabs.curves, icon: 'curves', content: this.curvesHolder, isForSheets: true },
       { id: 'capture', label: text.tabs.capture, icon: 'capture', content: h('div', {}, this.guide.element, this.capture.element) },
-      { id: 'sources', label: text.tabs.sources, icon: 'sources', content: new SourcesPanel().element },
+      { id: 'sources', label: text.tabs.sources, icon: 'sources', content: new SourcesPanel(toasts).element },
       { id: 'session', label: text.tabs.session, icon: 'session', content: this.session.element },
     ], (id) => state.panel.set(id));
     this.buildLayout(parent, settingsText.element);
@@ -194,11 +200,16 @@ export class App {
       camera: () => state.camera.value, move: (camera) => state.moveCamera(camera),
       drag: (right, up) => this.light.drag(right, up),
     });
-    state.subject.watch((subject) => this.weights.choose(subject));
+    state.subject.watch((subject) => {
+      this.elsewhere.reset();
+      this.weights.choose(subject);
+    });
     state.grid.watch((on) => on && void this.askDaemon().then(() => this.showCondition()));
     this.weights.subject.watch((name) => {
+      if (name !== '') this.elsewhere.reset();
       this.curves.reset();
       this.guide.onSubject(name);
+      this.curves.take.onSubject(name);
       void this.readRig();
     });
     this.connection.link.watch((link) => {
@@ -210,7 +221,7 @@ export class App {
       this.showNow();
     });
     this.viewer.notDrawn.watch(() => this.showCondition());
-    window.addEventListener('hashchange', () => location.reload()); // the user entered another URL
+    window.addEventListener('hashchange', () => void this.curves.take.finish().then(() => location.reload())); // the user entered another URL
   }
 
   private commands(): Command[] {
@@ -351,7 +362,21 @@ export class App {
       picturesHz, posesHz, isAtRest, ageMs: picture.ageMs, width: picture.width, height: picture.height,
       drawnPercent: picture.drawnPercent,
       ...this.streamFigures(nowS),
-      limit: limitOf({ posesHz, picturesHz, waitedHz: stats.waitedHz(nowS), decodeMs: stats.decodeMs(), isAtRest, isHere }),
+      limit: this.limit(nowS),
+    });
+  }
+
+  private limit(nowS: number): Limit {
+    const { stats, drawing } = this.viewer;
+    const isHere = drawing.active.value;
+    return limitOf({
+      posesHz: this.shownSubject()?.rate_hz ?? 0,
+      picturesHz: isHere ? drawing.rateHz(nowS) : stats.rateHz(nowS),
+      waitedHz: stats.waitedHz(nowS),
+      isDrawing: (this.status?.drawing ?? null) !== null,
+      decodeMs: stats.decodeMs(),
+      isAtRest: this.isAtRest(),
+      isHere,
     });
   }
 
@@ -362,9 +387,11 @@ export class App {
     const isVideo = stats.codec !== '';
     const daemon = this.status?.video ?? null;
     const whyDaemon = daemon === null || daemon.why === '' ? t.why.full : t.why.daemon(daemon.why);
+    const title = isVideo ? t.isVideo : t.isFiles(video.why || whyDaemon);
+    if (stats.still) return { stream: t.still, streamTitle: `${t.stillTitle} ${title}` };
     return {
       stream: t.rate(isVideo ? t.h264 : t.jpeg, stats.mbitPerS(nowS).toFixed(2)),
-      streamTitle: isVideo ? t.isVideo : t.isFiles(video.why || whyDaemon),
+      streamTitle: title,
     };
   }
 
@@ -440,6 +467,7 @@ export class App {
       pictureMs: picture?.ageMs ?? null,
       everyMs,
       isChanging,
+      limit: this.limit(performance.now() / 1000),
       isAtRest: isAtRest(picture, info, performance.now() - this.askedMs),
       isPaused: subject !== '' && this.timeline.pausedSubject === subject,
     });

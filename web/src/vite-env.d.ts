@@ -1,3 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Vite turns these imports into links of the page.
 declare module '*.css';
+
+/** A file as a data URL in base64. */
+declare module '*.bfbs?inline' {
+  const url: string;
+  export default url;
+}

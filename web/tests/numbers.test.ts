@@ -106,7 +106,7 @@ test('format and data rate of the pictures', () => {
   assert.equal(stats.codec, '');
 });
 
-const PACE = { posesHz: 60, picturesHz: 20, waitedHz: 0, decodeMs: 5, isAtRest: false, isHere: false };
+const PACE = { posesHz: 60, picturesHz: 20, waitedHz: 0, isDrawing: true, decodeMs: 5, isAtRest: false, isHere: false };
 
 test('what limits the pictures', () => {
   assert.equal(limitOf(PACE), 'drawing');
@@ -116,6 +116,8 @@ test('what limits the pictures', () => {
   assert.equal(limitOf({ ...PACE, waitedHz: 30 }), 'network');
   assert.equal(limitOf({ ...PACE, waitedHz: 30, decodeMs: 40 }), 'browser');
   assert.equal(limitOf({ ...PACE, isHere: true }), 'browser');
+  assert.equal(limitOf({ ...PACE, picturesHz: 0 }), 'drawing');
+  assert.equal(limitOf({ ...PACE, picturesHz: 0, isDrawing: false }), 'network');
 });
 
 test('weights belong to the pose on the screen', () => {

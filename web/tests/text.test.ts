@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from 'node:assert/strict';
 import test from 'node:test';
-import { readAddress, writeAddress } from '../src/state/address';
+import { addressOf, readAddress, writeAddress } from '../src/state/address';
 import { fromToml, toToml } from '../src/state/toml';
 import { someSettings } from './some_settings';
 
@@ -53,4 +53,10 @@ test('invalid parts of the URL are ignored', () => {
   assert.equal(readAddress('#drawn=nobody').drawnBy, 'auto');
   assert.equal(readAddress('#stream=mpeg').stream, 'auto');
   assert.equal(readAddress('#stream=h264').stream, 'h264');
+});
+
+test('the query of a frame is its address, until the page has one of its own', () => {
+  assert.equal(addressOf({ hash: '', search: '?camera=face&token=frw1_x' }), '#camera=face');
+  assert.equal(addressOf({ hash: '#camera=body', search: '?camera=face' }), '#camera=body');
+  assert.equal(readAddress(addressOf({ hash: '', search: '' })).settings.size, 0);
 });

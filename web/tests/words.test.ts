@@ -5,11 +5,12 @@ import { ApiError, type Explanation, type Playback } from '../src/api';
 import { assess, isDimmed, type PictureState, type Situation } from '../src/panels/condition';
 import { afterwardsWords, contributionWords } from '../src/panels/explain';
 import { colourOf } from '../src/panels/face_map';
-import { clockText, positionAfter } from '../src/panels/timeline';
+import { positionAfter } from '../src/panels/timeline';
+import { clockText } from '../src/ui/clock';
 
 const GOOD: Situation = {
   link: 'open', everConnected: true, notDrawn: '', renders: true, wanted: '', hasPicture: true,
-  silentMs: 100, drawing: null, pictureMs: 40, everyMs: 0, isChanging: false, isAtRest: false, isPaused: false,
+  silentMs: 100, drawing: null, pictureMs: 40, everyMs: 0, isChanging: false, limit: 'drawing', isAtRest: false, isPaused: false,
   subjects: [{ name: 'demo', state: 'live', age_ms: 8 }],
 };
 
@@ -46,7 +47,8 @@ test('each condition has its own sentence', () => {
     assert.match(condition.text, text);
   }
   assert.match(assess({ ...GOOD, pictureMs: 3000, isChanging: true, drawing: { done: 1, passes: 9 } }).advice, /step 2 of 9/);
-  assert.match(assess({ ...GOOD, pictureMs: 3000, drawing: { done: 1, passes: 9 } }).advice, /Fast/);
+  assert.match(assess({ ...GOOD, pictureMs: 3000, drawing: { done: 1, passes: 9 } }).advice, /Fast.*Diffuse/);
+  assert.match(assess({ ...GOOD, pictureMs: 3000, limit: 'network' }).advice, /network/);
   assert.equal(assess({ ...GOOD, hasPicture: false, drawing: { done: 3, passes: 12 } }).progress, 0.25);
   assert.deepEqual((['live', 'paused', 'stale', 'lost'] as const).map(isDimmed), [false, false, true, true]);
   assert.equal(assess({ ...GOOD, notDrawn: 'no EGL device' }).advice, 'no EGL device');
@@ -85,8 +87,11 @@ test('the timeline advances between replies', () => {
   assert.equal(positionAfter(PLAYBACK, 1), 1); // wraps around at the end
   assert.equal(positionAfter({ ...PLAYBACK, loop: false }, 1), 10);
   assert.equal(positionAfter({ ...PLAYBACK, playing: false }, 1), 9);
-  assert.equal(clockText(75.04), '1:15.0');
-  assert.equal(clockText(3.2), '0:03.2');
+  assert.equal(clockText(75.04, 1), '1:15.0');
+  assert.equal(clockText(3.2, 1), '0:03.2');
+  assert.equal(clockText(59.97, 1), '0:59.9');
+  assert.equal(clockText(60), '1:00');
+  assert.equal(clockText(9.9), '0:09');
 });
 
 test('the face map is warm for compressed skin, cool for stretched skin, grey at rest', () => {

@@ -55,7 +55,7 @@ export class GuidePanel {
   /** Large words on the picture, for a performer who stands away from the screen. */
   readonly card = h('div', { class: 'guide-card', hidden: true, 'aria-hidden': 'true' });
   private readonly step = h('p', { class: 'fine' });
-  private readonly ask = h('h3', {});
+  private readonly ask = h('h2', {});
   private readonly phase = h('p', { class: 'guide-phase', role: 'status' });
   private readonly error = h('p', { class: 'error', role: 'alert' });
   private readonly gauges = { distance: new Gauge(t.distance), steadiness: new Gauge(t.steadiness), held: new Gauge(t.held) };
@@ -295,7 +295,7 @@ export class GuidePanel {
     };
     const undo = button(t.undoAll, () => void this.undoAll(), { disabled: this.made.length === 0 });
     const done = button(t.done, () => this.close(), { class: 'primary' });
-    this.element.replaceChildren(h('h3', {}, t.summary(this.name)),
+    this.element.replaceChildren(h('h2', {}, t.summary(this.name)),
       this.error, h('div', { class: 'row' }, done, undo, button(text.capture.download, () => this.events.saveRig())),
       h('table', { class: 'guide-summary' }, h('thead', {}, h('tr', {}, ...t.columns.map((word) => h('th', { scope: 'col' }, word)))),
         h('tbody', {}, ...this.gestures.map(row))),

@@ -15,6 +15,8 @@ export class CapturePanel {
   private readonly pose: HTMLSelectElement;
   private readonly newName = h('input', { type: 'text', 'aria-label': t.newName, placeholder: t.newNamePlaceholder, hidden: true, maxlength: 64 });
   private readonly part: HTMLSelectElement;
+  private readonly partLabel: HTMLElement;
+  private readonly note = h('p', { class: 'fine' });
   private readonly undo: HTMLButtonElement;
   private readonly save: HTMLButtonElement;
   private readonly error = h('p', { class: 'error', role: 'alert' });
@@ -23,21 +25,22 @@ export class CapturePanel {
 
   constructor(private readonly subject: () => string, private readonly toasts: Toasts, private readonly onChanged: () => void) {
     this.pose = select(t.saveAs, [], () => {
-      this.newName.hidden = this.pose.value !== NEW;
+      this.showChoice();
       if (!this.newName.hidden) this.newName.focus();
-      this.part.hidden = this.pose.value !== NEUTRAL;
     });
     this.part = select(t.part, [[AUTO, t.parts.auto], ['face', t.parts.face], ['body', t.parts.body], ['both', t.parts.both]], () => undefined);
+    this.partLabel = h('label', { class: 'labelled' }, t.part, this.part);
     this.undo = button(t.undo, () => void this.undoCapture(), { disabled: true });
     this.save = button(t.download, () => void this.saveRig());
     this.element = h('div', { class: 'capture' },
       h('p', {}, t.intro),
-      h('div', { class: 'row' }, this.pose, this.newName, this.part),
+      h('div', { class: 'row capture-choices' },
+        h('label', { class: 'labelled' }, t.saveAs, this.pose), this.newName, this.partLabel),
       h('div', { class: 'row' },
         button(t.preview, () => void this.capturePose(true), { title: t.previewTitle }),
         button(t.capture, () => void this.capturePose(false), { class: 'primary' }), this.undo, this.save),
       this.error, this.result, this.done,
-      h('p', { class: 'fine' }, t.note));
+      this.note);
   }
 
   async saveRig(): Promise<void> {
@@ -50,11 +53,18 @@ export class CapturePanel {
 
   showRig(rig: RigInfo): void {
     const poses = [...new Set([NEUTRAL, ...rig.reference_poses])];
-    setOptions(this.pose, [...poses.map((name) => [name, name] as const), [NEW, t.newPose]]);
-    this.newName.hidden = this.pose.value !== NEW;
-    this.part.hidden = this.pose.value !== NEUTRAL;
+    setOptions(this.pose, [...poses.map((name) => [name, name === NEUTRAL ? t.neutral : name] as const), [NEW, t.newPose]]);
+    this.showChoice();
     this.showCaptures(rig.captures);
     this.save.textContent = rig.changed ? t.downloadChanged : t.download;
+  }
+
+  /** The fields and the note of the pose that is chosen. */
+  private showChoice(): void {
+    const isNeutral = this.pose.value === NEUTRAL;
+    this.newName.hidden = this.pose.value !== NEW;
+    this.partLabel.hidden = !isNeutral;
+    this.note.textContent = isNeutral ? t.neutralNote : t.note;
   }
 
   private async capturePose(preview: boolean): Promise<void> {
@@ -95,7 +105,7 @@ export class CapturePanel {
       h('tr', {}, h('th', { scope: 'row' }, name), h('td', { class: 'number' }, before.toFixed(2)), h('td', { class: 'number' }, after.toFixed(2))));
     const title = result.preview ? t.previewOf : t.resultOf;
     const note = result.added ? [h('p', { class: 'note' }, t.isNew)] : [];
-    this.result.replaceChildren(h('h3', {}, title), ...note, moved.length === 0
+    this.result.replaceChildren(h('h2', {}, title), ...note, moved.length === 0
       ? h('p', { class: 'empty' }, t.nothing)
       : h('table', {}, h('thead', {}, h('tr', {}, ...t.columns.map((word) => h('th', { scope: 'col' }, word)))), h('tbody', {}, ...rows)));
   }

@@ -3,6 +3,7 @@
 import type { Drawing, SubjectInfo } from '../api';
 import type { LinkState } from 'furrow/protocol';
 import { text } from '../text';
+import type { Limit } from '../view/limit';
 
 /**
  * - empty: there is no pose to draw.
@@ -37,6 +38,8 @@ export interface Situation {
   everyMs: number;
   /** The picture does not show the last change of the page yet. */
   isChanging: boolean;
+  /** What keeps the pictures from following the poses. */
+  limit: Limit;
   /** The subject has not moved since the pose on the screen. */
   isAtRest: boolean;
   /** The subject is a recording that the daemon plays, and it is paused. */
@@ -87,7 +90,7 @@ export function assess(situation: Situation): Condition {
   if (!situation.isAtRest && situation.pictureMs !== null && situation.pictureMs > STALE_MS + situation.everyMs) {
     const old = t.stale(seconds(situation.pictureMs));
     const { drawing } = situation;
-    if (!situation.isChanging || drawing === null) return condition('stale', old, t.staleAdvice);
+    if (!situation.isChanging || drawing === null) return condition('stale', old, t.staleAdvice[situation.limit]);
     return condition('stale', old, t.changing(drawing.done, drawing.passes));
   }
   return condition('live', t.live(subject.name));

@@ -7,6 +7,9 @@ import { CurveSpan, type Kept } from '../state/curve_span';
 import type { WeightFrame, WeightHistory } from '../state/weight_history';
 import { text } from '../text';
 import { button, download, h } from '../ui/dom';
+import type { Toasts } from '../ui/toast';
+import type { Connection } from '../wire/connection';
+import { TakeBar } from './take_bar';
 
 const t = text.curves;
 const AUTOMATIC = 5;
@@ -25,11 +28,14 @@ const ON_LIGHT = ['#b07400', '#2f86b8', '#007a59', '#8a8200', '#0058a3', '#b84a0
 
 export class CurvesPanel {
   readonly element: HTMLElement;
+  readonly take: TakeBar;
   private readonly plotHolder = h('div', { class: 'plot', role: 'application', tabindex: 0, 'aria-label': t.plot });
   private readonly chips = h('div', { class: 'chips', role: 'group', 'aria-label': t.shown });
   private readonly moment = h('output', { class: 'moment', 'aria-live': 'off' });
   private readonly marks = h('div', { class: 'marks', role: 'group', 'aria-label': t.markers });
+  private readonly hint = h('p', { class: 'empty curves-hint' }, t.empty);
   private readonly picker = h('details', { class: 'picker' });
+  private readonly bar: HTMLElement;
   private readonly freeze: HTMLButtonElement;
   private readonly span: CurveSpan;
   private plot: uPlot | null = null;
@@ -45,22 +51,25 @@ export class CurvesPanel {
   private drawnMs = 0;
   private pickerNames = '';
 
-  constructor(private readonly state: AppState, private readonly history: WeightHistory) {
+  constructor(private readonly state: AppState, private readonly history: WeightHistory,
+              connection: Connection, subject: () => string, toasts: Toasts) {
     this.span = new CurveSpan(history.seconds);
+    this.take = new TakeBar(connection, subject, () => this.span.range(this.kept()), () => this.showEmpty(), toasts);
     this.freeze = button(t.freeze, () => this.change(() => (this.span.isLive ? this.span.stop(this.kept()) : this.span.live())),
       { 'aria-pressed': 'false', title: t.freezeTitle });
     this.picker.append(h('summary', {}, t.choose));
     this.picker.addEventListener('toggle', () => this.fillPicker());
     const move = (label: string, title: string, by: () => void): HTMLButtonElement =>
       button(label, () => this.change(by), { class: 'small', title, 'aria-label': title });
+    this.bar = h('div', { class: 'row bar-row' }, this.chips, this.moment,
+      h('div', { class: 'row span-buttons', role: 'group', 'aria-label': t.span },
+        move('◀', t.earlier, () => this.pan(-STEP)), move('▶', t.later, () => this.pan(STEP)),
+        move('−', t.zoomOut, () => this.zoom(ZOOM)), move('+', t.zoomIn, () => this.zoom(1 / ZOOM)),
+        button(t.mark, () => this.mark(), { title: t.markTitle })),
+      this.picker, this.freeze, button(t.csv, () => this.save(), { title: t.csvTitle }), this.take.element);
     this.element = h('section', { class: 'curves', 'aria-label': t.group },
-      h('div', { class: 'row bar-row' }, this.chips, this.moment,
-        h('div', { class: 'row span-buttons', role: 'group', 'aria-label': t.span },
-          move('◀', t.earlier, () => this.pan(-STEP)), move('▶', t.later, () => this.pan(STEP)),
-          move('−', t.zoomOut, () => this.zoom(ZOOM)), move('+', t.zoomIn, () => this.zoom(1 / ZOOM)),
-          button(t.mark, () => this.mark(), { title: t.markTitle })),
-        this.picker, this.freeze, button(t.csv, () => this.save(), { title: t.csvTitle })),
-      this.marks, this.plotHolder);
+      this.bar, this.marks, this.plotHolder, this.hint);
+    this.showEmpty();
     this.light.addEventListener('change', () => this.plot !== null && this.build());
     state.curves.watch(() => {
       this.choose();
@@ -77,14 +86,24 @@ export class CurvesPanel {
     this.drawnMs = nowMs;
     if (this.span.forget(this.kept())) this.showMarkers();
     if (!this.span.isLive && this.plot !== null) return;
+    this.showEmpty();
     if (nowMs / 1000 - this.chosenAtS > CHOICE_S || this.shown.length === 0) this.choose();
     this.redraw();
+  }
+
+  /** Without weights, a line of words takes the place of axes and buttons. */
+  private showEmpty(): void {
+    const isEmpty = this.history.frames.length === 0;
+    this.hint.hidden = !isEmpty;
+    this.plotHolder.hidden = isEmpty;
+    this.bar.hidden = isEmpty && !this.take.isRecording; // it has the button that stops
   }
 
   /** Another subject is watched. */
   reset(): void {
     this.hovered = null;
     this.change(() => this.span.reset());
+    this.showEmpty();
   }
 
   /** Marks the pose under the pointer, or else the last one that is shown. */
@@ -155,7 +174,7 @@ export class CurvesPanel {
       cursor: { y: false, drag: { x: false, y: false, setScale: false } },
       padding: [6, 8, 0, 0],
       scales: { x: { time: false, range: () => this.axisRange() }, y: { range: [0, 1] } },
-      axes: [{ ...axis, values: (_, ticks) => ticks.map((tick) => `${Number(tick.toFixed(2))} s`), size: 24 }, { ...axis, size: 42, splits: [0, 0.25, 0.5, 0.75, 1] }],
+      axes: [{ ...axis, values: (_, ticks) => ticks.map((tick) => `${Number(tick.toFixed(2))} s`), size: 24, space: 64 }, { ...axis, size: 42, splits: [0, 0.25, 0.5, 0.75, 1] }],
       series: [{}, ...this.shown.map((name, i) => ({ label: name, stroke: colours[i]!, width: 1.6, points: { show: false } }))],
       hooks: { setCursor: [(plot) => this.onHover(plot)], draw: [(plot) => this.drawMarkers(plot, words)] },
     }, [[], ...this.shown.map(() => [])], this.plotHolder);
@@ -212,6 +231,7 @@ export class CurvesPanel {
       ...columns.map((column) => this.frames.map((frame) => frame.values[column] ?? null)),
     ]);
     this.showValues();
+    this.take.onSpan();
   }
 
   private onHover(plot: uPlot): void {
@@ -248,7 +268,18 @@ export class CurvesPanel {
       ctx.stroke();
       ctx.fillText(String(number), x + 3 * devicePixelRatio, top + 11 * devicePixelRatio);
     }
+    this.drawTake(plot, zero);
     ctx.restore();
+  }
+
+  /** A line along the upper edge where a take has poses. */
+  private drawTake(plot: uPlot, zero: number): void {
+    const { range } = this.take;
+    if (range === null) return;
+    const { left, top, width } = plot.bbox;
+    const [from, to] = range.map((atS) => Math.min(left + width, Math.max(left, plot.valToPos(atS - zero, 'x', true)))) as [number, number];
+    plot.ctx.fillStyle = getComputedStyle(this.element).getPropertyValue('--bad');
+    plot.ctx.fillRect(from, top, to - from, 3 * devicePixelRatio);
   }
 
   private showMarkers(): void {

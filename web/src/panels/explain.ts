@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Explains a region: the drivers and poses behind its weights, refreshed while the panel is shown.
 import { api, type Contribution, type Explanation, wordsOf } from '../api';
+import { isCompact } from '../state/layout';
 import { text } from '../text';
 import { button, h, regionWords } from '../ui/dom';
 
@@ -9,6 +10,9 @@ const REFRESH_MS = 400;
 /** Blend shapes of a driver that are named; they come strongest first. */
 const MOST_SHAPES = 4;
 
+/** Shares below this are shown as 0. */
+const LEAST = 0.005;
+
 const fixed = (x: number): string => x.toFixed(2);
 
 /** Describes how a driver computed its value. */
@@ -16,7 +20,8 @@ export function contributionWords(item: Contribution): string {
   const parts: string[] = [];
   if (item.pose !== null) {
     const goal = item.reference_pose ? t.pose(item.reference_pose) : t.itsPose;
-    parts.push(t.along(Math.round(item.pose.along * 100), goal));
+    const percent = Math.round(item.pose.along * 100);
+    parts.push(percent < 0 ? t.away(goal) : t.along(percent, goal));
     if (item.pose.falloff < 0.995) parts.push(t.falloff(Math.round(item.pose.falloff * 100)));
   }
   for (const { what, degrees } of item.angles ?? []) parts.push(`${what} ${degrees.toFixed(1)}°`);
@@ -46,7 +51,7 @@ export function afterwardsWords(explanation: Explanation): string[] {
 
 export class ExplainPanel {
   readonly element = h('section', { class: 'explain', 'aria-label': t.label, hidden: true });
-  private readonly title = h('h3', {});
+  private readonly title = h('h2', {});
   private readonly body = h('div', { class: 'explain-body' });
   private weights: string[] = [];
   private timer: ReturnType<typeof setTimeout> | null = null;
@@ -61,7 +66,8 @@ export class ExplainPanel {
     this.title.textContent = t.title(regionWords(region));
     this.element.hidden = false;
     this.body.replaceChildren(h('p', { class: 'empty' }, t.loading));
-    this.element.scrollIntoView({ block: 'nearest' });
+    // A sheet shows little, and the answer matters more than the map above it.
+    this.element.scrollIntoView({ block: isCompact.value ? 'start' : 'nearest' });
     if (this.timer !== null) clearTimeout(this.timer);
     void this.ask();
   }
@@ -91,15 +97,18 @@ export class ExplainPanel {
 }
 
 function explanationElement(explanation: Explanation): HTMLElement {
-  const rows = explanation.contributions.map((item) => {
+  // Drivers that add nothing are named in one line, so that the answer stands alone.
+  const idle = explanation.contributions.filter((item) => Math.abs(item.product) < LEAST);
+  const rows = explanation.contributions.filter((item) => !idle.includes(item)).sort((a, b) => b.product - a.product).map((item) => {
     return h('tr', {},
       h('th', { scope: 'row' }, item.value, h('small', {}, contributionWords(item))),
       h('td', { class: 'number' }, item.gain === 1 ? fixed(item.driver_value) : `${fixed(item.driver_value)} × ${fixed(item.gain)}`),
       h('td', { class: 'number' }, fixed(item.product)));
   });
   return h('article', { 'data-weight': explanation.weight },
-    h('h4', {}, explanation.weight, h('output', {}, fixed(explanation.live))),
-    h('table', {}, h('thead', {}, h('tr', {}, ...t.columns.map((word) => h('th', { scope: 'col' }, word)))),
+    h('h3', {}, explanation.weight, h('output', {}, fixed(explanation.live))),
+    rows.length === 0 ? null : h('table', {}, h('thead', {}, h('tr', {}, ...t.columns.map((word) => h('th', { scope: 'col' }, word)))),
       h('tbody', {}, ...rows)),
+    idle.length === 0 ? null : h('p', { class: 'rest' }, t.idle(idle.map(({ value }) => value), rows.length === 0)),
     ...afterwardsWords(explanation).map((words) => h('p', { class: 'note' }, words)));
 }

@@ -47,7 +47,7 @@ export class FaceMap {
 
   constructor(private readonly history: WeightHistory, private readonly onChoose: (region: string, weights: string[]) => void) {
     this.map = h('figure', { class: 'map' }, this.picture,
-      h('figcaption', {}, h('span', { class: 'key pressed' }, text.faceMap.compressed), h('span', { class: 'key drawn' }, text.faceMap.stretched)));
+      h('figcaption', {}, h('p', {}, text.faceMap.hint), h('span', { class: 'key pressed' }, text.faceMap.compressed), h('span', { class: 'key drawn' }, text.faceMap.stretched)));
   }
 
   /** Rebuilds the map only if the regions differ. */

@@ -3,7 +3,7 @@
 import type { AppState } from '../state/app_state';
 import { PresetShelf, type Store } from '../state/presets';
 import { text } from '../text';
-import { button, h } from '../ui/dom';
+import { button, copyText, h } from '../ui/dom';
 import type { Toasts } from '../ui/toast';
 
 const t = text.layouts;
@@ -63,11 +63,7 @@ export class LayoutDialog {
   }
 
   private async copy(): Promise<void> {
-    try {
-      await navigator.clipboard.writeText(this.state.link());
-      this.toasts.say(t.copied);
-    } catch {
-      this.error.textContent = t.cannotCopy; // browsers forbid copying except on https and localhost
-    }
+    if (await copyText(this.state.link())) this.toasts.say(t.copied);
+    else this.error.textContent = t.cannotCopy;
   }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The card in front of the picture: what the page waits for, what is wrong, and what to do about it.
 import { text } from '../text';
-import { button, h } from '../ui/dom';
+import { button, command, copyText, h } from '../ui/dom';
 import type { Toasts } from '../ui/toast';
 import type { Condition, PictureState } from './condition';
 
@@ -14,7 +14,7 @@ export class Notice {
   private readonly title = h('p', { class: 'notice-title' });
   private readonly advice = h('p', { class: 'notice-advice' });
   private readonly progress = h('progress', { 'aria-label': text.stage.progress, hidden: true });
-  private readonly command = h('code', {}, text.stage.command(location.hostname || 'localhost'));
+  private readonly command = command(text.stage.command(location.hostname || 'localhost'));
   private readonly help: HTMLElement;
   private shown = '';
 
@@ -29,12 +29,8 @@ export class Notice {
   }
 
   private async copy(toasts: Toasts): Promise<void> {
-    try {
-      await navigator.clipboard.writeText(this.command.textContent!);
-      toasts.say(text.stage.copied);
-    } catch {
-      getSelection()?.selectAllChildren(this.command); // browsers forbid copying except on https and localhost
-    }
+    if (await copyText(this.command.textContent!)) toasts.say(text.stage.copied);
+    else getSelection()?.selectAllChildren(this.command);
   }
 
   /** `hasPicture`: there is a picture behind the card, perhaps an old one. */

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Buttons on the picture: save it, record it, and fill the screen with it.
 import { text } from '../text';
+import { clockText } from '../ui/clock';
 import { button, h, saveBlob } from '../ui/dom';
 import { icon } from '../ui/icons';
 import type { Toasts } from '../ui/toast';
@@ -9,10 +10,11 @@ const FRAMES_HZ = 30;
 /** Best first. */
 const VIDEO_TYPES = ['video/webm;codecs=vp9', 'video/webm;codecs=vp8', 'video/webm'];
 
-/** "furrow-2026-11-27-101502": sorts by time, and works as a file name everywhere. */
-export function fileStem(date: Date): string {
+/** "furrow-ada-2026-11-27-101502", or without the subject: works as a file name everywhere. */
+export function fileStem(date: Date, subject = ''): string {
   const two = (n: number): string => String(n).padStart(2, '0');
-  return `furrow-${date.getFullYear()}-${two(date.getMonth() + 1)}-${two(date.getDate())}-` +
+  const name = subject === '' ? '' : `${subject.replace(/[^\p{L}\p{N}._-]+/gu, '_')}-`;
+  return `furrow-${name}${date.getFullYear()}-${two(date.getMonth() + 1)}-${two(date.getDate())}-` +
     `${two(date.getHours())}${two(date.getMinutes())}${two(date.getSeconds())}`;
 }
 
@@ -37,7 +39,7 @@ export class PictureActions {
     this.fullscreen = action('fullscreen', t.fullscreen, () => this.toggleFullscreen());
     this.fullscreen.hidden = !document.fullscreenEnabled;
     this.element = h('div', { class: 'stage-actions', role: 'group', 'aria-label': t.actions },
-      this.clock, action('capture', t.screenshot, () => void this.screenshot()), this.record, this.fullscreen);
+      this.clock, action('camera', t.screenshot, () => void this.screenshot()), this.record, this.fullscreen);
     document.addEventListener('fullscreenchange', () =>
       this.fullscreen.setAttribute('aria-pressed', String(document.fullscreenElement !== null)));
   }
@@ -92,14 +94,13 @@ export class PictureActions {
   private showRecording(): void {
     const isOn = this.recorder !== null;
     const label = isOn ? text.stage.stop : text.stage.record;
-    this.record.setAttribute('aria-pressed', String(isOn));
+    this.record.classList.toggle('recording', isOn);
     this.record.setAttribute('aria-label', label);
     this.record.title = label;
     this.record.replaceChildren(icon(isOn ? 'stop' : 'record'));
     this.clock.hidden = !isOn;
     if (!isOn) return;
-    const seconds = Math.floor((performance.now() - this.beganMs) / 1000);
-    this.clock.textContent = `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, '0')}`;
+    this.clock.textContent = clockText((performance.now() - this.beganMs) / 1000);
     setTimeout(() => this.showRecording(), 500);
   }
 }

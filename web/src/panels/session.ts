@@ -36,10 +36,10 @@ export class SessionPanel {
     this.stream = select(text.stream.label, STREAMS, (value) => stream.set(value as StreamKind));
     stream.bind((kind) => (this.stream.value = kind));
     this.element = h('div', { class: 'session' },
-      h('h3', {}, t.subjects),
+      h('h2', {}, t.subjects),
       h('table', { class: 'subjects' },
         h('thead', {}, h('tr', {}, ...t.headings.map(([word, title]) => h('th', { scope: 'col', title }, word)))), this.rows),
-      this.empty, h('h3', {}, t.picture), this.picture, this.stream, this.streamWhy, h('h3', {}, t.daemon), this.facts);
+      this.empty, h('h2', {}, t.picture), this.picture, this.stream, this.streamWhy, h('h2', {}, t.daemon), this.facts);
   }
 
   show(subjects: readonly SubjectInfo[], status: DaemonStatus, chosen: string, picture: PictureFigures): void {

@@ -4,7 +4,7 @@ import { api, wordsOf } from '../api';
 import type { AppState } from '../state/app_state';
 import { fromToml, toToml } from '../state/toml';
 import { text } from '../text';
-import { button, h } from '../ui/dom';
+import { button, copyText, h } from '../ui/dom';
 import type { Toasts } from '../ui/toast';
 
 const t = text.settingsText;
@@ -46,14 +46,9 @@ export class SettingsText {
   }
 
   private async copy(): Promise<void> {
-    try {
-      await navigator.clipboard.writeText(this.text.value);
-    } catch {
-      this.text.select(); // browsers forbid copying except on https and localhost
-      this.error.textContent = t.cannotCopy;
-      return;
-    }
-    this.toasts.say(t.copied);
+    if (await copyText(this.text.value)) return this.toasts.say(t.copied);
+    this.text.select();
+    this.error.textContent = t.cannotCopy;
   }
 
   private read(): Map<string, string> | null {

@@ -2,7 +2,8 @@
 // Where phones and trackers send to, what has arrived from them, and what blocks them.
 import { api, type MocapInputInfo, type SourcesInfo, wordsOf } from '../api';
 import { text } from '../text';
-import { h } from '../ui/dom';
+import { button, command as commandOf, copyText, h } from '../ui/dom';
+import type { Toasts } from '../ui/toast';
 import { qrCode } from '../ui/qr';
 import { adviseOn } from './source_advice';
 
@@ -18,7 +19,7 @@ export class SourcesPanel {
 
   private isVisible = false;
 
-  constructor() {
+  constructor(private readonly toasts: Toasts) {
     new IntersectionObserver((entries) => {
       this.isVisible = entries.at(-1)!.isIntersecting;
       if (this.isVisible) void this.refresh();
@@ -40,7 +41,7 @@ export class SourcesPanel {
     const now = JSON.stringify(sources.inputs.map((input) => [adviseOn(input, sources), input.port, addresses]));
     if (now !== this.shown) {
       this.shown = now;
-      this.cards.replaceChildren(...sources.inputs.map((input) => card(input, sources, addresses)));
+      this.cards.replaceChildren(...sources.inputs.map((input) => this.card(input, sources, addresses)));
     }
     void this.showCode(addresses[0] ?? '');
   }
@@ -55,19 +56,24 @@ export class SourcesPanel {
     if (url === '') return;
     this.code.replaceChildren(await qrCode(url, text.sources.code(url)), h('figcaption', {}, text.sources.codeHelp, h('code', {}, url)));
   }
-}
 
-function card(input: MocapInputInfo, sources: SourcesInfo, addresses: readonly string[]): HTMLElement {
-  const t = text.sources;
-  const { state, words, todo, command } = adviseOn(input, sources);
-  const target = input.port === null || addresses.length === 0 ? null : h('dl', { class: 'facts target' },
-    h('dt', {}, t.address), h('dd', {}, ...addresses.map((address) => h('code', {}, address))),
-    h('dt', {}, t.port), h('dd', {}, h('code', {}, String(input.port))));
-  return h('section', { class: `source ${state}`, 'data-source': input.name, 'data-state': state, 'aria-label': t.names[input.name] },
-    h('h3', {}, t.names[input.name]),
-    h('p', { class: 'source-state' }, words),
-    target,
-    todo === '' ? null : h('p', { class: 'fine' }, todo),
-    command === '' ? null : h('code', { class: 'source-command' }, command),
-    state === 'off' || input.packets === 0 ? null : h('p', { class: 'fine' }, t.counts(input.packets, input.malformed, input.rejected)));
+  private card(input: MocapInputInfo, sources: SourcesInfo, addresses: readonly string[]): HTMLElement {
+    const t = text.sources;
+    const { state, words, todo, command } = adviseOn(input, sources);
+    const target = input.port === null || addresses.length === 0 ? null : h('dl', { class: 'facts target' },
+      h('dt', {}, t.address), h('dd', {}, ...addresses.map((address) => h('code', {}, address))),
+      h('dt', {}, t.port), h('dd', {}, h('code', {}, String(input.port))));
+    return h('section', { class: `source ${state}`, 'data-source': input.name, 'data-state': state, 'aria-label': t.names[input.name] },
+      h('h2', {}, t.names[input.name], h('small', {}, t.apps[input.name])),
+      h('p', { class: 'source-state' }, words),
+      target,
+      todo === '' ? null : h('p', { class: 'fine' }, todo),
+      command === '' ? null : h('div', { class: 'row command' }, commandOf(command), button(text.stage.copy, () => void this.copy(command))),
+      state === 'off' || input.packets === 0 ? null : h('p', { class: 'fine' }, t.counts(input.packets, input.malformed, input.rejected)));
+  }
+
+  private async copy(words: string): Promise<void> {
+    if (await copyText(words)) this.toasts.say(text.stage.copied);
+    else this.toasts.say(text.sources.cannotCopy, 'error');
+  }
 }

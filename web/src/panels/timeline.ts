@@ -3,6 +3,7 @@
 // daemon plays none.
 import { api, type Playback, wordsOf } from '../api';
 import { text } from '../text';
+import { clockText } from '../ui/clock';
 import { button, h, select } from '../ui/dom';
 import type { Toasts } from '../ui/toast';
 
@@ -10,11 +11,6 @@ const t = text.timeline;
 const POLL_MS = 500;
 const SCRUB_MS = 60;
 const SPEEDS = ['0.1', '0.25', '0.5', '1', '2', '4'];
-
-export function clockText(seconds: number): string {
-  const minutes = Math.floor(seconds / 60);
-  return `${minutes}:${(seconds - 60 * minutes).toFixed(1).padStart(4, '0')}`;
-}
 
 /** The position in the recording `elapsedS` after the daemon's reply, in [0, seconds]. */
 export function positionAfter(playback: Playback, elapsedS: number): number {
@@ -28,13 +24,17 @@ export class Timeline {
   readonly element: HTMLElement;
   private readonly play: HTMLButtonElement;
   private readonly scrub = h('input', { type: 'range', min: 0, max: 1, step: 0.001, value: 0, 'aria-label': t.position });
-  private readonly time = h('output', { class: 'time' });
+  private readonly position = h('span', {});
+  private readonly duration = h('span', { class: 'duration' });
+  private readonly time = h('output', { class: 'time' }, this.position, this.duration);
   private readonly loop = h('input', { type: 'checkbox' });
   private readonly speed: HTMLSelectElement;
   private readonly name = h('span', { class: 'file' });
   private state: Playback | null = null;
   private available = false;
   private askedMs = 0;
+  /** Whether the daemon has answered the last question. Without an answer, nobody knows the position. */
+  private isKnown = false;
   private scrubbing = false;
   private lastScrubMs = 0;
 
@@ -75,13 +75,14 @@ export class Timeline {
     try {
       if (!document.hidden) this.show(await api.playback());
     } catch {
-      // The daemon is unreachable. The header already reports the state of the connection.
+      this.isKnown = false; // the header reports the state of the connection
     }
     setTimeout(() => void this.poll(), POLL_MS);
   }
 
   private show(playback: Playback | null): void {
     this.state = playback;
+    this.isKnown = playback !== null;
     this.askedMs = performance.now();
     this.element.hidden = playback === null;
     if (playback === null) return;
@@ -94,7 +95,7 @@ export class Timeline {
   }
 
   private tick(): void {
-    if (this.state?.playing === true) this.showPosition();
+    if (this.isKnown && this.state?.playing === true) this.showPosition();
     requestAnimationFrame(() => this.tick());
   }
 
@@ -102,10 +103,11 @@ export class Timeline {
     const playback = this.state!;
     const at = this.scrubbing ? Number(this.scrub.value) : positionAfter(playback, (performance.now() - this.askedMs) / 1000);
     if (!this.scrubbing) this.scrub.value = String(at);
-    const text = `${clockText(at)} / ${clockText(playback.seconds)}`;
-    if (this.time.textContent === text) return;
-    this.time.textContent = text;
-    this.scrub.setAttribute('aria-valuetext', text);
+    const [position, duration] = [clockText(at, 1), ` / ${clockText(playback.seconds, 1)}`];
+    if (this.position.textContent === position && this.duration.textContent === duration) return;
+    this.position.textContent = position;
+    this.duration.textContent = duration;
+    this.scrub.setAttribute('aria-valuetext', position + duration);
   }
 
   private onScrub(): void {

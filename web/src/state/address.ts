@@ -33,7 +33,8 @@ export interface PageState {
   dock: boolean;
 }
 
-const RESERVED = ['subject', 'camera', 'wipe', 'debug', 'curves', 'panel', 'drawn', 'stream', 'kiosk', 'grid', 'follow', 'against', 'dock'] as const;
+const RESERVED = ['subject', 'camera', 'wipe', 'debug', 'curves', 'panel', 'drawn', 'stream', 'kiosk', 'grid', 'follow', 'against', 'dock',
+  'moves'] as const; // 'moves': see Elsewhere
 
 function writeCamera(camera: Camera): string {
   const numbers = [...camera.eye, ...camera.target, camera.fovDegrees];
@@ -56,6 +57,14 @@ function readCamera(text: string): string | Camera | null {
 }
 
 const words = (text: string | null): string[] => (text ? text.split(',').filter(Boolean) : []);
+
+/** The state in a URL: its fragment, which the page keeps up to date, or else its query, which frames of other pages use. */
+export function addressOf({ hash, search }: Pick<Location, 'hash' | 'search'>): string {
+  if (hash !== '') return hash;
+  const parameters = new URLSearchParams(search);
+  parameters.delete('token'); // a secret, and no part of the state
+  return `#${parameters}`;
+}
 
 /** Reads the fragment of a URL. Ignores parts that are not valid. */
 export function readAddress(hash: string): PageState {

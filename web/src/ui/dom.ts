@@ -32,6 +32,11 @@ export function button(label: string, onClick: () => void, attributes: Attribute
   return h('button', { type: 'button', onclick: onClick, ...attributes }, label);
 }
 
+/** A command that breaks between its words only, and not at their hyphens. */
+export function command(words: string): HTMLElement {
+  return h('code', {}, ...words.split(' ').flatMap((word, i) => [i === 0 ? null : ' ', h('span', {}, word)]));
+}
+
 /** Makes a select with a label for screen readers. */
 export function select(label: string, options: readonly (readonly [string, string])[],
                        onChange: (value: string) => void): HTMLSelectElement {
@@ -64,6 +69,16 @@ export function saveBlob(name: string, blob: Blob): void {
   const url = URL.createObjectURL(blob);
   h('a', { href: url, download: name }).click();
   setTimeout(() => URL.revokeObjectURL(url), 10_000);
+}
+
+/** False: the browser forbids it, as browsers do except on https and localhost. */
+export async function copyText(words: string): Promise<boolean> {
+  try {
+    await navigator.clipboard.writeText(words);
+    return true;
+  } catch {
+    return false;
+  }
 }
 
 /** A readable region name: "Knee left inner" for "knee_l_inner". Left is the subject's left. */

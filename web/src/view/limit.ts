@@ -11,6 +11,8 @@ export interface Pace {
   picturesHz: number;
   /** Poses per second that the daemon skipped because two pictures were not acknowledged yet. */
   waitedHz: number;
+  /** The daemon draws a picture, of whatever viewer. */
+  isDrawing: boolean;
   /** Mean time to decode a picture here. */
   decodeMs: number;
   /** The picture does not change because the pose rests. */
@@ -32,6 +34,8 @@ export function limitOf(pace: Pace): Limit {
   if (pace.isAtRest || pace.posesHz < 1) return 'none';
   if (pace.picturesHz >= ENOUGH * Math.min(pace.posesHz, SCREEN_HZ)) return 'none';
   if (pace.isHere) return 'browser';
+  // The count of skipped poses comes with pictures. Without any, an idle renderer waits until the last ones are acknowledged.
+  if (pace.picturesHz === 0 && !pace.isDrawing) return 'network';
   if (pace.waitedHz < WAITED * pace.posesHz) return 'drawing';
   return (pace.decodeMs * pace.picturesHz) / 1000 > BUSY ? 'browser' : 'network';
 }

@@ -19,6 +19,7 @@ export class WeightStream implements Subscriber {
     private wanted: string,
     readonly history: WeightHistory,
     private readonly onFrame: () => void,
+    private readonly onMoved: (web: string) => void,
   ) {
     this.subscription = connection.subscribe(this);
   }
@@ -58,6 +59,11 @@ export class WeightStream implements Subscriber {
 
   onGone(): void {
     this.subject.set('');
+  }
+
+  /** The user chose this subject, so the page goes where it is. */
+  onElsewhere(web: string): void {
+    if (this.wanted !== '') this.onMoved(web);
   }
 
   onRefused(_code: number, message: string): void {

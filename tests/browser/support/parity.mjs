@@ -5,7 +5,7 @@ import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { PNG } from 'pngjs';
-import { Daemon, furrowOutput, recording, SHARE } from './daemon.mjs';
+import { Daemon, furrowOutput, recording, SHARE } from '../daemon.mjs';
 
 const { openWebSocket } = await import(pathToFileURL(join(process.env.FURROW_JS, 'furrow/dist/node.js')).href);
 

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Two daemons of a cluster: the page goes to the one that serves its subject.
+import assert from 'node:assert/strict';
+import { createServer } from 'node:net';
+import { after, before, test } from 'node:test';
+import { launch, openPage } from './browser.mjs';
+import { Daemon, furrow, recording } from './daemon.mjs';
+
+let browser;
+
+/** Ports that nobody uses. */
+async function freePorts(count) {
+  const servers = await Promise.all(Array.from({ length: count }, () => new Promise((resolve) => {
+    const server = createServer().listen(0, '127.0.0.1', () => resolve(server));
+  })));
+  const ports = servers.map((server) => server.address().port);
+  await Promise.all(servers.map((server) => new Promise((resolve) => server.close(resolve))));
+  return ports;
+}
+
+before(async () => {
+  browser = await launch();
+});
+after(() => browser?.close());
+
+test('the page goes to the daemon that serves its subject, with its settings', async () => {
+  const all = await freePorts(6);
+  const [a, b] = [all.slice(0, 3), all.slice(3)].map(([tcp, udp, http]) => ({ tcp, udp, http }));
+  const list = [['a', a], ['b', b]].flatMap(([name, { tcp, udp, http }]) => ['--cluster-node', `${name}=127.0.0.1:${tcp}:${udp}:${http}`]);
+  const daemons = await Promise.all([['a', a], ['b', b]].map(([name, ports]) => Daemon.start(['--no-render', '--name', name, ...list], ports)));
+  let performer;
+  try {
+    const { node } = await daemons[0].get('api/place?subject=ada');
+    const [there, here] = node === 'a' ? daemons : [daemons[1], daemons[0]];
+    performer = furrow('play', recording('performance'), '--to', `127.0.0.1:${there.ports.udp}`, '--udp', '--subject', 'ada', '--loop');
+    const page = await openPage(browser, `${here.address}#subject=ada&curves=brow_l.squash`);
+    await page.waitForURL(`${there.address}#*`);
+    const hash = new URLSearchParams(new URL(page.url()).hash.slice(1));
+    assert.deepEqual([hash.get('subject'), hash.get('curves')], ['ada', 'brow_l.squash']);
+    // The page that it came from stays in the history.
+    const visited = [];
+    page.on('framenavigated', (frame) => visited.push(new URL(frame.url()).port));
+    await page.goBack({ waitUntil: 'commit' });
+    assert.equal(visited[0], String(here.ports.http));
+    // A page without a chosen subject stays where it is.
+    const other = await openPage(browser, here.address);
+    await other.waitForSelector('.condition');
+    assert.equal(new URL(other.url()).port, String(here.ports.http));
+    await page.context().close();
+    await other.context().close();
+  } finally {
+    performer?.kill();
+    await Promise.all(daemons.map((daemon) => daemon.stop()));
+  }
+});
