@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Measures the fast path: the solver, the codec, sending to subscribers, and furrowd end to end compared with raw
-# UDP echo servers. Writes fast_path.md and fast_path.json, load.md, load.json and curves of the load (SVG). Takes
-# about 20 minutes and needs an otherwise idle machine.
+# UDP echo servers, also where the daemon sleeps between two poses ("cold"). Writes fast_path.md and fast_path.json,
+# load.md, load.json and curves of the load (SVG). Takes about half an hour and needs an otherwise idle machine.
 #
 # usage: bench/run.sh [--quick] [--out DIR] [--build DIR]
 #   --quick      Take a few minutes to check that everything works; the figures are inaccurate

@@ -23,11 +23,8 @@ while [[ $# -gt 0 ]]; do
   esac
 done
 
-if [[ -z $build ]]; then
-  build=build/release
-  [[ -f $build/build.ninja ]] || cmake --preset release
-  cmake --build --preset release --target furrow furrow-load furrowd
-fi
+. bench/release_build.sh
+use_release_build furrow furrow-load furrowd
 # A mount namespace of its own, for a disk that is full. Without one, the disk stays as it is.
 own=()
 if unshare -m true 2>/dev/null; then

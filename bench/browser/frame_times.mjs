@@ -13,7 +13,7 @@ process.env.FURROW_JS ??= join(build, 'client/js');
 process.env.FURROW_SHARE ??= join(build, 'share/furrow');
 process.env.FURROW_ARTEFACTS ??= join(build, 'artefacts/bench');
 const { launch, openPage } = await import('../../tests/browser/browser.mjs');
-const { serveModules } = await import('../../tests/browser/module_server.mjs');
+const { serveModules } = await import('../../tests/browser/support/module_server.mjs');
 
 const SIZES = [[448, 448], [640, 480], [1280, 720]];
 const WAYS = {

@@ -8,13 +8,13 @@ import sys
 import threading
 import time
 
-from cluster_testing import (NATS, NatsServer, Node, Performer, Viewer, missing, reorderings, repetitions,
-                             wait_until)
-from furrow_testing import finish, spawn
+from cluster_testing import NATS, NatsServer, Node, Performer, Viewer, Wire, wait_until
+from furrow_testing import finish, missing, reorderings, repetitions, spawn
 
 BEFORE = 60  # frames before each failure: a second
 AFTER = 120
 FROZEN = 5.0  # seconds
+CUT = 5.0
 
 
 class Claims:
@@ -61,6 +61,9 @@ class Stage:
         self.nats = NatsServer()
         stack.callback(self.nats.close)
         self.nodes = {}
+        self.wires = {name: Wire(self.nats.port) for name in "abc"}  # each node's own way to NATS
+        for wire in self.wires.values():
+            stack.callback(wire.close)
         for name in "abc":
             self.start(name)
         for node in self.nodes.values():
@@ -73,7 +76,7 @@ class Stage:
         stack.callback(self.claims.close)
 
     def start(self, name, ports=None):
-        self.nodes[name] = self.stack.enter_context(Node(name, "--cluster", self.nats.url, ports=ports))
+        self.nodes[name] = self.stack.enter_context(Node(name, "--cluster", self.wires[name].url, ports=ports))
 
     def holder(self):
         def agreed():
@@ -110,6 +113,18 @@ class Stage:
         self.viewer.wait_for(AFTER)
         return since
 
+    def cut(self):
+        """The holder loses its way to NATS alone."""
+        node = self.holder()
+        since = time.monotonic()
+        self.wires[node.name].cut()
+        threading.Event().wait(CUT)
+        self.wires[node.name].mend()
+        self.viewer.wait_for(AFTER)
+        for each in self.nodes.values():
+            wait_until(each.is_ready, "the nodes are ready again")
+        return since
+
     def end(self):
         return self.leave(self.holder(), lambda node: node.signal(signal.SIGTERM))
 
@@ -142,7 +157,8 @@ def main():
     with contextlib.ExitStack() as stack:
         stage = Stage(stack)
         for label, fail in (("the holder is killed", stage.kill), ("the holder freezes for 5 s", stage.freeze),
-                            ("NATS restarts, emptied", stage.empty), ("the holder ends (SIGTERM)", stage.end),
+                            ("NATS restarts, emptied", stage.empty),
+                            ("its way to NATS is cut, 5 s", stage.cut), ("the holder ends (SIGTERM)", stage.end),
                             ("the holder is drained", stage.drain), ("all are replaced in turn", stage.roll)):
             first, split = len(stage.viewer.frames), stage.claims.split
             outages = []

@@ -17,27 +17,43 @@
 namespace furrow::bench {
 namespace {
 
-// The first `count` cores, but never the last core.
-void PinToFirst(int cores) {
-  cpu_set_t allowed;
-  if (sched_getaffinity(0, sizeof(allowed), &allowed) != 0) return;
-  const int wanted = std::max(1, std::min(cores, CPU_COUNT(&allowed) - 1));
+// The cores of this program when it asked first, before it moved.
+const cpu_set_t& AllCores() {
+  static const cpu_set_t kAll = [] {
+    cpu_set_t all;
+    sched_getaffinity(0, sizeof(all), &all);
+    return all;
+  }();
+  return kAll;
+}
+
+// The first `count` cores, but never the last core, which is left for this program.
+cpu_set_t FirstCores(int count) {
+  const cpu_set_t& all = AllCores();
+  const int wanted = std::max(1, std::min(count, CPU_COUNT(&all) - 1));
   cpu_set_t chosen;
   CPU_ZERO(&chosen);
   for (int core = 0; core < CPU_SETSIZE && CPU_COUNT(&chosen) < wanted; ++core) {
-    if (CPU_ISSET(core, &allowed)) CPU_SET(core, &chosen);
+    if (CPU_ISSET(core, &all)) CPU_SET(core, &chosen);
   }
-  sched_setaffinity(0, sizeof(chosen), &chosen);
+  return chosen;
 }
 
-// All cores but the first. A machine with one core keeps its only core.
-void PinToOthers() {
-  cpu_set_t allowed;
-  if (sched_getaffinity(0, sizeof(allowed), &allowed) != 0 || CPU_COUNT(&allowed) < 2) return;
-  int first = 0;
-  while (!CPU_ISSET(first, &allowed)) ++first;
-  CPU_CLR(first, &allowed);
-  sched_setaffinity(0, sizeof(allowed), &allowed);
+// All cores but the first `count`. A machine with one core keeps its only core.
+void PinToOthers(int count) {
+  const cpu_set_t first = FirstCores(count);
+  cpu_set_t others;
+  CPU_XOR(&others, &AllCores(), &first);
+  if (CPU_COUNT(&others) > 0) sched_setaffinity(0, sizeof(others), &others);
+}
+
+void WriteConfig(const std::filesystem::path& file, const DaemonSetup& setup) {
+  std::ofstream config(file);
+  config << "[listen]\nthreads = " << setup.threads << "\n";
+  // A daemon of an older version does not know the key.
+  if (setup.busy_poll_us > 0) config << "busy_poll_us = " << setup.busy_poll_us << "\n";
+  config << "[limits]\nmax_subjects = 20000\n";
+  if (!setup.keys.empty()) config << "[security]\nkeys = \"" << setup.keys.string() << "\"\n";
 }
 
 // Returns 7401 for "... udp=127.0.0.1:7401 ...", or 0 if there is no port.
@@ -56,26 +72,23 @@ std::string ReadLine(int descriptor) {
 
 }  // namespace
 
+int NumCores() { return CPU_COUNT(&AllCores()); }
+
 Result<DaemonProcess> DaemonProcess::Start(const std::filesystem::path& program,
                                            const std::filesystem::path& rig,
-                                           const std::filesystem::path& folder, int threads) {
+                                           const std::filesystem::path& folder,
+                                           const DaemonSetup& setup) {
   const std::filesystem::path config = folder / "load.toml";
-  std::ofstream(config) << "[listen]\nthreads = " << threads
-                        << "\n[limits]\nmax_subjects = 20000\n";
+  WriteConfig(config, setup);
   std::array<int, 2> pipe_ends{};
   if (pipe(pipe_ends.data()) != 0) return Status(StatusCode::kIo, "no pipe");
-  static const cpu_set_t kAll = [] {
-    cpu_set_t all;
-    sched_getaffinity(0, sizeof(all), &all);
-    PinToOthers();
-    return all;
-  }();
+  const cpu_set_t cores = setup.is_pinned ? FirstCores(setup.threads) : AllCores();
+  if (setup.is_pinned) PinToOthers(setup.threads);
   const int pid = fork();
   if (pid < 0) return Status(StatusCode::kIo, "no process");
   if (pid == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    sched_setaffinity(0, sizeof(kAll), &kAll);
-    PinToFirst(threads);
+    sched_setaffinity(0, sizeof(cores), &cores);
     dup2(pipe_ends[1], STDOUT_FILENO);
     if (std::freopen((folder / "furrowd.log").c_str(), "a", stderr) == nullptr) _exit(126);
     execl(program.c_str(), program.c_str(), "--no-render", "--no-http", "--tcp", "0", "--udp", "0",

@@ -8,16 +8,27 @@
 
 namespace furrow::bench {
 
-// A furrowd process on free ports. It runs on the first core only, or on one core per thread except
-// the last core. When the first daemon starts, this program moves to all cores but the first. The
-// destructor ends the process.
+// The cores that this program could use at first, before it moved to some of them.
+[[nodiscard]] int NumCores();
+
+// How a daemon runs.
+struct DaemonSetup {
+  int threads = 1;
+  // True: on the first core only, or on one core per thread except the last core; this program
+  // moves to the other cores. False: on any core.
+  bool is_pinned = true;
+  int busy_poll_us = 0;
+  std::filesystem::path keys;  // of tokens; empty: none
+};
+
+// A furrowd process on free ports. The destructor ends the process.
 class DaemonProcess {
  public:
   // `program`: furrowd. `folder`: receives its configuration, which lifts the limits on subjects.
   [[nodiscard]] static Result<DaemonProcess> Start(const std::filesystem::path& program,
                                                    const std::filesystem::path& rig,
                                                    const std::filesystem::path& folder,
-                                                   int threads = 1);
+                                                   const DaemonSetup& setup = {});
   ~DaemonProcess();
   DaemonProcess(DaemonProcess&& other) noexcept;
   DaemonProcess& operator=(DaemonProcess&&) = delete;

@@ -15,6 +15,7 @@
 #include "base/data_dir.h"
 #include "base/text.h"
 #include "bench/load/budget.h"
+#include "bench/load/cold.h"
 #include "bench/load/curves.h"
 #include "bench/load/measure_aims.h"
 #include "bench/load/threads.h"
@@ -49,6 +50,11 @@ Part Aims(const LoadSetup& setting) {
   return {ToMarkdown(aims, "raw against raw"), ToJson(aims)};
 }
 
+Part Cold(const LoadSetup& setting) {
+  const auto rows = MeasureCold(setting);
+  return {ToMarkdown(rows), ToJson(rows)};
+}
+
 Part Threads(const LoadSetup& setting) {
   const auto threads = MeasureThreads(setting);
   return {ToMarkdown(threads), ToJson(threads)};
@@ -68,6 +74,7 @@ Part Subjects(const LoadSetup& setting) {
 
 const std::vector<std::pair<std::string, Measure>>& Parts() {
   static const std::vector<std::pair<std::string, Measure>> parts = {
+      {"cold", Cold},
       {"aims", Aims},
       {"threads", Threads},
       {"subjects", Subjects},
@@ -138,7 +145,7 @@ int main(int argc, char** argv) {
          "load-PART.json and keeps load.md")
       ->capture_default_str();
   app.add_option("--only", options.only,
-                 "Measure only this part (default: all parts, about 15 minutes)")
+                 "Measure only this part (default: all parts, about 25 minutes)")
       ->check(CLI::IsMember(furrow::bench::PartNames()));
   app.add_option("--daemon", options.setting.daemon,
                  "Path of furrowd (default: beside this program)");

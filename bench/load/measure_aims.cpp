@@ -3,9 +3,9 @@
 
 #include <cstdio>
 
+#include "bench/load/beside_echoes.h"
 #include "bench/load/paired_runs.h"
 #include "bench/report/value_or_exit.h"
-#include "client/load/compare/echo_server.h"
 #include "client/load/run/verdict.h"
 #include "report/table.h"
 
@@ -27,25 +27,15 @@ Aim RatioAim(const load::Figure& figure, const std::string& what, double limit, 
           at_most ? ratio <= limit : ratio >= limit};
 }
 
-load::Target Echo(const load::EchoServer& server) {
-  return {.host = "127.0.0.1", .udp = server.port(), .echo = true, .pid = server.pid()};
-}
-
 void AddRatios(const load::Comparison& comparison, const std::string& name, const std::string& what,
                double limit, bool at_most, std::vector<Aim>* aims) {
-  for (const load::Figure& figure : comparison.figures) {
-    if (figure.name == name) aims->push_back(RatioAim(figure, what, limit, at_most));
-  }
+  const load::Figure* figure = FindFigure(comparison, name);
+  if (figure != nullptr) aims->push_back(RatioAim(*figure, what, limit, at_most));
 }
 
-// The daemon and two raw echo servers.
-std::vector<Aim> BesideEchoes(const LoadSetup& setting) {
-  const auto daemon =
-      ValueOrExit(DaemonProcess::Start(setting.daemon, setting.rig, setting.folder));
-  const auto raw = ValueOrExit(load::EchoServer::Start(daemon.target().pid));
-  const auto control = ValueOrExit(load::EchoServer::Start(daemon.target().pid));
-  PairedRuns duel(setting, {.server = daemon.target(), .raw = Echo(raw), .control = Echo(control)},
-                  kSearches);
+std::vector<Aim> EchoAims(const LoadSetup& setting) {
+  const BesideEchoes servers(setting);
+  PairedRuns duel(setting, servers.targets(), kSearches);
   std::vector<Aim> aims;
   const load::Comparison gentle = duel.At(10000.0);
   AddRatios(gentle, "p50", "round trip at 10,000 poses/s, p50", 1.25, true, &aims);
@@ -117,7 +107,7 @@ std::vector<Aim> Stalled(const LoadSetup& setting) {
 }  // namespace
 
 std::vector<Aim> MeasureAims(const LoadSetup& setting) {
-  std::vector<Aim> aims = BesideEchoes(setting);
+  std::vector<Aim> aims = EchoAims(setting);
   aims.push_back(ThousandSubjects(setting));
   for (Aim& aim : Stalled(setting)) aims.push_back(std::move(aim));
   aims.push_back(IdleMemory(setting));

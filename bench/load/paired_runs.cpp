@@ -55,6 +55,11 @@ load::Comparison PairedRuns::Run(const load::ComparisonOptions& options) {
   return comparison;
 }
 
+const load::Figure* FindFigure(const load::Comparison& comparison, std::string_view name) {
+  const auto found = std::ranges::find(comparison.figures, name, &load::Figure::name);
+  return found == comparison.figures.end() ? nullptr : &*found;
+}
+
 std::string Between(const load::Quartiles& ratio) {
   return Between(ratio.median, ratio.low, ratio.high, 2);
 }

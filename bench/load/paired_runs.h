@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+#include <string_view>
+
 #include "bench/load/load_setup.h"
 #include "client/load/compare/comparison.h"
 #include "client/load/schedule/workload.h"
@@ -29,6 +32,9 @@ class PairedRuns {
   load::Workload performance_;
 };
 
+// The figure of that name, which `comparison` owns; null: it has not been measured.
+[[nodiscard]] const load::Figure* FindFigure(const load::Comparison& comparison,
+                                             std::string_view name);
 // Formats a ratio as median and interquartile range.
 [[nodiscard]] std::string Between(const load::Quartiles& ratio);
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/load/threads.h"
 
-#include <algorithm>
-
 #include <nlohmann/json.hpp>
 
 #include "bench/load/paired_runs.h"
@@ -16,7 +14,15 @@ namespace {
 constexpr double kRate = 50000.0;
 
 DaemonProcess Daemon(const LoadSetup& setting, int threads) {
-  return ValueOrExit(DaemonProcess::Start(setting.daemon, setting.rig, setting.folder, threads));
+  return ValueOrExit(
+      DaemonProcess::Start(setting.daemon, setting.rig, setting.folder, {.threads = threads}));
+}
+
+// 2 and 4, and on larger machines 8 and so on: the generator keeps at least half of the cores.
+std::vector<int> ThreadCounts() {
+  std::vector<int> counts = {2, 4};
+  while (counts.back() * 4 <= NumCores()) counts.push_back(counts.back() * 2);
+  return counts;
 }
 
 std::vector<std::string> Row(int threads, const load::Figure& figure, const std::string& what) {
@@ -27,8 +33,8 @@ std::vector<std::string> Row(int threads, const load::Figure& figure, const std:
 
 void AddRow(const ThreadsResult& result, const load::Comparison& comparison,
             const std::string& name, const std::string& what, report::Table* table) {
-  const auto figure = std::ranges::find(comparison.figures, name, &load::Figure::name);
-  if (figure != comparison.figures.end()) table->rows.push_back(Row(result.threads, *figure, what));
+  const load::Figure* figure = FindFigure(comparison, name);
+  if (figure != nullptr) table->rows.push_back(Row(result.threads, *figure, what));
 }
 
 }  // namespace
@@ -37,7 +43,7 @@ std::vector<ThreadsResult> MeasureThreads(const LoadSetup& setting) {
   std::vector<ThreadsResult> results;
   const DaemonProcess one = Daemon(setting, 1);
   const DaemonProcess control = Daemon(setting, 1);
-  for (const int threads : {2, 4}) {
+  for (const int threads : ThreadCounts()) {
     const DaemonProcess several = Daemon(setting, threads);
     PairedRuns duel(
         setting, {.server = several.target(), .raw = one.target(), .control = control.target()}, 1);

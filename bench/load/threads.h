@@ -18,8 +18,9 @@ struct ThreadsResult {
   load::Comparison highest;  // one search per daemon for the highest rate without loss
 };
 
-// Measures daemons with 2 and 4 threads. On a machine with two cores, every daemon has only one
-// core. There the result shows the cost of further threads but not their benefit.
+// Measures daemons with 2 and 4 threads, and with more on machines with at least 16 cores. On a
+// machine with two cores, every daemon has only one core. There the result shows the cost of
+// further threads but not their benefit.
 [[nodiscard]] std::vector<ThreadsResult> MeasureThreads(const LoadSetup& setting);
 
 [[nodiscard]] std::string ToMarkdown(const std::vector<ThreadsResult>& results);

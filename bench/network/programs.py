@@ -6,9 +6,13 @@ import pathlib
 import re
 import signal
 import subprocess
+import sys
 import threading
 import time
 import urllib.request
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "report"))
+from processes import resident_kib  # pylint: disable=wrong-import-position
 
 # A bad network: lost, late, early and repeated datagrams, and up to 50 ms of jitter.
 FAULTS = ("--loss", "0.1", "--reorder", "0.2", "--duplicate", "0.05", "--jitter", "50")
@@ -131,5 +135,4 @@ def heap_in_use(host):
 
 
 def usage_of(pid):
-    status = pathlib.Path(f"/proc/{pid}/status").read_text()
-    return Usage(int(re.search(r"VmRSS:\s+(\d+)", status).group(1)), len(os.listdir(f"/proc/{pid}/fd")))
+    return Usage(resident_kib(pid), len(os.listdir(f"/proc/{pid}/fd")))

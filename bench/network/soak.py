@@ -35,6 +35,8 @@ DISK_MB = 160
 TURN_SECONDS = 30
 LIFE_SECONDS = 15
 STALE_SECONDS = 2.0
+DRAIN_SECONDS = 2.0  # the default of limits.drain_seconds
+MOST_MIB_PER_HOUR = 1.0
 TROUBLE = (*FAULTS, "--clock-step", "3", "--clock-every", "7", "--stalled", "3", "--slow", "2", "--churn", "2")
 # Small pictures, so that a software renderer leaves the processor to the weights.
 MJPEG = b"GET /mjpeg?subject=load-000000&width=64&height=64&rate=4 HTTP/1.1\r\nHost: localhost\r\n\r\n"
@@ -307,8 +309,22 @@ class Soak:
             f"{max(self.returns):.2f} s at most; stale {self.stale} of {len(self.returns)}" if self.returns else "restarts: none",
             f"ends    : {max(self.ends):.2f} s at most after SIGTERM",
             f"failed  : {len(self.failures)}{''.join(chr(10) + '  ' + failure for failure in self.failures)}",
+            f"missed  : {', '.join(self.missed(hours)) or 'nothing'}",
         ]
         return "\n".join(lines)
+
+    def missed(self, hours):
+        """What the run has shown to be worse than docs/LOAD.md promises."""
+        slope = Samples.slope_per_hour(self.samples.rows) / 1024
+        checks = {
+            "a program failed": bool(self.failures),
+            "wrong weights": any(run["wrong"] for runs in self.runs.values() for run in runs),
+            "stale weights": self.stale > 0,
+            "weights later than 1 s after a restart": bool(self.returns) and max(self.returns) > 1.0,
+            "an end after drain_seconds": bool(self.ends) and max(self.ends) > DRAIN_SECONDS,
+            "memory that grows": hours >= 1 and slope > MOST_MIB_PER_HOUR,
+        }
+        return [name for name, is_missed in checks.items() if is_missed]
 
 
 def main():
@@ -325,8 +341,7 @@ def main():
             if soak.has_disk:
                 subprocess.run(["umount", "-l", str(soak.disk)], capture_output=True)
         print(soak.page(options.hours))
-    bad = soak.failures or soak.stale or any(run["wrong"] for runs in soak.runs.values() for run in runs)
-    sys.exit(1 if bad else 0)
+    sys.exit(1 if soak.missed(options.hours) else 0)
 
 
 if __name__ == "__main__":

@@ -73,11 +73,12 @@ PreviewServer::PreviewServer(render::Image picture)
   parts.random = [] { return 1; };
   hub_ = std::make_unique<server::Hub>(std::move(parts));
   http_ = ValueOrExit(
-      server::HttpServer::Start({.config = {.port = 0, .max_connections = 1024},
-                                 .bind = "127.0.0.1",
-                                 .post_to_hub = [this](Task task) { Post(std::move(task)); },
-                                 .answer = {},
-                                 .metrics = &metrics_}));
+      server::HttpServer::Listen({.config = {.port = 0, .max_connections = 1024},
+                                  .bind = "127.0.0.1",
+                                  .post_to_hub = [this](Task task) { Post(std::move(task)); },
+                                  .answer = {},
+                                  .metrics = &metrics_}));
+  http_->Start();
   loop_ = std::thread([this] { Run(); });
 }
 

@@ -22,8 +22,12 @@ import ssl
 import statistics
 import struct
 import subprocess
+import sys
 import tempfile
 import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "report"))
+from processes import resident_kib  # pylint: disable=wrong-import-position
 
 VECTORS = pathlib.Path(__file__).resolve().parents[2] / "protocol" / "vectors"
 DEADLINE = 15.0  # seconds; whatever takes longer counts as an outage
@@ -58,8 +62,7 @@ class Daemon:
         self.process.wait()
 
     def mebibytes(self):
-        status = pathlib.Path(f"/proc/{self.process.pid}/status").read_text()
-        return int(re.search(r"VmRSS:\s+(\d+)", status).group(1)) / 1024
+        return resident_kib(self.process.pid) / 1024
 
     def get(self, path, timeout=DEADLINE):
         """Returns the status and the seconds; status 0: no answer."""
@@ -75,14 +78,15 @@ class Daemon:
         return status, time.monotonic() - begun
 
     def weights_ms(self, recording, seconds):
-        """The p50 of the latency of weights, in ms, and the part that was lost."""
+        """The p50 and the longest latency of weights, in ms, and the part that was lost."""
         with tempfile.NamedTemporaryFile(suffix=".json") as report:
             subprocess.run([self.bin / "furrow", "load", f"127.0.0.1:{self.ports['udp']}", recording, "--subjects", "20",
                             "--rate", "60", "--duration", str(seconds), "--quantise", "--json", report.name],
                            capture_output=True, check=False)
             run = json.loads(pathlib.Path(report.name).read_text())["run"]
         lost = run["lost"] if "lost" in run else run["tally"]["lost"]
-        return run["latency_us"]["p50"] / 1000, lost / max(1, run.get("sent", 20 * 60 * seconds))
+        latency = run["latency_us"]
+        return latency["p50"] / 1000, latency["max"] / 1000, lost / max(1, run.get("sent", 20 * 60 * seconds))
 
 
 # --- Attackers, each a process of its own ------------------------------------------------------------------
@@ -237,12 +241,13 @@ class Table:
         print(f"| {attack} | {victim} | {without} | {with_it} | {'' if growth is None else f'{growth:+.0f} MiB'} |", flush=True)
 
     def weights(self, attack, daemon, *calls):
-        before, _ = daemon.weights_ms(self.options.recording, self.options.seconds)
+        before, longest_before, _ = daemon.weights_ms(self.options.recording, self.options.seconds)
         memory = daemon.mebibytes()
         with attackers(*calls):
-            during, lost = daemon.weights_ms(self.options.recording, self.options.seconds)
+            during, longest, lost = daemon.weights_ms(self.options.recording, self.options.seconds)
             growth = daemon.mebibytes() - memory
-        self.row(attack, "weights, p50", f"{before:.2f} ms", f"{during:.2f} ms, {100 * lost:.1f}% lost", growth)
+        self.row(attack, "weights, p50 (longest)", f"{before:.2f} ms ({longest_before:.0f} ms)",
+                 f"{during:.2f} ms ({longest:.0f} ms), {100 * lost:.1f}% lost", growth)
 
 
 def waiting_tcp(table, options):

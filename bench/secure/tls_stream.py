@@ -9,13 +9,16 @@ Prints one row per way, the medians and ranges over the rounds, and then the rat
 furrowd and bench_tls_client.
 """
 import argparse
-import os
 import pathlib
 import re
 import subprocess
+import sys
 import tempfile
 
 import two_ways
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "report"))
+from processes import cpu_seconds  # pylint: disable=wrong-import-position
 
 FIGURES = {"p50": "p50 (us)", "p99": "p99 (us)", "cpu": "CPU of the daemon (us per pose)", "client": "CPU of the client (us per pose)"}
 
@@ -34,11 +37,6 @@ def start(options, config, *arguments):
     daemon = subprocess.Popen([options.bin / "furrowd", "--config", config, "--rig", "arkit", "--no-render", "--no-http", "--tcp", "0", "--udp", "0", *arguments],
                               stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
     return daemon, re.search(r"tcp=\S*?:(\d+)", daemon.stdout.readline()).group(1)
-
-
-def cpu_seconds(pid):
-    fields = pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 def measure(options, folder):
