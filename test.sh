@@ -37,12 +37,13 @@ build() {
   cmake --build --preset "$1" -j "$jobs" --target "${2:-all}"
 }
 
-# run_tests PRESET [CTEST ARGS...]. Tests labelled `all` run in the tiers above the default one.
+# run_tests PRESET [CTEST ARGS...]. Tests labelled `all` run in the tiers above the default one. One test more than there are
+# cores, because tests with several processes often wait.
 run_tests() {
   step "tests: $1"
   local exclude=()
   [[ $tier != default ]] || exclude=(--label-exclude '^all$')
-  ctest --preset "$1" -j "$jobs" "${exclude[@]}" "${@:2}"
+  ctest --preset "$1" -j "$((jobs + 1))" "${exclude[@]}" "${@:2}"
 }
 
 # fuzz_one TARGET SECONDS: runs one fuzz target with the committed seeds, and prints what it did when it ends.

@@ -24,9 +24,10 @@ if [[ ! -f $base ]]; then
 fi
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-packages=$build_dir/deploy/packages  # also for check_container.sh
+packages=$build_dir/deploy/packages  # also for check_container.sh and check_service.sh
+newer=$build_dir/deploy/newer
 "$source_dir/deploy/build-deb.sh" --from-build "$build_dir" --version 0.1.0 "$packages"
-"$source_dir/deploy/build-deb.sh" --from-build "$build_dir" --version 0.1.1 "$work/new"
+"$source_dir/deploy/build-deb.sh" --from-build "$build_dir" --version 0.1.1 "$newer"
 lintian --allow-root --fail-on error,warning --info "$packages"/*.deb || fail 'lintian found faults (listed above)'
 
 mkdir "$work/root"
@@ -34,7 +35,7 @@ tar -C "$work/root" -xf "$base"
 cp /etc/resolv.conf "$work/root/etc/resolv.conf"
 mkdir "$work/root/srv/old" "$work/root/srv/new"
 cp "$packages"/*.deb "$work/root/srv/old/"
-cp "$work"/new/*.deb "$work/root/srv/new/"
+cp "$newer"/*.deb "$work/root/srv/new/"
 cp "$source_dir"/deploy/debian/tests/* "$work/root/srv/"
 cat >"$work/root/srv/try" <<'TRY'
 set -eu

@@ -5,6 +5,7 @@ result, and alerts fire. Exit code 77 means skipped (prometheus or promtool is m
 """
 import json
 import math
+import os
 import pathlib
 import re
 import shutil
@@ -50,15 +51,22 @@ def alerts():
         yield name, quantity[1], expr
 
 
-class Prometheus:
-    """A server in a with-block that scrapes a daemon by its host name, every second."""
+def datagrams_dropped(port):
+    """How many datagrams to this port the kernel has dropped, because nobody read them in time."""
+    rows = [line.split() for line in pathlib.Path("/proc/net/udp").read_text().splitlines()[1:]]
+    return sum(int(row[12]) for row in rows if row[1].endswith(f":{port:04X}"))
 
-    def __init__(self, target):
+
+class Prometheus:
+    """A server in a with-block that scrapes daemons by their host names and evaluates the rules, every second."""
+
+    def __init__(self, *targets):
         self.folder = tempfile.TemporaryDirectory()
         self.address = f"127.0.0.1:{free_port()}"
         config = pathlib.Path(self.folder.name) / "prometheus.yml"
         example = (RULES.parent / "prometheus.yml").read_text()
-        example = example.replace("10s", "1s").replace("127.0.0.1:7480", target)
+        example = example.replace("scrape_interval: 10s", "scrape_interval: 1s\n  evaluation_interval: 1s")
+        example = example.replace('["127.0.0.1:7480"]', json.dumps(targets))
         config.write_text(example.replace("furrow.rules.yml", str(RULES)))
         self.command = [PROMETHEUS, f"--config.file={config}", f"--storage.tsdb.path={self.folder.name}/data",
                         f"--web.listen-address={self.address}", "--query.lookback-delta=10s"]
@@ -88,6 +96,10 @@ class Prometheus:
             return None
         return [float(series["value"][1]) for series in result]
 
+    def await_alert(self, name):
+        """Waits until the alert fires, or waits for its time to fire."""
+        self.await_values(f'ALERTS{{alertname="{name}"}}')
+
     def await_values(self, expr):
         """Waits until the query has results that are numbers."""
         deadline = time.monotonic() + 60
@@ -102,6 +114,13 @@ class Prometheus:
 
 
 class DashboardTest(unittest.TestCase):
+    def small_disk(self):
+        """A folder on a disk of its own."""
+        folder = self.enterContext(tempfile.TemporaryDirectory())
+        subprocess.run(["mount", "-t", "tmpfs", "-o", "size=4m", "tmpfs", folder], check=True)
+        self.addCleanup(subprocess.run, ["umount", "--lazy", folder], check=True)
+        return folder
+
     def test_every_query_has_a_result_and_alerts_fire(self):
         software = {"LIBGL_ALWAYS_SOFTWARE": "1"}
         takes = self.enterContext(tempfile.TemporaryDirectory())
@@ -115,7 +134,7 @@ class DashboardTest(unittest.TestCase):
                 with Prometheus(f"localhost:{daemon.ports['http']}") as prometheus:
                     prometheus.await_values("furrow_pictures_sent_total > 3")
                     self.check_queries(prometheus)
-                    self.check_drill(prometheus, daemon)
+                    self.check_stall_and_loss(prometheus, daemon)
             finally:
                 for client in clients:
                     client.kill()
@@ -134,22 +153,51 @@ class DashboardTest(unittest.TestCase):
             with self.subTest(alert=name):
                 prometheus.await_values(quantity.replace("[5m]", "[10s]"))
 
-    def check_drill(self, prometheus, daemon):
-        """A daemon that stands still does not answer; then its stalls are counted."""
-        rules = {name: expr for name, _, expr in alerts()}
+    def check_stall_and_loss(self, prometheus, daemon):
+        """Performers are gone, the daemon stands still several times, and then for so long that datagrams get lost."""
+        performers = [spawn("play", "performance", "--to", daemon.udp, "--udp", "--loop", "--subject", f"lost-{i}")
+                      for i in range(4)]
+        try:
+            prometheus.await_values("furrow_subjects >= 5")
+        finally:
+            for performer in performers:
+                performer.kill()
+                performer.communicate()
+        prometheus.await_alert("FurrowSubjectsLost")
         for _ in range(4):
             daemon.process.send_signal(signal.SIGSTOP)
             time.sleep(0.3)  # what the alert is about
             daemon.process.send_signal(signal.SIGCONT)
             stalls = prometheus.query("furrow_stalls_total")[0]
             prometheus.await_values(f"furrow_stalls_total > {stalls}")
-        prometheus.await_values(rules["FurrowStalls"])
+        prometheus.await_alert("FurrowStalls")
         daemon.process.send_signal(signal.SIGSTOP)
         try:
+            with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as flood:
+                while datagrams_dropped(daemon.ports["udp"]) < 5000:
+                    flood.sendto(b"flood", ("127.0.0.1", daemon.ports["udp"]))
             # A scrape fails after 1 s.
-            prometheus.await_values(rules["FurrowDown"])
+            prometheus.await_alert("FurrowDown")
         finally:
             daemon.process.send_signal(signal.SIGCONT)
+        prometheus.await_alert("FurrowLosesDatagrams")
+
+    @unittest.skipIf(os.geteuid(), "a full disk needs root")
+    def test_a_daemon_without_gpu_and_disk_fires_alerts(self):
+        disk = self.small_disk()
+        with Daemon("--http", "0", "--record", disk, "--render-device", "none-of-this-name") as daemon:
+            with open(pathlib.Path(disk, "other files"), "wb", buffering=0) as other, self.assertRaises(OSError):
+                while other.write(bytes(65536)) == 65536:
+                    pass
+                other.write(b"full")
+            player = spawn("play", "performance", "--to", daemon.udp, "--udp", "--loop")
+            try:
+                with Prometheus(f"127.0.0.1:{daemon.ports['http']}") as prometheus:
+                    for alert in ("FurrowNoRenderer", "FurrowRecordingPaused", "FurrowRecordingDrops"):
+                        prometheus.await_alert(alert)
+            finally:
+                player.kill()
+                player.communicate()
 
 
 class RulesTest(unittest.TestCase):
