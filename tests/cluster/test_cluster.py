@@ -15,7 +15,7 @@ import threading
 import unittest
 import urllib.request
 
-from cluster_testing import NATS, NatsServer, Node, Performer, Viewer, wait_until
+from cluster_testing import NATS, NatsServer, Node, Performer, Viewer, Wire, wait_until
 from furrow_testing import GUARD, SOURCE, finish, furrow, reorderings, repetitions, spawn
 
 JS = os.environ.get("FURROW_JS", "")  # the npm packages, built
@@ -84,9 +84,9 @@ class ClusterTest(unittest.TestCase):
         for node in self.nodes.values():
             wait_until(node.is_ready, f"node {node.name} is ready")
 
-    def add_node(self, name, *args, ports=None):
+    def add_node(self, name, *args, ports=None, store=None):
         stack = contextlib.ExitStack()
-        node = stack.enter_context(Node(name, "--cluster", self.nats.url, *args, ports=ports))
+        node = stack.enter_context(Node(name, "--cluster", store or self.nats.url, *args, ports=ports))
         self.addCleanup(stack.close)
         return node
 
@@ -259,6 +259,25 @@ class ClusterTest(unittest.TestCase):
         name, next_epoch = self.holder()
         self.assertEqual(name, "a")
         self.assertGreaterEqual(next_epoch, epoch)
+        viewer.wait_for(60)
+        self.assertEqual(reorderings(viewer.frames), 0)
+
+    def test_a_node_that_alone_loses_its_way_to_nats_goes_on(self):
+        wire = Wire(self.nats.port)
+        self.addCleanup(wire.close)
+        self.nodes["d"] = d = self.add_node("d", store=wire.url)
+        wait_until(d.is_ready, "node d is ready")
+        self.perform(d)
+        viewer = self.watch(d)
+        viewer.wait_for(20)
+        self.assertEqual(self.holder()[0], "d")
+        wire.cut()
+        wait_until(lambda: not d.is_ready(), "the node says that nothing is placed")
+        # Far beyond the time of a lease. The node's calls to NATS wait in vain.
+        viewer.wait_for(240)
+        wire.mend()
+        wait_until(d.is_ready, "the node places subjects again")
+        self.assertEqual(self.holder()[0], "d")
         viewer.wait_for(60)
         self.assertEqual(reorderings(viewer.frames), 0)
 

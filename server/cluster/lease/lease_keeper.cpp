@@ -56,7 +56,6 @@ bool LeaseKeeper::MayTake(Time now) const {
 }
 
 void LeaseKeeper::OnReachable(bool reachable, Time now) {
-  NoticeFreeze(now);
   if (reachable == reachable_) return;
   reachable_ = reachable;
   listed_ = false;
@@ -97,7 +96,7 @@ void LeaseKeeper::OnListing(const LeaseListing& listing, Time now) {
     Learn(entry, seen);
   }
   listed_ = true;
-  needs_listing_ = false;
+  needs_listing_ = frozen_ = false;
   for (auto& [subject, own] : own_) {
     own.stale = false;
     Settle(subject, own);
@@ -164,8 +163,8 @@ void LeaseKeeper::OnWritten(std::string_view subject, std::uint64_t write, Write
 
 void LeaseKeeper::OnDone(const std::string& subject, Own& own, const Pending& done,
                          Revision revision, Time now) {
-  // Its revision means nothing in a store that was emptied since. It would hide the records of other
-  // nodes until their revisions have grown beyond it.
+  // Its revision means nothing in a store that was emptied since. It would hide the records of
+  // other nodes until their revisions have grown beyond it.
   if (done.incarnation != incarnation_) {
     needs_listing_ = true;
     return;
@@ -234,7 +233,7 @@ std::optional<LeaseWrite> LeaseKeeper::NextWrite(const std::string& subject, Own
   const bool waits = std::ranges::any_of(own.pending, [now](const auto& pending) {
     return now < pending.second.sent + kLeaseWriteTime;
   });
-  if (waits || own.stale || now < own.next_write) return std::nullopt;
+  if (waits || MustList(own) || now < own.next_write) return std::nullopt;
   const Record* const record = Find(subject);
   std::optional<Lease> lease;
   if (own.wanted) {
@@ -252,7 +251,6 @@ std::optional<LeaseWrite> LeaseKeeper::NextWrite(const std::string& subject, Own
 }
 
 std::vector<LeaseWrite> LeaseKeeper::Tick(Time now, std::int64_t unix_ms) {
-  NoticeFreeze(now);
   last_tick_ = now;
   const auto wall = static_cast<std::uint64_t>(std::max<std::int64_t>(unix_ms, 1));
   // Records that came before the time was known.
@@ -267,20 +265,19 @@ std::vector<LeaseWrite> LeaseKeeper::Tick(Time now, std::int64_t unix_ms) {
     Own& own = current->second;
     if (auto write = NextWrite(current->first, own, now, unix_ms)) {
       writes.push_back(*std::move(write));
-    } else if (!own.wanted && own.pending.empty() && now >= own.next_write) {
+    } else if (!own.wanted && !MustList(own) && own.pending.empty() && now >= own.next_write) {
       own_.erase(current);  // there is nothing to release
     }
   }
   return writes;
 }
 
-// What the store said before a freeze proves nothing any more. If it was emptied meanwhile, a record
-// of another node may have the revision that this node would replace.
-void LeaseKeeper::NoticeFreeze(Time now) {
-  if (!last_tick_ || now - *last_tick_ <= kLeaseFreeze) return;
-  heard_ = last_tick_.emplace(now);
-  needs_listing_ = true;
-  for (auto& [subject, own] : own_) own.stale = true;
+// What the store said before a freeze proves nothing any more. If it was emptied meanwhile, a
+// record of another node may have the revision that this node would replace.
+void LeaseKeeper::OnPause(Time pause, Time now) {
+  if (pause <= kLeaseFreeze) return;
+  heard_ = now;
+  needs_listing_ = frozen_ = true;
 }
 
 void LeaseKeeper::EndIsolation() {

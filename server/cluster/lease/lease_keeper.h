@@ -46,6 +46,9 @@ class LeaseKeeper {
   // on their way to another node go on.
   void ReleaseAll();
 
+  // The longest time for which the process has not run since the last call, see Pulse. Call it
+  // before the others. A pause above kLeaseFreeze is a freeze: whatever was known may be wrong.
+  void OnPause(Time pause, Time now);
   // The store answers or does not. A listing must follow after it answers again.
   void OnReachable(bool reachable, Time now);
   void OnListing(const LeaseListing& listing, Time now);
@@ -113,7 +116,7 @@ class LeaseKeeper {
     bool held = false;
     bool isolated = false;  // served on while the store cannot be reached
     bool wanted = true;     // false: to be released
-    bool stale = false;     // a listing must come before the next write
+    bool stale = false;     // see MustList()
     Time next_write{0};
     std::optional<Heir> heir;  // only if not wanted
     std::optional<Candidate> candidate;
@@ -127,6 +130,8 @@ class LeaseKeeper {
   [[nodiscard]] bool IsGood(const Own& own, Time now) const {
     return own.held && now < own.good + kLeaseStop;
   }
+  // A listing must come before the next write.
+  [[nodiscard]] bool MustList(const Own& own) const { return own.stale || frozen_; }
   [[nodiscard]] const Record* Find(std::string_view subject) const;
   [[nodiscard]] std::optional<Serving> ServingOf(const Own& own, Time now) const;
   [[nodiscard]] bool Keeps(const Own& own, const Lease& lease) const;
@@ -138,7 +143,6 @@ class LeaseKeeper {
   static void GiveUp(Own& own);
   void NoteEpoch(std::uint64_t epoch);
   void Learn(const LeaseEntry& entry, Time now);
-  void NoticeFreeze(Time now);
   void EndIsolation();
   void Settle(const std::string& subject, Own& own) const;
   void OnDone(const std::string& subject, Own& own, const Pending& done, Revision revision,
@@ -155,6 +159,7 @@ class LeaseKeeper {
   bool reachable_ = false;
   bool listed_ = false;  // since the store is reachable
   bool needs_listing_ = true;
+  bool frozen_ = false;  // not listed since a freeze
   std::uint64_t incarnation_ = 0;
   Time known_since_{0};  // of the incarnation
   Time reachable_since_{0};

@@ -93,6 +93,10 @@ class NatsStore : public Store {
   natsStatus PrepareBucket(StreamInfo* info);
   natsStatus GetInfo(StreamInfo* info);
   bool IsComplete();
+  // Ends the watcher at the next listing: its end waits for a server, which may not answer.
+  void RetireWatcher() {
+    if (watcher_ != nullptr) retired_.push_back(std::move(watcher_));
+  }
   void TakeAnswer(const Message& message, std::vector<StoreAnswer>* answers) const;
   void TakeEntry(const Entry& entry, std::vector<StoreRecord>* records);
 
@@ -109,6 +113,7 @@ class NatsStore : public Store {
   Context context_;
   Bucket bucket_;
   Watcher watcher_;
+  std::vector<Watcher> retired_;
   std::string inbox_;  // where answers arrive: inbox_ + the number of the write
   Subscription answers_;
   std::uint64_t heard_ = 0;     // the highest revision of a record that was read
@@ -121,6 +126,7 @@ class NatsStore : public Store {
 // come, a few bytes are left behind for it.
 NatsStore::~NatsStore() {
   watcher_.reset();
+  retired_.clear();
   answers_.reset();
   bucket_.reset();
   context_.reset();
@@ -339,9 +345,12 @@ bool NatsStore::List(std::uint64_t* incarnation, std::vector<StoreRecord>* recor
   StreamInfo info;
   natsStatus status = PrepareAnswers();
   if (status == NATS_OK) status = PrepareBucket(&info);
-  watcher_.reset();
+  RetireWatcher();
   kvWatcher* watcher = nullptr;
-  if (status == NATS_OK) status = kvStore_WatchAll(&watcher, bucket_.get(), nullptr);
+  if (status == NATS_OK) {
+    retired_.clear();
+    status = kvStore_WatchAll(&watcher, bucket_.get(), nullptr);
+  }
   watcher_.reset(watcher);
   heard_ = 0;
   std::size_t bytes = 0;
@@ -361,7 +370,7 @@ bool NatsStore::List(std::uint64_t* incarnation, std::vector<StoreRecord>* recor
   if (status == NATS_OK && after->Created != info->Created) status = NATS_TIMEOUT;
   if (status != NATS_OK) {
     *why = natsStatus_GetText(status);
-    watcher_.reset();
+    RetireWatcher();
     return false;
   }
   created_ = info->Created;

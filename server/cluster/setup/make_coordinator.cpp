@@ -9,6 +9,7 @@
 #include "server/cluster/static_list.h"
 #include "server/cluster/store/store.h"
 #include "server/cluster/store/store_coordinator.h"
+#include "server/machine/pulse.h"
 #include "server/net/clock.h"
 
 namespace furrow::server {
@@ -62,6 +63,7 @@ Result<std::unique_ptr<Coordinator>> MakeCoordinator(const Config& config, std::
   FURROW_RETURN_IF_ERROR(ReadCredentials(cluster.credentials, &options));
   auto store = MakeNatsStore(options);
   FURROW_RETURN_IF_ERROR(store);
+  const auto pulse = std::make_shared<Pulse>(ReadClock);
   return std::unique_ptr<Coordinator>(std::make_unique<StoreCoordinator>(
       StoreCoordinator::Parts{.store = *std::move(store),
                               .node = config.security.name,
@@ -69,6 +71,7 @@ Result<std::unique_ptr<Coordinator>> MakeCoordinator(const Config& config, std::
                               .capacity = config.limits.max_subjects,
                               .strict = cluster.strict,
                               .now = ReadClock,
+                              .pause = [pulse] { return pulse->TakeLongestPause(); },
                               .unix_ms = [] { return ToMicroseconds(ReadUnixClock()) / 1000; }}));
 }
 

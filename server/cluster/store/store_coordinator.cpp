@@ -33,6 +33,7 @@ StoreCoordinator::StoreCoordinator(Parts parts)
     : run_(parts.run),
       capacity_(parts.capacity),
       now_(std::move(parts.now)),
+      pause_(std::move(parts.pause)),
       unix_ms_(std::move(parts.unix_ms)),
       store_(std::move(parts.store)),
       leases_(parts.node, parts.run, parts.strict) {
@@ -81,10 +82,10 @@ void StoreCoordinator::Run(const std::stop_token& stop) {
 void StoreCoordinator::Step(milliseconds wait) {
   std::vector<StoreAnswer> answers;
   std::vector<StoreRecord> changes;
-  leases_.OnReachable(store_->connected(), now_());
+  LookAround();
   if (!store_->Poll(wait, &answers, &changes)) missed_ = true;
+  LookAround();
   const Time now = now_();
-  leases_.OnReachable(store_->connected(), now);
   for (const StoreRecord& change : changes) OnRecord(change, nullptr, now);
   for (const StoreAnswer& answer : answers) {
     const auto write = writes_.find(answer.id);
@@ -99,6 +100,7 @@ void StoreCoordinator::Step(milliseconds wait) {
   TakeRequests();
   if (leases_.reachable() && (missed_ || leases_.needs_listing()) && now - listed_ >= kListPause) {
     List();
+    LookAround();
   }
   for (LeaseWrite& write : leases_.Tick(now_(), unix_ms_())) {
     const std::uint64_t id = next_id_++;
@@ -115,6 +117,11 @@ void StoreCoordinator::Step(milliseconds wait) {
     }
   }
   Publish(now_());
+}
+
+void StoreCoordinator::LookAround() {
+  leases_.OnPause(pause_(), now_());
+  leases_.OnReachable(store_->connected(), now_());
 }
 
 void StoreCoordinator::TakeRequests() {

@@ -31,6 +31,7 @@ class StoreCoordinator : public Coordinator {
     int capacity = 0;                       // subjects that this node takes
     bool strict = false;                    // LeaseKeeper
     std::function<Time()> now;              // the clock of all `now` arguments
+    std::function<Time()> pause;            // Pulse::TakeLongestPause()
     std::function<std::int64_t()> unix_ms;  // the system's clock
   };
   explicit StoreCoordinator(Parts parts);
@@ -73,6 +74,7 @@ class StoreCoordinator : public Coordinator {
 
   void Run(const std::stop_token& stop);
   void Step(std::chrono::milliseconds wait);
+  void LookAround();
   void TakeRequests();
   void List();
   void OnRecord(const StoreRecord& record, std::vector<LeaseEntry>* entries, Time now);
@@ -90,6 +92,7 @@ class StoreCoordinator : public Coordinator {
   const std::uint64_t run_;
   const int capacity_;
   const std::function<Time()> now_;
+  const std::function<Time()> pause_;
   const std::function<std::int64_t()> unix_ms_;
 
   // Used by the thread alone.

@@ -96,6 +96,7 @@ class Simulation : public NodeSurroundings {
     Ms cut_until = 0;  // from the store
     Ms origin = 0;     // of its monotonic clock
     Ms drift = 0;      // parts in a thousand
+    Time ran{0};       // when it ran last, on its clock
     Ms wall_offset = 0;
     bool told = false;  // what the keeper believes of the store
     Ms unheard_since = -1;
@@ -183,6 +184,7 @@ class Simulation : public NodeSurroundings {
     node.links->connected.fill(false);
     node.origin = now() - Number(0, 100'000);
     node.drift = Number(-10, 10);
+    node.ran = Clock(node);
     node.wall_offset = Number(-20'000, 20'000);
     node.told = false;
     node.unheard_since = -1;
@@ -201,6 +203,7 @@ class Simulation : public NodeSurroundings {
     const bool reachable = hears || (node.told && now() - node.unheard_since < kNoticeMs);
     LeaseKeeper& keeper = node.node->keeper();
     const Time clock = Clock(node);
+    keeper.OnPause(clock - std::exchange(node.ran, clock), clock);
     if (reachable != node.told) {
       node.told = reachable;
       keeper.OnReachable(reachable, clock);

@@ -22,6 +22,10 @@ class LeaseKeeperTest : public ::testing::Test {
 
   void List() { keeper_.OnListing({incarnation_, entries_}, now_); }
   std::vector<LeaseWrite> Tick() { return keeper_.Tick(now_, kUnixMs + now_ / milliseconds(1)); }
+  void Freeze(Time time) {
+    now_ += time;
+    keeper_.OnPause(time, now_);
+  }
   // Lets the time pass in steps, without writes that the store would answer.
   void Pass(Time time) {
     for (const Time end = now_ + time; now_ < end;) {
@@ -301,10 +305,21 @@ TEST_F(LeaseKeeperTest, ServesOnWithoutTheStoreButTakesNothing) {
 TEST_F(LeaseKeeperTest, AfterAFreezeALostStoreProlongsNothing) {
   Settle();
   (void)Take();
-  now_ += std::chrono::seconds(5);
+  Freeze(std::chrono::seconds(5));
   keeper_.OnReachable(false, now_);
   (void)Tick();
   EXPECT_FALSE(Serves());
+}
+
+// The node ran, and its calls to the store waited for an answer that never came.
+TEST_F(LeaseKeeperTest, ALeaseOutlivesALateNoticeThatTheStoreIsGone) {
+  Settle();
+  (void)Take();
+  now_ += std::chrono::seconds(3);
+  keeper_.OnPause(milliseconds(100), now_);
+  keeper_.OnReachable(false, now_);
+  (void)Tick();
+  EXPECT_TRUE(Serves());
 }
 
 // The store may have been emptied twice meanwhile, and another node's record may have the revision
@@ -312,7 +327,7 @@ TEST_F(LeaseKeeperTest, AfterAFreezeALostStoreProlongsNothing) {
 TEST_F(LeaseKeeperTest, AfterAFreezeAListingComesBeforeTheNextWrite) {
   Settle();
   const std::uint64_t epoch = Take();
-  now_ += std::chrono::seconds(5);
+  Freeze(std::chrono::seconds(5));
   EXPECT_TRUE(Tick().empty());
   EXPECT_TRUE(keeper_.needs_listing());
   ++incarnation_;
@@ -320,6 +335,31 @@ TEST_F(LeaseKeeperTest, AfterAFreezeAListingComesBeforeTheNextWrite) {
   List();
   EXPECT_TRUE(Tick().empty());
   EXPECT_EQ(keeper_.HolderOf("ada", now_), "b");
+}
+
+TEST_F(LeaseKeeperTest, AfterAFreezeAListingComesBeforeANewSubjectIsTaken) {
+  Settle();
+  entries_.push_back({"ada", {.node = {}, .run = 0, .epoch = 5, .deadline_ms = 0}, ++revision_});
+  List();
+  Freeze(std::chrono::seconds(5));
+  (void)Tick();
+  keeper_.Want("ada");
+  EXPECT_TRUE(Tick().empty());
+  List();
+  EXPECT_EQ(Tick().size(), 1u);
+}
+
+TEST_F(LeaseKeeperTest, AfterAFreezeALeaseIsGivenBackOnceTheStoreIsListed) {
+  Settle();
+  (void)Take();
+  Freeze(std::chrono::seconds(5));
+  keeper_.Release("ada");
+  EXPECT_TRUE(Tick().empty());
+  EXPECT_TRUE(keeper_.holds_any());
+  List();
+  const auto writes = Tick();
+  ASSERT_EQ(writes.size(), 1u);
+  EXPECT_EQ(writes[0].lease.node, "");
 }
 
 TEST_F(LeaseKeeperTest, TheAnswerOfAnEmptiedStoreHidesNoRecord) {

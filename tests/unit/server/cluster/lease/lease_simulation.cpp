@@ -62,6 +62,7 @@ class Simulation {
     Ms wall_offset = 0;
     Ms origin = 0;      // of its monotonic clock
     Ms drift = 0;       // parts in a thousand
+    Time ran{0};        // when it ran last, on its clock
     bool told = false;  // what the keeper believes of the store
     Ms unheard_since = -1;
     Ms listed_at = -kListMs;
@@ -104,6 +105,7 @@ class Simulation {
     ++node.life;
     node.origin = now_ms() - Number(0, 100'000);
     node.drift = Number(-10, 10);
+    node.ran = Clock(node);
     node.told = false;
     node.unheard_since = -1;
     node.listed_at = -kListMs;
@@ -111,6 +113,8 @@ class Simulation {
   }
 
   void Tick(int index, Node& node) {
+    const Time clock = Clock(node);
+    node.keeper->OnPause(clock - std::exchange(node.ran, clock), clock);
     const bool hears = Hears(node);
     if (hears) {
       node.unheard_since = -1;
@@ -120,13 +124,13 @@ class Simulation {
     const bool reachable = hears || (node.told && now_ms() - node.unheard_since < kNoticeMs);
     if (reachable != node.told) {
       node.told = reachable;
-      node.keeper->OnReachable(reachable, Clock(node));
+      node.keeper->OnReachable(reachable, clock);
     }
     if (node.told && (now_ms() - node.listed_at >= kListMs ||
                       (node.keeper->needs_listing() && now_ms() - node.listed_at >= 2 * kTickMs))) {
       RequestListing(index, node);
     }
-    for (LeaseWrite& write : node.keeper->Tick(Clock(node), Wall(node))) {
+    for (LeaseWrite& write : node.keeper->Tick(clock, Wall(node))) {
       SendWrite(index, node, std::move(write));
     }
     CheckServing();

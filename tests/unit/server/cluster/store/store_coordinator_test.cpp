@@ -122,6 +122,7 @@ class StoreCoordinatorTest : public ::testing::Test {
         .capacity = capacity,
         .strict = false,
         .now = [this] { return world_.Now(); },
+        .pause = [] { return Time{0}; },
         .unix_ms = [this] { return 1'700'000'000'000 + world_.Now() / milliseconds(1); }});
     EXPECT_TRUE(node->Start({name, "host-" + name, 7400, 7401, 7480}).ok());
     nodes_.push_back(std::move(node));
