@@ -18,7 +18,7 @@ CUT = 5.0
 
 
 class Claims:
-    """Asks every node again and again which epoch it serves itself, and counts epochs of two nodes."""
+    """Asks every node again and again which epochs it serves itself, and counts epochs of two nodes."""
 
     def __init__(self, nodes):
         self.nodes = nodes
@@ -32,10 +32,10 @@ class Claims:
         while not self.stop.wait(0.1):
             for node in list(self.nodes.values()):
                 with contextlib.suppress(OSError, ValueError):
-                    found = node.holder("ada")
-                    if found and found[0] == node.name:
-                        owner = self.owners.setdefault(found[1], node.name)
-                        self.split += owner != node.name
+                    for served in node.get("/api/cluster")[1]["subjects"]:
+                        if served["node"] == node.name:
+                            owner = self.owners.setdefault((served["name"], served["epoch"]), node.name)
+                            self.split += owner != node.name
 
     def close(self):
         self.stop.set()
@@ -43,9 +43,9 @@ class Claims:
 
 
 def outage(frames, since):
-    """The longest time without a frame from shortly before `since` on, in ms."""
+    """The longest time without a frame from shortly before `since` on, in ms. Infinite: there is none."""
     times = [at for at, _ in frames if at >= since - 0.5]
-    return max(b - a for a, b in zip(times, times[1:])) * 1000
+    return max((b - a for a, b in zip(times, times[1:])), default=math.inf) * 1000
 
 
 def percentile(values, part):
@@ -54,9 +54,9 @@ def percentile(values, part):
 
 
 class Stage:
-    """The cluster, one performer and one viewer."""
+    """The cluster, and a performer and a viewer of each subject."""
 
-    def __init__(self, stack):
+    def __init__(self, stack, subjects):
         self.stack = stack
         self.nats = NatsServer()
         stack.callback(self.nats.close)
@@ -68,19 +68,29 @@ class Stage:
             self.start(name)
         for node in self.nodes.values():
             wait_until(node.is_ready, "the nodes are ready")
-        self.performer = Performer(self.nodes["a"].udp, "ada")
-        stack.callback(self.performer.close)
-        self.viewer = Viewer(self.nodes["b"].udp, "ada")
-        stack.callback(self.viewer.close)
+        self.viewers = []
+        for number in range(subjects):
+            # A connection of its own each: those with several subjects follow nobody.
+            subject, address = f"subject-{number}", self.nodes["abc"[number % 3]].udp
+            stack.callback(Performer(address, subject).close)
+            self.viewers.append(Viewer(address, subject))
+            stack.callback(self.viewers[-1].close)
+        self.wait_for(1)
         self.claims = Claims(self.nodes)
         stack.callback(self.claims.close)
 
     def start(self, name, ports=None):
         self.nodes[name] = self.stack.enter_context(Node(name, "--cluster", self.wires[name].url, ports=ports))
 
+    def wait_for(self, count):
+        """Waits for `count` more frames of each subject."""
+        for viewer in self.viewers:
+            viewer.wait_for(count)
+
     def holder(self):
+        """The node that serves the first subject."""
         def agreed():
-            found = {node.holder("ada") for node in self.nodes.values()}
+            found = {node.holder("subject-0") for node in self.nodes.values()}
             return found.pop() if len(found) == 1 else None
         return self.nodes[wait_until(agreed, "the nodes agree")[0]]
 
@@ -88,7 +98,7 @@ class Stage:
         node = self.holder()
         since = time.monotonic()
         node.signal(signal.SIGKILL)
-        self.viewer.wait_for(AFTER)
+        self.wait_for(AFTER)
         self.start(node.name, node.ports)
         wait_until(self.nodes[node.name].is_ready, "the node is back")
         return since
@@ -99,18 +109,18 @@ class Stage:
         node.signal(signal.SIGSTOP)
         threading.Event().wait(FROZEN)
         node.signal(signal.SIGCONT)
-        self.viewer.wait_for(AFTER)
+        self.wait_for(AFTER)
         wait_until(node.is_ready, "the node is back")
         return since
 
     def empty(self):
         since = time.monotonic()
         self.nats.kill()
-        self.viewer.wait_for(AFTER)
+        self.wait_for(AFTER)
         self.nats.start()
         for node in self.nodes.values():
             wait_until(node.is_ready, "the nodes are ready again")
-        self.viewer.wait_for(AFTER)
+        self.wait_for(AFTER)
         return since
 
     def cut(self):
@@ -120,7 +130,7 @@ class Stage:
         self.wires[node.name].cut()
         threading.Event().wait(CUT)
         self.wires[node.name].mend()
-        self.viewer.wait_for(AFTER)
+        self.wait_for(AFTER)
         for each in self.nodes.values():
             wait_until(each.is_ready, "the nodes are ready again")
         return since
@@ -142,7 +152,7 @@ class Stage:
         since = time.monotonic()
         end(node)
         node.process.wait()
-        self.viewer.wait_for(AFTER)
+        self.wait_for(AFTER)
         self.start(node.name, node.ports)
         wait_until(self.nodes[node.name].is_ready, "the node is back")
         return since
@@ -152,24 +162,27 @@ def main():
     if NATS is None:
         print("bench/cluster.sh: nats-server is not installed", file=sys.stderr)
         return 1
-    rounds = int(sys.argv[1])
+    rounds, subjects, only = int(sys.argv[1]), int(sys.argv[2]), sys.argv[3]
     print(f"{'failure':<28}{'rounds':>7}{'p50':>9}{'p99':>9}{'max':>9}  twice  disorder  missing  split")
     with contextlib.ExitStack() as stack:
-        stage = Stage(stack)
+        stage = Stage(stack, subjects)
         for label, fail in (("the holder is killed", stage.kill), ("the holder freezes for 5 s", stage.freeze),
                             ("NATS restarts, emptied", stage.empty),
                             ("its way to NATS is cut, 5 s", stage.cut), ("the holder ends (SIGTERM)", stage.end),
                             ("the holder is drained", stage.drain), ("all are replaced in turn", stage.roll)):
-            first, split = len(stage.viewer.frames), stage.claims.split
+            if only not in label:
+                continue
+            first, split = [len(viewer.frames) for viewer in stage.viewers], stage.claims.split
             outages = []
             for _ in range(rounds):
-                stage.viewer.wait_for(BEFORE)
+                stage.wait_for(BEFORE)
                 since = fail()
-                outages.append(outage(stage.viewer.frames, since))
-            frames = stage.viewer.frames[first:]
+                # Of the subject that noticed most: the others may be at other nodes.
+                outages.append(max(outage(viewer.frames, since) for viewer in stage.viewers))
+            found = [viewer.frames[begin:] for viewer, begin in zip(stage.viewers, first)]
+            twice, disorder, lost = (sum(map(count, found)) for count in (repetitions, reorderings, missing))
             print(f"{label:<28}{rounds:>7}" + "".join(f"{percentile(outages, p):>6.0f} ms" for p in (0.5, 0.99, 1.0)) +
-                  f"{repetitions(frames):>7}{reorderings(frames):>10}{missing(frames):>9}{stage.claims.split - split:>7}",
-                  flush=True)
+                  f"{twice:>7}{disorder:>10}{lost:>9}{stage.claims.split - split:>7}", flush=True)
     return 0
 
 
