@@ -5,6 +5,7 @@
 #include <chrono>
 #include <exception>
 #include <string>
+#include <system_error>
 #include <utility>
 
 #include <malloc.h>
@@ -21,6 +22,19 @@ namespace {
 
 // The time that joining a thread may take after it has ended.
 constexpr Time kJoinTime = std::chrono::milliseconds(50);
+
+// Runs `task` on a thread of its own, or at once if no further thread may start.
+template <class Task>
+std::future<void> InBackground(const Task& task) {
+  try {
+    return std::async(std::launch::async, task);
+  } catch (const std::system_error&) {
+    task();
+    std::promise<void> done;
+    done.set_value();
+    return done.get_future();
+  }
+}
 
 }  // namespace
 
@@ -110,10 +124,9 @@ bool Rendering::LetGo() {
   if (thread_ == nullptr) return true;
   if (!thread_->ended()) return false;
   if (!freed_.valid()) {
-    freed_ = std::async(std::launch::async, [drawn = std::exchange(character_, nullptr),
-                                             loaded = std::exchange(loaded_, nullptr)]() mutable {
-      drawn.reset();
-      loaded.reset();
+    freed_ = InBackground([this] {
+      character_.reset();
+      loaded_.reset();
       malloc_trim(0);
     });
   }
@@ -122,7 +135,7 @@ bool Rendering::LetGo() {
 
 void Rendering::End(std::optional<Time> deadline, const std::function<void()>& give_up) {
   if (thread_ == nullptr) return;
-  const std::future<void> ended = std::async(std::launch::async, [this] { thread_.reset(); });
+  const std::future<void> ended = InBackground([this] { thread_.reset(); });
   if (!deadline) return;  // the future waits
   // The thread has been stopped already, so it has usually ended by now, and is only joined.
   const Time left = std::max(*deadline - ReadClock(), kJoinTime);
