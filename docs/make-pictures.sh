@@ -317,6 +317,15 @@ browser_skin() {
   sheet browser_skin 3x3 900 "${names[@]}"
 }
 
+# The dashboard with what its test has measured: four performers leave, the daemon stands still, and datagrams get lost.
+# Needs Prometheus, Chromium, and the packages of tests/browser/package-lock.json and web/package-lock.json.
+dashboard() {
+  FURROW_DASHBOARD=$work/series.json FURROW_BIN=$(realpath "$build/bin") FURROW_SOURCE=$PWD PYTHONPATH=tests/end_to_end \
+    python3 -B tests/deploy/test_dashboard.py DashboardTest.test_every_query_has_a_result_and_alerts_fire
+  node docs/dashboard/draw.mjs deploy/grafana/furrow.json "$work/series.json" "$work/dashboard.png"
+  sheet dashboard 1x1 1200 dashboard
+}
+
 if (($# > 1)); then
   for name in "${@:2}"; do $name; done  # split: a name may have arguments
   exit
@@ -349,6 +358,11 @@ if [[ -x /usr/bin/chromium && -d tests/browser/node_modules ]]; then
   browser_skin
 else
   echo "make-pictures: Chromium or its packages are missing; the picture of browsers stays as it is" >&2
+fi
+if command -v prometheus >/dev/null && [[ -x /usr/bin/chromium && -d tests/browser/node_modules ]]; then
+  dashboard
+else
+  echo "make-pictures: Prometheus, Chromium or its packages are missing; the dashboard stays as it is" >&2
 fi
 if [[ -d $shared/makehuman && -f $shared/performances/emotions.bvh ]]; then
   makehuman

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The Grafana dashboard and the alert rules against a real Prometheus that scrapes a real daemon: every query has a
 result, and alerts fire. Exit code 77 means skipped (prometheus or promtool is missing).
+
+FURROW_DASHBOARD=FILE saves what the panels show at the end, for docs/dashboard/draw.mjs.
 """
 import json
 import math
@@ -20,7 +22,7 @@ import urllib.error
 import urllib.parse
 import urllib.request
 
-from furrow_testing import GUARD, SOURCE, Daemon, spawn
+from furrow_testing import BIN, GUARD, SOURCE, Daemon, spawn
 
 PROMETHEUS = shutil.which("prometheus")
 PROMTOOL = shutil.which("promtool")
@@ -35,10 +37,11 @@ def free_port():
 
 
 def panels():
-    """(title, query) of every panel."""
+    """(panel, number of the target, query for all instances) of every query."""
     for panel in json.loads(DASHBOARD.read_text())["panels"]:
-        for target in panel.get("targets", []):
-            yield panel["title"], target["expr"]
+        for number, target in enumerate(panel.get("targets", [])):
+            query = target["expr"].replace("$__rate_interval", "10s").replace("$instance", ".*")
+            yield panel, number, query
 
 
 def alerts():
@@ -82,19 +85,23 @@ class Prometheus:
         self.log.close()
         self.folder.cleanup()
 
-    def query(self, expr):
-        """The values of an instant query; None if Prometheus does not answer yet."""
-        address = f"http://{self.address}/api/v1/query?" + urllib.parse.urlencode({"query": expr})
+    def ask(self, what, **parameters):
+        """The result of an API query; None if Prometheus does not answer yet."""
+        address = f"http://{self.address}/api/v1/{what}?" + urllib.parse.urlencode(parameters)
         try:
             with urllib.request.urlopen(address, timeout=GUARD) as answer:
-                result = json.load(answer)["data"]["result"]
+                return json.load(answer)["data"]["result"]
         except urllib.error.HTTPError as error:
             if error.code == 503:  # it starts
                 return None
-            raise AssertionError(f"{expr}: {error.read().decode()}") from error
+            raise AssertionError(f"{parameters}: {error.read().decode()}") from error
         except OSError:
             return None
-        return [float(series["value"][1]) for series in result]
+
+    def query(self, expr):
+        """The values of an instant query; None if Prometheus does not answer yet."""
+        result = self.ask("query", query=expr)
+        return result if result is None else [float(series["value"][1]) for series in result]
 
     def await_alert(self, name):
         """Waits until the alert fires, or waits for its time to fire."""
@@ -113,6 +120,16 @@ class Prometheus:
             time.sleep(0.2)  # between two looks at another program
 
 
+def save_panels(prometheus, start, file):
+    """Saves what each panel has shown since `start`, in seconds since 1970."""
+    found = {}
+    for panel, number, query in panels():
+        for series in prometheus.ask("query_range", query=query, start=start, end=time.time(), step=1):
+            found.setdefault(panel["id"], []).append(
+                {"target": number, "labels": series["metric"], "values": series["values"]})
+    pathlib.Path(file).write_text(json.dumps(found))
+
+
 class DashboardTest(unittest.TestCase):
     def small_disk(self):
         """A folder on a disk of its own."""
@@ -128,13 +145,20 @@ class DashboardTest(unittest.TestCase):
             if "render=on" not in daemon.ready:
                 self.skipTest("no OpenGL 4.5 here, so pictures take no time")
             clients = [spawn("play", "performance", "--to", daemon.udp, "--udp", "--loop"),
-                       spawn("watch", daemon.tcp, "--format", "csv"),
+                       # Nobody reads its weights, and a pipe is small.
+                       subprocess.Popen([BIN / "furrow", "watch", daemon.tcp, "--wait", "--format", "csv"],
+                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL),
                        spawn("frames", daemon.tcp, "--out", takes + "/frames", "--size", "64x64", "--wait")]
             try:
                 with Prometheus(f"localhost:{daemon.ports['http']}") as prometheus:
-                    prometheus.await_values("furrow_pictures_sent_total > 3")
+                    for kind in ("pictures", "weights"):
+                        prometheus.await_values(f"furrow_{kind}_sent_total > 3")
+                    start = time.time()
                     self.check_queries(prometheus)
                     self.check_stall_and_loss(prometheus, daemon)
+                    if "FURROW_DASHBOARD" in os.environ:
+                        time.sleep(30)  # what follows is in the picture, too
+                        save_panels(prometheus, start, os.environ["FURROW_DASHBOARD"])
             finally:
                 for client in clients:
                     client.kill()
@@ -142,10 +166,9 @@ class DashboardTest(unittest.TestCase):
 
     def check_queries(self, prometheus):
         seen = 0
-        for title, query in panels():
-            query = query.replace("$__rate_interval", "10s").replace("$instance", ".*")
+        for panel, _, query in panels():
             self.assertNotIn("$", query)
-            with self.subTest(panel=title, query=query):
+            with self.subTest(panel=panel["title"], query=query):
                 prometheus.await_values(query)
             seen += 1
         self.assertGreater(seen, 40)
