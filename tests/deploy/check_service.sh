@@ -90,7 +90,7 @@ perl -F, -ane '
     $longest = $F[0] - $time if $F[0] - $time > $longest;
   }
   ($time, $frame) = @F;
-  END { printf "upgrade: all %d frames in order, at most %.0f ms without one\n", $., 1000 * $longest }' /srv/frames ||
+  END { printf "upgrade: all %d frames in order, at most %.0f ms without one\n", $. - 1, 1000 * $longest }' /srv/frames ||
   fail 'the upgrade loses frames or changes their order'
 
 # A stop leaves nothing to the next start.
