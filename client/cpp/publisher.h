@@ -71,6 +71,8 @@ class Publisher {
   // True if the daemon wants a token, or another one. The transport, which shows it, goes on
   // trying.
   [[nodiscard]] bool needs_token() const { return needs_token_; }
+  // Why the daemon refuses the token; empty if it does not. Nothing proves it.
+  [[nodiscard]] std::string refusal() const { return RefusedTokenText(transport_->refusal()); }
   // The last error message of the daemon; empty if there was none.
   [[nodiscard]] const std::string& last_error() const { return last_error_; }
   // The random session number in every message of this publisher.

@@ -92,6 +92,8 @@ class Subscriber {
   [[nodiscard]] bool reconnects() const { return transport_->reconnects(); }
   // Transport::failure().
   [[nodiscard]] std::string failure() const { return transport_->failure(); }
+  // Why the daemon refuses the token; empty if it does not. Nothing proves it.
+  [[nodiscard]] std::string refusal() const { return RefusedTokenText(transport_->refusal()); }
 
   // Number of messages dropped because they could not be decoded.
   [[nodiscard]] std::uint64_t malformed() const { return malformed_; }

@@ -90,6 +90,7 @@ void SessionPlayer::Note(IoStatus status) {
   if (status == IoStatus::kNoConnection) {
     ++refused_;
     reachable_ = false;
+    refusal_.Show(publisher_.refusal());
   } else if (status == IoStatus::kOk) {
     reachable_ = true;
   }

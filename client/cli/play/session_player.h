@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "client/cli/common/refusal_note.h"
 #include "client/cli/play/pacing_error.h"
 #include "client/cli/play/play_source.h"
 #include "client/cli/play/session_schedule.h"
@@ -48,6 +49,7 @@ class SessionPlayer {
   std::int64_t refused_ = 0;         // number of reports that there is no connection
   bool reachable_ = true;            // the last report said that there is one
   bool closed_ = false;
+  RefusalNote refusal_;
 };
 
 }  // namespace furrow::cli

@@ -9,6 +9,7 @@
 #include "client/cli/common/endpoint.h"
 #include "client/cli/common/exit_code.h"
 #include "client/cli/common/interrupt.h"
+#include "client/cli/common/refusal_note.h"
 
 namespace furrow::cli {
 namespace {
@@ -115,6 +116,7 @@ class Reception {
     if (kind == Kind::kTimeout) return std::nullopt;
     if (!reconnects_) return ReportNoConnection(kind, subscriber_.failure());
     notes_.Lost();
+    refusal_.Show(subscriber_.refusal());
     return std::nullopt;
   }
 
@@ -144,6 +146,7 @@ class Reception {
   const bool reconnects_;
   const std::int64_t start_us_ = SteadyMicroseconds();
   ConnectionNotes notes_;
+  RefusalNote refusal_;
   bool heard_ = false;
   int goodbyes_ = 0;
   int exit_code_ = kDone;

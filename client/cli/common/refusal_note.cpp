@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cli/common/refusal_note.h"
+
+#include <cstdio>
+
+namespace furrow::cli {
+
+void RefusalNote::Show(const std::string& refusal) {
+  if (refusal == shown_) return;
+  shown_ = refusal;
+  if (!refusal.empty()) std::fprintf(stderr, "furrow: %s; trying again\n", refusal.c_str());
+}
+
+}  // namespace furrow::cli
