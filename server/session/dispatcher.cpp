@@ -251,6 +251,7 @@ bool Dispatcher::OnToken(Peer& peer, const protocol::Header& header, const std::
   if (shown) {
     auto access = parts_.gate->Admit(token, peer.shielded, now);
     if (!access.ok()) {
+      refusals_.Note(peer.name, access.status().what(), now);
       RefuseStranger(shard, peer, header, access.status().what());
       return false;
     }

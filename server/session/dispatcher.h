@@ -11,6 +11,7 @@
 #include "server/core/limits.h"
 #include "server/core/metrics.h"
 #include "server/core/time.h"
+#include "server/session/access/refusal_log.h"
 #include "server/session/access/token_gate.h"
 #include "server/session/delivery/message_sender.h"
 #include "server/session/peers/peer.h"
@@ -98,6 +99,7 @@ class Dispatcher {
 
   const Parts parts_;
   bool refuses_subscriptions_ = false;
+  RefusalLog refusals_;
 };
 
 }  // namespace furrow::server

@@ -126,10 +126,9 @@ void Hub::EndIfTokenEnded(Peer& peer, Time now) {
   const bool expired = now >= peer.access.expires();
   if (!expired && gate_->HasKey(peer.access.key_id())) return;
   metrics_->Add(Counter::kTokensEnded);
-  spdlog::info("the token of {} has {}", peer.name, expired ? "expired" : "been retired");
-  exclusive_context_.messages.SendError(
-      peer, {}, ErrorCode::kNeedsToken,
-      expired ? "the token has expired" : "the key of the token was retired");
+  const char* const why = expired ? "the token has expired" : "the key of the token was retired";
+  spdlog::warn("ends the connection of {}: {}", peer.name, why);
+  exclusive_context_.messages.SendError(peer, {}, ErrorCode::kNeedsToken, why);
   Permit(peer, Access(), limits_);
   subscribers_.RemovePeer(peer);
   subjects_.ForgetPeer(peer.id);

@@ -91,6 +91,7 @@ void Restart::Resume(const SavedSubject& saved, Peer* owner, Time away, Time now
   if (!state.captures.empty()) parts_.adopt_captures(state, now);
   // Its publisher comes back, or the subject leaves like any other that is not sent.
   Peer nobody;
+  nobody.name = "the former daemon";
   nobody.host = saved.host;
   nobody.access = Access::Everything();
   Subject* const subject =

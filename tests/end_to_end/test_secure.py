@@ -15,6 +15,7 @@ from token_testing import TokenTest
 PERFORMANCE = SHARE / "recordings" / "performance.bvh"
 SHORT = ("--pattern", "brow_l.*", "--format", "csv")
 FAILED, BAD_INPUT, NO_CONNECTION = 1, 3, 4
+REFUSED = "the daemon refuses the token: the server does not have the key of the token; trying again"
 
 
 class SecureTest(TokenTest):
@@ -139,7 +140,8 @@ class SecureTest(TokenTest):
             rows_after(rows, 5)
             furrow("token", "key", "new", "--key", self.keys, check=0)
             furrow("token", "key", "retire", old, "--key", self.keys, check=0)
-            notes.wait_for(lambda text: LOST in text)
+            notes.wait_for(lambda text: LOST in text and REFUSED in text)
+            Output(player.stderr).wait_for(lambda text: REFUSED in text)
             player.send_signal(signal.SIGINT)
             self.assertEqual(player.wait(timeout=GUARD), NO_CONNECTION)
             furrow("watch", daemon.udp, "--subject", "ada", "--wait", "--frames", 1, "--token", self.token("watch"),
@@ -147,6 +149,8 @@ class SecureTest(TokenTest):
             watcher.kill()
             watcher.wait(timeout=GUARD)
         self.assertRegex(daemon.stderr, r"read 1 key from")
+        self.assertRegex(daemon.stderr, r"warning ended [12] sessions? over UDP: the keys of their tokens were retired")
+        self.assertRegex(daemon.stderr, r"warning refuses udp 127\.0\.0\.1: the server does not have the key of the token")
 
     def test_the_daemon_says_what_is_missing(self):
         for options, code, message in (

@@ -48,7 +48,8 @@ const char* RefusalText(Refusal refusal) {
     case Refusal::kExpired: return "the token or its key has expired";
     case Refusal::kForgedToken: return "the token was changed, or sealed with another key";
     case Refusal::kWrongAudience: return "the token is for another server";
-    case Refusal::kTokenInUse: return "the token is in use from another address";
+    case Refusal::kTokenInUse:
+      return "the token is in use from another address; each address needs a token of its own";
     case Refusal::kForgedHandshake: return "the handshake does not prove the key of the token";
     case Refusal::kBusy: return "the server has too many new clients at the moment";
     case Refusal::kFull: return "the server has no free session";

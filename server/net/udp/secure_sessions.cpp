@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <utility>
 
+#include <spdlog/spdlog.h>
+
+#include "base/text.h"
 #include "server/net/clock.h"
 #include "server/net/udp/udp_address.h"
 
@@ -40,6 +43,11 @@ SecureSessions::Outcome SecureSessions::OnDatagram(std::span<std::uint8_t> bytes
   // Before a new session can get the place of one that has just ended.
   SortClosed();
   Count(event);
+  // The others are normal after a restart of the daemon, or when many come at once.
+  if (event.refusal != Refusal::kNone && event.refusal != Refusal::kUnknownSession &&
+      event.refusal != Refusal::kBusy) {
+    refusals_.Note("udp " + from.address().to_string(), RefusalText(event.refusal), now);
+  }
   if (event.session == 0) return outcome;
   const std::size_t place = PlaceOf(event.session);
   if (event.opened) {
@@ -114,7 +122,12 @@ std::optional<Access> SecureSessions::Resume(const SavedSecureSession& saved, Ti
 
 void SecureSessions::SetKeys(secure::KeyRing keys) {
   const std::lock_guard lock(mutex_);
+  const std::size_t before = server_.num_sessions();
   server_.SetKeys(std::move(keys));
+  if (const std::size_t ended = before - server_.num_sessions(); ended > 0) {
+    spdlog::warn("ended {} over UDP: the keys of their tokens were retired",
+                 Counted(ended, "session"));
+  }
   SortClosed();
 }
 

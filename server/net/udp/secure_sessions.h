@@ -17,6 +17,7 @@
 #include "server/net/udp/datagram_sealer.h"
 #include "server/saved/saved_state.h"
 #include "server/session/access/access.h"
+#include "server/session/access/refusal_log.h"
 #include "server/session/access/token_gate.h"
 
 namespace furrow::server {
@@ -72,6 +73,7 @@ class SecureSessions : public DatagramSealer {
   Metrics* const metrics_;
   std::mutex mutex_;  // guards everything below
   protocol::secure::SecureServer server_;
+  RefusalLog refusals_;
   std::uint64_t retries_ = 0;                       // of server_, that were counted
   std::vector<std::uint8_t> shard_of_;              // by the place of the session
   std::vector<bool> is_v4_;                         // by the place of the session
