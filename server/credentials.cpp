@@ -20,7 +20,7 @@ Credentials::Credentials(const Config& config, Metrics* metrics)
 
 Status Credentials::Load() {
   auto keys = keys_file_.Load();
-  if (!keys.ok()) return keys.status().Within("--keys");
+  if (!keys.ok()) return keys.status().Within("security.keys");
   SetKeys(*std::move(keys));
   if (Status status = tls_.Load(); !status.ok()) return status.Within("tls");
   return {};

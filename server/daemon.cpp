@@ -125,6 +125,16 @@ void Daemon::FinishConfinement() {
   }
 }
 
+Status Daemon::LoadCredentials() {
+  const Status status = credentials_.Load();
+  if (options_.manager == nullptr || status.what().find("Permission denied") == std::string::npos) {
+    return status;
+  }
+  return {status.code(), status.what(), status.where(),
+          "the user of the service cannot read files of root: name them in LoadCredential=, as "
+          "furrowd-credentials.conf does"};
+}
+
 Status Daemon::StartRecording() {
   const RecordConfig& record = config_.record;
   if (record.folder.empty()) return {};
@@ -313,6 +323,7 @@ Status Daemon::ListenToWeb() {
   if (recorder_ != nullptr) {
     parts.recording_is_paused = [this] { return recorder_->is_paused(); };
   }
+  parts.config_is_refused = [this] { return reload_ != nullptr && reload_->is_refused(); };
   parts.open_to_network =
       (ListensToNetwork(config_) || ports_->adopted_network()) && !credentials_.gate().required();
   parts.gate = &credentials_.gate();
@@ -511,6 +522,15 @@ ReloadRequest Daemon::MakeReloadRequest() {
           .maps_changed = rig_files_.maps_changed()};
 }
 
+// systemd makes the copies when it starts the service.
+bool Daemon::UsesCopies(const Config& config) const {
+  const auto is_copy = [this](const std::filesystem::path& path) {
+    return !options_.credentials_folder.empty() &&
+           path.parent_path() == options_.credentials_folder;
+  };
+  return is_copy(config.security.keys) || is_copy(config.security.tls.certificate);
+}
+
 // The rig first, because it alone can fail, and then nothing has changed.
 Status Daemon::TakeOver(Reload* reload) {
   const ReloadPlan& plan = reload->plan;
@@ -535,8 +555,13 @@ Status Daemon::TakeOver(Reload* reload) {
   if (config.log_level != config_.log_level) Log::SetLevel(config.log_level);
   config_ = config;
   rig_files_ = std::move(reload->rig_files);
-  spdlog::info("read the configuration, keys and certificates again; changed: {}",
+  spdlog::info("read the configuration, keys and certificates again; took effect: {}",
                plan.applied.empty() ? "nothing" : Joined(plan.applied));
+  if (UsesCopies(config)) {
+    spdlog::warn(
+        "keys and certificates are systemd's copies (LoadCredential=): changes take "
+        "'systemctl restart furrowd'");
+  }
   for (const std::string& key : plan.needs_restart) {
     spdlog::warn("{} changed: takes effect after a restart", key);
   }

@@ -57,7 +57,7 @@ class Daemon {
   Status LoadCluster();
   void FinishConfinement();
   Status StartRecording();
-  Status LoadCredentials() { return credentials_.Load(); }
+  Status LoadCredentials();
   Status Listen();
   void Serve();
 
@@ -79,6 +79,7 @@ class Daemon {
   asio::awaitable<void> PlayLoop();
   void HandleSignals();
   ReloadRequest MakeReloadRequest();
+  [[nodiscard]] bool UsesCopies(const Config& config) const;
   Status TakeOver(Reload* reload);
   void DeliverPicture(const FinishedPicture& picture);
   void EndRendering();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <system_error>
@@ -67,8 +68,15 @@ int main(int argc, char** argv) {
   const std::vector<std::string> args(argv + 1, argv + argc);
   const furrow::server::CommandLine line = furrow::server::ParseCommandLine(args);
   if (!line.config) {
-    std::fputs(line.text.c_str(), line.exit_code == ExitCode::kOk ? stdout : stderr);
+    const bool failed = line.exit_code != ExitCode::kOk;
+    const bool is_journal = failed && furrow::server::StderrIsJournal();
+    const std::string text = is_journal ? furrow::server::AsJournalError(line.text) : line.text;
+    std::fputs(text.c_str(), failed ? stderr : stdout);
     return static_cast<int>(line.exit_code);
+  }
+  if (line.check) {
+    const furrow::server::Log log({.level = line.config->log_level});
+    return static_cast<int>(furrow::server::Check(*line.config));
   }
   // The readers of the log and of the ready line may close their pipes. The daemon continues.
   std::signal(SIGPIPE, SIG_IGN);
@@ -90,5 +98,8 @@ int main(int argc, char** argv) {
   furrow::server::ServiceManager::Passed passed = furrow::server::ServiceManager::TakeSockets();
   options.listeners = std::move(passed.listeners);
   options.kept = std::move(passed.kept);
+  if (const char* const folder = std::getenv("CREDENTIALS_DIRECTORY"); folder != nullptr) {
+    options.credentials_folder = folder;
+  }
   return static_cast<int>(furrow::server::Run(*line.config, options));
 }

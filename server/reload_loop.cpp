@@ -84,7 +84,8 @@ void ReloadLoop::End(Result<Reload> reload) {
   is_reading_ = false;
   if (parts_.is_draining()) return;
   const Status status = reload.ok() ? parts_.take_over(&*reload) : reload.status();
-  if (!status.ok()) spdlog::error("the configuration stays as it was: {}", status.ToString());
+  is_refused_ = !status.ok();
+  if (is_refused_) spdlog::error("the configuration stays as it was: {}", status.ToString());
   if (parts_.manager != nullptr) {
     parts_.manager->Ready(status.ok() ? "the configuration was read again"
                                       : "the configuration stays as it was; see the log");

@@ -36,6 +36,8 @@ class ReloadLoop {
   // Call it about once per second: a terminal that was there at the last look and is not there now
   // has closed.
   void LookAtTerminal();
+  // The last reload left the configuration as it was.
+  [[nodiscard]] bool is_refused() const { return is_refused_; }
 
  private:
   asio::awaitable<void> Run();
@@ -47,6 +49,7 @@ class ReloadLoop {
   asio::signal_set hangups_;
   bool has_terminal_;  // at the last look
   bool is_reading_ = false;
+  bool is_refused_ = false;
   bool reads_again_ = false;  // SIGHUP came while a reload was under way
   std::jthread reader_;       // posts to the event loop; ends before the members above
 };

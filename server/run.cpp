@@ -1,13 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/run.h"
 
+#include <cstdio>
 #include <exception>
+#include <filesystem>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <spdlog/spdlog.h>
 
+#include "base/joined.h"
 #include "base/status.h"
 #include "server/assets.h"
+#include "server/cluster/setup/make_coordinator.h"
+#include "server/core/metrics.h"
+#include "server/credentials.h"
 #include "server/daemon.h"
 #include "server/net/clock.h"
 #include "server/restart/inheritance.h"
@@ -63,7 +71,47 @@ ExitCode LoadAndServe(const Config& asked, const RunOptions& options) {
   return ExitCode::kOk;
 }
 
+// systemd makes copies when it starts the service, for the service alone.
+std::vector<std::string> CopiesOf(const Config& config) {
+  std::vector<std::string> copies;
+  const TlsFiles& tls = config.security.tls;
+  for (const std::filesystem::path& path :
+       {config.security.keys, tls.certificate, tls.key, tls.client_authority}) {
+    if (path.string().starts_with("/run/credentials/")) copies.push_back(path.string());
+  }
+  return copies;
+}
+
+Status CheckCredentials(const Config& config) {
+  if (const auto copies = CopiesOf(config); !copies.empty()) {
+    spdlog::warn("not checked, because systemd copies them when it starts the service: {}",
+                 Joined(copies));
+    return {};
+  }
+  Metrics unused;
+  return Credentials(config, &unused).Load();
+}
+
+Status CheckAll(const Config& config) {
+  auto assets = LoadAssets(config, /*with_pictures=*/false);
+  FURROW_RETURN_IF_ERROR(assets);
+  WarnAboutSecurity(config);
+  WarnAboutAssets(*assets);
+  FURROW_RETURN_IF_ERROR(LoadOscOutputs(config));
+  FURROW_RETURN_IF_ERROR(MakeCoordinator(config, 1));
+  return CheckCredentials(config);
+}
+
 }  // namespace
+
+ExitCode Check(const Config& asked) {
+  const Config config = WithoutMissingParts(asked);
+  if (const Status status = CheckAll(config); !status.ok()) {
+    return Fail(ExitCode::kBadInput, status);
+  }
+  std::puts("the configuration is valid");
+  return ExitCode::kOk;
+}
 
 ExitCode Run(const Config& config, const RunOptions& options) {
   try {

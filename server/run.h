@@ -16,4 +16,8 @@ namespace furrow::server {
 // for the web server, one for the recorder. Several daemons may run in one process.
 [[nodiscard]] ExitCode Run(const Config& config, const RunOptions& options = {});
 
+// Reads what Run() would read before it serves, except pictures. Logs what is wrong, or prints on
+// stdout that the configuration is valid. Opens no ports and starts no renderer.
+[[nodiscard]] ExitCode Check(const Config& config);
+
 }  // namespace furrow::server

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <stop_token>
@@ -31,11 +32,12 @@ struct RunOptions {
   bool owns_process = false;    // nothing but the daemon runs in this process
   std::string confined;         // what Confine() returned; empty: FinishConfinement() is not called
   std::function<void(const Ready&)>
-      on_ready;                         // called on the calling thread once the daemon serves
-  Metrics* metrics = nullptr;           // used instead of the daemon's own; optional
-  ServiceManager* manager = nullptr;    // hears how the daemon is; optional
-  ServiceManager::Listeners listeners;  // used instead of the configured addresses
-  ServiceManager::Kept kept;            // what the former daemon has left; needs `manager`
+      on_ready;                              // called on the calling thread once the daemon serves
+  Metrics* metrics = nullptr;                // used instead of the daemon's own; optional
+  ServiceManager* manager = nullptr;         // hears how the daemon is; optional
+  ServiceManager::Listeners listeners;       // used instead of the configured addresses
+  ServiceManager::Kept kept;                 // what the former daemon has left; needs `manager`
+  std::filesystem::path credentials_folder;  // systemd's copies of secrets; empty: none
 };
 
 }  // namespace furrow::server

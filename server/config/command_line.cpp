@@ -32,6 +32,7 @@ struct Flags {
   std::vector<std::string> jitter;
   bool no_render = false;
   bool no_http = false;
+  bool check = false;
 };
 
 // Replaces the word of --security by its number, for CLI11. Returns what is wrong with it.
@@ -85,6 +86,9 @@ std::string UnknownWords(const CLI::App& app) {
 void Declare(CLI::App* app, Config* config, Flags* flags) {
   app->add_option("--config", flags->config_file,
                   "Read a TOML configuration file; flags override it");
+  app->add_flag("--check", flags->check,
+                "Read the configuration and all files that it names, say what is wrong or that it\n"
+                "is valid, and exit");
   app->add_option("--character", config->character,
                   "Render this character (.glb) and use its wrinkle rig");
   app->add_option(
@@ -128,9 +132,10 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
          "Let in only clients whose certificate one of these authorities (PEM) has signed\n"
          "(default: clients need no certificate)")
       ->type_name("FILE");
-  app->add_flag("!--no-confine", config->security.confine,
-                "Keep all privileges and the access to all files (default: give up what the\n"
-                "daemon does not need; see docs/SECURITY.md)");
+  app->add_flag_callback(
+      "--no-confine", [config] { config->security.confine = false; },
+      "Keep all privileges and the access to all files (default: give up what the\n"
+      "daemon does not need; see docs/SECURITY.md)");
   app->add_option("--tcp", config->tcp, "TCP port for poses, weights and pictures (default: 7400)")
       ->check(IsPort());
   app->add_option("--udp", config->udp, "UDP port for poses and weights (default: 7401)")
@@ -297,7 +302,7 @@ CommandLine ParseCommandLine(std::span<const std::string> args) {
     return Fail(by_file ? ExitCode::kBadInput : ExitCode::kUsage,
                 (by_file ? status.At(flags.config_file) : status).ToString() + "\n");
   }
-  return {config, ExitCode::kOk, {}};
+  return {config, ExitCode::kOk, {}, flags.check};
 }
 
 }  // namespace furrow::server

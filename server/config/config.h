@@ -109,6 +109,7 @@ struct CommandLine {
   std::optional<Config> config;
   ExitCode exit_code = ExitCode::kOk;
   std::string text;
+  bool check = false;  // only look for faults, see Check()
 };
 
 // Parses the command line of furrowd and the file of --config. Flags override the file, and the

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/machine/journal.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdlib>
 #include <string>
 
@@ -13,6 +15,16 @@ bool IsJournal(int descriptor, std::string_view journal_stream) {
   struct stat info {};
   if (fstat(descriptor, &info) != 0) return false;
   return journal_stream == std::to_string(info.st_dev) + ":" + std::to_string(info.st_ino);
+}
+
+std::string AsJournalError(std::string_view text) {
+  std::string marked;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size() - 1) + 1;
+    marked.append("<3>").append(text.substr(0, end));
+    text.remove_prefix(end);
+  }
+  return marked;
 }
 
 bool StderrIsJournal() {

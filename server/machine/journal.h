@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
 #include <string_view>
 
 namespace furrow::server {
@@ -11,5 +12,8 @@ namespace furrow::server {
 
 // The same for standard error and the environment of this process.
 [[nodiscard]] bool StderrIsJournal();
+
+// A message of several lines with the priority of an error, which journald reads and removes.
+[[nodiscard]] std::string AsJournalError(std::string_view text);
 
 }  // namespace furrow::server

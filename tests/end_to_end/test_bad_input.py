@@ -55,6 +55,26 @@ class BadFileTest(unittest.TestCase):
         path.write_bytes(text if isinstance(text, bytes) else text.encode())
         return path
 
+    def check(self, text):
+        """What `furrowd --check` says of a configuration: exit code, stdout, stderr."""
+        done = subprocess.run([BIN / "furrowd", "--config", self.file("furrow.toml", text), "--check"],
+                              capture_output=True, text=True, timeout=GUARD, check=False)
+        return done.returncode, done.stdout, done.stderr
+
+    def test_a_configuration_is_checked_without_a_start(self):
+        self.assertEqual(self.check("[render]\nenabled = false\n")[:2], (DONE, "the configuration is valid\n"))
+        for text, fault in (("[listen]\ntpc = 1\n", "unknown key 'listen.tpc'"),
+                            ("rig = 'nosuch'\n", "nosuch"),
+                            ("[security]\nmode = 'required'\nkeys = 'absent'\n", "security.keys: ")):
+            with self.subTest(text):
+                code, out, errors = self.check(text)
+                self.assertEqual((code, out), (BAD_INPUT, ""), errors)
+                self.assertIn(fault, errors)
+        # The copies of a service that does not run.
+        code, out, errors = self.check("[security]\nmode = 'required'\nkeys = '/run/credentials/no.service/keys'\n")
+        self.assertEqual((code, out), (DONE, "the configuration is valid\n"), errors)
+        self.assertIn("not checked, because systemd copies them when it starts the service: /run/credentials/no.service/keys", errors)
+
     def refuse(self, code, *args, says=()):
         """`furrow ARGS` must exit with `code` and a short message that contains each of `says`."""
         result = furrow(*args)

@@ -110,7 +110,7 @@ TEST_F(ReloadTest, StreamsGoOnWithNewNamesAndLimits) {
   EXPECT_EQ(StatusOf("furrow.example"), 200) << "a scrape by name";
   EXPECT_EQ(StatusOf("evil.example"), 403);
   EXPECT_FALSE(Watch(viewer, {.subject = "ann"}, 2).has_value()) << "one subscription is the most";
-  EXPECT_THAT(Log(), HasSubstr("changed: http.allow_hosts, limits.max_subscriptions"));
+  EXPECT_THAT(Log(), HasSubstr("took effect: http.allow_hosts, limits.max_subscriptions"));
 }
 
 TEST_F(ReloadTest, NamesWhatTakesARestart) {
@@ -121,7 +121,7 @@ TEST_F(ReloadTest, NamesWhatTakesARestart) {
   EXPECT_TRUE(client.Await<protocol::Welcome>().has_value());
   EXPECT_THAT(Log(), AllOf(HasSubstr("listen.udp changed: takes effect after a restart"),
                            HasSubstr("log.json changed: takes effect after a restart"),
-                           HasSubstr("changed: nothing")));
+                           HasSubstr("took effect: nothing")));
 }
 
 TEST_F(ReloadTest, AFaultLeavesEverythingAsItWas) {
@@ -133,7 +133,11 @@ TEST_F(ReloadTest, AFaultLeavesEverythingAsItWas) {
     EXPECT_EQ(Reload(kPorts + fault), kRefused) << fault;
     EXPECT_EQ(StatusOf("furrow.example"), 200) << fault;
     EXPECT_EQ(StatusOf("a"), 403) << fault;
+    EXPECT_THAT(WebClient(http).Ask("GET", "/metrics").body,
+                HasSubstr("furrow_config_refused 1\n"));
   }
+  EXPECT_EQ(Reload(std::string(kPorts) + "allow_hosts = ['furrow.example']\n"), kDone);
+  EXPECT_THAT(WebClient(http).Ask("GET", "/metrics").body, HasSubstr("furrow_config_refused 0\n"));
   EXPECT_THAT(Log(), AllOf(HasSubstr("the configuration stays as it was: " + file.string() + ":"),
                            HasSubstr("absent.keys"), HasSubstr("limits.max_subjects is 0")));
 }

@@ -17,6 +17,7 @@ Api::Api(Parts parts)
                .connections = std::move(parts.connections),
                .viewers = std::move(parts.viewers),
                .recording_is_paused = std::move(parts.recording_is_paused),
+               .config_is_refused = std::move(parts.config_is_refused),
                .open_to_network = parts.open_to_network,
                .cluster = parts.cluster}),
       settings_(parts.pictures),

@@ -46,6 +46,7 @@ class Api {
     std::function<int()> connections;           // number of HTTP connections
     std::function<int()> viewers;               // number of WebSockets and picture streams
     std::function<bool()> recording_is_paused;  // by a full disk; empty: nothing is recorded
+    std::function<bool()> config_is_refused;    // by the last reload; empty: there are none
     bool open_to_network = false;               // other computers need no token
     const TokenGate* gate = nullptr;            // null: the daemon makes no tokens
     Coordinator* cluster = nullptr;             // null: the daemon is alone

@@ -158,6 +158,10 @@ ApiReply StatusApi::MetricsText(const Hub& hub, Time now) const {
   add_gauge("furrow_recording_paused",
             "1 while the disk has no room for the recording, otherwise 0.",
             parts_.recording_is_paused && parts_.recording_is_paused() ? 1.0 : 0.0);
+  add_gauge("furrow_config_refused",
+            "1 if the last reload left the configuration as it was, because the new one has a "
+            "fault, otherwise 0.",
+            parts_.config_is_refused && parts_.config_is_refused() ? 1.0 : 0.0);
   return {.type = "text/plain; version=0.0.4; charset=utf-8",
           .body = prometheus::TextSerializer().Serialize(families)};
 }

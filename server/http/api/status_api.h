@@ -29,6 +29,7 @@ class StatusApi {
     std::function<int()> connections;           // HTTP connections
     std::function<int()> viewers;               // WebSockets and picture streams
     std::function<bool()> recording_is_paused;  // by a full disk; empty: nothing is recorded
+    std::function<bool()> config_is_refused;    // by the last reload; empty: there are none
     bool open_to_network = false;               // other computers need no token
     const Coordinator* cluster = nullptr;       // null: the daemon is alone
   };

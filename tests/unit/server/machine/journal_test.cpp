@@ -24,5 +24,12 @@ TEST(IsJournal, ComparesTheStreamWithTheDescriptor) {
   close(pipes[1]);
 }
 
+TEST(AsJournalError, MarksEachLine) {
+  EXPECT_EQ(AsJournalError(""), "");
+  EXPECT_EQ(AsJournalError("one\n"), "<3>one\n");
+  EXPECT_EQ(AsJournalError("one\ntwo"), "<3>one\n<3>two");
+  EXPECT_EQ(AsJournalError("one\n\ntwo\n"), "<3>one\n<3>\n<3>two\n");
+}
+
 }  // namespace
 }  // namespace furrow::server
