@@ -68,7 +68,8 @@ int RetireKey(const KeyOptions& options) {
   }
   if (Status status = secure::SaveKeyRing(*ring, options.file); !status.ok()) return Fail(status);
   std::printf(
-      "%s: removed key %s; its tokens are refused as soon as the daemon reads the file again\n",
+      "%s: removed key %s; its tokens are refused as soon as the daemon reads the file again: "
+      "within a second, or when a service with LoadCredential= is restarted\n",
       options.file.c_str(), secure::KeyIdText(id).c_str());
   return kDone;
 }
@@ -83,7 +84,7 @@ CLI::Validator DurationValidator() {
                        ? std::string()
                        : "'" + text + "' is not a duration such as 90s, 30m, 8h, 14d";
           },
-          "DURATION"};
+          ""};
 }
 
 std::string RemainingText(std::uint64_t expires, std::uint64_t now) {

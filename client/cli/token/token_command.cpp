@@ -44,7 +44,7 @@ CLI::Validator ClientIdValidator() {
             return ParseClientId(text) ? std::string()
                                        : "'" + text + "' is not a number of 64 bits";
           },
-          "NUMBER"};
+          ""};
 }
 
 Result<secure::ClientToken> MakeTokenOf(const TokenOptions& options) {
@@ -137,7 +137,7 @@ void AddNewToken(CLI::App& group, Action& action) {
                    "What the holder may do (repeatable, or separated by commas)")
       ->required()
       ->delimiter(',')
-      ->check(CLI::IsMember({"publish", "watch", "direct", "operate"}))
+      ->check(CLI::IsMember({"publish", "watch", "direct", "operate"}).description(""))
       ->type_name("publish|watch|direct|operate");
   command
       ->add_option("--subjects", options->grant.subjects,
