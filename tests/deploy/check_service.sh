@@ -93,6 +93,39 @@ perl -F, -ane '
   END { printf "upgrade: all %d frames in order, at most %.0f ms without one\n", $. - 1, 1000 * $longest }' /srv/frames ||
   fail 'the upgrade loses frames or changes their order'
 
+# Keys by LoadCredential=.
+dropin=/etc/systemd/system/furrowd.service.d
+mkdir -p $dropin
+grep -v 'furrow\.\(crt\|key\):' /usr/share/doc/furrowd/examples/furrowd-credentials.conf >$dropin/credentials.conf
+cp /etc/furrow/furrow.toml /srv/open.toml
+printf '[security]\nmode = "required"\nkeys = "/run/credentials/furrowd.service/furrow.keys"\n' >>/etc/furrow/furrow.toml
+furrow token key new --key /etc/furrow/furrow.keys >/dev/null
+furrow token new --role publish,watch --for 1h --key /etc/furrow/furrow.keys --out /srv/token
+furrowd --config /etc/furrow/furrow.toml --check | grep -q 'the configuration is valid' || fail 'a good configuration is refused'
+systemctl daemon-reload
+systemctl restart furrowd
+furrow play /usr/share/furrow/recordings/performance.bvh --to 127.0.0.1 --subject ada --loop --token /srv/token >/srv/play 2>&1 &
+player=$!
+weights() { furrow watch 127.0.0.1 --subject ada --wait --frames 1 --token /srv/token >/dev/null 2>/srv/watch; }
+weights || fail "a token is refused: $(cat /srv/watch)"
+! furrow watch 127.0.0.1 --subject ada --wait --frames 1 >/dev/null 2>/srv/watch || fail 'a client without a token is let in'
+grep -q 'requires a token' /srv/watch || fail "a client without a token hears: $(cat /srv/watch)"
+key=$(furrow token key list --key /etc/furrow/furrow.keys | awk 'NR == 2 { print $1 }')
+furrow token key new --key /etc/furrow/furrow.keys >/dev/null
+furrow token key retire "$key" --key /etc/furrow/furrow.keys >/dev/null
+systemctl reload furrowd
+says_restart() { journalctl --no-pager --unit furrowd | grep -q 'LoadCredential=): changes take'; }
+wait_for says_restart
+systemctl restart furrowd
+! weights || fail 'a token of a retired key is taken after a restart'
+grep -q 'does not have the key' /srv/watch || fail "a client with a token of a retired key hears: $(cat /srv/watch)"
+kill $player
+wait $player || true
+echo 'service: keys by LoadCredential=, tokens, a retired key'
+cp /srv/open.toml /etc/furrow/furrow.toml
+rm -r $dropin /etc/furrow/furrow.keys
+systemctl daemon-reload
+
 # A stop leaves nothing to the next start.
 systemctl stop furrowd
 [ "$(systemctl show --property NFileDescriptorStore furrowd)" = NFileDescriptorStore=0 ] || fail 'a stop leaves sockets'
@@ -146,6 +179,8 @@ fi
 cd "$root"
 pivot_root . .
 umount -l .
+# The service gets its credentials by a mount that comes from outside its namespace.
+mount --make-rshared /
 export container=furrow
 exec chroot . /lib/systemd/systemd --log-target=journal --show-status=no
 BOOT
