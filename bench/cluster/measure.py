@@ -83,9 +83,10 @@ class Stage:
         self.nodes[name] = self.stack.enter_context(Node(name, "--cluster", self.wires[name].url, ports=ports))
 
     def wait_for(self, count):
-        """Waits for `count` more frames of each subject."""
-        for viewer in self.viewers:
-            viewer.wait_for(count)
+        """Waits for `count` more frames of each subject, all at a time."""
+        wanted = [len(viewer.frames) + count for viewer in self.viewers]
+        for viewer, number in zip(self.viewers, wanted):
+            viewer.wait_for(number - len(viewer.frames))
 
     def holder(self):
         """The node that serves the first subject."""
