@@ -100,8 +100,8 @@ void StoreCoordinator::Step(milliseconds wait) {
   TakeRequests();
   if (leases_.reachable() && (missed_ || leases_.needs_listing()) && now - listed_ >= kListPause) {
     List();
-    LookAround();
   }
+  LookAround();  // nothing is written on what was known before a freeze
   for (LeaseWrite& write : leases_.Tick(now_(), unix_ms_())) {
     const std::uint64_t id = next_id_++;
     store_->Put({id, LeaseKey(write.subject), ToText(write.lease), write.expected});
