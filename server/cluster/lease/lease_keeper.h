@@ -51,6 +51,7 @@ class LeaseKeeper {
   void OnPause(Time pause, Time now);
   // The store answers or does not. A listing must follow after it answers again.
   void OnReachable(bool reachable, Time now);
+  // `listing`: requested after the last freeze.
   void OnListing(const LeaseListing& listing, Time now);
   // One record has changed. Only a hint: the next listing counts.
   void OnEntry(const LeaseEntry& entry, Time now);

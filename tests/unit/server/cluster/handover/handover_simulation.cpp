@@ -203,7 +203,10 @@ class Simulation : public NodeSurroundings {
     const bool reachable = hears || (node.told && now() - node.unheard_since < kNoticeMs);
     LeaseKeeper& keeper = node.node->keeper();
     const Time clock = Clock(node);
-    keeper.OnPause(clock - std::exchange(node.ran, clock), clock);
+    const Time pause = clock - std::exchange(node.ran, clock);
+    keeper.OnPause(pause, clock);
+    // A listing that was requested before a freeze says nothing.
+    if (pause > kLeaseFreeze) node.list_used = node.list_number + 1;
     if (reachable != node.told) {
       node.told = reachable;
       keeper.OnReachable(reachable, clock);

@@ -114,7 +114,10 @@ class Simulation {
 
   void Tick(int index, Node& node) {
     const Time clock = Clock(node);
-    node.keeper->OnPause(clock - std::exchange(node.ran, clock), clock);
+    const Time pause = clock - std::exchange(node.ran, clock);
+    node.keeper->OnPause(pause, clock);
+    // A listing that was requested before a freeze says nothing.
+    if (pause > kLeaseFreeze) node.list_used = node.list_number + 1;
     const bool hears = Hears(node);
     if (hears) {
       node.unheard_since = -1;

@@ -51,10 +51,10 @@ struct Single {
 
 // What one fault alone may cost a receiver.
 TEST(LeaseSimulation, OneFaultCostsNoMoreThanStated) {
-  const Single singles[] = {{"crash", kCrash, 9000},
+  const Single singles[] = {{"crash", kCrash, 10'000},
                             {"freeze", kFreeze, 7000},
-                            {"cut", kCut, 2000},
-                            {"store down", kStoreDown, 2000},
+                            {"cut", kCut, 2500},
+                            {"store down", kStoreDown, 2500},
                             {"store emptied", kStoreEmptied, 6000},
                             {"clock step", kClockStep, 1000},
                             {"publisher cut", kPublisherCut, 7000}};
