@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/run.h"
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -9,6 +11,8 @@
 #include <vector>
 
 #include <spdlog/spdlog.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "base/joined.h"
 #include "base/status.h"
@@ -60,11 +64,12 @@ ExitCode LoadAndServe(const Config& asked, const RunOptions& options) {
                 status);
   }
   daemon.FinishConfinement();
-  if (Status status = daemon.StartRecording(); !status.ok()) {
-    return Fail(ExitCode::kFailed, status);
-  }
   if (Status status = daemon.LoadCredentials(); !status.ok()) {
     return Fail(ExitCode::kBadInput, status);
+  }
+  // After all files that may have a fault, so that a failed start leaves no recording.
+  if (Status status = daemon.StartRecording(); !status.ok()) {
+    return Fail(ExitCode::kFailed, status);
   }
   if (Status status = daemon.Listen(); !status.ok()) return Fail(ExitCode::kFailed, status);
   daemon.Serve();
@@ -72,22 +77,42 @@ ExitCode LoadAndServe(const Config& asked, const RunOptions& options) {
 }
 
 // systemd makes copies when it starts the service, for the service alone.
-std::vector<std::string> CopiesOf(const Config& config) {
-  std::vector<std::string> copies;
-  const TlsFiles& tls = config.security.tls;
-  for (const std::filesystem::path& path :
-       {config.security.keys, tls.certificate, tls.key, tls.client_authority}) {
-    if (path.string().starts_with("/run/credentials/")) copies.push_back(path.string());
-  }
-  return copies;
+bool IsCopy(const std::filesystem::path& path) {
+  return path.string().starts_with("/run/credentials/");
 }
 
-Status CheckCredentials(const Config& config) {
-  if (const auto copies = CopiesOf(config); !copies.empty()) {
-    spdlog::warn("not checked, because systemd copies them when it starts the service: {}",
-                 Joined(copies));
-    return {};
+// What works for root may not work for the service.
+void WarnIfOfRoot(const std::filesystem::path& path) {
+  struct stat info {};
+  if (geteuid() != 0 || path.empty() || stat(path.c_str(), &info) != 0) return;
+  if (info.st_uid == 0 && (info.st_mode & S_IROTH) == 0) {
+    spdlog::warn(
+        "only root can read {}: a service with a user of its own gets it by "
+        "LoadCredential=",
+        path.string());
   }
+}
+
+Status CheckCredentials(Config config) {
+  std::vector<std::string> skipped;
+  if (IsCopy(config.security.keys)) {
+    skipped.push_back(config.security.keys.string());
+    config.security.keys.clear();
+  }
+  TlsFiles& tls = config.security.tls;
+  const std::array tls_files = {tls.certificate, tls.key, tls.client_authority};
+  // A certificate is checked together with its key.
+  if (std::ranges::any_of(tls_files, IsCopy)) {
+    for (const std::filesystem::path& path : tls_files) {
+      if (!path.empty()) skipped.push_back(path.string());
+    }
+    tls = {};
+  }
+  if (!skipped.empty()) {
+    spdlog::warn("not checked, because systemd copies them when it starts the service: {}",
+                 Joined(skipped));
+  }
+  for (const auto& path : {config.security.keys, tls.certificate, tls.key}) WarnIfOfRoot(path);
   Metrics unused;
   return Credentials(config, &unused).Load();
 }

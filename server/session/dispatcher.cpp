@@ -252,7 +252,7 @@ bool Dispatcher::OnToken(Peer& peer, const protocol::Header& header, const std::
     auto access = parts_.gate->Admit(token, peer.shielded, now);
     if (!access.ok()) {
       refusals_.Note(peer.name, access.status().what(), now);
-      RefuseStranger(shard, peer, header, access.status().what());
+      Refuse(shard, peer, header, access.status().what());
       return false;
     }
     Permit(peer, *std::move(access), *parts_.limits);
@@ -274,10 +274,14 @@ void Dispatcher::RefuseStranger(Peer& peer) {
   RefuseStranger(parts_.shards->Of(peer.id), peer, {}, WhyNeeded(peer));
 }
 
-// One clear error, then the connection ends.
 void Dispatcher::RefuseStranger(Shard& shard, Peer& peer, const protocol::Header& header,
                                 std::string why) {
   parts_.metrics->Add(Counter::kRefusedNoToken);
+  Refuse(shard, peer, header, std::move(why));
+}
+
+// One clear error, then the connection ends.
+void Dispatcher::Refuse(Shard& shard, Peer& peer, const protocol::Header& header, std::string why) {
   shard.context.messages.SendError(peer, header, ErrorCode::kNeedsToken, std::move(why));
   CutOff(peer);
 }

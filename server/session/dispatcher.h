@@ -89,6 +89,7 @@ class Dispatcher {
   bool OnToken(Peer& peer, const protocol::Header& header, const std::string& token, Time now);
   [[nodiscard]] const char* WhyNeeded(const Peer& peer) const;
   void RefuseStranger(Shard& shard, Peer& peer, const protocol::Header& header, std::string why);
+  void Refuse(Shard& shard, Peer& peer, const protocol::Header& header, std::string why);
   void OnListSubjects(Peer& peer, const protocol::Header& header,
                       const protocol::ListSubjects& request);
   void OnSubjectState(Peer& peer, const protocol::MessageView& view,

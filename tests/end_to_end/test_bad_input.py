@@ -70,7 +70,12 @@ class BadFileTest(unittest.TestCase):
                 code, out, errors = self.check(text)
                 self.assertEqual((code, out), (BAD_INPUT, ""), errors)
                 self.assertIn(fault, errors)
-        # The copies of a service that does not run.
+        # What systemd copies, beside a file that it does not.
+        code, out, errors = self.check("[security]\nmode = 'required'\nkeys = 'absent'\n[tls]\n"
+                                       "certificate = '/run/credentials/no.service/crt'\nkey = 'other.key'\n")
+        self.assertEqual((code, out), (BAD_INPUT, ""), errors)
+        self.assertIn("security.keys: ", errors)
+        self.assertRegex(errors, "not checked, .*: /run/credentials/no.service/crt, .*other.key")
         code, out, errors = self.check("[security]\nmode = 'required'\nkeys = '/run/credentials/no.service/keys'\n")
         self.assertEqual((code, out), (DONE, "the configuration is valid\n"), errors)
         self.assertIn("not checked, because systemd copies them when it starts the service: /run/credentials/no.service/keys", errors)
