@@ -135,13 +135,20 @@ class SecureTest(TokenTest):
             old = furrow("token", "key", "list", "--key", self.keys, check=0).stdout.decode().splitlines()[1].split()[0]
             player = self.start("play", PERFORMANCE, "--to", daemon.udp, "--subject", "ada", "--loop", "--token",
                                 self.token("publish"))
+            beside = self.start("play", PERFORMANCE, "--to", daemon.tcp, "--tcp", "--subject", "bob", "--loop", "--token",
+                                self.token("publish"))
             watcher = self.start("watch", daemon.udp, "--subject", "ada", "--wait", "--token", self.token("watch"), *SHORT)
             rows, notes = Output(watcher.stdout), Output(watcher.stderr)
             rows_after(rows, 5)
+            furrow("watch", daemon.udp, "--subject", "bob", "--wait", "--frames", 1, "--token", self.token("watch"), *SHORT,
+                   check=0)
             furrow("token", "key", "new", "--key", self.keys, check=0)
             furrow("token", "key", "retire", old, "--key", self.keys, check=0)
             notes.wait_for(lambda text: LOST in text and REFUSED in text)
             Output(player.stderr).wait_for(lambda text: REFUSED in text)
+            Output(beside.stderr).wait_for(lambda text: "of the token" in text and "; trying again" in text)
+            beside.send_signal(signal.SIGINT)
+            self.assertEqual(beside.wait(timeout=GUARD), NO_CONNECTION)
             player.send_signal(signal.SIGINT)
             self.assertEqual(player.wait(timeout=GUARD), NO_CONNECTION)
             furrow("watch", daemon.udp, "--subject", "ada", "--wait", "--frames", 1, "--token", self.token("watch"),

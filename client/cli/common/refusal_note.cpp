@@ -6,9 +6,8 @@
 namespace furrow::cli {
 
 void RefusalNote::Show(const std::string& refusal) {
-  if (refusal == shown_) return;
-  shown_ = refusal;
-  if (!refusal.empty()) std::fprintf(stderr, "furrow: %s; trying again\n", refusal.c_str());
+  if (refusal.empty() || !shown_.insert(refusal).second) return;
+  std::fprintf(stderr, "furrow: %s; trying again\n", refusal.c_str());
 }
 
 }  // namespace furrow::cli

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <set>
 #include <string>
 
 namespace furrow::cli {
@@ -9,11 +10,11 @@ namespace furrow::cli {
 // once per reason.
 class RefusalNote {
  public:
-  // `refusal`: client::RefusedTokenText(); empty: the token is not refused.
+  // `refusal`: a sentence without a full stop; empty: the token is not refused.
   void Show(const std::string& refusal);
 
  private:
-  std::string shown_;
+  std::set<std::string> shown_;
 };
 
 }  // namespace furrow::cli

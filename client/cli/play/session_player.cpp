@@ -90,7 +90,8 @@ void SessionPlayer::Note(IoStatus status) {
   if (status == IoStatus::kNoConnection) {
     ++refused_;
     reachable_ = false;
-    refusal_.Show(publisher_.refusal());
+    // Over TCP, the daemon says it in an error.
+    refusal_.Show(publisher_.needs_token() ? publisher_.last_error() : publisher_.refusal());
   } else if (status == IoStatus::kOk) {
     reachable_ = true;
   }
