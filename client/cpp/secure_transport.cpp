@@ -18,8 +18,6 @@ constexpr std::chrono::milliseconds kPollInterval(50);
 // Clients leave the expiry of tokens to the daemon, whose clock counts.
 secure::Now At(DatagramSocket::Clock::time_point time) { return {.us = Microseconds(time)}; }
 
-bool Lasts(Refusal refusal) { return !RefusedTokenText(refusal).empty(); }
-
 }  // namespace
 
 // Without a hello: the program sends its own as soon as there is a session.

@@ -29,11 +29,8 @@ std::string NeedsTokenText(const std::string& said) {
 }
 
 std::string RefusedTokenText(protocol::secure::Refusal refusal) {
-  using protocol::secure::Refusal;
-  const bool passes =
-      refusal == Refusal::kNone || refusal == Refusal::kUnknownSession || refusal == Refusal::kBusy;
-  return passes ? std::string()
-                : std::string("the daemon refuses the token: ") + RefusalText(refusal);
+  return Lasts(refusal) ? std::string("the daemon refuses the token: ") + RefusalText(refusal)
+                        : std::string();
 }
 
 Status ConnectionFailed(TransportKind kind, const std::string& host, std::uint16_t port,

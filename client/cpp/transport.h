@@ -112,8 +112,7 @@ class Transport {
 // What the daemon said with kNeedsToken, or a sentence if it said nothing.
 [[nodiscard]] std::string NeedsTokenText(const std::string& said);
 
-// "the daemon refuses the token: it has expired"; empty unless the refusal is one that time alone
-// does not end.
+// "the daemon refuses the token: the token has expired"; empty unless the refusal Lasts().
 [[nodiscard]] std::string RefusedTokenText(protocol::secure::Refusal refusal);
 
 // The kUnavailable status of a failed connect: "no connection to host:port over TCP: reason".

@@ -40,6 +40,11 @@ bool ReadRetry(ByteView datagram, std::uint32_t& client_index, Cookie& cookie) {
   return true;
 }
 
+bool Lasts(Refusal refusal) {
+  return refusal != Refusal::kNone && refusal != Refusal::kUnknownSession &&
+         refusal != Refusal::kBusy;
+}
+
 const char* RefusalText(Refusal refusal) {
   switch (refusal) {
     case Refusal::kNone: return "not refused";

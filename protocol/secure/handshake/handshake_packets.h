@@ -83,6 +83,9 @@ enum class Refusal : std::uint8_t {
 inline constexpr std::size_t kNumRefusals = 12;
 // A phrase for messages and metrics: "the token has expired".
 [[nodiscard]] const char* RefusalText(Refusal refusal);
+// True if trying again does not help until the token or the server changes. The others are normal
+// after a restart of the server, or when many come at once.
+[[nodiscard]] bool Lasts(Refusal refusal);
 
 // A hint for the client, which nothing proves: the index (the client's of an initiation, or the
 // unknown one of another packet), the reason, 3 zero bytes.

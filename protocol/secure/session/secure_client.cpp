@@ -7,15 +7,6 @@
 #include "protocol/messages/bytes.h"
 
 namespace furrow::protocol::secure {
-namespace {
-
-// Reasons that time alone does not remove.
-bool Lasts(Refusal refusal) {
-  return refusal != Refusal::kNone && refusal != Refusal::kUnknownSession &&
-         refusal != Refusal::kBusy;
-}
-
-}  // namespace
 
 SecureClient::SecureClient(const ClientToken& token, ByteView hello, RandomSource& random)
     : token_(token), random_(random) {

@@ -49,6 +49,16 @@ TEST(HandshakePackets, RefusedCarriesReasonsOfTheWireOnly) {
   }
 }
 
+TEST(HandshakePackets, SomeReasonsPassByThemselves) {
+  for (const Refusal refusal : {Refusal::kNone, Refusal::kUnknownSession, Refusal::kBusy}) {
+    EXPECT_FALSE(Lasts(refusal)) << RefusalText(refusal);
+  }
+  for (const Refusal refusal : {Refusal::kUnknownKey, Refusal::kExpired, Refusal::kForgedToken,
+                                Refusal::kTokenInUse, Refusal::kFull}) {
+    EXPECT_TRUE(Lasts(refusal)) << RefusalText(refusal);
+  }
+}
+
 TEST(HandshakePackets, EveryReasonHasItsOwnText) {
   std::set<std::string> texts;
   for (std::size_t reason = 0; reason < kNumRefusals; ++reason) {
