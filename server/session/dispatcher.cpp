@@ -251,7 +251,7 @@ bool Dispatcher::OnToken(Peer& peer, const protocol::Header& header, const std::
   if (shown) {
     auto access = parts_.gate->Admit(token, peer.shielded, now);
     if (!access.ok()) {
-      refusals_.Note(peer.name, access.status().what(), now);
+      refusals_.Note([&peer] { return peer.name; }, access.status().what(), now);
       Refuse(shard, peer, header, access.status().what());
       return false;
     }

@@ -43,10 +43,9 @@ SecureSessions::Outcome SecureSessions::OnDatagram(std::span<std::uint8_t> bytes
   // Before a new session can get the place of one that has just ended.
   SortClosed();
   Count(event);
-  // The others are normal after a restart of the daemon, or when many come at once.
-  if (event.refusal != Refusal::kNone && event.refusal != Refusal::kUnknownSession &&
-      event.refusal != Refusal::kBusy) {
-    refusals_.Note("udp " + from.address().to_string(), RefusalText(event.refusal), now);
+  if (Lasts(event.refusal)) {
+    refusals_.Note([&] { return "udp " + from.address().to_string(); }, RefusalText(event.refusal),
+                   now);
   }
   if (event.session == 0) return outcome;
   const std::size_t place = PlaceOf(event.session);
@@ -59,10 +58,14 @@ SecureSessions::Outcome SecureSessions::OnDatagram(std::span<std::uint8_t> bytes
   const secure::PeerAddress* const address = server_.AddressOf(event.session);
   if (address != nullptr && *address == ToPeerAddress(from)) scope_of_[place] = ScopeOf(from);
   if (!event.closed && (event.opened || event.renewed)) {
-    const auto info = server_.InfoOf(event.session);
-    outcome.access = Access::Of(*info.grant, info.key_id, gate_->ExpiryOf(info.expires, now));
+    outcome.access = AccessOf(event.session, now);
   }
   return outcome;
+}
+
+Access SecureSessions::AccessOf(std::uint32_t session, Time now) const {
+  const auto info = server_.InfoOf(session);
+  return Access::Of(*info.grant, info.key_id, gate_->ExpiryOf(info.expires, now));
 }
 
 void SecureSessions::Count(const secure::ServerEvent& event) {
@@ -116,8 +119,7 @@ std::optional<Access> SecureSessions::Resume(const SavedSecureSession& saved, Ti
   shard_of_[place] = saved.shard;
   is_v4_[place] = saved.is_v4;
   scope_of_[place] = saved.scope;
-  const auto info = server_.InfoOf(index);
-  return Access::Of(*info.grant, info.key_id, gate_->ExpiryOf(info.expires, now));
+  return AccessOf(index, now);
 }
 
 void SecureSessions::SetKeys(secure::KeyRing keys) {

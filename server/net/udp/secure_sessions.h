@@ -65,6 +65,8 @@ class SecureSessions : public DatagramSealer {
   static constexpr std::size_t kPlaces = 0x10000;
   static std::size_t PlaceOf(std::uint32_t session) { return session & 0xFFFF; }
   [[nodiscard]] protocol::secure::Now At(Time now) const;
+  // What the token of a session allows.
+  [[nodiscard]] Access AccessOf(std::uint32_t session, Time now) const;
   void Count(const protocol::secure::ServerEvent& event);
   void SortClosed();
 

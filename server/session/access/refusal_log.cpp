@@ -8,16 +8,16 @@
 
 namespace furrow::server {
 
-void RefusalLog::Note(std::string_view who, std::string_view why, Time now) {
-  std::uint64_t left_out = 0;
-  {
-    const std::lock_guard lock(mutex_);
-    if (!bucket_.Take(now)) {
-      ++left_out_;
-      return;
-    }
-    left_out = std::exchange(left_out_, 0);
+std::optional<std::uint64_t> RefusalLog::Take(Time now) {
+  const std::lock_guard lock(mutex_);
+  if (!bucket_.Take(now)) {
+    ++left_out_;
+    return std::nullopt;
   }
+  return std::exchange(left_out_, 0);
+}
+
+void RefusalLog::Write(std::string_view who, std::string_view why, std::uint64_t left_out) {
   const std::string others =
       left_out > 0 ? "; " + std::to_string(left_out) + " others were refused before" : "";
   spdlog::warn("refuses {}: {}{}", who, why, others);
