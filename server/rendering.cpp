@@ -5,12 +5,12 @@
 #include <chrono>
 #include <exception>
 #include <string>
-#include <system_error>
 #include <utility>
 
 #include <malloc.h>
 #include <spdlog/spdlog.h>
 
+#include "base/process/in_background.h"
 #include "render/renderer.h"
 #include "render/video/video_codec.h"
 #include "server/net/clock.h"
@@ -22,19 +22,6 @@ namespace {
 
 // The time that joining a thread may take after it has ended.
 constexpr Time kJoinTime = std::chrono::milliseconds(50);
-
-// Runs `task` on a thread of its own, or at once if no further thread may start.
-template <class Task>
-std::future<void> InBackground(const Task& task) {
-  try {
-    return std::async(std::launch::async, task);
-  } catch (const std::system_error&) {
-    task();
-    std::promise<void> done;
-    done.set_value();
-    return done.get_future();
-  }
-}
 
 }  // namespace
 

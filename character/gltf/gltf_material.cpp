@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "base/ascii.h"
+#include "base/process/in_background.h"
 #include "base/status.h"
 #include "character/pictures/picture_file.h"
 #include "character/source_notes.h"
@@ -69,7 +70,7 @@ class PicturesAhead {
     // to be exceeded.
     static const std::size_t ahead = std::clamp(std::thread::hardware_concurrency(), 1u, 4u);
     for (; next_ < document_.images().size() && decoding_.size() < ahead; ++next_) {
-      decoding_.push_back(std::async(std::launch::async, [this, index = next_] {
+      decoding_.push_back(InBackground([this, index = next_] {
         return ReadPicture(document_, index, NameOf(document_.images()[index]));
       }));
     }

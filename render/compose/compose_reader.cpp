@@ -6,13 +6,13 @@
 #include <cmath>
 #include <future>
 #include <span>
-#include <system_error>
 #include <thread>
 
 #include <glm/common.hpp>
 #include <glm/gtc/packing.hpp>
 #include <glm/vec4.hpp>
 
+#include "base/process/in_background.h"
 #include "base/srgb.h"
 #include "render/wrinkles/half_floats.h"
 
@@ -205,11 +205,7 @@ void ForTiles(std::vector<ComposeTile>* tiles, const Change& change) {
   };
   std::vector<std::future<void>> others;
   for (std::size_t first = share; first < tiles->size(); first += share) {
-    try {
-      others.push_back(std::async(std::launch::async, change_from, first));
-    } catch (const std::system_error&) {  // no further thread may start
-      change_from(first);
-    }
+    others.push_back(InBackground([&change_from, first] { change_from(first); }));
   }
   change_from(0);
   for (std::future<void>& other : others) other.get();

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/process/in_background.h"
+
+#include <cstdlib>
+#include <stdexcept>
+#include <thread>
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+namespace furrow {
+namespace {
+
+TEST(InBackground, RunsOnAThreadOfItsOwn) {
+  const auto here = std::this_thread::get_id();
+  EXPECT_NE(InBackground([] { return std::this_thread::get_id(); }).get(), here);
+}
+
+TEST(InBackground, PassesExceptionsOn) {
+  auto failed = InBackground([]() -> int { throw std::runtime_error("broken"); });
+  EXPECT_THROW(failed.get(), std::runtime_error);
+}
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+// Leaves no address space for the stack of a thread. Exit codes: 0 if the task ran here.
+void RunWithoutThreads() {
+  const rlimit none{1, 1};
+  if (setrlimit(RLIMIT_AS, &none) != 0) std::_Exit(2);
+  const auto here = std::this_thread::get_id();
+  auto done = InBackground([here] { return std::this_thread::get_id() == here; });
+  std::_Exit(done.get() ? 0 : 1);
+}
+#endif
+
+TEST(InBackgroundDeathTest, RunsAtOnceWhereNoThreadMayStart) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "sanitizers need address space";
+#else
+  EXPECT_EXIT(RunWithoutThreads(), testing::ExitedWithCode(0), "");
+#endif
+}
+
+}  // namespace
+}  // namespace furrow
