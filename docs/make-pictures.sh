@@ -322,7 +322,7 @@ browser_skin() {
 dashboard() {
   FURROW_DASHBOARD=$work/series.json FURROW_BIN=$(realpath "$build/bin") FURROW_SOURCE=$PWD PYTHONPATH=tests/end_to_end \
     python3 -B tests/deploy/test_dashboard.py DashboardTest.test_every_query_has_a_result_and_alerts_fire
-  node docs/dashboard/draw.mjs deploy/grafana/furrow.json "$work/series.json" "$work/dashboard.png"
+  FURROW_ARTEFACTS=$work node docs/dashboard/draw.mjs deploy/grafana/furrow.json "$work/series.json" "$work/dashboard.png"
   sheet dashboard 1x1 1200 dashboard
 }
 

@@ -4,12 +4,10 @@
 // Grafana. SERIES.json: {"PANEL ID": [{"target": NUMBER, "labels": {...}, "values": [[UNIX SECONDS, "VALUE"], ...]}]}, as
 // tests/deploy/test_dashboard.py saves it.
 import { readFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
 import { fileURLToPath } from 'node:url';
+import { launch } from '../../tests/browser/browser.mjs';
 
-const root = fileURLToPath(new URL('../..', import.meta.url));
-const { chromium } = createRequire(`${root}tests/browser/package.json`)('playwright-core');
-const plots = `${root}web/node_modules/uplot/dist/`;
+const plots = fileURLToPath(new URL('../../web/node_modules/uplot/dist/', import.meta.url));
 
 const [dashboardFile, seriesFile, out] = process.argv.slice(2);
 const dashboard = JSON.parse(readFileSync(dashboardFile, 'utf8'));
@@ -93,7 +91,7 @@ function draw(shown) {
   document.body.style.height = `${bottom}px`;
 }
 
-const browser = await chromium.launch({ executablePath: '/usr/bin/chromium', args: ['--no-sandbox', '--disable-gpu'] });
+const browser = await launch();
 const page = await browser.newPage({ viewport: { width: 1600, height: 900 } });
 await page.addStyleTag({ path: `${plots}uPlot.min.css` });
 await page.addScriptTag({ path: `${plots}uPlot.iife.min.js` });
