@@ -18,6 +18,7 @@
 #include "simulated_node.h"
 #include "tests/unit/protocol/secure/secure_testing.h"
 #include "tests/unit/server/cluster/event_queue.h"
+#include "tests/unit/server/cluster/simulated_machine.h"
 
 namespace furrow::server::testing {
 namespace {
@@ -30,12 +31,10 @@ constexpr Ms kEarlyTickMs = 400;  // before anything happens
 constexpr Ms kHurriedTickMs = 20;
 constexpr Ms kMoverMs = 20;  // while it waits; it also looks after each event
 constexpr Ms kHelloMs = 50;
-constexpr Ms kListMs = 1000;
 constexpr Ms kPoseMs = 60;
 constexpr Ms kOfferMs = 100;
 constexpr Ms kNextNodeMs = 2000;  // after this time without an answer, the publisher goes on
 constexpr Ms kUnixMs = 1'700'000'000'000;
-constexpr Ms kNoticeMs = 1500;     // an adapter notices that the store is gone
 constexpr Ms kForgottenMs = 3000;  // a node that does not announce itself
 constexpr Ms kFarewellMs = StoreCoordinator::kFarewell / milliseconds(1);
 constexpr Ms kRestartMs = 600;
@@ -87,22 +86,11 @@ class Simulation : public NodeSurroundings {
     std::array<bool, kNodes> connected{};
     std::uint32_t next_message = 0;
   };
-  struct Node {
+  struct Node : SimulatedMachine {
     std::optional<Links> links;
     std::unique_ptr<SimulatedNode> node;  // null: it does not run
+    [[nodiscard]] bool runs() const { return node != nullptr; }
     std::unique_ptr<protocol::Reassembler> reassembler;
-    std::uint64_t life = 0;
-    Ms frozen_until = 0;
-    Ms cut_until = 0;  // from the store
-    Ms origin = 0;     // of its monotonic clock
-    Ms drift = 0;      // parts in a thousand
-    Time ran{0};       // when it ran last, on its clock
-    Ms wall_offset = 0;
-    bool told = false;  // what the keeper believes of the store
-    Ms unheard_since = -1;
-    Ms listed_at = -kListMs;
-    std::uint64_t list_number = 0;
-    std::uint64_t list_used = 0;
     Ms announced_at = -kForgottenMs;
     bool announced_draining = false;
     bool announced_room = false;
@@ -123,22 +111,12 @@ class Simulation : public NodeSurroundings {
   }
 
   void At(Ms time, std::function<void()> action) { events_.At(time, std::move(action)); }
-  // Runs on a node: not in a later life, and not while it is frozen.
   template <class Action>
   void OnNode(int index, Ms time, Action action) {
-    At(time, [this, index, life = nodes_[index].life, action = std::move(action)]() mutable {
-      Node& node = nodes_[index];
-      if (node.life != life || node.node == nullptr) return;
-      if (node.frozen_until > now()) {
-        return OnNode(index, node.frozen_until + Number(0, 3), std::move(action));
-      }
-      action(node);
-    });
+    RunOnNode(
+        &events_, &nodes_[index], time, [this] { return Number(0, 3); }, std::move(action));
   }
-  Time Clock(const Node& node) const {
-    const Ms elapsed = now() - node.origin;
-    return milliseconds(100'000 + elapsed + elapsed * node.drift / 1000);
-  }
+  Time Clock(const Node& node) const { return node.Clock(now()); }
   bool Hears(const Node& node) const {
     return now() >= node.cut_until && now() >= store_down_until_;
   }
@@ -177,45 +155,24 @@ class Simulation : public NodeSurroundings {
 
   void Boot(int index) {
     Node& node = nodes_[index];
-    ++node.life;
+    const Ms origin = now() - Number(0, 100'000);
+    node.Start(now(), origin, Number(-10, 10));
     node.node = std::make_unique<SimulatedNode>(index, node.life, strict_, this, &*node.links);
     node.node->set_full(node.full);
     node.reassembler = std::make_unique<protocol::Reassembler>();
     node.links->connected.fill(false);
-    node.origin = now() - Number(0, 100'000);
-    node.drift = Number(-10, 10);
-    node.ran = Clock(node);
     node.wall_offset = Number(-20'000, 20'000);
-    node.told = false;
-    node.unheard_since = -1;
-    node.listed_at = -kListMs;
     node.moves = node.ends = false;
     OnNode(index, now() + Number(0, kTickMs), [this, index](Node& each) { Tick(index, each); });
   }
 
   void Tick(int index, Node& node) {
     const bool hears = Hears(node);
-    if (hears) {
-      node.unheard_since = -1;
-    } else if (node.unheard_since < 0) {
-      node.unheard_since = now();
-    }
-    const bool reachable = hears || (node.told && now() - node.unheard_since < kNoticeMs);
     LeaseKeeper& keeper = node.node->keeper();
     const Time clock = Clock(node);
-    const Time pause = clock - std::exchange(node.ran, clock);
-    keeper.OnPause(pause, clock);
-    // A listing that was requested before a freeze says nothing.
-    if (pause > kLeaseFreeze) node.list_used = node.list_number + 1;
-    if (reachable != node.told) {
-      node.told = reachable;
-      keeper.OnReachable(reachable, clock);
-    }
+    node.Notice(hears, now(), &keeper);
     node.node->TakeRequests();
-    if (node.told && (now() - node.listed_at >= kListMs ||
-                      (keeper.needs_listing() && now() - node.listed_at >= 2 * kTickMs))) {
-      RequestListing(index, node);
-    }
+    if (node.AsksForListing(keeper, now(), kTickMs)) RequestListing(index, node);
     for (LeaseWrite& write : keeper.Tick(clock, kUnixMs + now() + node.wall_offset)) {
       SendWrite(index, node, std::move(write));
     }
@@ -245,14 +202,12 @@ class Simulation : public NodeSurroundings {
   }
 
   void RequestListing(int index, Node& node) {
-    node.listed_at = now();
-    const std::uint64_t number = ++node.list_number;
+    const std::uint64_t number = node.AskForListing(now());
     if (!Hears(node)) return;
     At(now() + Delay(), [this, index, number] {
       if (!Hears(nodes_[index])) return;
       OnNode(index, now() + Delay(), [this, record = record_, number](Node& each) {
-        if (!Hears(each) || number < each.list_used) return;
-        each.list_used = number;
+        if (!Hears(each) || !each.TakeListing(number)) return;
         LeaseListing listing{1, {}};
         if (record.revision != 0) listing.entries.push_back(record);
         each.node->keeper().OnListing(listing, Clock(each));

@@ -14,6 +14,7 @@
 
 #include "server/cluster/lease/lease_keeper.h"
 #include "tests/unit/server/cluster/event_queue.h"
+#include "tests/unit/server/cluster/simulated_machine.h"
 
 namespace furrow::server::testing {
 namespace {
@@ -23,13 +24,10 @@ using Ms = std::int64_t;
 constexpr int kNodes = 3;
 constexpr Ms kTickMs = 100;
 constexpr Ms kPoseMs = 100;
-constexpr Ms kListMs = 1000;
 constexpr Ms kFaultsBeginMs = 6000;
 constexpr Ms kFaultsEndMs = 14'000;
 constexpr Ms kEndMs = 32'000;
 constexpr Ms kUnixMs = 1'700'000'000'000;
-// How long an adapter takes to notice that the store is gone.
-constexpr Ms kNoticeMs = 1500;
 constexpr char kSubject[] = "ada";
 
 class Simulation {
@@ -54,20 +52,9 @@ class Simulation {
   }
 
  private:
-  struct Node {
+  struct Node : SimulatedMachine {
     std::unique_ptr<LeaseKeeper> keeper;  // null: crashed
-    std::uint64_t life = 0;
-    Ms frozen_until = 0;
-    Ms cut_until = 0;
-    Ms wall_offset = 0;
-    Ms origin = 0;      // of its monotonic clock
-    Ms drift = 0;       // parts in a thousand
-    Time ran{0};        // when it ran last, on its clock
-    bool told = false;  // what the keeper believes of the store
-    Ms unheard_since = -1;
-    Ms listed_at = -kListMs;
-    std::uint64_t list_number = 0;
-    std::uint64_t list_used = 0;
+    [[nodiscard]] bool runs() const { return keeper != nullptr; }
   };
 
   Ms Number(Ms least, Ms most) { return std::uniform_int_distribution<Ms>(least, most)(random_); }
@@ -76,23 +63,13 @@ class Simulation {
 
   [[nodiscard]] Ms now_ms() const { return events_.now(); }
   void At(Ms time, std::function<void()> action) { events_.At(time, std::move(action)); }
-  // Runs on a node: not in a later life, and not while it is frozen.
-  void OnNode(int index, Ms time, std::function<void(Node&)> action) {
-    const std::uint64_t life = nodes_[index].life;
-    At(time, [this, index, life, action = std::move(action)]() mutable {
-      Node& node = nodes_[index];
-      if (node.life != life || node.keeper == nullptr) return;
-      if (node.frozen_until > now_ms()) {
-        return OnNode(index, node.frozen_until + Number(0, 3), std::move(action));
-      }
-      action(node);
-    });
+  template <class Action>
+  void OnNode(int index, Ms time, Action action) {
+    RunOnNode(
+        &events_, &nodes_[index], time, [this] { return Number(0, 3); }, std::move(action));
   }
 
-  Time Clock(const Node& node) const {
-    const Ms elapsed = now_ms() - node.origin;
-    return std::chrono::milliseconds(1000 + elapsed + elapsed * node.drift / 1000);
-  }
+  Time Clock(const Node& node) const { return node.Clock(now_ms()); }
   Ms Wall(const Node& node) const { return kUnixMs + now_ms() + node.wall_offset; }
   bool Hears(const Node& node) const {
     return now_ms() >= node.cut_until && now_ms() >= store_down_until_;
@@ -102,38 +79,15 @@ class Simulation {
     Node& node = nodes_[index];
     node.keeper = std::make_unique<LeaseKeeper>(std::string(1, static_cast<char>('a' + index)),
                                                 Number(1, 1'000'000'000), strict_);
-    ++node.life;
-    node.origin = now_ms() - Number(0, 100'000);
-    node.drift = Number(-10, 10);
-    node.ran = Clock(node);
-    node.told = false;
-    node.unheard_since = -1;
-    node.listed_at = -kListMs;
+    const Ms origin = now_ms() - Number(0, 100'000);
+    node.Start(now_ms(), origin, Number(-10, 10));
     OnNode(index, now_ms() + Number(0, kTickMs), [this, index](Node& each) { Tick(index, each); });
   }
 
   void Tick(int index, Node& node) {
-    const Time clock = Clock(node);
-    const Time pause = clock - std::exchange(node.ran, clock);
-    node.keeper->OnPause(pause, clock);
-    // A listing that was requested before a freeze says nothing.
-    if (pause > kLeaseFreeze) node.list_used = node.list_number + 1;
-    const bool hears = Hears(node);
-    if (hears) {
-      node.unheard_since = -1;
-    } else if (node.unheard_since < 0) {
-      node.unheard_since = now_ms();
-    }
-    const bool reachable = hears || (node.told && now_ms() - node.unheard_since < kNoticeMs);
-    if (reachable != node.told) {
-      node.told = reachable;
-      node.keeper->OnReachable(reachable, clock);
-    }
-    if (node.told && (now_ms() - node.listed_at >= kListMs ||
-                      (node.keeper->needs_listing() && now_ms() - node.listed_at >= 2 * kTickMs))) {
-      RequestListing(index, node);
-    }
-    for (LeaseWrite& write : node.keeper->Tick(clock, Wall(node))) {
+    node.Notice(Hears(node), now_ms(), node.keeper.get());
+    if (node.AsksForListing(*node.keeper, now_ms(), kTickMs)) RequestListing(index, node);
+    for (LeaseWrite& write : node.keeper->Tick(Clock(node), Wall(node))) {
       SendWrite(index, node, std::move(write));
     }
     CheckServing();
@@ -141,17 +95,14 @@ class Simulation {
   }
 
   void RequestListing(int index, Node& node) {
-    node.listed_at = now_ms();
-    const std::uint64_t number = ++node.list_number;
+    const std::uint64_t number = node.AskForListing(now_ms());
     if (!Hears(node)) return;
     At(now_ms() + Delay(), [this, index, number] {
       if (!Hears(nodes_[index])) return;
       LeaseListing listing{incarnation_, {}};
       for (const auto& [subject, entry] : store_) listing.entries.push_back(entry);
       OnNode(index, now_ms() + Delay(), [this, listing, number](Node& each) {
-        if (!Hears(each) || number < each.list_used) return;
-        each.list_used = number;
-        each.keeper->OnListing(listing, Clock(each));
+        if (Hears(each) && each.TakeListing(number)) each.keeper->OnListing(listing, Clock(each));
       });
     });
   }
