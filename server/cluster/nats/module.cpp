@@ -51,6 +51,7 @@ constexpr int kMaxValueBytes = 1024;
 // is left comes with the next call.
 constexpr int kMostAtOnce = 10'000;
 constexpr milliseconds kPollTime(100);
+constexpr milliseconds kWakeTime(5);  // until Wake() is noticed
 // Answers that wait to be read. The library drops more, and a write without an answer is unknown.
 constexpr int kMaxWaiting = 65'536;
 constexpr int kMaxWaitingBytes = 16 << 20;
@@ -85,11 +86,13 @@ class NatsStore : public Store {
   void Put(const StorePut& put) override;
   bool Poll(milliseconds wait, std::vector<StoreAnswer>* answers,
             std::vector<StoreRecord>* changes) override;
+  void Wake() override { woken_ = true; }
   bool List(std::uint64_t* incarnation, std::vector<StoreRecord>* records,
             std::string* why) override;
 
  private:
   natsStatus PrepareAnswers();
+  void TakeAnswers(Clock::time_point until, std::vector<StoreAnswer>* answers);
   natsStatus PrepareBucket(StreamInfo* info);
   natsStatus GetInfo(StreamInfo* info);
   bool IsComplete();
@@ -109,6 +112,7 @@ class NatsStore : public Store {
     std::atomic<bool> closed = false;
   };
   std::unique_ptr<Link> link_ = std::make_unique<Link>();
+  std::atomic<bool> woken_ = false;
   Connection connection_;
   Context context_;
   Bucket bucket_;
@@ -301,20 +305,33 @@ void NatsStore::TakeEntry(const Entry& entry, std::vector<StoreRecord>* records)
   records->push_back(std::move(record));
 }
 
+// Waits until there is an answer, and takes all that are there. Nothing but a message ends a wait
+// of the library, so Wake() ends one of the short waits of which this one consists.
+void NatsStore::TakeAnswers(Clock::time_point until, std::vector<StoreAnswer>* answers) {
+  while (!woken_.exchange(false) && answers->empty()) {
+    const auto left = std::chrono::ceil<milliseconds>(until - Clock::now());
+    if (left.count() <= 0) break;
+    natsMsg* raw = nullptr;
+    if (natsSubscription_NextMsg(&raw, answers_.get(), std::min(left, kWakeTime).count()) ==
+        NATS_OK) {
+      TakeAnswer(Message(raw), answers);
+    }
+  }
+  natsMsg* raw = nullptr;
+  for (int taken = 0;
+       taken < kMostAtOnce && natsSubscription_NextMsg(&raw, answers_.get(), 0) == NATS_OK;
+       ++taken) {
+    TakeAnswer(Message(raw), answers);
+  }
+}
+
 bool NatsStore::Poll(milliseconds wait, std::vector<StoreAnswer>* answers,
                      std::vector<StoreRecord>* changes) {
   if (answers_ == nullptr || !connected()) {
     nats_Sleep(wait.count());
     return false;
   }
-  natsMsg* raw = nullptr;
-  std::int64_t left = wait.count();
-  for (int taken = 0;
-       taken < kMostAtOnce && natsSubscription_NextMsg(&raw, answers_.get(), left) == NATS_OK;
-       ++taken) {
-    TakeAnswer(Message(raw), answers);
-    left = 0;  // takes what else is there
-  }
+  TakeAnswers(Clock::now() + wait, answers);
   if (watcher_ == nullptr) return false;
   kvEntry* entry = nullptr;
   const auto end = Clock::now() + kPollTime;

@@ -35,7 +35,7 @@ struct StoreAnswer {
 };
 
 // A small key-value store that all nodes of a cluster share, with compare-and-set. Used on one
-// thread. No function throws.
+// thread, except Wake(). No function throws.
 class Store {
  public:
   Store() = default;
@@ -53,6 +53,9 @@ class Store {
   // missed, so that List() is needed.
   [[nodiscard]] virtual bool Poll(std::chrono::milliseconds wait, std::vector<StoreAnswer>* answers,
                                   std::vector<StoreRecord>* changes) = 0;
+  // The wait of this Poll(), or of the next one, ends within a few milliseconds. Thread-safe; does
+  // not wait.
+  virtual void Wake() = 0;
   // Reads all records, for less than a second. `incarnation`: another number for a store that was
   // emptied. Makes the store's bucket if there is none. False: not possible at present; `why` says
   // what is wrong.

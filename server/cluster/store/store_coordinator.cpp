@@ -265,19 +265,26 @@ Place StoreCoordinator::Expect(std::string_view subject, Time now) {
     place.kind = Place::Kind::kPending;
     Request(subject, true);
     transits_.Expect(subject, now);
+    store_->Wake();
   }
   return place;
 }
 
 void StoreCoordinator::HandOver(std::string_view subject, const NodeAddress& heir) {
   transits_.Give(subject, heir, now_());
-  const std::lock_guard lock(mutex_);
-  requests_.heirs.insert_or_assign(std::string(subject), heir.name);
+  {
+    const std::lock_guard lock(mutex_);
+    requests_.heirs.insert_or_assign(std::string(subject), heir.name);
+  }
+  store_->Wake();
 }
 
 void StoreCoordinator::SetDraining() {
-  const std::lock_guard lock(mutex_);
-  requests_.draining = true;
+  {
+    const std::lock_guard lock(mutex_);
+    requests_.draining = true;
+  }
+  store_->Wake();
 }
 
 // The node with the largest part of its places free. Nodes announce themselves once per second, so

@@ -95,7 +95,7 @@ class StoreCoordinator : public Coordinator {
   const std::function<Time()> pause_;
   const std::function<std::int64_t()> unix_ms_;
 
-  // Used by the thread alone.
+  // Used by the thread alone, except Store::Wake().
   const std::unique_ptr<Store> store_;
   LeaseKeeper leases_;
   NodeTable nodes_{{}};

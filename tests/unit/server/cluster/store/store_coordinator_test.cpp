@@ -32,6 +32,7 @@ struct World {
   std::uint64_t incarnation = 1;
   std::atomic<bool> reachable = true;
   std::atomic<std::int64_t> now_ns = 1'000'000'000;
+  std::atomic<int> wakes = 0;
   std::mutex turns_mutex;
   std::condition_variable turns_changed;
   std::map<const void*, int> turns;  // of each node: how often it has waited
@@ -95,6 +96,7 @@ class FakeStore : public Store {
     heard_ = world_->revision;
     return true;
   }
+  void Wake() override { ++world_->wakes; }
   bool List(std::uint64_t* incarnation, std::vector<StoreRecord>* records,
             std::string* /*why*/) override {
     if (!connected()) return false;
@@ -183,6 +185,22 @@ TEST_F(StoreCoordinatorTest, AReleasedSubjectMovesAtOnceAndUpwards) {
   a.Release("ada");
   ASSERT_TRUE(Takes(b, "ada"));
   EXPECT_GT(b.Find("ada", world_.Now()).epoch, epoch);
+}
+
+// Viewers wait while a subject moves, so no part of it waits for the next look at the requests.
+TEST_F(StoreCoordinatorTest, AMoveDoesNotWaitForTheStore) {
+  StoreCoordinator& a = Add("a");
+  StoreCoordinator& b = Add("b");
+  ASSERT_TRUE(IsReady(a));
+  ASSERT_TRUE(IsReady(b));
+  ASSERT_TRUE(Takes(a, "ada"));
+  EXPECT_EQ(world_.wakes, 0);
+  a.SetDraining();
+  EXPECT_EQ(world_.wakes, 1);
+  ASSERT_EQ(b.Expect("ada", world_.Now()).kind, Place::Kind::kPending);
+  EXPECT_EQ(world_.wakes, 2);
+  a.HandOver("ada", {"b", "host-b", 7400, 7401, 7480});
+  EXPECT_EQ(world_.wakes, 3);
 }
 
 TEST_F(StoreCoordinatorTest, ASubjectIsHandedOverAndNoThirdNodeGetsIt) {
