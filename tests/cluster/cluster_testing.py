@@ -111,6 +111,8 @@ class Wire:
         except OSError:
             near.close()
             return
+        for end in (near, far):
+            end.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)  # a cable holds nothing back
         for one, other in ((near, far), (far, near)):
             threading.Thread(target=self._pass, args=(one, other), daemon=True).start()
 
