@@ -28,6 +28,7 @@
 #include "server/core/within_memory.h"
 #include "server/machine/confine.h"
 #include "server/machine/own_addresses.h"
+#include "server/machine/systemd_copy.h"
 #include "server/net/await_tuple.h"
 #include "server/net/clock.h"
 #include "server/net/critical_task.h"
@@ -522,15 +523,6 @@ ReloadRequest Daemon::MakeReloadRequest() {
           .maps_changed = rig_files_.maps_changed()};
 }
 
-// systemd makes the copies when it starts the service.
-bool Daemon::UsesCopies(const Config& config) const {
-  const auto is_copy = [this](const std::filesystem::path& path) {
-    return !options_.credentials_folder.empty() &&
-           path.parent_path() == options_.credentials_folder;
-  };
-  return is_copy(config.security.keys) || is_copy(config.security.tls.certificate);
-}
-
 // The rig first, because it alone can fail, and then nothing has changed.
 Status Daemon::TakeOver(Reload* reload) {
   const ReloadPlan& plan = reload->plan;
@@ -557,7 +549,7 @@ Status Daemon::TakeOver(Reload* reload) {
   rig_files_ = std::move(reload->rig_files);
   spdlog::info("read the configuration, keys and certificates again; took effect: {}",
                plan.applied.empty() ? "nothing" : Joined(plan.applied));
-  if (UsesCopies(config)) {
+  if (IsSystemdCopy(config.security.keys) || IsSystemdCopy(config.security.tls.certificate)) {
     spdlog::warn(
         "keys and certificates are systemd's copies (LoadCredential=): changes take "
         "'systemctl restart furrowd'");

@@ -79,7 +79,6 @@ class Daemon {
   asio::awaitable<void> PlayLoop();
   void HandleSignals();
   ReloadRequest MakeReloadRequest();
-  [[nodiscard]] bool UsesCopies(const Config& config) const;
   Status TakeOver(Reload* reload);
   void DeliverPicture(const FinishedPicture& picture);
   void EndRendering();

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <system_error>
@@ -98,8 +97,5 @@ int main(int argc, char** argv) {
   furrow::server::ServiceManager::Passed passed = furrow::server::ServiceManager::TakeSockets();
   options.listeners = std::move(passed.listeners);
   options.kept = std::move(passed.kept);
-  if (const char* const folder = std::getenv("CREDENTIALS_DIRECTORY"); folder != nullptr) {
-    options.credentials_folder = folder;
-  }
   return static_cast<int>(furrow::server::Run(*line.config, options));
 }

@@ -21,6 +21,7 @@
 #include "server/core/metrics.h"
 #include "server/credentials.h"
 #include "server/daemon.h"
+#include "server/machine/systemd_copy.h"
 #include "server/net/clock.h"
 #include "server/restart/inheritance.h"
 #include "server/startup.h"
@@ -76,11 +77,6 @@ ExitCode LoadAndServe(const Config& asked, const RunOptions& options) {
   return ExitCode::kOk;
 }
 
-// systemd makes copies when it starts the service, for the service alone.
-bool IsCopy(const std::filesystem::path& path) {
-  return path.string().starts_with("/run/credentials/");
-}
-
 // What works for root may not work for the service.
 void WarnIfOfRoot(const std::filesystem::path& path) {
   struct stat info {};
@@ -95,14 +91,14 @@ void WarnIfOfRoot(const std::filesystem::path& path) {
 
 Status CheckCredentials(Config config) {
   std::vector<std::string> skipped;
-  if (IsCopy(config.security.keys)) {
+  if (IsSystemdCopy(config.security.keys)) {
     skipped.push_back(config.security.keys.string());
     config.security.keys.clear();
   }
   TlsFiles& tls = config.security.tls;
   const std::array tls_files = {tls.certificate, tls.key, tls.client_authority};
   // A certificate is checked together with its key.
-  if (std::ranges::any_of(tls_files, IsCopy)) {
+  if (std::ranges::any_of(tls_files, IsSystemdCopy)) {
     for (const std::filesystem::path& path : tls_files) {
       if (!path.empty()) skipped.push_back(path.string());
     }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <stop_token>
@@ -32,12 +31,11 @@ struct RunOptions {
   bool owns_process = false;    // nothing but the daemon runs in this process
   std::string confined;         // what Confine() returned; empty: FinishConfinement() is not called
   std::function<void(const Ready&)>
-      on_ready;                              // called on the calling thread once the daemon serves
-  Metrics* metrics = nullptr;                // used instead of the daemon's own; optional
-  ServiceManager* manager = nullptr;         // hears how the daemon is; optional
-  ServiceManager::Listeners listeners;       // used instead of the configured addresses
-  ServiceManager::Kept kept;                 // what the former daemon has left; needs `manager`
-  std::filesystem::path credentials_folder;  // systemd's copies of secrets; empty: none
+      on_ready;                         // called on the calling thread once the daemon serves
+  Metrics* metrics = nullptr;           // used instead of the daemon's own; optional
+  ServiceManager* manager = nullptr;    // hears how the daemon is; optional
+  ServiceManager::Listeners listeners;  // used instead of the configured addresses
+  ServiceManager::Kept kept;            // what the former daemon has left; needs `manager`
 };
 
 }  // namespace furrow::server
