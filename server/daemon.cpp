@@ -226,6 +226,7 @@ Status Daemon::Listen() {
   ports_ = std::make_unique<Ports>(config_, Ports::Parts{.io = &io_,
                                                          .hub = hub_.get(),
                                                          .metrics = metrics_,
+                                                         .waiting = &waiting_,
                                                          .credentials = &credentials_,
                                                          .recording = recorder_.get()});
   FURROW_RETURN_IF_ERROR(ports_->Open(config_, options_.listeners, former_));
@@ -325,6 +326,7 @@ Status Daemon::ListenToWeb() {
     parts.recording_is_paused = [this] { return recorder_->is_paused(); };
   }
   parts.config_is_refused = [this] { return reload_ != nullptr && reload_->is_refused(); };
+  parts.waiting = &waiting_;
   parts.open_to_network =
       (ListensToNetwork(config_) || ports_->adopted_network()) && !credentials_.gate().required();
   parts.gate = &credentials_.gate();
@@ -360,6 +362,7 @@ Status Daemon::ListenToWeb() {
              return api_->Answer(request, hub, now);
            },
        .metrics = metrics_,
+       .waiting = &waiting_,
        .gate = &credentials_.gate(),
        .tls = &credentials_.tls(),
        .cluster = cluster_.get()});
@@ -539,6 +542,7 @@ Status Daemon::TakeOver(Reload* reload) {
       spdlog::warn("the file of the rig changed: takes effect after a restart");
     }
     hub_->SetLimits(config.limits);
+    waiting_.SetMost(config.limits.waiting_bytes());
     osc_->SetAllowed(config.osc.allow);
   }
   credentials_.TakeOver(reload);

@@ -15,6 +15,7 @@
 #include "server/config/config.h"
 #include "server/core/metrics.h"
 #include "server/core/status_line.h"
+#include "server/core/waiting_bytes.h"
 #include "server/credentials.h"
 #include "server/http/api/api.h"
 #include "server/http/http_server.h"
@@ -46,6 +47,7 @@ class Daemon {
         assets_(std::move(assets)),
         osc_outputs_(std::move(osc_outputs)),
         metrics_(options.metrics != nullptr ? options.metrics : &own_metrics_),
+        waiting_(config.limits.waiting_bytes(), metrics_),
         signals_(io_),
         credentials_(config, metrics_),
         rig_files_(config),
@@ -90,6 +92,7 @@ class Daemon {
   OscOutputs osc_outputs_;
   Metrics own_metrics_;
   Metrics* const metrics_;
+  WaitingBytes waiting_;  // of clients; tasks of the event loop may hold accounts
   std::uint64_t session_ = 0;
   asio::io_context io_{1};  // run by the calling thread, which owns shard 0
   asio::signal_set signals_;

@@ -23,7 +23,8 @@ void WarnAboutLoopback(const std::string& bind) {
 
 Ports::Ports(const Config& config, const Parts& parts)
     : parts_(parts),
-      tcp_(*parts.io, config.limits, parts.hub, parts.metrics, &parts.credentials->tls()),
+      tcp_(*parts.io, config.limits, parts.hub, parts.metrics, parts.waiting,
+           &parts.credentials->tls()),
       udp_(*parts.io, config.threads, config.limits, parts.hub, parts.metrics, parts.recording,
            parts.credentials->secure(), parts.credentials->gate().required()) {
   udp_.SetBusyPoll(std::chrono::microseconds(config.busy_poll_us));

@@ -10,6 +10,7 @@
 #include "server/config/config.h"
 #include "server/core/metrics.h"
 #include "server/core/time.h"
+#include "server/core/waiting_bytes.h"
 #include "server/credentials.h"
 #include "server/machine/service_manager.h"
 #include "server/net/mocap_inputs.h"
@@ -32,6 +33,7 @@ class Ports {
     asio::io_context* io = nullptr;
     Hub* hub = nullptr;
     Metrics* metrics = nullptr;
+    WaitingBytes* waiting = nullptr;  // for clients of TCP
     Credentials* credentials = nullptr;
     RecordingTap* recording = nullptr;  // null: nothing is recorded
   };

@@ -31,6 +31,7 @@ Status ValidateLimits(const Limits& limits) {
       {"max_subjects", limits.max_subjects},
       {"max_skeletons", limits.max_skeletons},
       {"max_all_subscriptions", limits.max_all_subscriptions},
+      {"max_waiting_megabytes", limits.max_waiting_megabytes},
       {"outbox_messages", limits.outbox_messages}};
   for (const auto& [name, value] : counts) {
     if (value < 1 || value > 1'000'000) {

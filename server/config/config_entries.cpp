@@ -120,6 +120,7 @@ void AddLimits(const Limits& limits, std::vector<ConfigEntry>* entries) {
   add("limits.max_all_subscriptions", limits.max_all_subscriptions);
   add("limits.packets_per_second", limits.packets_per_second);
   add("limits.packet_burst", limits.packet_burst);
+  add("limits.max_waiting_megabytes", limits.max_waiting_megabytes);
   add("limits.outbox_messages", limits.outbox_messages);
   add("limits.idle_seconds", limits.idle_seconds);
   add("limits.loss_seconds", limits.loss_seconds);

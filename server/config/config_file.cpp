@@ -186,6 +186,7 @@ Tables LimitTables(Limits* limits) {
             Count("max_all_subscriptions", &limits->max_all_subscriptions),
             Number("packets_per_second", &limits->packets_per_second),
             Number("packet_burst", &limits->packet_burst),
+            Count("max_waiting_megabytes", &limits->max_waiting_megabytes),
             Count("outbox_messages", &limits->outbox_messages),
             Number("idle_seconds", &limits->idle_seconds),
             Number("loss_seconds", &limits->loss_seconds),

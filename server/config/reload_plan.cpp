@@ -60,6 +60,10 @@ constexpr LiveKey kLiveKeys[] = {
      }},
     {"limits.packet_burst",
      [](Config* r, const Config& w) { r->limits.packet_burst = w.limits.packet_burst; }},
+    {"limits.max_waiting_megabytes",
+     [](Config* r, const Config& w) {
+       r->limits.max_waiting_megabytes = w.limits.max_waiting_megabytes;
+     }},
     {"limits.outbox_messages",
      [](Config* r, const Config& w) { r->limits.outbox_messages = w.limits.outbox_messages; }},
     {"limits.idle_seconds",

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+
 namespace furrow::server {
 
 // Upper bounds of one daemon ([limits] in furrow.example.toml). Counts are in [1, 1'000'000],
@@ -17,10 +19,16 @@ struct Limits {
   int max_all_subscriptions = 16'384;
   double packets_per_second = 20000;  // per peer: datagrams or TCP messages
   double packet_burst = 4000;         // per peer: messages accepted at once
+  // What waits for TCP and web clients that read slowly, shared between hosts (WaitingBytes).
+  int max_waiting_megabytes = 256;
   int outbox_messages = 64;   // per TCP peer: queued frames; newer frames replace older ones
   double idle_seconds = 30;   // forget a peer without subscriptions after this silence
   double loss_seconds = 0.5;  // a subject without a pose for this long decays to neutral
   double drain_seconds = 2;   // after SIGTERM: time for queued messages to leave
+
+  [[nodiscard]] std::size_t waiting_bytes() const {
+    return static_cast<std::size_t>(max_waiting_megabytes) * 1'000'000;
+  }
   friend bool operator==(const Limits&, const Limits&) = default;
 };
 

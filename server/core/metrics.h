@@ -35,6 +35,7 @@ enum class Counter {
   kConnectionsRefused,
   kConnectionsMalformed,
   kConnectionsOverrun,
+  kWaitingRefused,
   kConnectionsIdle,
   kTlsHandshakes,
   kTlsPlain,

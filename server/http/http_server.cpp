@@ -122,6 +122,7 @@ struct HttpServer::Impl {
                 .post_to_hub = std::move(parts.post_to_hub),
                 .answer = std::move(parts.answer),
                 .metrics = parts.metrics,
+                .waiting = parts.waiting,
                 .gate = parts.gate,
                 .tls = parts.tls,
                 .cluster = parts.cluster},

@@ -32,6 +32,7 @@ class HttpServer {
     PostToHub post_to_hub;
     AnswerApi answer;                      // called on the hub's thread
     Metrics* metrics = nullptr;            // not null; outlives the server
+    WaitingBytes* waiting = nullptr;       // for web clients; outlives the server; null: no limit
     const TokenGate* gate = nullptr;       // outlives the server; null: everybody may do everything
     const TlsIdentity* tls = nullptr;      // outlives the server; null or not enabled: plain HTTP
     const Coordinator* cluster = nullptr;  // outlives the server; null: the daemon is alone

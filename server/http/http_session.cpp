@@ -350,7 +350,8 @@ class HttpSession {
     } else {
       reply = co_await AnswerApi(std::move(request));
     }
-    co_return co_await WriteReply(stream_, request_, std::move(reply));
+    co_return co_await WriteLargeReply(stream_, request_, std::move(reply), context_->waiting,
+                                       client_.host);
   }
 
   net::awaitable<ApiReply> AnswerApi(ApiRequest request) {

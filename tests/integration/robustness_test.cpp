@@ -149,6 +149,41 @@ TEST(Robustness, ASlowSubscriberLosesOldFramesAndDelaysNobody) {
   }
 }
 
+// Frames that may not be left out wait for clients that do not read, until their host has its
+// share.
+TEST(Robustness, WhatWaitsForSlowClientsIsBoundedAndDelaysNobody) {
+  server::Config config = WeightsConfig("arkit.json");
+  config.limits.max_waiting_megabytes = 1;
+  config.limits.idle_seconds = 1e6;  // a slow machine must not count as idle
+  DaemonThread daemon(config);
+  ASSERT_TRUE(daemon.serves());
+  const motion::Clip clip = ArkitClip(1);
+  const protocol::SkeletonOffer offer = OfferOf(clip, "ann");
+  TcpClient sender(daemon.ready().tcp);
+  TcpClient fast(daemon.ready().tcp);
+  std::array<TcpClient, 2> slow{TcpClient(daemon.ready().tcp), TcpClient(daemon.ready().tcp)};
+  Offer(sender, offer);
+  for (TcpClient& client : slow) {
+    const int small = 4096;
+    ::setsockopt(client.socket(), SOL_SOCKET, SO_RCVBUF, &small, sizeof(small));
+    for (std::uint32_t i = 0; i < 60; ++i) {
+      const protocol::SubscribeWeights request{
+          .subject = "ann", .source = protocol::WeightSource::kDriverValues, .every = true};
+      ASSERT_TRUE(Watch(client, request, i).has_value());
+    }
+  }
+  ASSERT_TRUE(Watch(fast, {.subject = "ann"}).has_value());
+  // Far more than the share of half a megabyte.
+  for (std::uint32_t sent = 0; daemon.Count(Counter::kWaitingRefused) < 1000; ++sent) {
+    ASSERT_LT(sent, 20'000u);
+    sender.Send(PoseOf(clip, 0, offer), 1, sent, sent * 1000);
+    protocol::Header header;
+    ASSERT_TRUE(fast.Await<protocol::WeightFrame>(&header).has_value());
+    ASSERT_EQ(header.sequence, sent);
+  }
+  EXPECT_GE(daemon.Count(Counter::kWeightsDroppedSlow), 1000u);
+}
+
 TEST(Robustness, AnIdleConnectionIsClosed) {
   server::Config config = WeightsConfig("arkit.json");
   config.limits.idle_seconds = 0.01;

@@ -18,6 +18,7 @@ Api::Api(Parts parts)
                .viewers = std::move(parts.viewers),
                .recording_is_paused = std::move(parts.recording_is_paused),
                .config_is_refused = std::move(parts.config_is_refused),
+               .waiting = parts.waiting,
                .open_to_network = parts.open_to_network,
                .cluster = parts.cluster}),
       settings_(parts.pictures),

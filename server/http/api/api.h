@@ -10,6 +10,7 @@
 #include "server/cluster/coordinator.h"
 #include "server/core/metrics.h"
 #include "server/core/time.h"
+#include "server/core/waiting_bytes.h"
 #include "server/http/api/capture_api.h"
 #include "server/http/api/cluster_api.h"
 #include "server/http/api/osc_api.h"
@@ -47,6 +48,7 @@ class Api {
     std::function<int()> viewers;               // number of WebSockets and picture streams
     std::function<bool()> recording_is_paused;  // by a full disk; empty: nothing is recorded
     std::function<bool()> config_is_refused;    // by the last reload; empty: there are none
+    const WaitingBytes* waiting = nullptr;      // for clients that read slowly; null: no limit
     bool open_to_network = false;               // other computers need no token
     const TokenGate* gate = nullptr;            // null: the daemon makes no tokens
     Coordinator* cluster = nullptr;             // null: the daemon is alone

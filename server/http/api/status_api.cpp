@@ -145,6 +145,11 @@ ApiReply StatusApi::MetricsText(const Hub& hub, Time now) const {
             static_cast<double>(parts_.connections()));
   add_gauge("furrow_http_viewers", "Open WebSockets and picture streams.",
             static_cast<double>(parts_.viewers()));
+  if (parts_.waiting != nullptr) {
+    add_gauge("furrow_waiting_bytes",
+              "What waits for TCP and web clients that read slowly, beyond 64 KiB each.",
+              static_cast<double>(parts_.waiting->taken()));
+  }
   if (parts_.video != nullptr) {
     add_gauge("furrow_video_encoders", "Viewers that have an H.264 encoder.",
               static_cast<double>(parts_.video->state().encoders));

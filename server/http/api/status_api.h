@@ -9,6 +9,7 @@
 #include "server/cluster/coordinator.h"
 #include "server/core/metrics.h"
 #include "server/core/time.h"
+#include "server/core/waiting_bytes.h"
 #include "server/http/request/api_types.h"
 #include "server/pipeline/video_encoders.h"
 #include "server/session/hub.h"
@@ -30,6 +31,7 @@ class StatusApi {
     std::function<int()> viewers;               // WebSockets and picture streams
     std::function<bool()> recording_is_paused;  // by a full disk; empty: nothing is recorded
     std::function<bool()> config_is_refused;    // by the last reload; empty: there are none
+    const WaitingBytes* waiting = nullptr;      // for clients that read slowly; null: no limit
     bool open_to_network = false;               // other computers need no token
     const Coordinator* cluster = nullptr;       // null: the daemon is alone
   };

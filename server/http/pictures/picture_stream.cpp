@@ -45,6 +45,7 @@ class PictureStream : public std::enable_shared_from_this<PictureStream> {
       if (const auto self = weak.lock()) self->wake_.cancel();
     };
     peer_.emplace(context_->post_to_hub, LabelOfClient(*stream_, "web pictures"), access,
+                  context_->waiting,
                   [post_to_web = context_->post_to_web, wake] { post_to_web(wake); });
     Send(0, pictures);
   }
@@ -206,7 +207,7 @@ net::awaitable<bool> ServeMjpeg(WebStream* stream, PictureStream* pictures,
 }
 
 net::awaitable<bool> ServeSnapshot(WebStream* stream, PictureStream* pictures,
-                                   const WebRequest& request) {
+                                   const WebRequest& request, WaitingBytes* waiting) {
   pictures->WatchForEnd(/*sends_more=*/true);
   const PictureStream::Next next =
       co_await pictures->Wait(std::chrono::steady_clock::now() + kWebDeadline);
@@ -218,7 +219,8 @@ net::awaitable<bool> ServeSnapshot(WebStream* stream, PictureStream* pictures,
   }
   const std::vector<std::uint8_t>& bytes = pictures->image().bytes;
   ApiReply picture{.type = kSnapshotType, .body = std::string(bytes.begin(), bytes.end())};
-  co_return co_await WriteReply(*stream, request, std::move(picture));
+  const std::string host = LabelOfClient(*stream).host;
+  co_return co_await WriteLargeReply(*stream, request, std::move(picture), waiting, host);
 }
 
 }  // namespace
@@ -241,7 +243,7 @@ net::awaitable<bool> ServePictures(WebStream* stream, WebContext* context,
   // Shared only so that callbacks can hold it weakly. It ends with this coroutine.
   auto pictures = std::make_shared<PictureStream>(stream, context);
   pictures->Open(*wanted, access);
-  if (once) co_return co_await ServeSnapshot(stream, pictures.get(), request);
+  if (once) co_return co_await ServeSnapshot(stream, pictures.get(), request, context->waiting);
   co_return co_await ServeMjpeg(stream, pictures.get(), request);
 }
 

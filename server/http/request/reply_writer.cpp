@@ -58,4 +58,16 @@ net::awaitable<bool> WriteReply(WebStream& stream, const WebRequest& request, Ap
   co_return co_await WriteResponse(stream, request, response);
 }
 
+net::awaitable<bool> WriteLargeReply(WebStream& stream, const WebRequest& request, ApiReply reply,
+                                     WaitingBytes* waiting, const std::string& host) {
+  WaitingBytes::Account account(waiting, host);
+  if (!account.Hold(reply.body.size())) {
+    reply = ErrorReply(503, "limit", "",
+                       "too much waits for clients of this address that read slowly; see "
+                       "limits.max_waiting_megabytes",
+                       "try again later");
+  }
+  co_return co_await WriteReply(stream, request, std::move(reply));
+}
+
 }  // namespace furrow::server

@@ -13,6 +13,7 @@
 #include "server/config/http_config.h"
 #include "server/core/host_rates.h"
 #include "server/core/metrics.h"
+#include "server/core/waiting_bytes.h"
 #include "server/http/request/api_types.h"
 #include "server/http/request/page_files.h"
 #include "server/http/request/request_budget.h"
@@ -41,6 +42,7 @@ struct WebContext {
   PostToWeb post_to_web;
   AnswerApi answer;
   Metrics* metrics = nullptr;
+  WaitingBytes* waiting = nullptr;       // for web clients; null: no limit
   const TokenGate* gate = nullptr;       // null: everybody may do everything
   const TlsIdentity* tls = nullptr;      // null or not enabled: plain HTTP
   const Coordinator* cluster = nullptr;  // null: the daemon is alone

@@ -14,7 +14,9 @@ namespace furrow::server {
 // The state that both threads share. The hub's thread uses the Link functions.
 class WebPeer::Connection : public Link {
  public:
-  explicit Connection(std::function<void()> wake) : wake_(std::move(wake)) {}
+  Connection(WaitingBytes::Account account, std::function<void()> wake) : wake_(std::move(wake)) {
+    outbox_.SetAccount(std::move(account));
+  }
 
   void SendReply(std::span<const std::uint8_t> message) override;
   int SendFrame(std::uint64_t key, std::span<const std::uint8_t> message, std::size_t keep,
@@ -73,9 +75,11 @@ bool WebPeer::Connection::Pop(std::vector<std::uint8_t>* out) {
   return outbox_.Pop(out);
 }
 
-WebPeer::WebPeer(PostToHub post_to_hub, PeerLabel label, Access access, std::function<void()> wake)
+WebPeer::WebPeer(PostToHub post_to_hub, PeerLabel label, Access access, WaitingBytes* waiting,
+                 std::function<void()> wake)
     : post_to_hub_(std::move(post_to_hub)),
-      connection_(std::make_shared<Connection>(std::move(wake))) {
+      connection_(std::make_shared<Connection>(WaitingBytes::Account(waiting, label.host),
+                                               std::move(wake))) {
   post_to_hub_([connection = connection_, label = std::move(label), access = std::move(access)](
                    Hub& hub, Time now) {
     // The id is set before any message of the peer is handled, because tasks run in the order of

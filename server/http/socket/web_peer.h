@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "server/core/waiting_bytes.h"
 #include "server/http/request/thread_handoff.h"
 #include "server/session/peers/peer.h"
 
@@ -23,8 +24,9 @@ class WebPeer {
 
   // Adds the peer to the hub. `wake` is called on the hub's thread when the outbox is no longer
   // empty or the peer is overrun; it must post to the web thread.
-  // `access`: what the client may do.
-  WebPeer(PostToHub post_to_hub, PeerLabel label, Access access, std::function<void()> wake);
+  // `access`: what the client may do. `waiting`: limits what waits for it; null: nothing does.
+  WebPeer(PostToHub post_to_hub, PeerLabel label, Access access, WaitingBytes* waiting,
+          std::function<void()> wake);
   ~WebPeer();  // removes the peer from the hub
   WebPeer(const WebPeer&) = delete;
   WebPeer& operator=(const WebPeer&) = delete;

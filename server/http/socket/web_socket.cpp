@@ -47,7 +47,7 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
     // Made before the peer, so that the writer ends and the hub forgets the peer whatever happens
     // below.
     const AbortOnExit abort_on_exit{this};  // also after an exception
-    peer_.emplace(context_->post_to_hub, label_, access_,
+    peer_.emplace(context_->post_to_hub, label_, access_, context_->waiting,
                   [post_to_web = context_->post_to_web, wake] { post_to_web(wake); });
     // The writer holds the session, which therefore outlives this function until the writer has
     // seen closed_.

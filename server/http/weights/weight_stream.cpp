@@ -49,7 +49,7 @@ class LineSource : public std::enable_shared_from_this<LineSource> {
     auto wake = [weak = weak_from_this()] {
       if (const auto self = weak.lock()) self->wake_.cancel();
     };
-    peer_.emplace(context_->post_to_hub, std::move(label), std::move(access),
+    peer_.emplace(context_->post_to_hub, std::move(label), std::move(access), context_->waiting,
                   [post_to_web = context_->post_to_web, wake] { post_to_web(wake); });
     protocol::Encoder encoder;
     std::uint32_t sequence = 0;

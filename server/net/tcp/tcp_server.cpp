@@ -81,12 +81,13 @@ asio::awaitable<std::optional<bool>> SpeaksTls(StreamSocket& stream) {
 }  // namespace
 
 TcpServer::TcpServer(asio::io_context& io, const Limits& limits, Hub* hub, Metrics* metrics,
-                     const TlsIdentity* tls)
+                     WaitingBytes* waiting, const TlsIdentity* tls)
     : io_(io),
       acceptor_(io),
       limits_(limits),
       hub_(hub),
       metrics_(metrics),
+      waiting_(waiting),
       tls_(tls),
       shares_(static_cast<std::size_t>(limits.max_connections)) {}
 
@@ -216,7 +217,7 @@ void TcpServer::Begin(std::shared_ptr<StreamSocket> stream, const std::string& h
 std::shared_ptr<TcpSession> TcpServer::Add(std::shared_ptr<StreamSocket> stream,
                                            const std::string& host) {
   auto session = std::make_shared<TcpSession>(
-      std::move(stream), limits_, hub_, metrics_,
+      std::move(stream), limits_, hub_, metrics_, waiting_,
       // Runs on this thread, in Close(). The server outlives its sessions: the daemon destroys it
       // after the event loop has ended.
       [this, host](const std::shared_ptr<TcpSession>& closed) {

@@ -18,6 +18,7 @@
 #include "server/core/lobby.h"
 #include "server/core/metrics.h"
 #include "server/core/network_address.h"
+#include "server/core/waiting_bytes.h"
 #include "server/machine/service_manager.h"
 #include "server/net/tcp/stream_socket.h"
 #include "server/net/tcp/tcp_session.h"
@@ -36,7 +37,7 @@ class TcpServer {
  public:
   // The arguments must outlive the server. All functions run on the thread of `io`.
   TcpServer(asio::io_context& io, const Limits& limits, Hub* hub, Metrics* metrics,
-            const TlsIdentity* tls);
+            WaitingBytes* waiting, const TlsIdentity* tls);
 
   // Listens at `endpoint`. Errors: kUnavailable; the message names the address and the port.
   [[nodiscard]] Status Open(const asio::ip::tcp::endpoint& endpoint);
@@ -92,6 +93,7 @@ class TcpServer {
   Limits limits_;
   Hub* const hub_;
   Metrics* const metrics_;
+  WaitingBytes* const waiting_;
   const TlsIdentity* const tls_;
   HandshakeBudget handshakes_;
   HandshakePlaces handshake_places_;

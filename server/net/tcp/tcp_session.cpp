@@ -51,12 +51,13 @@ PeerLabel NameOf(StreamSocket& stream) {
 }  // namespace
 
 TcpSession::TcpSession(std::shared_ptr<StreamSocket> stream, const Limits& limits, Hub* hub,
-                       Metrics* metrics,
+                       Metrics* metrics, WaitingBytes* waiting,
                        std::function<void(const std::shared_ptr<TcpSession>&)> on_closed)
     : stream_(std::move(stream)),
       limits_(limits),
       hub_(hub),
       metrics_(metrics),
+      waiting_(waiting),
       on_closed_(std::move(on_closed)),
       wake_(stream_->get_executor()),
       watch_(stream_->get_executor()),
@@ -77,7 +78,9 @@ void TcpSession::Begin(std::optional<Access> access) {
   setsockopt(stream_->socket().native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &kUnsentBytes,
              sizeof(kUnsentBytes));
   thread_ = std::this_thread::get_id();
-  peer_ = hub_->AddPeer(Transport::kTcp, NameOf(*stream_), this, ReadClock(), 0, std::move(access));
+  const PeerLabel label = NameOf(*stream_);
+  outbox_.SetAccount({waiting_, label.host});
+  peer_ = hub_->AddPeer(Transport::kTcp, label, this, ReadClock(), 0, std::move(access));
   StartTasks();
 }
 

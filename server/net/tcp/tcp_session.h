@@ -17,6 +17,7 @@
 #include "protocol/framing/tcp_framing.h"
 #include "server/core/limits.h"
 #include "server/core/metrics.h"
+#include "server/core/waiting_bytes.h"
 #include "server/net/tcp/stream_socket.h"
 #include "server/saved/saved_state.h"
 #include "server/session/hub.h"
@@ -30,8 +31,9 @@ namespace furrow::server {
 class TcpSession : public Link, public std::enable_shared_from_this<TcpSession> {
  public:
   // `stream`: its TLS handshake is over, if it has one. `on_closed`: called once, after the
-  // connection has closed.
+  // connection has closed. `waiting`: limits what waits for the client.
   TcpSession(std::shared_ptr<StreamSocket> stream, const Limits& limits, Hub* hub, Metrics* metrics,
+             WaitingBytes* waiting,
              std::function<void(const std::shared_ptr<TcpSession>&)> on_closed);
 
   // Adds the peer to the hub and starts the coroutines, which keep this object alive.
@@ -94,6 +96,7 @@ class TcpSession : public Link, public std::enable_shared_from_this<TcpSession> 
   const Limits limits_;
   Hub* const hub_;
   Metrics* const metrics_;
+  WaitingBytes* const waiting_;
   std::function<void(const std::shared_ptr<TcpSession>&)> on_closed_;
   asio::steady_timer wake_;  // cancelled to wake the writer
   asio::steady_timer watch_;

@@ -9,18 +9,27 @@
 namespace furrow::server {
 namespace {
 
-// Up to kMaxSpare buffers of at most kMaxSpareBytes stay with the outbox: 1 MiB per peer.
 // Pictures vary in size, so the memory of large messages is not kept.
-constexpr std::size_t kMaxSpareBytes = 16 * 1024;
-constexpr std::size_t kMaxSpare = 64;
+constexpr std::size_t kMaxSpareBuffer = 16 * 1024;
+constexpr std::size_t kMaxSpareBuffers = 64;
 
 }  // namespace
+
+bool Outbox::HasRoomFor(std::size_t more) {
+  return !account_ || account_->Hold(bytes() + popped_bytes_ + more);
+}
+
+// Less than before always has room.
+void Outbox::Settle() {
+  if (account_) (void)account_->Hold(bytes() + popped_bytes_);
+}
 
 void Outbox::Append(Queue& queue, std::uint64_t key, bool is_reply,
                     std::span<const std::uint8_t> bytes) {
   if (spare_.empty()) spare_.emplace_back();
   // splice() moves the list node itself, so a steady stream allocates neither nodes nor bytes.
   Item& item = spare_.front();
+  spare_bytes_ -= item.bytes.capacity();
   item.key = key;
   item.is_reply = is_reply;
   item.bytes.assign(bytes.begin(), bytes.end());
@@ -28,9 +37,12 @@ void Outbox::Append(Queue& queue, std::uint64_t key, bool is_reply,
 }
 
 Outbox::Queue::iterator Outbox::Recycle(Queue& queue, Queue::iterator item) {
-  if (spare_.size() >= kMaxSpare || item->bytes.capacity() > kMaxSpareBytes) {
+  const std::size_t capacity = item->bytes.capacity();
+  if (spare_.size() >= kMaxSpareBuffers || capacity > kMaxSpareBuffer ||
+      spare_bytes_ + capacity > kMaxSpareBytes) {
     return queue.erase(item);
   }
+  spare_bytes_ += capacity;
   const auto next = std::next(item);
   spare_.splice(spare_.begin(), queue, item);
   return next;
@@ -49,6 +61,7 @@ bool Outbox::PushReply(std::span<const std::uint8_t> bytes) {
   if (num_replies_ >= max_replies_) return false;
   // One reply always fits, whatever its size. Otherwise a large skeleton could never be sent.
   if (num_replies_ > 0 && reply_bytes_ + bytes.size() > max_reply_bytes_) return false;
+  if (!HasRoomFor(bytes.size())) return false;
   ++num_replies_;
   reply_bytes_ += bytes.size();
   Append(ordered_, 0, true, bytes);
@@ -56,6 +69,14 @@ bool Outbox::PushReply(std::span<const std::uint8_t> bytes) {
 }
 
 int Outbox::PushFrame(std::uint64_t key, std::span<const std::uint8_t> bytes, std::size_t keep) {
+  if (!HasRoomFor(bytes.size())) return 1;
+  const int dropped = Queued(key, bytes, keep);
+  if (dropped > 0) Settle();
+  return dropped;
+}
+
+// Queues a frame that has room. Returns the number of frames that are dropped for it.
+int Outbox::Queued(std::uint64_t key, std::span<const std::uint8_t> bytes, std::size_t keep) {
   if (keep == kKeepAll) {
     // A client of every frame wants no gaps in what it already has, so the new frame is the one to
     // drop. The limit is in bytes, because such a client may be far behind on purpose (a recorder).
@@ -108,7 +129,11 @@ void Outbox::DropFrame(Queue::iterator frame) {
 }
 
 bool Outbox::Pop(std::vector<std::uint8_t>* out) {
-  if (empty()) return false;
+  popped_bytes_ = 0;
+  if (empty()) {
+    Settle();
+    return false;
+  }
   // Replies go before replaceable frames. A frame must not arrive before the reply that explains
   // its names.
   Queue& queue = ordered_.empty() ? frames_ : ordered_;
@@ -121,11 +146,14 @@ bool Outbox::Pop(std::vector<std::uint8_t>* out) {
   // The caller's old buffer takes the place of the message and is recycled with the item.
   out->swap(queue.front().bytes);
   Recycle(queue, queue.begin());
+  popped_bytes_ = out->size();
+  Settle();
   return true;
 }
 
 void Outbox::DropReplaceableFrames() {
   while (!frames_.empty()) DropFrame(frames_.begin());
+  Settle();
 }
 
 void Outbox::DropFrames(std::uint64_t key) {
@@ -144,6 +172,7 @@ void Outbox::DropFrames(std::uint64_t key) {
     Uncount(*item);
     item = Recycle(ordered_, item);
   }
+  Settle();
 }
 
 }  // namespace furrow::server

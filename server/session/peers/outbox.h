@@ -4,11 +4,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <list>
+#include <optional>
 #include <span>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "protocol/messages/limits.h"
+#include "server/core/waiting_bytes.h"
 
 namespace furrow::server {
 
@@ -17,15 +20,17 @@ namespace furrow::server {
 // - Replies are never dropped. A peer with `max_replies` or `max_reply_bytes` of queued replies is
 //   not reading; the caller closes it.
 // - Frames have a key, which is their subscription. At most `keep` frames of a key are queued; a
-// new frame
-//   then replaces the oldest. Pictures keep 1; weights keep a few, so that a burst of poses is not
-//   lost to a peer that keeps up.
+//   new frame then replaces the oldest. Pictures keep 1; weights keep a few, so that a burst of
+//   poses is not lost to a peer that keeps up.
 // - At most `max_frames` frames of all keys, and `max_frame_bytes` of them, are queued; a new frame
 //   then replaces the oldest ones. One frame always fits.
 // - Frames with kKeepAll queue behind the replies, in order. At most kMaxWaitingFrameBytes of them
 //   are queued; further frames are dropped.
-// - New messages reuse the memory of sent ones, so the outbox stops allocating after a while. Not
-//   thread-safe.
+// - All that waits, and the last message that Pop() returned, has room in the account of the
+//   peer's host. A frame without room is dropped, a reply without room is one too many.
+// - New messages reuse the memory of sent ones, at most kMaxSpareBytes, so the outbox of a peer
+// that
+//   keeps up stops allocating after a while. Not thread-safe.
 class Outbox {
  public:
   Outbox(std::size_t max_replies, std::size_t max_frames,
@@ -35,6 +40,11 @@ class Outbox {
         max_frames_(max_frames),
         max_reply_bytes_(max_reply_bytes),
         max_frame_bytes_(max_frame_bytes) {}
+
+  static constexpr std::size_t kMaxSpareBytes = std::size_t{64} << 10;
+
+  // Once, before anything is queued. Without an account, there is always room.
+  void SetAccount(WaitingBytes::Account account) { account_.emplace(std::move(account)); }
 
   // False: the queue is full; close the peer.
   [[nodiscard]] bool PushReply(std::span<const std::uint8_t> bytes);
@@ -67,6 +77,10 @@ class Outbox {
   };
   using Queue = std::list<Item>;
 
+  // True if there is room for so many bytes besides those that wait.
+  [[nodiscard]] bool HasRoomFor(std::size_t bytes);
+  void Settle();  // after a change
+  int Queued(std::uint64_t key, std::span<const std::uint8_t> bytes, std::size_t keep);
   void Append(Queue& queue, std::uint64_t key, bool is_reply, std::span<const std::uint8_t> bytes);
   // Removes an item and keeps its memory for a new one. Returns the next item.
   Queue::iterator Recycle(Queue& queue, Queue::iterator item);
@@ -87,6 +101,9 @@ class Outbox {
   Queue frames_;
   std::unordered_map<std::uint64_t, std::size_t> num_of_key_;  // in frames_
   Queue spare_;
+  std::size_t spare_bytes_ = 0;   // the capacity of spare_
+  std::size_t popped_bytes_ = 0;  // of the message that is being sent
+  std::optional<WaitingBytes::Account> account_;
 };
 
 }  // namespace furrow::server

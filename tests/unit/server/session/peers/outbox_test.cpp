@@ -84,6 +84,51 @@ TEST(Outbox, RepliesAreAlsoBoundedInBytes) {
   EXPECT_FALSE(outbox.PushReply(Bytes(1)));
 }
 
+class SharedOutbox : public testing::Test {
+ protected:
+  static constexpr std::size_t kChunk = WaitingBytes::kChunk;
+  void SetUp() override { outbox.SetAccount({&budget, "host"}); }
+
+  Metrics metrics;
+  WaitingBytes budget{4 * kChunk, &metrics};
+  Outbox outbox{4, 8};
+};
+
+TEST_F(SharedOutbox, WithoutRoomFramesAreDroppedAndRepliesRefused) {
+  EXPECT_EQ(outbox.PushFrame(1, Bytes(kChunk, 1)), 0) << "this much is free";
+  EXPECT_EQ(outbox.PushFrame(2, Bytes(2 * kChunk, 2)), 0) << "half of the budget";
+  for (const std::size_t keep : {std::size_t{1}, std::size_t{4}, kKeepAll}) {
+    EXPECT_EQ(outbox.PushFrame(3, Bytes{3}, keep), 1);
+  }
+  EXPECT_FALSE(outbox.PushReply(Bytes{4}));
+  EXPECT_EQ(metrics.Get(Counter::kWaitingRefused), 4u);
+  EXPECT_THAT(PopAll(&outbox), ElementsAre(1, 2));
+  EXPECT_EQ(budget.taken(), 0u);
+}
+
+TEST_F(SharedOutbox, WhatIsBeingSentStillCounts) {
+  EXPECT_EQ(outbox.PushFrame(1, Bytes(3 * kChunk, 1)), 0);
+  Bytes sent;
+  ASSERT_TRUE(outbox.Pop(&sent));
+  EXPECT_EQ(budget.taken(), 2 * kChunk);
+  EXPECT_EQ(outbox.PushFrame(1, Bytes{2}), 1);
+  EXPECT_FALSE(outbox.Pop(&sent)) << "it has been sent";
+  EXPECT_EQ(budget.taken(), 0u);
+  EXPECT_EQ(outbox.PushFrame(1, Bytes{2}), 0);
+}
+
+TEST_F(SharedOutbox, WhatIsDroppedGivesRoom) {
+  EXPECT_EQ(outbox.PushFrame(1, Bytes(2 * kChunk, 1)), 0);
+  EXPECT_EQ(outbox.PushFrame(1, Bytes(kChunk, 2)), 1) << "it replaces the first one";
+  EXPECT_EQ(budget.taken(), 0u);
+  EXPECT_EQ(outbox.PushFrame(2, Bytes(2 * kChunk, 3), kKeepAll), 0);
+  outbox.DropFrames(2);
+  EXPECT_EQ(budget.taken(), 0u);
+  EXPECT_EQ(outbox.PushFrame(2, Bytes(2 * kChunk, 3)), 0);
+  outbox.DropReplaceableFrames();
+  EXPECT_EQ(budget.taken(), 0u);
+}
+
 TEST(Outbox, TheNewestFrameOfAKeyWinsAndKeepsItsPlace) {
   Outbox outbox(4, 4);
   EXPECT_EQ(outbox.PushFrame(1, Bytes{10}), 0);
