@@ -26,10 +26,14 @@ import sys
 import tempfile
 import time
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "report"))
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / folder) for folder in ("bench/report", "tests/conformance", "tests/end_to_end")]
+from messages import fnv1a  # pylint: disable=wrong-import-position
 from processes import resident_kib  # pylint: disable=wrong-import-position
+from tracker_packets import vmc  # pylint: disable=wrong-import-position
 
-VECTORS = pathlib.Path(__file__).resolve().parents[2] / "protocol" / "vectors"
+VECTORS = ROOT / "protocol" / "vectors"
+STRANGER = "127.0.0.2"  # another host, for the daemon
 DEADLINE = 15.0  # seconds; whatever takes longer counts as an outage
 HEAVY = "occlusion.samples=64&subsurface.method=burley&subsurface.samples=64&shadow.taps=32"
 
@@ -40,6 +44,48 @@ def vector(name, sequence=1, session=0x1234567):
     struct.pack_into("<Q", data, 8, session)
     struct.pack_into("<I", data, 16, sequence)
     return bytes(data)
+
+
+def token_of(welcome):
+    """The field `token` of a Welcome, a FlatBuffers table (STANDARD.md section 3); 0: it is missing."""
+    table = 32 + struct.unpack_from("<I", welcome, 32)[0]
+    vtable = table - struct.unpack_from("<i", welcome, table)[0]
+    at = struct.unpack_from("<H", welcome, vtable + 6)[0] if struct.unpack_from("<H", welcome, vtable)[0] > 6 else 0
+    return struct.unpack_from("<Q", welcome, table + at)[0] if at else 0
+
+
+class Offers:
+    """SkeletonOffers that differ in the name of a joint and in their subject."""
+
+    def __init__(self):
+        self.bytes = vector("skeleton_offer")
+        known = json.loads((VECTORS / "skeleton_offer.json").read_text())["message"]
+        self.joint, self.subject = self.bytes.rindex(b"spine"), self.bytes.rindex(b'nna "1"')
+        self.hash = self.bytes.index(struct.pack("<Q", int(known["skeleton_hash"], 16)))
+        # What the hash is of (STANDARD.md section 4).
+        self.hashed = struct.pack("<H", len(known["joints"]))
+        for joint in known["joints"]:
+            tail = joint.get("tail", [])
+            self.hashed += joint["name"].encode() + b"\0" + struct.pack(
+                f"<h10fH{len(tail)}f", joint["parent"], *joint["rest_translation"], *joint["rest_rotation"], *joint["rest_scale"],
+                bool(tail), *tail)
+        self.hashed += struct.pack("<fH", known["metres_per_unit"], len(known["blend_shape_names"]))
+        self.hashed += b"".join(name.encode() + b"\0" for name in known["blend_shape_names"])
+
+    def make(self, joint, subject, stream=1):
+        """`joint`: 5 bytes. `subject`: 7 bytes, its end."""
+        offer = bytearray(self.bytes)
+        struct.pack_into("<H", offer, 6, stream)
+        offer[self.joint:self.joint + 5], offer[self.subject:self.subject + 7] = joint, subject
+        struct.pack_into("<Q", offer, self.hash, fnv1a(self.hashed.replace(b"spine\0", joint + b"\0")))
+        return bytes(offer)
+
+
+def udp_socket(port, host="127.0.0.1"):
+    one = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    one.bind((host, 0))
+    one.connect(("127.0.0.1", port))
+    return one
 
 
 def framed(message):
@@ -89,6 +135,19 @@ class Daemon:
         return latency["p50"] / 1000, latency["max"] / 1000, lost / max(1, run.get("sent", 20 * 60 * seconds))
 
 
+def weights_gap_ms(port, subject, seconds):
+    """The longest time without weights over HTTP, in ms."""
+    with socket.create_connection(("127.0.0.1", port), DEADLINE) as web:
+        web.sendall(f"GET /weights?subject={subject} HTTP/1.1\r\nHost: localhost\r\n\r\n".encode())
+        last, longest, end = None, 0.0, time.monotonic() + seconds
+        while time.monotonic() < end:
+            if not web.recv(1 << 16):
+                return DEADLINE * 1000
+            now = time.monotonic()
+            longest, last = max(longest, now - (last or now)), now
+    return 1000 * longest
+
+
 # --- Attackers, each a process of its own ------------------------------------------------------------------
 
 
@@ -118,13 +177,13 @@ def long_patterns(port, per_second):
     tcp_flood(port, lambda i: subscribe_weights(",".join(f"?a{i}{k}*z" for k in range(450))[:4000], i), per_second)
 
 
-def subscribe_weights(pattern, sequence):
-    """A SubscribeWeights message, written by hand: a FlatBuffers table with one field, the pattern."""
+def subscribe_weights(pattern, sequence, every=False):
+    """A SubscribeWeights message, written by hand: a FlatBuffers table with the fields pattern and every."""
     text = pattern.encode()
-    # Root offset, identifier, vtable of 3 fields (subject, wait, pattern), table, string.
-    vtable = struct.pack("<HHHHH", 10, 8, 0, 0, 4) + b"\0\0"
+    # Root offset, identifier, vtable of 7 fields (subject, wait, pattern, max_rate_hz, format, source, every), table, string.
+    vtable = struct.pack("<9H", 18, 9, 0, 0, 4, 0, 0, 0, 8) + b"\0\0"
     table_at = 8 + len(vtable)
-    table = struct.pack("<iI", len(vtable), 4)
+    table = struct.pack("<iIB3x", len(vtable), 8, every)
     payload = struct.pack("<I", table_at) + IDENTIFIER_OF_WEIGHTS + vtable + table + struct.pack("<I", len(text)) + text + b"\0"
     payload += b"\0" * (-len(payload) % 4)
     envelope = bytearray(vector("subscribe_weights", sequence)[:32])
@@ -165,23 +224,62 @@ def captures(port, number):
             web.getresponse().read()
 
 
-def hellos(port, per_second, counts):
-    """Hello from addresses that never prove themselves, each with a new session."""
-    sockets = []
-    for _ in range(16):
-        sockets.append(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
-        sockets[-1].connect(("127.0.0.1", port))
-        sockets[-1].setblocking(False)
+def strangers(port, per_second, counts, messages):
+    """Sends the messages in turn, from addresses that never prove themselves, each with a new session."""
+    sockets = [udp_socket(port) for _ in range(16)]
+    for one in sockets:
+        one.setblocking(False)
     begun, sent = time.monotonic(), 0
     while True:
         due = int((time.monotonic() - begun) * per_second)
         while sent < due:
             one = sockets[sent % len(sockets)]
+            message = vector(messages[sent // len(sockets) % len(messages)], 0x7FFFFFFF, random.getrandbits(63) | 1)
             with contextlib.suppress(OSError):
-                counts[0] += one.send(vector("hello", 1, random.getrandbits(63) | 1))
+                counts[0] += one.send(message)
                 counts[1] += len(one.recv(2048))
             sent += 1
         time.sleep(0.001)
+
+
+def offers(port, per_second):
+    """Offers skeletons that the daemon does not know, each for another subject, over one connection of another host."""
+    template = Offers()
+    with socket.create_connection(("127.0.0.1", port), DEADLINE, (STRANGER, 0)) as connection:
+        connection.setblocking(False)
+        begun, sent, waiting = time.monotonic(), 0, b""
+        while True:
+            due = int((time.monotonic() - begun) * per_second)
+            while sent < due and len(waiting) < 1 << 20:
+                waiting += framed(template.make(b"%05d" % (sent % 100_000), b"%07d" % sent, 1 + sent % 65_535))
+                sent += 1
+            with contextlib.suppress(BlockingIOError):
+                waiting = waiting[connection.send(waiting):]
+            with contextlib.suppress(BlockingIOError):
+                connection.recv(1 << 16)
+            time.sleep(0.001)
+
+
+def forged_mocap(port, per_second):
+    """Sends frames to a port of VMC from another host, as if it were the face tracker."""
+    one = udp_socket(port, STRANGER)
+    while True:
+        for packet in vmc({"A": random.random()}):
+            with contextlib.suppress(OSError):
+                one.send(packet)
+        time.sleep(1 / per_second)
+
+
+def tracker(port, rate):
+    """A face tracker that speaks VMC."""
+    one, due, frame = udp_socket(port), time.monotonic(), 0
+    while True:
+        frame += 1
+        for packet in vmc({"A": frame % rate / rate}):
+            with contextlib.suppress(OSError):
+                one.send(packet)
+        due += 1 / rate
+        time.sleep(max(0.0, due - time.monotonic()))
 
 
 def rival(bin_folder, port, recording):
@@ -297,9 +395,75 @@ def requests(table, options):
 
 def forged(table, options):
     with Daemon(options.bin, "--no-render") as daemon:
-        counts = multiprocessing.Array("q", 2)
-        table.weights("5,000/s Hello that prove nothing", daemon, (hellos, daemon.ports["udp"], 5_000, counts))
-        table.row("the same", "bytes out per byte in", "", f"{counts[1] / max(1, counts[0]):.2f}")
+        for name, per_second, messages in (("5,000/s Hello that prove nothing", 5_000, ["hello"]),
+                                           ("10,000/s Ping of strangers", 10_000, ["ping"]),
+                                           ("5,000/s forged offers, Unsubscribes, Goodbyes and poses far ahead", 5_000,
+                                            ["skeleton_offer", "unsubscribe", "goodbye", "pose"])):
+            counts = multiprocessing.Array("q", 2)
+            table.weights(name, daemon, (strangers, daemon.ports["udp"], per_second, counts, messages))
+            table.row("the same", "bytes out per byte in", "", f"{counts[1] / max(1, counts[0]):.2f}")
+
+
+def departed(table, options):
+    """A viewer has gone, and somebody sends pings in its name: what does the daemon send to its address?"""
+    with Daemon(options.bin, "--no-render", "--play", options.recording) as daemon:
+        viewer = udp_socket(daemon.ports["udp"])
+        viewer.settimeout(DEADLINE)
+        viewer.send(vector("hello"))
+        hello = vector("hello_token")
+        known = struct.pack("<Q", int(json.loads((VECTORS / "hello_token.json").read_text())["message"]["token"], 16))
+        viewer.send(hello.replace(known, struct.pack("<Q", token_of(viewer.recv(2048)))))
+        viewer.recv(2048)
+        viewer.send(subscribe_weights("*", 2))
+        viewer.settimeout(0.05)
+        begun = last_weights = time.monotonic()
+        received = sent = 0
+        while time.monotonic() - begun < 8:
+            sent += viewer.send(vector("ping"))
+            with contextlib.suppress(TimeoutError):
+                while message := viewer.recv(1 << 16):
+                    received += len(message)
+                    if len(message) > 200:  # weights, not answers
+                        last_weights = time.monotonic()
+        table.row("pings for a viewer that has gone, 20/s", "bytes to its address; weights end after", "",
+                  f"{received / 1024:.0f} KiB; {last_weights - begun:.1f} s; {sent / 1024:.0f} KiB in")
+
+
+def skeletons(table, options):
+    with Daemon(options.bin, "--no-render") as daemon:
+        template = Offers()
+        reply = (VECTORS / "skeleton_reply.bin").read_bytes()[36:40]
+
+        def newcomer(name):
+            """The time until a publisher of another host, with a skeleton of its own, is answered."""
+            offer = framed(template.make(name, b"new" + name[:4]))
+            with socket.create_connection(("127.0.0.1", daemon.ports["tcp"])) as connection:
+                connection.settimeout(0.1)
+                begun, answer = time.monotonic(), b""
+                while reply not in answer and time.monotonic() - begun < DEADLINE:
+                    connection.sendall(offer)
+                    with contextlib.suppress(TimeoutError):
+                        answer += connection.recv(4096)
+            return f"{1000 * (time.monotonic() - begun):.0f} ms" if reply in answer else "never"
+
+        for per_second in (100, 1_100):
+            name = b"n%04d" % per_second
+            before, memory = newcomer(name[::-1]), daemon.mebibytes()
+            with attackers((offers, daemon.ports["tcp"], per_second)):
+                time.sleep(options.seconds)
+                after = newcomer(name)
+                table.row(f"{per_second:,}/s offers of new skeletons and subjects", "a newcomer with another skeleton", before, after,
+                          daemon.mebibytes() - memory)
+
+
+def mocap(table, options):
+    with Daemon(options.bin, "--no-render", "--rig", "arkit", "--vmc", "0") as daemon, attackers((tracker, daemon.ports["vmc"], 60)):
+        before = weights_gap_ms(daemon.ports["http"], "vmc", options.seconds)
+        for per_second in (1, 1_000):
+            with attackers((forged_mocap, daemon.ports["vmc"], per_second)):
+                during = weights_gap_ms(daemon.ports["http"], "vmc", options.seconds)
+            table.row(f"{per_second:,}/s forged frames of another host for the VMC port", "longest time without weights at 60 Hz",
+                      f"{before:.0f} ms", f"{during:.0f} ms")
 
 
 def takeover(table, options):
@@ -307,22 +471,45 @@ def takeover(table, options):
         table.weights("another sender offers the same 20 subjects", daemon, (rival, options.bin, daemon.ports["udp"], options.recording))
 
 
+def hold(port, request):
+    """A connection that sends and never reads."""
+    one = socket.socket()
+    one.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+    one.connect(("127.0.0.1", port))
+    one.sendall(request)
+    return one
+
+
+def growth(daemon, memory, seconds):
+    """The most mebibytes above `memory` within this time."""
+    most, end = 0, time.monotonic() + seconds
+    while time.monotonic() < end:
+        time.sleep(0.5)
+        most = max(most, daemon.mebibytes() - memory)
+    return most
+
+
 def unread(table, options):
     with Daemon(options.bin, "--play", options.recording) as daemon:
-        daemon.get("/snapshot.png?width=1536&height=1536")
+        request = b"GET /mjpeg?width=1536&height=1536&quality=100 HTTP/1.1\r\nHost: localhost\r\n\r\n"
+        with hold(daemon.ports["http"], request) as first:  # what one viewer needs anyway
+            first.recv(1 << 20)
+            time.sleep(options.seconds)
         memory = daemon.mebibytes()
-        held = []
-        for _ in range(8):
-            one = socket.socket()
-            one.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
-            one.connect(("127.0.0.1", daemon.ports["http"]))
-            one.sendall(b"GET /mjpeg?width=1536&height=1536&quality=100 HTTP/1.1\r\nHost: localhost\r\n\r\n")
-            held.append(one)
-        most = 0
-        for _ in range(int(4 * options.seconds)):
-            time.sleep(0.5)
-            most = max(most, daemon.mebibytes() - memory)
-        table.row("8 viewers of 1536 x 1536 who never read", "", "", "", most)
+        held = [hold(daemon.ports["http"], request) for _ in range(8)]
+        table.row("8 viewers of 1536 x 1536 who never read", "", "", "", growth(daemon, memory, 2 * options.seconds))
+        del held
+
+
+def unread_weights(table, options):
+    with Daemon(options.bin, "--no-render", "--play", options.recording) as daemon:
+        time.sleep(1.0)
+        memory = daemon.mebibytes()
+        requests_of_one = b"".join(framed(subscribe_weights("*", i, every=True)) for i in range(60))
+        held = [hold(daemon.ports["tcp"], requests_of_one) for _ in range(200)]
+        table.row("200 clients with 60 subscriptions to every frame who never read", "", "", "",
+                  growth(daemon, memory, 6 * options.seconds))
+        del held
 
 
 def handshakes(table, options):
@@ -407,7 +594,7 @@ def main():
     parser.add_argument("--seconds", type=float, default=5.0, help="of each measurement")
     options = parser.parse_args()
     table = Table(options)
-    for group in (waiting_tcp, waiting_web, requests, forged, takeover, handshakes, unread, pictures, variants, sigterm):
+    for group in (waiting_tcp, waiting_web, requests, forged, departed, skeletons, mocap, takeover, handshakes, unread, unread_weights, pictures, variants, sigterm):
         if options.only in group.__name__:
             group(table, options)
 

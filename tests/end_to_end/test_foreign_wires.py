@@ -8,7 +8,7 @@ import subprocess
 import unittest
 
 from furrow_testing import SOURCE, Daemon, Table, finish, spawn
-from wire_testing import livelink_face
+from tracker_packets import livelink_face
 
 ARKIT = SOURCE / "rig" / "rigs" / "arkit.json"
 

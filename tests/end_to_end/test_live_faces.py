@@ -9,7 +9,8 @@ import tempfile
 import unittest
 
 from furrow_testing import BIN, GUARD, SHARE, Daemon, furrow, picture_difference, png_rows, solve
-from wire_testing import CURVES, Phone, Tracker, vmc
+from tracker_packets import CURVES, vmc
+from wire_testing import Phone, Tracker
 
 DONE = 0
 FACE = ("brow_l", "brow_r", "glabella", "nose", "eye_l", "eye_r", "mouth_l", "mouth_r")
