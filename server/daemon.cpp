@@ -335,7 +335,10 @@ Status Daemon::ListenToWeb() {
       .bind = config_.bind,
       .allow = [this] { return config_.mocap_allow; },
       .livelink_face = [this](Time now) { return ports_->mocap().ReportLiveLinkFace(now); },
-      .vmc = [this](Time now) { return ports_->mocap().ReportVmc(now); }};
+      .vmc = [this](Time now) { return ports_->mocap().ReportVmc(now); },
+      .give = [this](bool vmc, const std::string& sender,
+                     Time now) { return ports_->Give(vmc, sender, now); },
+      .unix_now = ReadUnixClock};
   api_ = std::make_unique<Api>(std::move(parts));
   auto started = HttpServer::Listen(
       {.config = config_.http,

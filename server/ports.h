@@ -10,7 +10,6 @@
 #include "server/config/config.h"
 #include "server/core/metrics.h"
 #include "server/core/time.h"
-#include "server/core/waiting_bytes.h"
 #include "server/credentials.h"
 #include "server/machine/service_manager.h"
 #include "server/net/mocap_inputs.h"
@@ -21,6 +20,7 @@
 #include "server/saved/saved_state.h"
 #include "server/session/hub.h"
 #include "server/session/recording_tap.h"
+#include "server/core/waiting_bytes.h"
 
 namespace furrow::server {
 
@@ -74,6 +74,10 @@ class Ports {
   [[nodiscard]] HostPort tcp() const { return tcp_.address(); }
   [[nodiscard]] std::uint16_t udp() const { return udp_.port(); }
   [[nodiscard]] const MocapInputs& mocap() const { return mocap_; }
+  // MocapInputs::Give().
+  [[nodiscard]] Status Give(bool vmc, const std::string& sender, Time now) {
+    return mocap_.Give(vmc, sender, now);
+  }
   // A socket of the service manager listens to other computers.
   [[nodiscard]] bool adopted_network() const { return adopted_network_; }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <optional>
 
 #include "server/core/time.h"
 
@@ -37,6 +38,12 @@ class CaptureClock {
     smallest_us_ = std::min(smallest_us_, difference);
     // How late the pose is, in [0, kLeapUs].
     return now - std::chrono::microseconds(difference - Smallest());
+  }
+
+  // Arrival minus capture of a pose without jitter, each on its own clock. Nothing: no pose has
+  // stated its capture time.
+  [[nodiscard]] std::optional<std::int64_t> difference_us() const {
+    return started_ ? std::optional(Smallest()) : std::nullopt;
   }
 
  private:

@@ -48,6 +48,22 @@ std::uint16_t MocapInput::port() const {
   return socket_.local_endpoint(error).port();
 }
 
+Status MocapInput::Give(const std::string& sender, Time now) {
+  asio::error_code error;
+  const asio::ip::address address = asio::ip::make_address(sender, error);
+  if (error) {
+    return {StatusCode::kInvalidArgument, "'" + sender + "' is not a numeric address", "sender"};
+  }
+  if (!gate_.Give(address, now)) {
+    return {StatusCode::kUnsupported,
+            sender + " may not send, because --mocap-allow does not list it", "sender",
+            "add it to mocap.allow, and reload the configuration"};
+  }
+  spdlog::info("{} now accepts {}, as somebody has asked", flag_, sender);
+  has_logged_rejected_ = false;
+  return {};
+}
+
 void MocapInput::Start() {
   // One peer for all senders of the port; `flag_` without its dashes is the name in the log.
   peer_ = hub_->AddPeer(Transport::kMocap, flag_.substr(2), &link_, ReadClock());
@@ -115,12 +131,14 @@ MocapReport MocapInput::Report(Time now) const {
     return arrival ? std::optional(MocapReport::Arrival{arrival->sender.to_string(), arrival->at})
                    : std::nullopt;
   };
+  const auto holder = gate_.HolderAt(now);
   return {.port = port(),
           .packets = packets_,
           .malformed = adapter_->counters().malformed,
           .rejected = rejected_,
           // Without datagrams, nothing ends the second.
           .rate_hz = now - second_ >= 2 * kSecond ? 0.0 : rate_hz_,
+          .holder = holder ? holder->to_string() : std::string(),
           .last = text(last_),
           .last_malformed = text(last_malformed_),
           .last_rejected = text(last_rejected_)};

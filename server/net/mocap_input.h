@@ -45,6 +45,9 @@ class MocapInput {
     adapter_->Forget();  // half a frame of the former sender must not mix with the next one
     has_logged_rejected_ = false;
   }
+  // Lets this sender hold the port at once (SenderGate::Give()). `sender`: a numeric address.
+  // Errors: kInvalidArgument (not an address), kUnsupported (it may not hold the port).
+  [[nodiscard]] Status Give(const std::string& sender, Time now);
   // Starts reading. Precondition: Open() succeeded.
   void Start();
   // Stops reading and closes the port.

@@ -45,6 +45,13 @@ void MocapInputs::SetAllowed(const std::vector<std::string>& allow) {
   if (livelink_face_) livelink_face_->SetGate(SenderGate(allowed, kOfLiveLinkFace));
 }
 
+Status MocapInputs::Give(bool vmc, const std::string& sender, Time now) {
+  MocapInput* const input = vmc ? vmc_.get() : livelink_face_.get();
+  if (input != nullptr) return input->Give(sender, now);
+  return {StatusCode::kUnavailable, std::string(vmc ? "--vmc" : "--livelink-face") + " is off",
+          "input"};
+}
+
 void MocapInputs::Start() {
   if (vmc_) vmc_->Start();
   if (livelink_face_) livelink_face_->Start();

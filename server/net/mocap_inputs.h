@@ -46,6 +46,9 @@ class MocapInputs {
   [[nodiscard]] std::optional<MocapReport> ReportLiveLinkFace(Time now) const {
     return ReportOf(livelink_face_.get(), now);
   }
+  // Lets this sender hold the port of an input at once (MocapInput::Give()). `vmc`: of VMC,
+  // otherwise of Live Link Face. Errors: kUnavailable (the input is off), those of Give().
+  [[nodiscard]] Status Give(bool vmc, const std::string& sender, Time now);
   // The port that the input listens on; absent if it is off.
   [[nodiscard]] std::optional<std::uint16_t> vmc_port() const { return PortOf(vmc_.get()); }
   [[nodiscard]] std::optional<std::uint16_t> livelink_face_port() const {

@@ -20,6 +20,7 @@ struct MocapReport {
   std::uint64_t malformed = 0;  // of them, not understood
   std::uint64_t rejected = 0;   // of them, from senders that may not send now
   double rate_hz = 0.0;         // understood datagrams in the last full second
+  std::string holder;           // the only sender that may send now; empty: anybody who is allowed
   // The last datagram of each kind; absent: none.
   std::optional<Arrival> last;
   std::optional<Arrival> last_malformed;

@@ -20,9 +20,13 @@ SenderGate::SenderGate(std::span<const asio::ip::address> allowed, Policy policy
   std::ranges::transform(allowed, std::back_inserter(allowed_), Plain);
 }
 
+bool SenderGate::IsAllowed(const asio::ip::address& plain) const {
+  return allowed_.empty() || std::ranges::find(allowed_, plain) != allowed_.end();
+}
+
 bool SenderGate::Admits(const asio::ip::address& sender, Time now) {
   const asio::ip::address plain = Plain(sender);
-  if (!allowed_.empty() && std::ranges::find(allowed_, plain) == allowed_.end()) return false;
+  if (!IsAllowed(plain)) return false;
   if (!exclusive_) return true;
   if (IsHeld(now)) return *holder_ == plain;
   const Candidate& candidate = Count(plain, now);
@@ -68,6 +72,20 @@ bool SenderGate::Hold(const asio::ip::address& sender, Time now) {
   heard_ = now;
   candidates_.clear();
   return is_new;
+}
+
+std::optional<asio::ip::address> SenderGate::HolderAt(Time now) const {
+  return exclusive_ && IsHeld(now) ? holder_ : std::nullopt;
+}
+
+bool SenderGate::Give(const asio::ip::address& sender, Time now) {
+  const asio::ip::address plain = Plain(sender);
+  if (!IsAllowed(plain)) return false;
+  if (!exclusive_) return true;
+  holder_ = plain;
+  heard_ = now;
+  candidates_.clear();
+  return true;
 }
 
 void SenderGate::Discard(const asio::ip::address& sender) {

@@ -39,6 +39,11 @@ class SenderGate {
   // Call after a valid datagram of an admitted sender. True if it holds the port from now on and
   // did not before. With kAllAllowed, nobody holds the port.
   bool Hold(const asio::ip::address& sender, Time now);
+  // The sender that holds the port; nothing: nobody does, or the policy is kAllAllowed.
+  [[nodiscard]] std::optional<asio::ip::address> HolderAt(Time now) const;
+  // Makes this sender hold the port at once, whoever holds it now. It loses the port after
+  // kRelease if it sends nothing. With kAllAllowed, nothing changes. False: it is not allowed.
+  [[nodiscard]] bool Give(const asio::ip::address& sender, Time now);
   // Call after an invalid datagram of an admitted sender, for example a port scan.
   void Discard(const asio::ip::address& sender);
 
@@ -51,6 +56,7 @@ class SenderGate {
   };
   static constexpr std::size_t kMaxCandidates = 1024;
 
+  [[nodiscard]] bool IsAllowed(const asio::ip::address& plain) const;
   Candidate& Count(const asio::ip::address& sender, Time now);
   [[nodiscard]] bool IsHeld(Time now) const { return holder_ && now - heard_ <= kRelease; }
 

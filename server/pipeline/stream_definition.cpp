@@ -132,7 +132,7 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Make(
   definition->skeleton = std::move(skeleton);
   definition->blend_shapes = std::move(blend_shapes);
   definition->shapes = std::move(shapes);
-  Report(*definition, match);
+  Report(match, definition.get());
   definition->match = std::move(match);
   return std::shared_ptr<const StreamDefinition>(std::move(definition));
 }
@@ -155,9 +155,10 @@ std::shared_ptr<const wrinkle::JointShapes> StreamDefinitions::MatchJointShapes(
   return std::make_shared<const wrinkle::JointShapes>(std::move(found));
 }
 
-// Once per definition, so that repeated offers do not flood the log.
-void StreamDefinitions::Report(const StreamDefinition& stream,
-                               const rig::SkeletonMatch& match) const {
+// Once per definition, so that repeated offers do not flood the log. Sets the ignored joints.
+void StreamDefinitions::Report(const rig::SkeletonMatch& match,
+                               StreamDefinition* definition) const {
+  const StreamDefinition& stream = *definition;
   if (const std::string text = rig::Describe(match); !text.empty()) {
     spdlog::info("{}", text);
   }
@@ -188,7 +189,7 @@ void StreamDefinitions::Report(const StreamDefinition& stream,
     spdlog::warn("the stream lacks blend shapes that the rig uses; their drivers stay at rest: {}",
                  Join(missing_shapes));
   }
-  std::vector<std::string> ignored;
+  std::vector<std::string>& ignored = definition->ignored_joints;
   bool draws_any = false;
   bool feeds_any = missing_joints.empty() && missing_shapes.empty();
   const auto unmatched =

@@ -41,6 +41,7 @@ struct StreamDefinition {
   std::vector<std::int16_t> joint_of_wire;  // wire index -> index in `skeleton`
   rig::SkeletonMatch match;                 // how a skeleton map has matched the rig's joints
   std::shared_ptr<const wrinkle::RigBinding> binding;
+  std::vector<std::string> ignored_joints;  // that move neither weights nor pictures
   // These move the character by the stream's poses; null without a character.
   std::shared_ptr<const wrinkle::Retarget> retarget;
   std::shared_ptr<const wrinkle::BlendShapePose> blend_shape_pose;
@@ -109,7 +110,7 @@ class StreamDefinitions {
   [[nodiscard]] std::shared_ptr<const wrinkle::JointShapes> MatchJointShapes(
       const wrinkle::Skeleton& skeleton, std::span<const std::string> blend_shapes,
       const rig::SkeletonMatch& match, const StreamDefinition& stream) const;
-  void Report(const StreamDefinition& stream, const rig::SkeletonMatch& match) const;
+  void Report(const rig::SkeletonMatch& match, StreamDefinition* stream) const;
 
   std::shared_ptr<const wrinkle::Rig> rig_;
   StreamCharacter character_;

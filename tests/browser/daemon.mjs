@@ -37,9 +37,10 @@ export class Daemon {
       });
       child.on('exit', (code) => reject(new Error(`furrowd ended with ${code}:\n${daemon.log}`)));
     });
-    for (const name of ['tcp', 'udp', 'http', 'livelink_face']) {
+    const optional = ['livelink_face', 'vmc'];
+    for (const name of ['tcp', 'udp', 'http', ...optional]) {
       const port = new RegExp(`${name}=\\S*?:(\\d+)`).exec(ready)?.[1];
-      if (port === undefined && name === 'livelink_face') continue;
+      if (port === undefined && optional.includes(name)) continue;
       if (port === undefined) throw new Error(`no ${name} port in: ${ready}`);
       daemon.ports[name] = Number(port);
     }

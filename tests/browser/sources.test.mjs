@@ -24,6 +24,25 @@ function liveLinkFace(subject, frame) {
   return Buffer.concat([Buffer.from([6]), text('12345678-1234-1234-1234-123456789ABC'), text(subject), rest]);
 }
 
+/** One frame of VMC that raises a shape. */
+function* vmc(value) {
+  const text = (words) => Buffer.from(words + '\0'.repeat(4 - (words.length % 4)));
+  const number = (write, what) => { const bytes = Buffer.alloc(4); bytes[write](what); return bytes; };
+  yield Buffer.concat([text('/VMC/Ext/OK'), text(',i'), number('writeInt32BE', 1)]);
+  yield Buffer.concat([text('/VMC/Ext/Blend/Val'), text(',sf'), text('browInnerUp'), number('writeFloatBE', value)]);
+  yield Buffer.concat([text('/VMC/Ext/Blend/Apply'), text(',')]);
+}
+
+/** Sends frames of VMC from an address of this computer until stop(). */
+function vmcSender(port, address) {
+  const socket = createSocket('udp4');
+  let timer, frame = 0;
+  socket.bind(0, address, () => {
+    timer = setInterval(() => { for (const packet of vmc((frame++ % 10) / 10)) socket.send(packet, port, '127.0.0.1'); }, 33);
+  });
+  return { stop() { clearInterval(timer); socket.close(); } };
+}
+
 /** A daemon without pictures has no cameras, which the browser reports. */
 const errorsOf = (page) => page.errors.filter((error) => !error.includes('503'));
 const card = (page, state) => page.locator(`[data-source=livelink_face][data-state=${state}]`);
@@ -89,6 +108,33 @@ test('senders that are not allowed are named', async () => {
   } finally {
     clearInterval(timer);
     socket.close();
+    await daemon.stop();
+  }
+});
+
+test('a sender that another one keeps out is accepted by a click', async () => {
+  const daemon = await Daemon.start(['--no-render', '--rig', 'arkit', '--vmc', '0']);
+  const senders = [vmcSender(daemon.ports.vmc, '127.0.0.1')];
+  try {
+    const page = await openPage(browser, `${daemon.address}#panel=sources`);
+    const receiving = page.locator('[data-source=vmc][data-state=receiving]');
+    await receiving.getByText('Receiving from 127.0.0.1').waitFor();
+    senders.push(vmcSender(daemon.ports.vmc, '127.0.0.2'));
+    const row = page.locator('[data-stream=vmc]');
+    await row.getByText('VMC').waitFor();
+    await row.locator('summary').click();
+    await row.getByText('The rig reads these blend shapes, and the stream does not have them').waitFor();
+    const accept = receiving.getByRole('button', { name: 'Accept 127.0.0.2 instead' });
+    await accept.waitFor();
+    await keep(page, 'sources-refused');
+    await accept.click();
+    await receiving.getByText('Receiving from 127.0.0.2').waitFor();
+    await receiving.getByRole('button', { name: 'Accept 127.0.0.1 instead' }).waitFor();
+    assert.equal(await row.locator('details').getAttribute('open'), '', 'the list stays open');
+    assert.deepEqual(errorsOf(page), []);
+    await page.context().close();
+  } finally {
+    senders.forEach((sender) => sender.stop());
     await daemon.stop();
   }
 });

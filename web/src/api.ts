@@ -81,6 +81,8 @@ export interface MocapInputInfo {
   rejected: number;
   /** Understood packets in the last second. */
   rate_hz: number;
+  /** The only sender that may send now; empty: anybody who is allowed. */
+  holder: string;
   /** The address of the last sender whose packet was understood; empty: none. */
   sender: string;
   /** Times since the last packet of each kind; null: none. */
@@ -89,6 +91,35 @@ export interface MocapInputInfo {
   malformed_age_ms: number | null;
   rejected_sender: string;
   rejected_age_ms: number | null;
+}
+
+/** At most 32 names; `count` has all. */
+export interface NamesInfo {
+  count: number;
+  names: string[];
+}
+
+/** What arrives of a subject, and what of it is used. */
+export interface StreamInfo {
+  name: string;
+  /** The wire of others that it comes by; empty: Furrow's own. */
+  input: MocapInputInfo['name'] | '';
+  source: string;
+  rate_hz: number;
+  poses: number;
+  lost: number;
+  late: number;
+  jitter_ms: number;
+  age_ms: number;
+  /** The daemon's clock minus the sender's, and the way of a pose; null: the sender's does not count from 1970. */
+  clock_offset_ms: number | null;
+  joints: number;
+  blend_shapes: number;
+  /** Move neither weights nor pictures. */
+  ignored_joints: NamesInfo;
+  /** The rig reads them, and the stream does not have them. */
+  missing_joints: NamesInfo;
+  missing_blend_shapes: NamesInfo;
 }
 
 export interface SourcesInfo {
@@ -101,6 +132,9 @@ export interface SourcesInfo {
   /** The only senders that may send; empty: any. */
   allow: string[];
   inputs: MocapInputInfo[];
+  /** At most 64. */
+  subjects: StreamInfo[];
+  more_subjects: number;
 }
 
 export interface RigInfo {
@@ -229,6 +263,8 @@ function query(values: Record<string, string>): string {
 export const api = {
   status: () => call<DaemonStatus>('api/status'),
   sources: () => call<SourcesInfo>('api/sources'),
+  /** The sender holds the port of the input from now on. */
+  acceptSender: (input: MocapInputInfo['name'], sender: string) => call<SourcesInfo>('api/sources', 'POST', { input, sender }),
   subjects: async () => (await call<{ subjects: SubjectInfo[] }>('api/subjects')).subjects,
   settings: async () => (await call<{ settings: SettingInfo[] }>('api/settings')).settings,
   patchSettings: async (values: Record<string, string>) =>

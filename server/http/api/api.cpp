@@ -38,7 +38,13 @@ Api::Api(Parts parts)
                  return status_.ShowStatus(request, hub, now);
                }},
               {"GET", "/api/sources", Need::kToken,
-               [this](const ApiRequest&, Hub&, Time now) { return sources_.Show(now); }},
+               [this](const ApiRequest& request, Hub& hub, Time now) {
+                 return sources_.Show(request, hub, now);
+               }},
+              {"POST", "/api/sources", Need::kDirect,
+               [this](const ApiRequest& request, Hub& hub, Time now) {
+                 return sources_.Accept(request, hub, now);
+               }},
               {"GET", "/api/settings", Need::kToken,
                [this](const ApiRequest&, Hub& hub, Time) { return settings_.Settings(hub); }},
               {"PATCH", "/api/settings", Need::kDirect,

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/http/api/sources_api.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
 
 #include <nlohmann/json.hpp>
@@ -13,6 +17,14 @@
 
 namespace furrow::server {
 namespace {
+
+constexpr std::string_view kLiveLinkFace = "livelink_face";
+constexpr std::string_view kVmc = "vmc";
+// The reply is sent every second while the page shows it.
+constexpr std::size_t kMaxListedSubjects = 64;
+constexpr std::size_t kMaxListedNames = 32;
+// Clocks further apart than this do not both count from 1970.
+constexpr double kMaxOffsetSeconds = 86'400;
 
 // Null: none has arrived.
 Json AgeMs(const std::optional<MocapReport::Arrival>& arrival, Time now) {
@@ -36,6 +48,7 @@ Json InputJson(std::string_view name, std::string_view option, std::uint16_t usu
           {"malformed", report.malformed},
           {"rejected", report.rejected},
           {"rate_hz", report.rate_hz},
+          {"holder", report.holder},
           {"sender", SenderOf(report.last)},
           {"age_ms", AgeMs(report.last, now)},
           {"malformed_sender", SenderOf(report.last_malformed)},
@@ -44,18 +57,95 @@ Json InputJson(std::string_view name, std::string_view option, std::uint16_t usu
           {"rejected_age_ms", AgeMs(report.last_rejected, now)}};
 }
 
+Json NamesJson(std::span<const std::string> names) {
+  const auto shown = names.first(std::min(names.size(), kMaxListedNames));
+  return {{"count", names.size()},
+          {"names", Json(std::vector<std::string>(shown.begin(), shown.end()))}};
+}
+
+// By how much the sender's clock is behind the daemon's, and the way of a pose. Null: unknown.
+Json ClockOffsetMs(const Subject& subject, Time now, Time unix_now) {
+  const auto difference = subject.capture_clock.difference_us();
+  if (!difference) return {};
+  const double seconds = static_cast<double>(*difference) * 1e-6 + ToSeconds(unix_now - now);
+  return std::abs(seconds) > kMaxOffsetSeconds ? Json() : Json(seconds * 1e3);
+}
+
+// Names the input of a subject that comes by a wire of others; empty: it comes by Furrow's own.
+std::string_view InputOf(std::string_view source) {
+  if (source == "livelink-face") return kLiveLinkFace;
+  return source == "vmc" ? kVmc : std::string_view();
+}
+
+Json SubjectJson(const Subject& subject, std::string_view source, Time now, Time unix_now) {
+  const StreamDefinition& stream = subject.pipeline->stream();
+  const SubjectStats& stats = subject.stats;
+  const bool has_joints = stream.skeleton.num_joints() > 0;
+  const bool has_shapes = !stream.blend_shapes.empty();
+  const auto none = std::span<const std::string>();
+  return {{"name", subject.name},
+          {"input", InputOf(source)},
+          {"source", source},
+          {"rate_hz", stats.rate_hz(now)},
+          {"poses", stats.poses()},
+          {"lost", stats.lost()},
+          {"late", stats.late()},
+          {"jitter_ms", stats.jitter_seconds(now) * 1e3},
+          {"age_ms", ToSeconds(now - subject.last_pose) * 1e3},
+          {"clock_offset_ms", ClockOffsetMs(subject, now, unix_now)},
+          {"joints", stream.skeleton.num_joints()},
+          {"blend_shapes", stream.blend_shapes.size()},
+          {"ignored_joints", NamesJson(stream.ignored_joints)},
+          // A tracker of faces lacks no joints, and one of bodies no blend shapes.
+          {"missing_joints", NamesJson(has_joints ? stream.binding->missing_joints() : none)},
+          {"missing_blend_shapes",
+           NamesJson(has_shapes ? stream.binding->missing_blend_shapes() : none)}};
+}
+
 }  // namespace
 
-ApiReply SourcesApi::Show(Time now) const {
-  Json list = Json::array();
-  list.push_back(
-      InputJson("livelink_face", "--livelink-face", kLiveLinkFacePort, parts_.livelink_face, now));
-  list.push_back(InputJson("vmc", "--vmc", kVmcPort, parts_.vmc, now));
+ApiReply SourcesApi::Show(const ApiRequest& request, Hub& hub, Time now) const {
+  Json inputs = Json::array();
+  inputs.push_back(
+      InputJson(kLiveLinkFace, "--livelink-face", kLiveLinkFacePort, parts_.livelink_face, now));
+  inputs.push_back(InputJson(kVmc, "--vmc", kVmcPort, parts_.vmc, now));
+  Json subjects = Json::array();
+  std::size_t more = 0;
+  for (const auto& subject : hub.subjects().all()) {
+    if (!request.access.Concerns(subject->name)) continue;
+    if (subjects.size() == kMaxListedSubjects) {
+      ++more;
+    } else {
+      subjects.push_back(SubjectJson(*subject, hub.SourceOf(*subject), now, parts_.unix_now()));
+    }
+  }
   return JsonReply({{"bind", parts_.bind},
                     {"loopback", IsLoopback(parts_.bind)},
                     {"addresses", ReachableAddresses(parts_.bind)},
                     {"allow", parts_.allow()},
-                    {"inputs", std::move(list)}});
+                    {"inputs", std::move(inputs)},
+                    {"subjects", std::move(subjects)},
+                    {"more_subjects", more}});
+}
+
+ApiReply SourcesApi::Accept(const ApiRequest& request, Hub& hub, Time now) const {
+  const Result<Json> object = ParseObject(request);
+  if (!object.ok()) return ErrorReply(object.status());
+  std::string input;
+  std::string sender;
+  for (const auto& [name, value] : object->items()) {
+    std::string* const target = name == "input" ? &input : name == "sender" ? &sender : nullptr;
+    if (target == nullptr) {
+      return ErrorReply(Status(StatusCode::kSchema, "must be one of input, sender", name));
+    }
+    if (!value.is_string()) return ErrorReply(Status(StatusCode::kSchema, "must be a text", name));
+    *target = value.get<std::string>();
+  }
+  if (input != kVmc && input != kLiveLinkFace) {
+    return ErrorReply(Status(StatusCode::kSchema, "must be vmc or livelink_face", "input"));
+  }
+  const Status status = parts_.give(input == kVmc, sender, now);
+  return status.ok() ? Show(request, hub, now) : ErrorReply(status);
 }
 
 }  // namespace furrow::server

@@ -5,6 +5,7 @@ import { text } from '../text';
 import type { Signal } from '../ui/signal';
 import { h, select } from '../ui/dom';
 import type { StreamKind } from '../view/video_choice';
+import { lossOf } from './stream_table';
 
 /** Of the picture on the screen. */
 export interface PictureFigures {
@@ -71,14 +72,13 @@ export class SessionPanel {
   }
 
   private row(subject: SubjectInfo, isChosen: boolean): HTMLElement {
-    const share = subject.poses + subject.lost === 0 ? 0 : subject.lost / (subject.poses + subject.lost);
     return h('tr', { 'data-subject': subject.name, class: isChosen ? 'chosen' : '' },
       h('th', { scope: 'row' },
         h('button', { type: 'button', class: 'link', onclick: () => this.onChoose(subject.name), 'aria-pressed': String(isChosen) }, subject.name),
         h('small', {}, subject.source)),
       h('td', {}, h('span', { class: `state ${subject.state}` }, text.session.states[subject.state])),
       h('td', { class: 'number' }, subject.rate_hz.toFixed(0)),
-      h('td', { class: 'number', title: text.session.losses(subject.lost, subject.late) }, share > 0 ? `${(100 * share).toFixed(1)} %` : '0'),
+      h('td', { class: 'number', title: text.session.losses(subject.lost, subject.late) }, lossOf(subject.poses, subject.lost)),
       h('td', { class: 'number', title: subject.buffer_ms > 0 ? text.session.buffer(subject.buffer_ms.toFixed(0)) : '' },
         subject.jitter_ms.toFixed(1)));
   }

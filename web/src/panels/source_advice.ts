@@ -13,6 +13,8 @@ export interface SourceAdvice {
   todo: string;
   /** A command for `todo`; empty: none. */
   command: string;
+  /** A sender that is refused because another one holds the port; empty: none. */
+  accept: string;
 }
 
 /** A sender that sends once per second is still there. */
@@ -20,16 +22,23 @@ const RECENT_MS = 2000;
 
 export function adviseOn(input: MocapInputInfo, sources: SourcesInfo): SourceAdvice {
   const t = text.sources;
-  const advice = (state: SourceAdvice['state'], words: string, todo = '', command = ''): SourceAdvice => ({ state, words, todo, command });
+  const advice = (state: SourceAdvice['state'], words: string, todo = '', command = '', accept = ''): SourceAdvice =>
+    ({ state, words, todo, command, accept });
   const port = input.port ?? input.usual_port;
   const start = `furrowd --bind 0.0.0.0 --open ${input.option} ${port}`;
   if (input.port === null) return advice('off', t.off, t.offTodo(input.option), start);
   const isReceiving = input.age_ms !== null && input.age_ms < RECENT_MS;
-  if (isReceiving) return advice('receiving', t.receiving(input.sender, Math.round(input.rate_hz)));
-  if (input.rejected_age_ms !== null && input.rejected_age_ms < RECENT_MS) {
-    return sources.allow.length > 0 && !sources.allow.includes(input.rejected_sender)
-      ? advice('blocked', t.notAllowed(input.rejected_sender), t.notAllowedTodo, `--mocap-allow ${input.rejected_sender}`)
-      : advice('blocked', t.held(input.rejected_sender), t.heldTodo);
+  const isRejecting = input.rejected_age_ms !== null && input.rejected_age_ms < RECENT_MS;
+  const refused = input.rejected_sender;
+  const mayAccept = isRejecting && (sources.allow.length === 0 || sources.allow.includes(refused));
+  if (isReceiving) {
+    const words = t.receiving(input.sender, Math.round(input.rate_hz));
+    return mayAccept ? advice('receiving', words, t.alsoSends(refused), '', refused) : advice('receiving', words);
+  }
+  if (isRejecting) {
+    return mayAccept
+      ? advice('blocked', t.held(refused), t.heldTodo, '', refused)
+      : advice('blocked', t.notAllowed(refused), t.notAllowedTodo, `--mocap-allow ${refused}`);
   }
   if (input.malformed_age_ms !== null && input.malformed_age_ms < RECENT_MS) {
     return advice('blocked', t.malformed(input.malformed_sender), t.malformedTodo(t.names[input.name]));

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where phones and trackers send to, what has arrived from them, and what blocks them.
+// Where phones and trackers send to, what has arrived from them and from other senders, and what blocks them.
 import { api, type MocapInputInfo, type SourcesInfo, wordsOf } from '../api';
 import { text } from '../text';
 import { button, command as commandOf, copyText, h } from '../ui/dom';
 import type { Toasts } from '../ui/toast';
 import { qrCode } from '../ui/qr';
 import { adviseOn } from './source_advice';
+import { StreamTable } from './stream_table';
 
 const REFRESH_MS = 1000;
 
@@ -13,7 +14,9 @@ export class SourcesPanel {
   private readonly cards = h('div', { class: 'source-cards' });
   private readonly code = h('figure', { class: 'source-code', hidden: true });
   private readonly error = h('p', { class: 'error', role: 'alert' });
-  readonly element = h('div', { class: 'sources' }, h('p', {}, text.sources.intro), this.error, this.cards, this.code);
+  private readonly streams = new StreamTable();
+  readonly element = h('div', { class: 'sources' }, h('p', {}, text.sources.intro), this.error, this.cards,
+    this.streams.element, this.code);
   private shown = '';
   private codeOf = '';
 
@@ -43,6 +46,7 @@ export class SourcesPanel {
       this.shown = now;
       this.cards.replaceChildren(...sources.inputs.map((input) => this.card(input, sources, addresses)));
     }
+    this.streams.show(sources.subjects, sources.more_subjects);
     void this.showCode(addresses[0] ?? '');
   }
 
@@ -59,7 +63,7 @@ export class SourcesPanel {
 
   private card(input: MocapInputInfo, sources: SourcesInfo, addresses: readonly string[]): HTMLElement {
     const t = text.sources;
-    const { state, words, todo, command } = adviseOn(input, sources);
+    const { state, words, todo, command, accept } = adviseOn(input, sources);
     const target = input.port === null || addresses.length === 0 ? null : h('dl', { class: 'facts target' },
       h('dt', {}, t.address), h('dd', {}, ...addresses.map((address) => h('code', {}, address))),
       h('dt', {}, t.port), h('dd', {}, h('code', {}, String(input.port))));
@@ -69,7 +73,17 @@ export class SourcesPanel {
       target,
       todo === '' ? null : h('p', { class: 'fine' }, todo),
       command === '' ? null : h('div', { class: 'row command' }, commandOf(command), button(text.stage.copy, () => void this.copy(command))),
+      accept === '' ? null : button(t.accept(accept), () => void this.accept(input.name, accept)),
       state === 'off' || input.packets === 0 ? null : h('p', { class: 'fine' }, t.counts(input.packets, input.malformed, input.rejected)));
+  }
+
+  private async accept(input: MocapInputInfo['name'], sender: string): Promise<void> {
+    try {
+      this.show(await api.acceptSender(input, sender));
+      this.toasts.say(text.sources.accepted(sender));
+    } catch (error) {
+      this.toasts.say(wordsOf(error), 'error');
+    }
   }
 
   private async copy(words: string): Promise<void> {

@@ -120,5 +120,34 @@ TEST(SenderGate, MappedIpv4AddressesMatch) {
   EXPECT_FALSE(gate.IsSuccessor(kAnn));
 }
 
+TEST(SenderGate, AnOperatorGivesThePortToAnotherSender) {
+  SenderGate gate({}, Policy::kOne);
+  EXPECT_FALSE(gate.HolderAt(kStart));
+  EXPECT_EQ(SendSteadily(gate, kAnn, kStart), 0);
+  EXPECT_EQ(gate.HolderAt(kStart), kAnn);
+  EXPECT_TRUE(gate.Give(kBen, kStart));
+  EXPECT_EQ(gate.HolderAt(kStart), kBen);
+  EXPECT_FALSE(gate.Admits(kAnn, kStart));
+  EXPECT_TRUE(gate.Admits(kBen, kStart));
+  EXPECT_TRUE(gate.IsSuccessor(kBen)) << "half a frame of the former sender must go";
+  EXPECT_FALSE(gate.Hold(kBen, kStart)) << "it did before";
+  // It does not send, so the port is free again.
+  const Time silent = kStart + SenderGate::kRelease + kMoment;
+  EXPECT_FALSE(gate.HolderAt(silent));
+  EXPECT_EQ(SendSteadily(gate, kAnn, silent), 0);
+}
+
+TEST(SenderGate, NobodyGivesThePortToASenderThatIsNotAllowed) {
+  SenderGate gate(std::vector{kAnn}, Policy::kOne);
+  EXPECT_FALSE(gate.Give(kBen, kStart));
+  EXPECT_FALSE(gate.Admits(kBen, kStart));
+  EXPECT_TRUE(gate.Give(kAnn, kStart));
+  // Where all that are allowed send at once, there is nothing to give.
+  SenderGate all(std::vector{kAnn, kBen}, Policy::kAllAllowed);
+  EXPECT_TRUE(all.Give(kBen, kStart));
+  EXPECT_FALSE(all.HolderAt(kStart));
+  EXPECT_TRUE(all.Admits(kAnn, kStart));
+}
+
 }  // namespace
 }  // namespace furrow::server
