@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Prints a line per message that the page of a daemon receives in Chromium and that is no reply: weights and pictures.
+// Prints a line per frame of weights that the page of a daemon receives in Chromium.
 //   page_client.mjs ADDRESS [TOKEN]      TOKEN: a file
 import { readFileSync } from 'node:fs';
 import { launch, openPage } from '../../tests/browser/browser.mjs';

@@ -39,7 +39,10 @@ class Setup:
             for role in ("publish", "watch"):
                 self.tokens[role] = scratch / f"{role}.token"
                 self.furrow("token", "new", "--role", role, "--subjects", "*", "--for", "1h", "--key", keys, "--out", self.tokens[role])
-            self.certificate, key = make_certificate(scratch)
+            made = make_certificate(scratch)
+            if made is None:
+                sys.exit("restart.py: --secure needs openssl")
+            self.certificate, key = made
             self.flags += ["--security", "required", "--keys", keys, "--tls-certificate", self.certificate, "--tls-key", key]
         self.daemon = Daemon(folder, *self.flags, ports={"tcp": 0, "udp": 0, "http": 0})
 
@@ -132,7 +135,7 @@ def measure(setup, options):
         times = {name: [] for name in clients}
         for round_number in range(options.rounds):
             setup.daemon.kill()
-            # The second half of the rounds: clients have given up trying often.
+            # In every other round, clients have given up trying often.
             time.sleep(0.5 if round_number % 2 == 0 else 5.0)
             setup.restart()
             ready_at = setup.daemon.ready_at
