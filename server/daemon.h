@@ -15,7 +15,6 @@
 #include "server/config/config.h"
 #include "server/core/metrics.h"
 #include "server/core/status_line.h"
-#include "server/core/waiting_bytes.h"
 #include "server/credentials.h"
 #include "server/http/api/api.h"
 #include "server/http/http_server.h"
@@ -32,6 +31,7 @@
 #include "server/run_options.h"
 #include "server/session/hub.h"
 #include "server/session_transfer.h"
+#include "server/shares/waiting_bytes.h"
 #include "server/startup.h"
 
 namespace furrow::server {

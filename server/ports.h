@@ -20,7 +20,7 @@
 #include "server/saved/saved_state.h"
 #include "server/session/hub.h"
 #include "server/session/recording_tap.h"
-#include "server/core/waiting_bytes.h"
+#include "server/shares/waiting_bytes.h"
 
 namespace furrow::server {
 

@@ -213,7 +213,8 @@ struct SubscribePoses {
   bool wait = false;
   float max_rate_hz = 0.0f;
   // TCP: late frames queue instead of being replaced by newer ones. If more than 8 MiB queue on a
-  // connection, the server drops the newest frames and reports their number in Dropped.
+  // connection, or more than the server grants to its host, the server drops the newest frames and
+  // reports their number in Dropped.
   bool every = false;
 };
 

@@ -31,7 +31,6 @@ Status ValidateLimits(const Limits& limits) {
       {"max_subjects", limits.max_subjects},
       {"max_skeletons", limits.max_skeletons},
       {"max_all_subscriptions", limits.max_all_subscriptions},
-      {"max_waiting_megabytes", limits.max_waiting_megabytes},
       {"outbox_messages", limits.outbox_messages}};
   for (const auto& [name, value] : counts) {
     if (value < 1 || value > 1'000'000) {
@@ -49,6 +48,11 @@ Status ValidateLimits(const Limits& limits) {
                    std::to_string(limits.max_all_subscriptions) +
                    "; it must be at least limits.max_subscriptions, " +
                    std::to_string(limits.max_subscriptions));
+  }
+  // One host alone gets half, in which the largest reply must fit.
+  if (limits.max_waiting_megabytes < 64 || limits.max_waiting_megabytes > 1'000'000) {
+    return Invalid("limits.max_waiting_megabytes is " +
+                   std::to_string(limits.max_waiting_megabytes) + "; it must be 64 to 1000000");
   }
   const std::pair<const char*, double> numbers[] = {
       {"packets_per_second", limits.packets_per_second},

@@ -10,7 +10,7 @@
 
 #include <spdlog/sinks/base_sink.h>
 
-#include "server/core/token_bucket.h"
+#include "server/shares/token_bucket.h"
 
 namespace furrow::server {
 

@@ -52,8 +52,8 @@ constexpr CounterInfo kCounters[] = {
     {Counter::kConnectionsOverrun, "furrow_connections_overrun_total",
      "Connections closed because the client did not read its replies, or sent too fast."},
     {Counter::kWaitingRefused, "furrow_waiting_refused_total",
-     "Frames and replies dropped because too much waits for clients of their host that read "
-     "slowly."},
+     "Frames and replies dropped because their host had no room left in "
+     "limits.max_waiting_megabytes."},
     {Counter::kConnectionsIdle, "furrow_connections_idle_total",
      "Connections closed because the peer neither sent nor read in time."},
     {Counter::kTlsHandshakes, "furrow_tls_handshakes_total", "TLS connections that began."},

@@ -27,7 +27,7 @@ constexpr std::pair<Counter, std::string_view> kDrops[] = {
     {Counter::kConnectionsRefused, "connections over the limit"},
     {Counter::kConnectionsMalformed, "malformed connections"},
     {Counter::kConnectionsOverrun, "connections that did not read"},
-    {Counter::kWaitingRefused, "for hosts that read slowly"},
+    {Counter::kWaitingRefused, "for hosts without room for what waits"},
     {Counter::kConnectionsIdle, "idle connections"},
     {Counter::kConnectionsGaveWay, "connections that gave way"},
     {Counter::kMessagesMalformed, "malformed messages"},

@@ -22,8 +22,6 @@
 
 #include "base/data_dir.h"
 #include "base/status.h"
-#include "server/core/fair_share.h"
-#include "server/core/lobby.h"
 #include "server/core/network_address.h"
 #include "server/http/http_session.h"
 #include "server/http/request/web_stream.h"
@@ -31,6 +29,8 @@
 #include "server/net/clock.h"
 #include "server/net/run_loop.h"
 #include "server/session/hub.h"
+#include "server/shares/fair_share.h"
+#include "server/shares/lobby.h"
 #include "server/tls/handshake_places.h"
 #include "server/tls/handshake_watch.h"
 

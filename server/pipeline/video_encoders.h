@@ -11,7 +11,7 @@
 
 #include "base/status.h"
 #include "render/video/video_codec.h"
-#include "server/core/fair_share.h"
+#include "server/shares/fair_share.h"
 
 namespace furrow::server {
 

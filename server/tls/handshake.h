@@ -8,9 +8,9 @@
 #include <string>
 
 #include "protocol/secure/session/rate_budget.h"
-#include "server/core/host_rates.h"
 #include "server/core/metrics.h"
 #include "server/core/time.h"
+#include "server/shares/host_rates.h"
 
 namespace furrow::server {
 

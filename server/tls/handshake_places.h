@@ -5,8 +5,8 @@
 #include <memory>
 #include <string>
 
-#include "server/core/fair_share.h"
 #include "server/core/time.h"
+#include "server/shares/fair_share.h"
 
 namespace furrow::server {
 

@@ -312,9 +312,13 @@ void NatsStore::TakeAnswers(Clock::time_point until, std::vector<StoreAnswer>* a
     const auto left = std::chrono::ceil<milliseconds>(until - Clock::now());
     if (left.count() <= 0) break;
     natsMsg* raw = nullptr;
-    if (natsSubscription_NextMsg(&raw, answers_.get(), std::min(left, kWakeTime).count()) ==
-        NATS_OK) {
+    const natsStatus status =
+        natsSubscription_NextMsg(&raw, answers_.get(), std::min(left, kWakeTime).count());
+    if (status == NATS_OK) {
       TakeAnswer(Message(raw), answers);
+    } else if (status != NATS_TIMEOUT) {  // such as a closed connection, which returns at once
+      nats_Sleep(left.count());
+      break;
     }
   }
   natsMsg* raw = nullptr;

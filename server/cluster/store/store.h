@@ -53,8 +53,8 @@ class Store {
   // missed, so that List() is needed.
   [[nodiscard]] virtual bool Poll(std::chrono::milliseconds wait, std::vector<StoreAnswer>* answers,
                                   std::vector<StoreRecord>* changes) = 0;
-  // The wait of this Poll(), or of the next one, ends within a few milliseconds. Thread-safe; does
-  // not wait.
+  // While there is a connection, the wait of this Poll(), or of the next one, ends within a few
+  // milliseconds. Thread-safe; does not wait.
   virtual void Wake() = 0;
   // Reads all records, for less than a second. `incarnation`: another number for a store that was
   // emptied. Makes the store's bucket if there is none. False: not possible at present; `why` says

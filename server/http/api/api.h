@@ -10,7 +10,6 @@
 #include "server/cluster/coordinator.h"
 #include "server/core/metrics.h"
 #include "server/core/time.h"
-#include "server/core/waiting_bytes.h"
 #include "server/http/api/capture_api.h"
 #include "server/http/api/cluster_api.h"
 #include "server/http/api/osc_api.h"
@@ -27,6 +26,7 @@
 #include "server/pipeline/video_encoders.h"
 #include "server/playback/player.h"
 #include "server/session/hub.h"
+#include "server/shares/waiting_bytes.h"
 
 namespace furrow::server {
 

@@ -147,7 +147,7 @@ ApiReply StatusApi::MetricsText(const Hub& hub, Time now) const {
             static_cast<double>(parts_.viewers()));
   if (parts_.waiting != nullptr) {
     add_gauge("furrow_waiting_bytes",
-              "What waits for TCP and web clients that read slowly, beyond 64 KiB each.",
+              "What waits for TCP and web clients that read slowly, beyond what is free for each.",
               static_cast<double>(parts_.waiting->taken()));
   }
   if (parts_.video != nullptr) {

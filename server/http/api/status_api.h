@@ -9,10 +9,10 @@
 #include "server/cluster/coordinator.h"
 #include "server/core/metrics.h"
 #include "server/core/time.h"
-#include "server/core/waiting_bytes.h"
 #include "server/http/request/api_types.h"
 #include "server/pipeline/video_encoders.h"
 #include "server/session/hub.h"
+#include "server/shares/waiting_bytes.h"
 
 namespace furrow::server {
 

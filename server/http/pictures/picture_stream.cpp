@@ -25,6 +25,8 @@ constexpr char kMjpegType[] = "multipart/x-mixed-replace; boundary=furrow-pictur
 constexpr char kSnapshotType[] = "image/png";
 // Small, so that a slow client is at most a picture or two behind.
 constexpr int kSendBufferBytes = 128 * 1024;
+// What a stream that waits may keep of the memory of its last picture.
+constexpr std::size_t kMaxKeptPictureBytes = 256 * 1024;
 constexpr std::uint64_t kSession = 1;  // any number: the peer has only one session
 
 // The subscription behind one HTTP response. It is used on the web thread; its peer carries the
@@ -69,7 +71,13 @@ class PictureStream : public std::enable_shared_from_this<PictureStream> {
                                          "is still preparing its shaders",
                                          "try again")};
       }
+      if (peer_->overrun()) {
+        context_->metrics->Add(Counter::kConnectionsOverrun);
+        gone_ = true;
+      }
       if (gone_) co_return Next{};
+      // Streams of usual size keep their memory from picture to picture.
+      if (image_.bytes.capacity() > kMaxKeptPictureBytes) image_.bytes = {};
       // Waits for a message or the deadline; both end the wait in the same way.
       wake_.expires_at(deadline.value_or(net::steady_timer::time_point::max()));
       beast::error_code ignored;

@@ -61,10 +61,12 @@ net::awaitable<bool> WriteReply(WebStream& stream, const WebRequest& request, Ap
 net::awaitable<bool> WriteLargeReply(WebStream& stream, const WebRequest& request, ApiReply reply,
                                      WaitingBytes* waiting, const std::string& host) {
   WaitingBytes::Account account(waiting, host);
-  if (!account.Hold(reply.body.size())) {
+  const bool has_body = request.method() != http::verb::head;
+  if (has_body && !account.Hold(reply.body.size())) {
+    account.CountRefusal();
     reply = ErrorReply(503, "limit", "",
-                       "too much waits for clients of this address that read slowly; see "
-                       "limits.max_waiting_megabytes",
+                       "too much waits for clients that read slowly, so this address has no room "
+                       "for a large reply; see limits.max_waiting_megabytes",
                        "try again later");
   }
   co_return co_await WriteReply(stream, request, std::move(reply));

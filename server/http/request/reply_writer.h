@@ -8,10 +8,10 @@
 #include <boost/beast/http/serializer.hpp>
 #include <boost/beast/http/write.hpp>
 
-#include "server/core/waiting_bytes.h"
 #include "server/http/request/api_types.h"
 #include "server/http/request/beast.h"
 #include "server/http/request/web_stream.h"
+#include "server/shares/waiting_bytes.h"
 
 namespace furrow::server {
 
@@ -46,8 +46,8 @@ template <class Body>
 [[nodiscard]] net::awaitable<bool> WriteReply(WebStream& stream, const WebRequest& request,
                                               ApiReply reply);
 
-// The same for a reply that may be large. It gets room for the time of the write, or is replaced by
-// an error if too much waits for clients of the `host` already. `waiting`: null: no limit.
+// The same for a reply that may be large. It takes room for the time of the write, and is replaced
+// by an error if the `host` has none left. `waiting`: null: no limit.
 [[nodiscard]] net::awaitable<bool> WriteLargeReply(WebStream& stream, const WebRequest& request,
                                                    ApiReply reply, WaitingBytes* waiting,
                                                    const std::string& host);

@@ -11,15 +11,15 @@
 
 #include "server/cluster/coordinator.h"
 #include "server/config/http_config.h"
-#include "server/core/host_rates.h"
 #include "server/core/metrics.h"
-#include "server/core/waiting_bytes.h"
 #include "server/http/request/api_types.h"
 #include "server/http/request/page_files.h"
 #include "server/http/request/request_budget.h"
 #include "server/http/request/request_guard.h"
 #include "server/http/request/thread_handoff.h"
 #include "server/session/access/token_gate.h"
+#include "server/shares/host_rates.h"
+#include "server/shares/waiting_bytes.h"
 #include "server/tls/tls_identity.h"
 
 namespace furrow::server {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "server/core/waiting_bytes.h"
 #include "server/http/request/thread_handoff.h"
 #include "server/session/peers/peer.h"
+#include "server/shares/waiting_bytes.h"
 
 namespace furrow::server {
 

@@ -24,6 +24,9 @@ namespace {
 
 namespace websocket = beast::websocket;
 
+// What a client that waits may keep of the memory of its last message.
+constexpr std::size_t kMaxKeptMessageBytes = 64 * 1024;
+
 // One WebSocket: a reader and a writer coroutine on the web thread. Beast allows one read and one
 // write at a time, and each coroutine does only one of them.
 class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
@@ -157,6 +160,7 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
           co_return;
         }
       } else {
+        if (out.capacity() > kMaxKeptMessageBytes) out = {};  // the memory of a picture
         wake_.expires_at(net::steady_timer::time_point::max());
         beast::error_code ignored;
         co_await wake_.async_wait(Redirect(ignored));

@@ -224,6 +224,8 @@ asio::awaitable<void> TcpSession::Write() {
 
 // Moves queued messages into out_, up to kWriteBytes. False: nothing is queued.
 bool TcpSession::FillWriteBuffer() {
+  // What waits for nobody must not keep the memory of a picture.
+  if (out_.capacity() > 4 * kWriteBytes) out_ = {};
   out_.clear();
   if (!unsent_.empty()) {
     out_.swap(unsent_);

@@ -17,11 +17,11 @@
 #include "protocol/framing/tcp_framing.h"
 #include "server/core/limits.h"
 #include "server/core/metrics.h"
-#include "server/core/waiting_bytes.h"
 #include "server/net/tcp/stream_socket.h"
 #include "server/saved/saved_state.h"
 #include "server/session/hub.h"
 #include "server/session/peers/outbox.h"
+#include "server/shares/waiting_bytes.h"
 
 namespace furrow::server {
 

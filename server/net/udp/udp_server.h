@@ -19,7 +19,6 @@
 
 #include "base/status.h"
 #include "protocol/framing/fragment.h"
-#include "server/core/fair_share.h"
 #include "server/core/limits.h"
 #include "server/core/metrics.h"
 #include "server/net/udp/secure_sessions.h"
@@ -28,6 +27,7 @@
 #include "server/saved/saved_state.h"
 #include "server/session/hub.h"
 #include "server/session/peers/reception.h"
+#include "server/shares/fair_share.h"
 
 namespace furrow::server {
 

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "server/core/time.h"
-#include "server/core/token_bucket.h"
+#include "server/shares/token_bucket.h"
 
 namespace furrow::server {
 

@@ -40,18 +40,23 @@ class MessageSender {
     Encode(header, protocol::Ping{number});
     peer.link->SendReply(buffer_);
   }
-  // Sends one frame of the subscription `key`, counts it as `sent`, and counts the frames that it
-  // displaced as `dropped`. Returns the number of displaced frames. `keep`: see Link::SendFrame().
+  // Of one frame.
+  struct Sent {
+    std::uint64_t dropped = 0;  // frames, this one included
+    bool had_room = true;       // false: this one was dropped
+  };
+  // Sends one frame of the subscription `key`, counts it as `sent`, and counts the frames that were
+  // dropped for it as `dropped`. `keep`: see Link::SendFrame().
   template <class Message>
-  std::uint64_t SendFrame(Peer& peer, std::uint64_t key, protocol::Header header,
-                          const Message& message, Counter sent, Counter dropped, std::size_t keep) {
+  Sent SendFrame(Peer& peer, std::uint64_t key, protocol::Header header, const Message& message,
+                 Counter sent, Counter dropped, std::size_t keep) {
     Encode(header, message);
     return Push(peer, key, sent, dropped, keep);
   }
   // Sends one frame as SendFrame() does, from a FlatBuffers payload that is already encoded.
-  std::uint64_t SendEncodedFrame(Peer& peer, std::uint64_t key, protocol::Header header,
-                                 std::span<const std::uint8_t> payload, Counter sent,
-                                 Counter dropped, std::size_t keep) {
+  Sent SendEncodedFrame(Peer& peer, std::uint64_t key, protocol::Header header,
+                        std::span<const std::uint8_t> payload, Counter sent, Counter dropped,
+                        std::size_t keep) {
     header.session = session_;
     protocol::WriteMessage(header, payload, buffer_);
     return Push(peer, key, sent, dropped, keep);
@@ -105,12 +110,13 @@ class MessageSender {
   void Encode(const protocol::Header& header, const Message& message) {
     Encode(header, message, buffer_);
   }
-  std::uint64_t Push(Peer& peer, std::uint64_t key, Counter sent, Counter dropped,
-                     std::size_t keep) {
+  Sent Push(Peer& peer, std::uint64_t key, Counter sent, Counter dropped, std::size_t keep) {
     metrics_->Add(sent);
-    const auto count = static_cast<std::uint64_t>(peer.link->SendFrame(key, buffer_, keep, shard_));
-    metrics_->Add(dropped, count);
-    return count;
+    const int count = peer.link->SendFrame(key, buffer_, keep, shard_);
+    const bool had_room = count != Link::kNoRoom;
+    const Sent result{had_room ? static_cast<std::uint64_t>(count) : 1, had_room};
+    metrics_->Add(dropped, result.dropped);
+    return result;
   }
 
   std::uint64_t session_;

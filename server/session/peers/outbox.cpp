@@ -13,15 +13,18 @@ namespace {
 constexpr std::size_t kMaxSpareBuffer = 16 * 1024;
 constexpr std::size_t kMaxSpareBuffers = 64;
 
+std::size_t BeyondFree(std::size_t bytes) { return bytes - std::min(bytes, WaitingBytes::kFree); }
+
 }  // namespace
 
-bool Outbox::HasRoomFor(std::size_t more) {
-  return !account_ || account_->Hold(bytes() + popped_bytes_ + more);
+std::size_t Outbox::Counted(std::size_t reply_bytes, std::size_t frame_bytes) const {
+  return BeyondFree(reply_bytes) + BeyondFree(frame_bytes) + ordered_frame_bytes_ + popped_bytes_;
 }
 
-// Less than before always has room.
-void Outbox::Settle() {
-  if (account_) (void)account_->Hold(bytes() + popped_bytes_);
+int Outbox::NoRoom() {
+  Settle();
+  account_->CountRefusal();
+  return Link::kNoRoom;
 }
 
 void Outbox::Append(Queue& queue, std::uint64_t key, bool is_reply,
@@ -29,10 +32,11 @@ void Outbox::Append(Queue& queue, std::uint64_t key, bool is_reply,
   if (spare_.empty()) spare_.emplace_back();
   // splice() moves the list node itself, so a steady stream allocates neither nodes nor bytes.
   Item& item = spare_.front();
-  spare_bytes_ -= item.bytes.capacity();
+  const std::size_t capacity = item.bytes.capacity();
   item.key = key;
   item.is_reply = is_reply;
   item.bytes.assign(bytes.begin(), bytes.end());
+  spare_bytes_ -= capacity;  // if memory is short, the item has stayed
   queue.splice(queue.end(), spare_, spare_.begin());
 }
 
@@ -61,7 +65,13 @@ bool Outbox::PushReply(std::span<const std::uint8_t> bytes) {
   if (num_replies_ >= max_replies_) return false;
   // One reply always fits, whatever its size. Otherwise a large skeleton could never be sent.
   if (num_replies_ > 0 && reply_bytes_ + bytes.size() > max_reply_bytes_) return false;
-  if (!HasRoomFor(bytes.size())) return false;
+  const std::size_t all = reply_bytes_ + bytes.size();
+  const bool has_room = BeyondFree(all) == 0 || Hold(Counted(all, frame_bytes_));
+  // A client that reads its replies gets them, whatever waits for others of its host.
+  if (!has_room && num_replies_ > 0) {
+    account_->CountRefusal();
+    return false;
+  }
   ++num_replies_;
   reply_bytes_ += bytes.size();
   Append(ordered_, 0, true, bytes);
@@ -69,22 +79,26 @@ bool Outbox::PushReply(std::span<const std::uint8_t> bytes) {
 }
 
 int Outbox::PushFrame(std::uint64_t key, std::span<const std::uint8_t> bytes, std::size_t keep) {
-  if (!HasRoomFor(bytes.size())) return 1;
-  const int dropped = Queued(key, bytes, keep);
+  if (keep == kKeepAll) return PushOrdered(key, bytes);
+  const int dropped = PushReplaceable(key, bytes, keep);
   if (dropped > 0) Settle();
   return dropped;
 }
 
-// Queues a frame that has room. Returns the number of frames that are dropped for it.
-int Outbox::Queued(std::uint64_t key, std::span<const std::uint8_t> bytes, std::size_t keep) {
-  if (keep == kKeepAll) {
-    // A client of every frame wants no gaps in what it already has, so the new frame is the one to
-    // drop. The limit is in bytes, because such a client may be far behind on purpose (a recorder).
-    if (ordered_frame_bytes_ + bytes.size() > protocol::kMaxWaitingFrameBytes) return 1;
-    ordered_frame_bytes_ += bytes.size();
-    Append(ordered_, key, false, bytes);
-    return 0;
-  }
+// A client of every frame wants no gaps in what it already has, so the new frame is the one to
+// drop. The limit is in bytes, because such a client may be far behind on purpose (a recorder).
+int Outbox::PushOrdered(std::uint64_t key, std::span<const std::uint8_t> bytes) {
+  if (ordered_frame_bytes_ + bytes.size() > protocol::kMaxWaitingFrameBytes) return 1;
+  if (!Hold(Counted(reply_bytes_, frame_bytes_) + bytes.size())) return NoRoom();
+  ordered_frame_bytes_ += bytes.size();
+  Append(ordered_, key, false, bytes);
+  return 0;
+}
+
+int Outbox::PushReplaceable(std::uint64_t key, std::span<const std::uint8_t> bytes,
+                            std::size_t keep) {
+  // Without the older frames, which may all be replaced.
+  if (BeyondFree(bytes.size()) > 0 && !Hold(Counted(reply_bytes_, bytes.size()))) return NoRoom();
   const auto is_same = [key](const Item& frame) { return frame.key == key; };
   int dropped = 0;
   // The count per key avoids a search through the queue in the usual case.
@@ -93,6 +107,8 @@ int Outbox::Queued(std::uint64_t key, std::span<const std::uint8_t> bytes, std::
     const auto oldest = std::ranges::find_if(frames_, is_same);
     if (keep == 1) {
       frame_bytes_ += bytes.size() - oldest->bytes.size();
+      // A small frame does not keep the memory of a large one.
+      if (oldest->bytes.capacity() > 2 * bytes.size() + kMaxSpareBuffer) oldest->bytes = {};
       oldest->bytes.assign(bytes.begin(), bytes.end());  // keeps its place in the queue
       return 1 + DropUntilFit(oldest);
     }
@@ -110,8 +126,12 @@ int Outbox::Queued(std::uint64_t key, std::span<const std::uint8_t> bytes, std::
 }
 
 int Outbox::DropUntilFit(Queue::iterator newest) {
+  const auto fits = [this] {
+    return frame_bytes_ <= max_frame_bytes_ &&
+           (BeyondFree(frame_bytes_) == 0 || Hold(Counted(reply_bytes_, frame_bytes_)));
+  };
   int dropped = 0;
-  for (auto frame = frames_.begin(); frame_bytes_ > max_frame_bytes_ && frame != frames_.end();) {
+  for (auto frame = frames_.begin(); !fits() && frame != frames_.end();) {
     const auto next = std::next(frame);
     if (frame != newest) {
       DropFrame(frame);

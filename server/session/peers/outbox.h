@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "protocol/messages/limits.h"
-#include "server/core/waiting_bytes.h"
+#include "server/shares/waiting_bytes.h"
 
 namespace furrow::server {
 
@@ -26,11 +26,12 @@ namespace furrow::server {
 //   then replaces the oldest ones. One frame always fits.
 // - Frames with kKeepAll queue behind the replies, in order. At most kMaxWaitingFrameBytes of them
 //   are queued; further frames are dropped.
-// - All that waits, and the last message that Pop() returned, has room in the account of the
-//   peer's host. A frame without room is dropped, a reply without room is one too many.
+// - What waits, and the last message that Pop() returned, needs room in the account of the peer's
+//   host. Each of these is free: 64 KiB of replies, 64 KiB of frames without kKeepAll, and 64 KiB
+//   of the rest. A new frame first replaces the peer's own older ones; without room even then, it
+//   is dropped. A reply without room is one too many, unless no other reply waits.
 // - New messages reuse the memory of sent ones, at most kMaxSpareBytes, so the outbox of a peer
-// that
-//   keeps up stops allocating after a while. Not thread-safe.
+//   that keeps up stops allocating after a while. Not thread-safe.
 class Outbox {
  public:
   Outbox(std::size_t max_replies, std::size_t max_frames,
@@ -48,7 +49,8 @@ class Outbox {
 
   // False: the queue is full; close the peer.
   [[nodiscard]] bool PushReply(std::span<const std::uint8_t> bytes);
-  // Returns the number of frames that this call dropped, the new frame included.
+  // Returns the number of frames that this call dropped, the new frame included; Link::kNoRoom: the
+  // host has no room for the new frame, and no other one was dropped.
   int PushFrame(std::uint64_t key, std::span<const std::uint8_t> bytes, std::size_t keep = 1);
 
   // Swaps the next message into `out`: replies and kKeepAll frames first, in order, then the oldest
@@ -77,16 +79,22 @@ class Outbox {
   };
   using Queue = std::list<Item>;
 
-  // True if there is room for so many bytes besides those that wait.
-  [[nodiscard]] bool HasRoomFor(std::size_t bytes);
-  void Settle();  // after a change
-  int Queued(std::uint64_t key, std::span<const std::uint8_t> bytes, std::size_t keep);
+  // What needs room, with other sums of replies and of frames without kKeepAll.
+  [[nodiscard]] std::size_t Counted(std::size_t reply_bytes, std::size_t frame_bytes) const;
+  // States to the account what waits. False: there is no room for more than before.
+  [[nodiscard]] bool Hold(std::size_t bytes) { return !account_ || account_->Hold(bytes); }
+  // The same after a message has left the queue.
+  void Settle() { (void)Hold(Counted(reply_bytes_, frame_bytes_)); }
+  int PushOrdered(std::uint64_t key, std::span<const std::uint8_t> bytes);
+  int PushReplaceable(std::uint64_t key, std::span<const std::uint8_t> bytes, std::size_t keep);
+  int NoRoom();
   void Append(Queue& queue, std::uint64_t key, bool is_reply, std::span<const std::uint8_t> bytes);
   // Removes an item and keeps its memory for a new one. Returns the next item.
   Queue::iterator Recycle(Queue& queue, Queue::iterator item);
   void Uncount(const Item& item);
   void DropFrame(Queue::iterator frame);
-  // Drops the oldest frames, but not `newest`, until the rest fits. Returns their number.
+  // Drops the oldest frames, but not `newest`, until the rest fits and has room. Returns their
+  // number.
   int DropUntilFit(Queue::iterator newest);
 
   std::size_t max_replies_;

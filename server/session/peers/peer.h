@@ -11,10 +11,10 @@
 
 #include "protocol/messages/messages.h"
 #include "server/core/time.h"
-#include "server/core/token_bucket.h"
 #include "server/session/access/access.h"
 #include "server/session/peers/consent.h"
 #include "server/session/peers/skeleton_request_limiter.h"
+#include "server/shares/token_bucket.h"
 
 namespace furrow::server {
 
@@ -38,10 +38,12 @@ class Link {
   // Queues a reply. Replies keep their order and are never dropped for newer messages.
   virtual void SendReply(std::span<const std::uint8_t> message) = 0;
   // Queues a frame of weights, a pose or a picture. If the peer is slow, only the newest `keep`
-  // frames of a `key` stay queued. Returns the number of dropped frames. `shard`: that of the
-  // calling thread, or kExclusive if the caller holds the exclusive lock. A kExclusive frame leaves
-  // after all earlier replies, so that it cannot overtake the reply that explains it.
+  // frames of a `key` stay queued. Returns the number of dropped frames; kNoRoom: the new frame was
+  // dropped, because there is no memory for what waits for the peer, and no other one. `shard`:
+  // that of the calling thread, or kExclusive if the caller holds the exclusive lock. A kExclusive
+  // frame leaves after all earlier replies, so that it cannot overtake the reply that explains it.
   static constexpr int kExclusive = -1;
+  static constexpr int kNoRoom = -1;
   virtual int SendFrame(std::uint64_t key, std::span<const std::uint8_t> message, std::size_t keep,
                         int shard) = 0;
   // Whether the peer accepts several messages per datagram. Only UDP links use it.

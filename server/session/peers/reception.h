@@ -8,8 +8,8 @@
 #include "protocol/codec/codec.h"
 #include "server/core/metrics.h"
 #include "server/core/time.h"
-#include "server/core/token_bucket.h"
 #include "server/session/peers/address_proof.h"
+#include "server/shares/token_bucket.h"
 
 namespace furrow::server {
 

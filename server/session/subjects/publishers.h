@@ -10,7 +10,6 @@
 
 #include "protocol/codec/codec.h"
 #include "protocol/messages/messages.h"
-#include "server/core/host_rates.h"
 #include "server/core/limits.h"
 #include "server/core/metrics.h"
 #include "server/pipeline/stream_definition.h"
@@ -21,6 +20,7 @@
 #include "server/session/subjects/places.h"
 #include "server/session/subjects/pose_batch.h"
 #include "server/session/subjects/subject_registry.h"
+#include "server/shares/host_rates.h"
 
 namespace furrow::server {
 

@@ -16,12 +16,12 @@
 #include "protocol/framing/sequence.h"
 #include "protocol/messages/messages.h"
 #include "server/core/capture_clock.h"
-#include "server/core/fair_share.h"
 #include "server/core/time.h"
 #include "server/pipeline/subject_pipeline.h"
 #include "server/session/peers/peer.h"
 #include "server/session/subjects/rest_detector.h"
 #include "server/session/subjects/subject_stats.h"
+#include "server/shares/fair_share.h"
 
 namespace furrow::server {
 

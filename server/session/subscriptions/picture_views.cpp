@@ -263,11 +263,17 @@ void PictureViews::OnPicture(const FinishedPicture& picture, Time now) {
     } else if (PictureRequest* viewer = FlowControlled(*subscription); viewer != nullptr) {
       // Ends the request; the tick asks again after ViewerFlow::kRetry.
       viewer->flow->Fail();
-      // Pictures that were never encoded leave no gap in the video.
-      if (viewer->video && !picture.codec.empty()) viewer->video->Lose();
-      subscription->owed = subscription->subject != nullptr;
+      OweNext(*subscription, picture);
     }
   }
+}
+
+// A picture of a flow-controlled viewer does not reach it.
+void PictureViews::OweNext(Subscription& subscription, const FinishedPicture& picture) {
+  auto& request = std::get<PictureRequest>(subscription.request);
+  // Pictures that were never encoded leave no gap in the video.
+  if (request.video && !picture.codec.empty()) request.video->Lose();
+  subscription.owed = subscription.subject != nullptr;
 }
 
 void PictureViews::FillImage(const FinishedPicture& picture) {
@@ -294,17 +300,21 @@ void PictureViews::SendPicture(Subscription& subscription, const FinishedPicture
   image_.still = ticket.still;
   image_.number = request.flow ? request.flow->Send() : 0;
   image_.dropped = request.flow ? request.flow->dropped() : 0;
-  const std::uint64_t displaced =
+  const MessageSender::Sent sent =
       messages_->SendFrame(*subscription.peer, subscription.uid,
                            {.stream = subscription.id,
                             .sequence = picture.sequence,
                             .capture_time_us = picture.capture_time_us},
                            image_, Counter::kPicturesSent, Counter::kPicturesDroppedSlow,
                            request.flow ? ViewerFlow::kMaxUnderWay : kMaxQueuedPictures);
+  if (!sent.had_room && request.flow) {
+    request.flow->TakeBack();
+    return OweNext(subscription, picture);
+  }
   if (!request.video) return;
   request.video->Sent(image_.number, picture.bytes.size(), picture.key, now);
   // Which picture of the viewer made room is not known. It may be one of this video.
-  if (displaced > 0) request.video->Lose();
+  if (sent.dropped > 0) request.video->Lose();
 }
 
 }  // namespace furrow::server

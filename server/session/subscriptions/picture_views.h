@@ -79,6 +79,7 @@ class PictureViews {
   void AddFlowControlledJob(Subscription& subscription, PictureRequest& request,
                             std::int64_t age_us, Time now, std::vector<RenderJob>* jobs);
   void FillImage(const FinishedPicture& picture);
+  static void OweNext(Subscription& subscription, const FinishedPicture& picture);
   void SendPicture(Subscription& subscription, const FinishedPicture& picture,
                    const PictureTicket& ticket, Time now);
 

@@ -48,18 +48,21 @@ void PoseRelay::SendPose(Subscription& subscription, std::span<const std::uint8_
   // The usual case copies the bytes of the publisher under a new envelope: no decoding loss, and no
   // cost per joint.
   if (!payload.empty()) {
-    subscription.dropped += context->messages.SendEncodedFrame(peer, subscription.uid, header,
-                                                               payload, Counter::kPosesRelayed,
-                                                               Counter::kPosesDroppedSlow, keep);
+    subscription.dropped +=
+        context->messages
+            .SendEncodedFrame(peer, subscription.uid, header, payload, Counter::kPosesRelayed,
+                              Counter::kPosesDroppedSlow, keep)
+            .dropped;
     return;
   }
   // A partial pose or a foreign wire. A whole pose needs nothing that the subscriber may have
   // missed.
   ToWholePose(pipeline.pose(), pipeline.stream(), &context->pose);
   context->pose.skeleton_hash = subject.skeleton_hash;
-  subscription.dropped +=
-      context->messages.SendFrame(peer, subscription.uid, header, context->pose,
-                                  Counter::kPosesRelayed, Counter::kPosesDroppedSlow, keep);
+  subscription.dropped += context->messages
+                              .SendFrame(peer, subscription.uid, header, context->pose,
+                                         Counter::kPosesRelayed, Counter::kPosesDroppedSlow, keep)
+                              .dropped;
 }
 
 void PoseRelay::ReportDropped(Subscription& subscription, Time now) {

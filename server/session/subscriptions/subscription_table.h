@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "protocol/messages/messages.h"
-#include "server/core/fair_share.h"
 #include "server/session/peers/peer.h"
 #include "server/session/subjects/subject_registry.h"
 #include "server/session/subscriptions/subscription.h"
+#include "server/shares/fair_share.h"
 
 namespace furrow::server {
 

@@ -35,6 +35,11 @@ void ViewerFlow::Fail() {
   failed_ = true;
 }
 
+void ViewerFlow::TakeBack() {
+  --sent_;
+  Fail();
+}
+
 void ViewerFlow::Withdraw() {
   pending_ = false;
   has_still_ = false;

@@ -11,7 +11,8 @@ namespace furrow::server {
 // pictures are unacknowledged at a time, the newest pose wins, and three quality tiers adapt to the
 // viewer's speed.
 //
-// Each picture passes through Request(), then Send(), Fail() or Withdraw(), then Acknowledge().
+// Each picture passes through Request(), then Send(), Fail() or Withdraw(), then Acknowledge() or
+// TakeBack().
 // Only one picture is requested from the renderer at a time. The caller supplies the time.
 class ViewerFlow {
  public:
@@ -32,6 +33,9 @@ class ViewerFlow {
   [[nodiscard]] std::uint32_t Send();
   // The requested picture could not be rendered.
   void Fail();
+  // The picture of the last Send() was dropped on its way to the viewer, which never learns its
+  // number. As after Fail(), the next one is requested after kRetry.
+  void TakeBack();
   // The request was cancelled before rendering began.
   void Withdraw();
   // The viewer has shown this picture and all before it. False: the picture was never sent.

@@ -38,13 +38,16 @@ void SendWeights(Subscription& subscription, const WeightsRequest& request, std:
                  PublishContext* context) {
   const SubjectPipeline& pipeline = *subscription.subject->pipeline;
   EncodeWeights(pipeline, request, age_us, context);
-  subscription.dropped += context->messages.SendEncodedFrame(
-      *subscription.peer, subscription.uid,
-      {.stream = subscription.id,
-       .sequence = pipeline.sequence(),
-       .capture_time_us = pipeline.capture_time_us()},
-      std::span(context->encoded).subspan(protocol::kEnvelopeBytes), Counter::kWeightsSent,
-      Counter::kWeightsDroppedSlow, subscription.every ? kKeepAll : kMaxQueuedWeights);
+  subscription.dropped +=
+      context->messages
+          .SendEncodedFrame(*subscription.peer, subscription.uid,
+                            {.stream = subscription.id,
+                             .sequence = pipeline.sequence(),
+                             .capture_time_us = pipeline.capture_time_us()},
+                            std::span(context->encoded).subspan(protocol::kEnvelopeBytes),
+                            Counter::kWeightsSent, Counter::kWeightsDroppedSlow,
+                            subscription.every ? kKeepAll : kMaxQueuedWeights)
+          .dropped;
 }
 
 }  // namespace furrow::server

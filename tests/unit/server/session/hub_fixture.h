@@ -24,6 +24,7 @@ class FakePeer : public Link {
  public:
   void SendReply(std::span<const std::uint8_t> message) override { Receive(message); }
   int SendFrame(std::uint64_t, std::span<const std::uint8_t> message, std::size_t, int) override {
+    if (!has_room) return kNoRoom;
     Receive(message);
     return 0;
   }
@@ -58,6 +59,7 @@ class FakePeer : public Link {
   std::vector<std::uint64_t> dropped_keys;
   std::uint64_t bytes_received = 0;
   bool stuck = false;
+  bool has_room = true;   // for frames
   bool finished = false;  // the hub has ended the connection
   PeerId id = 0;
   std::uint64_t session = 77;

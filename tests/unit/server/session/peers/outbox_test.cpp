@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/session/peers/outbox.h"
 
+#include <random>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -94,16 +95,41 @@ class SharedOutbox : public testing::Test {
   Outbox outbox{4, 8};
 };
 
-TEST_F(SharedOutbox, WithoutRoomFramesAreDroppedAndRepliesRefused) {
-  EXPECT_EQ(outbox.PushFrame(1, Bytes(kChunk, 1)), 0) << "this much is free";
-  EXPECT_EQ(outbox.PushFrame(2, Bytes(2 * kChunk, 2)), 0) << "half of the budget";
-  for (const std::size_t keep : {std::size_t{1}, std::size_t{4}, kKeepAll}) {
-    EXPECT_EQ(outbox.PushFrame(3, Bytes{3}, keep), 1);
-  }
-  EXPECT_FALSE(outbox.PushReply(Bytes{4}));
-  EXPECT_EQ(metrics.Get(Counter::kWaitingRefused), 4u);
-  EXPECT_THAT(PopAll(&outbox), ElementsAre(1, 2));
+// Fills the share of the host: what is free, and half of the budget.
+TEST_F(SharedOutbox, WithoutRoomLargeMessagesAreDroppedAndSmallOnesAreNot) {
+  EXPECT_EQ(outbox.PushFrame(1, Bytes(3 * kChunk, 1), kKeepAll), 0);
+  EXPECT_EQ(budget.taken(), 2 * kChunk);
+  EXPECT_EQ(outbox.PushFrame(1, Bytes{9}, kKeepAll), Link::kNoRoom);
+  EXPECT_EQ(outbox.PushFrame(2, Bytes(kChunk + 1, 9)), Link::kNoRoom);
+  EXPECT_EQ(metrics.Get(Counter::kWaitingRefused), 2u);
+  EXPECT_EQ(outbox.PushFrame(2, Bytes(kChunk, 3)), 0);
+  EXPECT_TRUE(outbox.PushReply(Bytes(kChunk, 2)));
+  EXPECT_FALSE(outbox.PushReply(Bytes{9})) << "one reply too many";
+  EXPECT_EQ(metrics.Get(Counter::kWaitingRefused), 3u);
+  EXPECT_THAT(PopAll(&outbox), ElementsAre(1, 2, 3));
   EXPECT_EQ(budget.taken(), 0u);
+}
+
+// Somebody else of the host reads nothing.
+TEST_F(SharedOutbox, AClientThatReadsGetsItsReplies) {
+  WaitingBytes::Account other(&budget, "host");
+  ASSERT_TRUE(other.Hold(3 * kChunk));
+  EXPECT_TRUE(outbox.PushReply(Bytes(20 * kChunk, 1))) << "no other one waits";
+  Bytes bytes;
+  ASSERT_TRUE(outbox.Pop(&bytes));
+  EXPECT_FALSE(outbox.Pop(&bytes));
+  EXPECT_TRUE(outbox.PushReply(Bytes(20 * kChunk, 1)));
+}
+
+TEST_F(SharedOutbox, ANewFrameReplacesOlderOnesWhereThereIsNoRoomForAll) {
+  EXPECT_EQ(outbox.PushFrame(1, Bytes(4 * kChunk, 1)), 0);
+  EXPECT_EQ(budget.taken(), 2 * kChunk);
+  EXPECT_EQ(outbox.PushFrame(2, Bytes(4 * kChunk, 2)), 1);
+  EXPECT_EQ(outbox.PushFrame(3, Bytes{3}), 1);
+  EXPECT_EQ(budget.taken(), 0u);
+  EXPECT_EQ(outbox.PushFrame(4, Bytes(4 * kChunk, 4)), 1);
+  EXPECT_EQ(outbox.PushFrame(5, Bytes(5 * kChunk, 5)), Link::kNoRoom) << "more than the share";
+  EXPECT_THAT(PopAll(&outbox), ElementsAre(4)) << "it stays";
 }
 
 TEST_F(SharedOutbox, WhatIsBeingSentStillCounts) {
@@ -111,22 +137,45 @@ TEST_F(SharedOutbox, WhatIsBeingSentStillCounts) {
   Bytes sent;
   ASSERT_TRUE(outbox.Pop(&sent));
   EXPECT_EQ(budget.taken(), 2 * kChunk);
-  EXPECT_EQ(outbox.PushFrame(1, Bytes{2}), 1);
-  EXPECT_FALSE(outbox.Pop(&sent)) << "it has been sent";
+  EXPECT_EQ(outbox.PushFrame(1, Bytes(2 * kChunk, 2)), Link::kNoRoom);
+  EXPECT_EQ(outbox.PushFrame(1, Bytes{2}), 0) << "small ones have room of their own";
+  ASSERT_TRUE(outbox.Pop(&sent));
+  EXPECT_FALSE(outbox.Pop(&sent)) << "all has been sent";
   EXPECT_EQ(budget.taken(), 0u);
-  EXPECT_EQ(outbox.PushFrame(1, Bytes{2}), 0);
+  EXPECT_EQ(outbox.PushFrame(1, Bytes(2 * kChunk, 2)), 0);
 }
 
 TEST_F(SharedOutbox, WhatIsDroppedGivesRoom) {
-  EXPECT_EQ(outbox.PushFrame(1, Bytes(2 * kChunk, 1)), 0);
+  EXPECT_EQ(outbox.PushFrame(1, Bytes(3 * kChunk, 1)), 0);
+  EXPECT_EQ(budget.taken(), kChunk);
   EXPECT_EQ(outbox.PushFrame(1, Bytes(kChunk, 2)), 1) << "it replaces the first one";
-  EXPECT_EQ(budget.taken(), 0u);
-  EXPECT_EQ(outbox.PushFrame(2, Bytes(2 * kChunk, 3), kKeepAll), 0);
-  outbox.DropFrames(2);
-  EXPECT_EQ(budget.taken(), 0u);
-  EXPECT_EQ(outbox.PushFrame(2, Bytes(2 * kChunk, 3)), 0);
   outbox.DropReplaceableFrames();
   EXPECT_EQ(budget.taken(), 0u);
+  EXPECT_EQ(outbox.PushFrame(2, Bytes(2 * kChunk, 3), kKeepAll), 0);
+  EXPECT_EQ(budget.taken(), kChunk);
+  outbox.DropFrames(2);
+  EXPECT_EQ(budget.taken(), 0u);
+}
+
+// Whatever is pushed and popped, the account ends at 0 and never exceeds the share.
+TEST_F(SharedOutbox, TheAccountFollowsTheQueue) {
+  std::mt19937 random(3);
+  Bytes bytes;
+  for (int step = 0; step < 20'000; ++step) {
+    const Bytes message(random() % (2 * kChunk));
+    switch (random() % 6) {
+      case 0: (void)outbox.PushReply(message); break;
+      case 1: (void)outbox.PushFrame(random() % 3, message, kKeepAll); break;
+      case 2: outbox.DropFrames(random() % 3); break;
+      case 3: (void)outbox.Pop(&bytes); break;
+      default: (void)outbox.PushFrame(random() % 3, message, 1 + random() % 2);
+    }
+    ASSERT_LE(budget.taken(), 2 * kChunk);
+  }
+  while (outbox.Pop(&bytes)) {
+  }
+  EXPECT_EQ(budget.taken(), 0u);
+  EXPECT_EQ(outbox.bytes(), 0u);
 }
 
 TEST(Outbox, TheNewestFrameOfAKeyWinsAndKeepsItsPlace) {

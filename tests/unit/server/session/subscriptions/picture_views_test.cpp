@@ -230,6 +230,29 @@ TEST_F(PictureViewsFlowTest, AFailedPictureIsRequestedAgain) {
   EXPECT_EQ(Tickets(), 1u);
 }
 
+// Its host has no room for what waits. The viewer never learns of these pictures, and must not wait
+// for ever for the next one.
+TEST_F(PictureViewsFlowTest, APictureWithoutRoomIsRequestedAgain) {
+  Publish(sender, "ann");
+  const std::uint16_t stream = View(viewer);
+  viewer.has_room = false;
+  Pose1(0.5f);
+  for (int i = 0; i < 5; ++i) {
+    ASSERT_EQ(Tickets(), 1u) << i;
+    DrawAll();
+    Advance(0.3);
+    hub->Tick(now);
+  }
+  EXPECT_EQ(Count(Counter::kPicturesDroppedSlow), 5u);
+  viewer.has_room = true;
+  DrawAll();
+  const auto image = viewer.Take<protocol::ImageFrame>();
+  ASSERT_TRUE(image.has_value());
+  EXPECT_EQ(image->message.number, 1u);
+  Send(viewer, protocol::FrameAck{1}, stream);
+  EXPECT_TRUE(viewer.inbox.empty()) << "a valid acknowledgement";
+}
+
 TEST_F(PictureViewsFlowTest, AcknowledgingAnUnsentPictureIsAnError) {
   Publish(sender, "ann");
   const std::uint16_t stream = View(viewer);

@@ -132,5 +132,20 @@ TEST(ViewerFlow, AFailedRiseDoublesThePatience) {
   EXPECT_GT(waited[1], waited[0] + 3.0);
 }
 
+TEST(ViewerFlow, APictureThatIsTakenBackIsNotUnderWay) {
+  ViewerFlow flow;
+  Time now = FromSeconds(10.0);
+  for (int i = 0; i < 5; ++i) {
+    ASSERT_TRUE(flow.CanRequest(now)) << i;
+    flow.Request(/*still=*/true, now);
+    EXPECT_EQ(flow.Send(), 1u);
+    flow.TakeBack();
+    EXPECT_EQ(flow.under_way(), 0u);
+    EXPECT_FALSE(flow.HasStill(Time{0})) << "the viewer has not got it";
+    EXPECT_FALSE(flow.CanRequest(now)) << "not at once";
+    now += ViewerFlow::kRetry;
+  }
+}
+
 }  // namespace
 }  // namespace furrow::server

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/core/token_bucket.h"
+#include "server/shares/token_bucket.h"
 
 #include <gtest/gtest.h>
 

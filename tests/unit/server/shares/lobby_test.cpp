@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/core/lobby.h"
+#include "server/shares/lobby.h"
 
 #include <vector>
 

@@ -18,22 +18,24 @@ class FairShare {
  public:
   explicit FairShare(std::size_t places) : places_(places) {}
 
-  // False: the host has its share, or there is no place left.
-  [[nodiscard]] bool HasRoomFor(const std::string& host) const {
-    return held(host) + taken_ < places_;
+  // False: the host has its share, or there is no place left. `count`: of places that it wants, at
+  // least 1, as if it took one after the other.
+  [[nodiscard]] bool HasRoomFor(const std::string& host, std::size_t count = 1) const {
+    return held(host) + taken_ + 2 * (count - 1) < places_;
   }
-  // Takes a place. False: HasRoomFor() is.
-  [[nodiscard]] bool Enter(const std::string& host) {
-    if (!HasRoomFor(host)) return false;
-    ++held_[host];
-    ++taken_;
+  // Takes places. False: HasRoomFor() is, and none is taken.
+  [[nodiscard]] bool Enter(const std::string& host, std::size_t count = 1) {
+    if (!HasRoomFor(host, count)) return false;
+    held_[host] += count;
+    taken_ += count;
     return true;
   }
-  // Gives back a place that Enter() took for the host.
-  void Leave(const std::string& host) {
+  // Gives back places that Enter() took for the host.
+  void Leave(const std::string& host, std::size_t count = 1) {
     const auto held = held_.find(host);
-    if (--held->second == 0) held_.erase(held);
-    --taken_;
+    held->second -= count;
+    if (held->second == 0) held_.erase(held);
+    taken_ -= count;
   }
 
   // Changes the number of places. Those that are taken stay taken, even if they are more.

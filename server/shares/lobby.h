@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "server/core/time.h"
-#include "server/core/token_bucket.h"
+#include "server/shares/token_bucket.h"
 
 namespace furrow::server {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/core/host_rates.h"
+#include "server/shares/host_rates.h"
 
 #include <array>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/core/waiting_bytes.h"
+#include "server/shares/waiting_bytes.h"
 
 namespace furrow::server {
 
@@ -15,14 +15,12 @@ std::size_t WaitingBytes::taken() const {
 
 bool WaitingBytes::Change(const std::string& host, std::size_t* held, std::size_t wanted) {
   const std::lock_guard lock(mutex_);
-  const std::size_t before = *held;
-  while (*held < wanted && shares_.Enter(host)) ++*held;
-  if (*held < wanted) {
-    for (; *held > before; --*held) shares_.Leave(host);
-    metrics_->Add(Counter::kWaitingRefused);
-    return false;
+  if (wanted > *held) {
+    if (!shares_.Enter(host, wanted - *held)) return false;
+  } else {
+    shares_.Leave(host, *held - wanted);
   }
-  for (; *held > wanted; --*held) shares_.Leave(host);
+  *held = wanted;
   return true;
 }
 

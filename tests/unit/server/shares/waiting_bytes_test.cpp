@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/core/waiting_bytes.h"
+#include "server/shares/waiting_bytes.h"
 
 #include <optional>
 #include <random>
@@ -36,7 +36,9 @@ TEST_F(WaitingBytesTest, OneHostGetsHalfAndTheNextOneFindsRoom) {
   EXPECT_EQ(budget.taken(), 8 * kChunk);
   Account other(&budget, "other");
   EXPECT_TRUE(other.Hold(kFree + 4 * kChunk));
-  EXPECT_EQ(metrics.Get(Counter::kWaitingRefused), 2u);
+  EXPECT_EQ(metrics.Get(Counter::kWaitingRefused), 0u);
+  second.CountRefusal();
+  EXPECT_EQ(metrics.Get(Counter::kWaitingRefused), 1u);
 }
 
 TEST_F(WaitingBytesTest, ARefusalChangesNothing) {

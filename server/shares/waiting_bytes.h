@@ -6,25 +6,25 @@
 #include <string>
 #include <utility>
 
-#include "server/core/fair_share.h"
 #include "server/core/metrics.h"
+#include "server/shares/fair_share.h"
 
 namespace furrow::server {
 
 // Limits the memory of what waits for clients that read slowly: of all together, and shared between
-// hosts (FairShare), so that one host alone gets half. The first kFree bytes of each client are not
-// counted, because the number of clients bounds them; clients that keep up never come here.
+// hosts (FairShare), so that one host alone gets half. The first kFree bytes of each account are
+// not counted, because the number of clients bounds them; clients that keep up never come here.
 // Thread-safe.
 class WaitingBytes {
  public:
   static constexpr std::size_t kFree = std::size_t{64} << 10;
   static constexpr std::size_t kChunk = std::size_t{64} << 10;  // what hosts take and give back
 
-  // `most`: bytes. `metrics`: not null; outlives this object; counts refusals.
+  // `most`: bytes. `metrics`: not null; outlives this object; counts what accounts report.
   WaitingBytes(std::size_t most, Metrics* metrics) : metrics_(metrics), shares_(most / kChunk) {}
   // From now on. What waits already goes on waiting.
   void SetMost(std::size_t most);
-  // What is taken, in whole chunks.
+  // The bytes of all chunks that are taken.
   [[nodiscard]] std::size_t taken() const;
 
   // What waits for one client. Not thread-safe. Without a budget, everything has room.
@@ -40,11 +40,16 @@ class WaitingBytes {
           chunks_(std::exchange(other.chunks_, 0)) {}
     Account& operator=(Account&&) = delete;
 
-    // States how many bytes wait. False: more than before, and there is no room for them; the
-    // account stays as it was. Fewer bytes are always right.
+    // States how many bytes wait. False: there is no room for more than before, and the account
+    // stays as it was. Fewer bytes always have room.
     [[nodiscard]] bool Hold(std::size_t bytes) {
       const std::size_t chunks = bytes <= kFree ? 0 : (bytes - kFree + kChunk - 1) / kChunk;
       return chunks == chunks_ || budget_ == nullptr || budget_->Change(host_, &chunks_, chunks);
+    }
+
+    // Counts that a message or a reply had no room.
+    void CountRefusal() {
+      if (budget_ != nullptr) budget_->metrics_->Add(Counter::kWaitingRefused);
     }
 
    private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/core/fair_share.h"
+#include "server/shares/fair_share.h"
 
 #include <string>
 
@@ -21,6 +21,27 @@ TEST(FairShare, EachHostGetsHalfOfWhatIsLeft) {
   EXPECT_EQ(TakeAll(share, "b"), 64);
   EXPECT_EQ(TakeAll(share, "a"), 0);
   EXPECT_EQ(share.taken(), 192u);
+}
+
+TEST(FairShare, SeveralPlacesAreTakenAsIfOneAfterTheOther) {
+  for (std::size_t before = 0; before < 12; ++before) {
+    for (std::size_t count = 1; count < 12; ++count) {
+      FairShare at_once(20);
+      FairShare in_turn(20);
+      std::size_t entered = 0;
+      for (FairShare* share : {&at_once, &in_turn}) {
+        EXPECT_TRUE(share->Enter("other", 3));
+        entered = 0;
+        while (entered < before && share->Enter("a")) ++entered;
+      }
+      bool all = true;
+      for (std::size_t i = 0; i < count; ++i) all = all && in_turn.Enter("a");
+      EXPECT_EQ(at_once.Enter("a", count), all) << before << " " << count;
+      EXPECT_EQ(at_once.held("a"), entered + (all ? count : 0));
+      if (at_once.held("a") > 0) at_once.Leave("a", at_once.held("a"));
+      EXPECT_EQ(at_once.taken(), 3u);
+    }
+  }
 }
 
 TEST(FairShare, AFewPlacesAreForAnybody) {
