@@ -59,7 +59,7 @@ Status MocapInput::Give(const std::string& sender, Time now) {
             sender + " may not send, because --mocap-allow does not list it", "sender",
             "add it to mocap.allow, and reload the configuration"};
   }
-  spdlog::info("{} now accepts {}, as somebody has asked", flag_, sender);
+  spdlog::info("{} now accepts {}, on request", flag_, Plain(address).to_string());
   has_logged_rejected_ = false;
   return {};
 }
@@ -128,7 +128,8 @@ void MocapInput::CountUnderstood(const asio::ip::address& sender, Time now) {
 
 MocapReport MocapInput::Report(Time now) const {
   const auto text = [](const std::optional<Arrival>& arrival) {
-    return arrival ? std::optional(MocapReport::Arrival{arrival->sender.to_string(), arrival->at})
+    return arrival ? std::optional(
+                         MocapReport::Arrival{Plain(arrival->sender).to_string(), arrival->at})
                    : std::nullopt;
   };
   const auto holder = gate_.HolderAt(now);

@@ -5,15 +5,10 @@
 #include <iterator>
 
 namespace furrow::server {
-namespace {
-
-// One form per address: a dual-stack socket shows IPv4 addresses as ::ffff:a.b.c.d.
 asio::ip::address Plain(const asio::ip::address& address) {
   if (!address.is_v6() || !address.to_v6().is_v4_mapped()) return address;
   return asio::ip::make_address_v4(asio::ip::v4_mapped, address.to_v6());
 }
-
-}  // namespace
 
 SenderGate::SenderGate(std::span<const asio::ip::address> allowed, Policy policy)
     : exclusive_(policy == Policy::kOne || allowed.empty()) {

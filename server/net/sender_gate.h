@@ -13,6 +13,9 @@
 
 namespace furrow::server {
 
+// One form per address: a dual-stack socket shows IPv4 addresses as ::ffff:a.b.c.d.
+[[nodiscard]] asio::ip::address Plain(const asio::ip::address& address);
+
 // Decides which sender may use a motion-capture port. Most foreign protocols neither authenticate
 // nor identify the sender, so two senders at once would mix into one performance. The first sender
 // that sends steadily therefore holds the port until it has sent nothing for kRelease. A single

@@ -111,7 +111,7 @@ export interface StreamInfo {
   late: number;
   jitter_ms: number;
   age_ms: number;
-  /** The daemon's clock minus the sender's, and the way of a pose; null: the sender's does not count from 1970. */
+  /** The daemon's clock minus the sender's, plus the network delay; null: unknown, or the sender's does not count from 1970. */
   clock_offset_ms: number | null;
   joints: number;
   blend_shapes: number;

@@ -475,7 +475,7 @@ export const text = {
     notAllowedTodo: 'Add it to the daemon’s options:',
     held: (sender: string) => `Blocked: ${sender} sends, but another sender holds the port.`,
     heldTodo: 'Accept this sender instead, or stop the other one: the port is free 3 s after its last packet. With --mocap-allow, Live Link Face accepts all listed senders.',
-    alsoSends: (sender: string) => `${sender} sends, too, and is refused: one sender at a time holds the port.`,
+    alsoSends: (sender: string) => `${sender} is also sending, but is rejected: only one sender at a time may use the port.`,
     accept: (sender: string) => `Accept ${sender} instead`,
     accepted: (sender: string) => `${sender} holds the port now.`,
     streams: 'What arrives',
@@ -483,8 +483,8 @@ export const text = {
       ['Subject', 'Name, and where it comes from'],
       ['Hz', 'Poses in the last second'],
       ['Lost', 'Share of poses lost on the way'],
-      ['Jitter', 'Arrival jitter against capture time, in ms'],
-      ['Clock', 'The daemon’s clock minus the sender’s, and the way of a pose, in ms. Only for senders whose clock counts from 1970'],
+      ['Jitter, ms', 'Arrival jitter against capture time'],
+      ['Clock, ms', 'The daemon’s clock minus the sender’s, plus the network delay. Only for senders whose clock counts from 1970'],
     ],
     unused: (missing: number, ignored: number) =>
       [missing > 0 ? `${times(missing, 'name is', 'names are')} missing` : '', ignored > 0 ? `${times(ignored, 'joint is', 'joints are')} ignored` : '']

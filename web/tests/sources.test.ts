@@ -38,10 +38,11 @@ test('a sender that another one keeps out can be accepted, unless it is not allo
   const acceptOf = (input: Partial<MocapInputInfo>, sources: Partial<SourcesInfo> = {}) => adviseOn({ ...PHONE, ...input }, { ...OPEN, ...sources }).accept;
   assert.equal(acceptOf(rejected), '192.0.2.5');
   assert.equal(acceptOf(receiving), '192.0.2.5');
-  assert.match(adviseOn({ ...PHONE, ...receiving }, OPEN).todo, /192\.0\.2\.5 sends, too/);
+  assert.match(adviseOn({ ...PHONE, ...receiving }, OPEN).todo, /192\.0\.2\.5 is also sending/);
   assert.equal(acceptOf(receiving, { allow: ['192.0.2.5', '192.0.2.20'] }), '192.0.2.5');
   assert.equal(acceptOf(rejected, { allow: ['192.0.2.20'] }), '');
   assert.equal(acceptOf({ ...receiving, rejected_age_ms: 9000 }), '', 'it has stopped');
+  assert.equal(acceptOf({ ...receiving, holder: '192.0.2.5' }), '', 'it has been accepted a moment ago');
   assert.equal(acceptOf({ packets: 1, sender: '192.0.2.20', age_ms: 5 }), '');
 });
 

@@ -63,7 +63,7 @@ Json NamesJson(std::span<const std::string> names) {
           {"names", Json(std::vector<std::string>(shown.begin(), shown.end()))}};
 }
 
-// By how much the sender's clock is behind the daemon's, and the way of a pose. Null: unknown.
+// The daemon's clock minus the sender's, plus the network delay. Null: unknown.
 Json ClockOffsetMs(const Subject& subject, Time now, Time unix_now) {
   const auto difference = subject.capture_clock.difference_us();
   if (!difference) return {};
@@ -143,6 +143,11 @@ ApiReply SourcesApi::Accept(const ApiRequest& request, Hub& hub, Time now) const
   }
   if (input != kVmc && input != kLiveLinkFace) {
     return ErrorReply(Status(StatusCode::kSchema, "must be vmc or livelink_face", "input"));
+  }
+  // A port may feed any subject.
+  if (request.access.by_token() && request.access.grant().subjects != "*") {
+    return ErrorReply(403, "forbidden", "",
+                      "a token for all subjects is needed; " + request.access.Text());
   }
   const Status status = parts_.give(input == kVmc, sender, now);
   return status.ok() ? Show(request, hub, now) : ErrorReply(status);

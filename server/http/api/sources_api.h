@@ -34,8 +34,8 @@ class SourcesApi {
 
   // Names the subjects that the request may know of. Requires the hub's exclusive lock.
   [[nodiscard]] ApiReply Show(const ApiRequest& request, Hub& hub, Time now) const;
-  // {"input": "vmc", "sender": "192.0.2.7"}: this sender holds the port from now on. Replies as
-  // Show() does. Requires the hub's exclusive lock.
+  // {"input": "vmc", "sender": "192.0.2.7"}: this sender holds the port from now on. Needs a token
+  // for all subjects, if any. Replies as Show() does. Requires the hub's exclusive lock.
   [[nodiscard]] ApiReply Accept(const ApiRequest& request, Hub& hub, Time now) const;
 
  private:

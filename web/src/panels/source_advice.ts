@@ -30,7 +30,7 @@ export function adviseOn(input: MocapInputInfo, sources: SourcesInfo): SourceAdv
   const isReceiving = input.age_ms !== null && input.age_ms < RECENT_MS;
   const isRejecting = input.rejected_age_ms !== null && input.rejected_age_ms < RECENT_MS;
   const refused = input.rejected_sender;
-  const mayAccept = isRejecting && (sources.allow.length === 0 || sources.allow.includes(refused));
+  const mayAccept = isRejecting && refused !== input.holder && (sources.allow.length === 0 || sources.allow.includes(refused));
   if (isReceiving) {
     const words = t.receiving(input.sender, Math.round(input.rate_hz));
     return mayAccept ? advice('receiving', words, t.alsoSends(refused), '', refused) : advice('receiving', words);

@@ -41,11 +41,13 @@ export class SourcesPanel {
 
   private show(sources: SourcesInfo): void {
     const addresses = sources.loopback ? [] : sources.addresses;
-    const now = JSON.stringify(sources.inputs.map((input) => [adviseOn(input, sources), input.port, addresses]));
+    // What changes every second changes in place, so that buttons keep the focus.
+    const now = JSON.stringify(sources.inputs.map((input) => [{ ...adviseOn(input, sources), words: '' }, input.port, addresses]));
     if (now !== this.shown) {
       this.shown = now;
       this.cards.replaceChildren(...sources.inputs.map((input) => this.card(input, sources, addresses)));
     }
+    sources.inputs.forEach((input, i) => this.update(this.cards.children[i]!, input, sources));
     this.streams.show(sources.subjects, sources.more_subjects);
     void this.showCode(addresses[0] ?? '');
   }
@@ -63,18 +65,25 @@ export class SourcesPanel {
 
   private card(input: MocapInputInfo, sources: SourcesInfo, addresses: readonly string[]): HTMLElement {
     const t = text.sources;
-    const { state, words, todo, command, accept } = adviseOn(input, sources);
+    const { state, todo, command, accept } = adviseOn(input, sources);
     const target = input.port === null || addresses.length === 0 ? null : h('dl', { class: 'facts target' },
       h('dt', {}, t.address), h('dd', {}, ...addresses.map((address) => h('code', {}, address))),
       h('dt', {}, t.port), h('dd', {}, h('code', {}, String(input.port))));
     return h('section', { class: `source ${state}`, 'data-source': input.name, 'data-state': state, 'aria-label': t.names[input.name] },
       h('h2', {}, t.names[input.name], h('small', {}, t.apps[input.name])),
-      h('p', { class: 'source-state' }, words),
+      h('p', { class: 'source-state' }),
       target,
       todo === '' ? null : h('p', { class: 'fine' }, todo),
       command === '' ? null : h('div', { class: 'row command' }, commandOf(command), button(text.stage.copy, () => void this.copy(command))),
       accept === '' ? null : button(t.accept(accept), () => void this.accept(input.name, accept)),
-      state === 'off' || input.packets === 0 ? null : h('p', { class: 'fine' }, t.counts(input.packets, input.malformed, input.rejected)));
+      h('p', { class: 'fine source-counts' }));
+  }
+
+  private update(card: Element, input: MocapInputInfo, sources: SourcesInfo): void {
+    card.querySelector('.source-state')!.textContent = adviseOn(input, sources).words;
+    const counts = card.querySelector<HTMLElement>('.source-counts')!;
+    counts.hidden = input.port === null || input.packets === 0;
+    counts.textContent = text.sources.counts(input.packets, input.malformed, input.rejected);
   }
 
   private async accept(input: MocapInputInfo['name'], sender: string): Promise<void> {

@@ -39,7 +39,7 @@ class StreamRows {
 
   show(stream: StreamInfo): void {
     const t = text.sources;
-    this.where.textContent = stream.input === '' ? `${t.own}, ${stream.source}` : t.names[stream.input];
+    this.where.textContent = stream.input === '' ? [t.own, stream.source].filter(Boolean).join(', ') : t.names[stream.input];
     this.hz.textContent = stream.rate_hz.toFixed(0);
     this.lost.textContent = lossOf(stream.poses, stream.lost);
     this.lost.title = text.session.losses(stream.lost, stream.late);

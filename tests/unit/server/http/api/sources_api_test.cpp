@@ -152,6 +152,20 @@ TEST_F(SourcesApiTest, GivesAPortToASender) {
   EXPECT_EQ(Accept(R"({"input": "vmc", "sender": "192.0.2.7"})", 503)["error"]["field"], "input");
 }
 
+TEST_F(SourcesApiTest, ATokenForSomeSubjectsTakesNoPort) {
+  ApiRequest request{.method = "POST", .url = {}, .body = R"({"input": "vmc", "sender": "::1"})"};
+  for (const auto& [subjects, status] : {std::pair("ann", 403), std::pair("*", 200)}) {
+    request.access = Access::Of({.client_id = 1,
+                                 .roles = protocol::secure::Role::kDirect,
+                                 .packets_per_second = 0,
+                                 .subjects = subjects,
+                                 .audience = ""},
+                                1, now + FromSeconds(60));
+    EXPECT_EQ(SourcesApi(Parts()).Accept(request, *hub, now).status, status) << subjects;
+  }
+  EXPECT_EQ(given.size(), 1u);
+}
+
 TEST_F(SourcesApiTest, NamesTheWrongFieldOfARequest) {
   EXPECT_EQ(Accept(R"({"input": "osc", "sender": "::1"})", 400)["error"]["field"], "input");
   EXPECT_EQ(Accept(R"({"sender": "::1"})", 400)["error"]["field"], "input");
