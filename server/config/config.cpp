@@ -49,10 +49,11 @@ Status ValidateLimits(const Limits& limits) {
                    "; it must be at least limits.max_subscriptions, " +
                    std::to_string(limits.max_subscriptions));
   }
-  // One host alone gets half, in which the largest reply must fit.
-  if (limits.max_waiting_megabytes < 64 || limits.max_waiting_megabytes > 1'000'000) {
+  // One host alone gets half, in which the largest picture must fit twice: while a snapshot is
+  // sent.
+  if (limits.max_waiting_megabytes < 72 || limits.max_waiting_megabytes > 1'000'000) {
     return Invalid("limits.max_waiting_megabytes is " +
-                   std::to_string(limits.max_waiting_megabytes) + "; it must be 64 to 1000000");
+                   std::to_string(limits.max_waiting_megabytes) + "; it must be 72 to 1000000");
   }
   const std::pair<const char*, double> numbers[] = {
       {"packets_per_second", limits.packets_per_second},

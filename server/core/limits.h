@@ -20,7 +20,7 @@ struct Limits {
   double packets_per_second = 20000;  // per peer: datagrams or TCP messages
   double packet_burst = 4000;         // per peer: messages accepted at once
   // What waits for TCP and web clients that read slowly, shared between hosts (WaitingBytes), at
-  // least 64.
+  // least 72.
   int max_waiting_megabytes = 256;
   int outbox_messages = 64;   // per TCP peer: queued frames; newer frames replace older ones
   double idle_seconds = 30;   // forget a peer without subscriptions after this silence

@@ -23,7 +23,7 @@ class FairShare {
   [[nodiscard]] bool HasRoomFor(const std::string& host, std::size_t count = 1) const {
     return held(host) + taken_ + 2 * (count - 1) < places_;
   }
-  // Takes places. False: HasRoomFor() is, and none is taken.
+  // Takes places, all or none. False: there is no room.
   [[nodiscard]] bool Enter(const std::string& host, std::size_t count = 1) {
     if (!HasRoomFor(host, count)) return false;
     held_[host] += count;

@@ -67,8 +67,9 @@ class PictureStream : public std::enable_shared_from_this<PictureStream> {
       // After the queue, so that a picture that arrived in time is not refused.
       if (deadline && std::chrono::steady_clock::now() >= *deadline) {
         co_return Next{false, ErrorReply(503, "unavailable", "subject",
-                                         "no picture within 10 s: no pose arrived, or the renderer "
-                                         "is still preparing its shaders",
+                                         "no picture within 10 s: no pose arrived, the renderer is "
+                                         "still preparing its shaders, or this address has no room "
+                                         "for what waits",
                                          "try again")};
       }
       if (peer_->overrun()) {

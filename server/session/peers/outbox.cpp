@@ -13,12 +13,25 @@ namespace {
 constexpr std::size_t kMaxSpareBuffer = 16 * 1024;
 constexpr std::size_t kMaxSpareBuffers = 64;
 
-std::size_t BeyondFree(std::size_t bytes) { return bytes - std::min(bytes, WaitingBytes::kFree); }
+std::size_t LargePart(std::size_t frame_bytes) {
+  return frame_bytes > Outbox::kSmallFrame ? frame_bytes : 0;
+}
 
 }  // namespace
 
-std::size_t Outbox::Counted(std::size_t reply_bytes, std::size_t frame_bytes) const {
-  return BeyondFree(reply_bytes) + BeyondFree(frame_bytes) + ordered_frame_bytes_ + popped_bytes_;
+std::size_t Outbox::Counted() const {
+  return reply_bytes_ - std::min(reply_bytes_, kFreeReplies) + large_frame_bytes_ +
+         ordered_frame_bytes_ + popped_bytes_;
+}
+
+void Outbox::CountFrame(std::size_t bytes) {
+  frame_bytes_ += bytes;
+  large_frame_bytes_ += LargePart(bytes);
+}
+
+void Outbox::UncountFrame(std::size_t bytes) {
+  frame_bytes_ -= bytes;
+  large_frame_bytes_ -= LargePart(bytes);
 }
 
 int Outbox::NoRoom() {
@@ -65,16 +78,16 @@ bool Outbox::PushReply(std::span<const std::uint8_t> bytes) {
   if (num_replies_ >= max_replies_) return false;
   // One reply always fits, whatever its size. Otherwise a large skeleton could never be sent.
   if (num_replies_ > 0 && reply_bytes_ + bytes.size() > max_reply_bytes_) return false;
-  const std::size_t all = reply_bytes_ + bytes.size();
-  const bool has_room = BeyondFree(all) == 0 || Hold(Counted(all, frame_bytes_));
+  const bool is_free = reply_bytes_ + bytes.size() <= kFreeReplies;
   // A client that reads its replies gets them, whatever waits for others of its host.
-  if (!has_room && num_replies_ > 0) {
+  if (!is_free && !Hold(Counted() + bytes.size()) && num_replies_ > 0) {
     account_->CountRefusal();
     return false;
   }
+  Append(ordered_, 0, true, bytes);  // first, because memory may be short
   ++num_replies_;
   reply_bytes_ += bytes.size();
-  Append(ordered_, 0, true, bytes);
+  if (!is_free) Settle();
   return true;
 }
 
@@ -89,28 +102,39 @@ int Outbox::PushFrame(std::uint64_t key, std::span<const std::uint8_t> bytes, st
 // drop. The limit is in bytes, because such a client may be far behind on purpose (a recorder).
 int Outbox::PushOrdered(std::uint64_t key, std::span<const std::uint8_t> bytes) {
   if (ordered_frame_bytes_ + bytes.size() > protocol::kMaxWaitingFrameBytes) return 1;
-  if (!Hold(Counted(reply_bytes_, frame_bytes_) + bytes.size())) return NoRoom();
-  ordered_frame_bytes_ += bytes.size();
+  if (!Hold(Counted() + bytes.size())) return NoRoom();
   Append(ordered_, key, false, bytes);
+  ordered_frame_bytes_ += bytes.size();
   return 0;
 }
 
 int Outbox::PushReplaceable(std::uint64_t key, std::span<const std::uint8_t> bytes,
                             std::size_t keep) {
-  // Without the older frames, which may all be replaced.
-  if (BeyondFree(bytes.size()) > 0 && !Hold(Counted(reply_bytes_, bytes.size()))) return NoRoom();
   const auto is_same = [key](const Item& frame) { return frame.key == key; };
+  if (LargePart(bytes.size()) > 0) {
+    // Older frames of the key may all be replaced. Those of others must not: a viewer that never
+    // learns of a picture waits for it.
+    std::size_t replaceable = 0;
+    for (const Item& frame : frames_) {
+      if (is_same(frame)) replaceable += LargePart(frame.bytes.size());
+    }
+    if (!Hold(Counted() - replaceable + bytes.size())) return NoRoom();
+  }
   int dropped = 0;
-  // The count per key avoids a search through the queue in the usual case.
-  if (const auto found = num_of_key_.find(key);
-      found != num_of_key_.end() && found->second >= keep) {
+  std::size_t& count = num_of_key_[key];  // spares a search through the queue in the usual case
+  if (count >= keep) {
     const auto oldest = std::ranges::find_if(frames_, is_same);
     if (keep == 1) {
-      frame_bytes_ += bytes.size() - oldest->bytes.size();
+      const std::size_t before = oldest->bytes.size();
       // A small frame does not keep the memory of a large one.
-      if (oldest->bytes.capacity() > 2 * bytes.size() + kMaxSpareBuffer) oldest->bytes = {};
-      oldest->bytes.assign(bytes.begin(), bytes.end());  // keeps its place in the queue
-      return 1 + DropUntilFit(oldest);
+      if (oldest->bytes.capacity() > 2 * bytes.size() + kMaxSpareBuffer) {
+        std::vector<std::uint8_t>(bytes.begin(), bytes.end()).swap(oldest->bytes);
+      } else {
+        oldest->bytes.assign(bytes.begin(), bytes.end());  // keeps its place in the queue
+      }
+      UncountFrame(before);
+      CountFrame(bytes.size());
+      return 1 + DropUntilFit(oldest) + DropUntilRoom(oldest);
     }
     DropFrame(oldest);
     dropped = 1;
@@ -119,19 +143,16 @@ int Outbox::PushReplaceable(std::uint64_t key, std::span<const std::uint8_t> byt
     DropFrame(frames_.begin());
     dropped = 1;
   }
-  ++num_of_key_[key];
-  frame_bytes_ += bytes.size();
   Append(frames_, key, false, bytes);
-  return dropped + DropUntilFit(std::prev(frames_.end()));
+  ++count;
+  CountFrame(bytes.size());
+  const auto newest = std::prev(frames_.end());
+  return dropped + DropUntilFit(newest) + DropUntilRoom(newest);
 }
 
 int Outbox::DropUntilFit(Queue::iterator newest) {
-  const auto fits = [this] {
-    return frame_bytes_ <= max_frame_bytes_ &&
-           (BeyondFree(frame_bytes_) == 0 || Hold(Counted(reply_bytes_, frame_bytes_)));
-  };
   int dropped = 0;
-  for (auto frame = frames_.begin(); !fits() && frame != frames_.end();) {
+  for (auto frame = frames_.begin(); frame_bytes_ > max_frame_bytes_ && frame != frames_.end();) {
     const auto next = std::next(frame);
     if (frame != newest) {
       DropFrame(frame);
@@ -142,9 +163,23 @@ int Outbox::DropUntilFit(Queue::iterator newest) {
   return dropped;
 }
 
+int Outbox::DropUntilRoom(Queue::iterator newest) {
+  if (LargePart(newest->bytes.size()) == 0) return 0;
+  int dropped = 0;
+  for (auto frame = frames_.begin(); frame != frames_.end() && !Hold(Counted());) {
+    const auto next = std::next(frame);
+    if (frame != newest && frame->key == newest->key) {
+      DropFrame(frame);
+      ++dropped;
+    }
+    frame = next;
+  }
+  return dropped;
+}
+
 void Outbox::DropFrame(Queue::iterator frame) {
   --num_of_key_[frame->key];
-  frame_bytes_ -= frame->bytes.size();
+  UncountFrame(frame->bytes.size());
   Recycle(frames_, frame);
 }
 
@@ -161,7 +196,7 @@ bool Outbox::Pop(std::vector<std::uint8_t>* out) {
     Uncount(ordered_.front());
   } else {
     --num_of_key_[frames_.front().key];
-    frame_bytes_ -= frames_.front().bytes.size();
+    UncountFrame(frames_.front().bytes.size());
   }
   // The caller's old buffer takes the place of the message and is recycled with the item.
   out->swap(queue.front().bytes);

@@ -27,9 +27,9 @@ namespace furrow::server {
 // - Frames with kKeepAll queue behind the replies, in order. At most kMaxWaitingFrameBytes of them
 //   are queued; further frames are dropped.
 // - What waits, and the last message that Pop() returned, needs room in the account of the peer's
-//   host. Each of these is free: 64 KiB of replies, 64 KiB of frames without kKeepAll, and 64 KiB
-//   of the rest. A new frame first replaces the peer's own older ones; without room even then, it
-//   is dropped. A reply without room is one too many, unless no other reply waits.
+//   host. Free are kFreeReplies of replies, every frame of at most kSmallFrame without kKeepAll,
+//   and what the account does not count. A new frame first replaces older ones of its key; without
+//   room even then, it is dropped. A reply without room closes the peer, unless no other one waits.
 // - New messages reuse the memory of sent ones, at most kMaxSpareBytes, so the outbox of a peer
 //   that keeps up stops allocating after a while. Not thread-safe.
 class Outbox {
@@ -43,6 +43,8 @@ class Outbox {
         max_frame_bytes_(max_frame_bytes) {}
 
   static constexpr std::size_t kMaxSpareBytes = std::size_t{64} << 10;
+  static constexpr std::size_t kFreeReplies = std::size_t{256} << 10;
+  static constexpr std::size_t kSmallFrame = std::size_t{4} << 10;
 
   // Once, before anything is queued. Without an account, there is always room.
   void SetAccount(WaitingBytes::Account account) { account_.emplace(std::move(account)); }
@@ -79,12 +81,12 @@ class Outbox {
   };
   using Queue = std::list<Item>;
 
-  // What needs room, with other sums of replies and of frames without kKeepAll.
-  [[nodiscard]] std::size_t Counted(std::size_t reply_bytes, std::size_t frame_bytes) const;
+  // What needs room.
+  [[nodiscard]] std::size_t Counted() const;
   // States to the account what waits. False: there is no room for more than before.
   [[nodiscard]] bool Hold(std::size_t bytes) { return !account_ || account_->Hold(bytes); }
   // The same after a message has left the queue.
-  void Settle() { (void)Hold(Counted(reply_bytes_, frame_bytes_)); }
+  void Settle() { (void)Hold(Counted()); }
   int PushOrdered(std::uint64_t key, std::span<const std::uint8_t> bytes);
   int PushReplaceable(std::uint64_t key, std::span<const std::uint8_t> bytes, std::size_t keep);
   int NoRoom();
@@ -93,9 +95,12 @@ class Outbox {
   Queue::iterator Recycle(Queue& queue, Queue::iterator item);
   void Uncount(const Item& item);
   void DropFrame(Queue::iterator frame);
-  // Drops the oldest frames, but not `newest`, until the rest fits and has room. Returns their
-  // number.
+  // Drops the oldest frames, but not `newest`, until the rest fits. Returns their number.
   int DropUntilFit(Queue::iterator newest);
+  // Drops older frames of the key of `newest` until there is room. Returns their number.
+  int DropUntilRoom(Queue::iterator newest);
+  void CountFrame(std::size_t bytes);
+  void UncountFrame(std::size_t bytes);
 
   std::size_t max_replies_;
   std::size_t max_frames_;
@@ -105,6 +110,7 @@ class Outbox {
   std::size_t reply_bytes_ = 0;
   std::size_t ordered_frame_bytes_ = 0;  // of kKeepAll frames
   std::size_t frame_bytes_ = 0;          // in frames_
+  std::size_t large_frame_bytes_ = 0;    // of those above kSmallFrame
   Queue ordered_;                        // replies and kKeepAll frames
   Queue frames_;
   std::unordered_map<std::uint64_t, std::size_t> num_of_key_;  // in frames_

@@ -386,9 +386,9 @@ TEST(ValidateConfig, NamesTheLimitThatIsOutOfRange) {
   config.limits.max_all_subscriptions = 1'000'001;
   EXPECT_THAT(ValidateConfig(config).what(), HasSubstr("limits.max_all_subscriptions"));
   config = {};
-  config.limits.max_waiting_megabytes = 63;
+  config.limits.max_waiting_megabytes = 71;
   EXPECT_THAT(ValidateConfig(config).what(),
-              HasSubstr("limits.max_waiting_megabytes is 63; it must be 64 to 1000000"));
+              HasSubstr("limits.max_waiting_megabytes is 71; it must be 72 to 1000000"));
   config = {};
   config.limits.loss_seconds = 0.0;
   EXPECT_THAT(ValidateConfig(config).what(), HasSubstr("limits.loss_seconds"));

@@ -55,7 +55,7 @@ TEST(PlanReload, EveryLimitButOneChanges) {
                    .max_all_subscriptions = 12,
                    .packets_per_second = 6,
                    .packet_burst = 7,
-                   .max_waiting_megabytes = 65,
+                   .max_waiting_megabytes = 73,
                    .outbox_messages = 8,
                    .idle_seconds = 9,
                    .loss_seconds = 10,

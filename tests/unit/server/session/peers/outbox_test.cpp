@@ -99,12 +99,12 @@ class SharedOutbox : public testing::Test {
 TEST_F(SharedOutbox, WithoutRoomLargeMessagesAreDroppedAndSmallOnesAreNot) {
   EXPECT_EQ(outbox.PushFrame(1, Bytes(3 * kChunk, 1), kKeepAll), 0);
   EXPECT_EQ(budget.taken(), 2 * kChunk);
-  EXPECT_EQ(outbox.PushFrame(1, Bytes{9}, kKeepAll), Link::kNoRoom);
-  EXPECT_EQ(outbox.PushFrame(2, Bytes(kChunk + 1, 9)), Link::kNoRoom);
+  EXPECT_EQ(outbox.PushFrame(1, Bytes{9}, kKeepAll), Link::kNoRoom) << "there is no end of them";
+  EXPECT_EQ(outbox.PushFrame(2, Bytes(Outbox::kSmallFrame + 1, 9)), Link::kNoRoom);
   EXPECT_EQ(metrics.Get(Counter::kWaitingRefused), 2u);
-  EXPECT_EQ(outbox.PushFrame(2, Bytes(kChunk, 3)), 0);
-  EXPECT_TRUE(outbox.PushReply(Bytes(kChunk, 2)));
-  EXPECT_FALSE(outbox.PushReply(Bytes{9})) << "one reply too many";
+  EXPECT_EQ(outbox.PushFrame(2, Bytes(Outbox::kSmallFrame, 3)), 0);
+  EXPECT_TRUE(outbox.PushReply(Bytes(Outbox::kFreeReplies, 2)));
+  EXPECT_FALSE(outbox.PushReply(Bytes{9})) << "close the peer";
   EXPECT_EQ(metrics.Get(Counter::kWaitingRefused), 3u);
   EXPECT_THAT(PopAll(&outbox), ElementsAre(1, 2, 3));
   EXPECT_EQ(budget.taken(), 0u);
@@ -121,15 +121,17 @@ TEST_F(SharedOutbox, AClientThatReadsGetsItsReplies) {
   EXPECT_TRUE(outbox.PushReply(Bytes(20 * kChunk, 1)));
 }
 
-TEST_F(SharedOutbox, ANewFrameReplacesOlderOnesWhereThereIsNoRoomForAll) {
-  EXPECT_EQ(outbox.PushFrame(1, Bytes(4 * kChunk, 1)), 0);
+TEST_F(SharedOutbox, ANewFrameReplacesThoseOfItsKeyAndNoOthers) {
+  EXPECT_EQ(outbox.PushFrame(1, Bytes(kChunk, 1), 2), 0);
+  EXPECT_EQ(outbox.PushFrame(2, Bytes(kChunk, 2), 2), 0);
+  EXPECT_EQ(outbox.PushFrame(1, Bytes(kChunk, 3), 2), 0);
   EXPECT_EQ(budget.taken(), 2 * kChunk);
-  EXPECT_EQ(outbox.PushFrame(2, Bytes(4 * kChunk, 2)), 1);
-  EXPECT_EQ(outbox.PushFrame(3, Bytes{3}), 1);
+  EXPECT_EQ(outbox.PushFrame(1, Bytes(2 * kChunk, 4), 2), 2) << "both older ones";
+  EXPECT_EQ(outbox.PushFrame(2, Bytes(2 * kChunk, 5), 2), Link::kNoRoom);
+  EXPECT_EQ(outbox.PushFrame(3, Bytes{6}), 0) << "small";
+  EXPECT_THAT(PopAll(&outbox), ElementsAre(2, 4, 6));
   EXPECT_EQ(budget.taken(), 0u);
-  EXPECT_EQ(outbox.PushFrame(4, Bytes(4 * kChunk, 4)), 1);
-  EXPECT_EQ(outbox.PushFrame(5, Bytes(5 * kChunk, 5)), Link::kNoRoom) << "more than the share";
-  EXPECT_THAT(PopAll(&outbox), ElementsAre(4)) << "it stays";
+  EXPECT_EQ(outbox.PushFrame(1, Bytes(4 * kChunk, 7)), Link::kNoRoom) << "more than the share";
 }
 
 TEST_F(SharedOutbox, WhatIsBeingSentStillCounts) {
@@ -137,18 +139,19 @@ TEST_F(SharedOutbox, WhatIsBeingSentStillCounts) {
   Bytes sent;
   ASSERT_TRUE(outbox.Pop(&sent));
   EXPECT_EQ(budget.taken(), 2 * kChunk);
-  EXPECT_EQ(outbox.PushFrame(1, Bytes(2 * kChunk, 2)), Link::kNoRoom);
-  EXPECT_EQ(outbox.PushFrame(1, Bytes{2}), 0) << "small ones have room of their own";
+  EXPECT_EQ(outbox.PushFrame(1, Bytes(kChunk, 2)), Link::kNoRoom);
+  EXPECT_EQ(outbox.PushFrame(1, Bytes{2}), 0) << "small";
   ASSERT_TRUE(outbox.Pop(&sent));
   EXPECT_FALSE(outbox.Pop(&sent)) << "all has been sent";
   EXPECT_EQ(budget.taken(), 0u);
-  EXPECT_EQ(outbox.PushFrame(1, Bytes(2 * kChunk, 2)), 0);
+  EXPECT_EQ(outbox.PushFrame(1, Bytes(kChunk, 2)), 0);
 }
 
 TEST_F(SharedOutbox, WhatIsDroppedGivesRoom) {
   EXPECT_EQ(outbox.PushFrame(1, Bytes(3 * kChunk, 1)), 0);
+  EXPECT_EQ(budget.taken(), 2 * kChunk);
+  EXPECT_EQ(outbox.PushFrame(1, Bytes(2 * kChunk, 2)), 1) << "it replaces the first one";
   EXPECT_EQ(budget.taken(), kChunk);
-  EXPECT_EQ(outbox.PushFrame(1, Bytes(kChunk, 2)), 1) << "it replaces the first one";
   outbox.DropReplaceableFrames();
   EXPECT_EQ(budget.taken(), 0u);
   EXPECT_EQ(outbox.PushFrame(2, Bytes(2 * kChunk, 3), kKeepAll), 0);
