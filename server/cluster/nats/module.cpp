@@ -51,7 +51,7 @@ constexpr int kMaxValueBytes = 1024;
 // is left comes with the next call.
 constexpr int kMostAtOnce = 10'000;
 constexpr milliseconds kPollTime(100);
-constexpr milliseconds kWakeTime(5);  // until Wake() is noticed
+constexpr milliseconds kWakeTime(10);  // until Wake() is noticed, at about 0.5% of a core
 // Answers that wait to be read. The library drops more, and a write without an answer is unknown.
 constexpr int kMaxWaiting = 65'536;
 constexpr int kMaxWaitingBytes = 16 << 20;
