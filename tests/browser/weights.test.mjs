@@ -110,7 +110,7 @@ test('a second subject is listed and can be chosen', async () => {
     const page = await openPage(browser, `${daemon.address}#panel=session`);
     await page.locator('.subjects button', { hasText: 'guest' }).click();
     await page.locator('.condition', { hasText: 'Live: guest' }).waitFor();
-    assert.match(page.url(), /subject=guest/);
+    await eventually('the address', () => page.url().includes('subject=guest'));
     assert.deepEqual(page.errors, []);
     await page.context().close();
   } finally {
