@@ -331,7 +331,7 @@ void Dispatcher::OnSubjectState(Peer& peer, const protocol::MessageView& view,
 // Empty: the peer may. Draining ends the daemon and concerns all of its subjects.
 std::string Dispatcher::WhyNoDrain(const Peer& peer) const {
   if (peer.access.by_token()) {
-    if (peer.access.Has(Role::kOperate) && peer.access.grant().subjects == "*") return {};
+    if (peer.access.Has(Role::kOperate) && peer.access.ConcernsAll()) return {};
     return "a token with the role operate for all subjects is needed; " + peer.access.Text();
   }
   // Nobody has shown who it is.

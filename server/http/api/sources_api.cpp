@@ -145,7 +145,7 @@ ApiReply SourcesApi::Accept(const ApiRequest& request, Hub& hub, Time now) const
     return ErrorReply(Status(StatusCode::kSchema, "must be vmc or livelink_face", "input"));
   }
   // A port may feed any subject.
-  if (request.access.by_token() && request.access.grant().subjects != "*") {
+  if (!request.access.ConcernsAll()) {
     return ErrorReply(403, "forbidden", "",
                       "a token for all subjects is needed; " + request.access.Text());
   }

@@ -25,6 +25,10 @@ bool Access::Concerns(std::string_view subject) const {
          (kind_ == Kind::kToken && protocol::MatchesPattern(grant_.subjects, subject));
 }
 
+bool Access::ConcernsAll() const {
+  return kind_ == Kind::kEverything || (kind_ == Kind::kToken && grant_.subjects == "*");
+}
+
 bool Access::MayDo(Role role, std::string_view subject) const {
   return Has(role) && Concerns(subject);
 }

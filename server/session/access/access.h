@@ -36,6 +36,8 @@ class Access {
   }
   // True if the subject is one of those that the access is for, whatever the role.
   [[nodiscard]] bool Concerns(std::string_view subject) const;
+  // True if the access is for all subjects.
+  [[nodiscard]] bool ConcernsAll() const;
   // True if the holder has the role at all.
   [[nodiscard]] bool Has(Role role) const {
     return kind_ == Kind::kEverything || (kind_ == Kind::kToken && grant_.roles.Has(role));

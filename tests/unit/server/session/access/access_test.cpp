@@ -22,6 +22,7 @@ TEST(Access, NothingIsAllowedBeforeATokenIsShown) {
   EXPECT_FALSE(access.MayPublish("ann"));
   EXPECT_FALSE(access.MayWatch("ann"));
   EXPECT_FALSE(access.Concerns("ann"));
+  EXPECT_FALSE(access.ConcernsAll());
   for (const Role role : {Role::kPublish, Role::kWatch, Role::kDirect, Role::kOperate}) {
     EXPECT_FALSE(access.Has(role));
   }
@@ -44,6 +45,8 @@ TEST(Access, ATokenAllowsItsRolesForItsSubjects) {
   EXPECT_FALSE(publisher.MayPublish("bob"));
   EXPECT_FALSE(publisher.MayWatch("ann"));
   EXPECT_TRUE(publisher.Concerns("ann")) << "whatever the role";
+  EXPECT_FALSE(publisher.ConcernsAll());
+  EXPECT_TRUE(Access::Everything().ConcernsAll());
   EXPECT_FALSE(publisher.Has(Role::kDirect));
   EXPECT_EQ(publisher.Text(), "the token allows publish of 'stage-*,ann'");
   const Access both = Granted(Roles(Role::kWatch) | Role::kDirect, "ann");
