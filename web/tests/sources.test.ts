@@ -43,6 +43,7 @@ test('a sender that another one keeps out can be accepted, unless it is not allo
   assert.equal(acceptOf(rejected, { allow: ['192.0.2.20'] }), '');
   assert.equal(acceptOf({ ...receiving, rejected_age_ms: 9000 }), '', 'it has stopped');
   assert.equal(acceptOf({ ...receiving, holder: '192.0.2.5' }), '', 'it has been accepted a moment ago');
+  assert.equal(adviseOn({ ...PHONE, ...rejected, holder: '192.0.2.5' }, OPEN).state, 'waiting', 'its next packet counts');
   assert.equal(acceptOf({ packets: 1, sender: '192.0.2.20', age_ms: 5 }), '');
 });
 

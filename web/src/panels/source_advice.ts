@@ -28,9 +28,10 @@ export function adviseOn(input: MocapInputInfo, sources: SourcesInfo): SourceAdv
   const start = `furrowd --bind 0.0.0.0 --open ${input.option} ${port}`;
   if (input.port === null) return advice('off', t.off, t.offTodo(input.option), start);
   const isReceiving = input.age_ms !== null && input.age_ms < RECENT_MS;
-  const isRejecting = input.rejected_age_ms !== null && input.rejected_age_ms < RECENT_MS;
   const refused = input.rejected_sender;
-  const mayAccept = isRejecting && refused !== input.holder && (sources.allow.length === 0 || sources.allow.includes(refused));
+  // The last packet of a sender that has just been accepted was refused.
+  const isRejecting = input.rejected_age_ms !== null && input.rejected_age_ms < RECENT_MS && refused !== input.holder;
+  const mayAccept = isRejecting && (sources.allow.length === 0 || sources.allow.includes(refused));
   if (isReceiving) {
     const words = t.receiving(input.sender, Math.round(input.rate_hz));
     return mayAccept ? advice('receiving', words, t.alsoSends(refused), '', refused) : advice('receiving', words);
