@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Prints a line per frame that the Godot 3 add-on receives. Arguments: HOST:PORT of the daemon's HTTP server, the subject, and
-# a file with a token or "none".
+# Prints a line per frame that the Godot 3 add-on receives. Arguments: HOST:PORT of the daemon's HTTP server, and the
+# subject.
 extends SceneTree
 
 const CLIENT = preload("res://addons/furrow/furrow_client.gd")
@@ -11,12 +11,8 @@ var client = CLIENT.new()
 func _init():
 	var arguments = OS.get_cmdline_args()
 	var count = arguments.size()
-	ProjectSettings.set_setting("furrow/network/address", arguments[count - 3])
-	client.subjects = PoolStringArray([arguments[count - 2]])
-	if arguments[count - 1] != "none":
-		var file = File.new()
-		file.open(arguments[count - 1], File.READ)
-		client.token = file.get_as_text().strip_edges()
+	ProjectSettings.set_setting("furrow/network/address", arguments[count - 2])
+	client.subjects = PoolStringArray([arguments[count - 1]])
 	client.connect("weights_changed", self, "_on_weights")
 	root.add_child(client)
 

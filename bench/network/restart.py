@@ -85,7 +85,7 @@ class Setup:
             commands["page"] = ["node", HERE / "page_client.mjs", page, *([self.tokens["watch"]] if self.secure else [])]
         if shutil.which("godot3-server") and not self.secure:
             commands["Godot 3"] = ["godot3-server", "--path", self.godot_project(), "-s", "godot_client.gd", self.daemon.host("http"),
-                                   "player-0", "none"]
+                                   "player-0"]
         return commands
 
     def godot_project(self):

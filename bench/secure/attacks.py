@@ -28,6 +28,7 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / folder) for folder in ("bench/report", "tests/conformance", "tests/end_to_end")]
+import flat_table  # pylint: disable=wrong-import-position
 from messages import fnv1a  # pylint: disable=wrong-import-position
 from processes import resident_kib  # pylint: disable=wrong-import-position
 from tracker_packets import vmc  # pylint: disable=wrong-import-position
@@ -46,13 +47,9 @@ def vector(name, sequence=1, session=0x1234567):
     return bytes(data)
 
 
-def field(message, number, form):
-    """A number in the FlatBuffers table of a message (STANDARD.md section 3); 0: it is missing."""
-    table = 32 + struct.unpack_from("<I", message, 32)[0]
-    vtable = table - struct.unpack_from("<i", message, table)[0]
-    inside = 4 + 2 * number < struct.unpack_from("<H", message, vtable)[0]
-    at = struct.unpack_from("<H", message, vtable + 4 + 2 * number)[0] if inside else 0
-    return struct.unpack_from("<" + form, message, table + at)[0] if at else 0
+def table_of(message):
+    """The FlatBuffers table of a message (STANDARD.md section 3)."""
+    return flat_table.Table(message, 32 + struct.unpack_from("<I", message, 32)[0])
 
 
 class Offers:
@@ -422,7 +419,7 @@ def departed(table, options):
         viewer.send(vector("hello"))
         hello = vector("hello_token")
         known = struct.pack("<Q", int(json.loads((VECTORS / "hello_token.json").read_text())["message"]["token"], 16))
-        viewer.send(hello.replace(known, struct.pack("<Q", field(viewer.recv(2048), 1, "Q"))))
+        viewer.send(hello.replace(known, struct.pack("<Q", table_of(viewer.recv(2048)).scalar(1, "Q"))))
         viewer.recv(2048)
         viewer.send(subscribe_weights("*", 2))
         begun = last_weights = time.monotonic()
@@ -458,7 +455,7 @@ def skeletons(table, options):
             took = time.monotonic() - begun
             # The status of a SkeletonReply: 0, accepted, is left out of the table (STANDARD.md section 5).
             message = answer[4:]
-            return f"{1000 * took:.0f} ms" if message[36:40] == b"FSKR" and field(message, 1, "B") == 0 else "refused or never"
+            return f"{1000 * took:.0f} ms" if message[36:40] == b"FSKR" and table_of(message).scalar(1, "B") == 0 else "refused or never"
 
         for per_second in (100, 1_100):
             name = b"n%04d" % per_second
