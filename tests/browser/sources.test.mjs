@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { createSocket } from 'node:dgram';
 import { networkInterfaces } from 'node:os';
 import { after, before, test } from 'node:test';
-import { keep, launch, openPage } from './browser.mjs';
+import { eventually, keep, launch, openPage } from './browser.mjs';
 import { Daemon } from './daemon.mjs';
 
 let browser;
@@ -50,7 +50,8 @@ const card = (page, state) => page.locator(`[data-source=livelink_face][data-sta
 test('on loopback, the page says why no phone gets through', async () => {
   const daemon = await Daemon.start(['--no-render', '--livelink-face', '0']);
   try {
-    assert.match(daemon.log, /--livelink-face listens on 127\.0\.0\.1 only/);
+    // The log and the ready line come by different pipes.
+    await eventually('the warning', () => /--livelink-face listens on 127\.0\.0\.1 only/.test(daemon.log));
     const page = await openPage(browser, `${daemon.address}#panel=sources`);
     await card(page, 'blocked').getByText('No phone can reach it').waitFor();
     await page.locator('[data-source=vmc][data-state=off]', { hasText: '--vmc 39539' }).waitFor();
