@@ -22,6 +22,7 @@ import { DebugStrip } from './panels/strip';
 import { Timeline } from './panels/timeline';
 import { ViewBar } from './panels/view_bar';
 import { addressOf } from './state/address';
+import { captionLines } from './screenshot/caption';
 import { AppState } from './state/app_state';
 import { Elsewhere } from './state/elsewhere';
 import { isAcross, isCompact } from './state/layout';
@@ -112,7 +113,7 @@ export class App {
     this.against = new Against(this.connection, state, this.viewer);
     this.light = new LightBar(state, this.viewer, toasts);
     this.layouts = new LayoutDialog(state, toasts, browserStore());
-    this.actions = new PictureActions(() => this.viewer.canvas(), this.root, toasts);
+    this.actions = new PictureActions(() => this.viewer.canvas(), this.root, toasts, () => this.caption());
     this.notice = new Notice(toasts, () => this.tabs.choose('sources'));
     this.capture = new CapturePanel(subject, toasts, () => void this.readRig());
     this.guide = new GuidePanel(this.connection, subject, {
@@ -242,6 +243,7 @@ export class App {
       command('escape', k.leave, () => state.settings.set('view', 'final', performance.now())),
       command('/', k.search, () => this.openMenu()),
       command('ctrl+z', k.undo, () => state.settings.undo()),
+      command('i', k.page, () => void this.actions.pageScreenshot()),
       command('ctrl+y', k.redo, () => state.settings.redo()),
       command('p', k.panel, () => this.togglePanel()),
       command('g', k.curves, () => this.toggleDock()),
@@ -388,6 +390,18 @@ export class App {
     const daemon = this.status?.video ?? null;
     const whyDaemon = daemon === null || daemon.why === '' ? t.why.full : t.why.daemon(daemon.why);
     const title = isVideo ? t.isVideo : t.isFiles(video.why || whyDaemon);
+  /** Below a picture of the page. */
+  private caption(): string[] {
+    const { history } = this;
+    return captionLines({
+      date: new Date(), host: location.host, version: this.status?.version ?? '', userAgent: navigator.userAgent,
+      width: innerWidth, height: innerHeight, density: devicePixelRatio, ...this.header.words(),
+      sequence: this.viewer.picture()?.sequence ?? null,
+      weights: history.names.map((name) => [name, history.value(name)] as const),
+      fragment: /#(.*)$/.exec(this.state.link())?.[1] ?? '',
+    });
+  }
+
     if (stats.still) return { stream: t.still, streamTitle: `${t.stillTitle} ${title}` };
     return {
       stream: t.rate(isVideo ? t.h264 : t.jpeg, stats.mbitPerS(nowS).toFixed(2)),

@@ -109,6 +109,12 @@ export class Header {
     this.put('limit', t.limits[limit]);
   }
 
+  /** The condition and the figures in words, also those that a narrow screen hides. */
+  words(): { condition: string; figures: (readonly [string, string])[] } {
+    const figures = [...this.figures].map(([id, output]) => [text.figures[id as 'rate'][0], output.textContent ?? ''] as const);
+    return { condition: this.status.textContent ?? '', figures };
+  }
+
   private put(id: string, words: string): void {
     const output = this.figures.get(id)!;
     if (output.textContent !== words) output.textContent = words;

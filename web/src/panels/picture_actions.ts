@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Buttons on the picture: save it, record it, and fill the screen with it.
+// Buttons on the picture: save it, alone or with the page, record it, and fill the screen with it.
+import { pagePicture } from '../screenshot/page_picture';
 import { text } from '../text';
 import { clockText } from '../ui/clock';
-import { button, h, saveBlob } from '../ui/dom';
+import { button, copyPng, h, saveBlob } from '../ui/dom';
 import { icon } from '../ui/icons';
 import type { Toasts } from '../ui/toast';
 
@@ -26,8 +27,9 @@ export class PictureActions {
   private beganMs = 0;
   private readonly clock = h('span', { class: 'record-clock', hidden: true });
 
-  /** `canvas`: what is on the screen now; null: there is no picture yet. `root`: fills the screen. */
-  constructor(private readonly canvas: () => HTMLCanvasElement | null, private readonly root: HTMLElement, private readonly toasts: Toasts) {
+  /** `canvas`: what is on the screen now; null: there is no picture yet. `root`: fills the screen. `caption`: of a picture of the page. */
+  constructor(private readonly canvas: () => HTMLCanvasElement | null, private readonly root: HTMLElement, private readonly toasts: Toasts,
+              private readonly caption: () => string[]) {
     const t = text.stage;
     const action = (name: Parameters<typeof icon>[0], label: string, run: () => void): HTMLButtonElement => {
       const made = button('', run, { 'aria-label': label, title: label });
@@ -39,7 +41,8 @@ export class PictureActions {
     this.fullscreen = action('fullscreen', t.fullscreen, () => this.toggleFullscreen());
     this.fullscreen.hidden = !document.fullscreenEnabled;
     this.element = h('div', { class: 'stage-actions', role: 'group', 'aria-label': t.actions },
-      this.clock, action('camera', t.screenshot, () => void this.screenshot()), this.record, this.fullscreen);
+      this.clock, action('camera', t.screenshot, () => void this.screenshot()),
+      action('page', t.page, () => void this.pageScreenshot()), this.record, this.fullscreen);
     document.addEventListener('fullscreenchange', () =>
       this.fullscreen.setAttribute('aria-pressed', String(document.fullscreenElement !== null)));
   }
@@ -54,6 +57,20 @@ export class PictureActions {
     const name = `${fileStem(new Date())}.png`;
     saveBlob(name, blob);
     this.toasts.say(text.stage.saved(name));
+  }
+
+  /** Also without a picture: what the page then says helps as well. */
+  async pageScreenshot(): Promise<void> {
+    this.canvas(); // a picture that this browser draws must be drawn in the same task
+    const picture = pagePicture(this.root, this.caption());
+    const copied = copyPng(picture); // at once, because browsers allow it just after a click only
+    try {
+      const name = `${fileStem(new Date(), 'page')}.png`;
+      saveBlob(name, await picture);
+      this.toasts.say(await copied ? text.stage.savedAndCopied(name) : text.stage.saved(name));
+    } catch {
+      this.toasts.say(text.stage.cannotDrawPage, 'error');
+    }
   }
 
   toggleFullscreen(): void {

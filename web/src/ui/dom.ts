@@ -81,6 +81,16 @@ export async function copyText(words: string): Promise<boolean> {
   }
 }
 
+/** Like copyText(), for a picture that may still be in the making. */
+export async function copyPng(picture: Promise<Blob>): Promise<boolean> {
+  try {
+    await navigator.clipboard.write([new ClipboardItem({ 'image/png': picture })]);
+    return true;
+  } catch {
+    return false;
+  }
+}
+
 /** A readable region name: "Knee left inner" for "knee_l_inner". Left is the subject's left. */
 export function regionWords(name: string): string {
   return readable(name.replace(/_l(?=_|$)/, '_left').replace(/_r(?=_|$)/, '_right'));

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// The style sheets of the page as one text, for a copy of the page that is drawn as an image.
+
+/** An image would start animations anew, at their first and often invisible step. */
+const AT_REST = '*, *::before, *::after { animation: none !important; transition: none !important; }';
+
+/**
+ * An image has its own media: another pointer, colour scheme and resolution than the page. So the conditions are decided
+ * here, and the text has only the rules that apply now.
+ */
+function textOf(rules: CSSRuleList): string {
+  return Array.from(rules, (rule) => {
+    if (!(rule instanceof CSSMediaRule)) return rule.cssText;
+    return matchMedia(rule.media.mediaText).matches ? textOf(rule.cssRules) : '';
+  }).join('\n');
+}
+
+export function styleText(sheets: StyleSheetList): string {
+  return [...Array.from(sheets, (sheet) => textOf(sheet.cssRules)), AT_REST].join('\n');
+}
