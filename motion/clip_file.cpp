@@ -94,9 +94,10 @@ Result<Clip> ParseForeign(Format format, std::string_view bytes, const std::stri
 // Whether a file of this format may hold several animations, of which the reader can choose.
 bool HasAnimations(Format format) { return format != Format::kBvh && format != Format::kCsv; }
 
-Result<Clip> Parse(Format format, std::string_view bytes, const std::filesystem::path& path,
-                   const LoadOptions& options, ClipReport* report) {
-  const std::string name = path.string();
+// `folder`: of the files that a glTF file names; none: they are not opened.
+Result<Clip> Parse(Format format, std::string_view bytes, const std::string& name,
+                   std::optional<std::filesystem::path> folder, const LoadOptions& options,
+                   ClipReport* report) {
   if (bytes.empty()) return Status(StatusCode::kParse, "the file is empty", name);
   if (!options.animation.empty() && !HasAnimations(format)) {
     return Status(StatusCode::kUnsupported,
@@ -109,7 +110,7 @@ Result<Clip> Parse(Format format, std::string_view bytes, const std::filesystem:
     case Format::kFbx:
     case Format::kCollada: return ParseForeign(format, bytes, name, options, report);
     default:
-      return ParseGltfAnimation(bytes, name, {.load = options, .folder = path.parent_path()},
+      return ParseGltfAnimation(bytes, name, {.load = options, .folder = std::move(folder)},
                                 report);
   }
 }
@@ -203,6 +204,33 @@ Result<Clip> LoadExpression(const std::filesystem::path& path, const LoadOptions
   return clip;
 }
 
+// Parses the bytes of a file and turns the clip upright. `folder`: see Parse().
+Result<Clip> Read(Format format, std::string_view bytes, const std::filesystem::path& file,
+                  std::optional<std::filesystem::path> folder, const LoadOptions& options,
+                  ClipReport* report) {
+  const std::string name = file.string();
+  Result<Clip> clip = Parse(format, bytes, name, std::move(folder), options, report);
+  if (!clip.ok()) return clip.status().At(name);
+  if (format == Format::kBvh) {
+    KeepRootsAtOffset(&*clip);
+    if (Status status = SetUpright(options.up_axis, name, &*clip, report); !status.ok())
+      return status.At(name);
+    const Result<bool> raised = RaiseToFloor(&*clip);
+    if (!raised.ok()) return raised.status().At(name);
+    if (*raised && report != nullptr) {
+      report->warnings.push_back(name +
+                                 ": the performer is far below the floor, height 0; the recording "
+                                 "was raised onto it");
+    }
+  }
+  if (options.rest_frame >= 0) {
+    if (Status status = TakeRestFrom(options.rest_frame, &*clip); !status.ok())
+      return status.At(name);
+  }
+  if (clip->name.empty()) clip->name = file.stem().string();
+  return clip;
+}
+
 // Writers index by these counts, so a caller's inconsistent clip must not reach them.
 Status CheckSizes(const Clip& clip) {
   const std::size_t frames = clip.times.size();
@@ -248,27 +276,31 @@ Result<Clip> LoadClip(const std::filesystem::path& path, const LoadOptions& load
   if (format == Format::kMhpose) return LoadExpression(file, options, report);
   const Result<std::string> bytes = ReadFile(file, MaxBytes(format));
   FURROW_RETURN_IF_ERROR(bytes);
-  format = FormatOf(*bytes, format);
-  Result<Clip> clip = Parse(format, *bytes, file, options, report);
-  if (!clip.ok()) return clip.status().At(file.string());
-  if (format == Format::kBvh) {
-    KeepRootsAtOffset(&*clip);
-    if (Status status = SetUpright(options.up_axis, file.string(), &*clip, report); !status.ok())
-      return status.At(file.string());
-    const Result<bool> raised = RaiseToFloor(&*clip);
-    if (!raised.ok()) return raised.status().At(file.string());
-    if (*raised && report != nullptr) {
-      report->warnings.push_back(file.string() +
-                                 ": the performer is far below the floor, height 0; the recording "
-                                 "was raised onto it");
-    }
+  return Read(FormatOf(*bytes, format), *bytes, file, file.parent_path(), options, report);
+}
+
+Result<Clip> ParseClip(std::string_view bytes, const std::string& name, const LoadOptions& options,
+                       ClipReport* report) {
+  const std::filesystem::path file = name;
+  const Format format = FormatOf(bytes, FormatOf(file));
+  if (format == Format::kUnknown) {
+    return UnknownFormat(file, "use a .bvh, .glb, .vrma, .csv, .fbx, .dae or .mcap file");
   }
-  if (options.rest_frame >= 0) {
-    if (Status status = TakeRestFrom(options.rest_frame, &*clip); !status.ok())
-      return status.At(file.string());
+  if (format == Format::kMhpose) {
+    return Status(StatusCode::kUnsupported,
+                  "an expression of MakeHuman needs the pose units beside its file", name,
+                  "convert it with 'furrow convert' to .bvh or .glb");
   }
-  if (clip->name.empty()) clip->name = file.stem().string();
-  return clip;
+  if (bytes.size() > MaxBytes(format)) {
+    return Status(StatusCode::kLimit,
+                  "the file has more than " + std::to_string(MaxBytes(format)) + " bytes", name);
+  }
+  return Read(format, bytes, file, std::nullopt, options, report);
+}
+
+bool NeedsHelperProgram(std::string_view bytes, const std::string& name) {
+  const Format format = FormatOf(bytes, FormatOf(std::filesystem::path(name)));
+  return format == Format::kFbx || format == Format::kCollada;
 }
 
 Status SaveClip(const Clip& clip, const std::filesystem::path& path, ClipReport* report) {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "base/status.h"
 #include "motion/clip/clip.h"
@@ -28,6 +29,18 @@ void SplitClipPath(const std::filesystem::path& path, std::filesystem::path* fil
 // "file:line" or "file: field".
 [[nodiscard]] Result<Clip> LoadClip(const std::filesystem::path& path,
                                     const LoadOptions& options = {}, ClipReport* report = nullptr);
+
+// Reads a clip from the bytes of a file that is not on this computer, such as an upload. `name`: of
+// the file; its extension chooses the format as for LoadClip(), and messages repeat it. No file is
+// opened.
+//
+// Errors: those of LoadClip(), and kUnsupported for formats that need other files: .mhpose, and a
+// .gltf with buffers of its own.
+[[nodiscard]] Result<Clip> ParseClip(std::string_view bytes, const std::string& name,
+                                     const LoadOptions& options = {}, ClipReport* report = nullptr);
+
+// True if only a helper program reads such bytes: FBX and Collada.
+[[nodiscard]] bool NeedsHelperProgram(std::string_view bytes, const std::string& name);
 
 // Saves a clip as .bvh, .glb or .csv. The file is replaced in one step, or not at all.
 //

@@ -137,4 +137,20 @@ Result<motion::Clip> LoadTakeClip(const std::string& path, float scale, motion::
   return clip;
 }
 
+Result<motion::Clip> ParseTakeClip(std::span<const std::uint8_t> bytes, const std::string& name,
+                                   motion::ClipReport* report) {
+  auto take = TakeReader::OpenBytes(bytes, name);
+  FURROW_RETURN_IF_ERROR(take);
+  const auto subjects = TakePoses::LoadAll(**take, {}, report);
+  FURROW_RETURN_IF_ERROR(subjects);
+  const std::string& first = subjects->front().offer().subject;
+  if (subjects->size() > 1 && report != nullptr) {
+    report->warnings.push_back(name + ": holds " + std::to_string(subjects->size()) +
+                               " subjects, of which the first is used, '" + first + "'");
+  }
+  auto clip = ToClip(subjects->front());
+  if (!clip.ok()) return clip.status().At(name);
+  return clip;
+}
+
 }  // namespace furrow::recording

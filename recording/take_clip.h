@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <string>
 
 #include "base/status.h"
@@ -27,5 +29,10 @@ namespace furrow::recording {
 [[nodiscard]] Result<motion::Clip> LoadTakeClip(const std::string& path, float scale = 1.0f,
                                                 motion::ClipReport* report = nullptr,
                                                 ReadProgress progress = nullptr);
+// The same for the first subject of the bytes of a take; of further ones, `report` gets a warning.
+// `name`: of the file, in messages. Errors: those of TakePoses::LoadAll() and ToClip().
+[[nodiscard]] Result<motion::Clip> ParseTakeClip(std::span<const std::uint8_t> bytes,
+                                                 const std::string& name,
+                                                 motion::ClipReport* report = nullptr);
 
 }  // namespace furrow::recording

@@ -28,6 +28,13 @@ Result<std::unique_ptr<TakeReader>> TakeReader::Open(const std::filesystem::path
   return std::unique_ptr<TakeReader>(new TakeReader(path, *std::move(file)));
 }
 
+Result<std::unique_ptr<TakeReader>> TakeReader::OpenBytes(std::span<const std::uint8_t> bytes,
+                                                          const std::string& name) {
+  auto file = Reader::OpenBytes(bytes, name);
+  FURROW_RETURN_IF_ERROR(file);
+  return std::unique_ptr<TakeReader>(new TakeReader(name, *std::move(file)));
+}
+
 const TakeReader::ChannelInfo* TakeReader::InfoOf(std::uint16_t id) {
   auto [found, is_new] = channels_.try_emplace(id);
   if (is_new) {

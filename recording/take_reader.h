@@ -40,6 +40,9 @@ class TakeReader {
  public:
   // Opens a file. Errors: those of mcap::Reader::Open().
   [[nodiscard]] static Result<std::unique_ptr<TakeReader>> Open(const std::filesystem::path& path);
+  // The same for the bytes of a file, which must outlive the reader. `name`: in messages.
+  [[nodiscard]] static Result<std::unique_ptr<TakeReader>> OpenBytes(
+      std::span<const std::uint8_t> bytes, const std::string& name);
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   [[nodiscard]] const motion::mcap::Reader& file() const { return *file_; }

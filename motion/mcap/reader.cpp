@@ -58,20 +58,32 @@ Result<std::unique_ptr<Reader>> Reader::Open(const std::filesystem::path& path,
                   error == ENOENT ? "no such file" : std::strerror(error), path.string());
   }
   std::unique_ptr<Reader> reader(new Reader(file, path, limits));
+  struct stat about = {};
+  if (::fstat(file, &about) != 0) return Status(StatusCode::kIo, std::strerror(errno), path);
+  if (!S_ISREG(about.st_mode)) return Status(StatusCode::kIo, "not a regular file", path);
+  reader->file_bytes_ = static_cast<std::uint64_t>(about.st_size);
   if (Status status = reader->Open(); !status.ok()) return status.At(path.string());
+  return reader;
+}
+
+Result<std::unique_ptr<Reader>> Reader::OpenBytes(std::span<const std::uint8_t> bytes,
+                                                  const std::string& name,
+                                                  const ReaderLimits& limits) {
+  std::unique_ptr<Reader> reader(new Reader(-1, name, limits));
+  reader->memory_ = bytes;
+  reader->file_bytes_ = bytes.size();
+  if (Status status = reader->Open(); !status.ok()) return status.At(name);
   return reader;
 }
 
 Reader::Reader(int file, std::filesystem::path path, const ReaderLimits& limits)
     : file_(file), path_(std::move(path)), limits_(limits) {}
 
-Reader::~Reader() { ::close(file_); }
+Reader::~Reader() {
+  if (file_ >= 0) ::close(file_);
+}
 
 Status Reader::Open() {
-  struct stat about = {};
-  if (::fstat(file_, &about) != 0) return {StatusCode::kIo, std::strerror(errno)};
-  if (!S_ISREG(about.st_mode)) return {StatusCode::kIo, "not a regular file"};
-  file_bytes_ = static_cast<std::uint64_t>(about.st_size);
   const auto magic = ReadAt(0, sizeof kMagic);
   if (!magic.ok() || !std::equal(magic->begin(), magic->end(), kMagic))
     return {StatusCode::kParse, "not an MCAP file: it does not begin with MCAP's magic bytes"};
@@ -119,6 +131,11 @@ Result<std::vector<std::uint8_t>> Reader::ReadAt(std::uint64_t offset, std::uint
                   "a record has " + std::to_string(size) + " bytes, the limit is " +
                       std::to_string(limits_.record_bytes),
                   path_.string());
+  if (file_ < 0) {
+    const auto part =
+        memory_.subspan(static_cast<std::size_t>(offset), static_cast<std::size_t>(size));
+    return std::vector<std::uint8_t>(part.begin(), part.end());
+  }
   std::vector<std::uint8_t> bytes(static_cast<std::size_t>(size));
   std::size_t done = 0;
   // pread() may return fewer bytes. It needs no file position, so const functions can read.

@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,10 @@ class Reader {
   // Errors: kNotFound, kIo, kParse (not an MCAP file), kLimit.
   [[nodiscard]] static Result<std::unique_ptr<Reader>> Open(const std::filesystem::path& path,
                                                             const ReaderLimits& limits = {});
+  // The same for the bytes of a file, which must outlive the reader. `name`: in messages.
+  [[nodiscard]] static Result<std::unique_ptr<Reader>> OpenBytes(
+      std::span<const std::uint8_t> bytes, const std::string& name,
+      const ReaderLimits& limits = {});
   ~Reader();
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;
@@ -124,7 +129,8 @@ class Reader {
                                                      std::uint64_t held);
   void Warn(std::uint64_t offset, std::string_view what);
 
-  int file_ = -1;
+  int file_ = -1;  // -1: the file is in `memory_`
+  std::span<const std::uint8_t> memory_;
   std::filesystem::path path_;
   ReaderLimits limits_;
   std::uint64_t file_bytes_ = 0;

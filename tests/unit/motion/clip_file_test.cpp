@@ -129,6 +129,46 @@ TEST(SaveClip, KeepsTheOldFileOnFailure) {
   EXPECT_EQ(CountFiles(folder.path()), 2);
 }
 
+TEST(ParseClip, ReadsTheSameFromBytes) {
+  TemporaryFolder folder;
+  for (const char* name : {"a.bvh", "a.glb", "a.csv"}) {
+    ASSERT_TRUE(SaveClip(MakeClip(), folder / name).ok());
+    const Result<Clip> loaded = LoadClip(folder / name);
+    const Result<Clip> parsed = ParseClip(ReadAll(folder / name), name);
+    ASSERT_TRUE(parsed.ok()) << parsed.status().ToString();
+    EXPECT_EQ(parsed->name, "a");
+    EXPECT_EQ(parsed->times, loaded->times);
+    EXPECT_EQ(parsed->blend_shapes, loaded->blend_shapes);
+    ASSERT_EQ(parsed->locals.size(), loaded->locals.size());
+    EXPECT_NEAR(WorstDistance(*parsed, *loaded), 0.0f, 1e-6f) << name;
+  }
+}
+
+TEST(ParseClip, OpensNoFile) {
+  TemporaryFolder folder;
+  std::ofstream(folder / "a.bin", std::ios::binary) << std::string(64, '\0');
+  constexpr char kWithBuffer[] =
+      R"({"asset":{"version":"2.0"},"buffers":[{"uri":"a.bin","byteLength":64}]})";
+  const std::string name = (folder / "a.gltf").string();
+  const Status status = ParseClip(kWithBuffer, name).status();
+  EXPECT_EQ(status.code(), StatusCode::kUnsupported) << status.ToString();
+  EXPECT_THAT(status.ToString(), HasSubstr("a.bin"));
+  const Status expression = ParseClip("name smile", "smile.mhpose").status();
+  EXPECT_EQ(expression.code(), StatusCode::kUnsupported);
+  EXPECT_THAT(expression.ToString(), HasSubstr("furrow convert"));
+  const Status picture = ParseClip("\x89PNG", "a.png").status();
+  EXPECT_THAT(picture.ToString(), HasSubstr("unknown recording format '.png'"));
+  EXPECT_THAT(picture.ToString(), HasSubstr(".mcap"));
+}
+
+TEST(ParseClip, KnowsWhichFilesNeedAHelperProgram) {
+  EXPECT_TRUE(NeedsHelperProgram("", "a.fbx"));
+  EXPECT_TRUE(NeedsHelperProgram("", "a.DAE"));
+  EXPECT_TRUE(NeedsHelperProgram("Kaydara FBX Binary", "a.bvh"));  // the content decides
+  EXPECT_FALSE(NeedsHelperProgram("glTF", "a.fbx"));
+  EXPECT_FALSE(NeedsHelperProgram("HIERARCHY", "a.bvh"));
+}
+
 TEST(LoadClip, ReportsWhatIsWrongWithTheFile) {
   TemporaryFolder folder;
   const auto write = [&folder](const std::string& name, const std::string& bytes) {

@@ -152,6 +152,24 @@ TEST_F(TakePosesTest, ConvertsCompleteAndPartialPosesToAClip) {
   EXPECT_EQ(clip->blend_shapes[2], 0.75f);
 }
 
+TEST_F(TakePosesTest, ParsesTheFirstSubjectOfBytes) {
+  const auto writer = Create("take.mcap");
+  WriteSubject(*writer, "ada", 2);
+  WriteSubject(*writer, "bob", 3);
+  ASSERT_TRUE(writer->Close().ok());
+  std::ifstream file(folder_ / "take.mcap", std::ios::binary);
+  const std::vector<char> text(std::istreambuf_iterator<char>(file), {});
+  const std::vector<std::uint8_t> bytes(text.begin(), text.end());
+  motion::ClipReport report;
+  const auto clip = ParseTakeClip(bytes, "take.mcap", &report);
+  ASSERT_TRUE(clip.ok()) << clip.status().ToString();
+  EXPECT_EQ(clip->name, "ada");
+  EXPECT_EQ(clip->num_frames(), 2);
+  ASSERT_EQ(report.warnings.size(), 1u);
+  EXPECT_NE(report.warnings[0].find("2 subjects"), std::string::npos) << report.warnings[0];
+  EXPECT_EQ(ParseTakeClip(std::span(bytes).first(100), "cut.mcap").status().where(), "cut.mcap");
+}
+
 TEST_F(TakePosesTest, PathsMayNameASubject) {
   std::string file;
   std::string subject;

@@ -118,6 +118,28 @@ TEST_F(McapTest, RoundTrip) {
   }
 }
 
+TEST_F(McapTest, ReadsBytesLikeTheirFile) {
+  WriteTake(Path(), 100, 400);
+  const std::vector<std::uint8_t> whole = Bytes(Slurp(Path()));
+  auto file = Reader::Open(Path());
+  auto reader = Reader::OpenBytes(whole, "take.mcap");
+  ASSERT_TRUE(file.ok() && reader.ok()) << reader.status().ToString();
+  EXPECT_TRUE((*reader)->complete());
+  EXPECT_EQ(ReadAll(**reader), ReadAll(**file));
+  EXPECT_EQ(*(*reader)->ReadAttachment((*reader)->attachments()[0]), Bytes("{}"));
+  // A buffer of its own for each length, so that AddressSanitizer sees every read past its end.
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    const std::vector<std::uint8_t> part(whole.begin(), whole.begin() + static_cast<long>(size));
+    auto cut = Reader::OpenBytes(part, "take.mcap");
+    if (!cut.ok()) {
+      EXPECT_EQ(cut.status().where(), "take.mcap");
+      continue;
+    }
+    EXPECT_FALSE((*cut)->complete()) << size;
+    (void)ReadAll(**cut);
+  }
+}
+
 TEST_F(McapTest, ReadsARangeOfTime) {
   WriteTake(Path(), 100, 400);
   auto reader = Reader::Open(Path());
