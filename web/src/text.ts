@@ -339,7 +339,16 @@ export const text = {
     group: 'Light',
     figures: (turn: number, tilt: number, exposure: number) => `Turn ${turn}°, tilt ${tilt}°, exposure ${Number(exposure.toFixed(2))}`,
     reset: 'Reset',
-    resetTitle: 'Lamps and exposure as the daemon has them',
+    resetTitle: 'Lamps, sky and exposure as the daemon has them',
+    environments: 'Light around the subject',
+    /** Name and description. */
+    environmentNames: {
+      studio: ['Studio', 'Studio: a portrait with key, fill and rim'],
+      overcast: ['Overcast', 'Overcast: soft light of a cloudy sky'],
+      sunset: ['Sunset', 'Sunset: a low warm sun and a blue sky'],
+      stage: ['Stage', 'Stage: a white spot, a blue side and a magenta back light'],
+      neutral: ['Neutral', 'Neutral grey: even light without colour'],
+    },
     grey: 'Grey',
     greyTitle: 'Show a grey surface without wrinkles in the same light',
     turntable: 'Turntable',

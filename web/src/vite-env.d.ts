@@ -7,3 +7,9 @@ declare module '*.bfbs?inline' {
   const url: string;
   export default url;
 }
+
+/** A file as text. */
+declare module '*.toml?raw' {
+  const toml: string;
+  export default toml;
+}

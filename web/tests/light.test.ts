@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from 'node:assert/strict';
 import test from 'node:test';
+import { ENVIRONMENT_SETTINGS, ENVIRONMENTS, swatchOf } from '../src/light/environments';
 import { CARD, dragged, exposureFor, isBackground, isOfLight, linearOf, type Rgb, turntableRadians, withinRange } from '../src/light/light_math';
 
 test('a drag turns the lamps around, and tilts them to the poles', () => {
@@ -44,4 +45,22 @@ test('the turntable takes 16 s for a turn, with reduced motion in steps', () => 
   assert(Math.abs(turntableRadians(16, false) - 2 * Math.PI) < 1e-9);
   assert.equal(turntableRadians(1.9, true), 0);
   assert(Math.abs(turntableRadians(3.9, true) - Math.PI / 4) < 1e-9);
+});
+
+test('environments change lamps, sky and exposure, all of them and nothing else', () => {
+  assert.deepEqual([...ENVIRONMENT_SETTINGS].sort(), ['exposure', ...['ambient', 'fill', 'intensity', 'key', 'preset', 'rim', 'sky',
+    'tilt_degrees', 'turn_degrees'].map((name) => `lights.${name}`)]);
+  for (const { name, values } of ENVIRONMENTS) assert.deepEqual([...values.keys()], ENVIRONMENT_SETTINGS, name);
+});
+
+test('each environment has a swatch of its own, without colours that a screen does not have', () => {
+  const swatches = ENVIRONMENTS.map(({ values }) => swatchOf(values));
+  assert.equal(new Set(swatches).size, ENVIRONMENTS.length);
+  for (const swatch of swatches) {
+    const bytes = [...swatch.matchAll(/rgb\((\d+) (\d+) (\d+)\)/g)].flatMap(([, ...channels]) => channels.map(Number));
+    assert.equal(bytes.length, 9, swatch);
+    assert(bytes.every((byte) => byte <= 255), swatch);
+  }
+  // A lamp without a filter of its own is the lamp of the preset: white lamps of equal channels give grey.
+  assert.match(swatchOf(ENVIRONMENTS.find(({ name }) => name === 'neutral')!.values), /gradient\(circle at \d+% \d+%, rgb\((\d+) \1 \1\)/);
 });

@@ -7,6 +7,8 @@ import { icon } from '../ui/icons';
 import type { Toasts } from '../ui/toast';
 import { orbit } from '../view/camera';
 import type { Viewer } from '../view/viewer';
+import { EnvironmentRow } from './environment_row';
+import { ENVIRONMENT_SETTINGS } from './environments';
 import { dragged, exposureFor, isBackground, isOfLight, type LampAngles, linearOf, type Rgb, turntableRadians, withinRange } from './light_math';
 
 const t = text.light;
@@ -40,9 +42,10 @@ export class LightBar {
       if (event.detail === 0) this.measure(0.5, 0.5); // by keyboard: the middle
       else this.setPicking(!this.isPicking);
     });
-    this.element = h('div', { class: 'light-bar', role: 'toolbar', 'aria-label': t.group, hidden: true },
-      this.figures, button(t.reset, () => this.reset(), { title: t.resetTitle }), this.grey, this.turn, this.pick,
-      button('×', () => state.lighting.set(false), { 'aria-label': t.leave, title: t.leave }));
+    this.element = h('div', { class: 'light-bar', role: 'toolbar', 'aria-label': t.group, hidden: true }, new EnvironmentRow(state).element,
+      h('div', { class: 'light-tools' },
+        this.figures, button(t.reset, () => this.reset(), { title: t.resetTitle }), this.grey, this.turn, this.pick,
+        button('×', () => state.lighting.set(false), { 'aria-label': t.leave, title: t.leave })));
     const { lighting, turning, settings, kiosk } = state;
     lighting.bind((on) => {
       this.element.hidden = !on;
@@ -99,8 +102,7 @@ export class LightBar {
 
   private reset(): void {
     const { settings } = this.state;
-    const names = ['lights.turn_degrees', 'lights.tilt_degrees', 'exposure'];
-    settings.setMany(new Map(names.map((name) => [name, settings.info(name)?.value ?? ''])), performance.now());
+    settings.setMany(new Map(ENVIRONMENT_SETTINGS.map((name) => [name, settings.info(name)?.value ?? ''])), performance.now());
   }
 
   private get isGrey(): boolean {
