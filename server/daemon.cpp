@@ -304,7 +304,7 @@ Status Daemon::LoadPlayer() {
   FURROW_RETURN_IF_ERROR(file);
   auto player = Player::Load(*file, PlayOptions(config_));
   FURROW_RETURN_IF_ERROR(player);
-  player_ = *std::move(player);
+  playback_.SetConfigured(*std::move(player));
   return {};
 }
 
@@ -317,7 +317,8 @@ Status Daemon::ListenToWeb() {
   parts.pictures = rendering_.thread();
   parts.video = rendering_.video();
   parts.wants_pictures = config_.render && assets_.character != nullptr;
-  parts.player = player_.get();
+  parts.playback = &playback_;
+  parts.max_upload_bytes = [this] { return config_.http.upload_bytes(); };
   parts.osc = osc_.get();
   // Called on the hub's thread while `http_` exists; the counters are atomic.
   parts.connections = [this] { return http_->connections(); };
@@ -340,6 +341,10 @@ Status Daemon::ListenToWeb() {
                      Time now) { return ports_->Give(vmc, sender, now); },
       .unix_now = ReadUnixClock};
   api_ = std::make_unique<Api>(std::move(parts));
+  loader_ = std::make_unique<RecordingLoader>(
+      RecordingLoader::Parts{.read = ReadOptions(config_),
+                             .runs_helpers = options_.confined.empty(),
+                             .metrics = metrics_});
   auto started = HttpServer::Listen(
       {.config = config_.http,
        .bind = config_.bind,
@@ -368,7 +373,8 @@ Status Daemon::ListenToWeb() {
        .waiting = &waiting_,
        .gate = &credentials_.gate(),
        .tls = &credentials_.tls(),
-       .cluster = cluster_.get()});
+       .cluster = cluster_.get(),
+       .loader = loader_.get()});
   FURROW_RETURN_IF_ERROR(started);
   http_ = *std::move(started);
   return {};
@@ -419,7 +425,7 @@ void Daemon::Serve() {
   ports_->Start();
   StartCriticalTask(io_, TickLoop());
   StartCriticalTask(io_, SecondLoop());
-  if (player_) StartCriticalTask(io_, PlayLoop());
+  StartCriticalTask(io_, PlayLoop());
   if (options_.handle_signals) HandleSignals();
   // Another thread may request the stop; only the event loop's thread may shut down.
   const std::stop_callback on_stop(options_.stop,
@@ -435,7 +441,14 @@ void Daemon::Serve() {
   // The next daemon waits for the end of this process.
   if (has_left_ && options_.handle_signals) EndProcess();
   http_.reset();  // both post to io_, so they end first
+  EndUploads();
   EndRendering();
+}
+
+// Nobody waits any more for a recording that is still being read.
+void Daemon::EndUploads() {
+  if (loader_ == nullptr || !options_.handle_signals) return;
+  if (!loader_->WaitUntil(shutdown_->deadline())) EndProcess();
 }
 
 // A process that was told to end waits until the deadline of its shutdown, and then ends without
@@ -504,15 +517,16 @@ void Daemon::EverySecond(StatusLine* status_line) {
 }
 
 asio::awaitable<void> Daemon::PlayLoop() {
-  asio::steady_timer timer(io_);
-  player_->Start(hub_.get(), ReadClock());
+  playback_.Start(
+      hub_.get(), ReadClock(), [this] { play_timer_.cancel(); },
+      [this](std::unique_ptr<Player> player) { loader_->Release(std::move(player)); });
   while (true) {
     const Time now = ReadClock();
-    // Advance() says when the next frame is due, so the loop wakes only for frames.
-    Time wait = kTick;
-    WithinMemory(metrics_, [&] { wait = player_->Advance(now) - now; });
-    timer.expires_after(wait);
-    co_await timer.async_wait(kAwaitTuple);
+    // Advance() says when the next frame is due, so the loop wakes only for frames and changes.
+    Time next = now + kTick;
+    WithinMemory(metrics_, [&] { next = playback_.Advance(now); });
+    play_timer_.expires_at(std::chrono::steady_clock::time_point(next));
+    co_await play_timer_.async_wait(kAwaitTuple);
   }
 }
 

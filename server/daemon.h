@@ -8,6 +8,7 @@
 #include <asio/awaitable.hpp>
 #include <asio/io_context.hpp>
 #include <asio/signal_set.hpp>
+#include <asio/steady_timer.hpp>
 
 #include "base/status.h"
 #include "server/assets.h"
@@ -20,7 +21,8 @@
 #include "server/http/http_server.h"
 #include "server/osc/osc_targets.h"
 #include "server/pipeline/picture_source.h"
-#include "server/playback/player.h"
+#include "server/playback/playback.h"
+#include "server/playback/recording_loader.h"
 #include "server/ports.h"
 #include "server/recording/recorder.h"
 #include "server/reload.h"
@@ -83,6 +85,7 @@ class Daemon {
   ReloadRequest MakeReloadRequest();
   Status TakeOver(Reload* reload);
   void DeliverPicture(const FinishedPicture& picture);
+  void EndUploads();
   void EndRendering();
   [[noreturn]] void EndProcess();
 
@@ -96,9 +99,10 @@ class Daemon {
   std::uint64_t session_ = 0;
   asio::io_context io_{1};  // run by the calling thread, which owns shard 0
   asio::signal_set signals_;
+  asio::steady_timer play_timer_{io_};  // of PlayLoop()
   std::unique_ptr<Recorder> recorder_;
   Rendering rendering_;
-  std::unique_ptr<Player> player_;   // a peer of the hub, so it outlives the hub
+  Playback playback_;                // peers of the hub, so they outlive the hub
   std::unique_ptr<OscTargets> osc_;  // called by the hub, so it outlives the hub
   Credentials credentials_;
   RigFiles rig_files_;
@@ -109,6 +113,7 @@ class Daemon {
   std::unique_ptr<Hub> hub_;
   std::unique_ptr<Shutdown> shutdown_;
   std::unique_ptr<Ports> ports_;
+  std::unique_ptr<RecordingLoader> loader_;
   std::unique_ptr<Api> api_;
   std::unique_ptr<HttpServer> http_;
   bool serves_web_ = false;

@@ -227,6 +227,12 @@ Status ValidateConfig(const Config& config) {
     return Invalid("http.api_share is " + NumberText(config.http.api_share) +
                    "; it must be more than 0 and at most 1");
   }
+  if (config.http.max_upload_megabytes < 0 ||
+      config.http.max_upload_megabytes > HttpConfig::kMostUploadMegabytes) {
+    return Invalid("http.max_upload_megabytes is " +
+                   std::to_string(config.http.max_upload_megabytes) + "; it must be 0 to " +
+                   std::to_string(HttpConfig::kMostUploadMegabytes));
+  }
   if (config.http.requests_per_second < 1 || config.http.requests_per_second > 1'000'000) {
     return Invalid("http.requests_per_second is " +
                    std::to_string(config.http.requests_per_second) + "; it must be 1 to 1000000");

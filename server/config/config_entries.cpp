@@ -95,6 +95,7 @@ void AddOutputs(const Config& config, std::vector<ConfigEntry>* entries) {
   add("http.max_connections", config.http.max_connections);
   add("http.api_share", config.http.api_share);
   add("http.requests_per_second", config.http.requests_per_second);
+  add("http.max_upload_megabytes", config.http.max_upload_megabytes);
   add("http.page", config.http.page);
   add("cluster.store", config.cluster.store);
   add("cluster.nodes", config.cluster.nodes);

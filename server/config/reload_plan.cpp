@@ -40,6 +40,10 @@ constexpr LiveKey kLiveKeys[] = {
     {"http.api_share", [](Config* r, const Config& w) { r->http.api_share = w.http.api_share; }},
     {"http.requests_per_second",
      [](Config* r, const Config& w) { r->http.requests_per_second = w.http.requests_per_second; }},
+    {"http.max_upload_megabytes",
+     [](Config* r, const Config& w) {
+       r->http.max_upload_megabytes = w.http.max_upload_megabytes;
+     }},
     {"log.level", [](Config* r, const Config& w) { r->log_level = w.log_level; }},
     {"log.verbose", [](Config* r, const Config& w) { r->verbose = w.verbose; }},
     {"limits.max_connections",
@@ -61,9 +65,8 @@ constexpr LiveKey kLiveKeys[] = {
     {"limits.packet_burst",
      [](Config* r, const Config& w) { r->limits.packet_burst = w.limits.packet_burst; }},
     {"limits.max_waiting_megabytes",
-     [](Config* r, const Config& w) {
-       r->limits.max_waiting_megabytes = w.limits.max_waiting_megabytes;
-     }},
+     [](Config* r,
+        const Config& w) { r->limits.max_waiting_megabytes = w.limits.max_waiting_megabytes; }},
     {"limits.outbox_messages",
      [](Config* r, const Config& w) { r->limits.outbox_messages = w.limits.outbox_messages; }},
     {"limits.idle_seconds",

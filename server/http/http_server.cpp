@@ -125,7 +125,9 @@ struct HttpServer::Impl {
                 .waiting = parts.waiting,
                 .gate = parts.gate,
                 .tls = parts.tls,
-                .cluster = parts.cluster},
+                .cluster = parts.cluster,
+                .loader = parts.loader,
+                .uploads = {}},
         find_character(std::move(parts.find_character)) {
     // Weak: tasks in the hub's queue may hold this function after the web server has gone.
     context.post_to_web = [weak = std::weak_ptr(loop)](std::function<void()> task) {
@@ -378,6 +380,7 @@ void HttpServer::Reload(const HttpConfig& config) {
     if (config.requests_per_second != context.config.requests_per_second) {
       context.pace = HostRates(static_cast<std::uint32_t>(config.requests_per_second));
     }
+    context.config.max_upload_megabytes = config.max_upload_megabytes;
     context.config.api_share = config.api_share;
     context.config.requests_per_second = config.requests_per_second;
   });

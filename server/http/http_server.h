@@ -36,6 +36,7 @@ class HttpServer {
     const TokenGate* gate = nullptr;       // outlives the server; null: everybody may do everything
     const TlsIdentity* tls = nullptr;      // outlives the server; null or not enabled: plain HTTP
     const Coordinator* cluster = nullptr;  // outlives the server; null: the daemon is alone
+    RecordingLoader* loader = nullptr;     // outlives the server; null: nothing can be uploaded
   };
   // Opens the port. Clients wait until Start(). Errors: kIo, naming the address and the port. A
   // missing page is only logged; everything else works without it.

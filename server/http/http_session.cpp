@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <new>
 #include <optional>
@@ -24,6 +25,7 @@
 #include "server/http/request/reply_writer.h"
 #include "server/http/request/request_access.h"
 #include "server/http/socket/web_socket.h"
+#include "server/http/upload/upload.h"
 #include "server/http/weights/weight_query.h"
 #include "server/http/weights/weight_stream.h"
 #include "server/net/clock.h"
@@ -32,7 +34,8 @@ namespace furrow::server {
 namespace {
 
 constexpr Time kProbeAge = std::chrono::milliseconds(100);
-constexpr Time kSkipTime = std::chrono::seconds(2);  // for a body that nobody reads
+constexpr Time kSkipTime =
+    std::chrono::seconds(2);  // for the body of a stranger, which nobody reads
 
 // Asks the hub's thread for a reply, or replies with 503 after kWebDeadline. `host`: it pays for
 // the time that the hub's thread needs.
@@ -160,27 +163,35 @@ class HttpSession {
     http::request_parser<http::string_body> parser;
     // Beast stops reading at the limits, so a client cannot make the daemon hold more than this.
     parser.header_limit(kMaxWebHeaderBytes);
-    parser.body_limit(kMaxWebMessageBytes);
+    // Each route has a limit of its own for the body, and the path is in the header.
+    parser.body_limit(std::numeric_limits<std::uint64_t>::max());
     // Covers the whole request: a client that sends one byte at a time (slowloris) is closed, too.
     // It also ends idle connections.
     stream_.expires_after(kWebDeadline);
     beast::error_code error;
     co_await http::async_read_header(stream_, buffer_, parser, Redirect(error));
     bool has_body = false;
+    is_upload_ = false;
+    body_bytes_.reset();
     if (!error) {
       Admit(parser.get());
       has_body = !parser.is_done();
+      is_upload_ = !refusal_ && IsUpload(parser.get(), *url_);
+      if (parser.content_length()) body_bytes_ = *parser.content_length();
     }
-    // A stranger cannot make the daemon hold a body, so the reply does not wait for it.
+    // A stranger cannot make the daemon hold a body, so the reply does not wait for it. An upload
+    // is read by its route.
     const bool skips_body = has_body && !access_.admitted();
-    if (has_body && !skips_body) {
-      co_await http::async_read(stream_, buffer_, parser, Redirect(error));
+    if (has_body && !skips_body && !is_upload_) {
+      if (body_bytes_.value_or(0) > kMaxWebMessageBytes) {
+        error = http::error::body_limit;
+      } else {
+        parser.body_limit(kMaxWebMessageBytes);
+        co_await http::async_read(stream_, buffer_, parser, Redirect(error));
+      }
     }
     if (!error) {
-      if (skips_body) {
-        unread_bytes_ =
-            std::min<std::uint64_t>(parser.content_length().value_or(0), kMaxWebMessageBytes);
-      }
+      if (skips_body) SkipBodyLater(kMaxWebMessageBytes);
       request_ = parser.release();
       if (skips_body) request_.keep_alive(false);
       context_->metrics->Add(Counter::kHttpRequests);
@@ -229,11 +240,17 @@ class HttpSession {
                : NeedsToken(access.ok() ? kNeedsTokenText : access.status().what());
   }
 
+  // Lets the connection end after the reply, and SkipBody() before that. `most_bytes`: of the body
+  // that are read.
+  void SkipBodyLater(std::uint64_t most_bytes) {
+    unread_bytes_ = std::min<std::uint64_t>(body_bytes_.value_or(most_bytes), most_bytes);
+  }
+
   // Reads the body of a refused request away. Closing with unread input would reset the connection,
   // and the client might not get the reply.
   net::awaitable<void> SkipBody() {
-    std::array<char, 4096> unused;
-    stream_.expires_after(kSkipTime);
+    std::array<char, 16384> unused;
+    stream_.expires_after(access_.admitted() ? Time(kWebDeadline) : kSkipTime);
     beast::error_code error;
     unread_bytes_ -= std::min<std::uint64_t>(unread_bytes_, buffer_.size());
     while (unread_bytes_ > 0 && !error) {
@@ -337,6 +354,7 @@ class HttpSession {
     if (!is_api) {
       co_return co_await WriteReply(stream_, request_, NotFound(url.path));
     }
+    if (is_upload_) co_return co_await AnswerUpload(std::move(url));
     ApiRequest request{std::string(ToView(request_.method_string())), std::move(url),
                        std::move(request_.body()), access_, client_.shielded};
     // The routes know GET only; WriteResponse() leaves the body out.
@@ -355,17 +373,79 @@ class HttpSession {
   }
 
   net::awaitable<ApiReply> AnswerApi(ApiRequest request) {
-    if (const int seconds = context_->budget->Ask(client_.host, ReadClock()); seconds > 0) {
-      context_->metrics->Add(Counter::kHttpThrottled);
+    if (auto throttled = Throttle()) {
       // The client waits, too, so that asking again at once does not cost the web thread more.
       co_await Pause();
-      ApiReply reply =
-          ErrorReply(429, "limit", "", "this address asks the API too often; see http.api_share",
-                     "try again in " + std::to_string(seconds) + " s");
-      reply.retry_after = seconds;
-      co_return reply;
+      co_return *std::move(throttled);
     }
     co_return co_await AskHub(context_, client_.host, std::move(request));
+  }
+
+  // The reply to a host that asks too often.
+  std::optional<ApiReply> Throttle() {
+    const int seconds = context_->budget->Ask(client_.host, ReadClock());
+    if (seconds <= 0) return std::nullopt;
+    context_->metrics->Add(Counter::kHttpThrottled);
+    ApiReply reply =
+        ErrorReply(429, "limit", "", "this address asks the API too often; see http.api_share",
+                   "try again in " + std::to_string(seconds) + " s");
+    reply.retry_after = seconds;
+    return reply;
+  }
+
+  // A recording: its body is read if nothing speaks against it, parsed on another thread, and
+  // played. False: the connection must close.
+  net::awaitable<bool> AnswerUpload(Url url) {
+    UploadTurn::Turn turn;
+    UploadedFile file;
+    auto refusal = BeginUpload(url, &turn, &file);
+    if (refusal) {
+      SkipBodyLater(std::max<std::uint64_t>(context_->config.upload_bytes(), kMaxWebMessageBytes));
+      request_.keep_alive(false);
+      co_return co_await WriteReply(stream_, request_, *std::move(refusal));
+    }
+    const bool expects = beast::iequals(request_[http::field::expect], "100-continue");
+    const bool whole = co_await ReceiveUpload(stream_, buffer_, expects, &file);
+    if (!whole) co_return false;
+    auto loaded = co_await LoadUpload(context_, std::move(file));
+    if (!loaded.ok()) {
+      turn.reset();
+      ApiReply reply = UnreadableReply(loaded.status());
+      co_return co_await WriteReply(stream_, request_, std::move(reply));
+    }
+    ApiRequest request{.method = "POST",
+                       .url = std::move(url),
+                       .body = {},
+                       .access = access_,
+                       .shielded = client_.shielded,
+                       .recording = *std::move(loaded)};
+    ApiReply reply = co_await AskHub(context_, client_.host, std::move(request));
+    turn.reset();  // a client that does not read the reply keeps nobody waiting
+    co_return co_await WriteReply(stream_, request_, std::move(reply));
+  }
+
+  // Takes the turn and the memory of an upload, or returns the reply that refuses it.
+  std::optional<ApiReply> BeginUpload(const Url& url, UploadTurn::Turn* turn, UploadedFile* file) {
+    if (auto throttled = Throttle()) return throttled;
+    const std::uint64_t most = context_->loader != nullptr ? context_->config.upload_bytes() : 0;
+    if (auto refusal = RefuseUpload(url, access_, body_bytes_, most, context_->metrics)) {
+      return refusal;
+    }
+    *turn = context_->uploads.Begin(client_.host, ReadClock());
+    if (*turn == nullptr) {
+      return ErrorReply(503, "unavailable", "", "another recording is being uploaded",
+                        "try again in a few seconds");
+    }
+    file->name = *UploadName(url);
+    file->size = static_cast<std::size_t>(*body_bytes_);
+    try {
+      file->buffer = std::make_unique_for_overwrite<char[]>(file->size);
+    } catch (const std::bad_alloc&) {
+      context_->metrics->Add(Counter::kAllocationsFailed);
+      return ErrorReply(503, "unavailable", "", "not enough memory for the recording",
+                        "shorten the recording, or free memory on the daemon's computer");
+    }
+    return std::nullopt;
   }
 
   // Supervisors must not be refused because somebody else asks often. So probes have no budget, but
@@ -395,7 +475,9 @@ class HttpSession {
   std::optional<Url> url_;
   Access access_;
   std::optional<ApiReply> refusal_;
-  std::uint64_t unread_bytes_ = 0;  // of its body
+  bool is_upload_ = false;                   // its body has not been read
+  std::optional<std::uint64_t> body_bytes_;  // as the header states
+  std::uint64_t unread_bytes_ = 0;           // of its body
   beast::flat_buffer buffer_;
   WebRequest request_;
 };

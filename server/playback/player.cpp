@@ -24,6 +24,7 @@ constexpr std::uint16_t kStream = 1;
 constexpr std::int64_t kFirstCapture = 1;   // microseconds; 0 means "no capture time" on the wire
 constexpr Time kRepeat = FromSeconds(0.1);  // of the current frame
 constexpr Time kOfferAgain = FromSeconds(1.0);
+constexpr std::string_view kTakeMagic("\x89MCAP0\r\n", 8);
 
 }  // namespace
 
@@ -35,37 +36,64 @@ Result<std::unique_ptr<Player>> Player::Load(const std::filesystem::path& path,
                   : motion::LoadClip(path, read, &report);
   for (const std::string& warning : report.warnings) spdlog::warn("{}", warning);
   FURROW_RETURN_IF_ERROR(clip);
-  if (clip->num_frames() == 0) {
-    return Status(StatusCode::kInvalidArgument, "the recording has no frames", path.string());
-  }
-  // The wire's limits (names, counts) hold for a file as for any sender. Checking them here gives
-  // an error at the start instead of a rejected offer later.
   std::filesystem::path file;
   std::string animation;
   motion::SplitClipPath(path, &file, &animation);
   clip->name = file.stem().string();
-  auto player = std::make_unique<Player>(*std::move(clip), path.filename().string());
-  if (std::string why = protocol::FindOfferProblem(player->offer_); !why.empty()) {
-    return Status(StatusCode::kInvalidArgument, "the skeleton cannot be offered: " + why,
-                  path.string());
-  }
-  return player;
+  return Make(*std::move(clip), path.filename().string(), path.string(), "--play");
 }
 
-Player::Player(motion::Clip clip, std::string file)
-    : clip_(std::move(clip)), file_(std::move(file)) {
+Result<std::unique_ptr<Player>> Player::Parse(std::string_view bytes, const std::string& name,
+                                              const motion::LoadOptions& read,
+                                              std::vector<std::string>* warnings) {
+  motion::ClipReport report;
+  const std::span take(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+  auto clip = recording::IsTakePath(name) || bytes.starts_with(kTakeMagic)
+                  ? recording::ParseTakeClip(take, name, &report)
+                  : motion::ParseClip(bytes, name, read, &report);
+  FURROW_RETURN_IF_ERROR(clip);
+  *warnings = std::move(report.warnings);
+  clip->name = std::filesystem::path(name).stem().string();
+  return Make(*std::move(clip), name, name, "upload");
+}
+
+Player::Player(motion::Clip clip, std::string file, std::string label)
+    : clip_(std::move(clip)), file_(std::move(file)), label_(std::move(label)) {
   protocol::SkeletonOffer offer = recording::OfferOf(clip_, clip_.name, 1.0f);
   offer.skeleton_hash = protocol::SkeletonHash(offer);
   pose_.skeleton_hash = offer.skeleton_hash;
   encoder_.Encode({.session = kSession, .stream = kStream}, offer, offer_);
 }
 
+// The wire's limits (names, counts) hold for a file as for any sender. Checking them here gives an
+// error at the start instead of a rejected offer later.
+Result<std::unique_ptr<Player>> Player::Make(motion::Clip clip, std::string file,
+                                             const std::string& where, std::string label) {
+  if (clip.num_frames() == 0) {
+    return Status(StatusCode::kInvalidArgument, "the recording has no frames", where);
+  }
+  auto player = std::make_unique<Player>(std::move(clip), std::move(file), std::move(label));
+  if (std::string why = protocol::FindOfferProblem(player->offer_); !why.empty()) {
+    return Status(StatusCode::kInvalidArgument, "the skeleton cannot be offered: " + why, where);
+  }
+  return player;
+}
+
 void Player::Start(Hub* hub, Time now) {
   hub_ = hub;
   // kWeb: a peer without a socket of its own, whose messages come on the hub's thread.
-  peer_ = hub->AddPeer(Transport::kWeb, "--play " + file_, this, now, 0, Access::Everything());
+  peer_ = hub->AddPeer(Transport::kWeb, label_ + " " + file_, this, now, 0, Access::Everything());
+  refusal_.clear();
   Offer(now);
-  MoveTo(0.0, now);
+  MoveTo(anchor_, now);
+}
+
+void Player::Stop(Time now) {
+  anchor_ = std::clamp(PositionAt(now), 0.0, clip_.duration());
+  anchor_time_ = now;
+  encoder_.Encode({.session = kSession, .stream = kStream}, protocol::Goodbye{}, bytes_);
+  hub_->OnMessage(peer_, bytes_, now);
+  hub_->RemovePeer(std::exchange(peer_, 0));
 }
 
 void Player::Offer(Time now) {
@@ -78,17 +106,23 @@ void Player::Offer(Time now) {
 void Player::SendReply(std::span<const std::uint8_t> message) {
   protocol::MessageView view;
   protocol::SkeletonReply reply;
+  protocol::ErrorMessage error;
   if (protocol::OpenMessage(message, view, protocol::kMaxReplyBytes) !=
-          protocol::DecodeStatus::kOk ||
-      protocol::Decode(view, reply) != protocol::DecodeStatus::kOk) {
-    return;  // a goodbye
+      protocol::DecodeStatus::kOk) {
+    return;
   }
+  if (protocol::Decode(view, error) == protocol::DecodeStatus::kOk) {
+    return NoteRefusal(std::move(error.message));
+  }
+  if (protocol::Decode(view, reply) != protocol::DecodeStatus::kOk) return;  // a goodbye
   needed_ |= reply.status == protocol::SkeletonStatus::kNeeded;
-  if (reply.status == protocol::SkeletonStatus::kAccepted) refused_ = false;
-  if (reply.status != protocol::SkeletonStatus::kRejected) return;
-  if (!std::exchange(refused_, true)) {
-    spdlog::warn("playback of '{}' has no effect: {}", clip_.name, reply.message);
-  }
+  if (reply.status == protocol::SkeletonStatus::kAccepted) refusal_.clear();
+  if (reply.status == protocol::SkeletonStatus::kRejected) NoteRefusal(std::move(reply.message));
+}
+
+void Player::NoteRefusal(std::string why) {
+  if (refusal_.empty()) spdlog::warn("playback of '{}' has no effect: {}", clip_.name, why);
+  refusal_ = std::move(why);
 }
 
 // Computed from the time of the last change, not added up, so rounding does not accumulate.

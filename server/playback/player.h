@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "motion/clip/clip.h"
@@ -13,8 +14,8 @@
 
 namespace furrow::server {
 
-// Plays a recording inside the daemon (furrowd --play): a peer of the hub that publishes one
-// subject, with a timeline for pause, seek, loop and speed.
+// Plays a recording inside the daemon (furrowd --play, or an uploaded file): a peer of the hub that
+// publishes one subject, with a timeline for pause, seek, loop and speed.
 //
 // Poses carry the capture times of the recording, so from its start and at any speed the weights
 // equal those of `furrow solve`. Going back restarts the filter. While paused, the player repeats
@@ -50,11 +51,21 @@ class Player : public Link {
   // blend shapes, names that are not UTF-8).
   [[nodiscard]] static Result<std::unique_ptr<Player>> Load(const std::filesystem::path& path,
                                                             const motion::LoadOptions& read = {});
-  // `file`: name of the recording, for State.
-  explicit Player(motion::Clip clip, std::string file);
+  // The same for the bytes of an uploaded file, of which `name` is the name without folders. No
+  // file is opened. `warnings`: what the reader tolerated, one sentence each; not null.
+  [[nodiscard]] static Result<std::unique_ptr<Player>> Parse(std::string_view bytes,
+                                                             const std::string& name,
+                                                             const motion::LoadOptions& read,
+                                                             std::vector<std::string>* warnings);
+  // `file`: name of the recording, for State. `label`: of the peer, for people.
+  explicit Player(motion::Clip clip, std::string file, std::string label = "--play");
 
-  // Offers the subject and sends its first frame. `hub` must outlive the player.
+  // Offers the subject and sends its first frame, or goes on after Stop(). `hub` must outlive the
+  // player.
   void Start(Hub* hub, Time now);
+  // Ends the subject, which decays to neutral and leaves, and keeps the position. Call it only
+  // after Start().
+  void Stop(Time now);
   // Sends a frame if one is due. Returns when to call it next.
   Time Advance(Time now);
   // Changes the timeline. Errors: kInvalidArgument, with the field as `where`; nothing has changed
@@ -62,6 +73,11 @@ class Player : public Link {
   [[nodiscard]] Status Apply(const Change& change, Time now);
   // The state of the timeline at `now`.
   [[nodiscard]] State state(Time now) const;
+  // The name of the subject.
+  [[nodiscard]] const std::string& subject() const { return clip_.name; }
+  // Why the hub does not let this player publish its subject; empty: it does, or it has not decided
+  // yet.
+  [[nodiscard]] const std::string& refusal() const { return refusal_; }
 
   // Link: receives the replies to a publisher.
   void SendReply(std::span<const std::uint8_t> message) override;
@@ -71,6 +87,11 @@ class Player : public Link {
   void DropFrames(std::uint64_t) override {}
 
  private:
+  // Checks what a reader has read. `where`: for errors.
+  [[nodiscard]] static Result<std::unique_ptr<Player>> Make(motion::Clip clip, std::string file,
+                                                            const std::string& where,
+                                                            std::string label);
+  void NoteRefusal(std::string why);
   [[nodiscard]] double PositionAt(Time now) const;
   [[nodiscard]] int FrameAt(double position) const;
   void MoveTo(double position, Time now);
@@ -79,6 +100,7 @@ class Player : public Link {
 
   const motion::Clip clip_;
   const std::string file_;
+  const std::string label_;
   Hub* hub_ = nullptr;
   PeerId peer_ = 0;
   bool playing_ = true;
@@ -90,8 +112,8 @@ class Player : public Link {
   Time sent_{0};
   std::vector<std::uint8_t> offer_;  // encoded
   Time offered_{0};
-  bool needed_ = false;   // the hub has asked for the offer again
-  bool refused_ = false;  // the last offer was rejected, which has been logged
+  bool needed_ = false;  // the hub has asked for the offer again
+  std::string refusal_;  // of the last offer, which has been logged
   std::uint32_t sequence_ = 0;
   protocol::Encoder encoder_;
   protocol::PoseFrame pose_;

@@ -65,10 +65,10 @@ class Targets : public OscControl {
 };
 
 // A player of three frames of the same blend shape.
-std::unique_ptr<Player> TestPlayer() {
+std::unique_ptr<Player> TestPlayer(const std::string& subject) {
   motion::Clip clip;
   clip.blend_shape_names = {"brow"};
-  clip.name = "take";
+  clip.name = subject;
   clip.times = {0.0, 0.1, 0.2};
   clip.blend_shapes = {0.0f, 0.5f, 1.0f};
   return std::make_unique<Player>(std::move(clip), "fuzz.csv");
@@ -88,11 +88,13 @@ class Daemon {
                                             .metrics = &metrics_,
                                             .pictures = &pictures_,
                                             .wants_pictures = true,
-                                            .player = player_.get(),
+                                            .playback = &playback_,
+                                            .max_upload_bytes = [] { return std::uint64_t{64}; },
                                             .osc = &targets_,
                                             .connections = [] { return 1; },
                                             .viewers = [] { return 1; }});
-    player_->Start(hub_.get(), now_);
+    playback_.SetConfigured(TestPlayer("take"));
+    playback_.Start(hub_.get(), now_, {}, [](const std::unique_ptr<Player>&) {});
     sender_ = hub_->AddPeer(Transport::kTcp, "fuzz", &link_, now_);
     Publish();
     protocol::secure::Grant grant;
@@ -112,6 +114,12 @@ class Daemon {
     ApiRequest request{.method = std::string(head.substr(0, space)),
                        .url = *url,
                        .body = std::string(text.substr(std::min(line + 1, text.size())))};
+    // An upload arrives parsed. A name of the sender's subject is refused.
+    if (request.method.ends_with("POST") && url->path == "/api/playback") {
+      request.recording = std::make_shared<RecordingLoader::Loaded>();
+      const std::string_view name = url->Value("name");
+      if (!name.empty()) request.recording->player = TestPlayer(std::string(name));
+    }
     const bool may_all = !request.method.starts_with('-');
     if (!may_all) {
       request.method.erase(0, 1);
@@ -125,7 +133,7 @@ class Daemon {
     }
     Check(reply);
     if (!may_all && request.method != "GET") Require(reply.status >= 400);
-    player_->Advance(now_);
+    (void)playback_.Advance(now_);
     hub_->Tick(now_);
   }
 
@@ -162,7 +170,7 @@ class Daemon {
   Pictures pictures_;
   Targets targets_;
   fuzz::QuietLink link_;
-  std::unique_ptr<Player> player_ = TestPlayer();
+  Playback playback_;
   std::uint64_t random_ = 0;
   Time now_ = FromSeconds(1);
   std::unique_ptr<Hub> hub_;

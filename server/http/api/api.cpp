@@ -13,7 +13,8 @@ Api::Api(Parts parts)
                .wants_pictures = parts.wants_pictures,
                .pictures = parts.pictures,
                .video = parts.video,
-               .plays = parts.player != nullptr,
+               .playback = parts.playback,
+               .max_upload_bytes = std::move(parts.max_upload_bytes),
                .connections = std::move(parts.connections),
                .viewers = std::move(parts.viewers),
                .recording_is_paused = std::move(parts.recording_is_paused),
@@ -23,7 +24,7 @@ Api::Api(Parts parts)
                .cluster = parts.cluster}),
       settings_(parts.pictures),
       rig_(&captures_),
-      playback_(parts.player),
+      playback_(parts.playback),
       osc_(parts.osc),
       tokens_(parts.gate, parts.metrics),
       cluster_(parts.cluster, &tokens_),
@@ -75,6 +76,12 @@ Api::Api(Parts parts)
                [this](const ApiRequest& request, Hub&, Time now) {
                  return playback_.Patch(request, now);
                }},
+              {"POST", "/api/playback", Need::kDirect,
+               [this](const ApiRequest& request, Hub& hub, Time now) {
+                 return playback_.Play(request, hub, now);
+               }},
+              {"DELETE", "/api/playback", Need::kDirect,
+               [this](const ApiRequest&, Hub&, Time now) { return playback_.Close(now); }},
               {"GET", "/api/osc", Need::kOperate,
                [this](const ApiRequest&, Hub&, Time) { return osc_.List(); }},
               {"POST", "/api/osc", Need::kOperate,
@@ -124,10 +131,8 @@ ApiReply Api::Forbid(Need need, const ApiRequest& request) {
                           : need == Need::kWatch ? Counter::kRefusedWatch
                                                  : Counter::kRefusedOperate;
   metrics_->Add(counter);
-  const std::string role = directs ? "direct" : need == Need::kWatch ? "watch" : "operate";
-  return ErrorReply(403, "forbidden", "",
-                    request.url.path + " needs the role " + role + "; " + request.access.Text(),
-                    "use a token with this role");
+  const char* const role = directs ? "direct" : need == Need::kWatch ? "watch" : "operate";
+  return NeedsRole(role, request.url.path, request.access);
 }
 
 ApiReply Api::Answer(const ApiRequest& request, Hub& hub, Time now) {

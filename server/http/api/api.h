@@ -24,7 +24,7 @@
 #include "server/osc/osc_control.h"
 #include "server/pipeline/picture_source.h"
 #include "server/pipeline/video_encoders.h"
-#include "server/playback/player.h"
+#include "server/playback/playback.h"
 #include "server/session/hub.h"
 #include "server/shares/waiting_bytes.h"
 
@@ -36,22 +36,23 @@ class Api {
  public:
   // Pointers must outlive the Api.
   struct Parts {
-    std::uint64_t session = 0;                  // the daemon's random session number
-    Time started{0};                            // when the daemon started
-    Metrics* metrics = nullptr;                 // not null
-    PictureSource* pictures = nullptr;          // null: the daemon renders nothing
-    const VideoEncoders* video = nullptr;       // null: the daemon renders nothing
-    bool wants_pictures = false;                // the configuration asks for pictures
-    Player* player = nullptr;                   // null: started without --play
-    OscControl* osc = nullptr;                  // not null
-    std::function<int()> connections;           // number of HTTP connections
-    std::function<int()> viewers;               // number of WebSockets and picture streams
-    std::function<bool()> recording_is_paused;  // by a full disk; empty: nothing is recorded
-    std::function<bool()> config_is_refused;    // by the last reload; empty: there are none
-    const WaitingBytes* waiting = nullptr;      // for clients that read slowly; null: no limit
-    bool open_to_network = false;               // other computers need no token
-    const TokenGate* gate = nullptr;            // null: the daemon makes no tokens
-    Coordinator* cluster = nullptr;             // null: the daemon is alone
+    std::uint64_t session = 0;                        // the daemon's random session number
+    Time started{0};                                  // when the daemon started
+    Metrics* metrics = nullptr;                       // not null
+    PictureSource* pictures = nullptr;                // null: the daemon renders nothing
+    const VideoEncoders* video = nullptr;             // null: the daemon renders nothing
+    bool wants_pictures = false;                      // the configuration asks for pictures
+    Playback* playback = nullptr;                     // not null
+    std::function<std::uint64_t()> max_upload_bytes;  // of a recording; 0: none
+    OscControl* osc = nullptr;                        // not null
+    std::function<int()> connections;                 // number of HTTP connections
+    std::function<int()> viewers;                     // number of WebSockets and picture streams
+    std::function<bool()> recording_is_paused;        // by a full disk; empty: nothing is recorded
+    std::function<bool()> config_is_refused;          // by the last reload; empty: there are none
+    const WaitingBytes* waiting = nullptr;  // for clients that read slowly; null: no limit
+    bool open_to_network = false;           // other computers need no token
+    const TokenGate* gate = nullptr;        // null: the daemon makes no tokens
+    Coordinator* cluster = nullptr;         // null: the daemon is alone
     SourcesApi::Parts sources;
   };
   explicit Api(Parts parts);

@@ -11,6 +11,7 @@
 #include "server/core/time.h"
 #include "server/http/request/api_types.h"
 #include "server/pipeline/video_encoders.h"
+#include "server/playback/playback.h"
 #include "server/session/hub.h"
 #include "server/shares/waiting_bytes.h"
 
@@ -23,17 +24,18 @@ class StatusApi {
     std::uint64_t session = 0;
     Time started{0};
     const Metrics* metrics = nullptr;
-    bool wants_pictures = false;                // the configuration asks for pictures
-    const PictureSource* pictures = nullptr;    // the renderer; null: none is running
-    const VideoEncoders* video = nullptr;       // null: the daemon renders nothing
-    bool plays = false;                         // started with --play
-    std::function<int()> connections;           // HTTP connections
-    std::function<int()> viewers;               // WebSockets and picture streams
-    std::function<bool()> recording_is_paused;  // by a full disk; empty: nothing is recorded
-    std::function<bool()> config_is_refused;    // by the last reload; empty: there are none
-    const WaitingBytes* waiting = nullptr;      // for clients that read slowly; null: no limit
-    bool open_to_network = false;               // other computers need no token
-    const Coordinator* cluster = nullptr;       // null: the daemon is alone
+    bool wants_pictures = false;                      // the configuration asks for pictures
+    const PictureSource* pictures = nullptr;          // the renderer; null: none is running
+    const VideoEncoders* video = nullptr;             // null: the daemon renders nothing
+    const Playback* playback = nullptr;               // not null
+    std::function<std::uint64_t()> max_upload_bytes;  // of a recording; 0: none
+    std::function<int()> connections;                 // HTTP connections
+    std::function<int()> viewers;                     // WebSockets and picture streams
+    std::function<bool()> recording_is_paused;        // by a full disk; empty: nothing is recorded
+    std::function<bool()> config_is_refused;          // by the last reload; empty: there are none
+    const WaitingBytes* waiting = nullptr;  // for clients that read slowly; null: no limit
+    bool open_to_network = false;           // other computers need no token
+    const Coordinator* cluster = nullptr;   // null: the daemon is alone
   };
   explicit StatusApi(Parts parts) : parts_(std::move(parts)) {}
 

@@ -43,6 +43,13 @@ ApiReply ErrorReply(const Status& status) {
   return ErrorReply(info.status, info.name, status.where(), status.what(), status.todo());
 }
 
+ApiReply NeedsRole(std::string_view role, std::string_view path, const Access& access) {
+  return ErrorReply(
+      403, "forbidden", "",
+      std::string(path) + " needs the role " + std::string(role) + "; " + access.Text(),
+      "use a token with this role");
+}
+
 ApiReply MethodReply(std::string_view method, std::string_view path, std::string allow) {
   ApiReply reply =
       ErrorReply(405, "method", "", std::string(path) + " does not support " + std::string(method),

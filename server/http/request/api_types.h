@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <string>
 #include <string_view>
 
 #include "base/status.h"
 #include "server/http/request/url.h"
+#include "server/playback/recording_loader.h"
 #include "server/session/access/access.h"
 
 namespace furrow::server {
@@ -17,6 +19,8 @@ struct ApiRequest {
   std::string body;
   Access access = Access::Everything();
   bool shielded = true;  // nobody on the network can read the request and its reply
+  // POST /api/playback: what was read of the body. The reply takes the recording.
+  std::shared_ptr<RecordingLoader::Loaded> recording = nullptr;
 };
 
 // True for the probes of supervisors, which everybody may ask. They read only what the hub's thread
@@ -43,6 +47,9 @@ struct ApiReply {
 [[nodiscard]] ApiReply ErrorReply(int status, std::string_view code, std::string_view field,
                                   std::string_view message, std::string_view hint = {});
 [[nodiscard]] ApiReply ErrorReply(const Status& status);
+// 403 for a request without the role, "direct" or the like.
+[[nodiscard]] ApiReply NeedsRole(std::string_view role, std::string_view path,
+                                 const Access& access);
 // Returns 405 Method Not Allowed. `allow`: the methods of the path, "GET, HEAD".
 [[nodiscard]] ApiReply MethodReply(std::string_view method, std::string_view path,
                                    std::string allow);

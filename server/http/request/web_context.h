@@ -17,8 +17,10 @@
 #include "server/http/request/request_budget.h"
 #include "server/http/request/request_guard.h"
 #include "server/http/request/thread_handoff.h"
+#include "server/playback/recording_loader.h"
 #include "server/session/access/token_gate.h"
 #include "server/shares/host_rates.h"
+#include "server/shares/upload_turn.h"
 #include "server/shares/waiting_bytes.h"
 #include "server/tls/tls_identity.h"
 
@@ -46,6 +48,8 @@ struct WebContext {
   const TokenGate* gate = nullptr;       // null: everybody may do everything
   const TlsIdentity* tls = nullptr;      // null or not enabled: plain HTTP
   const Coordinator* cluster = nullptr;  // null: the daemon is alone
+  RecordingLoader* loader = nullptr;     // null: nothing can be uploaded
+  UploadTurn uploads;
   std::shared_ptr<RequestBudget> budget =
       std::make_shared<RequestBudget>(config.api_share);  // of API requests
   // Of requests that are answered at once.

@@ -390,6 +390,12 @@ TEST(ValidateConfig, NamesTheLimitThatIsOutOfRange) {
   EXPECT_THAT(ValidateConfig(config).what(),
               HasSubstr("limits.max_waiting_megabytes is 71; it must be 72 to 1000000"));
   config = {};
+  config.http.max_upload_megabytes = 0;
+  EXPECT_TRUE(ValidateConfig(config).ok());
+  config.http.max_upload_megabytes = 1001;
+  EXPECT_THAT(ValidateConfig(config).what(),
+              HasSubstr("http.max_upload_megabytes is 1001; it must be 0 to 1000"));
+  config = {};
   config.limits.loss_seconds = 0.0;
   EXPECT_THAT(ValidateConfig(config).what(), HasSubstr("limits.loss_seconds"));
   config = {};
