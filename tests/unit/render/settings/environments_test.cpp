@@ -12,8 +12,8 @@ namespace {
 
 std::vector<std::filesystem::path> Environments() {
   std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(FURROW_SOURCE_DIR
-                                                               "/render/environments")) {
+  for (const auto& entry :
+       std::filesystem::directory_iterator(FURROW_SOURCE_DIR "/render/environments")) {
     files.push_back(entry.path());
   }
   return files;
@@ -37,8 +37,9 @@ TEST(Environments, NameAllTheirSettings) {
     Settings from_defaults;
     Settings from_others;
     from_others.exposure = 7.0f;
-    from_others.lights = {LightPreset::kHard, 3.0f, 3.0f, 33.0f, 33.0f, glm::vec3(0.3f),
-                          glm::vec3(0.3f), glm::vec3(0.3f), glm::vec3(0.3f)};
+    from_others.lights = {
+        LightPreset::kHard, 3.0f,           3.0f, 33.0f, 33.0f, glm::vec3(0.3f), glm::vec3(0.3f),
+        glm::vec3(0.3f),    glm::vec3(0.3f)};
     ASSERT_TRUE(LoadSettings(file, &from_defaults).ok());
     ASSERT_TRUE(LoadSettings(file, &from_others).ok());
     EXPECT_EQ(from_others, from_defaults) << file;
