@@ -17,8 +17,8 @@
 #include "render/renderer.h"
 #include "render/video/video_codec.h"
 #include "server/core/time.h"
-#include "server/pipeline/fair_order.h"
 #include "server/pipeline/snapshot.h"
+#include "server/shares/fair_order.h"
 
 namespace furrow::server {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/pipeline/fair_order.h"
+#include "server/shares/fair_order.h"
 
 #include <set>
 #include <vector>
