@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page draws the picture itself, in software here, and the daemon's picture comes first and returns when it must.
 import assert from 'node:assert/strict';
-import { copyFileSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { copyFileSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -174,4 +174,22 @@ test('without WebGL the daemon draws', async () => {
   } finally {
     await poor.close();
   }
+});
+
+test('a picture of the page has what the browser has drawn', async () => {
+  await daemon.hold(FROWN_S);
+  const page = await openPage(browser, `${daemon.address}#drawn=browser&camera=eyes`, SMALL);
+  await drawnBy(page, 'browser');
+  // Below it lies the last picture of the daemon, which is the same.
+  await page.evaluate(() => {
+    const { canvas } = document.querySelector('canvas.picture').getContext('2d');
+    canvas.getContext('2d').clearRect(0, 0, canvas.width, canvas.height);
+  });
+  const drawn = await screen(page);
+  const [file] = await Promise.all([page.waitForEvent('download'), page.keyboard.press('i')]);
+  const { x, y } = await page.locator('.surface').boundingBox();
+  const saved = new PNG({ width: drawn.width, height: drawn.height });
+  PNG.bitblt(PNG.sync.read(readFileSync(await file.path())), saved, Math.round(x), Math.round(y), drawn.width, drawn.height, 0, 0);
+  assert(changedShare(saved, drawn) < 0.02, `${changedShare(saved, drawn)}`);
+  await page.context().close();
 });
