@@ -88,6 +88,17 @@ views() {
   sheet views 3x2 900 "${names[@]}"
 }
 
+# The light of each file in share/furrow/environments, in the order of the page.
+environments() {
+  local names=()
+  for light in studio overcast sunset stage neutral; do
+    size=400x460 still "light_$light" "$recordings/performance.bvh" --frames 120 --camera face \
+      --settings "$share/environments/$light.toml"
+    names+=("light_$light")
+  done
+  sheet environments 5x1 1400 "${names[@]}"
+}
+
 # One pose with texture masks and with masks by skinning weights.
 masks() {
   local names=()
@@ -333,6 +344,7 @@ fi
 
 performance
 views
+environments
 masks
 reference_poses
 thesis_poses
