@@ -62,9 +62,13 @@ export interface DaemonStatus {
   pictures_encoded: number;
   pictures_dropped: number;
   playback: boolean;
+  /** Of a recording that the page may upload; 0: none. */
+  max_upload_bytes: number;
   draining: boolean;
   /** Everybody on the network may connect, without a token. */
   open: boolean;
+  /** The roles of this page. */
+  may: { publish: boolean; watch: boolean; direct: boolean; operate: boolean };
 }
 
 /** A port for phones and trackers. */
@@ -192,6 +196,8 @@ export interface Contribution {
 export interface Playback {
   file: string;
   subject: string;
+  /** A client has uploaded it. */
+  uploaded: boolean;
   frames: number;
   seconds: number;
   rate_hz: number;
@@ -200,6 +206,12 @@ export interface Playback {
   playing: boolean;
   loop: boolean;
   speed: number;
+}
+
+/** The reply to an upload. */
+export interface Upload extends Playback {
+  /** What the reader tolerated. */
+  warnings: string[];
 }
 
 /** The daemon's reason for rejecting a request. `status` is 0 if the daemon did not reply. */
@@ -220,12 +232,12 @@ export class ApiError extends Error {
   }
 }
 
-async function errorOf(response: Response): Promise<ApiError> {
+function errorOf(status: number, body: string): ApiError {
   try {
-    const { error } = await response.json();
-    return new ApiError(response.status, error.field, error.message, error.hint);
+    const { error } = JSON.parse(body);
+    return new ApiError(status, error.field, error.message, error.hint);
   } catch {
-    return new ApiError(response.status, '', text.api.status(response.status));
+    return new ApiError(status, '', text.api.status(status));
   }
 }
 
@@ -248,7 +260,7 @@ async function ask(path: string, method = 'GET', body?: unknown): Promise<Respon
   } catch {
     throw new ApiError(0, '', text.api.silent);
   }
-  if (!response.ok) throw await errorOf(response);
+  if (!response.ok) throw errorOf(response.status, await response.text());
   return response;
 }
 
@@ -280,9 +292,30 @@ export const api = {
   playback: () => call<Playback>('api/playback'),
   patchPlayback: (values: Partial<Pick<Playback, 'playing' | 'loop' | 'speed' | 'position_s'>>) =>
     call<Playback>('api/playback', 'PATCH', values),
+  /** Ends the uploaded recording. */
+  closeRecording: () => call<object>('api/playback', 'DELETE'),
   /** The current rig as the text of a file. */
   rigFile: async () => (await ask('api/rig.json')).text(),
 };
+
+/** Sends a recording, which the daemon then plays. `onProgress`: the share that has been sent. fetch() does not report it. */
+export function uploadRecording(file: File, onProgress: (share: number) => void): { reply: Promise<Upload>; cancel: () => void } {
+  const request = new XMLHttpRequest();
+  const reply = new Promise<Upload>((resolve, reject) => {
+    request.upload.addEventListener('progress', ({ loaded, total }) => onProgress(total > 0 ? loaded / total : 1));
+    request.addEventListener('load', () => {
+      if (request.status === 200) resolve(JSON.parse(request.responseText) as Upload);
+      else reject(errorOf(request.status, request.responseText));
+    });
+    request.addEventListener('error', () => reject(new ApiError(0, '', text.upload.broken)));
+    request.addEventListener('abort', () => reject(new DOMException('cancelled', 'AbortError')));
+  });
+  request.open('POST', `api/playback?${query({ name: file.name })}`);
+  for (const [name, value] of Object.entries(tokenHeaders())) request.setRequestHeader(name, value);
+  request.setRequestHeader('Content-Type', 'application/octet-stream');
+  request.send(file);
+  return { reply, cancel: () => request.abort() };
+}
 
 /** The sentence to show for any thrown value. */
 export function wordsOf(error: unknown): string {

@@ -20,9 +20,10 @@ import { SettingsText } from './panels/settings_text';
 import { SourcesPanel } from './panels/sources';
 import { DebugStrip } from './panels/strip';
 import { Timeline } from './panels/timeline';
+import { UploadPanel } from './panels/upload';
 import { ViewBar } from './panels/view_bar';
-import { addressOf } from './state/address';
 import { captionLines } from './screenshot/caption';
+import { addressOf } from './state/address';
 import { AppState } from './state/app_state';
 import { Elsewhere } from './state/elsewhere';
 import { isAcross, isCompact } from './state/layout';
@@ -72,6 +73,7 @@ export class App {
   private readonly strip: DebugStrip;
   private readonly menu: SettingsMenu;
   private readonly timeline: Timeline;
+  private readonly upload: UploadPanel;
   private readonly tabs: Tabs;
   private readonly notice: Notice;
   private readonly grid: SubjectGrid;
@@ -114,7 +116,7 @@ export class App {
     this.light = new LightBar(state, this.viewer, toasts);
     this.layouts = new LayoutDialog(state, toasts, browserStore());
     this.actions = new PictureActions(() => this.viewer.canvas(), this.root, toasts, () => this.caption());
-    this.notice = new Notice(toasts, () => this.tabs.choose('sources'));
+    this.notice = new Notice(toasts, () => this.tabs.choose('sources'), () => this.upload.choose());
     this.capture = new CapturePanel(subject, toasts, () => void this.readRig());
     this.guide = new GuidePanel(this.connection, subject, {
       onChanged: () => void this.readRig(),
@@ -128,7 +130,11 @@ export class App {
     this.session = new SessionPanel((name) => state.chooseSubject(name), state.stream);
     const settingsText = new SettingsText(state, toasts);
     this.menu = new SettingsMenu(state, toasts, () => settingsText.open());
-    this.timeline = new Timeline(toasts);
+    this.upload = new UploadPanel({
+      status: () => this.status, chosen: () => state.subject.value, choose: (name) => state.chooseSubject(name),
+      onPlayback: (playback) => this.timeline.onPlayback(playback),
+    }, toasts);
+    this.timeline = new Timeline(toasts, () => void this.upload.closeRecording(), (isUploaded) => this.upload.show(isUploaded));
     this.strip = new DebugStrip(this.connection, state);
     this.viewBar = new ViewBar(state, this.strip.adder, this.viewer.drawing);
     const commands = this.commands();
@@ -145,7 +151,7 @@ export class App {
       { id: 'curves', label: text.tabs.curves, icon: 'curves', content: this.curvesHolder, isForSheets: true },
       { id: 'capture', label: text.tabs.capture, icon: 'capture', content: h('div', {}, this.guide.element, this.capture.element) },
       { id: 'sources', label: text.tabs.sources, icon: 'sources', content: new SourcesPanel(toasts).element },
-      { id: 'session', label: text.tabs.session, icon: 'session', content: this.session.element },
+      { id: 'session', label: text.tabs.session, icon: 'session', content: h('div', {}, this.upload.element, this.session.element) },
     ], (id) => state.panel.set(id));
     this.buildLayout(parent, settingsText.element);
     installKeys(commands);
@@ -170,7 +176,7 @@ export class App {
     this.root.append(
       this.header.element, this.strip.element, this.main, this.dock,
       h('aside', { class: 'side', 'aria-label': text.tabs.list }, this.tabs.list, this.tabs.panels),
-      dialog, this.help, this.layouts.element, this.token.element, this.toasts.element, kioskButton(this.root, this.state.kiosk));
+      this.upload.target, dialog, this.help, this.layouts.element, this.token.element, this.toasts.element, kioskButton(this.root, this.state.kiosk));
     parent.replaceChildren(this.root);
     isCompact.bind((compact) => this.arrange(compact));
     isAcross.bind((across) => this.header.element.classList.toggle('on-picture', across));
@@ -183,6 +189,8 @@ export class App {
     // /embed is the page in a frame of another page.
     const isEmbedded = location.pathname.endsWith('/embed');
     this.state.kiosk.bind((kiosk) => this.root.classList.toggle('bare', kiosk || isEmbedded));
+    if (!isEmbedded) this.upload.takeDrops();
+    this.toasts.element.append(this.upload.progress);
     returnFocus(this.root, stage.surface);
   }
 
@@ -236,14 +244,15 @@ export class App {
       command('f', k.fullscreen, () => this.actions.toggleFullscreen()),
       command('k', k.kiosk, () => state.kiosk.set(!state.kiosk.value)),
       command('b', k.screenshot, () => void this.actions.screenshot()),
+      command('i', k.page, () => void this.actions.pageScreenshot()),
       command('r', k.record, () => this.actions.toggleRecording()),
       command('space', k.play, () => this.timeline.toggle()),
+      command('u', k.open, () => this.upload.choose()),
       command('c', k.compare, () => state.comparing.set(true), () => state.comparing.set(false)),
       command('x', k.wipe, () => this.viewBar.nextWipe()),
       command('escape', k.leave, () => state.settings.set('view', 'final', performance.now())),
       command('/', k.search, () => this.openMenu()),
       command('ctrl+z', k.undo, () => state.settings.undo()),
-      command('i', k.page, () => void this.actions.pageScreenshot()),
       command('ctrl+y', k.redo, () => state.settings.redo()),
       command('p', k.panel, () => this.togglePanel()),
       command('g', k.curves, () => this.toggleDock()),
@@ -382,14 +391,6 @@ export class App {
     });
   }
 
-  private streamFigures(nowS: number): { stream: string; streamTitle: string } {
-    const { stats, video, drawing } = this.viewer;
-    const t = text.stream;
-    if (drawing.active.value || this.viewer.picture() === null) return { stream: '', streamTitle: '' };
-    const isVideo = stats.codec !== '';
-    const daemon = this.status?.video ?? null;
-    const whyDaemon = daemon === null || daemon.why === '' ? t.why.full : t.why.daemon(daemon.why);
-    const title = isVideo ? t.isVideo : t.isFiles(video.why || whyDaemon);
   /** Below a picture of the page. */
   private caption(): string[] {
     const { history } = this;
@@ -402,6 +403,14 @@ export class App {
     });
   }
 
+  private streamFigures(nowS: number): { stream: string; streamTitle: string } {
+    const { stats, video, drawing } = this.viewer;
+    const t = text.stream;
+    if (drawing.active.value || this.viewer.picture() === null) return { stream: '', streamTitle: '' };
+    const isVideo = stats.codec !== '';
+    const daemon = this.status?.video ?? null;
+    const whyDaemon = daemon === null || daemon.why === '' ? t.why.full : t.why.daemon(daemon.why);
+    const title = isVideo ? t.isVideo : t.isFiles(video.why || whyDaemon);
     if (stats.still) return { stream: t.still, streamTitle: `${t.stillTitle} ${title}` };
     return {
       stream: t.rate(isVideo ? t.h264 : t.jpeg, stats.mbitPerS(nowS).toFixed(2)),

@@ -80,7 +80,7 @@ test('steps without an effect are not described', () => {
   assert.equal(all.length, 3);
 });
 
-const PLAYBACK: Playback = { file: 'a.bvh', subject: 'a', frames: 600, seconds: 10, rate_hz: 60, position_s: 9, frame: 540, playing: true, loop: true, speed: 2 };
+const PLAYBACK: Playback = { file: 'a.bvh', subject: 'a', uploaded: false, frames: 600, seconds: 10, rate_hz: 60, position_s: 9, frame: 540, playing: true, loop: true, speed: 2 };
 
 test('the timeline advances between replies', () => {
   assert.equal(positionAfter(PLAYBACK, 0.25), 9.5);

@@ -18,11 +18,13 @@ export class Notice {
   private readonly help: HTMLElement;
   private shown = '';
 
-  /** `openSources`: shows how to connect a phone or a tracker. */
-  constructor(toasts: Toasts, openSources: () => void) {
+  /** `openSources`: shows how to connect a phone or a tracker. `openRecording`: lets the user choose a file. */
+  constructor(toasts: Toasts, openSources: () => void, openRecording: () => void) {
     const copy = button(text.stage.copy, () => void this.copy(toasts));
     this.help = h('div', { class: 'notice-help' },
-      h('div', { class: 'row command' }, this.command, copy), button(text.stage.sources, openSources, { class: 'primary' }));
+      h('div', { class: 'row command' }, this.command, copy), 
+      h('div', { class: 'row' }, button(text.upload.open, openRecording, { class: 'primary', title: text.upload.openTitle }),
+        button(text.stage.sources, openSources)));
     this.element = h('div', { class: 'notice' }, this.badge,
       h('div', { class: 'card' }, this.title, this.progress, this.advice, this.help));
     this.show({ state: 'loading', text: text.condition.connecting, advice: '', progress: null }, false);

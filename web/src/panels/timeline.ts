@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Controls the recording that the daemon plays: play, pause, scrub, loop and speed. Hidden if the
-// daemon plays none.
-import { api, type Playback, wordsOf } from '../api';
+// Controls the recording that the daemon plays: play, pause, scrub, loop, speed, and the end of an
+// uploaded one. Hidden if the daemon plays none.
+import { api, ApiError, type Playback, wordsOf } from '../api';
 import { text } from '../text';
 import { clockText } from '../ui/clock';
 import { button, h, select } from '../ui/dom';
@@ -30,6 +30,7 @@ export class Timeline {
   private readonly loop = h('input', { type: 'checkbox' });
   private readonly speed: HTMLSelectElement;
   private readonly name = h('span', { class: 'file' });
+  private readonly close: HTMLButtonElement;
   private state: Playback | null = null;
   private available = false;
   private askedMs = 0;
@@ -37,8 +38,11 @@ export class Timeline {
   private isKnown = false;
   private scrubbing = false;
   private lastScrubMs = 0;
+  private timer: ReturnType<typeof setTimeout> | undefined;
 
-  constructor(private readonly toasts: Toasts) {
+  /** `close`: ends an uploaded recording. `onUploaded`: says whether the recording is one. */
+  constructor(private readonly toasts: Toasts, close: () => void, private readonly onUploaded: (isUploaded: boolean) => void) {
+    this.close = button('×', close, { class: 'small', 'aria-label': text.upload.close, title: text.upload.closeTitle, hidden: true });
     this.play = button(t.play, () => this.toggle(), { class: 'play', title: t.playTitle });
     this.speed = select(t.speed, SPEEDS.map((s) => [s, `${s}×`] as const), (value) => void this.patch({ speed: Number(value) }));
     this.speed.value = '1';
@@ -49,7 +53,7 @@ export class Timeline {
       void this.patch({ position_s: Number(this.scrub.value) });
     });
     this.element = h('section', { class: 'timeline', 'aria-label': t.group, hidden: true },
-      this.play, this.scrub, this.time, h('label', { class: 'check' }, this.loop, t.loop), this.speed, this.name);
+      this.play, this.scrub, this.time, h('label', { class: 'check' }, this.loop, t.loop), this.speed, this.name, this.close);
     this.tick();
   }
 
@@ -70,14 +74,27 @@ export class Timeline {
     else this.show(null);
   }
 
+  /** Another recording plays; null: ask which, if there is one. */
+  onPlayback(playback: Playback | null): void {
+    this.available = true;
+    if (playback !== null) this.show(playback);
+    void this.poll();
+  }
+
   private async poll(): Promise<void> {
+    clearTimeout(this.timer);
     if (!this.available) return;
     try {
-      if (!document.hidden) this.show(await api.playback());
-    } catch {
+      if (!document.hidden) {
+        const playback = await api.playback();
+        if (this.available) this.show(playback); // it may have been closed meanwhile
+      }
+    } catch (error) {
       this.isKnown = false; // the header reports the state of the connection
+      if (error instanceof ApiError && error.status === 409) this.setAvailable(false); // it was closed
     }
-    setTimeout(() => void this.poll(), POLL_MS);
+    clearTimeout(this.timer);
+    this.timer = setTimeout(() => void this.poll(), POLL_MS);
   }
 
   private show(playback: Playback | null): void {
@@ -85,6 +102,8 @@ export class Timeline {
     this.isKnown = playback !== null;
     this.askedMs = performance.now();
     this.element.hidden = playback === null;
+    this.close.hidden = playback?.uploaded !== true;
+    this.onUploaded(playback?.uploaded === true);
     if (playback === null) return;
     this.play.textContent = playback.playing ? t.pause : t.play;
     this.scrub.max = String(playback.seconds);
