@@ -28,9 +28,12 @@ const toast = (page, hasText) => page.locator('.toast', { hasText }).waitFor();
 const subject = (page) => page.getByLabel('Subject', { exact: true });
 const closeButton = (page) => timeline(page).getByRole('button', { name: 'Close the recording' });
 
+/** The file dialog of the browser never opens, from the beginning: a key may ask for it sooner than a listener is in place. */
+const withoutDialogs = (page) => page.on('filechooser', () => {});
+
 /** A page whose status is known, so that it can judge files. */
 async function uploadPage() {
-  const page = await openPage(browser, daemon.address);
+  const page = await openPage(browser, daemon.address, {}, withoutDialogs);
   await page.locator('.app[data-state]').waitFor();
   await eventually('the status', () => page.locator('.session dd').count().then((count) => count > 5));
   return page;
@@ -157,7 +160,7 @@ test('an upload shows its progress and can be cancelled', async () => {
 });
 
 test('the page of a daemon without subjects offers to open a recording', async () => {
-  const page = await openPage(browser, daemon.address);
+  const page = await openPage(browser, daemon.address, {}, withoutDialogs);
   await page.locator('.notice').getByText('Drop a recording on this page').waitFor();
   const [chooser] = await Promise.all([
     page.waitForEvent('filechooser'), page.locator('.notice').getByRole('button', { name: 'Open a recording' }).click(),
