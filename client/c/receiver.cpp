@@ -160,7 +160,6 @@ Receiver::Step Receiver::OnError(const Event& event, std::int64_t now_us, std::s
   *error = subscriber_.error().message;
   if (subscriber_.error().code == protocol::ErrorCode::kNeedsToken) {
     needs_token_ = true;
-    *error = client::NeedsTokenText(*error);
     return Step::kNews;
   }
   if (PoseFeed* const poses = FindPoses(event.header.sequence, 0)) {

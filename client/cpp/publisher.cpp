@@ -8,6 +8,7 @@
 
 #include "protocol/codec/offer_check.h"
 #include "protocol/framing/envelope.h"
+#include "protocol/messages/error_text.h"
 #include "protocol/messages/hash.h"
 #include "protocol/messages/limits.h"
 
@@ -257,11 +258,8 @@ void Publisher::OnError(const protocol::Header& header, std::int64_t now_us) {
     return;
   }
   if (error_.code != protocol::ErrorCode::kUnprovenAddress) {
-    last_error_ = error_.message;
-    if (error_.code == protocol::ErrorCode::kNeedsToken) {
-      needs_token_ = true;
-      last_error_ = NeedsTokenText(error_.message);
-    }
+    last_error_ = protocol::SentenceOf(error_);
+    needs_token_ |= error_.code == protocol::ErrorCode::kNeedsToken;
   } else if (introduction_.proven() && transport_->kind() == TransportKind::kUdp) {
     introduction_.Restart();
     Introduce(now_us);

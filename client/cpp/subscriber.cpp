@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "client/cpp/publisher.h"
+#include "protocol/messages/error_text.h"
 #include "protocol/messages/limits.h"
 
 namespace furrow::client {
@@ -378,6 +379,7 @@ void Subscriber::OnFrame(std::uint16_t subscription, std::uint64_t hash) {
 
 // Returns false if the error is handled here and not passed to the caller.
 bool Subscriber::OnError(const protocol::Header& header) {
+  error_.message = protocol::SentenceOf(error_);
   if (Follow(header)) return false;
   if (error_.code == protocol::ErrorCode::kUnprovenAddress &&
       transport_->kind() == TransportKind::kUdp) {

@@ -82,6 +82,7 @@ class Subscriber {
   [[nodiscard]] const protocol::PoseFrame& pose() const { return pose_; }
   [[nodiscard]] const protocol::Dropped& dropped() const { return dropped_; }
   [[nodiscard]] const protocol::Subjects& subjects() const { return subjects_; }
+  // Its message is never empty.
   [[nodiscard]] const protocol::ErrorMessage& error() const { return error_; }
   [[nodiscard]] const protocol::Goodbye& goodbye() const { return goodbye_; }
 

@@ -24,10 +24,6 @@ std::vector<std::uint8_t> TokenGreeting(const Token& token) {
   return bytes;
 }
 
-std::string NeedsTokenText(const std::string& said) {
-  return said.empty() ? "the daemon requires a token" : said;
-}
-
 std::string RefusedTokenText(protocol::secure::Refusal refusal) {
   return Lasts(refusal) ? std::string("the daemon refuses the token: ") + RefusalText(refusal)
                         : std::string();

@@ -109,9 +109,6 @@ class Transport {
 // The first message over TCP of a client with a token: a Hello that shows it.
 [[nodiscard]] std::vector<std::uint8_t> TokenGreeting(const Token& token);
 
-// What the daemon said with kNeedsToken, or a sentence if it said nothing.
-[[nodiscard]] std::string NeedsTokenText(const std::string& said);
-
 // "the daemon refuses the token: the token has expired"; empty unless the refusal Lasts().
 [[nodiscard]] std::string RefusedTokenText(protocol::secure::Refusal refusal);
 

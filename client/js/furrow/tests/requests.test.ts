@@ -56,6 +56,12 @@ test('texts keep every character, a byte order mark too', () => {
   assert.equal(readError(builder.asUint8Array()).message, '\ufeffada');
 });
 
+test('an error without a text gets the sentence of its code', () => {
+  const builder = new Builder(64);
+  WireError.finishErrorBuffer(builder, WireError.createError(builder, 15, 0, 0, 0, 0, 0, false));
+  assert.equal(readError(builder.asUint8Array()).message, 'the daemon requires a token');
+});
+
 test('requests for weights and poses have all their fields, and wait for their subject', () => {
   const weights = SubscribeWeights.getRootAsSubscribeWeights(new ByteBuffer(
     subscribeWeights({ subject: 'ada', pattern: 'brow_*', maxRateHz: 60, eightBit: true, drivers: true })));

@@ -217,6 +217,13 @@ TEST_F(SubscriberTest, WeightsPicturesErrorsAndGoodbyesReachTheCaller) {
   EXPECT_EQ(subscriber.Next(0, milliseconds(0)).kind, Kind::kTimeout);
 }
 
+TEST_F(SubscriberTest, AnErrorWithoutATextHasTheSentenceOfItsCode) {
+  Subscriber subscriber = Make(TransportKind::kUdp);
+  far_->Answer({.session = 5}, protocol::ErrorMessage{protocol::ErrorCode::kNeedsToken, ""});
+  EXPECT_EQ(subscriber.Next(0, milliseconds(0)).kind, Kind::kError);
+  EXPECT_EQ(subscriber.error().message, "the daemon requires a token");
+}
+
 TEST_F(SubscriberTest, GarbageIsCountedAndSkipped) {
   Subscriber subscriber = Make(TransportKind::kTcp);
   far_->to_receive.push_back({});

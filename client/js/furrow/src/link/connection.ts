@@ -444,7 +444,7 @@ export class Connection {
     }
     if (code === ERROR.draining) return; // the next daemon will be asked again
     if (code === ERROR.needsToken) {
-      this.failure = text === '' ? 'the daemon requires a token' : text;
+      this.failure = text;
       for (const entry of this.entries) entry.subscriber.onRefused(code, this.failure, entry.sequence);
       return;
     }

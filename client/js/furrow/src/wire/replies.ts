@@ -8,7 +8,16 @@ import { namesHash } from './hash.js';
 export const MAX_NAMES = 2048;
 const MAX_ERROR_BYTES = 1024;
 const MAX_SERVER_BYTES = 64;
-const NUM_ERROR_CODES = 16;
+/** What the codes 1 to 16 of STANDARD.md section 10 mean. */
+const ERROR_TEXTS = [
+  'the daemon could not read the message', 'the daemon speaks another version of the protocol',
+  'the daemon does not serve this request', 'the daemon does not have the subject', 'the pattern matches no weight',
+  'a limit of the daemon is reached', 'the daemon refuses the skeleton', 'the daemon does not draw pictures',
+  'the daemon does not have this size, view or camera', 'the daemon serves this over TCP only',
+  'the daemon does not know this address', 'the daemon is shutting down',
+  'an internal error of the daemon; see its log', 'another publisher is sending the subject',
+  'the daemon requires a token', 'the token does not allow this',
+];
 const MAX_CODEC_BYTES = 32;
 const MAX_OTHERS = 8;
 
@@ -129,11 +138,13 @@ export function readWelcome(payload: Uint8Array): { server: string; token: bigin
 export function readError(payload: Uint8Array): { code: number; message: string; elsewhere: Server | null } {
   const table = new FlatTable(payload);
   const code = table.u16(0);
-  require(code >= 1 && code <= NUM_ERROR_CODES, 'an unknown error code');
+  require(code >= 1 && code <= ERROR_TEXTS.length, 'an unknown error code');
   const [host, tcp, udp] = [table.text(2), table.u16(3), table.u16(4)];
   require(host === '' || (tcp !== 0 && udp !== 0), 'another server without ports');
   const elsewhere = { host, tcp, udp, web: table.u16(5), isWebTls: table.flag(6) };
-  return { code, message: table.text(1, MAX_ERROR_BYTES), elsewhere: host === '' ? null : elsewhere };
+  // A short datagram is answered by the code alone.
+  const message = table.text(1, MAX_ERROR_BYTES) || ERROR_TEXTS[code - 1]!;
+  return { code, message, elsewhere: host === '' ? null : elsewhere };
 }
 
 /** How many frames of a subscription with `every` the server has dropped since it began. */
