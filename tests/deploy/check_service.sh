@@ -68,8 +68,9 @@ sh /srv/service || fail 'the service does not do what it must (above)'
 ! journalctl --no-pager --unit furrowd | grep 'shaders are compiled at every start' || fail 'the service has no cache'
 
 # The newer version goes on with the sockets and the sessions of the older one.
-furrow watch 127.0.0.1 --udp --subject ada --wait --format csv 2>/srv/watch |
-  perl -MTime::HiRes=time -ne 'BEGIN { $| = 1 } printf "%.3f,%s", time, $_' >/srv/frames &
+furrow watch 127.0.0.1 --udp --subject ada --wait --format csv 2>/srv/watch \
+  > >(perl -MTime::HiRes=time -ne 'BEGIN { $| = 1 } printf "%.3f,%s", time, $_' >/srv/frames) &
+watcher=$!
 wait_for grep -q waiting /srv/watch
 furrow play /usr/share/furrow/recordings/performance.bvh --to 127.0.0.1 --udp --subject ada --loop >/srv/play 2>&1 &
 player=$!
@@ -81,8 +82,8 @@ now=$(systemctl show --property MainPID --value furrowd)
 has_gone_on() { journalctl --no-pager "_PID=$now" | grep -q 'goes on with [2-9] peers and [1-9] subject'; }
 wait_for has_gone_on
 wait_for has_lines $(($(wc -l </srv/frames) + 60))
-kill $player
-wait $player || true
+kill $player $watcher
+wait $player $watcher || true
 perl -F, -ane '
   next if $F[1] eq "frame";
   if (defined $frame) {
