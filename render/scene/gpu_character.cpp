@@ -5,6 +5,7 @@
 #include <bit>
 
 #include "base/status.h"
+#include "render/gl/mipmaps.h"
 
 namespace furrow::render {
 namespace {
@@ -326,13 +327,11 @@ GLuint GpuCharacter::ColourTexture(const Character& character, int picture, bool
   gl::Texture& texture = colour_textures_[{picture, srgb}];
   if (texture) return texture.name();
   const Picture& source = character.pictures[static_cast<std::size_t>(picture)];
-  const std::vector<std::uint8_t> rgba = ToRgba8(source);
   texture = gl::MakeTexture(GL_TEXTURE_2D);
   glTextureStorage2D(texture.name(), NumMips(source.width, source.height),
                      srgb ? GL_SRGB8_ALPHA8 : GL_RGBA8, source.width, source.height);
-  glTextureSubImage2D(texture.name(), 0, 0, 0, source.width, source.height, GL_RGBA,
-                      GL_UNSIGNED_BYTE, rgba.data());
-  glGenerateTextureMipmap(texture.name());
+  gl::UploadWithMips({.texture = texture.name(), .width = source.width, .height = source.height},
+                     ToRgba8(source), srgb ? gl::MipSpace::kSrgb : gl::MipSpace::kLinear);
   SetFiltering(texture, GL_REPEAT);
   return texture.name();
 }
@@ -346,9 +345,8 @@ GLuint GpuCharacter::DerivativeTexture(const Character& character, int picture) 
   texture = gl::MakeTexture(GL_TEXTURE_2D);
   glTextureStorage2D(texture.name(), NumMips(map.width, map.height), GL_RGBA16F, map.width,
                      map.height);
-  glTextureSubImage2D(texture.name(), 0, 0, 0, map.width, map.height, GL_RGBA, GL_FLOAT,
-                      WithMoments(map).data());
-  glGenerateTextureMipmap(texture.name());
+  gl::UploadWithMips({.texture = texture.name(), .width = map.width, .height = map.height},
+                     WithMoments(map), 4);
   SetFiltering(texture, GL_REPEAT);
   return texture.name();
 }
@@ -371,12 +369,10 @@ Status GpuCharacter::AddMasks(const Character& character) {
   layout_.num_mask_layers = std::max(1, static_cast<int>(pictures.size()));
   masks_ = MakeArray(GL_RGBA8, width, height, layout_.num_mask_layers);
   for (std::size_t layer = 0; layer < pictures.size(); ++layer) {
-    const std::vector<std::uint8_t> rgba = ResizeRgba8(*pictures[layer], width, height);
-    glTextureSubImage3D(masks_.name(), 0, 0, 0, static_cast<GLint>(layer), width, height, 1,
-                        GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+    gl::UploadWithMips({masks_.name(), static_cast<int>(layer), width, height},
+                       ResizeRgba8(*pictures[layer], width, height), gl::MipSpace::kLinear);
     AddMaskRegions(character, *pictures[layer], static_cast<int>(layer), &mask_regions_);
   }
-  glGenerateTextureMipmap(masks_.name());
   glTextureParameteri(masks_.name(), GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);
   return {};
 }
@@ -402,11 +398,9 @@ Status GpuCharacter::AddWrinkleMaps(const Character& character) {
   wrinkle_derivatives_ = MakeArray(GL_RGBA16F, width, height, layers);
   // Moments are taken after resampling, so that they describe the texels that are stored.
   for (std::size_t layer = 0; layer < maps.size(); ++layer) {
-    const DerivativeMap map = Resample(maps[layer], width, height);
-    glTextureSubImage3D(wrinkle_derivatives_.name(), 0, 0, 0, static_cast<GLint>(layer), width,
-                        height, 1, GL_RGBA, GL_FLOAT, WithMoments(map).data());
+    gl::UploadWithMips({wrinkle_derivatives_.name(), static_cast<int>(layer), width, height},
+                       WithMoments(Resample(maps[layer], width, height)), 4);
   }
-  glGenerateTextureMipmap(wrinkle_derivatives_.name());
   AddWrinkleLooks(character);
   heights_ = MakeWrinkleHeights(character);
   layout_.height_layers = heights_.layers;
@@ -443,10 +437,9 @@ void GpuCharacter::AddWrinkleLooks(const Character& character) {
     for (std::size_t i = 0; i < rgba.size(); i += 4) {
       rgba[i + 3] = cavity_albedo.empty() ? 255 : cavity_albedo[i];
     }
-    glTextureSubImage3D(wrinkle_looks_.name(), 0, 0, 0, layer, width, height, 1, GL_RGBA,
-                        GL_UNSIGNED_BYTE, rgba.data());
+    gl::UploadWithMips({wrinkle_looks_.name(), layer, width, height}, std::move(rgba),
+                       gl::MipSpace::kSrgb);
   }
-  glGenerateTextureMipmap(wrinkle_looks_.name());
 }
 
 }  // namespace furrow::render

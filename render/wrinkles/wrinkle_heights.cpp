@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 
+#include "render/gl/mipmaps.h"
 #include "render/wrinkles/derivative_map.h"
 
 namespace furrow::render {
@@ -57,10 +58,8 @@ WrinkleHeights MakeWrinkleHeights(const character::Character& character) {
     std::vector<float> texels;
     texels.reserve(map.texels.size() / 2);
     for (std::size_t i = 0; i < map.texels.size(); i += 2) texels.push_back(map.texels[i]);
-    glTextureSubImage3D(name, 0, 0, 0, static_cast<GLint>(layer), width, height, 1, GL_RED,
-                        GL_FLOAT, texels.data());
+    gl::UploadWithMips({name, static_cast<int>(layer), width, height}, std::move(texels), 1);
   }
-  glGenerateTextureMipmap(name);
   glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
   glTextureParameteri(name, GL_TEXTURE_WRAP_S, GL_REPEAT);
   glTextureParameteri(name, GL_TEXTURE_WRAP_T, GL_REPEAT);
