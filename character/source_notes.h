@@ -34,14 +34,25 @@ struct SourceNotes {
 };
 
 // Options of ParseCharacter().
+enum class Pictures {
+  kLoad,
+  // Only the base colours of the materials are decoded, and reduced to at most 512 texels per side,
+  // which takes a fraction of the time. Every other picture is a stand-in (character/package/stand_ins.h), so that drawing needs the same
+  // programs.
+  kColours,
+  // All pictures are stand-ins.
+  kStandIns,
+  // No picture is decoded, and materials have none. Weights need no pictures, and a daemon without
+  // the module that decodes them still has weights.
+  kLeaveOut
+};
+
 struct ReadOptions {
   // Accepts files that are otherwise rejected, and notes the changes. An unskinned vertex takes the
   // skin weights of the nearest skinned vertex along the mesh's edges, or the skin's first joint.
   // Materials lose pictures that are missing or cannot be decoded.
   bool lenient = false;
-  // False: no picture is decoded, and materials have none. Weights need no pictures, and a daemon
-  // without the module that decodes them still has weights.
-  bool pictures = true;
+  Pictures pictures = Pictures::kLoad;
   SourceNotes* notes = nullptr;               // receives the notes, unless null; the caller owns it
   const gltf::DracoDecoder* draco = nullptr;  // null: files that require Draco are refused
 };

@@ -58,20 +58,29 @@ std::string NameOf(const gltf::ImageSource& image) {
   return image.name.empty() && !gltf::IsDataUri(image.uri) ? image.uri : image.name;
 }
 
+// Texels of the longer side of a picture with Pictures::kColours.
+constexpr int kMaxColourSide = 512;
+
 // Decodes the images of a file in its order, and a few of them ahead of time on other threads,
 // because decoding takes most of the time in which a character loads. Destroying it waits for them.
 class PicturesAhead {
  public:
-  explicit PicturesAhead(const gltf::Document& document) : document_(document) {}
+  // `wanted`: one per image; the others are not decoded.
+  PicturesAhead(const gltf::Document& document, std::vector<bool> wanted, Pictures pictures)
+      : document_(document), wanted_(std::move(wanted)), pictures_(pictures) {}
 
-  // Call it once for each image, in order.
+  [[nodiscard]] bool Wants(std::size_t index) const { return wanted_[index]; }
+  // Call it once for each image that is wanted, in order.
   [[nodiscard]] Result<Picture> Next() {
     // Few, because each may decode to kMaxPicturePixels before the limit of all pictures is known
     // to be exceeded.
     static const std::size_t ahead = std::clamp(std::thread::hardware_concurrency(), 1u, 4u);
-    for (; next_ < document_.images().size() && decoding_.size() < ahead; ++next_) {
+    for (; next_ < wanted_.size() && decoding_.size() < ahead; ++next_) {
+      if (!wanted_[next_]) continue;
       decoding_.push_back(InBackground([this, index = next_] {
-        return ReadPicture(document_, index, NameOf(document_.images()[index]));
+        auto picture = ReadPicture(document_, index, NameOf(document_.images()[index]));
+        if (picture.ok() && pictures_ == Pictures::kColours) Reduce(kMaxColourSide, &*picture);
+        return picture;
       }));
     }
     Result<Picture> picture = decoding_.front().get();
@@ -81,9 +90,23 @@ class PicturesAhead {
 
  private:
   const gltf::Document& document_;
+  const std::vector<bool> wanted_;
+  const Pictures pictures_;
   std::size_t next_ = 0;
   std::deque<std::future<Result<Picture>>> decoding_;
 };
+
+// One per image: whether it is to be decoded.
+std::vector<bool> WantedImages(std::size_t num_images, std::span<const gltf::Material> materials,
+                               Pictures pictures) {
+  std::vector<bool> wanted(num_images, pictures == Pictures::kLoad);
+  if (pictures != Pictures::kColours) return wanted;
+  for (const gltf::Material& material : materials) {
+    const auto image = static_cast<std::size_t>(material.base_colour_image);
+    if (material.base_colour_image >= 0 && image < num_images) wanted[image] = true;
+  }
+  return wanted;
+}
 
 // Furrow's own files state the kind; for others, the name is the only hint.
 Kind KindOf(const gltf::Material& material) {
@@ -108,15 +131,17 @@ std::string_view MaterialKindName(Kind kind) {
 }
 
 Result<std::vector<Picture>> ReadGltfPictures(const gltf::Document& document,
+                                              std::span<const gltf::Material> materials,
                                               const ReadOptions& options) {
   std::vector<Picture> pictures;
-  PicturesAhead ahead(document);
+  PicturesAhead ahead(document, WantedImages(document.images().size(), materials, options.pictures),
+                      options.pictures);
   std::int64_t pixels = 0;
   for (std::size_t i = 0; i < document.images().size(); ++i) {
     const std::string where = "images[" + std::to_string(i) + "]";
     const std::string name = NameOf(document.images()[i]);
-    if (!options.pictures) {
-      pictures.push_back({.name = name, .pixels = {}, .pixels16 = {}});
+    if (!ahead.Wants(i)) {
+      pictures.push_back(Undecoded(name));
       continue;
     }
     Result<Picture> picture = ahead.Next();
@@ -124,7 +149,7 @@ Result<std::vector<Picture>> ReadGltfPictures(const gltf::Document& document,
       if (options.notes != nullptr) {
         options.notes->missing_pictures.push_back(name + ": " + picture.status().what());
       }
-      pictures.push_back({.name = name, .pixels = {}, .pixels16 = {}});
+      pictures.push_back(Undecoded(name));
       continue;
     }
     if (!picture.ok()) {

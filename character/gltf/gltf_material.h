@@ -19,13 +19,15 @@ namespace furrow::character {
 // The lowercase name: "skin", "cloth", "eye", "hair", "other" or "shade".
 [[nodiscard]] std::string_view MaterialKindName(Material::Kind kind);
 
-// Decodes all images of the file, in the file's order.
+// Decodes the images of the file that options.pictures asks for, in the file's order. The others
+// become pictures without pixels (Undecoded()). `materials`: all of the file.
 //
 // With options.lenient, an image that is missing or damaged is listed in the notes and becomes a
 // picture without pixels. Limits still apply. Errors: those of gltf::LocateImage() and
 // DecodePicture(), and kLimit (too many pixels together). `where` of errors is "images[2]".
-[[nodiscard]] Result<std::vector<Picture>> ReadGltfPictures(const gltf::Document& document,
-                                                            const ReadOptions& options = {});
+[[nodiscard]] Result<std::vector<Picture>> ReadGltfPictures(
+    const gltf::Document& document, std::span<const gltf::Material> materials,
+    const ReadOptions& options = {});
 
 // The file's materials, in its order. The kind is the glTF extra "furrow_kind", or guessed from the
 // name. Texture indices count the results of ReadGltfPictures(). Their UV transforms are in the

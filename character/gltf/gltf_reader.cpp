@@ -77,7 +77,7 @@ Status ReadGltfCharacter(std::string_view bytes, const std::filesystem::path& fo
   FURROW_RETURN_IF_ERROR(materials);
   Result<GltfMeshes> meshes = ReadGltfMeshes(&*document, *forest, *skeleton, *materials, options);
   FURROW_RETURN_IF_ERROR(meshes);
-  Result<std::vector<Picture>> pictures = ReadGltfPictures(*document, options);
+  Result<std::vector<Picture>> pictures = ReadGltfPictures(*document, *materials, options);
   FURROW_RETURN_IF_ERROR(pictures);
   if (options.notes != nullptr) {
     options.notes->nameless_joints = skeleton->num_nameless_joints;
@@ -94,7 +94,7 @@ Status ReadGltfCharacter(std::string_view bytes, const std::filesystem::path& fo
   character->materials = MakeGltfMaterials(*materials);
   character->pictures = std::move(*pictures);
   character->warnings = document->warnings();
-  if (options.lenient || !options.pictures) DropMissingPictures(character);
+  if (options.lenient || options.pictures == Pictures::kLeaveOut) DropMissingPictures(character);
   return {};
 }
 

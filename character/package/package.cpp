@@ -9,6 +9,7 @@
 #include "base/files.h"
 #include "base/status.h"
 #include "character/gltf/gltf_reader.h"
+#include "character/package/stand_ins.h"
 #include "character/pictures/picture_file.h"
 #include "gltf/limits.h"
 #include "rig/rig_file.h"
@@ -25,15 +26,19 @@ int FindEmbedded(const Character& character, std::string_view name) {
   return found == pictures.end() ? -1 : static_cast<int>(found - pictures.begin());
 }
 
-// Adds one picture of the rig, embedded or from a file, or notes it as missing.
-Status AddRigPicture(const std::string& name, Character* character) {
+// Adds one picture of the rig, embedded or from a file, or notes it as missing. Files are
+// read with Pictures::kLoad only.
+Status AddRigPicture(const std::string& name, Pictures pictures, Character* character) {
   const auto& missing = character->missing_rig_pictures;
   const bool known = character->FindRigPicture(name) >= 0 ||
                      std::find(missing.begin(), missing.end(), name) != missing.end();
   if (name.empty() || known) return {};
   // Embedded pictures win over files, so that a package renders the same everywhere.
   int index = FindEmbedded(*character, name);
-  if (index < 0) {
+  if (index < 0 && pictures != Pictures::kLoad) {
+    index = static_cast<int>(character->pictures.size());
+    character->pictures.push_back(Undecoded(name));
+  } else if (index < 0) {
     // A missing picture is noted only, because weights do not need it. A damaged picture is an
     // error.
     const Result<fs::path> path = FindAsset(name, character->folder);
@@ -48,6 +53,17 @@ Status AddRigPicture(const std::string& name, Character* character) {
     character->pictures.push_back(std::move(*picture));
   }
   character->rig_pictures.emplace_back(name, index);
+  return {};
+}
+
+Status Attach(wrinkle::Rig rig, const fs::path& folder, Pictures pictures, Character* character) {
+  character->rig = std::move(rig);
+  character->folder = folder;
+  character->rig_pictures.clear();
+  character->missing_rig_pictures.clear();
+  for (const std::string& name : RigPictureNames(character->rig)) {
+    FURROW_RETURN_IF_ERROR(AddRigPicture(name, pictures, character));
+  }
   return {};
 }
 
@@ -85,8 +101,7 @@ Result<Character> LoadCharacter(const fs::path& glb, const fs::path& rig,
                                 const wrinkle::PoseSource& poses, Pictures pictures) {
   const Result<std::string> bytes = ReadFile(glb, gltf::kMaxFileBytes);
   FURROW_RETURN_IF_ERROR(bytes);
-  const bool loads = pictures == Pictures::kLoad;
-  Result<Character> character = ParseCharacter(*bytes, glb.parent_path(), {.pictures = loads});
+  Result<Character> character = ParseCharacter(*bytes, glb.parent_path(), {.pictures = pictures});
   if (!character.ok()) return character.status().Within(glb.string());
   if (character->name.empty()) character->name = glb.stem().string();
 
@@ -94,18 +109,22 @@ Result<Character> LoadCharacter(const fs::path& glb, const fs::path& rig,
   if (rig.empty()) {
     rig_path = RigBeside(glb);
     std::error_code error;
-    if (!fs::exists(rig_path, error)) return character;  // a character that does not wrinkle
+    if (!fs::exists(rig_path, error)) {  // a character that does not wrinkle
+      FillStandIns(&*character);
+      return character;
+    }
   }
   Result<wrinkle::Rig> loaded = rig::LoadRig(rig_path, poses);
   FURROW_RETURN_IF_ERROR(loaded);
-  if (!loads) {
+  if (pictures == Pictures::kLeaveOut) {
     character->rig = std::move(*loaded);
     return character;
   }
-  if (Status status = AttachRig(std::move(*loaded), rig_path.parent_path(), &*character);
+  if (Status status = Attach(std::move(*loaded), rig_path.parent_path(), pictures, &*character);
       !status.ok()) {
     return status.At(rig_path.string());
   }
+  FillStandIns(&*character);
   return character;
 }
 
@@ -118,14 +137,7 @@ Result<NamedRoles> LoadCharacterRoles(const fs::path& glb) {
 }
 
 Status AttachRig(wrinkle::Rig rig, const fs::path& folder, Character* character) {
-  character->rig = std::move(rig);
-  character->folder = folder;
-  character->rig_pictures.clear();
-  character->missing_rig_pictures.clear();
-  for (const std::string& name : RigPictureNames(character->rig)) {
-    FURROW_RETURN_IF_ERROR(AddRigPicture(name, character));
-  }
-  return {};
+  return Attach(std::move(rig), folder, Pictures::kLoad, character);
 }
 
 Status SaveCharacterGlb(const Character& character, const fs::path& glb) {

@@ -20,9 +20,6 @@ namespace furrow::character {
 // Where the rig of a character lies: "<stem>.rig.json" in the folder of its .glb or .gltf file.
 [[nodiscard]] std::filesystem::path RigBeside(const std::filesystem::path& glb);
 
-// Whether LoadCharacter() loads pictures. Weights need none.
-enum class Pictures { kLoad, kLeaveOut };
-
 // Reads a .glb or .gltf file and its rig. An empty `rig` means RigBeside(glb); if that does not
 // exist, the character has no rig.
 //
@@ -35,7 +32,8 @@ enum class Pictures { kLoad, kLeaveOut };
 // - Missing normals and tangents are computed.
 // - The rig's pictures are loaded: embedded ones by name, files by FindAsset(). Missing ones are
 //   listed in Character::missing_rig_pictures.
-//   With kLeaveOut, the character has no pictures, and damaged pictures are accepted.
+//   With Pictures::kColours, the rig's pictures are stand-ins. With kLeaveOut, the character has no
+//   pictures, and damaged pictures are accepted.
 [[nodiscard]] Result<Character> LoadCharacter(const std::filesystem::path& glb,
                                               const std::filesystem::path& rig = {},
                                               const wrinkle::PoseSource& poses = {},

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -22,6 +23,15 @@ struct Picture {
   std::vector<std::uint16_t> pixels16;  // 65535 means 1
   std::vector<float> pixels_float;      // finite, any range (EXR)
 };
+
+// A picture whose file is not decoded: a name without pixels.
+[[nodiscard]] inline Picture Undecoded(std::string name) {
+  return {.name = std::move(name), .pixels = {}, .pixels16 = {}};
+}
+
+// Halves the sides, by averaging texels as they are stored, until the longer one has at most
+// `max_side` texels. Pictures of 16 bits and floats stay as they are.
+void Reduce(int max_side, Picture* picture);
 
 // Returns one channel (from 0) of the texel at a UV, in [0, 1]; 0 if the picture has no such
 // channel. (0, 0) is the top left corner. A coordinate of 1 is the last texel; coordinates outside

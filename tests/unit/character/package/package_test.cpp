@@ -417,6 +417,20 @@ TEST(Character, FindsThePicturesOfTheRig) {
   EXPECT_EQ(damaged.code(), StatusCode::kParse);
   EXPECT_EQ(damaged.where(), (folder / "beside.png").string());
 
+  // The damaged file is not read. The use of a picture decides how its stand-in looks.
+  const auto draft = LoadCharacter(folder / "square.glb", {}, {}, Pictures::kColours);
+  ASSERT_TRUE(draft.ok()) << draft.status().ToString();
+  EXPECT_EQ(draft->pictures.front().pixels, picture.pixels) << "a base colour is decoded";
+  EXPECT_EQ(draft->materials.front().base_colour_texture, 0);
+  const Picture& flat =
+      draft->pictures.at(static_cast<std::size_t>(draft->FindRigPicture("beside.png")));
+  EXPECT_GT(flat.width, 1);
+  EXPECT_EQ(flat.pixels[2], 255) << "a normal that points up";
+  const auto stand_ins = LoadCharacter(folder / "square.glb", {}, {}, Pictures::kStandIns);
+  ASSERT_TRUE(stand_ins.ok()) << stand_ins.status().ToString();
+  EXPECT_EQ(stand_ins->pictures.size(), draft->pictures.size());
+  EXPECT_EQ(stand_ins->pictures.front().pixels[0], 0) << "an empty mask";
+
   const auto alone = LoadCharacter(folder / "square.glb", {}, {}, Pictures::kLeaveOut);
   ASSERT_TRUE(alone.ok()) << alone.status().ToString();
   EXPECT_EQ(alone->rig.name, "r");
