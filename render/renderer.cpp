@@ -76,6 +76,7 @@ class GlRenderer final : public Renderer {
     return image->value_or(Image());
   }
 
+  void Release() override { context_->Release(); }
   void SetObserver(FrameGraphObserver* observer) override { observer_ = observer; }
   int in_flight() const override { return read_back_.in_flight(); }
   bool is_software() const override { return context_->is_software(); }

@@ -21,14 +21,15 @@ struct RendererOptions {
   // EGL device index, or "surfaceless". Empty: the first device that provides OpenGL 4.5.
   std::string device;
   // The most memory of the textures that one picture is drawn into, and of those that are kept for
-  // the next pictures, in bytes. 0: no limit. The former pictures of streams need up to 128 MiB more
-  // (Histories::kMaxBytes), on the CPU only.
+  // the next pictures, in bytes. 0: no limit. The former pictures of streams need up to 128 MiB
+  // more (Histories::kMaxBytes), on the CPU only.
   std::size_t max_texture_bytes = 0;
 };
 
 // Draws pictures of one character without a window, with one or more subjects per picture. Owns its
-// EGL context, so every call must come from the thread that created the renderer. Copies what it
-// needs of the character given to Create().
+// EGL context, so every call must come from the thread that created the renderer, or, after
+// Release(), from the next thread that uses it. Copies what it needs of the character given to
+// Create().
 //
 // There are two ways to draw. Render() blocks until the picture is ready. Submit() and Poll() keep
 // up to two pictures in flight, so that the next frame is drawn while the last one is read back.
@@ -56,6 +57,9 @@ class Renderer {
   // Submits a request and waits for its picture. Discards the pictures that are still in flight.
   // Errors: those of Submit() and Poll().
   [[nodiscard]] Result<Image> Render(const FrameRequest& request);
+
+  // The last call of this thread: another thread may use the renderer from now on.
+  virtual void Release() {}
 
   // Calls `observer` before and after every pass of later frames, with the renderer's context
   // current (PassTimer measures times this way). The caller owns the observer, which must live

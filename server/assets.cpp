@@ -76,7 +76,7 @@ bool DrawsTheSame(const character::Character* one, const character::Character& o
 
 }  // namespace
 
-Result<Assets> LoadAssets(const Config& config, bool with_pictures) {
+Result<Assets> LoadAssets(const Config& config, character::Pictures pictures) {
   const fs::path chosen_rig = config.rig.empty() ? fs::path() : rig::FindRigFile(config.rig);
   Assets assets;
   auto matcher = LoadMatcher(config.skeleton_map);
@@ -129,11 +129,11 @@ Result<Assets> LoadAssets(const Config& config, bool with_pictures) {
       return assets;
     }
   }
-  spdlog::info("loading the character {}", glb.string());
-  assets.lacks_pictures = !(config.render && with_pictures);
-  auto loaded = character::LoadCharacter(
-      glb, chosen_rig, poses,
-      assets.lacks_pictures ? character::Pictures::kLeaveOut : character::Pictures::kLoad);
+  if (pictures == character::Pictures::kLoad)
+    spdlog::info("loading the character {}", glb.string());
+  if (!config.render) pictures = character::Pictures::kLeaveOut;
+  assets.lacks_pictures = pictures == character::Pictures::kLeaveOut;
+  auto loaded = character::LoadCharacter(glb, chosen_rig, poses, pictures);
   FURROW_RETURN_IF_ERROR(loaded);
   assets.skeletons.SetCharacterRoles(loaded->skeleton, loaded->roles);
   assets.shapes = ShapesOf(*loaded, config.render);
@@ -148,8 +148,9 @@ Result<Assets> LoadAssets(const Config& config, bool with_pictures) {
   return assets;
 }
 
-Result<Assets> LoadWithPictures(const Config& config, const character::Character& former) {
-  auto assets = LoadAssets(config);
+Result<Assets> LoadWithPictures(const Config& config, const character::Character& former,
+                                character::Pictures pictures) {
+  auto assets = LoadAssets(config, pictures);
   FURROW_RETURN_IF_ERROR(assets);
   if (!DrawsTheSame(assets->character.get(), former)) {
     return Status(StatusCode::kUnavailable,

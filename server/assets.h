@@ -8,6 +8,7 @@
 
 #include "base/status.h"
 #include "character/character.h"
+#include "character/source_notes.h"
 #include "render/settings/settings.h"
 #include "rig/shapes/shape_match.h"
 #include "rig/skeleton_match.h"
@@ -51,14 +52,15 @@ struct Assets {
 // Errors: those of LoadCharacter(), LoadRig() and render::LoadSettings(), and of
 // SkeletonMatcher::Create() and ShapeMatcher::Create() if `config` names a map; kNotFound without a
 // default character, with a hint how to get one.
-// `with_pictures`: false leaves out the pictures of the character, which take most of the time.
-// Nothing can be drawn with it then.
-[[nodiscard]] Result<Assets> LoadAssets(const Config& config, bool with_pictures = true);
+// `pictures`: of the character; they take most of the time. Without them, nothing can be drawn.
+[[nodiscard]] Result<Assets> LoadAssets(const Config& config,
+                                        character::Pictures pictures = character::Pictures::kLoad);
 
 // Loads the same files again with pictures. `former`: the character that was loaded without.
 // Errors: those of LoadAssets(); kUnavailable, the files are no longer those of that character.
-[[nodiscard]] Result<Assets> LoadWithPictures(const Config& config,
-                                              const character::Character& former);
+[[nodiscard]] Result<Assets> LoadWithPictures(
+    const Config& config, const character::Character& former,
+    character::Pictures pictures = character::Pictures::kLoad);
 
 // The character for browsers, "<stem>.web.glb" beside `package`, with the rig in it. Reads the
 // whole of both files, which takes longer than everything else that weights need. Empty: there is

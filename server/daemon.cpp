@@ -44,9 +44,6 @@ constexpr auto kSecond = std::chrono::seconds(1);
 // How long the last lines of the log may take where nothing else is waited for.
 constexpr auto kLastLines = std::chrono::milliseconds(100);
 
-// How long the web server waits for a renderer that starts after the daemon serves.
-constexpr auto kRendererPatience = std::chrono::seconds(10);
-
 // Returns unpredictable numbers, never 0, for session numbers and the tokens that prove an address.
 std::uint64_t RandomNumber() {
   std::random_device source;
@@ -62,19 +59,24 @@ Status Daemon::StartRendering() {
   Rendering::Later later;
   if (assets_.lacks_pictures) {
     loads_later_ = true;
-    later.load = [config = config_,
-                  former = assets_.character]() -> Result<Rendering::SharedCharacter> {
-      auto assets = LoadWithPictures(config, *former);
+    later.load = [config = config_, former = assets_.character](
+                     character::Pictures pictures) -> Result<Rendering::SharedCharacter> {
+      auto assets = LoadWithPictures(config, *former, pictures);
       FURROW_RETURN_IF_ERROR(assets);
-      WarnAboutCharacter(*assets->character);
+      if (pictures == character::Pictures::kLoad) WarnAboutCharacter(*assets->character);
       return assets->character;
     };
-    later.on_started = [this] { asio::post(io_, [this] { OnRenderer(); }); };
+    // A program that embeds the daemon has its own uses for the processor.
+    later.drafts = options_.owns_process;
+    later.on_started = [this](const Status& loaded) {
+      asio::post(io_, [this, loaded] { OnRenderer(loaded); });
+    };
   }
   return rendering_.Start(
       {.character = assets_.character,
        .skeleton = &assets_.shapes->skeleton,
        .device = config_.render_device,
+       .settings = assets_.settings,
        .max_video_encoders = config_.max_video_encoders,
        .required = config_.require_render,
        .metrics = metrics_,
@@ -253,25 +255,24 @@ bool Daemon::Leave() {
   return has_left_;
 }
 
-// The renderer is there, or has failed, or there is none.
-void Daemon::OnRenderer() {
-  if (std::exchange(loads_later_, false)) FinishConfinement();
-  ServeWeb();
+// The renderer is there, or has failed, or there is none. `loaded`: the character's pictures.
+void Daemon::OnRenderer(const Status& loaded) {
+  if (std::exchange(loads_later_, false)) {
+    FinishConfinement();
+    // Somebody who starts the daemon wants to hear of a faulty file. One that goes on with the
+    // sessions of a former daemon goes on.
+    if (!loaded.ok() && !former_->exists()) {
+      exit_code_ = ExitCode::kBadInput;
+      return shutdown_->Request();
+    }
+    if (const RenderThread& thread = *rendering_.thread(); !thread.is_stuck()) {
+      spdlog::info("rendering on {}", thread.description());
+    }
+  }
   // A program that embeds the daemon has its own uses for the processor.
   if (rendering_.thread() != nullptr && options_.owns_process && !shutdown_->has_begun()) {
     rendering_.Prepare(*assets_.rig, assets_.settings);
   }
-}
-
-// Once. The web server's thread asks the cluster, so it starts after the cluster knows this node.
-void Daemon::ServeWeb() {
-  if (http_ && !shutdown_->has_begun() && !std::exchange(serves_web_, true)) http_->Start();
-}
-
-// Web clients want pictures, so they wait for the renderer, but not for one that hangs.
-asio::awaitable<void> Daemon::ServeWebInTime() {
-  co_await Pause(kRendererPatience);
-  ServeWeb();
 }
 
 // No thread has started yet, so the hub needs no lock.
@@ -421,7 +422,7 @@ void Daemon::HandleSignals() {
   reload_->Start();
 }
 
-void Daemon::Serve() {
+ExitCode Daemon::Serve() {
   ports_->Start();
   StartCriticalTask(io_, TickLoop());
   StartCriticalTask(io_, SecondLoop());
@@ -430,11 +431,9 @@ void Daemon::Serve() {
   // Another thread may request the stop; only the event loop's thread may shut down.
   const std::stop_callback on_stop(options_.stop,
                                    [this] { asio::post(io_, [this] { shutdown_->Request(); }); });
-  if (rendering_.thread() != nullptr && assets_.lacks_pictures) {
-    StartCriticalTask(io_, ServeWebInTime());
-  } else {
-    OnRenderer();
-  }
+  // The web server's thread asks the cluster, so it starts after the cluster knows this node.
+  if (http_) http_->Start();
+  if (!loads_later_) OnRenderer({});
   // After all parts have started: a client that reads the line may connect at once.
   Announce();
   RunLoop(io_, metrics_);
@@ -443,6 +442,7 @@ void Daemon::Serve() {
   http_.reset();  // both post to io_, so they end first
   EndUploads();
   EndRendering();
+  return exit_code_;
 }
 
 // Nobody waits any more for a recording that is still being read.

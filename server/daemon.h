@@ -14,6 +14,7 @@
 #include "server/assets.h"
 #include "server/cluster/coordinator.h"
 #include "server/config/config.h"
+#include "server/core/exit_code.h"
 #include "server/core/metrics.h"
 #include "server/core/status_line.h"
 #include "server/credentials.h"
@@ -63,16 +64,16 @@ class Daemon {
   Status StartRecording();
   Status LoadCredentials();
   Status Listen();
-  void Serve();
+  // Until a stop is requested. kBadInput: pictures of the character, which are loaded while it
+  // serves, cannot be read.
+  ExitCode Serve();
 
  private:
   void MakeHub();
   void MakeShutdown();
   [[nodiscard]] TransferParts Transfer() const;
   bool Leave();
-  void OnRenderer();
-  void ServeWeb();
-  asio::awaitable<void> ServeWebInTime();
+  void OnRenderer(const Status& loaded);
   Status StartCluster();
   Status StartOsc();
   Status ListenToWeb();
@@ -107,7 +108,8 @@ class Daemon {
   Credentials credentials_;
   RigFiles rig_files_;
   Inheritance* const former_;
-  bool loads_later_ = false;              // the renderer loads the character; confinement waits
+  bool loads_later_ = false;  // the renderer loads the character; confinement waits
+  ExitCode exit_code_ = ExitCode::kOk;
   bool has_left_ = false;                 // the next daemon goes on with the sessions
   std::unique_ptr<Coordinator> cluster_;  // null: alone; used by the hub, so it outlives it
   std::unique_ptr<Hub> hub_;
@@ -116,7 +118,6 @@ class Daemon {
   std::unique_ptr<RecordingLoader> loader_;
   std::unique_ptr<Api> api_;
   std::unique_ptr<HttpServer> http_;
-  bool serves_web_ = false;
   std::unique_ptr<ReloadLoop> reload_;  // its thread ends before the members above
 };
 

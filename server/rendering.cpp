@@ -9,9 +9,11 @@
 
 #include <malloc.h>
 #include <spdlog/spdlog.h>
+#include <sys/resource.h>
 
 #include "base/process/in_background.h"
 #include "render/renderer.h"
+#include "render/request/camera_preset.h"
 #include "render/video/video_codec.h"
 #include "server/net/clock.h"
 #include "server/pipeline/preparation.h"
@@ -22,6 +24,8 @@ namespace {
 
 // The time that joining a thread may take after it has ended.
 constexpr Time kJoinTime = std::chrono::milliseconds(50);
+// Of loading a character while drafts of it are drawn.
+constexpr int kLoadNiceness = 19;
 
 }  // namespace
 
@@ -43,6 +47,11 @@ void Rendering::MakeVideo(int max_encoders) {
 
 namespace {
 
+// Programs that are not compiled ahead are compiled when they are needed.
+void LogIfFailed(const Status& status) {
+  if (!status.ok()) spdlog::debug("programs are not compiled ahead: {}", status.ToString());
+}
+
 Result<std::unique_ptr<render::Renderer>> CreateRenderer(const character::Character& character,
                                                          const std::string& device) {
   return render::Renderer::Create(
@@ -50,26 +59,64 @@ Result<std::unique_ptr<render::Renderer>> CreateRenderer(const character::Charac
 }
 
 // An exception on the render thread would end the daemon, which can serve weights.
-Result<Rendering::SharedCharacter> WithoutExceptions(
-    const std::function<Result<Rendering::SharedCharacter>()>& load) {
+Result<Rendering::SharedCharacter> Load(const Rendering::Later& later,
+                                        character::Pictures pictures) {
   try {
-    return load();
+    return later.load(pictures);
   } catch (const std::exception& error) {
     return Status(StatusCode::kInternal, std::string("cannot load the character: ") + error.what());
   }
 }
 
+// The draft comes first. Threads that decode pictures inherit the niceness.
+Result<Rendering::SharedCharacter> LoadWithoutHurry(const Rendering::Later& later) {
+  return InBackground([&later] {
+           (void)setpriority(PRIO_PROCESS, 0, kLoadNiceness);
+           return Load(later, character::Pictures::kLoad);
+         })
+      .get();
+}
+
+// Compiles programs into the driver's cache while the render thread loads a draft and compiles
+// others: those of skin and of the passes after it, such as light and bloom, which it needs last.
+Status CompileAhead(const Rendering::Later& later, const std::string& device,
+                    const render::Settings& settings) {
+  const auto loaded = Load(later, character::Pictures::kStandIns);
+  FURROW_RETURN_IF_ERROR(loaded);
+  character::Character part = **loaded;
+  std::erase_if(part.meshes, [&part](const character::Mesh& mesh) {
+    return part.materials.at(static_cast<std::size_t>(mesh.material)).kind !=
+           character::Material::Kind::kSkin;
+  });
+  const auto renderer = CreateRenderer(part, device);
+  FURROW_RETURN_IF_ERROR(renderer);
+  if (!(*renderer)->is_software()) return {};
+  return WarmUp(renderer->get(), part, part.rig, settings);
+}
+
 }  // namespace
 
 RenderThread::Factory Rendering::MakeFactory(const Parts& parts) {
-  return [this, character = parts.character, load = parts.later.load,
-          device = parts.device]() mutable -> Result<std::unique_ptr<render::Renderer>> {
-    if (const auto load_once = std::exchange(load, nullptr)) {
-      auto loaded = WithoutExceptions(load_once);
-      FURROW_RETURN_IF_ERROR(loaded);
-      character = loaded_ = *std::move(loaded);
-    }
+  return [character = parts.character, device = parts.device] {
     return CreateRenderer(*character, device);
+  };
+}
+
+// The first call runs beside the render thread, which draws a draft, and helps it.
+RenderThread::Factory Rendering::MakeLateFactory(const Parts& parts) {
+  return [this, character = parts.character, later = parts.later, device = parts.device,
+          settings = parts.settings]() mutable -> Result<std::unique_ptr<render::Renderer>> {
+    if (later.load == nullptr) return CreateRenderer(*character, device);
+    const bool drafts = later.drafts;
+    if (drafts) LogIfFailed(CompileAhead(later, device, settings));
+    auto loaded = LoadWithoutHurry(std::exchange(later, {}));
+    load_status_ = loaded.status();
+    FURROW_RETURN_IF_ERROR(loaded);
+    character = loaded_ = *std::move(loaded);
+    auto renderer = CreateRenderer(*character, device);
+    FURROW_RETURN_IF_ERROR(renderer);
+    if (drafts) LogIfFailed(WarmUp(renderer->get(), *character, character->rig, settings));
+    return renderer;
   };
 }
 
@@ -78,12 +125,24 @@ Status Rendering::Start(Parts parts) {
   MakeVideo(parts.max_video_encoders);
   spdlog::info("starting the renderer");
   if (parts.later.load) {
-    thread_ = RenderThread::StartLater(
-        parts.skeleton, MakeFactory(parts), parts.metrics, &ReadClock, std::move(parts.deliver),
-        video_.get(), [on_started = std::move(parts.later.on_started)](const Status& status) {
+    RenderThread::Later later{
+        .presets = render::CameraPresets(*parts.character),
+        .draft = nullptr,
+        .on_started = [this, on_started = parts.later.on_started](const Status& status) {
           if (!status.ok()) spdlog::error("cannot render pictures: {}", status.ToString());
-          on_started();
-        });
+          on_started(load_status_);
+        }};
+    if (parts.later.drafts) {
+      later.draft = [loads = parts.later,
+                     device = parts.device]() -> Result<std::unique_ptr<render::Renderer>> {
+        const auto draft = Load(loads, character::Pictures::kColours);
+        FURROW_RETURN_IF_ERROR(draft);
+        return CreateRenderer(**draft, device);
+      };
+    }
+    thread_ =
+        RenderThread::StartLater(parts.skeleton, MakeLateFactory(parts), parts.metrics, &ReadClock,
+                                 std::move(parts.deliver), video_.get(), std::move(later));
     return {};
   }
   auto started = RenderThread::Start(parts.skeleton, MakeFactory(parts), parts.metrics, &ReadClock,

@@ -9,6 +9,7 @@
 
 #include "base/status.h"
 #include "character/character.h"
+#include "character/source_notes.h"
 #include "render/settings/settings.h"
 #include "server/core/metrics.h"
 #include "server/core/time.h"
@@ -24,16 +25,21 @@ namespace furrow::server {
 class Rendering {
  public:
   using SharedCharacter = std::shared_ptr<const character::Character>;
-  // Not empty: Start() does not wait for the renderer. Both functions are called on the render
-  // thread.
+  // Not empty: Start() does not wait for the renderer.
   struct Later {
-    std::function<Result<SharedCharacter>()> load;  // the character with its pictures
-    std::function<void()> on_started;               // the renderer is there, or has failed
+    // Loads the character with pictures. Called on several threads at once.
+    std::function<Result<SharedCharacter>(character::Pictures)> load;
+    // Draws a draft meanwhile, and compiles programs ahead on one more thread.
+    bool drafts = false;
+    // Called on the render thread: the renderer is there, or has failed. `load` is the status of
+    // loading all pictures.
+    std::function<void(const Status& load)> on_started;
   };
   struct Parts {
     std::shared_ptr<const character::Character> character;  // not null
     const wrinkle::Skeleton* skeleton = nullptr;  // its own; not null; outlives this object
     std::string device;
+    render::Settings settings;  // of the first pictures
     int max_video_encoders = 0;
     bool required = false;                         // without a renderer, Start() fails
     Metrics* metrics = nullptr;                    // not null; outlives this object
@@ -59,10 +65,12 @@ class Rendering {
 
  private:
   [[nodiscard]] RenderThread::Factory MakeFactory(const Parts& parts);
+  [[nodiscard]] RenderThread::Factory MakeLateFactory(const Parts& parts);
   void MakeVideo(int max_encoders);
 
   SharedCharacter character_;
-  SharedCharacter loaded_;  // later, by the render thread; written before Later::on_started
+  SharedCharacter loaded_;  // later; written before Later::on_started, like the next
+  Status load_status_;
   std::unique_ptr<VideoEncoders> video_;  // used by the thread
   std::unique_ptr<RenderThread> thread_;
   std::future<void> freed_;  // valid: LetGo() has begun

@@ -44,10 +44,9 @@ ExitCode LoadAndServe(const Config& asked, const RunOptions& options) {
   Inheritance former(options.kept, options.manager);
   // In a cluster, the store says which subjects a node serves.
   if (!config.cluster.enabled()) former.ReadState(ReadClock());
-  // Clients of the former daemon wait for weights, also where they must connect again. Pictures
-  // take seconds.
-  const bool waits_for_pictures = !former.exists() || config.require_render;
-  Result<Assets> assets = LoadAssets(config, waits_for_pictures);
+  // Pictures take seconds, and weights need none.
+  Result<Assets> assets = LoadAssets(
+      config, config.require_render ? character::Pictures::kLoad : character::Pictures::kLeaveOut);
   if (!assets.ok()) return Fail(ExitCode::kBadInput, assets.status());
   WarnAboutSecurity(config);
   WarnAboutAssets(*assets);
@@ -73,8 +72,7 @@ ExitCode LoadAndServe(const Config& asked, const RunOptions& options) {
     return Fail(ExitCode::kFailed, status);
   }
   if (Status status = daemon.Listen(); !status.ok()) return Fail(ExitCode::kFailed, status);
-  daemon.Serve();
-  return ExitCode::kOk;
+  return daemon.Serve();
 }
 
 // What works for root may not work for the service.
@@ -114,7 +112,7 @@ Status CheckCredentials(Config config) {
 }
 
 Status CheckAll(const Config& config) {
-  auto assets = LoadAssets(config, /*with_pictures=*/false);
+  auto assets = LoadAssets(config, character::Pictures::kLeaveOut);
   FURROW_RETURN_IF_ERROR(assets);
   WarnAboutSecurity(config);
   WarnAboutAssets(*assets);

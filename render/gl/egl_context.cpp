@@ -188,10 +188,13 @@ Result<std::unique_ptr<EglContext>> EglContext::Create(std::string_view device) 
 
 EglContext::~EglContext() {
   // A current context would only be marked for destruction and live on.
-  if (eglGetCurrentContext() == context_) {
-    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
-  }
+  Release();
   eglDestroyContext(display_, context_);
+}
+
+void EglContext::Release() {
+  if (eglGetCurrentContext() != context_) return;
+  eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
 }
 
 Status EglContext::MakeCurrent() {

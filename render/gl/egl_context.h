@@ -30,6 +30,9 @@ class EglContext {
   // context cannot be made current, no context is current afterwards.
   [[nodiscard]] Status MakeCurrent();
 
+  // Makes no context current on this thread, if this one is. Another thread may use it then.
+  void Release();
+
   // "device 0: Mesa, llvmpipe (LLVM 15.0.6, 256 bits), 4.5 (Core Profile) Mesa 22.3.6". Better
   // devices that failed follow, with the reasons: "; not on device 0: eglInitialize failed, ...".
   [[nodiscard]] const std::string& description() const { return description_; }

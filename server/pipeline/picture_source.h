@@ -67,14 +67,16 @@ class PictureSource {
   [[nodiscard]] virtual std::string description() const { return {}; }
   // True if pictures are drawn on the processor.
   [[nodiscard]] virtual bool is_software() const { return false; }
-  // True while the renderer starts or does not respond; every request fails.
+  // True while pictures wait for the renderer, or are drafts (RenderJob::TakesDraft()).
+  [[nodiscard]] virtual bool is_starting() const { return false; }
+  // True if the renderer could not start, or while it does not respond; every request fails.
   [[nodiscard]] virtual bool is_stuck() const { return false; }
   // Why is_stuck() is true, for people; else empty.
   [[nodiscard]] virtual std::string fault() const {
     return is_stuck() ? "the renderer does not respond" : "";
   }
-  // A camera preset of the character. Errors: kNotFound, the hint lists the presets; kUnavailable,
-  // the renderer is starting.
+  // A camera preset of the character. Errors: kNotFound, the hint lists the presets; kInternal, the
+  // renderer could not start.
   [[nodiscard]] virtual Result<render::Camera> Preset(std::string_view name) const = 0;
 };
 

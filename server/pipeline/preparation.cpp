@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "render/temporal/shot.h"
 #include "server/pipeline/picture_streams.h"
 #include "server/pipeline/snapshot.h"
 #include "wrinkle/shapes/blend_shape_pose.h"
@@ -16,8 +17,11 @@
 namespace furrow::server {
 namespace {
 
-// Pixels. Large enough that no pass of a picture, such as a scaled-down bloom, is left out.
-constexpr int kSize = 64;
+// Pixels. Large enough that no pass of a picture, such as a scaled-down bloom, is left out. Mesa's
+// llvmpipe compiles a program once for textures with sides that are powers of two and once for
+// others, so none is one here, halved and quartered neither, as in most pictures.
+constexpr int kWidth = 96;
+constexpr int kHeight = 72;
 
 // The wrinkles of a picture. Programs differ by the number of wrinkle maps that are active.
 enum class Wrinkles { kAll, kOneMap, kNone };
@@ -52,33 +56,86 @@ std::shared_ptr<const Snapshot> SnapshotOf(
   return snapshot;
 }
 
+// Makes small pictures of a character at rest.
+class JobMaker {
+ public:
+  static Result<JobMaker> Create(const character::Character& character, const wrinkle::Rig& rig,
+                                 const render::Settings& settings, const render::Camera& camera) {
+    auto binding =
+        wrinkle::RigBinding::Create(rig, character.skeleton, {}, {.allow_missing = true});
+    FURROW_RETURN_IF_ERROR(binding);
+    JobMaker maker(character);
+    maker.binding_ = std::make_shared<const wrinkle::RigBinding>(*std::move(binding));
+    maker.spec_ = {.view = settings.view,
+                   .camera = camera,
+                   .width = kWidth,
+                   .height = kHeight,
+                   .settings = std::make_shared<const render::Settings>(settings)};
+    return maker;
+  }
+
+  [[nodiscard]] RenderJob Make(std::uint64_t stream, Wrinkles wrinkles) const {
+    RenderJob job;
+    job.spec = spec_;
+    job.snapshot = SnapshotOf(*character_, binding_, wrinkles);
+    job.stream = stream;
+    job.prepares = true;
+    return job;
+  }
+
+ private:
+  explicit JobMaker(const character::Character& character) : character_(&character) {}
+
+  const character::Character* character_;
+  std::shared_ptr<const wrinkle::RigBinding> binding_;
+  PictureSpec spec_;
+};
+
+Status Draw(const RenderJob& job, wrinkle::CharacterPose* pose, render::Renderer* renderer) {
+  render::FrameRequest request;
+  FURROW_RETURN_IF_ERROR(Show(*job.snapshot, pose, &request));
+  request.settings = *job.spec.settings;
+  request.camera = job.spec.camera;
+  request.width = job.spec.width;
+  request.height = job.spec.height;
+  request.is_moving = renderer->is_software();
+  if (job.stream != 0 && render::CanBeCompleted(request, renderer->is_software())) {
+    request.stream = job.stream;
+    request.scale = render::kMinScale;
+  }
+  return renderer->Render(request).status();
+}
+
 }  // namespace
 
 Result<std::vector<RenderJob>> Preparations(const character::Character& character,
                                             const wrinkle::Rig& rig,
                                             const render::Settings& settings,
                                             const render::Camera& camera) {
-  auto made = wrinkle::RigBinding::Create(rig, character.skeleton, {}, {.allow_missing = true});
-  FURROW_RETURN_IF_ERROR(made);
-  const auto binding = std::make_shared<const wrinkle::RigBinding>(*std::move(made));
-  const auto look = std::make_shared<const render::Settings>(settings);
+  const auto maker = JobMaker::Create(character, rig, settings, camera);
+  FURROW_RETURN_IF_ERROR(maker);
   std::vector<RenderJob> jobs;
   // A stream begins in full. On a GPU, the second three only repeat the first.
   for (const std::uint64_t stream : {std::uint64_t{0}, PictureStreams::kPreparation}) {
     for (const Wrinkles wrinkles : {Wrinkles::kAll, Wrinkles::kOneMap, Wrinkles::kNone}) {
-      RenderJob job;
-      job.spec = {.view = settings.view,
-                  .camera = camera,
-                  .width = kSize,
-                  .height = kSize,
-                  .settings = look};
-      job.snapshot = SnapshotOf(character, binding, wrinkles);
-      job.stream = stream;
-      job.prepares = true;
-      jobs.push_back(std::move(job));
+      jobs.push_back(maker->Make(stream, wrinkles));
     }
   }
   return jobs;
+}
+
+Status WarmUp(render::Renderer* renderer, const character::Character& character,
+              const wrinkle::Rig& rig, const render::Settings& settings) {
+  const auto camera = renderer->Preset("face");
+  FURROW_RETURN_IF_ERROR(camera);
+  const auto maker = JobMaker::Create(character, rig, settings, *camera);
+  FURROW_RETURN_IF_ERROR(maker);
+  wrinkle::CharacterPose pose(&character.skeleton);
+  FURROW_RETURN_IF_ERROR(Draw(maker->Make(0, Wrinkles::kAll), &pose, renderer));
+  // The second picture of a stream is the first one that is completed from a former one.
+  const RenderJob stream = maker->Make(PictureStreams::kPreparation, Wrinkles::kAll);
+  FURROW_RETURN_IF_ERROR(Draw(stream, &pose, renderer));
+  return Draw(stream, &pose, renderer);
 }
 
 }  // namespace furrow::server

@@ -5,6 +5,7 @@
 
 #include "base/status.h"
 #include "character/character.h"
+#include "render/renderer.h"
 #include "render/settings/settings.h"
 #include "server/pipeline/render_mailbox.h"
 #include "wrinkle/rig/rig.h"
@@ -23,5 +24,12 @@ namespace furrow::server {
                                                           const wrinkle::Rig& rig,
                                                           const render::Settings& settings,
                                                           const render::Camera& camera);
+
+// Draws small pictures as Preparations() describes them, with all wrinkles, on the calling thread,
+// which must be that of `renderer`. What they compile is in the driver's cache afterwards, for
+// other renderers, too. Errors: those of Renderer::Preset(), RigBinding::Create() and
+// Renderer::Render().
+[[nodiscard]] Status WarmUp(render::Renderer* renderer, const character::Character& character,
+                            const wrinkle::Rig& rig, const render::Settings& settings);
 
 }  // namespace furrow::server

@@ -59,6 +59,11 @@ bool RenderJob::IsLossy() const {
   });
 }
 
+bool RenderJob::TakesDraft() const {
+  return !tickets.empty() && IsLossy() &&
+         std::ranges::all_of(tickets, &PictureTicket::acknowledges);
+}
+
 double RenderJob::Work() const {
   static const render::Settings kDefaults;
   return render::EstimateCost(spec.settings == nullptr ? kDefaults : *spec.settings, spec.width,
@@ -95,6 +100,7 @@ RenderMailbox::PutResult RenderMailbox::Put(RenderJob&& job) {
     job.entry = waiting->entry;
     job.submitted = waiting->submitted;  // the picture waits since then, whatever its pose
     *waiting = std::move(job);
+    changed_.notify_one();  // it may take a draft now
     return PutResult::kReplaced;
   }
   if (job.tickets.empty()) return PutResult::kNotWanted;
@@ -115,7 +121,7 @@ bool RenderMailbox::HasRoomFor(const RenderJob& job) const {
 
 // The fairest job among the stills, or among the others. First each host chooses among its viewers,
 // then the hosts are compared. A job for several viewers comes when the first of them would.
-RenderMailbox::Jobs::iterator RenderMailbox::Next(bool still) {
+RenderMailbox::Jobs::iterator RenderMailbox::Next(bool still, bool drafts) {
   struct Choice {
     Jobs::iterator job;
     double tag = 0.0;
@@ -123,7 +129,7 @@ RenderMailbox::Jobs::iterator RenderMailbox::Next(bool still) {
   };
   std::unordered_map<std::uint64_t, Choice> choices;  // by host
   for (auto job = jobs_.begin(); job != jobs_.end(); ++job) {
-    if (job->IsStill() != still) continue;
+    if (job->IsStill() != still || (drafts && !job->TakesDraft())) continue;
     const double work = job->Work();
     for (const PictureTicket& ticket : job->tickets) {
       const double tag = order_.ViewerTag(ticket.host, ticket.viewer, job->entry, work);
@@ -172,22 +178,28 @@ bool RenderMailbox::IsWanted(const RenderJob& job) const {
   });
 }
 
-std::optional<RenderJob> RenderMailbox::Take(bool wait) {
+bool RenderMailbox::HasJob(bool drafts) const {
+  return drafts ? std::ranges::any_of(jobs_, &RenderJob::TakesDraft) : !jobs_.empty();
+}
+
+std::optional<RenderJob> RenderMailbox::Take(bool wait, bool drafts) {
   std::unique_lock lock(mutex_);
   if (wait) {
-    changed_.wait(lock, [this] { return closed_ || !jobs_.empty() || !preparations_.empty(); });
+    changed_.wait(lock, [this, drafts] {
+      return closed_ || woken_ || HasJob(drafts) || (!drafts && !preparations_.empty());
+    });
   }
-  if (closed_) return std::nullopt;
-  if (jobs_.empty()) {
-    if (!wait || preparations_.empty()) return std::nullopt;
+  if (closed_ || std::exchange(woken_, false)) return std::nullopt;
+  if (!HasJob(drafts)) {
+    if (!wait || drafts || preparations_.empty()) return std::nullopt;
     RenderJob job = std::move(preparations_.front());
     preparations_.pop_front();
     return job;
   }
   // A still takes longer (more samples), and nothing moves in it, so it can wait, but not for ever:
   // `passed_over_` counts how often stills were passed.
-  const auto still = Next(/*still=*/true);
-  auto next = Next(/*still=*/false);
+  const auto still = Next(/*still=*/true, drafts);
+  auto next = Next(/*still=*/false, drafts);
   if (next == jobs_.end() || (still != jobs_.end() && passed_over_ >= kMaxPassedOver)) next = still;
   passed_over_ = still == jobs_.end() || next == still ? 0 : passed_over_ + 1;
   const auto [hosts, viewers] = CountWaiting(next->tickets.front().host);
@@ -200,6 +212,12 @@ std::optional<RenderJob> RenderMailbox::Take(bool wait) {
     taken_.emplace(ticket.subscription, ticket.still);
   }
   return job;
+}
+
+void RenderMailbox::Wake() {
+  const std::lock_guard lock(mutex_);
+  woken_ = true;
+  changed_.notify_all();
 }
 
 std::size_t RenderMailbox::Complete(RenderJob* job) {

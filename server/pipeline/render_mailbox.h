@@ -87,6 +87,9 @@ struct RenderJob {
   // True if nobody gets the picture as it was drawn: all tickets are for JPEG or video of a subject
   // that moves.
   [[nodiscard]] bool IsLossy() const;
+  // True if all its viewers get the next picture at once and a better one soon, so that a draft of
+  // the character serves them: moving pictures of viewers with flow control.
+  [[nodiscard]] bool TakesDraft() const;
   // What drawing it costs (render::PictureCost::work).
   [[nodiscard]] double Work() const;
 };
@@ -127,7 +130,10 @@ class RenderMailbox {
   // Removes and returns the next job. Moving subjects go before stills, but at most kMaxPassedOver
   // jobs pass a still; preparations come last. With `wait`, blocks until there is a job or Close()
   // was called. Every job with tickets must be given back by Complete().
-  [[nodiscard]] std::optional<RenderJob> Take(bool wait);
+  // With `drafts`, takes only jobs that a draft may serve (RenderJob::TakesDraft()).
+  [[nodiscard]] std::optional<RenderJob> Take(bool wait, bool drafts = false);
+  // Take() returns without a job: the one that waits, or else the next one.
+  void Wake();
   // False: drawing a job of Take() may stop, because all its tickets were withdrawn, because a
   // picture waits that is more urgent than a preparation, or because the mailbox is closed.
   [[nodiscard]] bool IsWanted(const RenderJob& job) const;
@@ -152,7 +158,8 @@ class RenderMailbox {
   using Jobs = std::deque<RenderJob>;
   void DropOlderTickets(const RenderJob& job);
   [[nodiscard]] bool HasRoomFor(const RenderJob& job) const;
-  [[nodiscard]] Jobs::iterator Next(bool still);
+  [[nodiscard]] Jobs::iterator Next(bool still, bool drafts);
+  [[nodiscard]] bool HasJob(bool drafts) const;
   [[nodiscard]] std::pair<std::size_t, std::size_t> CountWaiting(std::uint64_t host) const;
 
   const std::size_t capacity_;
@@ -164,6 +171,7 @@ class RenderMailbox {
   std::unordered_multimap<std::uint64_t, bool> taken_;
   FairOrder order_;
   int passed_over_ = 0;  // consecutive jobs that passed a still
+  bool woken_ = false;
   bool closed_ = false;
 };
 

@@ -6,6 +6,7 @@
 #include <spdlog/spdlog.h>
 #include <sys/resource.h>
 
+#include "base/process/in_background.h"
 #include "base/status.h"
 #include "render/temporal/shot.h"
 #include "server/core/within_memory.h"
@@ -44,8 +45,11 @@ Result<std::unique_ptr<RenderThread>> RenderThread::Start(const wrinkle::Skeleto
   // renderer and reports back.
   std::promise<Status> started;
   std::future<Status> status = started.get_future();
-  auto self = StartLater(skeleton, std::move(make_renderer), metrics, clock, std::move(deliver),
-                         video, [&started](const Status& done) { started.set_value(done); });
+  auto self =
+      StartLater(skeleton, std::move(make_renderer), metrics, clock, std::move(deliver), video,
+                 {.presets = {}, .draft = nullptr, .on_started = [&started](const Status& done) {
+                    started.set_value(done);
+                  }});
   // The thread has ended in this case; the destructor of `self` joins it.
   FURROW_RETURN_IF_ERROR(status.get());
   return self;
@@ -54,10 +58,12 @@ Result<std::unique_ptr<RenderThread>> RenderThread::Start(const wrinkle::Skeleto
 std::unique_ptr<RenderThread> RenderThread::StartLater(const wrinkle::Skeleton* skeleton,
                                                        Factory make_renderer, Metrics* metrics,
                                                        Clock clock, OnPicture deliver,
-                                                       VideoEncoders* video, OnStarted on_started) {
+                                                       VideoEncoders* video, Later later) {
   std::unique_ptr<RenderThread> self(new RenderThread(skeleton, std::move(make_renderer), metrics,
                                                       clock, std::move(deliver), video));
-  self->thread_ = std::thread(&RenderThread::Run, self.get(), std::move(on_started));
+  self->presets_ = std::move(later.presets);
+  self->thread_ =
+      std::thread([thread = self.get(), later = std::move(later)] { thread->Run(later); });
   return self;
 }
 
@@ -129,13 +135,11 @@ void RenderThread::Withdraw(std::uint64_t subscription) {
 }
 
 std::string RenderThread::fault() const {
-  if (failed_) return "the renderer could not start";
-  return started_ ? PictureSource::fault() : "the renderer is starting";
+  return failed_ ? "the renderer could not start" : PictureSource::fault();
 }
 
 Result<render::Camera> RenderThread::Preset(std::string_view name) const {
   if (failed_) return Status(StatusCode::kInternal, fault());
-  if (!started_) return Status(StatusCode::kUnavailable, fault());
   std::string names;
   for (const auto& [known, camera] : presets_) {
     if (known == name) return camera;
@@ -148,29 +152,75 @@ Result<render::Camera> RenderThread::Preset(std::string_view name) const {
 Status RenderThread::CreateRenderer() {
   auto renderer = OrOutOfMemory(metrics_, "renderer", make_renderer_);
   FURROW_RETURN_IF_ERROR(renderer);
-  renderer_ = *std::move(renderer);
-  renderer_->SetObserver(&progress_);
+  Use(*std::move(renderer));
   return {};
 }
 
-void RenderThread::Run(const OnStarted& on_started) {
-  // Of this thread alone, and of those that a software renderer starts from it.
-  (void)setpriority(PRIO_PROCESS, 0, kNiceness);
-  const Status status = CreateRenderer();
-  if (status.ok()) {
-    description_ = renderer_->description();
-    is_software_ = renderer_->is_software();
+void RenderThread::Use(std::unique_ptr<render::Renderer> renderer) {
+  renderer_ = std::move(renderer);
+  renderer_->SetObserver(&progress_);
+  if (started_) return;
+  description_ = renderer_->description();
+  is_software_ = renderer_->is_software();
+  if (presets_.empty()) {
     for (const std::string_view name : render::CameraPresetNames()) {
       // Preset() serves network threads from this copy; they must not call the renderer.
       if (auto camera = renderer_->Preset(name); camera.ok()) presets_.emplace_back(name, *camera);
     }
   }
-  // Everything above is read-only from here on, so it needs no lock.
-  (status.ok() ? started_ : failed_) = true;
-  on_started(status);
+  started_ = true;  // everything above is read-only from here on, so it needs no lock
+}
+
+void RenderThread::Run(const Later& later) {
+  // Of this thread alone, and of those that start from it.
+  (void)setpriority(PRIO_PROCESS, 0, kNiceness);
+  const Status status = StartRenderer(later);
+  if (!status.ok()) {
+    failed_ = true;
+    for (RenderJob& job : mailbox_.TakeWaiting()) Refuse(std::move(job));
+    mailbox_.Close();
+  }
+  later.on_started(status);
   if (status.ok()) DrawUntilClosed();
   make_renderer_ = nullptr;
   ended_ = true;
+}
+
+// Returns when the renderer of the whole character is there. Until then, draws drafts.
+Status RenderThread::StartRenderer(const Later& later) {
+  if (!later.draft) {
+    is_whole_ready_ = true;
+    return CreateRenderer();
+  }
+  auto whole = InBackground([this] {
+    auto renderer = OrOutOfMemory(metrics_, "renderer", make_renderer_);
+    if (renderer.ok()) (*renderer)->Release();
+    is_whole_ready_ = true;
+    mailbox_.Wake();
+    return renderer;
+  });
+  StartDraft(later.draft);
+  while (renderer_ != nullptr && !is_whole_ready_ && !mailbox_.closed()) {
+    WithinMemory(metrics_, [this] { DrawAndCollect(); });
+  }
+  while (renderer_ != nullptr && !in_flight_.empty()) {
+    WithinMemory(metrics_, [this] { Collect(/*wait=*/true); });
+  }
+  renderer_.reset();
+  drafts_ = false;
+  auto renderer = whole.get();
+  FURROW_RETURN_IF_ERROR(renderer);
+  Use(*std::move(renderer));
+  return {};
+}
+
+// Without a draft, jobs wait. A GPU has the whole character in less time than it takes a person to
+// see the difference.
+void RenderThread::StartDraft(const Factory& make) {
+  auto draft = OrOutOfMemory(metrics_, "renderer", make);
+  if (!draft.ok() || !(*draft)->is_software()) return;
+  Use(*std::move(draft));
+  drafts_ = true;
 }
 
 void RenderThread::DrawUntilClosed() {
@@ -197,9 +247,10 @@ void RenderThread::DrawAndCollect() {
 
 // Waits only if nothing is in flight.
 std::optional<RenderJob> RenderThread::TakeJob() {
-  if (!in_flight_.empty()) return mailbox_.Take(/*wait=*/false);
+  const bool drafts = !is_whole_ready_;
+  if (!in_flight_.empty()) return mailbox_.Take(/*wait=*/false, drafts);
   const Time begun = clock_();
-  std::optional<RenderJob> job = mailbox_.Take(/*wait=*/true);
+  std::optional<RenderJob> job = mailbox_.Take(/*wait=*/true, drafts);
   idle_ += clock_() - begun;
   return job;
 }
@@ -226,19 +277,9 @@ void RenderThread::Draw(RenderJob job) {
 
 Status RenderThread::Render(RenderJob* taken) {
   const RenderJob& job = *taken;
-  const Snapshot& snapshot = *job.snapshot;
-  // Retargeting runs here, not on the network thread: only poses that are drawn pay for it.
-  if (drawn_.Run({*snapshot.retarget, *snapshot.blend_shape_pose, snapshot.shape_program.get(),
-                  snapshot.head_turn.get()},
-                 snapshot.joints, snapshot.blend_shapes) != wrinkle::JobStatus::kOk) {
-    return {StatusCode::kInvalidArgument, "the pose does not fit the character", "renderer"};
-  }
   render::FrameRequest request;
-  request.model = drawn_.model();
-  request.shapes = drawn_.shapes();
-  request.binding = snapshot.binding.get();
-  request.wrinkle_weights = snapshot.wrinkle_weights;
-  request.filtered_values = snapshot.filtered_values;
+  // Retargeting runs here, not on the network thread: only poses that are drawn pay for it.
+  FURROW_RETURN_IF_ERROR(Show(*job.snapshot, &drawn_, &request));
   if (job.spec.settings != nullptr) request.settings = *job.spec.settings;
   request.settings.view = job.spec.view;
   request.camera = job.spec.camera;
@@ -249,7 +290,8 @@ Status RenderThread::Render(RenderJob* taken) {
   const bool refines = samples == 0 && job.IsStill();
   if (refines) samples = kStillSamples;
   request.is_moving = is_software_ && job.IsLossy();
-  if (render::CanBeCompleted(request, is_software_)) {
+  // A draft is not worth the programs that only completed pictures need.
+  if (!drafts_ && render::CanBeCompleted(request, is_software_)) {
     const PictureStreams::Place place = streams_.Find(job);
     request.stream = place.stream;
     request.scale = place.scale;

@@ -47,6 +47,10 @@ namespace furrow::server {
 // pictures are compiled before somebody waits for them. A picture that nobody wants any more is
 // abandoned after the pass that is being drawn.
 //
+// A character takes seconds to load. A renderer on the processor that is started later
+// (StartLater()) may begin with a draft, a coarse character that is there at once, for the viewers
+// whose pictures RenderJob::TakesDraft(). All others wait for the whole character.
+//
 // A lost context is created again for the next job. While that fails, jobs are dropped and counted,
 // twice as many before each new attempt (up to kMaxJobsSkipped), so that a missing GPU does not
 // keep a core busy.
@@ -64,8 +68,17 @@ class RenderThread : public PictureSource {
   // Creates the renderer, at the start and after each loss. Called on the render thread.
   using Factory = std::function<Result<std::unique_ptr<render::Renderer>>()>;
 
-  // Called once on the render thread, when the first renderer is there or has failed.
+  // Called once on the render thread, when the renderer is there or has failed.
   using OnStarted = std::function<void(const Status&)>;
+  using Presets = std::vector<std::pair<std::string, render::Camera>>;
+
+  struct Later {
+    Presets presets;  // the cameras of the character, so that viewers can ask before it is loaded
+    // Creates the renderer of a draft. Called on the render thread; `make_renderer` runs at the
+    // same time on another thread. Empty: there is no draft.
+    Factory draft;
+    OnStarted on_started;
+  };
 
   // Starts the thread and waits for the first renderer. `skeleton`: the character's. `clock`: for
   // the histograms of the stages; called on any thread. `video`: null means that all pictures are
@@ -73,10 +86,12 @@ class RenderThread : public PictureSource {
   [[nodiscard]] static Result<std::unique_ptr<RenderThread>> Start(
       const wrinkle::Skeleton* skeleton, Factory make_renderer, Metrics* metrics, Clock clock,
       OnPicture deliver, VideoEncoders* video = nullptr);
-  // The same, but does not wait: the renderer is stuck until it is there, and for good if it fails.
-  [[nodiscard]] static std::unique_ptr<RenderThread> StartLater(
-      const wrinkle::Skeleton* skeleton, Factory make_renderer, Metrics* metrics, Clock clock,
-      OnPicture deliver, VideoEncoders* video, OnStarted on_started);
+  // The same, but does not wait: jobs wait for the renderer, and are refused if it fails.
+  [[nodiscard]] static std::unique_ptr<RenderThread> StartLater(const wrinkle::Skeleton* skeleton,
+                                                                Factory make_renderer,
+                                                                Metrics* metrics, Clock clock,
+                                                                OnPicture deliver,
+                                                                VideoEncoders* video, Later later);
   ~RenderThread() override;  // drops waiting jobs and joins the thread
   RenderThread(const RenderThread&) = delete;
   RenderThread& operator=(const RenderThread&) = delete;
@@ -97,7 +112,8 @@ class RenderThread : public PictureSource {
   }
   [[nodiscard]] std::optional<Drawing> drawing() const override { return progress_.drawing(); }
   [[nodiscard]] bool is_software() const override { return started_ && is_software_; }
-  [[nodiscard]] bool is_stuck() const override { return stuck_ || !started_; }
+  [[nodiscard]] bool is_stuck() const override { return stuck_ || failed_; }
+  [[nodiscard]] bool is_starting() const override { return !failed_ && (!started_ || drafts_); }
   [[nodiscard]] std::string fault() const override;
   // Draws nothing more; the picture that is being drawn is completed. Does not wait for it.
   void Stop() { mailbox_.Close(); }
@@ -148,9 +164,13 @@ class RenderThread : public PictureSource {
                Clock clock, OnPicture deliver, VideoEncoders* video);
 
   Status CreateRenderer();
+  void Use(std::unique_ptr<render::Renderer> renderer);
   bool Revive();
   void BackOff();
-  void Run(const OnStarted& on_started);
+  void Run(const Later& later);
+  [[nodiscard]] Status StartRenderer(const Later& later);
+  void StartDraft(const Factory& make);
+  [[nodiscard]] Status DrawDrafts();
   void DrawUntilClosed();
   void DrawAndCollect();
   void Draw(RenderJob job);
@@ -172,14 +192,17 @@ class RenderThread : public PictureSource {
   RenderMailbox mailbox_;
   std::atomic<bool> ended_ = false;
   std::atomic<bool> failed_ = false;   // the first renderer
+  std::atomic<bool> drafts_ = false;   // renderer_ draws a draft
   std::atomic<bool> started_ = false;  // the next three are written before, and stay
-  std::vector<std::pair<std::string, render::Camera>> presets_;
+  Presets presets_;                    // with Later, from the beginning
   std::string description_;
   bool is_software_ = false;
   Progress progress_;
 
   std::atomic<std::uint64_t> steps_ = 0;  // odd while the renderer works
   std::atomic<bool> stuck_ = false;
+
+  std::atomic<bool> is_whole_ready_ = false;  // the renderer of the whole character, or it failed
 
   // Used by Watch() only.
   std::uint64_t watched_step_ = 0;

@@ -5,7 +5,10 @@
 #include <memory>
 #include <vector>
 
+#include "base/status.h"
+#include "render/request/frame_request.h"
 #include "wrinkle/shapes/blend_shape_pose.h"
+#include "wrinkle/shapes/character_pose.h"
 #include "wrinkle/shapes/head_turn.h"
 #include "wrinkle/shapes/shape_program.h"
 #include "wrinkle/skeleton/retarget.h"
@@ -31,5 +34,10 @@ struct Snapshot {
   std::vector<float> wrinkle_weights;      // in the order of the binding
   std::vector<float> filtered_values;
 };
+
+// Writes the subject of a picture to `shown`, which refers to both arguments afterwards. `pose`:
+// moves the character of the renderer. Error: kInvalidArgument (the pose does not fit it).
+[[nodiscard]] Status Show(const Snapshot& snapshot, wrinkle::CharacterPose* pose,
+                          render::PosedSubject* shown);
 
 }  // namespace furrow::server

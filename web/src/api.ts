@@ -52,6 +52,8 @@ export interface DaemonStatus {
   renderer: string;
   /** The renderer draws on the processor. */
   software: boolean;
+  /** The character is being loaded: pictures in motion are drafts, and others wait. */
+  starting: boolean;
   /** Null: nothing is being drawn. */
   drawing: Drawing | null;
   /** H.264; null: the daemon draws nothing. */

@@ -484,6 +484,7 @@ export class App {
       notDrawn: this.viewer.notDrawn.value,
       renders: this.status?.render ?? true,
       drawing: this.status?.drawing ?? null,
+      isDraft: this.status?.starting ?? false,
       subjects: this.subjects,
       wanted,
       hasPicture: picture !== null,

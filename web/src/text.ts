@@ -38,6 +38,7 @@ export const text = {
       browser: 'This browser is busy. Close other pages, or choose “Fast (coarse)” instead of “Auto detail”.',
     },
     live: (name: string) => `Live: ${name}`,
+    draft: (name: string) => `Live: ${name}, in a draft without details until the character is loaded`,
   },
   state: { empty: 'Empty', loading: 'Loading', live: 'Live', paused: 'Paused', stale: 'Stale', lost: 'Lost', off: 'No pictures' },
   figures: {

@@ -10,7 +10,7 @@ import { clockText } from '../src/ui/clock';
 
 const GOOD: Situation = {
   link: 'open', everConnected: true, notDrawn: '', renders: true, wanted: '', hasPicture: true,
-  silentMs: 100, drawing: null, pictureMs: 40, everyMs: 0, isChanging: false, limit: 'drawing', isAtRest: false, isPaused: false,
+  silentMs: 100, drawing: null, isDraft: false, pictureMs: 40, everyMs: 0, isChanging: false, limit: 'drawing', isAtRest: false, isPaused: false,
   subjects: [{ name: 'demo', state: 'live', age_ms: 8 }],
 };
 
@@ -34,6 +34,7 @@ test('each condition has its own sentence', () => {
     [{ hasPicture: false }, 'loading', /first picture/],
     [{ hasPicture: false, drawing: { done: 3, passes: 12 } }, 'loading', /step 4 of 12/],
     [{ drawing: { done: 3, passes: 12 } }, 'live', /Live/],
+    [{ isDraft: true }, 'live', /Live: demo, in a draft/],
     [{ isPaused: true, pictureMs: 9000 }, 'paused', /Paused: demo/],
     [{ pictureMs: 3000 }, 'stale', /3 s old/],
     [{ pictureMs: 3000, isChanging: true, drawing: { done: 1, passes: 9 } }, 'stale', /3 s old/],

@@ -87,6 +87,7 @@ ApiReply StatusApi::ShowStatus(const ApiRequest& request, const Hub& hub, Time n
                     {"render", parts_.pictures != nullptr},
                     {"renderer", parts_.pictures == nullptr ? "" : parts_.pictures->description()},
                     {"software", parts_.pictures != nullptr && parts_.pictures->is_software()},
+                    {"starting", parts_.pictures != nullptr && parts_.pictures->is_starting()},
                     {"drawing", DrawingJson(parts_.pictures)},
                     {"video", VideoJson(parts_.video)},
                     {"viewers", parts_.viewers()},
@@ -157,8 +158,11 @@ ApiReply StatusApi::MetricsText(const Hub& hub, Time now) const {
   }
   add_gauge("furrow_ready", "1 while /readyz replies with 200, otherwise 0.",
             Ready(hub, now).status == 200 ? 1.0 : 0.0);
-  add_gauge("furrow_renderer_running", "1 while a renderer runs and responds, otherwise 0.",
-            parts_.pictures != nullptr && !parts_.pictures->is_stuck() ? 1.0 : 0.0);
+  add_gauge(
+      "furrow_renderer_running", "1 while a renderer runs and responds, otherwise 0.",
+      parts_.pictures != nullptr && !parts_.pictures->is_stuck() && !parts_.pictures->is_starting()
+          ? 1.0
+          : 0.0);
   add_gauge("furrow_renderer_wanted", "1 if the configuration asks for pictures, otherwise 0.",
             parts_.wants_pictures ? 1.0 : 0.0);
   add_gauge("furrow_recording_paused",

@@ -92,14 +92,6 @@ void Subscribers::Subscribe(Peer& peer, const protocol::Header& header,
     return RefuseRequest(peer, header, ErrorCode::kNotRendering,
                          "this daemon renders no pictures: it has no character or no OpenGL");
   }
-  // The renderer has no cameras while it starts.
-  if (pictures_.is_stuck() &&
-      pictures_.MakeRequest(protocol::SubscribePictures()).status().code() ==
-          StatusCode::kUnavailable) {
-    // Clients that come back by themselves do so, as after a restart of the whole daemon.
-    RefuseRequest(peer, header, ErrorCode::kDraining, "the renderer is starting; connect again");
-    return peer.link->Finish();
-  }
   if (pictures_.is_stuck()) {
     return RefuseRequest(peer, header, ErrorCode::kNotRendering,
                          pictures_.fault() + ": pictures are off");

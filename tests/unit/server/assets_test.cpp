@@ -62,7 +62,7 @@ TEST(Assets, PicturesThatComeLaterAreOfTheSameCharacter) {
   ASSERT_TRUE(character::SaveCharacterGlb(Ada(), config.character).ok());
   ASSERT_TRUE(motion::SaveClip(rig::RaisedBrow({1, 0, 0, 0}), folder / "face.glb").ok());
   std::ofstream(folder / "ada.rig.json") << rig::RaisedBrowRig("face.glb");
-  const auto former = LoadAssets(config, /*with_pictures=*/false);
+  const auto former = LoadAssets(config, character::Pictures::kLeaveOut);
   ASSERT_TRUE(former.ok()) << former.status().ToString();
   EXPECT_TRUE(former->lacks_pictures);
   const auto same = LoadWithPictures(config, *former->character);

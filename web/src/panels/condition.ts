@@ -26,6 +26,8 @@ export interface Situation {
   renders: boolean;
   /** The picture that the renderer draws now; null: none. */
   drawing: Drawing | null;
+  /** The renderer draws drafts of the character. */
+  isDraft: boolean;
   /** Null until the daemon has replied. */
   subjects: readonly Pick<SubjectInfo, 'name' | 'state' | 'age_ms'>[] | null;
   /** Empty: the oldest live subject. */
@@ -93,7 +95,7 @@ export function assess(situation: Situation): Condition {
     if (!situation.isChanging || drawing === null) return condition('stale', old, t.staleAdvice[situation.limit]);
     return condition('stale', old, t.changing(drawing.done, drawing.passes));
   }
-  return condition('live', t.live(subject.name));
+  return condition('live', situation.isDraft ? t.draft(subject.name) : t.live(subject.name));
 }
 
 function firstPicture(drawing: Drawing | null): Condition {

@@ -67,6 +67,30 @@ RenderJob Still(std::uint64_t subject, std::uint32_t sequence, std::uint64_t sub
   return job;
 }
 
+TEST(RenderMailbox, ADraftServesMovingPicturesOfViewersWithFlowControl) {
+  RenderMailbox mailbox(8);
+  mailbox.Put(Job(1, 1, 100));  // without flow control
+  RenderJob still = Still(2, 2, 200);
+  still.tickets.front().acknowledges = true;
+  mailbox.Put(std::move(still));
+  EXPECT_FALSE(mailbox.Take(false, /*drafts=*/true).has_value());
+  RenderJob moving = Job(3, 3, 300);
+  moving.tickets.front().acknowledges = true;
+  mailbox.Put(std::move(moving));
+  EXPECT_EQ(mailbox.Take(true, /*drafts=*/true)->subject, 3u);
+  EXPECT_FALSE(mailbox.Take(false, /*drafts=*/true).has_value());
+  EXPECT_EQ(mailbox.Take(false)->subject, 1u);
+  EXPECT_EQ(mailbox.Take(false)->subject, 2u);
+}
+
+TEST(RenderMailbox, WakeEndsOneTake) {
+  RenderMailbox mailbox(8);
+  mailbox.Wake();
+  EXPECT_FALSE(mailbox.Take(true).has_value());
+  mailbox.Put(Job(1, 1, 100));
+  EXPECT_TRUE(mailbox.Take(true).has_value());
+}
+
 TEST(RenderMailbox, AStillHasHigherQualityThanItsTier) {
   PictureTicket ticket{.encoding = {render::ImageFormat::kJpeg, 45}, .tier = 2};
   EXPECT_EQ(EncodingOf(ticket).quality, 45);
