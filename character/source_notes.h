@@ -33,12 +33,12 @@ struct SourceNotes {
   int nameless_joints = 0;  // joints without a name, which are now called "node_<number>"
 };
 
-// Options of ParseCharacter().
+// Which pictures of a character are decoded.
 enum class Pictures {
   kLoad,
   // Only the base colours of the materials are decoded, and reduced to at most 512 texels per side,
-  // which takes a fraction of the time. Every other picture is a stand-in (character/package/stand_ins.h), so that drawing needs the same
-  // programs.
+  // which takes a fraction of the time. Every other picture is a stand-in
+  // (character/package/stand_ins.h), so that drawing needs the same programs.
   kColours,
   // All pictures are stand-ins.
   kStandIns,
@@ -47,6 +47,7 @@ enum class Pictures {
   kLeaveOut
 };
 
+// Options of ParseCharacter().
 struct ReadOptions {
   // Accepts files that are otherwise rejected, and notes the changes. An unskinned vertex takes the
   // skin weights of the nearest skinned vertex along the mesh's edges, or the skin's first joint.

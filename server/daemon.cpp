@@ -249,6 +249,7 @@ TransferParts Daemon::Transfer() const {
 
 // Between reading and sending for the last time.
 bool Daemon::Leave() {
+  if (exit_code_ != ExitCode::kOk) return false;  // the next daemon must meet the fault, too
   std::optional<int> http;
   if (http_ && !options_.listeners.http) http = http_->listening_socket();
   has_left_ = LeaveSessions(Transfer(), http);
@@ -259,9 +260,9 @@ bool Daemon::Leave() {
 void Daemon::OnRenderer(const Status& loaded) {
   if (std::exchange(loads_later_, false)) {
     FinishConfinement();
-    // Somebody who starts the daemon wants to hear of a faulty file. One that goes on with the
-    // sessions of a former daemon goes on.
-    if (!loaded.ok() && !former_->exists()) {
+    // Somebody who starts the daemon wants to hear of a faulty file. Lack of memory may pass, and a
+    // daemon that goes on with the sessions of a former one goes on.
+    if (!loaded.ok() && loaded.code() != StatusCode::kUnavailable && !former_->exists()) {
       exit_code_ = ExitCode::kBadInput;
       return shutdown_->Request();
     }
@@ -457,7 +458,7 @@ void Daemon::EndRendering() {
   const auto deadline =
       options_.handle_signals ? std::optional(shutdown_->deadline()) : std::nullopt;
   rendering_.End(deadline, [this] {
-    spdlog::warn("ends before a picture is complete: it takes longer than limits.drain_seconds");
+    spdlog::warn("ends while a picture is drawn or loaded: limits.drain_seconds are over");
     EndProcess();
   });
 }
@@ -469,7 +470,7 @@ void Daemon::EndProcess() {
   // Other threads may still write to the log, so it must not go away.
   Log::WriteOut(kLastLines);
   std::fflush(stdout);
-  std::_Exit(static_cast<int>(ExitCode::kOk));
+  std::_Exit(static_cast<int>(exit_code_));
 }
 
 asio::awaitable<void> Daemon::TickLoop() {

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <chrono>
 #include <exception>
+#include <new>
 #include <string>
+#include <thread>
 #include <utility>
 
 #include <malloc.h>
@@ -25,7 +27,7 @@ namespace {
 // The time that joining a thread may take after it has ended.
 constexpr Time kJoinTime = std::chrono::milliseconds(50);
 // Of loading a character while drafts of it are drawn.
-constexpr int kLoadNiceness = 19;
+constexpr int kLoadNiceness = 10;
 
 }  // namespace
 
@@ -63,15 +65,20 @@ Result<Rendering::SharedCharacter> Load(const Rendering::Later& later,
                                         character::Pictures pictures) {
   try {
     return later.load(pictures);
+  } catch (const std::bad_alloc&) {
+    return Status(StatusCode::kUnavailable, "not enough memory to load the character");
   } catch (const std::exception& error) {
     return Status(StatusCode::kInternal, std::string("cannot load the character: ") + error.what());
   }
 }
 
-// The draft comes first. Threads that decode pictures inherit the niceness.
+// The draft comes first. Threads that decode pictures inherit the niceness, which a thread cannot
+// take back.
 Result<Rendering::SharedCharacter> LoadWithoutHurry(const Rendering::Later& later) {
-  return InBackground([&later] {
-           (void)setpriority(PRIO_PROCESS, 0, kLoadNiceness);
+  return InBackground([&later, caller = std::this_thread::get_id()] {
+           if (std::this_thread::get_id() != caller) {
+             (void)setpriority(PRIO_PROCESS, 0, kLoadNiceness);
+           }
            return Load(later, character::Pictures::kLoad);
          })
       .get();
@@ -79,8 +86,9 @@ Result<Rendering::SharedCharacter> LoadWithoutHurry(const Rendering::Later& late
 
 // Compiles programs into the driver's cache while the render thread loads a draft and compiles
 // others: those of skin and of the passes after it, such as light and bloom, which it needs last.
-Status CompileAhead(const Rendering::Later& later, const std::string& device,
-                    const render::Settings& settings) {
+// Returns whether the renderer draws on the processor; only then there is a draft.
+Result<bool> CompileAhead(const Rendering::Later& later, const std::string& device,
+                          const render::Settings& settings) {
   const auto loaded = Load(later, character::Pictures::kStandIns);
   FURROW_RETURN_IF_ERROR(loaded);
   character::Character part = **loaded;
@@ -90,8 +98,9 @@ Status CompileAhead(const Rendering::Later& later, const std::string& device,
   });
   const auto renderer = CreateRenderer(part, device);
   FURROW_RETURN_IF_ERROR(renderer);
-  if (!(*renderer)->is_software()) return {};
-  return WarmUp(renderer->get(), part, part.rig, settings);
+  if (!(*renderer)->is_software()) return false;
+  FURROW_RETURN_IF_ERROR(WarmUp(renderer->get(), part, part.rig, settings));
+  return true;
 }
 
 }  // namespace
@@ -107,9 +116,14 @@ RenderThread::Factory Rendering::MakeLateFactory(const Parts& parts) {
   return [this, character = parts.character, later = parts.later, device = parts.device,
           settings = parts.settings]() mutable -> Result<std::unique_ptr<render::Renderer>> {
     if (later.load == nullptr) return CreateRenderer(*character, device);
-    const bool drafts = later.drafts;
-    if (drafts) LogIfFailed(CompileAhead(later, device, settings));
-    auto loaded = LoadWithoutHurry(std::exchange(later, {}));
+    const Rendering::Later loads = std::exchange(later, {});
+    bool drafts = false;
+    if (loads.drafts) {
+      const auto is_software = CompileAhead(loads, device, settings);
+      LogIfFailed(is_software.status());
+      drafts = is_software.ok() && *is_software;
+    }
+    auto loaded = drafts ? LoadWithoutHurry(loads) : Load(loads, character::Pictures::kLoad);
     load_status_ = loaded.status();
     FURROW_RETURN_IF_ERROR(loaded);
     character = loaded_ = *std::move(loaded);

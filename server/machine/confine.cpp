@@ -120,7 +120,7 @@ std::string FinishConfinement() {
   const bool forbidden = no_programs.ok() && Restrict(no_programs);
   const std::string why = FilterSystemCalls();
   if (why.empty()) return "no programs, only the system calls that it needs";
-  return std::string(forbidden ? "no programs in the threads that serve, " : "") +
+  return std::string(forbidden ? "no programs in the main thread, " : "") +
          "all system calls, because seccomp is unavailable: " + why;
 }
 

@@ -269,8 +269,20 @@ std::vector<RenderJob> RenderMailbox::TakeWaiting() {
   return waiting;
 }
 
+std::vector<RenderJob> RenderMailbox::CloseAndTake() {
+  const std::lock_guard lock(mutex_);
+  std::vector<RenderJob> waiting(std::make_move_iterator(jobs_.begin()),
+                                 std::make_move_iterator(jobs_.end()));
+  CloseLocked();
+  return waiting;
+}
+
 void RenderMailbox::Close() {
   const std::lock_guard lock(mutex_);
+  CloseLocked();
+}
+
+void RenderMailbox::CloseLocked() {
   closed_ = true;
   jobs_.clear();
   preparations_.clear();

@@ -150,12 +150,15 @@ class RenderMailbox {
   // Removes and returns all jobs that wait; Complete() is not called for these.
   [[nodiscard]] std::vector<RenderJob> TakeWaiting();
 
+  // Both at once, so that no job is lost between them.
+  [[nodiscard]] std::vector<RenderJob> CloseAndTake();
   // Drops all jobs. Take() no longer blocks.
   void Close();
   [[nodiscard]] bool closed() const;
 
  private:
   using Jobs = std::deque<RenderJob>;
+  void CloseLocked();
   void DropOlderTickets(const RenderJob& job);
   [[nodiscard]] bool HasRoomFor(const RenderJob& job) const;
   [[nodiscard]] Jobs::iterator Next(bool still, bool drafts);

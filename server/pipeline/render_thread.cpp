@@ -177,8 +177,9 @@ void RenderThread::Run(const Later& later) {
   const Status status = StartRenderer(later);
   if (!status.ok()) {
     failed_ = true;
-    for (RenderJob& job : mailbox_.TakeWaiting()) Refuse(std::move(job));
-    mailbox_.Close();
+    WithinMemory(metrics_, [this] {
+      for (RenderJob& job : mailbox_.CloseAndTake()) Refuse(std::move(job));
+    });
   }
   later.on_started(status);
   if (status.ok()) DrawUntilClosed();
@@ -188,10 +189,7 @@ void RenderThread::Run(const Later& later) {
 
 // Returns when the renderer of the whole character is there. Until then, draws drafts.
 Status RenderThread::StartRenderer(const Later& later) {
-  if (!later.draft) {
-    is_whole_ready_ = true;
-    return CreateRenderer();
-  }
+  if (!later.draft) return CreateRenderer();
   auto whole = InBackground([this] {
     auto renderer = OrOutOfMemory(metrics_, "renderer", make_renderer_);
     if (renderer.ok()) (*renderer)->Release();
@@ -199,7 +197,9 @@ Status RenderThread::StartRenderer(const Later& later) {
     mailbox_.Wake();
     return renderer;
   });
+  drafts_ = true;
   StartDraft(later.draft);
+  // A draft that is lost is not made again.
   while (renderer_ != nullptr && !is_whole_ready_ && !mailbox_.closed()) {
     WithinMemory(metrics_, [this] { DrawAndCollect(); });
   }
@@ -207,8 +207,8 @@ Status RenderThread::StartRenderer(const Later& later) {
     WithinMemory(metrics_, [this] { Collect(/*wait=*/true); });
   }
   renderer_.reset();
-  drafts_ = false;
   auto renderer = whole.get();
+  drafts_ = false;
   FURROW_RETURN_IF_ERROR(renderer);
   Use(*std::move(renderer));
   return {};
@@ -220,7 +220,6 @@ void RenderThread::StartDraft(const Factory& make) {
   auto draft = OrOutOfMemory(metrics_, "renderer", make);
   if (!draft.ok() || !(*draft)->is_software()) return;
   Use(*std::move(draft));
-  drafts_ = true;
 }
 
 void RenderThread::DrawUntilClosed() {
@@ -234,7 +233,8 @@ void RenderThread::DrawUntilClosed() {
 void RenderThread::DrawAndCollect() {
   // Fills the read-backs before it waits for the oldest, so that the GPU draws one picture while
   // this thread encodes another. Blocks in Take() only if nothing is in flight.
-  while (static_cast<int>(in_flight_.size()) < kMaxReadBacks &&
+  while (!(drafts_ && renderer_ == nullptr) &&
+         static_cast<int>(in_flight_.size()) < kMaxReadBacks &&
          (in_flight_.empty() || in_flight_.back().Work() < kLargeWork)) {
     std::optional<RenderJob> job = TakeJob();
     if (!job) break;
@@ -247,10 +247,9 @@ void RenderThread::DrawAndCollect() {
 
 // Waits only if nothing is in flight.
 std::optional<RenderJob> RenderThread::TakeJob() {
-  const bool drafts = !is_whole_ready_;
-  if (!in_flight_.empty()) return mailbox_.Take(/*wait=*/false, drafts);
+  if (!in_flight_.empty()) return mailbox_.Take(/*wait=*/false, drafts_);
   const Time begun = clock_();
-  std::optional<RenderJob> job = mailbox_.Take(/*wait=*/true, drafts);
+  std::optional<RenderJob> job = mailbox_.Take(/*wait=*/true, drafts_);
   idle_ += clock_() - begun;
   return job;
 }

@@ -192,7 +192,7 @@ class RenderThread : public PictureSource {
   RenderMailbox mailbox_;
   std::atomic<bool> ended_ = false;
   std::atomic<bool> failed_ = false;   // the first renderer
-  std::atomic<bool> drafts_ = false;   // renderer_ draws a draft
+  std::atomic<bool> drafts_ = false;   // renderer_ draws a draft, or is null until the whole one
   std::atomic<bool> started_ = false;  // the next three are written before, and stay
   Presets presets_;                    // with Later, from the beginning
   std::string description_;

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "motion/clip_file.h"
+#include "server/core/within_memory.h"
 #include "server/net/clock.h"
 
 namespace furrow::server {
@@ -35,12 +36,14 @@ Status RecordingLoader::Load(UploadedFile file, Done done) {
   try {
     reading_ = std::async(std::launch::async, [this, shared, done = std::move(done)]() mutable {
       (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNice);
-      Result<Loaded> loaded = Read(*shared);
+      Result<Loaded> loaded =
+          OrOutOfMemory(parts_.metrics, "recording", [&] { return Read(*shared); });
       shared->buffer.reset();
       reads_ = false;  // whoever hears of the end may load the next file
-      done(std::move(loaded));
+      // Without memory for the message, the caller notices that nothing is read any more.
+      WithinMemory(parts_.metrics, [&] { done(std::move(loaded)); });
     });
-  } catch (const std::system_error&) {
+  } catch (const std::exception&) {  // no thread, or no memory for it
     reads_ = false;
     return Status(StatusCode::kUnavailable, "no further thread can start", {}, "try again");
   }

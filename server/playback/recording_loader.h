@@ -46,6 +46,8 @@ class RecordingLoader {
   // Reads the file. Error: kUnavailable, if another one is being read, or no thread can start;
   // `done` is not called then.
   [[nodiscard]] Status Load(UploadedFile file, Done done);
+  // True from a successful Load() until the file has been read.
+  [[nodiscard]] bool is_reading() const { return reads_; }
   // Frees a recording on another thread.
   void Release(std::unique_ptr<Player> player);
   // Waits until nothing is being read, at most until `deadline`. False: it still is.
@@ -58,7 +60,7 @@ class RecordingLoader {
   std::mutex mutex_;
   std::future<void> released_;  // destroying a future waits for its thread
   std::future<void> reading_;
-  std::atomic<bool> reads_ = false;
+  std::atomic<bool> reads_ = false;  // a file is being read
 };
 
 }  // namespace furrow::server

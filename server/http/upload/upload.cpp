@@ -2,6 +2,7 @@
 #include "server/http/upload/upload.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
@@ -19,6 +20,8 @@ namespace furrow::server {
 namespace {
 
 constexpr std::size_t kMostNameBytes = 255;  // as of a file name
+// How often a request looks whether its file is still being read.
+constexpr auto kLookTime = std::chrono::seconds(1);
 // At a time, so that other clients are served in between.
 constexpr std::size_t kReadBytes = std::size_t{256} << 10;
 
@@ -106,7 +109,7 @@ net::awaitable<bool> ReceiveUpload(WebStream& stream, beast::flat_buffer& buffer
 net::awaitable<Result<std::shared_ptr<RecordingLoader::Loaded>>> LoadUpload(WebContext* context,
                                                                             UploadedFile file) {
   using Shared = Result<std::shared_ptr<RecordingLoader::Loaded>>;
-  // The timer only wakes this coroutine: reading takes as long as it takes, and has limits itself.
+  // The timer wakes this coroutine: reading takes as long as it takes, and has limits itself.
   struct Pending {
     net::steady_timer timer;
     std::optional<Shared> loaded;
@@ -129,8 +132,13 @@ net::awaitable<Result<std::shared_ptr<RecordingLoader::Loaded>>> LoadUpload(WebC
   const Status begins = context->loader->Load(std::move(file), std::move(done));
   if (!begins.ok()) co_return begins;
   beast::error_code ignored;
-  co_await pending->timer.async_wait(Redirect(ignored));
-  if (!pending->loaded) co_return Status(StatusCode::kUnavailable, "the daemon is shutting down");
+  // Lack of memory may cost the message. The last one may be on its way when reading has ended.
+  for (bool reads = true; !pending->loaded && reads;) {
+    reads = context->loader->is_reading();
+    pending->timer.expires_after(kLookTime);
+    co_await pending->timer.async_wait(Redirect(ignored));
+  }
+  if (!pending->loaded) co_return Status(StatusCode::kUnavailable, "the recording was not read");
   co_return *std::move(pending->loaded);
 }
 

@@ -43,9 +43,10 @@ export class UploadPanel {
   private readonly words = h('span', {});
   /** Covers the page while a file is dragged over it. */
   readonly target = h('div', { class: 'drop-target', hidden: true }, h('p', {}, t.drop));
+  private readonly stop = button(t.cancel, () => this.cancel?.());
   /** What is under way. For the place of the messages. */
   readonly progress = h('div', { class: 'upload-progress', hidden: true },
-    this.words, this.bar, button(t.cancel, () => this.cancel?.()));
+    this.words, this.bar, this.stop);
   private cancel: (() => void) | null = null;
   /** The subject that was chosen before the recording, and that of the recording. */
   private before: { chosen: string; uploaded: string } | null = null;
@@ -137,6 +138,7 @@ export class UploadPanel {
   private showProgress(name: string, share: number): void {
     this.progress.hidden = false;
     this.words.textContent = share < 1 ? t.sending(name) : t.reading(name);
+    this.stop.hidden = share >= 1; // the daemon has it all
     if (share < 1) this.bar.value = share;
     else this.bar.removeAttribute('value'); // nobody knows how long the daemon reads it
   }
