@@ -156,6 +156,12 @@ Result<std::unique_ptr<Renderer>> Renderer::Create(const character::Character& c
   return GlRenderer::Create(character, options);
 }
 
+Result<Renderer::Device> Renderer::FindDevice(const std::string& device) {
+  const Result<std::unique_ptr<EglContext>> context = EglContext::Create(device);
+  FURROW_RETURN_IF_ERROR(context);
+  return Device{.is_software = (*context)->is_software()};
+}
+
 Result<Image> Renderer::Render(const FrameRequest& request) {
   while (in_flight() > 0) {  // discard pictures that were never polled
     const Result<Image> old = Poll(true);

@@ -41,6 +41,11 @@ class Renderer {
   // (Character::missing_rig_pictures) are not drawn.
   [[nodiscard]] static Result<std::unique_ptr<Renderer>> Create(
       const character::Character& character, const RendererOptions& options = {});
+  struct Device {
+    bool is_software = false;  // the driver draws on the processor
+  };
+  // Looks for the device that Create() would use. Error: kUnavailable, as of Create().
+  [[nodiscard]] static Result<Device> FindDevice(const std::string& device);
   virtual ~Renderer() = default;
 
   // Starts to draw a picture. The request's spans may be freed when the call returns. Errors:

@@ -72,7 +72,7 @@ Status Daemon::StartRendering() {
       asio::post(io_, [this, loaded] { OnRenderer(loaded); });
     };
   }
-  return rendering_.Start(
+  const Status status = rendering_.Start(
       {.character = assets_.character,
        .skeleton = &assets_.shapes->skeleton,
        .device = config_.render_device,
@@ -88,6 +88,8 @@ Status Daemon::StartRendering() {
              asio::post(io_, [this, picture = std::move(picture)] { DeliverPicture(picture); });
            },
        .later = std::move(later)});
+  loads_later_ = loads_later_ && rendering_.thread() != nullptr;
+  return status;
 }
 
 void Daemon::DeliverPicture(const FinishedPicture& picture) {

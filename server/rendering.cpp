@@ -49,6 +49,17 @@ void Rendering::MakeVideo(int max_encoders) {
 
 namespace {
 
+// A software renderer starts its threads with its first context, and they inherit the niceness.
+Result<render::Renderer::Device> FindDevice(const std::string& name) {
+  return InBackground([&name, caller = std::this_thread::get_id()] {
+           if (std::this_thread::get_id() != caller) {
+             (void)setpriority(PRIO_PROCESS, 0, RenderThread::kNiceness);
+           }
+           return render::Renderer::FindDevice(name);
+         })
+      .get();
+}
+
 // Programs that are not compiled ahead are compiled when they are needed.
 void LogIfFailed(const Status& status) {
   if (!status.ok()) spdlog::debug("programs are not compiled ahead: {}", status.ToString());
@@ -86,9 +97,8 @@ Result<Rendering::SharedCharacter> LoadWithoutHurry(const Rendering::Later& late
 
 // Compiles programs into the driver's cache while the render thread loads a draft and compiles
 // others: those of skin and of the passes after it, such as light and bloom, which it needs last.
-// Returns whether the renderer draws on the processor; only then there is a draft.
-Result<bool> CompileAhead(const Rendering::Later& later, const std::string& device,
-                          const render::Settings& settings) {
+Status CompileAhead(const Rendering::Later& later, const std::string& device,
+                    const render::Settings& settings) {
   const auto loaded = Load(later, character::Pictures::kStandIns);
   FURROW_RETURN_IF_ERROR(loaded);
   character::Character part = **loaded;
@@ -98,9 +108,7 @@ Result<bool> CompileAhead(const Rendering::Later& later, const std::string& devi
   });
   const auto renderer = CreateRenderer(part, device);
   FURROW_RETURN_IF_ERROR(renderer);
-  if (!(*renderer)->is_software()) return false;
-  FURROW_RETURN_IF_ERROR(WarmUp(renderer->get(), part, part.rig, settings));
-  return true;
+  return WarmUp(renderer->get(), part, part.rig, settings);
 }
 
 }  // namespace
@@ -117,12 +125,8 @@ RenderThread::Factory Rendering::MakeLateFactory(const Parts& parts) {
           settings = parts.settings]() mutable -> Result<std::unique_ptr<render::Renderer>> {
     if (later.load == nullptr) return CreateRenderer(*character, device);
     const Rendering::Later loads = std::exchange(later, {});
-    bool drafts = false;
-    if (loads.drafts) {
-      const auto is_software = CompileAhead(loads, device, settings);
-      LogIfFailed(is_software.status());
-      drafts = is_software.ok() && *is_software;
-    }
+    const bool drafts = loads.drafts;
+    if (drafts) LogIfFailed(CompileAhead(loads, device, settings));
     auto loaded = drafts ? LoadWithoutHurry(loads) : Load(loads, character::Pictures::kLoad);
     load_status_ = loaded.status();
     FURROW_RETURN_IF_ERROR(loaded);
@@ -139,6 +143,12 @@ Status Rendering::Start(Parts parts) {
   MakeVideo(parts.max_video_encoders);
   spdlog::info("starting the renderer");
   if (parts.later.load) {
+    const auto device = FindDevice(parts.device);
+    if (!device.ok()) {
+      spdlog::error("cannot render pictures: {}", device.status().ToString());
+      return {};
+    }
+    parts.later.drafts &= device->is_software;
     RenderThread::Later later{
         .presets = render::CameraPresets(*parts.character),
         .draft = nullptr,

@@ -20,8 +20,6 @@ constexpr int kMaxReadBacks = 2;  // the limit of render::Renderer
 // While a picture of this much work is drawn (more than 1920 x 1080 pixels), no other is begun, so
 // that a newcomer with a small picture waits for one large picture, not for two.
 constexpr double kLargeWork = 2.5e6;
-// Weights matter more than pictures where both need the same core.
-constexpr int kNiceness = 5;
 
 // Counts the steps of the renderer for Watch(): odd within a step.
 class Step {

@@ -57,6 +57,8 @@ namespace furrow::server {
 class RenderThread : public PictureSource {
  public:
   static constexpr int kMaxJobsSkipped = 255;
+  // Weights matter more than pictures where both need the same core.
+  static constexpr int kNiceness = 5;
 
   // Receives finished pictures. Called on the render thread, or on the submitting thread if the
   // mailbox is full. Must not block. Every ticket of every job is returned, in a picture with bytes

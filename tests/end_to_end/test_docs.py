@@ -80,6 +80,8 @@ class DocumentTest(unittest.TestCase):
         """Draws one small picture per command instead of a whole recording."""
         for name in ("anger.bvh", "happiness.bvh", "sadness.bvh"):
             (self.root / name).symlink_to(SHARE / "recordings" / name)
+        (self.root / "share").mkdir()
+        (self.root / "share" / "furrow").symlink_to(SHARE)
         several = 0
         for words in commands("docs/RENDERING.md"):
             if "face.glb" in words:
