@@ -121,7 +121,9 @@ test('compiled shaders are kept in the cache folder, and furrowd says what it lo
   let daemon;
   try {
     daemon = await Daemon.startAsShipped(['--play', recording('performance')]);
-    for (const words of ['loading the character', 'starting the renderer', 'rendering on']) assert(daemon.log.includes(words), words);
+    for (const words of ['starting the renderer', 'loading the character', 'rendering on']) {
+      await eventually(words, () => daemon.log.includes(words)); // it serves before it draws
+    }
     if (!(await daemon.get('api/status')).software) return; // GPU drivers keep them in their own ways
     const page = await openPage(browser, daemon.address);
     await page.waitForSelector('.app[data-state=live]');
