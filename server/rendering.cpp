@@ -6,12 +6,10 @@
 #include <exception>
 #include <new>
 #include <string>
-#include <thread>
 #include <utility>
 
 #include <malloc.h>
 #include <spdlog/spdlog.h>
-#include <sys/resource.h>
 
 #include "base/process/in_background.h"
 #include "render/renderer.h"
@@ -51,12 +49,8 @@ namespace {
 
 // A software renderer starts its threads with its first context, and they inherit the niceness.
 Result<render::Renderer::Device> FindDevice(const std::string& name) {
-  return InBackground([&name, caller = std::this_thread::get_id()] {
-           if (std::this_thread::get_id() != caller) {
-             (void)setpriority(PRIO_PROCESS, 0, RenderThread::kNiceness);
-           }
-           return render::Renderer::FindDevice(name);
-         })
+  return InBackground(RenderThread::kNiceness,
+                      [&name] { return render::Renderer::FindDevice(name); })
       .get();
 }
 
@@ -83,15 +77,9 @@ Result<Rendering::SharedCharacter> Load(const Rendering::Later& later,
   }
 }
 
-// The draft comes first. Threads that decode pictures inherit the niceness, which a thread cannot
-// take back.
+// The draft comes first.
 Result<Rendering::SharedCharacter> LoadWithoutHurry(const Rendering::Later& later) {
-  return InBackground([&later, caller = std::this_thread::get_id()] {
-           if (std::this_thread::get_id() != caller) {
-             (void)setpriority(PRIO_PROCESS, 0, kLoadNiceness);
-           }
-           return Load(later, character::Pictures::kLoad);
-         })
+  return InBackground(kLoadNiceness, [&later] { return Load(later, character::Pictures::kLoad); })
       .get();
 }
 

@@ -3,8 +3,11 @@
 
 #include <future>
 #include <system_error>
+#include <thread>
 #include <type_traits>
 #include <utility>
+
+#include <sys/resource.h>
 
 namespace furrow {
 
@@ -19,6 +22,18 @@ template <class Task>
     here();
     return here.get_future();
   }
+}
+
+// The same with a lower priority: `niceness` of setpriority(2), 19 is the lowest. Threads that the
+// task starts inherit it. A task that runs at once has the priority of the caller, because a thread
+// cannot take niceness back.
+template <class Task>
+[[nodiscard]] std::future<std::invoke_result_t<Task&>> InBackground(int niceness, Task task) {
+  return InBackground(
+      [niceness, task = std::move(task), caller = std::this_thread::get_id()]() mutable {
+        if (std::this_thread::get_id() != caller) (void)setpriority(PRIO_PROCESS, 0, niceness);
+        return task();
+      });
 }
 
 }  // namespace furrow

@@ -4,12 +4,12 @@
 #include <chrono>
 #include <exception>
 #include <new>
-#include <system_error>
 #include <utility>
 
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "base/process/in_background.h"
 #include "motion/clip_file.h"
 #include "server/core/within_memory.h"
 #include "server/net/clock.h"
@@ -79,12 +79,8 @@ Result<RecordingLoader::Loaded> RecordingLoader::Read(const UploadedFile& file) 
 void RecordingLoader::Release(std::unique_ptr<Player> player) {
   const std::lock_guard lock(mutex_);
   if (IsBusy(released_)) return;  // frees it here
-  try {
-    released_ =
-        std::async(std::launch::async,
-                   [last = std::shared_ptr<Player>(std::move(player))]() mutable { last.reset(); });
-  } catch (const std::system_error&) {  // freed already
-  }
+  released_ =
+      InBackground([last = std::shared_ptr<Player>(std::move(player))]() mutable { last.reset(); });
 }
 
 bool RecordingLoader::WaitUntil(Time deadline) {

@@ -16,6 +16,12 @@ TEST(InBackground, RunsOnAThreadOfItsOwn) {
   EXPECT_NE(InBackground([] { return std::this_thread::get_id(); }).get(), here);
 }
 
+TEST(InBackground, ANicenessIsOfTheThreadAlone) {
+  const int here = getpriority(PRIO_PROCESS, 0);
+  EXPECT_EQ(InBackground(19, [] { return getpriority(PRIO_PROCESS, 0); }).get(), 19);
+  EXPECT_EQ(getpriority(PRIO_PROCESS, 0), here);
+}
+
 TEST(InBackground, PassesExceptionsOn) {
   auto failed = InBackground([]() -> int { throw std::runtime_error("broken"); });
   EXPECT_THROW(failed.get(), std::runtime_error);
