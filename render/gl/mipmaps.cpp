@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "base/srgb.h"
+
 namespace furrow::render::gl {
 namespace {
 
@@ -30,13 +32,11 @@ void ForEachTexel(int width, int height, const Write& write) {
   }
 }
 
-// sRGB of 8 bits to linear values (IEC 61966-2-1).
 const std::array<float, 256>& LinearOfSrgb() {
   static const std::array<float, 256> table = [] {
     std::array<float, 256> values{};
     for (std::size_t i = 0; i < values.size(); ++i) {
-      const float v = static_cast<float>(i) / 255.0f;
-      values[i] = v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
+      values[i] = LinearFromSrgb(static_cast<float>(i) / 255.0f);
     }
     return values;
   }();
@@ -51,9 +51,8 @@ std::uint8_t SrgbOfLinear(float linear) {
     std::vector<std::uint8_t> values;
     for (int i = 0; i <= kSrgbSteps; ++i) {
       const float root = static_cast<float>(i) / kSrgbSteps;
-      const float v = root * root;
-      const float srgb = v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1.0f / 2.4f) - 0.055f;
-      values.push_back(static_cast<std::uint8_t>(std::lround(255.0f * srgb)));
+      values.push_back(
+          static_cast<std::uint8_t>(std::lround(255.0f * SrgbFromLinear(root * root))));
     }
     return values;
   }();
