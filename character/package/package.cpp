@@ -56,17 +56,6 @@ Status AddRigPicture(const std::string& name, Pictures pictures, Character* char
   return {};
 }
 
-Status Attach(wrinkle::Rig rig, const fs::path& folder, Pictures pictures, Character* character) {
-  character->rig = std::move(rig);
-  character->folder = folder;
-  character->rig_pictures.clear();
-  character->missing_rig_pictures.clear();
-  for (const std::string& name : RigPictureNames(character->rig)) {
-    FURROW_RETURN_IF_ERROR(AddRigPicture(name, pictures, character));
-  }
-  return {};
-}
-
 }  // namespace
 
 std::vector<std::string> RigPictureNames(const wrinkle::Rig& rig) {
@@ -120,7 +109,7 @@ Result<Character> LoadCharacter(const fs::path& glb, const fs::path& rig,
     character->rig = std::move(*loaded);
     return character;
   }
-  if (Status status = Attach(std::move(*loaded), rig_path.parent_path(), pictures, &*character);
+  if (Status status = AttachRig(std::move(*loaded), rig_path.parent_path(), &*character, pictures);
       !status.ok()) {
     return status.At(rig_path.string());
   }
@@ -136,8 +125,16 @@ Result<NamedRoles> LoadCharacterRoles(const fs::path& glb) {
   return roles;
 }
 
-Status AttachRig(wrinkle::Rig rig, const fs::path& folder, Character* character) {
-  return Attach(std::move(rig), folder, Pictures::kLoad, character);
+Status AttachRig(wrinkle::Rig rig, const fs::path& folder, Character* character,
+                 Pictures pictures) {
+  character->rig = std::move(rig);
+  character->folder = folder;
+  character->rig_pictures.clear();
+  character->missing_rig_pictures.clear();
+  for (const std::string& name : RigPictureNames(character->rig)) {
+    FURROW_RETURN_IF_ERROR(AddRigPicture(name, pictures, character));
+  }
+  return {};
 }
 
 Status SaveCharacterGlb(const Character& character, const fs::path& glb) {

@@ -32,8 +32,8 @@ namespace furrow::character {
 // - Missing normals and tangents are computed.
 // - The rig's pictures are loaded: embedded ones by name, files by FindAsset(). Missing ones are
 //   listed in Character::missing_rig_pictures.
-//   With Pictures::kColours, the rig's pictures are stand-ins. With kLeaveOut, the character has no
-//   pictures, and damaged pictures are accepted.
+//   With kColours and kStandIns, the rig's pictures are stand-ins. With kLeaveOut, the character
+//   has no pictures, and damaged pictures are accepted.
 [[nodiscard]] Result<Character> LoadCharacter(const std::filesystem::path& glb,
                                               const std::filesystem::path& rig = {},
                                               const wrinkle::PoseSource& poses = {},
@@ -53,9 +53,9 @@ namespace furrow::character {
 // Replaces a character's rig and loads the rig's pictures, searching `folder` first. A picture that
 // does not exist is listed in Character::missing_rig_pictures. Errors: those of CheckAssetName()
 // and LoadPicture() (a damaged picture). After an error, the character has the new rig with only
-// some of its pictures.
+// some of its pictures. Unless `pictures` is kLoad, no file is read, and its picture has no pixels.
 [[nodiscard]] Status AttachRig(wrinkle::Rig rig, const std::filesystem::path& folder,
-                               Character* character);
+                               Character* character, Pictures pictures = Pictures::kLoad);
 
 // The names of all pictures that a rig uses, masks first, without duplicates.
 [[nodiscard]] std::vector<std::string> RigPictureNames(const wrinkle::Rig& rig);
