@@ -94,14 +94,12 @@ class JobMaker {
 Status Draw(const RenderJob& job, wrinkle::CharacterPose* pose, render::Renderer* renderer) {
   render::FrameRequest request;
   FURROW_RETURN_IF_ERROR(Show(*job.snapshot, pose, &request));
-  request.settings = *job.spec.settings;
-  request.camera = job.spec.camera;
-  request.width = job.spec.width;
-  request.height = job.spec.height;
+  job.spec.Describe(&request);
   request.is_moving = renderer->is_software();
-  if (job.stream != 0 && render::CanBeCompleted(request, renderer->is_software())) {
-    request.stream = job.stream;
-    request.scale = render::kMinScale;
+  if (render::CanBeCompleted(request, renderer->is_software())) {
+    const PictureStreams::Place place = PictureStreams().Find(job);
+    request.stream = place.stream;
+    request.scale = place.scale;
   }
   return renderer->Render(request).status();
 }

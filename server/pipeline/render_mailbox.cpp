@@ -43,6 +43,14 @@ bool PictureSpec::operator==(const PictureSpec& other) const {
          camera.turn_joint == other.camera.turn_joint;
 }
 
+void PictureSpec::Describe(render::FrameRequest* request) const {
+  if (settings != nullptr) request->settings = *settings;
+  request->settings.view = view;
+  request->camera = camera;
+  request->width = width;
+  request->height = height;
+}
+
 Encoding EncodingOf(const PictureTicket& ticket) {
   Encoding encoding = ticket.encoding;
   if (ticket.still && encoding.format == render::ImageFormat::kJpeg) {
@@ -263,6 +271,10 @@ bool RenderMailbox::WithdrawStill(std::uint64_t subscription) {
 
 std::vector<RenderJob> RenderMailbox::TakeWaiting() {
   const std::lock_guard lock(mutex_);
+  return TakeLocked();
+}
+
+std::vector<RenderJob> RenderMailbox::TakeLocked() {
   std::vector<RenderJob> waiting(std::make_move_iterator(jobs_.begin()),
                                  std::make_move_iterator(jobs_.end()));
   jobs_.clear();
@@ -271,8 +283,7 @@ std::vector<RenderJob> RenderMailbox::TakeWaiting() {
 
 std::vector<RenderJob> RenderMailbox::CloseAndTake() {
   const std::lock_guard lock(mutex_);
-  std::vector<RenderJob> waiting(std::make_move_iterator(jobs_.begin()),
-                                 std::make_move_iterator(jobs_.end()));
+  std::vector<RenderJob> waiting = TakeLocked();
   CloseLocked();
   return waiting;
 }

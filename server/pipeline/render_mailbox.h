@@ -33,6 +33,8 @@ struct PictureSpec {
   std::shared_ptr<const render::Settings> settings;
 
   [[nodiscard]] bool operator==(const PictureSpec& other) const;
+  // Writes everything but the subject.
+  void Describe(render::FrameRequest* request) const;
 };
 
 // How a picture is encoded. Equal encodings of one picture are made once.
@@ -158,6 +160,7 @@ class RenderMailbox {
 
  private:
   using Jobs = std::deque<RenderJob>;
+  [[nodiscard]] std::vector<RenderJob> TakeLocked();
   void CloseLocked();
   void DropOlderTickets(const RenderJob& job);
   [[nodiscard]] bool HasRoomFor(const RenderJob& job) const;

@@ -188,17 +188,18 @@ void RenderThread::Run(const Later& later) {
 // Returns when the renderer of the whole character is there. Until then, draws drafts.
 Status RenderThread::StartRenderer(const Later& later) {
   if (!later.draft) return CreateRenderer();
-  auto whole = InBackground([this] {
+  std::atomic<bool> is_whole_ready = false;
+  auto whole = InBackground([this, &is_whole_ready] {
     auto renderer = OrOutOfMemory(metrics_, "renderer", make_renderer_);
     if (renderer.ok()) (*renderer)->Release();
-    is_whole_ready_ = true;
+    is_whole_ready = true;
     mailbox_.Wake();
     return renderer;
   });
   drafts_ = true;
   StartDraft(later.draft);
   // A draft that is lost is not made again.
-  while (renderer_ != nullptr && !is_whole_ready_ && !mailbox_.closed()) {
+  while (renderer_ != nullptr && !is_whole_ready && !mailbox_.closed()) {
     WithinMemory(metrics_, [this] { DrawAndCollect(); });
   }
   while (renderer_ != nullptr && !in_flight_.empty()) {
@@ -277,11 +278,7 @@ Status RenderThread::Render(RenderJob* taken) {
   render::FrameRequest request;
   // Retargeting runs here, not on the network thread: only poses that are drawn pay for it.
   FURROW_RETURN_IF_ERROR(Show(*job.snapshot, &drawn_, &request));
-  if (job.spec.settings != nullptr) request.settings = *job.spec.settings;
-  request.settings.view = job.spec.view;
-  request.camera = job.spec.camera;
-  request.width = job.spec.width;
-  request.height = job.spec.height;
+  job.spec.Describe(&request);
   // 0 leaves the number to the device; a number that the user set also holds for stills.
   int& samples = request.settings.anti_aliasing.samples;
   const bool refines = samples == 0 && job.IsStill();

@@ -172,7 +172,6 @@ class RenderThread : public PictureSource {
   void Run(const Later& later);
   [[nodiscard]] Status StartRenderer(const Later& later);
   void StartDraft(const Factory& make);
-  [[nodiscard]] Status DrawDrafts();
   void DrawUntilClosed();
   void DrawAndCollect();
   void Draw(RenderJob job);
@@ -203,8 +202,6 @@ class RenderThread : public PictureSource {
 
   std::atomic<std::uint64_t> steps_ = 0;  // odd while the renderer works
   std::atomic<bool> stuck_ = false;
-
-  std::atomic<bool> is_whole_ready_ = false;  // the renderer of the whole character, or it failed
 
   // Used by Watch() only.
   std::uint64_t watched_step_ = 0;
