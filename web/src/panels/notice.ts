@@ -22,7 +22,7 @@ export class Notice {
   constructor(toasts: Toasts, openSources: () => void, openRecording: () => void) {
     const copy = button(text.stage.copy, () => void this.copy(toasts));
     this.help = h('div', { class: 'notice-help' },
-      h('div', { class: 'row command' }, this.command, copy), 
+      h('div', { class: 'row command' }, this.command, copy),
       h('div', { class: 'row' }, button(text.upload.open, openRecording, { class: 'primary', title: text.upload.openTitle }),
         button(text.stage.sources, openSources)));
     this.element = h('div', { class: 'notice' }, this.badge,

@@ -3,7 +3,7 @@
 import { pagePicture } from '../screenshot/page_picture';
 import { text } from '../text';
 import { clockText } from '../ui/clock';
-import { button, copyPng, h, saveBlob } from '../ui/dom';
+import { button, copyPng, h, pngOf, saveBlob } from '../ui/dom';
 import { icon } from '../ui/icons';
 import type { Toasts } from '../ui/toast';
 
@@ -49,7 +49,7 @@ export class PictureActions {
 
   async screenshot(): Promise<void> {
     const canvas = this.canvas();
-    const blob = canvas === null ? null : await new Promise<Blob | null>((resolve) => canvas.toBlob(resolve, 'image/png'));
+    const blob = canvas === null ? null : await pngOf(canvas).catch(() => null);
     if (blob === null) {
       this.toasts.say(text.stage.noPicture, 'error');
       return;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A copy of a part of the page for an image, in which no script runs: what scripts have set or drawn becomes part of the
 // markup.
-import { h } from '../ui/dom';
+import { h, pngOf } from '../ui/dom';
 
 /** Values that the user has entered are properties, which markup does not have. */
 function keepValue(original: Element, copy: Element): void {
@@ -34,14 +34,13 @@ function keepScroll(original: HTMLElement, copy: HTMLElement): void {
   for (const child of copy.children) (child as HTMLElement).style.translate = `${-scrollLeft}px ${-scrollTop}px`;
 }
 
-function dataUrl(canvas: HTMLCanvasElement): Promise<string> {
-  return new Promise((resolve, reject) => canvas.toBlob((blob) => {
-    if (blob === null) return reject(new Error('the browser cannot encode the picture'));
+function dataUrl(blob: Blob): Promise<string> {
+  return new Promise((resolve, reject) => {
     const reader = new FileReader();
     reader.onload = () => resolve(reader.result as string);
     reader.onerror = () => reject(reader.error);
     reader.readAsDataURL(blob);
-  }));
+  });
 }
 
 /** Without scripts, browsers treat a canvas as text. It keeps its place and gets its picture as background. */
@@ -55,7 +54,7 @@ async function keepDrawing(original: HTMLCanvasElement, copy: HTMLElement): Prom
   Object.assign(copy.style, {
     display: style.display === 'inline' ? 'inline-block' : style.display, width: style.width, height: style.height,
   });
-  copy.style.background = `url("${await dataUrl(still)}") center / ${size} no-repeat`;
+  copy.style.background = `url("${await dataUrl(await pngOf(still))}") center / ${size} no-repeat`;
 }
 
 export async function copyOf(root: HTMLElement): Promise<HTMLElement> {

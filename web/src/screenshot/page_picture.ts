@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page as a PNG. A page may not photograph itself without asking, and what the user then chooses may be another window.
 // So a copy of the page is drawn as an SVG image instead, with a caption below it.
-import { h, svg } from '../ui/dom';
+import { h, pngOf, svg } from '../ui/dom';
 import { copyOf } from './page_copy';
 import { styleText } from './style_text';
 
@@ -68,6 +68,5 @@ export async function pagePicture(root: HTMLElement, caption: readonly string[])
   pen.font = FONT; // a new size resets it
   pen.textBaseline = 'middle';
   rows.forEach((row, i) => pen.fillText(row, MARGIN_PX, height + MARGIN_PX + (i + 0.5) * LINE_PX));
-  return new Promise((resolve, reject) =>
-    canvas.toBlob((blob) => (blob === null ? reject(new Error('the browser cannot encode the page')) : resolve(blob)), 'image/png'));
+  return pngOf(canvas);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The style sheets of the page as one text, for a copy of the page that is drawn as an image.
 
-/** An image would start animations anew, at their first and often invisible step. */
+/** In an image, animations begin at their first step, which is often invisible. */
 const AT_REST = '*, *::before, *::after { animation: none !important; transition: none !important; }';
 
 /**

@@ -81,6 +81,12 @@ export async function copyText(words: string): Promise<boolean> {
   }
 }
 
+/** What the canvas shows now, as PNG. Fails if the browser cannot encode it. */
+export function pngOf(canvas: HTMLCanvasElement): Promise<Blob> {
+  return new Promise((resolve, reject) =>
+    canvas.toBlob((blob) => (blob === null ? reject(new Error('the browser cannot encode the picture')) : resolve(blob)), 'image/png'));
+}
+
 /** Like copyText(), for a picture that may still be in the making. */
 export async function copyPng(picture: Promise<Blob>): Promise<boolean> {
   try {
