@@ -21,6 +21,11 @@ const DEVICES = [
 ];
 const PLAY = ['--play', recording('performance')];
 const inState = (page, state) => page.waitForSelector(`.app[data-state=${state}]`);
+/** The page is told `part` instead of what the daemon's status says of it. */
+const changeStatus = (page, part) => page.route('**/api/status', async (route) => {
+  const response = await route.fetch();
+  await route.fulfill({ response, json: { ...await response.json(), ...part } });
+});
 const isPicture = (message) => envelopeOf(message).kind === 'FIMG';
 
 /**
@@ -32,13 +37,14 @@ const STATES = {
   empty: { options: [], reach: (page) => inState(page, 'empty') },
   loading: {
     hold: true,
-    prepare: (page) => page.route('**/api/status', async (route) => {
-      const response = await route.fetch();
-      await route.fulfill({ response, json: { ...await response.json(), drawing: { done: 2, passes: 12 } } });
-    }),
+    prepare: (page) => changeStatus(page, { drawing: { done: 2, passes: 12 } }),
     reach: (page) => page.locator('.notice-title', { hasText: 'step 3 of 12' }).waitFor(),
   },
   live: { reach: (page) => inState(page, 'live') },
+  draft: {
+    prepare: (page) => changeStatus(page, { starting: true }),
+    reach: (page) => page.locator('.condition', { hasText: '(draft)' }).waitFor(),
+  },
   paused: {
     act: (daemon) => daemon.hold(RAISED_S),
     reach: async (page) => {
@@ -119,7 +125,7 @@ async function faultsOf(page, { sizes, isPhone, examined }, state) {
     // The page learns of the size of its picture with the next frame, and then asks for another one.
     await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
     if (DRAWN.includes(state)) await still(page);
-    else if (state === 'live' || state === 'sources') await shown(page);
+    else if (['live', 'draft', 'sources'].includes(state)) await shown(page);
     await keep(page, `screen-${state}-${width}x${height}`);
     const found = [...await layoutFaults(page), ...(isPhone ? await smallTargets(page) : []),
       ...(examined.includes(width) ? await axeFindings(page) : [])];

@@ -38,7 +38,8 @@ export const text = {
       browser: 'This browser is busy. Close other pages, or choose “Fast (coarse)” instead of “Auto detail”.',
     },
     live: (name: string) => `Live: ${name}`,
-    draft: (name: string) => `Live: ${name}, in a draft without details until the character is loaded`,
+    draft: (name: string) => `Live: ${name} (draft)`,
+    draftAdvice: 'Skin detail and wrinkles follow in a few seconds, when the daemon has loaded the character.',
   },
   state: { empty: 'Empty', loading: 'Loading', live: 'Live', paused: 'Paused', stale: 'Stale', lost: 'Lost', off: 'No pictures' },
   figures: {

@@ -34,7 +34,7 @@ test('each condition has its own sentence', () => {
     [{ hasPicture: false }, 'loading', /first picture/],
     [{ hasPicture: false, drawing: { done: 3, passes: 12 } }, 'loading', /step 4 of 12/],
     [{ drawing: { done: 3, passes: 12 } }, 'live', /Live/],
-    [{ isDraft: true }, 'live', /Live: demo, in a draft/],
+    [{ isDraft: true }, 'live', /Live: demo \(draft\)/],
     [{ isPaused: true, pictureMs: 9000 }, 'paused', /Paused: demo/],
     [{ pictureMs: 3000 }, 'stale', /3 s old/],
     [{ pictureMs: 3000, isChanging: true, drawing: { done: 1, passes: 9 } }, 'stale', /3 s old/],

@@ -95,7 +95,7 @@ export function assess(situation: Situation): Condition {
     if (!situation.isChanging || drawing === null) return condition('stale', old, t.staleAdvice[situation.limit]);
     return condition('stale', old, t.changing(drawing.done, drawing.passes));
   }
-  return condition('live', situation.isDraft ? t.draft(subject.name) : t.live(subject.name));
+  return situation.isDraft ? condition('live', t.draft(subject.name), t.draftAdvice) : condition('live', t.live(subject.name));
 }
 
 function firstPicture(drawing: Drawing | null): Condition {

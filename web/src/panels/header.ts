@@ -83,11 +83,12 @@ export class Header {
   }
 
   /** The advice is beside the picture, where there is room for it. */
-  showCondition({ state, text: words }: Condition): void {
-    if (this.status.textContent === words && this.status.dataset.state === state) return;
+  showCondition({ state, text: words, advice }: Condition): void {
+    const title = advice === '' ? words : `${words}. ${advice}`;
+    if (this.status.title === title && this.status.dataset.state === state) return;
     this.status.className = `condition ${LEVELS[state]}`;
     this.status.dataset.state = state;
-    this.status.title = words;
+    this.status.title = title;
     this.status.replaceChildren(h('strong', {}, words));
   }
 
