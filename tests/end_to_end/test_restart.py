@@ -230,17 +230,14 @@ class RestartTest(TokenTest):
 
     def test_weights_do_not_wait_for_pictures_where_the_sessions_are_refused(self):
         with ServiceManager("--http", "0") as manager:
-            first = "rendering on" in manager.text()
             _, _, rows, _ = self.connect(manager.udp, lambda _: ("--udp",), "--loop")
             rows.wait(5)
             self.assertEqual(manager.end(), 0)
             damage(manager, "version")
             manager.start()
-            self.assertNotIn("rendering on", manager.text(), "the daemon serves before")
-            rows.wait(20)
-            if first:  # there is OpenGL here
-                with urllib.request.urlopen(f"http://127.0.0.1:{manager.ports['http']}/readyz", timeout=GUARD) as ready:
-                    self.assertEqual(ready.status, 200)
+            rows.wait(20)  # whether or not the renderer has started
+            with urllib.request.urlopen(f"http://127.0.0.1:{manager.ports['http']}/readyz", timeout=GUARD) as ready:
+                self.assertEqual(ready.status, 200)
 
     def test_a_renderer_that_fails_after_a_restart_costs_pictures_alone(self):
         with ServiceManager("--http", "0") as manager:
@@ -252,7 +249,7 @@ class RestartTest(TokenTest):
                 urllib.request.urlopen(f"http://127.0.0.1:{manager.ports['http']}/readyz", timeout=GUARD)
             with ready.exception as reply:
                 self.assertEqual(reply.code, 503)
-                self.assertIn("the renderer could not start: pictures are off, weights go on", reply.read().decode())
+                self.assertIn("no renderer could start: pictures are off, weights go on", reply.read().decode())
             rows.wait(20)
 
     def test_clients_with_tls_connect_again_and_their_subject_goes_on(self):
