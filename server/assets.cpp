@@ -129,8 +129,9 @@ Result<Assets> LoadAssets(const Config& config, character::Pictures pictures) {
       return assets;
     }
   }
-  if (pictures == character::Pictures::kLoad)
+  if (pictures == character::Pictures::kLoad) {
     spdlog::info("loading the character {}", glb.string());
+  }
   if (!config.render) pictures = character::Pictures::kLeaveOut;
   assets.lacks_pictures = pictures == character::Pictures::kLeaveOut;
   auto loaded = character::LoadCharacter(glb, chosen_rig, poses, pictures);
