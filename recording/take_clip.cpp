@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -115,10 +116,13 @@ Result<motion::Clip> ToClip(const TakePoses& poses, float scale) {
   for (std::size_t i = 0; i < poses.size(); ++i) {
     poses.Get(i, &pose);
     running.Apply(pose);
+    clip.timecodes.push_back(pose.timecode);
     clip.locals.insert(clip.locals.end(), running.joints().begin(), running.joints().end());
     clip.blend_shapes.insert(clip.blend_shapes.end(), running.shapes().begin(),
                              running.shapes().end());
   }
+  const auto has_one = [](const std::optional<Timecode>& timecode) { return timecode.has_value(); };
+  if (std::ranges::none_of(clip.timecodes, has_one)) clip.timecodes.clear();
   return clip;
 }
 

@@ -2,6 +2,7 @@
 #include "recording/wire_pose.h"
 
 #include <numeric>
+#include <optional>
 #include <span>
 
 namespace furrow::recording {
@@ -38,6 +39,8 @@ void FillPose(const motion::Clip& clip, int frame, protocol::PoseFrame* pose) {
   const auto locals =
       std::span(clip.locals).subspan(rest.size() * static_cast<std::size_t>(frame), rest.size());
   pose->partial = false;
+  pose->timecode =
+      clip.timecodes.empty() ? std::nullopt : clip.timecodes[static_cast<std::size_t>(frame)];
   pose->num_joints = static_cast<std::uint16_t>(rest.size());
   // All rotations are sent, but translations and scales only where they leave rest. Receivers of
   // whole poses put the others at rest.

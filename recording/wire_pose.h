@@ -15,7 +15,8 @@ namespace furrow::recording {
 
 // Converts frame `frame`, in [0, clip.num_frames()), to a complete (not partial) wire pose: the
 // rotations of all joints, the translations and scales that differ from the rest pose, and the
-// blend shapes. Replaces the content of `pose` and reuses its memory.
+// blend shapes, and the timecode if there is one. Replaces the content of `pose` and reuses its
+// memory.
 void FillPose(const motion::Clip& clip, int frame, protocol::PoseFrame* pose);
 
 }  // namespace furrow::recording

@@ -2,6 +2,7 @@
 #include "client/c/feed.h"
 
 #include <algorithm>
+#include <string>
 
 #include "client/c/reordering.h"
 #include "protocol/messages/hash.h"
@@ -49,6 +50,7 @@ Feed::Arrival Feed::OnFrame(const protocol::Header& header, const protocol::Weig
   // The decoder lets only finite numbers pass; the promised range is enforced here.
   for (float& value : values_) value = std::clamp(value, 0.0f, 1.0f);
   header_ = header;
+  timecode_ = frame.timecode;
   frame_age_us_ = age_us;
   received_us_ = now_us;
   gone_ = false;
@@ -83,6 +85,12 @@ furrow_frame Feed::Frame(std::int64_t now_us) const {
   frame.capture_time_us = header_.capture_time_us;
   frame.age_us =
       std::min(frame_age_us_, kMostAge) + std::max<std::int64_t>(0, now_us - received_us_);
+  if (timecode_) {
+    const std::string text = TimecodeText(*timecode_);
+    text.copy(frame.timecode, sizeof frame.timecode - 1);  // the rest is 0
+    frame.timecode_rate_numerator = timecode_->rate_numerator;
+    frame.timecode_rate_denominator = timecode_->rate_denominator;
+  }
   return frame;
 }
 

@@ -3,9 +3,11 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "base/time/timecode.h"
 #include "client/c/include/furrow/furrow.h"
 #include "client/c/pose_feed.h"
 #include "client/c/retry.h"
@@ -83,6 +85,7 @@ class Feed {
 
   std::vector<float> values_;  // empty before the first frame of the layout
   protocol::Header header_;    // of the newest frame
+  std::optional<Timecode> timecode_;
   std::int64_t frame_age_us_ = 0;
   std::int64_t received_us_ = 0;
   std::uint64_t number_ = 0;

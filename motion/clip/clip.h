@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/time/timecode.h"
 #include "wrinkle/skeleton/pose.h"
 #include "wrinkle/skeleton/skeleton.h"
 
@@ -21,6 +22,8 @@ struct Clip {
   std::vector<double> times;               // seconds, strictly increasing, one per frame
   std::vector<wrinkle::Transform> locals;  // local transforms, num_frames x num_joints, frame-major
   std::vector<float> blend_shapes;         // num_frames x num names, frame-major
+  // Those of the source, one per frame. Empty: it has none.
+  std::vector<std::optional<Timecode>> timecodes;
 
   [[nodiscard]] int num_frames() const { return static_cast<int>(times.size()); }
   // Seconds from the first frame to the last.

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <optional>
 #include <string>
+#include <tuple>
 #include <unordered_set>
 #include <utility>
 #include <vector>
@@ -15,6 +17,7 @@
 #include "base/status.h"
 #include "base/text.h"
 #include "base/text_cursor.h"
+#include "base/time/timecode.h"
 #include "motion/clip/limits.h"
 #include "motion/clip/resample.h"
 
@@ -27,9 +30,11 @@ constexpr int kRates[] = {24, 25, 30, 48, 50, 60, 100, 120, 240};
 constexpr double kDefaultRate = 60.0;  // the app's default
 constexpr double kSecondsADay = 86400.0;
 
-struct Timecode {
+// A cell of the column Timecode.
+struct TimeCell {
   int seconds = 0;      // since midnight
   double frames = 0.0;  // within the second
+  std::string_view text;
 };
 
 std::string_view Trim(std::string_view text) {
@@ -55,7 +60,7 @@ std::vector<std::string_view> SplitCells(std::string_view line, std::size_t most
 }
 
 // "HH:MM:SS:FF.mmm"; drop-frame timecodes have a ';' before the frames.
-Result<Timecode> ParseTimecode(std::string_view text, const TextCursor& cursor) {
+Result<TimeCell> ParseTimeCell(std::string_view text, const TextCursor& cursor) {
   double field[4] = {};
   std::string_view rest = text;
   bool good = true;
@@ -71,7 +76,7 @@ Result<Timecode> ParseTimecode(std::string_view text, const TextCursor& cursor) 
   if (!good || field[3] < 0.0 || field[3] >= kRates[std::size(kRates) - 1]) {
     return cursor.Error(StatusCode::kParse, "the timecode is not HH:MM:SS:FF.mmm");
   }
-  return Timecode{static_cast<int>((field[0] * 60.0 + field[1]) * 60.0 + field[2]), field[3]};
+  return TimeCell{static_cast<int>((field[0] * 60.0 + field[1]) * 60.0 + field[2]), field[3], text};
 }
 
 class TakeReader {
@@ -148,7 +153,7 @@ class TakeReader {
                                std::to_string(columns_.size()),
                            cursor_.line_was_ended() ? "" : "the file seems to be cut off");
     }
-    const Result<Timecode> time = ParseTimecode(timecode, cursor_);
+    const Result<TimeCell> time = ParseTimeCell(timecode, cursor_);
     FURROW_RETURN_IF_ERROR(time);
     const std::size_t num_shapes = clip_.blend_shape_names.size();
     if (clip_.times.size() >= kMaxFrames ||
@@ -164,7 +169,7 @@ class TakeReader {
         return ParseNumber(cells[i], cursor_.Where()).status();
       values[columns_[i]] = static_cast<float>(number);
     }
-    timecodes_.push_back(*time);
+    cells_.push_back(*time);
     lines_.push_back(cursor_.line());
     clip_.times.push_back(0.0);
     return {};
@@ -188,13 +193,13 @@ class TakeReader {
     if (options_.timecode_rate > 0.0) return options_.timecode_rate;
     double highest = 0.0;
     bool second_ended = false;
-    for (std::size_t i = 0; i < timecodes_.size(); ++i) {
-      highest = std::max(highest, timecodes_[i].frames);
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+      highest = std::max(highest, cells_[i].frames);
       // Only a second that ended shows all of its frame numbers.
-      second_ended = second_ended || timecodes_[i].seconds != timecodes_[0].seconds;
+      second_ended = second_ended || cells_[i].seconds != cells_[0].seconds;
     }
     if (!second_ended && highest < kDefaultRate) {
-      if (report_ != nullptr && timecodes_.size() > 1) {
+      if (report_ != nullptr && cells_.size() > 1) {
         report_->warnings.push_back(cursor_.Where() + ": the recording is too short to infer " +
                                     "the timecode's rate; 60 frames per second are assumed");
       }
@@ -202,22 +207,55 @@ class TakeReader {
     }
     const auto above = std::find_if(std::begin(kRates), std::end(kRates),
                                     [&](int rate) { return rate > highest; });
-    return *above;  // ParseTimecode() rejects frames above the last rate
+    return *above;  // ParseTimeCell() rejects frames above the last rate
+  }
+
+  void ReadTimecodes(double rate) {
+    // A rate that the user states may have a fraction, 29.97. Its numerator then is that of a
+    // nominal rate, as all fractions of timecodes.
+    const double nominal = std::ceil(rate);
+    const bool is_whole = nominal == rate;
+    if (nominal < 1.0 || nominal > kMaxTimecodeRate) {
+      clip_.timecodes.assign(cells_.size(), std::nullopt);
+      return;
+    }
+    const auto numerator = static_cast<std::uint32_t>(is_whole ? nominal : nominal * 1000.0);
+    for (const TimeCell& cell : cells_) {
+      clip_.timecodes.push_back(ParseTimecode(cell.text, numerator, is_whole ? 1 : 1001));
+    }
+  }
+
+  // Since midnight. The numbers of drop-frame timecodes have gaps, and their frames have none.
+  [[nodiscard]] double SecondsOf(std::size_t row, double rate) const {
+    const std::optional<Timecode>& timecode = clip_.timecodes[row];
+    const double frames = cells_[row].frames;
+    if (timecode && timecode->drop_frame) {
+      const double part = frames - std::floor(frames);
+      return (timecode->frame + part) * timecode->rate_denominator / timecode->rate_numerator;
+    }
+    return cells_[row].seconds + frames / rate;
   }
 
   Status SetTimes() {
     const double rate = Rate();
+    ReadTimecodes(rate);
     double midnight = 0.0;
     double previous = 0.0;
     std::size_t kept = 0;
     const std::size_t num_shapes = clip_.blend_shape_names.size();
-    const double first = timecodes_[0].seconds + timecodes_[0].frames / rate;
-    for (std::size_t i = 0; i < timecodes_.size(); ++i) {
-      double time = timecodes_[i].seconds + timecodes_[i].frames / rate - first + midnight;
+    const double first = SecondsOf(0, rate);
+    // A day of drop-frame timecodes is 86 ms shorter.
+    const std::optional<Timecode>& start = clip_.timecodes[0];
+    const double day = start && start->drop_frame
+                           ? static_cast<double>(TimecodeFramesPerDay(*start)) *
+                                 start->rate_denominator / start->rate_numerator
+                           : kSecondsADay;
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+      double time = SecondsOf(i, rate) - first + midnight;
       // A jump back by more than half a day is midnight.
       if (time < previous - kSecondsADay / 2) {
-        midnight += kSecondsADay;
-        time += kSecondsADay;
+        midnight += day;
+        time += day;
       }
       // A step back of at most 1 second counts as a repetition, and the row is skipped.
       if (i > 0 && time <= previous) {
@@ -229,12 +267,14 @@ class TakeReader {
       }
       // Moves the row to the front, over skipped rows.
       previous = clip_.times[kept] = time;
+      clip_.timecodes[kept] = clip_.timecodes[i];
       std::copy_n(clip_.blend_shapes.begin() + static_cast<std::ptrdiff_t>(i * num_shapes),
                   num_shapes,
                   clip_.blend_shapes.begin() + static_cast<std::ptrdiff_t>(kept * num_shapes));
       ++kept;
     }
     clip_.times.resize(kept);
+    clip_.timecodes.resize(kept);
     clip_.blend_shapes.resize(kept * num_shapes);
     return {};
   }
@@ -255,8 +295,8 @@ class TakeReader {
   const LoadOptions& options_;
   ClipReport* report_;
   Clip clip_;
-  std::vector<int> columns_;  // index into blend_shape_names, or one of the constants above
-  std::vector<Timecode> timecodes_;
+  std::vector<int> columns_;     // index into blend_shape_names, or one of the constants above
+  std::vector<TimeCell> cells_;  // of the column Timecode
   std::vector<std::size_t> lines_;
   std::size_t rows_without_face_ = 0;
   std::size_t rows_repeated_ = 0;
@@ -282,6 +322,36 @@ void AppendTimecode(double seconds, int rate, std::string* text) {
                 static_cast<int>(s / 60 % 60), static_cast<int>(s % 60),
                 static_cast<int>(part / 1000), static_cast<int>(part % 1000));
   text->append(buffer);
+}
+
+// True if the recording can have the timecodes of the clip's source: the reader needs one rate, and
+// times that rise.
+bool HasTimecodes(const Clip& clip) {
+  const auto& all = clip.timecodes;
+  if (all.empty() || !all.front()) return false;
+  int midnights = 0;
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    if (!all[i]) return false;
+    const Timecode& before = *all[i - 1];
+    const Timecode& now = *all[i];
+    if (std::tie(now.rate_numerator, now.rate_denominator, now.drop_frame) !=
+        std::tie(before.rate_numerator, before.rate_denominator, before.drop_frame)) {
+      return false;
+    }
+    if (std::tie(now.frame, now.subframe) > std::tie(before.frame, before.subframe)) continue;
+    // Otherwise the clock passed midnight, or the timecode repeats or jumps back.
+    const bool is_midnight = before.frame - now.frame > TimecodeFramesPerDay(now) / 3 * 2;
+    if (now.frame >= before.frame || !is_midnight || ++midnights > 1) return false;
+  }
+  return true;
+}
+
+void AppendTimecode(const Timecode& timecode, std::string* text) {
+  // Rounded up, so that the reader gets the same 256th again.
+  const int thousandths = (timecode.subframe * 1000 + 255) / 256;
+  char part[8];
+  std::snprintf(part, sizeof(part), ".%03d", thousandths);
+  text->append(TimecodeText(timecode)).append(part);
 }
 
 }  // namespace
@@ -315,8 +385,13 @@ Result<std::string> LiveLinkCsvToText(const Clip& clip, ClipReport* report) {
   }
   text += '\n';
   const int rate = WritingRate(clip);
+  const bool has_timecodes = HasTimecodes(clip);
   for (std::size_t f = 0; f < clip.times.size(); ++f) {
-    AppendTimecode(clip.times[f] - clip.times[0], rate, &text);
+    if (has_timecodes) {
+      AppendTimecode(*clip.timecodes[f], &text);
+    } else {
+      AppendTimecode(clip.times[f] - clip.times[0], rate, &text);
+    }
     text += "," + std::to_string(num_shapes);
     for (std::size_t s = 0; s < num_shapes; ++s) {
       text += ',';

@@ -19,7 +19,9 @@ namespace furrow::motion {
 //   Timecode is required.
 // - Timecode is HH:MM:SS:FF.mmm or HH:MM:SS;FF.mmm: FF frames and mmm thousandths of a frame. The
 //   file does not state its rate. The reader uses `timecode_rate`, else the smallest common rate
-//   above the highest FF. If no second ends within the recording, it uses 60 with a warning.
+//   above the highest FF. If no second ends within the recording, it uses 60 with a warning. Times
+//   of drop-frame timecodes (;FF at 30 or 60) count frames of 29.97 or 59.94 per second.
+// - Clip::timecodes has the timecodes, without those that are invalid at this rate.
 // - A recording may pass midnight.
 // - Rows without a face (BlendShapeCount 0) and rows that repeat a timecode are skipped with a
 //   warning.
@@ -29,9 +31,13 @@ namespace furrow::motion {
                                             const LoadOptions& options = {},
                                             ClipReport* report = nullptr);
 
-// Writes the clip's blend shapes as a recording that starts at 00:00:00:00, at the smallest common
-// rate that fits its frames. Times are rounded to a thousandth of a frame, values are exact. Joints
-// are dropped with a warning.
+// Writes the clip's blend shapes as a recording. Values are exact. Joints are dropped with a
+// warning.
+//
+// - If each frame has a timecode of one rate, and they rise (midnight may pass), the recording has
+//   these timecodes. They state the times, too, instead of Clip::times.
+// - Otherwise it starts at 00:00:00:00, at the smallest common rate that fits its frames. Times are
+//   rounded to a thousandth of a frame.
 //
 // Errors: kUnsupported (no blend shapes), kInvalidArgument (no frames, or a comma or line end in a
 // name), kLimit (longer than a day).

@@ -173,6 +173,7 @@ DecodeStatus ReadTable(const wire::Pose& table, PoseFrame& message) {
   FURROW_CHECK_DECODE(ReadTranslations(table, message));
   FURROW_CHECK_DECODE(ReadScales(table, message));
   FURROW_CHECK_DECODE(ReadPrevious(table, message));
+  message.timecode = ReadTimecode(table.timecode());
   return ReadBlendShapes(table, message);
 }
 
@@ -216,6 +217,7 @@ flatbuffers::Offset<wire::Pose> WriteTable(PayloadBuilder& payload, const PoseFr
   const auto shape_mask = WriteMask(payload, message.blend_shape_indices, message.num_blend_shapes);
   Offset<Vector<std::uint8_t>> previous = 0;
   if (!message.previous.empty()) previous = builder.CreateVector(message.previous);
+  const wire::Timecode timecode = ToWire(message.timecode.value_or(Timecode()));
   wire::PoseBuilder pose(builder);
   pose.add_skeleton_hash(message.skeleton_hash);
   pose.add_num_joints(message.num_joints);
@@ -235,6 +237,7 @@ flatbuffers::Offset<wire::Pose> WriteTable(PayloadBuilder& payload, const PoseFr
   pose.add_packed_blend_shapes(packed_shapes);
   pose.add_previous(previous);
   pose.add_previous_age_us(message.previous.empty() ? 0 : message.previous_age_us);
+  if (message.timecode) pose.add_timecode(&timecode);
   return pose.Finish();
 }
 

@@ -36,6 +36,7 @@ DecodeStatus ReadTable(const wire::Weights& table, WeightFrame& message) {
   message.names_hash = table.names_hash();
   message.age_us = table.age_us();
   message.format = table.packed_values() != nullptr ? WeightFormat::kU8 : WeightFormat::kF32;
+  message.timecode = ReadTimecode(table.timecode());
   message.values.resize(count);
   return ReadValues(table, message.values);
 }
@@ -52,7 +53,9 @@ flatbuffers::Offset<wire::Weights> WriteTable(PayloadBuilder& payload, const Wei
   } else {
     values = payload.builder.CreateVector(message.values);
   }
-  return wire::CreateWeights(payload.builder, message.names_hash, message.age_us, values, packed);
+  const wire::Timecode timecode = ToWire(message.timecode.value_or(Timecode()));
+  return wire::CreateWeights(payload.builder, message.names_hash, message.age_us, values, packed,
+                             message.timecode ? &timecode : nullptr);
 }
 
 }  // namespace furrow::protocol::internal

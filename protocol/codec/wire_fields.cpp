@@ -8,6 +8,12 @@
 #include "protocol/messages/text.h"
 
 namespace furrow::protocol::internal {
+namespace {
+
+// Bit 0 of a timecode's flags. Receivers ignore the others.
+constexpr std::uint8_t kDropFrameFlag = 1;
+
+}  // namespace
 
 DecodeStatus ReadText(const flatbuffers::String* text, int max_bytes, std::string& out,
                       Presence presence) {
@@ -112,6 +118,21 @@ flatbuffers::Offset<flatbuffers::Vector<std::uint8_t>> WriteMask(
         static_cast<std::uint8_t>(payload.mask[index / 8] | 1u << (index % 8));
   }
   return payload.builder.CreateVector(payload.mask);
+}
+
+std::optional<Timecode> ReadTimecode(const wire::Timecode* timecode) {
+  if (timecode == nullptr) return std::nullopt;
+  const Timecode found{.frame = timecode->frame(),
+                       .rate_numerator = timecode->rate_numerator(),
+                       .rate_denominator = timecode->rate_denominator(),
+                       .subframe = timecode->subframe(),
+                       .drop_frame = (timecode->flags() & kDropFrameFlag) != 0};
+  return IsValid(found) ? std::optional(found) : std::nullopt;
+}
+
+wire::Timecode ToWire(const Timecode& timecode) {
+  return {timecode.frame, timecode.rate_numerator, timecode.rate_denominator, timecode.subframe,
+          timecode.drop_frame ? kDropFrameFlag : std::uint8_t{0}};
 }
 
 }  // namespace furrow::protocol::internal

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -72,6 +73,11 @@ inline Vec3 FromWire(const wire::Vec3& v) { return {v.x(), v.y(), v.z()}; }
 inline Quat FromWire(const wire::Quat& q) { return {q.x(), q.y(), q.z(), q.w()}; }
 inline wire::Vec3 ToWire(const Vec3& v) { return {v.x, v.y, v.z}; }
 inline wire::Quat ToWire(const Quat& q) { return {q.x, q.y, q.z, q.w}; }
+
+// An absent timecode (null), and one that is invalid, read as nullopt: a publisher's wrong clock
+// must not cost its poses.
+[[nodiscard]] std::optional<Timecode> ReadTimecode(const wire::Timecode* timecode);
+[[nodiscard]] wire::Timecode ToWire(const Timecode& timecode);
 
 // The number of elements; 0 for an absent vector (null).
 template <class T>

@@ -3,10 +3,12 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "base/time/timecode.h"
 #include "protocol/messages/limits.h"
 
 // The messages of the wire as plain structs (STANDARD.md, section 4 and later).
@@ -179,6 +181,8 @@ struct PoseFrame {
   // (DecodePrevious()); at most kMaxDatagramBytes; empty: not repeated.
   std::vector<std::uint8_t> previous;
   std::uint32_t previous_age_us = 0;  // capture time of this pose minus that of the previous one
+  // That of the source, if it has one. It changes nothing: times come from the capture time.
+  std::optional<Timecode> timecode;
 };
 
 // --- Subscribing --------------------------------------------------------------------------------
@@ -316,7 +320,8 @@ struct WeightFrame {
   std::uint64_t names_hash = 0;  // the last SubscribeReply with this hash names the values
   std::int64_t age_us = 0;       // 0 for a new pose; without new poses, time since the last one
   WeightFormat format = WeightFormat::kF32;
-  std::vector<float> values;  // decoded to [0, 1] in both formats
+  std::vector<float> values;              // decoded to [0, 1] in both formats
+  std::optional<Timecode> timecode = {};  // of the pose
 };
 
 // A picture of a subscription. TCP and WebSocket only. The header is as for WeightFrame.

@@ -5,8 +5,10 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <optional>
 #include <vector>
 
+#include "base/time/timecode.h"
 #include "protocol/messages/bytes.h"
 #include "protocol/messages/text.h"
 #include "protocol/mocap/source_clock.h"
@@ -40,6 +42,7 @@ struct Packet {
   std::string_view device;
   std::string_view subject;
   double seconds = 0.0;  // of the sender's clock
+  std::optional<Timecode> timecode;
   bool has_face = false;
   std::array<float, kNumLiveLinkFaceShapes> values{};
 };
@@ -95,6 +98,7 @@ bool ReadTime(Cursor& cursor, Packet& packet) {
                     frame >= 0 && numerator > 0 && denominator > 0;
   // The rate is numerator / denominator frames per second.
   if (good) packet.seconds = (frame + double{subframe}) * denominator / numerator;
+  packet.timecode = MakeTimecode(frame, double{subframe}, numerator, denominator);
   return good && packet.seconds < 1e9;
 }
 
@@ -136,13 +140,15 @@ class LiveLinkFaceAdapter final : public MocapAdapter {
     Sender& sender = FindOrAdd(packet);
     sender.heard_us = now_us;
     const auto source_us = static_cast<std::int64_t>(std::llround(packet.seconds * 1e6));
-    if (sender.clock.Advance(source_us, now_us, kLateToleranceUs) == SourceClock::Order::kNotNewer) {
+    if (sender.clock.Advance(source_us, now_us, kLateToleranceUs) ==
+        SourceClock::Order::kNotNewer) {
       ++counters_.reordered;
       return;
     }
     NeutralFrame& frame = sender.frame;
     frame.tracked = packet.has_face;
     frame.capture_time_us = sender.clock.time_us();
+    frame.timecode = packet.timecode;
     if (packet.has_face) {
       for (std::size_t i = 0; i < packet.values.size(); ++i) {
         frame.blend_shapes[i].value = packet.values[i];

@@ -29,6 +29,7 @@ void MakePose(const NeutralFrame& frame, const SkeletonOffer& offer, PoseFrame& 
   const std::size_t shapes = std::min(frame.blend_shapes.size(), offer.blend_shape_names.size());
   pose.skeleton_hash = offer.skeleton_hash;
   pose.partial = false;
+  pose.timecode = frame.timecode;
   pose.num_joints = static_cast<std::uint16_t>(offer.joints.size());
   pose.num_blend_shapes = static_cast<std::uint16_t>(offer.blend_shape_names.size());
   pose.scale_joints.clear();

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "base/time/timecode.h"
 #include "protocol/messages/messages.h"
 
 namespace furrow::protocol::mocap {
@@ -32,6 +34,7 @@ struct NeutralFrame {
   // Changes whenever names, parents or the order of joints or blend shapes change. Each layout
   // needs its own skeleton offer.
   std::uint32_t layout = 0;
+  std::optional<Timecode> timecode;  // of the sender, if it sends one
   bool tracked = true;  // false: the sender lost the subject; the values are the last ones
   std::vector<NeutralJoint> joints;
   std::vector<NeutralBlendShape> blend_shapes;

@@ -67,6 +67,18 @@ inline Fields FieldsOf(const SkeletonReply& m) {
           {"status", Json(static_cast<int>(m.status))},
           {"message", Json(m.message)}};
 }
+inline void AddTimecode(const std::optional<Timecode>& timecode, Fields& fields) {
+  if (!timecode) return;
+  fields.emplace_back(
+      "timecode",
+      Json(Fields{{"frame", Json(static_cast<std::int64_t>(timecode->frame))},
+                  {"rate_numerator", Json(static_cast<std::int64_t>(timecode->rate_numerator))},
+                  {"rate_denominator", Json(int{timecode->rate_denominator})},
+                  {"subframe", Json(int{timecode->subframe})},
+                  {"drop_frame", Json(timecode->drop_frame)},
+                  {"text", Json(TimecodeText(*timecode))}},
+           "    "));
+}
 inline Fields FieldsOf(const PoseFrame& m) {
   Fields fields = {{"skeleton_hash", JsonHex(m.skeleton_hash)},
                    {"partial", Json(m.partial)},
@@ -84,6 +96,7 @@ inline Fields FieldsOf(const PoseFrame& m) {
     fields.emplace_back("previous", Json(m.previous));
     fields.emplace_back("previous_age_us", Json(static_cast<std::int64_t>(m.previous_age_us)));
   }
+  AddTimecode(m.timecode, fields);
   return fields;
 }
 inline Fields FieldsOf(const SubscribeWeights& m) {
@@ -170,10 +183,12 @@ inline Fields FieldsOf(const SubscribeReply& m) {
   return fields;
 }
 inline Fields FieldsOf(const WeightFrame& m) {
-  return {{"names_hash", JsonHex(m.names_hash)},
-          {"age_us", Json(m.age_us)},
-          {"format", Json(static_cast<int>(m.format))},
-          {"values", Json(m.values)}};
+  Fields fields = {{"names_hash", JsonHex(m.names_hash)},
+                   {"age_us", Json(m.age_us)},
+                   {"format", Json(static_cast<int>(m.format))},
+                   {"values", Json(m.values)}};
+  AddTimecode(m.timecode, fields);
+  return fields;
 }
 inline Fields FieldsOf(const ImageFrame& m) {
   return {{"width", Json(int{m.width})},

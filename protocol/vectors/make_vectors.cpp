@@ -137,6 +137,19 @@ PoseFrame RepeatingPose() {
   return pose;
 }
 
+// Frame 17,982 of drop-frame timecode is 00:10:00;00.
+constexpr Timecode kTenMinutes{.frame = 17'982,
+                               .rate_numerator = 30'000,
+                               .rate_denominator = 1001,
+                               .subframe = 64,
+                               .drop_frame = true};
+
+PoseFrame PoseWithTimecode(const Timecode& timecode) {
+  PoseFrame pose = SmallPose();
+  pose.timecode = timecode;
+  return pose;
+}
+
 PoseFrame PartialPose() {
   PoseFrame pose = SmallPose();
   pose.partial = true;
@@ -202,6 +215,10 @@ void AddPublishing(Files& files) {
   Add(files, "pose", SmallPose());
   Add(files, "pose_packed", SmallPose(), PoseEncoding::Small());
   Add(files, "pose_previous", RepeatingPose(), PoseEncoding::Small());
+  Add(files, "pose_timecode", PoseWithTimecode(kTenMinutes), PoseEncoding::Small());
+  // Invalid timecodes, which receivers ignore: a frame after midnight, and a rate of 0.
+  Add(files, "pose_timecode_frame", PoseWithTimecode({.frame = 30 * 86'400}));
+  Add(files, "pose_timecode_rate", PoseWithTimecode({.rate_numerator = 0}));
   Add(files, "pose_partial", PartialPose());
   Add(files, "pose_partial_packed", PartialPose(), PoseEncoding::Small());
 }
@@ -251,6 +268,8 @@ void AddSubscribing(Files& files) {
   frame.format = WeightFormat::kU8;
   frame.age_us = 250'000;
   Add(files, "weights_u8", frame);
+  frame.timecode = Timecode{.frame = 1'234'567, .rate_numerator = 60};
+  Add(files, "weights_timecode", frame);
   Add(files, "dropped", Dropped{1234});
   Add(files, "list_subjects", ListSubjects{true});
   Add(files, "subjects", Subjects{{"anna", "bob"}, 2});

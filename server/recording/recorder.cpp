@@ -128,6 +128,7 @@ void Recorder::OnPose(const Subject& subject, std::span<const std::uint8_t> payl
   protocol::PoseFrame& pose = ScratchOfThread().pose;
   ToWholePose(subject.pipeline->pose(), subject.pipeline->stream(), &pose);
   pose.skeleton_hash = subject.skeleton_hash;
+  pose.timecode = subject.timecode;
   PushEncoded(TakeKind::kPose, subject, pose, now);
 }
 
@@ -138,6 +139,7 @@ void Recorder::OnWeights(const Subject& subject, std::int64_t age_us, Time now) 
   protocol::WeightFrame& weights = ScratchOfThread().weights;
   weights.names_hash = hash->second;
   weights.age_us = age_us;
+  weights.timecode = subject.timecode;
   weights.values.assign(values.begin(), values.end());
   PushEncoded(TakeKind::kWeights, subject, weights, now);
 }

@@ -139,7 +139,11 @@ void StreamRouter::Use(Shard& shard, Subject& subject, const protocol::Header& h
   // already in the batch.
   if (subject.pipeline->waits() || shard.gathered.full()) PublishGathered(shard);
   if (parts_.publishers->AcceptPose(subject, header, pose, now)) {
-    shard.gathered.Add({.subject = &subject, .header = header, .payload = payload, .now = now});
+    shard.gathered.Add({.subject = &subject,
+                        .header = header,
+                        .timecode = pose.timecode,
+                        .payload = payload,
+                        .now = now});
     if (parts_.tracer != nullptr && parts_.tracer->Wants(subject.id)) {
       BeginTrace(shard, subject, header, now);
     }

@@ -150,6 +150,34 @@ def skeleton_reply(t):
             "message": t.text(2, limit=1024)}
 
 
+def timecode(t, slot):
+    """Section 5. Nothing for an absent or invalid one."""
+    found = t.struct(slot, "IIHBB")
+    if found is None:
+        return {}
+    frame, numerator, denominator, subframe, flags = found
+    if numerator == 0 or denominator == 0:
+        return {}
+    rate, drops = -(-numerator // denominator), flags & 1
+    if rate > 240 or (rate * denominator - numerator) * 500 > rate * denominator:
+        return {}
+    if drops and (rate not in (30, 60) or numerator % denominator == 0):
+        return {}
+    # Counts in tens of minutes: the first minute has all numbers, each of the other nine lacks some.
+    skipped = rate // 15 if drops else 0
+    tens, number = divmod(frame, 600 * rate - 9 * skipped)
+    if tens >= 144:
+        return {}
+    for minute in range(1, 10):
+        if number >= 60 * rate * minute:
+            number += skipped
+    seconds, frames = divmod(number + 600 * rate * tens, rate)
+    text = "%02d:%02d:%02d%s%0*d" % (seconds // 3600, seconds // 60 % 60, seconds % 60, ";" if drops else ":",
+                                     3 if rate > 100 else 2, frames)
+    return {"timecode": {"frame": frame, "rate_numerator": numerator, "rate_denominator": denominator,
+                         "subframe": subframe, "drop_frame": bool(drops), "text": text}}
+
+
 def pose(t):
     joints, shapes = t.scalar(1, "H"), t.scalar(2, "H")
     require(joints <= 1024 and shapes <= 512, "too many joints or blend shapes")
@@ -175,7 +203,7 @@ def pose(t):
             "translation_joints": masked(t.vector(7, "B"), joints, translations),
             "translations": translations,
             "scale_joints": masked(t.vector(11, "B"), joints, scales), "scales": scales,
-            "blend_shape_indices": masked(t.vector(13, "B"), shapes, values), "blend_shapes": values}
+            "blend_shape_indices": masked(t.vector(13, "B"), shapes, values), "blend_shapes": values, **timecode(t, 18)}
 
 
 def rate(value):
@@ -253,7 +281,7 @@ def weights(t):
     values = [v / 255 for v in packed] if packed is not None else finite(plain or [])
     require(all(0 <= v <= 1 for v in values), "weight out of range")
     return {"names_hash": hexadecimal(t.scalar(0, "Q")), "age_us": age(t.scalar(1, "q")),
-            "format": 0 if packed is None else 1, "values": values}
+            "format": 0 if packed is None else 1, "values": values, **timecode(t, 4)}
 
 
 def dropped(t):

@@ -13,6 +13,8 @@ import unittest
 
 from furrow_testing import BIN, GUARD, SHARE, Daemon, furrow, solve, spawn, worst_difference
 from recording_testing import PERFORMANCE, RIG, FolderTest, Recording
+from tracker_packets import livelink_face
+from wire_testing import Phone
 
 HAPPINESS = SHARE / "recordings" / "happiness.bvh"
 
@@ -26,6 +28,36 @@ class RecordTest(FolderTest):
         worst, _ = worst_difference(recorded, solved)
         self.assertLess(worst, 1e-3)
         self.assertIn("complete", furrow("info", take, check=0).stdout.decode())
+
+    def test_the_timecode_of_a_phone_is_recorded_converted_and_played_again(self):
+        # 29.97 frames per second, around the numbers that drop-frame timecode leaves out.
+        frames = range(1796, 1804)
+        with Recording(self.root / "phone", "--livelink-face", "0") as daemon:
+            phone = Phone(daemon)
+            for frame in frames:
+                before = phone.poses()
+                phone.socket.sendto(livelink_face("phone", frame, {"JawOpen": frame % 7 / 7}, (30000, 1001)), phone.target)
+                phone.await_pose(before)
+            subject = phone.api.get("/api/subjects")["subjects"][0]
+            source = phone.api.get("/api/sources")["subjects"][0]
+            phone.close()
+        self.assertEqual(subject["timecode"], "00:01:00;05")
+        self.assertAlmostEqual(subject["timecode_rate_hz"], 29.97, 2)
+        self.assertEqual(source["timecode"], "00:01:00;05")
+        expected = ["00:00:59;26", "00:00:59;27", "00:00:59;28", "00:00:59;29",
+                    "00:01:00;02", "00:01:00;03", "00:01:00;04", "00:01:00;05"]
+        self.assertEqual(self.timecodes(daemon.takes()[0]), expected)
+        with Recording(self.root / "again") as again:
+            furrow("play", daemon.takes()[0], "--to", again.tcp, "--tcp", "--speed", 4, check=0)
+        self.assertEqual(self.timecodes(again.takes()[0]), expected)
+
+    def timecodes(self, take):
+        """The last column of the weights of a take."""
+        out = self.root / "timecodes.csv"
+        furrow("convert", take, out, "--weights", check=0)
+        header, *rows = out.read_text().splitlines()
+        self.assertEqual(header.split(",")[-1], "timecode")
+        return [row.split(",")[-1] for row in rows]
 
     def test_a_replay_gives_exactly_the_recorded_weights(self):
         first = self.record("--speed", 4, "--quantise")

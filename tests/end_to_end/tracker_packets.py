@@ -13,13 +13,13 @@ BrowOuterUpRight CheekPuff CheekSquintLeft CheekSquintRight NoseSneerLeft NoseSn
 HeadRoll LeftEyeYaw LeftEyePitch LeftEyeRoll RightEyeYaw RightEyePitch RightEyeRoll""".split()
 
 
-def livelink_face(subject, frame, shapes):
-    """Returns one datagram of version 6."""
+def livelink_face(subject, frame, shapes, rate=(60, 1)):
+    """Returns one datagram of version 6. `rate`: frames per second, as a fraction."""
     device = b"12345678-1234-1234-1234-123456789ABC"
     name = subject.encode()
     packet = struct.pack(">B", 6)
     packet += struct.pack(">i", len(device)) + device + struct.pack(">i", len(name)) + name
-    packet += struct.pack(">ifii", frame, 0.0, 60, 1)
+    packet += struct.pack(">ifii", frame, 0.0, *rate)
     packet += struct.pack(">B61f", 61, *(shapes.get(curve, 0.0) for curve in CURVES))
     return packet
 

@@ -17,6 +17,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (std::size_t f = 1; f < clip->times.size(); ++f) {
     if (clip->times[f] <= clip->times[f - 1]) std::abort();
   }
+  if (clip->timecodes.size() != clip->times.size()) std::abort();
+  for (const auto& timecode : clip->timecodes) {
+    if (timecode && !furrow::IsValid(*timecode)) std::abort();
+  }
   const furrow::Result<std::string> written = LiveLinkCsvToText(*clip, &report);
   if (written.ok() && !ParseLiveLinkCsv(*written, "written.csv").ok()) std::abort();
   return 0;

@@ -15,6 +15,7 @@ void CheckFrame(const furrow::protocol::mocap::NeutralFrame& frame) {
   for (const auto& shape : frame.blend_shapes) {
     if (!std::isfinite(shape.value)) std::abort();
   }
+  if (frame.timecode && !furrow::IsValid(*frame.timecode)) std::abort();
 }
 
 }  // namespace

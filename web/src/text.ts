@@ -2,6 +2,8 @@
 // The English text of the page, so that it can be read, checked and translated in one place.
 
 const times = (count: number, one: string, many: string): string => `${count} ${count === 1 ? one : many}`;
+/** "29.97", "60". */
+const rate = (hz: number): string => String(Number(hz.toFixed(3)));
 
 export const text = {
   condition: {
@@ -90,6 +92,7 @@ export const text = {
     noPicture: 'There is no picture to save yet',
     cannotRecord: 'This browser cannot record the picture',
     leaveKiosk: 'Leave (key K)',
+    timecode: 'Timecode of the source',
     saved: (name: string) => `Saved ${name}`,
     savedAndCopied: (name: string) => `Saved ${name}, and copied it`,
     cannotDrawPage: 'This browser cannot draw the page. Take a screenshot with the system instead.',
@@ -99,6 +102,7 @@ export const text = {
     daemon: (version: string, host: string) => (version === '' ? `Furrow at ${host}` : `Furrow ${version} at ${host}`),
     screen: (width: number, height: number, density: number) => `${width} × ${height} at ${Number(density.toFixed(2))}`,
     pose: (sequence: number) => `Pose ${sequence}`,
+    timecode: (timecode: string) => `Timecode ${timecode}`,
     weights: (words: string) => `Weights: ${words}`,
     settings: (words: string) => `Settings: ${words}`,
     noSettings: 'Settings: those of the daemon',
@@ -253,7 +257,7 @@ export const text = {
     markers: 'Markers',
     showMarker: (number: number, sequence: number) => `Show marker ${number}, pose ${sequence}`,
     unmark: (number: number) => `Remove marker ${number}`,
-    moment: (seconds: string, sequence: number) => `${seconds} s, pose ${sequence}`,
+    moment: (seconds: string, sequence: number, timecode: string) => `${seconds} s, pose ${sequence}${timecode === '' ? '' : `, ${timecode}`}`,
     empty: 'The curves of the wrinkle weights appear here when a subject streams.',
     choose: 'Choose',
     mostActive: 'Most active',
@@ -519,6 +523,7 @@ export const text = {
     ignoredJoints: 'These joints move neither wrinkles nor pictures:',
     andMore: (count: number) => `and ${count} more`,
     own: 'Furrow’s own wire',
+    timecode: (timecode: string, hz: number) => `Timecode ${timecode}, ${rate(hz)} frames/s`,
     noStreams: 'No subject is streaming.',
     moreStreams: (count: number) => `${times(count, 'more subject is', 'more subjects are')} not listed.`,
     malformed: (sender: string) => `Blocked: the packets of ${sender} are not understood.`,

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <cstdio>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "base/status.h"
 #include "base/text.h"
+#include "base/time/timecode.h"
 #include "client/cli/common/progress.h"
 #include "protocol/codec/codec.h"
 #include "protocol/messages/hash.h"
@@ -36,16 +38,15 @@ Result<std::span<const std::uint8_t>> Encoded(protocol::Encoder& encoder, const 
 }
 
 // The format of `furrow solve`, so that the two can be compared line by line.
-void AddRow(std::uint32_t frame, double seconds, const std::vector<float>& values,
-            std::string* csv) {
+std::string RowOf(std::uint32_t frame, double seconds, const std::vector<float>& values) {
   char text[64];
   std::snprintf(text, sizeof text, "%u,%.6f", frame, seconds);
-  *csv += text;
+  std::string row = text;
   for (const float value : values) {
     std::snprintf(text, sizeof text, ",%.6f", static_cast<double>(value));
-    *csv += text;
+    row += text;
   }
-  *csv += '\n';
+  return row;
 }
 
 // Collects the rows of one subject: the requested one, or the first one seen.
@@ -69,33 +70,46 @@ class WeightTable {
     }
     return true;
   }
-  [[nodiscard]] const std::string& csv() const { return csv_; }
+  // Empty: there are no names. If any row has a timecode, the last column has them. Without
+  // timecodes, there is no such column, as in the output of `furrow solve`.
+  [[nodiscard]] std::string Csv() const {
+    if (header_.empty()) return {};
+    std::string csv = header_ + (has_timecodes_ ? ",timecode\n" : "\n");
+    for (const auto& [text, timecode] : rows_) {
+      csv += text;
+      if (has_timecodes_) csv += ',' + (timecode ? TimecodeText(*timecode) : std::string());
+      csv += '\n';
+    }
+    return csv;
+  }
   [[nodiscard]] std::size_t foreign() const { return foreign_; }
 
  private:
   // The first list of names is the header. Frames with other names are skipped and counted.
   void AddNames(const TakeMessage& message) {
-    if (!csv_.empty() || protocol::Decode(message.View(), names_) != DecodeStatus::kOk) return;
-    csv_ = "frame,time";
-    for (const std::string& name : names_.names) csv_ += "," + name;
-    csv_ += '\n';
+    if (!header_.empty() || protocol::Decode(message.View(), names_) != DecodeStatus::kOk) return;
+    header_ = "frame,time";
+    for (const std::string& name : names_.names) header_ += "," + name;
   }
   void AddWeights(const TakeMessage& message) {
-    if (protocol::Decode(message.View(), weights_) != DecodeStatus::kOk || csv_.empty() ||
+    if (protocol::Decode(message.View(), weights_) != DecodeStatus::kOk || header_.empty() ||
         weights_.names_hash != names_.names_hash) {
       ++foreign_;
     } else if (weights_.age_us == 0) {
       // Decayed weights belong to no pose.
       if (!first_us_) first_us_ = message.stamp.capture_time_us;
-      AddRow(message.stamp.sequence,
-             static_cast<double>(message.stamp.capture_time_us - *first_us_) * 1e-6,
-             weights_.values, &csv_);
+      const double seconds = static_cast<double>(message.stamp.capture_time_us - *first_us_) * 1e-6;
+      rows_.emplace_back(RowOf(message.stamp.sequence, seconds, weights_.values),
+                         weights_.timecode);
+      has_timecodes_ = has_timecodes_ || weights_.timecode.has_value();
     }
   }
 
   std::string subject_;
   std::string found_;
-  std::string csv_;
+  std::string header_;  // without its line end
+  std::vector<std::pair<std::string, std::optional<Timecode>>> rows_;
+  bool has_timecodes_ = false;
   std::size_t foreign_ = 0;
   std::optional<std::int64_t> first_us_;
   protocol::SubscribeReply names_;
@@ -157,7 +171,8 @@ Result<std::string> WeightsToCsv(recording::TakeReader& take, const std::string&
     return Status(StatusCode::kInvalidArgument, "the take has weights of several subjects", file,
                   "select one with FILE.mcap#SUBJECT; 'furrow info FILE' lists them");
   }
-  if (table.csv().empty()) {
+  std::string csv = table.Csv();
+  if (csv.empty()) {
     return Status(StatusCode::kNotFound,
                   subject.empty() ? "the take has no weights"
                                   : "the take has no weights of '" + subject + "'",
@@ -167,7 +182,7 @@ Result<std::string> WeightsToCsv(recording::TakeReader& take, const std::string&
     report->warnings.push_back(file + ": skipped " + Counted(table.foreign(), "frame") +
                                " with weight names that differ from the first");
   }
-  return table.csv();
+  return csv;
 }
 
 }  // namespace furrow::cli

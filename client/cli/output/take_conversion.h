@@ -18,7 +18,8 @@ namespace furrow::cli {
 
 // Returns the recorded weights of a subject (empty: the only one) as CSV: "frame,time,<names...>",
 // one row per pose, %.6f. `frame` is the sequence number of the pose; `time` is its capture time in
-// seconds since the first row.
+// seconds since the first row. If the take has timecodes, a last column "timecode" has them, empty
+// where a pose has none.
 //
 // Weights that the daemon held or decayed without a pose are skipped. Weights whose names differ
 // from the first ones are skipped with a warning in `report`. Errors: kNotFound, kInvalidArgument

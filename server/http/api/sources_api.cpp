@@ -13,6 +13,7 @@
 
 #include "server/core/network_address.h"
 #include "server/http/request/json_reply.h"
+#include "server/http/request/timecode_json.h"
 #include "server/machine/own_addresses.h"
 
 namespace furrow::server {
@@ -93,6 +94,8 @@ Json SubjectJson(const Subject& subject, std::string_view source, Time now, Time
           {"jitter_ms", stats.jitter_seconds(now) * 1e3},
           {"age_ms", ToSeconds(now - subject.last_pose) * 1e3},
           {"clock_offset_ms", ClockOffsetMs(subject, now, unix_now)},
+          {"timecode", TimecodeJson(subject.timecode)},
+          {"timecode_rate_hz", TimecodeRateJson(subject.timecode)},
           {"joints", stream.skeleton.num_joints()},
           {"blend_shapes", stream.blend_shapes.size()},
           {"ignored_joints", NamesJson(stream.ignored_joints)},

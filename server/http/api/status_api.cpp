@@ -13,6 +13,7 @@
 
 #include "server/http/metrics/metric_families.h"
 #include "server/http/request/json_reply.h"
+#include "server/http/request/timecode_json.h"
 
 namespace furrow::server {
 
@@ -74,6 +75,8 @@ ApiReply StatusApi::Subjects(const ApiRequest& request, Hub& hub, Time now) cons
                     {"jitter_ms", stats.jitter_seconds(now) * 1e3},
                     {"age_ms", ToSeconds(now - subject->last_pose) * 1e3},
                     {"moved_ms", MovedMs(*subject, now)},
+                    {"timecode", TimecodeJson(subject->timecode)},
+                    {"timecode_rate_hz", TimecodeRateJson(subject->timecode)},
                     {"neutral", pipeline.neutral_pose().has_value()}});
   }
   return JsonReply({{"subjects", std::move(list)}});

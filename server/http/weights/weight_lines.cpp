@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/numbers.h"
+#include "base/time/timecode.h"
 #include "protocol/codec/codec.h"
 #include "server/cluster/node/node_address.h"
 
@@ -40,6 +41,7 @@ void WriteFrame(const protocol::Header& header, const protocol::WeightFrame& fra
   *line += R"(,"sequence":)" + std::to_string(header.sequence);
   *line += R"(,"time_us":)" + std::to_string(header.capture_time_us);
   *line += R"(,"age_ms":)" + std::to_string(frame.age_us / 1000);
+  if (frame.timecode) *line += R"(,"timecode":")" + TimecodeText(*frame.timecode) + '"';
   *line += R"(,"values":[)";
   for (std::size_t i = 0; i < frame.values.size(); ++i) {
     if (i > 0) *line += ',';

@@ -4,8 +4,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
+#include "base/time/timecode.h"
 #include "protocol/framing/envelope.h"
 #include "server/core/time.h"
 #include "server/session/subjects/subject_registry.h"
@@ -17,6 +19,7 @@ namespace furrow::server {
 struct GatheredPose {
   Subject* subject = nullptr;
   protocol::Header header;
+  std::optional<Timecode> timecode;
   std::span<const std::uint8_t> payload;  // the FlatBuffers payload; empty: not a whole pose
   Time now{0};                            // arrival
   wrinkle::JobStatus status = wrinkle::JobStatus::kOk;  // set by Solve()

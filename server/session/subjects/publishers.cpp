@@ -268,6 +268,7 @@ Subject* Publishers::Accept(Peer& peer, const StreamKey& key, const protocol::Sk
   peer.publishes = true;
   subject->skeleton_hash = offer.skeleton_hash;
   subject->offer = std::move(shared_offer);
+  subject->timecode.reset();
   // The time without poses counts from the offer, so that the subject is not lost before its first
   // pose.
   subject->last_pose = subject->last_update = now;
@@ -360,6 +361,7 @@ bool Publishers::OnSolved(const GatheredPose& pose) {
   Subject& subject = *pose.subject;
   subject.last_pose = subject.last_update = pose.now;
   subject.lost = subject.no_face = false;
+  subject.timecode = pose.timecode;
   subject.stats.OnPose(pose.header.sequence, pose.header.capture_time_us, pose.now);
   return true;
 }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -13,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/time/timecode.h"
 #include "protocol/framing/sequence.h"
 #include "protocol/messages/messages.h"
 #include "server/core/capture_clock.h"
@@ -60,24 +62,25 @@ struct Subject {
   std::unique_ptr<SubjectPipeline> pipeline;
   // Those that are bound to it, in the order in which they came (SubscriptionTable).
   std::vector<Subscription*> subscriptions;
-  Time served_until{Time::max()};  // in a cluster: the end of this node's right to serve it
-  std::uint64_t epoch = 0;         // of that right; 0 without a cluster
-  Time hold{0};                    // delay of its jitter buffer; 0: none
-  Time last_pose{0};               // arrival, or release from the jitter buffer
-  Time last_update{0};             // arrival or decay
-  Time last_no_face{0};            // arrival of the last frame without a face
-  Time skipped_at{0};              // when a pose was used before an earlier one
-  Time reorders_until{0};          // until then, poses wait for earlier ones
-  bool reorders = false;           // its transport may deliver poses in another order
-  bool no_face = false;            // the publisher sends, but its tracker sees no face
-  bool ended = false;              // the publisher said goodbye: the subject decays, then leaves
-  bool lost = false;               // no pose for Limits::loss_seconds: the subject decays
-  bool can_move = false;           // the owner's session number is a secret that proves who it is
-  bool orphaned = false;           // its publisher's connection has closed
-  Time level_kept_until{0};        // after a move: when keeps_level ends
-  bool keeps_level = false;        // no driver is switched off
-  bool needs_all_drivers = false;  // evaluate all drivers, not only subscribed ones
-  std::set<std::string> captures;  // reference poses of the rig that were captured from it
+  Time served_until{Time::max()};    // in a cluster: the end of this node's right to serve it
+  std::uint64_t epoch = 0;           // of that right; 0 without a cluster
+  Time hold{0};                      // delay of its jitter buffer; 0: none
+  Time last_pose{0};                 // arrival, or release from the jitter buffer
+  Time last_update{0};               // arrival or decay
+  Time last_no_face{0};              // arrival of the last frame without a face
+  Time skipped_at{0};                // when a pose was used before an earlier one
+  Time reorders_until{0};            // until then, poses wait for earlier ones
+  bool reorders = false;             // its transport may deliver poses in another order
+  bool no_face = false;              // the publisher sends, but its tracker sees no face
+  bool ended = false;                // the publisher said goodbye: the subject decays, then leaves
+  bool lost = false;                 // no pose for Limits::loss_seconds: the subject decays
+  bool can_move = false;             // the owner's session number is a secret that proves who it is
+  bool orphaned = false;             // its publisher's connection has closed
+  Time level_kept_until{0};          // after a move: when keeps_level ends
+  bool keeps_level = false;          // no driver is switched off
+  bool needs_all_drivers = false;    // evaluate all drivers, not only subscribed ones
+  std::set<std::string> captures;    // reference poses of the rig that were captured from it
+  std::optional<Timecode> timecode;  // of the last solved pose; absent: it had none
   SubjectStats stats;
   CaptureClock capture_clock;  // for the lateness of its poses
   RestDetector rest;           // updated only while a viewer uses flow control

@@ -119,6 +119,7 @@ protocol::SubjectState StateOf(const Subject& subject) {
   state.has_pose = pipeline.has_pose() && subject.window.started();
   if (!state.has_pose) return state;
   ToWire(pipeline, pipeline.pose(), subject.skeleton_hash, &state.pose);
+  state.pose.timecode = subject.timecode;
   SubjectPipeline::Memory memory = pipeline.memory();
   state.newest_sequence = subject.window.newest();
   state.values_hash = ValuesHash(pipeline);
@@ -154,13 +155,14 @@ void ResumeFrom(const protocol::Header& header, const protocol::SubjectState& st
   const std::size_t level = state.num_drivers == protocol::kAllDriversOnWire
                                 ? wrinkle::kAllDrivers
                                 : std::size_t{state.num_drivers};
-  (void)pipeline.Resume(*pose, {.sequence = state.newest_sequence,
-                                .capture_time_us = header.capture_time_us,
-                                .level = level,
-                                .solver = {.filtered = state.filtered,
-                                           .inputs = state.inputs,
-                                           .speeds = state.speeds,
-                                           .since_input = state.since_input_s}});
+  const bool resumes = pipeline.Resume(*pose, {.sequence = state.newest_sequence,
+                                               .capture_time_us = header.capture_time_us,
+                                               .level = level,
+                                               .solver = {.filtered = state.filtered,
+                                                          .inputs = state.inputs,
+                                                          .speeds = state.speeds,
+                                                          .since_input = state.since_input_s}});
+  if (resumes) subject->timecode = state.pose.timecode;
 }
 
 }  // namespace furrow::server

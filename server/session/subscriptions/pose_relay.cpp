@@ -59,6 +59,7 @@ void PoseRelay::SendPose(Subscription& subscription, std::span<const std::uint8_
   // missed.
   ToWholePose(pipeline.pose(), pipeline.stream(), &context->pose);
   context->pose.skeleton_hash = subject.skeleton_hash;
+  context->pose.timecode = subject.timecode;
   subscription.dropped += context->messages
                               .SendFrame(peer, subscription.uid, header, context->pose,
                                          Counter::kPosesRelayed, Counter::kPosesDroppedSlow, keep)

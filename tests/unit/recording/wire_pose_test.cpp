@@ -53,6 +53,16 @@ TEST(WirePoseTest, OfferAndPosesRoundTripOverTheWire) {
   EXPECT_EQ(decoded.blend_shapes, std::vector<float>{0.5f});
 }
 
+TEST(WirePoseTest, PosesHaveTheTimecodeOfTheirFrame) {
+  motion::Clip clip = TwoJoints();
+  clip.timecodes = {ParseTimecode("10:00:00;00", 30), std::nullopt};
+  protocol::PoseFrame pose;
+  FillPose(clip, 0, &pose);
+  EXPECT_EQ(pose.timecode, clip.timecodes[0]);
+  FillPose(clip, 1, &pose);
+  EXPECT_FALSE(pose.timecode);
+}
+
 TEST(WirePoseTest, AReusedPoseDropsTheLastFrame) {
   const motion::Clip clip = TwoJoints();
   protocol::PoseFrame pose;

@@ -248,7 +248,7 @@ export class CurvesPanel {
       output.textContent = value === undefined ? text.figures.none : value.toFixed(2);
     });
     const zero = this.span.zero(this.kept());
-    this.moment.textContent = this.hovered === null || frame === undefined ? '' : t.moment((frame.atS - zero).toFixed(2), frame.sequence);
+    this.moment.textContent = this.hovered === null || frame === undefined ? '' : t.moment((frame.atS - zero).toFixed(2), frame.sequence, frame.timecode?.text ?? '');
   }
 
   private drawMarkers(plot: uPlot, colour: string): void {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What arrives of each subject: rate, losses, jitter, clock, and names that are missing or move nothing.
+// What arrives of each subject: rate, losses, jitter, clock, timecode, and names that are missing or move nothing.
 import type { NamesInfo, StreamInfo } from '../api';
 import { text } from '../text';
 import { h } from '../ui/dom';
@@ -23,6 +23,7 @@ function list(words: string, { count, names }: NamesInfo): HTMLElement | null {
 /** The rows stay while their subject does, so that an open list of names stays open. */
 class StreamRows {
   private readonly where = h('small', {});
+  private readonly timecode = h('small', { class: 'stream-timecode' });
   private readonly hz = h('td', { class: 'number' });
   private readonly lost = h('td', { class: 'number' });
   private readonly jitter = h('td', { class: 'number' });
@@ -34,12 +35,15 @@ class StreamRows {
 
   constructor(name: string) {
     this.element = h('tbody', { 'data-stream': name },
-      h('tr', {}, h('th', { scope: 'row' }, name, this.where), this.hz, this.lost, this.jitter, this.clock), this.second);
+      h('tr', {}, h('th', { scope: 'row' }, name, this.where, this.timecode), this.hz, this.lost, this.jitter, this.clock), this.second);
   }
 
   show(stream: StreamInfo): void {
     const t = text.sources;
     this.where.textContent = stream.input === '' ? [t.own, stream.source].filter(Boolean).join(', ') : t.names[stream.input];
+    const { timecode, timecode_rate_hz: rateHz } = stream;
+    this.timecode.textContent = timecode === null || rateHz === null ? '' : t.timecode(timecode, rateHz);
+    this.timecode.hidden = timecode === null;
     this.hz.textContent = stream.rate_hz.toFixed(0);
     this.lost.textContent = lossOf(stream.poses, stream.lost);
     this.lost.title = text.session.losses(stream.lost, stream.late);

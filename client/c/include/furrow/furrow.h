@@ -54,6 +54,8 @@ extern "C" {
 
 /* Bytes that hold every name, with its zero byte. */
 #define FURROW_NAME_SIZE 256
+/* Bytes that hold every timecode, with its zero byte. */
+#define FURROW_TIMECODE_SIZE 16
 /* Values of one subject, subjects of one connection, and joints and blend shapes of a skeleton. */
 #define FURROW_MAX_WEIGHTS 2048
 #define FURROW_MAX_SUBJECTS 256
@@ -252,6 +254,10 @@ typedef struct furrow_frame {
   uint64_t missed;      /* poses without a frame so far: lost on the way, or skipped by the rate */
   int64_t capture_time_us; /* when the pose was captured, microseconds, on the publisher's clock */
   int64_t age_us;          /* time without a new pose, microseconds: at the daemon and since then */
+  /* The SMPTE timecode of the pose, "10:00:00;00" (';': drop-frame); "": its source sends none. */
+  char timecode[FURROW_TIMECODE_SIZE];
+  uint32_t timecode_rate_numerator; /* its frames per second, as a fraction; 0: none */
+  uint32_t timecode_rate_denominator;
 } furrow_frame;
 
 /*

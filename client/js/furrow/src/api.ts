@@ -6,6 +6,7 @@ export type { FeedProblem, WeightFrame } from './feed/weight_feed.js';
 export { type Address, parseAddress } from './link/address.js';
 export { FurrowError, type FurrowErrorCode } from './link/errors.js';
 export type { Skeleton } from './wire/poses.js';
+export type { Timecode } from './wire/timecode.js';
 
 /** Of the daemon's web server. */
 export const DEFAULT_HTTP_PORT = 7480;

@@ -12,3 +12,4 @@ export type { Envelope } from './wire/envelope.js';
 export type { Skeleton } from './wire/poses.js';
 export * from './wire/replies.js';
 export * from './wire/requests.js';
+export type { Timecode } from './wire/timecode.js';

@@ -40,7 +40,7 @@ for (const kind of KINDS) {
     await until(machine, () => client.names('bob').length > 0);
     assert.equal(client.state, 'connected');
     daemon.weights('ada', 7, [0.25, 1]);
-    daemon.weights('bob', 9, [0, 0.5]);
+    daemon.weights('bob', 9, [0, 0.5], 0n, 17_982);
     await settle();
     const frame = client.weights('ada')!;
     assert.deepEqual([...frame.values], [0.25, 1]);
@@ -48,6 +48,7 @@ for (const kind of KINDS) {
     assert.deepEqual([frame.captureTimeUs, frame.decaying, frame.gone, frame.ageMs], [7n * 16_667n, false, false, 0]);
     assert.deepEqual([...client.weights('bob')!.values], [0, 0.5]);
     assert.equal(client.weights('bob')!.layout, frame.layout);
+    assert.deepEqual([frame.timecode, client.weights('bob')!.timecode?.text], [null, '00:10:00;00']);
     assert.deepEqual(client.subjects(), ['ada', 'bob']);
     machine.advance(30);
     assert.equal(client.weights()!.ageMs, 30);

@@ -8,6 +8,7 @@ import { Ping } from '@wire/ping';
 import { Pong } from '@wire/pong';
 import { SubscribeReply } from '@wire/subscribe-reply';
 import { SubscribeWeights } from '@wire/subscribe-weights';
+import { Timecode } from '@wire/timecode';
 import { Weights } from '@wire/weights';
 import { Welcome } from '@wire/welcome';
 import type { Environment } from '../src/link/environment.js';
@@ -200,14 +201,19 @@ export class FakeDaemon implements TransportOpener {
     this.send(stream, 0, builder.asUint8Array());
   }
 
-  /** Weights of a subject that is subscribed. */
-  weights(subject: string, sequence: number, values: number[], ageUs = 0n): void {
+  /** Weights of a subject that is subscribed. `frame`: of its drop-frame timecode at 29.97; null: it has none. */
+  weights(subject: string, sequence: number, values: number[], ageUs = 0n, frame: number | null = null): void {
     const stream = this.streams.get(subject);
     if (stream === undefined) return;
     const names = this.subjects.get(subject)!;
     const builder = new Builder(64);
     const list = Weights.createValuesVector(builder, values);
-    Weights.finishWeightsBuffer(builder, Weights.createWeights(builder, namesHash(names), ageUs, list, 0));
+    Weights.startWeights(builder);
+    Weights.addNamesHash(builder, namesHash(names));
+    Weights.addAgeUs(builder, ageUs);
+    Weights.addValues(builder, list);
+    if (frame !== null) Weights.addTimecode(builder, Timecode.createTimecode(builder, frame, 30_000, 1001, 0, 1));
+    Weights.finishWeightsBuffer(builder, Weights.endWeights(builder));
     this.send(stream, sequence, builder.asUint8Array(), BigInt(sequence) * 16_667n);
   }
 }

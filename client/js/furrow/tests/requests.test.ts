@@ -152,7 +152,11 @@ test('a picture is copied out of its message', () => {
 test('weights are read at any alignment', () => {
   const builder = new Builder(64);
   const values = Weights.createValuesVector(builder, [0.25, 1]);
-  Weights.finishWeightsBuffer(builder, Weights.createWeights(builder, 77n, 5n, values, 0));
+  Weights.startWeights(builder);
+  Weights.addNamesHash(builder, 77n);
+  Weights.addAgeUs(builder, 5n);
+  Weights.addValues(builder, values);
+  Weights.finishWeightsBuffer(builder, Weights.endWeights(builder));
   const payload = builder.asUint8Array();
   for (let shift = 0; shift < 4; ++shift) {
     const moved = new Uint8Array(payload.length + shift);

@@ -9,11 +9,18 @@ import { readMessage } from '../src/wire/envelope.js';
 import { Malformed } from '../src/wire/flat_table.js';
 import { readPose, readSkeleton } from '../src/wire/poses.js';
 import { readDropped, readError, readGoodbye, readPicture, readPong, readReply, readWeights, readWelcome } from '../src/wire/replies.js';
+import type { Timecode } from '../src/wire/timecode.js';
 
 const FOLDER = join(process.env.FURROW_SOURCE!, 'protocol/vectors');
 const hex = (value: bigint): string => `0x${value.toString(16).padStart(16, '0')}`;
 const triples = (values: Float32Array, n: number): number[][] =>
   Array.from({ length: values.length / n }, (_, i) => [...values.subarray(n * i, n * i + n)]);
+
+/** Undefined, as the member of the JSON, if there is none. */
+const timecodeJson = (timecode: Timecode | null): unknown => timecode === null ? undefined : {
+  text: timecode.text, frame: timecode.frame, rate_numerator: timecode.rateNumerator, rate_denominator: timecode.rateDenominator,
+  subframe: timecode.subframe, drop_frame: timecode.dropFrame,
+};
 
 /** Readers that return the objects of the JSON files. Kinds that only a daemon receives are missing. */
 const READERS: Record<string, (payload: Uint8Array) => unknown> = {
@@ -33,8 +40,8 @@ const READERS: Record<string, (payload: Uint8Array) => unknown> = {
     return { code, message, host, tcp, udp, ...(web !== 0 && { web, web_tls: isWebTls }) };
   },
   FWGT: (p) => {
-    const { namesHash, ageUs, values } = readWeights(p);
-    return { names_hash: hex(namesHash), age_us: ageUs, values: [...values] };
+    const { namesHash, ageUs, values, timecode } = readWeights(p);
+    return { names_hash: hex(namesHash), age_us: ageUs, values: [...values], timecode: timecodeJson(timecode) };
   },
   FSUR: (p) => {
     const { subject, namesHash, names, publisherSession, epoch } = readReply(p);
@@ -67,6 +74,7 @@ const READERS: Record<string, (payload: Uint8Array) => unknown> = {
       translation_joints: [...m.translationJoints], translations: triples(m.translations, 3),
       scale_joints: [...m.scaleJoints], scales: triples(m.scales, 3),
       blend_shape_indices: [...m.blendShapeIndices], blend_shapes: [...m.blendShapes],
+      timecode: timecodeJson(m.timecode),
     };
   },
 };

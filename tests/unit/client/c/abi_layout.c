@@ -15,9 +15,11 @@ CHECK(sizeof(furrow_options) == 56);
 CHECK(offsetof(furrow_options, token) == 32);
 CHECK(sizeof(furrow_connection_info) == 32);
 CHECK(sizeof(furrow_subscription) == 32);
-CHECK(sizeof(furrow_frame) == 56);
+CHECK(sizeof(furrow_frame) == 80);
 CHECK(offsetof(furrow_frame, layout) == 16);
 CHECK(offsetof(furrow_frame, age_us) == 48);
+CHECK(offsetof(furrow_frame, timecode) == 56);
+CHECK(offsetof(furrow_frame, timecode_rate_numerator) == 72);
 CHECK(sizeof(furrow_callbacks) == 48);
 CHECK(sizeof(furrow_joint) == 56);
 CHECK(sizeof(furrow_skeleton) == 48);
@@ -31,7 +33,7 @@ CHECK(offsetof(furrow_pose_buffer, layout) == 48);
 int FurrowTenLines(void) {
   furrow_connection* connection = NULL;
   float weights[FURROW_MAX_WEIGHTS];
-  furrow_frame frame = {sizeof frame, 0, 0, 0, 0, 0, 0, 0, 0};
+  furrow_frame frame = {sizeof frame, 0, 0, 0, 0, 0, 0, 0, 0, "", 0, 0};
   if (furrow_open("furrow://127.0.0.1:9?subject=ada", NULL, &connection) != FURROW_OK) return -1;
   (void)furrow_poll(connection, 0);
   {

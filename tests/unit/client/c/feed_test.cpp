@@ -2,6 +2,7 @@
 #include "client/c/feed.h"
 
 #include <limits>
+#include <optional>
 
 #include <gtest/gtest.h>
 
@@ -53,6 +54,26 @@ TEST_F(FeedTest, StartsEmptyAndKeepsTheNewestFrame) {
   EXPECT_EQ(frame.capture_time_us, 70);
   EXPECT_EQ(frame.age_us, 30);
   EXPECT_EQ(frame.flags, 0u);
+}
+
+TEST_F(FeedTest, FramesHaveTheTimecodeOfTheirPose) {
+  const auto receive = [this](std::uint32_t sequence, std::optional<Timecode> timecode) {
+    protocol::WeightFrame frame;
+    frame.names_hash = names_hash_;
+    frame.values = {0.25f, 0.5f};
+    frame.timecode = timecode;
+    EXPECT_EQ(feed_.OnFrame({.stream = 4, .sequence = sequence, .capture_time_us = sequence}, frame,
+                            now_us_),
+              Arrival::kNew);
+    return feed_.Frame(now_us_);
+  };
+  EXPECT_STREQ(receive(1, std::nullopt).timecode, "");
+  const furrow_frame frame = receive(2, MakeTimecode(17'982, 0.0, 30'000, 1001));
+  EXPECT_STREQ(frame.timecode, "00:10:00;00");
+  EXPECT_EQ(frame.timecode_rate_numerator, 30'000u);
+  EXPECT_EQ(frame.timecode_rate_denominator, 1001u);
+  EXPECT_STREQ(receive(3, ParseTimecode("23:59:59:239", 240)).timecode, "23:59:59:239");
+  EXPECT_EQ(receive(4, std::nullopt).timecode_rate_numerator, 0u) << "not kept";
 }
 
 TEST_F(FeedTest, LateAndRepeatedFramesAreIgnored) {

@@ -3,8 +3,10 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -135,6 +137,57 @@ TEST(LiveLinkCsv, RoundTripKeepsValuesExactlyAndTimesToAThousandthOfAFrame) {
   }
 }
 
+TEST(LiveLinkCsv, KeepsTheTimecodesOfTheFile) {
+  const std::string rows =
+      "14:03:22:58.000,3,0,0,0\n"
+      "14:03:22:59.500,3,0.25,1,-0.1\n"
+      "14:03:23:00.250,3,0.5,0,0\n";
+  const Clip clip = Parse(kHeader + rows);
+  ASSERT_THAT(clip.timecodes, SizeIs(3));
+  EXPECT_EQ(clip.timecodes[1], ParseTimecode("14:03:22:59.500", 60));
+  const Result<std::string> text = LiveLinkCsvToText(clip);
+  ASSERT_TRUE(text.ok());
+  EXPECT_THAT(*text, HasSubstr("\n14:03:22:59.500,3,0.25"));
+  const Clip again = Parse(*text);
+  EXPECT_EQ(again.timecodes, clip.timecodes);
+  EXPECT_EQ(again.times, clip.times);
+}
+
+TEST(LiveLinkCsv, TimesOfDropFrameTimecodesHaveNoGaps) {
+  std::string rows;
+  for (const char* timecode : {"00:00:59;28", "00:00:59;29", "00:01:00;02", "00:01:00;03.500"}) {
+    rows += std::string(timecode) + ",3,0,0,0\n";
+  }
+  const Clip clip = Parse(kHeader + rows);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(clip.times[i], static_cast<double>(i) * 1001 / 30'000, 1e-9);
+  }
+  EXPECT_NEAR(clip.times[3], 3.5 * 1001 / 30'000, 1e-9);
+  EXPECT_EQ(clip.timecodes[2]->frame, 1800u);
+  EXPECT_EQ(Parse(*LiveLinkCsvToText(clip)).timecodes, clip.timecodes);
+  const Clip midnight = Parse(std::string(kHeader) + "23:59:59;29,3,0,0,0\n00:00:00;00,3,0,0,0\n",
+                              {.timecode_rate = 30.0});
+  EXPECT_NEAR(midnight.times[1], 1001.0 / 30'000, 1e-6);
+}
+
+// A file with them could not be read again as it is.
+TEST(LiveLinkCsv, TimecodesThatDoNotRiseAreNotWritten) {
+  const auto first_of = [](std::vector<std::optional<Timecode>> timecodes) {
+    Clip clip = MakeTake(30.0, 3);
+    clip.timecodes = std::move(timecodes);
+    const std::string text = *LiveLinkCsvToText(clip);
+    return text.substr(text.find('\n') + 1, 11);
+  };
+  const auto at = [](std::uint32_t frame) { return MakeTimecode(frame, 0.0, 30, 1); };
+  EXPECT_EQ(first_of({at(300), at(301), at(302)}), "00:00:10:00");
+  EXPECT_EQ(first_of({at(30 * 86'400 - 1), at(0), at(1)}), "23:59:59:29") << "midnight";
+  EXPECT_EQ(first_of({at(300), at(300), at(302)}), "00:00:00:00") << "repeated";
+  EXPECT_EQ(first_of({at(300), at(100), at(302)}), "00:00:00:00") << "back";
+  EXPECT_EQ(first_of({at(300), std::nullopt, at(302)}), "00:00:00:00") << "missing";
+  EXPECT_EQ(first_of({at(300), MakeTimecode(301, 0.0, 25, 1), at(302)}), "00:00:00:00")
+      << "another rate";
+}
+
 TEST(LiveLinkCsv, RejectsClipsThatTheCsvCannotExpress) {
   EXPECT_EQ(LiveLinkCsvToText(Clip()).status().code(), StatusCode::kUnsupported);
   Clip none = MakeTake(60.0, 0);
@@ -176,6 +229,8 @@ TEST(LiveLinkCsv, SurvivesGarbage) {
     for (std::size_t f = 1; f < clip->times.size(); ++f) {
       EXPECT_GT(clip->times[f], clip->times[f - 1]);
     }
+    ASSERT_EQ(clip->timecodes.size(), clip->times.size());
+    for (const auto& timecode : clip->timecodes) EXPECT_TRUE(!timecode || IsValid(*timecode));
   }
 }
 

@@ -46,6 +46,38 @@ TEST(PoseMessage, FloatRoundTripIsExact) {
   EXPECT_EQ(out.blend_shapes, pose.blend_shapes);
 }
 
+// 12 bytes, their entry in the table, and what aligns them.
+TEST(PoseMessage, TimecodesTravelInAtMost24Bytes) {
+  PoseFrame pose = test::MakePose(9, 4, 1);
+  const std::size_t alone = Encoded(pose).size();
+  PoseFrame out;
+  out.timecode = Timecode{.frame = 5};
+  ASSERT_EQ(OpenAndDecode(Encoded(pose), out), DecodeStatus::kOk);
+  EXPECT_FALSE(out.timecode) << "absent, not 00:00:00:00";
+  pose.timecode = Timecode{17'982, 30'000, 1001, 200, /*drop_frame=*/true};
+  ASSERT_EQ(OpenAndDecode(Encoded(pose), out), DecodeStatus::kOk);
+  EXPECT_EQ(out.timecode, pose.timecode);
+  EXPECT_LE(Encoded(pose).size(), alone + 24);
+  pose.timecode = Timecode{};
+  ASSERT_EQ(OpenAndDecode(Encoded(pose), out), DecodeStatus::kOk);
+  EXPECT_EQ(out.timecode, Timecode()) << "00:00:00:00 is a timecode";
+}
+
+// The pose is good without it.
+TEST(PoseMessage, InvalidTimecodesAreIgnored) {
+  for (const Timecode& bad : {Timecode{.frame = 30 * 86'400}, Timecode{.frame = 0xFFFFFFFF},
+                              Timecode{.rate_numerator = 0}, Timecode{.rate_denominator = 0},
+                              Timecode{.rate_numerator = 0xFFFFFFFF},
+                              Timecode{.rate_numerator = 25, .drop_frame = true}}) {
+    PoseFrame out;
+    PoseFrame pose = test::MakePose(9, 4, 1);
+    pose.timecode = bad;
+    ASSERT_EQ(OpenAndDecode(Encoded(pose), out), DecodeStatus::kOk);
+    EXPECT_FALSE(out.timecode) << bad.frame;
+    EXPECT_EQ(out.rotations, pose.rotations);
+  }
+}
+
 TEST(PoseMessage, PackedNumbersStayWithinStatedErrors) {
   for (std::uint32_t seed = 0; seed < 50; ++seed) {
     const PoseFrame pose = test::MakePose(60, 52, seed);

@@ -28,6 +28,20 @@ TEST(WeightsMessage, RoundTrip) {
   EXPECT_EQ(out.values[2], 1.0f);
 }
 
+TEST(WeightsMessage, CarriesTheTimecodeOfThePose) {
+  WeightFrame sent{77, 0, WeightFormat::kU8, {0.5f}};
+  WeightFrame out;
+  out.timecode = Timecode{};
+  ASSERT_EQ(OpenAndDecode(Encoded(sent), out), DecodeStatus::kOk);
+  EXPECT_FALSE(out.timecode);
+  sent.timecode = Timecode{1'234'567, 60, 1, 64, /*drop_frame=*/false};
+  ASSERT_EQ(OpenAndDecode(Encoded(sent), out), DecodeStatus::kOk);
+  EXPECT_EQ(out.timecode, sent.timecode);
+  sent.timecode->rate_numerator = 0;
+  ASSERT_EQ(OpenAndDecode(Encoded(sent), out), DecodeStatus::kOk);
+  EXPECT_FALSE(out.timecode) << "invalid";
+}
+
 TEST(WeightsMessage, EmptyWeightsKeepTheirFormat) {
   WeightFrame out;
   ASSERT_EQ(OpenAndDecode(Encoded(WeightFrame{0, 0, WeightFormat::kU8, {}}), out),

@@ -64,6 +64,44 @@ TEST_F(LiveLinkFace, FaceBecomesAFrame) {
   EXPECT_EQ(frame.capture_time_us, std::llround((1'234'567 + 0.25) / 60.0 * 1e6));
 }
 
+TEST_F(LiveLinkFace, FramesHaveTheTimecodeOfTheApp) {
+  LiveLinkPacket packet;
+  Push(packet);
+  ASSERT_TRUE(frames_.back().timecode);
+  EXPECT_EQ(TimecodeText(*frames_.back().timecode), "05:42:56:07");
+  EXPECT_EQ(frames_.back().timecode->subframe, 64) << "0.25";
+  packet.rate_numerator = 30'000;
+  packet.rate_denominator = 1001;
+  packet.frame = 2'000'000;
+  packet.subject = "ntsc";
+  Push(packet);
+  EXPECT_EQ(TimecodeText(*frames_.back().timecode), "18:32:13;12") << "drop-frame";
+  packet.values.clear();
+  ++packet.frame;
+  Push(packet);
+  EXPECT_EQ(TimecodeText(*frames_.back().timecode), "18:32:13;13") << "without a face, too";
+}
+
+// The frames are used: their capture time does not need a timecode.
+TEST_F(LiveLinkFace, NumbersThatAreNoTimecodeLeaveItOut) {
+  const auto push = [this](const auto& change) {
+    LiveLinkPacket packet;
+    packet.subject = "phone_" + std::to_string(frames_.size());
+    change(packet);
+    Push(packet);
+    return frames_.back();
+  };
+  const NeutralFrame ticks = push([](auto& p) { p.rate_numerator = 24'000; });
+  EXPECT_FALSE(ticks.timecode) << "a rate of ticks, not frames";
+  EXPECT_EQ(ticks.capture_time_us, std::llround((1'234'567 + 0.25) / 24'000 * 1e6));
+  EXPECT_FALSE(push([](auto& p) { p.rate_denominator = 7; }).timecode);
+  EXPECT_FALSE(push([](auto& p) { p.frame = 2 * 86'400 * 60; }).timecode) << "two days";
+  EXPECT_EQ(push([](auto& p) { p.frame = 86'400 * 60 + 1; }).timecode->frame, 1u)
+      << "ran on after midnight";
+  EXPECT_EQ(counters().accepted, 4u);
+  EXPECT_EQ(counters().malformed, 0u);
+}
+
 TEST_F(LiveLinkFace, NoFaceKeepsLastValuesUntracked) {
   LiveLinkPacket packet;
   packet.values[17] = 0.5f;

@@ -100,6 +100,37 @@ TEST_F(RecorderTest, APartialPoseIsRecordedWhole) {
   EXPECT_EQ(pose.blend_shapes, (std::vector<float>{0.5f, 1.0f}));
 }
 
+TEST_F(RecorderTest, TimecodesAreRecordedWithPosesAndWeights) {
+  Publish(sender_, "ada");
+  protocol::PoseFrame whole = Pose(0.25f);
+  whole.timecode = MakeTimecode(1799, 0.0, 30'000, 1001);
+  Send(sender_, whole, 1, 0, 1'000);
+  protocol::PoseFrame partial = whole;  // which is recorded in another encoding
+  partial.partial = true;
+  partial.timecode = MakeTimecode(1800, 0.0, 30'000, 1001);
+  Send(sender_, partial, 1, 1, 2'000);
+  std::vector<std::string> poses;
+  std::vector<std::string> weights;
+  const auto text = [](const std::optional<Timecode>& timecode) {
+    return timecode ? TimecodeText(*timecode) : std::string("none");
+  };
+  ASSERT_TRUE(Finish()
+                  ->ForEach([&](const TakeMessage& message) {
+                    protocol::PoseFrame pose;
+                    protocol::WeightFrame frame;
+                    if (protocol::Decode(message.View(), pose) == protocol::DecodeStatus::kOk) {
+                      poses.push_back(text(pose.timecode));
+                    } else if (protocol::Decode(message.View(), frame) ==
+                               protocol::DecodeStatus::kOk) {
+                      weights.push_back(text(frame.timecode));
+                    }
+                    return true;
+                  })
+                  .ok());
+  EXPECT_EQ(poses, (std::vector<std::string>{"00:00:59;29", "00:01:00;02"}));
+  EXPECT_EQ(weights, poses);
+}
+
 // A limit on the size of files stands for the full disk.
 class FullDisk {
  public:

@@ -123,6 +123,19 @@ TEST_F(HubMoveTest, TheNextNodeGoesOnAsIfNothingHadHappened) {
   EXPECT_TRUE(hub->RequireAllDrivers("ada")->pipeline->neutral_pose().has_value());
 }
 
+TEST_F(HubMoveTest, TheTimecodeOfTheLastPoseMovesAlong) {
+  Perform();
+  protocol::PoseFrame pose = Pose(0.5f);
+  pose.timecode = MakeTimecode(17'982, 0.0, 30'000, 1001);
+  Send(sender, pose, 1, 10, 200'000);
+  const std::vector<std::uint8_t> state = State();
+  NextNode();
+  Receive(state);
+  Serve(11);
+  Publish(sender, "ada");
+  EXPECT_EQ(hub->FindSubject("ada")->timecode, pose.timecode);
+}
+
 TEST_F(HubMoveTest, AnotherSessionGetsTheNeutralPoseAlone) {
   Perform();
   const std::vector<std::uint8_t> state = State();

@@ -62,6 +62,33 @@ TEST_F(MocapStreamsTest, FramesBecomeASubject) {
   EXPECT_TRUE(viewer.inbox.empty()) << "lost by its tracker: nothing new";
 }
 
+TEST_F(MocapStreamsTest, TimecodesReachSubjectWeightsAndRelayedPoses) {
+  FakePeer tracker;
+  Connect(&tracker, Transport::kMocap);
+  Watch(viewer, {.subject = "phone", .wait = true});
+  FakePeer recorder;
+  Connect(&recorder);
+  Send(recorder, protocol::SubscribePoses{.subject = "phone", .wait = true}, 0, 1);
+  protocol::mocap::NeutralFrame frame;
+  frame.subject = "phone";
+  frame.layout = 1;
+  frame.blend_shapes = {{"nose", 0.5f}};
+  frame.timecode = MakeTimecode(17'982, 0.0, 30'000, 1001);
+  hub->OnMocapFrame(tracker.id, frame, now);
+  EXPECT_EQ(hub->subjects().all().front()->timecode, frame.timecode);
+  viewer.Take<protocol::SubscribeReply>();
+  EXPECT_EQ(viewer.Take<protocol::WeightFrame>()->message.timecode, frame.timecode);
+  EXPECT_TRUE(recorder.Take<protocol::SubscribeReply>()->message.subject.empty());
+  EXPECT_EQ(recorder.Take<protocol::SubscribeReply>()->message.subject, "phone");
+  recorder.Take<protocol::SkeletonOffer>();
+  EXPECT_EQ(recorder.Take<protocol::PoseFrame>()->message.timecode, frame.timecode);
+  ++frame.sequence;
+  frame.timecode.reset();
+  hub->OnMocapFrame(tracker.id, frame, now);
+  EXPECT_FALSE(hub->subjects().all().front()->timecode) << "it is not kept";
+  EXPECT_FALSE(viewer.Take<protocol::WeightFrame>()->message.timecode);
+}
+
 // A phone without a face is neither lost nor forgotten while it sends.
 TEST_F(MocapStreamsTest, AFaceOutOfViewIsAStateOfItsOwn) {
   Limits limits;

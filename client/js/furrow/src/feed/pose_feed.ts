@@ -4,6 +4,7 @@ import type { Connection, Subscriber, Subscription } from '../link/connection.js
 import type { Envelope } from '../wire/envelope.js';
 import { type PoseMessage, readPose, readSkeleton, type Skeleton } from '../wire/poses.js';
 import { type PosesRequest, subscribePoses } from '../wire/requests.js';
+import type { Timecode } from '../wire/timecode.js';
 import { type FrameOrder, isLate } from './reordering.js';
 
 /** A complete pose. Joint `i` has 4 numbers at 4 i of rotations, 3 at 3 i of the others. The arrays never change. */
@@ -21,6 +22,8 @@ export interface PoseFrame {
   /** Poses received so far; differs if this is a new pose. */
   number: number;
   captureTimeUs: bigint;
+  /** SMPTE timecode; null: the source sends none. */
+  timecode: Timecode | null;
   /** Time since the pose arrived, milliseconds. */
   ageMs: number;
 }
@@ -28,6 +31,7 @@ export interface PoseFrame {
 interface Newest extends FrameOrder {
   pose: Pick<PoseFrame, 'rotations' | 'translations' | 'scales' | 'blendShapes'>;
   receivedMs: number;
+  timecode: Timecode | null;
 }
 
 const RETRY_MS = 2000;
@@ -62,6 +66,7 @@ export class PoseFeed implements Subscriber {
       sequence: newest.sequence,
       number: this.number,
       captureTimeUs: newest.captureTimeUs,
+      timecode: newest.timecode,
       ageMs: Math.max(0, this.connection.nowMs() - newest.receivedMs),
     };
   }
@@ -107,6 +112,7 @@ export class PoseFeed implements Subscriber {
       sequence: message.sequence,
       captureTimeUs: message.captureTimeUs,
       receivedMs: nowMs,
+      timecode: pose.timecode,
     };
     ++this.number;
     this.events.onPose();

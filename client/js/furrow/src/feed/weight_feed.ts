@@ -4,6 +4,7 @@ import { ERROR, type Connection, type Subscriber, type Subscription } from '../l
 import type { Envelope } from '../wire/envelope.js';
 import { readWeights, type ReplyMessage } from '../wire/replies.js';
 import { subscribeWeights, type WeightsRequest } from '../wire/requests.js';
+import type { Timecode } from '../wire/timecode.js';
 import { type FrameOrder, isLate } from './reordering.js';
 
 /** The weights of one moment. The arrays belong to the library and never change. */
@@ -23,6 +24,8 @@ export interface WeightFrame {
   missed: number;
   /** When the pose was captured, microseconds on the publisher's clock. */
   captureTimeUs: bigint;
+  /** SMPTE timecode of the pose; null: its source sends none. */
+  timecode: Timecode | null;
   /** Time without a new pose, milliseconds: at the daemon and since then. */
   ageMs: number;
   /** No new pose arrives: the daemon holds the weights, then fades them to 0. */
@@ -55,6 +58,7 @@ const MOST_MISSED = 100_000;
 
 interface Newest extends FrameOrder {
   values: Float32Array;
+  timecode: Timecode | null;
   ageMs: number;
   receivedMs: number;
 }
@@ -111,6 +115,7 @@ export class WeightFeed implements Subscriber {
       number: this.number,
       missed: this.missed,
       captureTimeUs: newest.captureTimeUs,
+      timecode: newest.timecode,
       ageMs: newest.ageMs + Math.max(0, this.connection.nowMs() - newest.receivedMs),
       decaying: newest.ageMs > 0,
       gone: this.isGone,
@@ -156,6 +161,7 @@ export class WeightFeed implements Subscriber {
     if (ahead > 1 && ahead <= MOST_MISSED) this.missed += ahead - 1;
     this.newest = {
       values: weights.values,
+      timecode: weights.timecode,
       sequence: message.sequence,
       captureTimeUs: message.captureTimeUs,
       ageMs,

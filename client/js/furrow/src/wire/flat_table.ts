@@ -58,6 +58,11 @@ export class FlatTable {
     return this.table + offset;
   }
 
+  /** The place of a struct of `bytes` bytes, or 0 if it is absent. */
+  struct(slot: number, bytes: number): number {
+    return this.field(slot, bytes);
+  }
+
   u8(slot: number, absent = 0): number {
     const at = this.field(slot, 1);
     return at === 0 ? absent : this.view.getUint8(at);

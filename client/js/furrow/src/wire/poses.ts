@@ -2,6 +2,7 @@
 // Skeletons and poses (protocol/STANDARD.md sections 5 to 7). Every reader throws Malformed.
 import { type Elements, FlatTable, require } from './flat_table.js';
 import { Fnv64 } from './hash.js';
+import { readTimecode, type Timecode } from './timecode.js';
 
 const MAX_JOINTS = 1024;
 const MAX_BLEND_SHAPES = 512;
@@ -38,6 +39,8 @@ export interface PoseMessage {
   scales: Float32Array;
   blendShapeIndices: Uint16Array;
   blendShapes: Float32Array;
+  /** Null: the source sends none. */
+  timecode: Timecode | null;
 }
 
 const NONE: Elements = { start: 0, count: 0 };
@@ -142,6 +145,7 @@ export function readPose(payload: Uint8Array): PoseMessage {
     scales: readNumbers(table, scales, 3),
     blendShapeIndices: readMask(table.bytes(13), numBlendShapes, oneForm(shapes, packedShapes)),
     blendShapes: packedShapes ? readPacked(table, packedShapes, 1, 1 / 16384) : readNumbers(table, shapes ?? NONE, 1),
+    timecode: readTimecode(table, 18),
   };
 }
 

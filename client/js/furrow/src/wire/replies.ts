@@ -4,6 +4,7 @@
 import type { Server } from '../transport/transport.js';
 import { FlatTable, require } from './flat_table.js';
 import { namesHash } from './hash.js';
+import { readTimecode, type Timecode } from './timecode.js';
 
 export const MAX_NAMES = 2048;
 const MAX_ERROR_BYTES = 1024;
@@ -51,6 +52,8 @@ export interface WeightsMessage {
   ageUs: number;
   /** Each in [0, 1]. */
   values: Float32Array;
+  /** Of the pose; null: its source sends none. */
+  timecode: Timecode | null;
 }
 
 export interface ReplyMessage {
@@ -107,7 +110,7 @@ export function readWeights(payload: Uint8Array): WeightsMessage {
   }
   const ageUs = Number(table.i64(1));
   require(ageUs >= 0, 'an age below 0');
-  return { namesHash: table.u64(0), ageUs, values };
+  return { namesHash: table.u64(0), ageUs, values, timecode: readTimecode(table, 4) };
 }
 
 export function readReply(payload: Uint8Array): ReplyMessage {

@@ -10,6 +10,7 @@
 #include "client/cli/play/play_source.h"
 #include "protocol/codec/codec.h"
 #include "protocol/framing/envelope.h"
+#include "protocol/messages/hash.h"
 #include "recording/take_clip.h"
 #include "recording/take_writer.h"
 #include "tests/temporary_folder.h"
@@ -61,6 +62,18 @@ TEST_F(TakeConversionTest, AClipRoundTripsThroughATake) {
   for (std::size_t i = 0; i < 3; ++i)
     EXPECT_EQ(back->locals[i].translation, clip.locals[i].translation);
   EXPECT_EQ(SaveTake(clip, path).code(), StatusCode::kIo) << "never overwritten";
+}
+
+TEST_F(TakeConversionTest, TimecodesRoundTripThroughATake) {
+  motion::Clip clip = MakeClip();
+  const std::string without = (folder_ / "without.mcap").string();
+  ASSERT_TRUE(SaveTake(clip, without).ok());
+  EXPECT_TRUE(recording::LoadTakeClip(without)->timecodes.empty());
+  clip.timecodes = {MakeTimecode(1799, 0.0, 30'000, 1001), std::nullopt,
+                    MakeTimecode(1800, 0.5, 30'000, 1001)};
+  const std::string with = (folder_ / "with.mcap").string();
+  ASSERT_TRUE(SaveTake(clip, with).ok());
+  EXPECT_EQ(recording::LoadTakeClip(with)->timecodes, clip.timecodes);
 }
 
 TEST_F(TakeConversionTest, AClipThatTheWireCannotCarryLeavesNoFile) {
@@ -122,6 +135,32 @@ TEST_F(TakeConversionTest, TheTableContainsOnlyWeightsOfNewPoses) {
             "frame,time,a.x,b.y\n3,0.000000,0.500000,0.250000\n5,1.000000,1.000000,0.000000\n");
   EXPECT_EQ(report.warnings.size(), 1u);
   EXPECT_EQ(WeightsToCsv(**reader, "bob", &report).status().code(), StatusCode::kNotFound);
+}
+
+TEST_F(TakeConversionTest, TimecodesAreTheLastColumnOfTheTable) {
+  auto take = *recording::TakeWriter::Create(folder_ / "take.mcap", {});
+  const std::vector<std::string> names = {"a.x"};
+  Put(*take, TakeKind::kNames, "ada", 0,
+      protocol::SubscribeReply{.subject = "ada", .names_hash = 0, .names = names});
+  protocol::WeightFrame weights;
+  weights.names_hash = protocol::NamesHash(names);
+  weights.values = {0.5f};
+  Put(*take, TakeKind::kWeights, "ada", 1, weights);  // before the source has a timecode
+  weights.timecode = MakeTimecode(1799, 0.0, 30'000, 1001);
+  Put(*take, TakeKind::kWeights, "ada", 2, weights);
+  weights.timecode = MakeTimecode(1800, 0.0, 30'000, 1001);
+  Put(*take, TakeKind::kWeights, "ada", 3, weights);
+  ASSERT_TRUE(take->Close().ok());
+  const auto reader = recording::TakeReader::Open(folder_ / "take.mcap");
+  ASSERT_TRUE(reader.ok());
+  motion::ClipReport report;
+  const auto csv = WeightsToCsv(**reader, "", &report);
+  ASSERT_TRUE(csv.ok()) << csv.status().ToString();
+  EXPECT_EQ(*csv,
+            "frame,time,a.x,timecode\n"
+            "1,0.000000,0.500000,\n"
+            "2,0.500000,0.500000,00:00:59;29\n"
+            "3,1.000000,0.500000,00:01:00;02\n");
 }
 
 }  // namespace

@@ -105,6 +105,25 @@ TEST_F(SourcesApiTest, SaysWhatArrivesOfEachSubject) {
   EXPECT_EQ(subject["missing_blend_shapes"]["count"], 0);
 }
 
+TEST_F(SourcesApiTest, SaysTheTimecodeOfTheSource) {
+  FakePeer sender;
+  Connect(&sender);
+  Publish(sender, "ann");
+  protocol::PoseFrame pose = Pose(0.5f);
+  Send(sender, pose, 1, 1, 10);
+  const auto without = Show(SourcesApi(Parts()))["subjects"][0];
+  EXPECT_TRUE(without["timecode"].is_null()) << "not 00:00:00:00";
+  EXPECT_TRUE(without["timecode_rate_hz"].is_null());
+  pose.timecode = MakeTimecode(1800, 0.0, 30'000, 1001);
+  Send(sender, pose, 1, 2, 20);
+  const auto with = Show(SourcesApi(Parts()))["subjects"][0];
+  EXPECT_EQ(with["timecode"], "00:01:00;02");
+  EXPECT_NEAR(with["timecode_rate_hz"].get<double>(), 29.97, 0.001);
+  sender.session = 78;  // the sender was restarted
+  Publish(sender, "ann");
+  EXPECT_TRUE(Show(SourcesApi(Parts()))["subjects"][0]["timecode"].is_null());
+}
+
 TEST_F(SourcesApiTest, AClockThatDoesNotCountFrom1970HasNoOffset) {
   FakePeer sender;
   Connect(&sender);

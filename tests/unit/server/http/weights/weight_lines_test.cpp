@@ -53,6 +53,16 @@ TEST_F(WeightLinesTest, NamesComeFirstThenShortNumbers) {
             R"("values":[0.0333,1]})");
 }
 
+TEST_F(WeightLinesTest, TimecodesOfSourcesThatSendThem) {
+  ASSERT_EQ(Names({"a"}), Line::kText);
+  protocol::WeightFrame frame;
+  frame.values = {1.0f};
+  frame.timecode = MakeTimecode(17'982, 0.0, 30'000, 1001);
+  ASSERT_EQ(Translate({.stream = 3, .sequence = 1, .capture_time_us = 17}, frame), Line::kText);
+  EXPECT_EQ(line_, R"({"type":"weights","subject":"ada","sequence":1,"time_us":17,"age_ms":0,)"
+                   R"("timecode":"00:10:00;00","values":[1]})");
+}
+
 TEST_F(WeightLinesTest, EveryFloatReadsBack) {
   ASSERT_EQ(Names({"a", "b", "c", "d"}), Line::kText);
   const std::vector<float> values = {1.0f / 3.0f, std::numeric_limits<float>::denorm_min(), 1e-7f,
