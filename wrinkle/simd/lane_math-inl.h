@@ -41,33 +41,38 @@ HWY_INLINE Float ArcTangent(Float y, Float x) {
   return hn::CopySign(angle, y);
 }
 
-// exp(x) for x in [-87, 0] in two parts: 2^n (1 + m), with m near 0 (Cephes).
+// exp(-x) for x in [0, 87] in two parts: 2^-n (1 + m), with m near 0 (Cephes).
 struct ExponentialParts {
   Float power, m;
 };
 HWY_INLINE ExponentialParts SplitExponential(Float x) {
   const hn::RebindToSigned<Floats> ints;
-  const Float n = hn::Round(hn::Mul(x, Splat(1.44269504f)));
+  // Adding 1.5 * 2^23 rounds to an integer and leaves that integer in the lowest bits: conversions
+  // would take several instructions more.
+  const Float magic = Splat(12582912.0f);
+  const Float rounded = hn::Add(hn::Mul(x, Splat(1.44269504f)), magic);
+  const Float n = hn::Sub(rounded, magic);
   // ln 2 in two parts, so that the remainder keeps all its digits.
-  const Float r =
-      hn::NegMulAdd(n, Splat(-2.12194440e-4f), hn::NegMulAdd(n, Splat(0.693359375f), x));
+  const Float r = hn::MulAdd(n, Splat(-2.12194440e-4f), hn::MulSub(n, Splat(0.693359375f), x));
   const Float p = Polynomial(r, 1.9875691500e-4f, 1.3981999507e-3f, 8.3334519073e-3f,
                              4.1665795894e-2f, 1.6666665459e-1f, 5.0000001201e-1f);
-  // n is at least -126, so n + 127 is the biased exponent of a normal float.
-  const auto exponent = hn::ShiftLeft<23>(hn::Add(hn::ConvertTo(ints, n), hn::Set(ints, 127)));
+  // n is at most 126, so 127 - n is the biased exponent of a normal float. The shift drops the bits
+  // of the added number.
+  const auto exponent =
+      hn::Sub(hn::Set(ints, 127 << 23), hn::ShiftLeft<23>(hn::BitCast(ints, rounded)));
   return {hn::BitCast(Floats(), exponent), hn::MulAdd(p, hn::Mul(r, r), r)};
 }
 
-// exp(x) for x <= 0; 0 below the smallest normal number.
-HWY_INLINE Float Exponential(Float x) {
-  const ExponentialParts parts = SplitExponential(hn::Max(x, Splat(-87.0f)));
-  return hn::IfThenElseZero(hn::Ge(x, Splat(-87.0f)),
+// exp(-x) for x >= 0; 0 below the smallest normal number.
+HWY_INLINE Float NegativeExponential(Float x) {
+  const ExponentialParts parts = SplitExponential(hn::Min(x, Splat(87.0f)));
+  return hn::IfThenElseZero(hn::Le(x, Splat(87.0f)),
                             hn::Mul(hn::Add(parts.m, Splat(1.0f)), parts.power));
 }
 
 // 1 - exp(-x) for x >= 0, with a small relative error near 0 as well.
 HWY_INLINE Float OneMinusExponential(Float x) {
-  const ExponentialParts parts = SplitExponential(hn::Max(hn::Neg(x), Splat(-87.0f)));
+  const ExponentialParts parts = SplitExponential(hn::Min(x, Splat(87.0f)));
   return hn::NegMulAdd(parts.power, parts.m, hn::Sub(Splat(1.0f), parts.power));
 }
 

@@ -180,6 +180,31 @@ HWY_INLINE TwoColumns LoadTwoColumns(const float* numbers, const std::int32_t* p
   return {LoadColumns(numbers, places), LoadColumns(numbers + 4, places)};
 }
 
+#elif HWY_MAX_BYTES >= 64
+
+// Loads all eight numbers of a place at once, those of two places per vector.
+HWY_INLINE TwoColumns LoadTwoColumns(const float* numbers, const std::int32_t* places) {
+  const auto pair = [=](std::size_t lane) HWY_ATTR {
+    const hn::FixedTag<float, 8> eight;
+    return hn::Combine(Floats(), hn::LoadU(eight, numbers + places[lane + 4]),
+                       hn::LoadU(eight, numbers + places[lane]));
+  };
+  // Blocks of four lanes: the first and second four numbers of places 0 to 3, then those of places
+  // 4 to 7. `high` has the same of places 8 to 15.
+  const Columns low = Transpose({pair(0), pair(1), pair(2), pair(3)});
+  const Columns high = Transpose({pair(8), pair(9), pair(10), pair(11)});
+  const auto first = [](Float a, Float b) HWY_ATTR {
+    return Float{_mm512_shuffle_f32x4(a.raw, b.raw, _MM_SHUFFLE(2, 0, 2, 0))};
+  };
+  const auto second = [](Float a, Float b) HWY_ATTR {
+    return Float{_mm512_shuffle_f32x4(a.raw, b.raw, _MM_SHUFFLE(3, 1, 3, 1))};
+  };
+  return {{first(low.c0, high.c0), first(low.c1, high.c1), first(low.c2, high.c2),
+           first(low.c3, high.c3)},
+          {second(low.c0, high.c0), second(low.c1, high.c1), second(low.c2, high.c2),
+           second(low.c3, high.c3)}};
+}
+
 #else
 
 // Loads row by row, so that few places occupy registers at a time.

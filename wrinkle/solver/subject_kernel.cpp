@@ -31,7 +31,7 @@ void EvaluateAllDrivers(const SubjectJob& job, LanePose<kScaled> pose, float* ro
 
 bool Solve(const SubjectJob& job, float* scratch) {
   // Computed first: its divisions finish while the pose is loaded.
-  const FilterLanes filter = MakeFilterLanes(*job.filter, job.context->since_input, job.dt);
+  const FilterFactors factors = MakeFilterFactors(*job.filter, job.context->since_input, job.dt);
   const PoseCheck check = CheckPose(job.pose);
   if (!check.is_finite || !AllFiniteLanes(job.blend_shapes)) return false;
   // The kernel reads the joints as one list of floats (lane_points-inl.h).
@@ -42,20 +42,23 @@ bool Solve(const SubjectJob& job, float* scratch) {
   } else {
     EvaluateAllDrivers(job, LanePose<false>{numbers}, scratch);
   }
+  // The scratch memory holds the rows of driver values, then the rows of modulated weights, then
+  // those of the filter.
   const BindingData& data = *job.binding;
+  float* const modulated = scratch + data.num_value_rows * kRowLanes;
   FilterValues({.filter = *job.filter,
-                .lanes = filter,
+                .factors = factors,
                 .dt = job.dt,
                 .inputs = data.values,
                 .num_inputs = job.num_values,
                 .context = job.context,
                 .raw_values = job.raw_values,
-                .is_apart = job.is_apart},
+                .is_apart = job.is_apart,
+                .scratch = modulated + data.weight_plan.num_rows() * kRowLanes},
                scratch);
-  // The scratch memory holds the rows of driver values, then the rows of modulated weights. The
-  // weights read the filtered values, because filtering before modulation does not amplify noise.
-  EvaluateWeights(data.weight_plan, job.context->value.data(),
-                  scratch + data.num_value_rows * kRowLanes, job.weights);
+  // The weights read the filtered values, because filtering before modulation does not amplify
+  // noise.
+  EvaluateWeights(data.weight_plan, job.context->value.data(), modulated, job.weights);
   return true;
 }
 
@@ -79,7 +82,9 @@ HWY_EXPORT(Kernel);
 // Row 0 holds zeros for drivers that rest. No binding writes to it, so one list serves all
 // bindings.
 std::size_t ScratchSize(const BindingData& binding) {
-  return (binding.num_value_rows + binding.weight_plan.num_rows()) * kRowLanes;
+  const std::size_t num_rows = binding.num_value_rows + binding.weight_plan.num_rows() +
+                               kFilterRows * binding.values.num_rows();
+  return num_rows * kRowLanes;
 }
 
 const SubjectKernel& BestSubjectKernel() { return *HWY_DYNAMIC_DISPATCH(Kernel)(); }

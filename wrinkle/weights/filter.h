@@ -18,6 +18,9 @@ struct FilterContext {
   void Reset();  // restores the state after Resize(): the next input passes unchanged
 };
 
+// Rows of scratch memory that the filter needs per row of values.
+inline constexpr std::size_t kFilterRows = 3;
+
 // How the filter treats an input. filter_lanes-inl.h carries it out.
 enum class FilterMove {
   kStay,    // at the time of the last input: the filter does not change

@@ -28,13 +28,15 @@ namespace furrow::wrinkle::HWY_NAMESPACE {
 // - value'     = a (line - value), a = 2 pi (min_cutoff + beta |mean speed|), with c = a dt:
 //                value += rise (1 - (1 - exp(-c)) / c) + (line at the start - value) (1 - exp(-c)),
 //                where rise = slope dt.
-struct FilterLanes {
-  Float inverse_since, dt;
-  Float speed_left, speed_share, mean_left, mean_share;  // of the last speed and of the slope
-  Float c_least, c_of_speed, largest_change, largest_fall;
+//
+// Single numbers, because vectors of them would be copied through memory several times.
+struct FilterFactors {
+  float inverse_since, dt;
+  float speed_left, speed_share, mean_left, mean_share;  // of the last speed and of the slope
+  float c_least, c_of_speed, largest_change;
 };
 
-HWY_INLINE FilterLanes MakeFilterLanes(const Filter& filter, double since_input, double dt) {
+HWY_INLINE FilterFactors MakeFilterFactors(const Filter& filter, double since_input, double dt) {
   const double angle = 2.0 * double{kPi} * std::min(dt, 1e20);  // exp(-angle) is 0 long before
   const double derivative = angle * double{filter.derivative_cutoff_hz};
   const double share = -std::expm1(-derivative);
@@ -45,51 +47,29 @@ HWY_INLINE FilterLanes MakeFilterLanes(const Filter& filter, double since_input,
   const bool limited = filter.slew_per_second > 0.0f;
   // Values are in [0, 1], so a limit of 2 never acts.
   const double largest_change = limited ? double{filter.slew_per_second} * dt : 2.0;
-  const auto splat = [](double x) HWY_ATTR { return Splat(static_cast<float>(x)); };
-  return {.inverse_since = splat(1.0 / since),
-          .dt = splat(std::min(dt, 1e20)),
-          .speed_left = splat(1.0 - share),
-          .speed_share = splat(share),
-          .mean_left = splat(mean_left),
-          .mean_share = splat(1.0 - mean_left),
-          .c_least = splat(angle * double{filter.min_cutoff_hz}),
-          .c_of_speed = splat(angle * double{filter.beta}),
-          .largest_change = splat(largest_change),
-          .largest_fall = splat(-largest_change)};
-}
-
-// The state of kLanes values.
-struct FilterState {
-  Float raw, value, derivative;
-};
-
-// One step of One-Euro and the slew limit.
-HWY_INLINE FilterState Follow(const FilterLanes& f, FilterState old, Float input) {
-  const Float slope = hn::Mul(hn::Sub(input, old.raw), f.inverse_since);
-  // Sums of shares: a difference would lose digits where the slope is large.
-  const Float speed = hn::MulAdd(f.speed_left, old.derivative, hn::Mul(f.speed_share, slope));
-  const Float mean_speed = hn::MulAdd(f.mean_left, old.derivative, hn::Mul(f.mean_share, slope));
-  const Float c = hn::MulAdd(f.c_of_speed, hn::Abs(mean_speed), f.c_least);
-  const Float reached = OneMinusExponential(c);
-  // min() guards c of a time so short that its share is lost anyway.
-  const Float lag = hn::Sub(Splat(1.0f), hn::Min(hn::Div(reached, c), Splat(1.0f)));
-  const Float rise = hn::Mul(slope, f.dt);
-  const Float start = hn::Sub(hn::Sub(input, rise), old.value);
-  const Float wanted = hn::MulAdd(rise, lag, hn::Mul(start, reached));
-  const Float change = hn::Max(hn::Min(wanted, f.largest_change), f.largest_fall);
-  return {input, SaturateNumber(hn::Add(old.value, change)), speed};
+  const auto single = [](double x) { return static_cast<float>(x); };
+  return {.inverse_since = single(1.0 / since),
+          .dt = single(std::min(dt, 1e20)),
+          .speed_left = single(1.0 - share),
+          .speed_share = single(share),
+          .mean_left = single(mean_left),
+          .mean_share = single(1.0 - mean_left),
+          .c_least = single(angle * double{filter.min_cutoff_hz}),
+          .c_of_speed = single(angle * double{filter.beta}),
+          .largest_change = single(largest_change)};
 }
 
 // A subject's part of the filter.
 struct FilterStep {
   const Filter& filter;
-  const FilterLanes& lanes;
+  const FilterFactors& factors;
   double dt;
   const RowGather& inputs;  // brings the inputs into the order of the rig
   std::size_t num_inputs;   // the values from here on are 0 (level of detail)
   FilterContext* context;
   float* raw_values;  // receives the inputs if the filter does not move (FilterMove::kStay)
   bool* is_apart;     // true if it did
+  float* scratch;     // kFilterRows rows per row of inputs
 };
 
 // Calls `function` with each vector of inputs in the order of the rig, and with its first index.
@@ -113,9 +93,51 @@ HWY_INLINE void ForEachInput(const FilterStep& step, const float* rows, Function
   }
 }
 
+// One-Euro and the slew limit in three passes over all values. In a single pass, each operation of
+// a long chain would wait for the one before it, and processors do not look far enough ahead to
+// compute several such chains at once.
+inline void Follow(const FilterStep& step, const float* rows) {
+  const FilterFactors f = step.factors;
+  float* const raw = step.context->raw.data();
+  float* const value = step.context->value.data();
+  float* const derivative = step.context->derivative.data();
+  const std::size_t size = step.inputs.num_rows() * kRowLanes;
+  float* const rises = step.scratch;  // slope dt
+  float* const cs = rises + size;
+  float* const shares = cs + size;  // 1 - exp(-c)
+  ForEachInput(step, rows, [=](Float input, std::size_t i) HWY_ATTR {
+    const Float slope = hn::Mul(hn::Sub(input, LoadLanes(raw + i)), Splat(f.inverse_since));
+    const Float old_speed = LoadLanes(derivative + i);
+    // Sums of shares: a difference would lose digits where the slope is large.
+    const Float speed =
+        hn::MulAdd(Splat(f.speed_left), old_speed, hn::Mul(Splat(f.speed_share), slope));
+    const Float mean_speed =
+        hn::MulAdd(Splat(f.mean_left), old_speed, hn::Mul(Splat(f.mean_share), slope));
+    StoreLanes(input, raw + i);
+    StoreLanes(speed, derivative + i);
+    StoreLanes(hn::Mul(slope, Splat(f.dt)), rises + i);
+    StoreLanes(hn::MulAdd(Splat(f.c_of_speed), hn::Abs(mean_speed), Splat(f.c_least)), cs + i);
+  });
+  for (std::size_t i = 0; i < size; i += kLanes) {
+    StoreLanes(OneMinusExponential(LoadLanes(cs + i)), shares + i);
+  }
+  for (std::size_t i = 0; i < size; i += kLanes) {
+    const Float reached = LoadLanes(shares + i);
+    // min() guards c of a time so short that its share is lost anyway.
+    const Float lag =
+        hn::Sub(Splat(1.0f), hn::Min(hn::Div(reached, LoadLanes(cs + i)), Splat(1.0f)));
+    const Float rise = LoadLanes(rises + i);
+    const Float old_value = LoadLanes(value + i);
+    const Float start = hn::Sub(hn::Sub(LoadLanes(raw + i), rise), old_value);
+    const Float wanted = hn::MulAdd(rise, lag, hn::Mul(start, reached));
+    const Float change =
+        hn::Max(hn::Min(wanted, Splat(f.largest_change)), Splat(-f.largest_change));
+    StoreLanes(SaturateNumber(hn::Add(old_value, change)), value + i);
+  }
+}
+
 // `rows`: the driver values in the scratch memory.
 inline void FilterValues(const FilterStep& step, const float* rows) {
-  const FilterLanes lanes = step.lanes;
   FilterContext* const context = step.context;
   float* const raw = context->raw.data();
   float* const value = context->value.data();
@@ -138,15 +160,7 @@ inline void FilterValues(const FilterStep& step, const float* rows) {
       });
       context->started = true;
       break;
-    case FilterMove::kFollow:
-      ForEachInput(step, rows, [=](Float input, std::size_t i) HWY_ATTR {
-        const FilterState old{LoadLanes(raw + i), LoadLanes(value + i), LoadLanes(derivative + i)};
-        const FilterState now = Follow(lanes, old, input);
-        StoreLanes(now.raw, raw + i);
-        StoreLanes(now.value, value + i);
-        StoreLanes(now.derivative, derivative + i);
-      });
-      break;
+    case FilterMove::kFollow: Follow(step, rows); break;
   }
   context->since_input = 0.0;
 }

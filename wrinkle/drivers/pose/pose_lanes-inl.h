@@ -91,7 +91,7 @@ inline Float Falloff(std::span<const Float3> moved, const FloatRow* rows, Float 
     const Float3 difference = moved[i] - along * LoadRows(rows + 1 + 3 * i, lane);
     sum = hn::Add(sum, Dot(difference, difference));
   }
-  return Exponential(hn::Div(hn::Neg(sum), LoadRow(*rows, lane)));
+  return NegativeExponential(hn::Div(sum, LoadRow(*rows, lane)));
 }
 
 // Writes clamp(t, 0, 1) * falloff of each value to consecutive rows from `values` on, with
@@ -153,8 +153,8 @@ inline void EvaluateNnls(const PoseDriverSet& drivers, const NnlsDriver& driver,
     Float value = Saturate(LoadLanes(values + i));
     if (driver.has_falloff) {
       const FloatRow& width = plan.widths[driver.first_width + i / kRowLanes];
-      const Float exponent = hn::Div(hn::Neg(residual), LoadRow(width, i % kRowLanes));
-      value = Saturate(hn::Mul(value, Exponential(exponent)));
+      const Float exponent = hn::Div(residual, LoadRow(width, i % kRowLanes));
+      value = Saturate(hn::Mul(value, NegativeExponential(exponent)));
     }
     StoreLanes(value, values + i);
   }
