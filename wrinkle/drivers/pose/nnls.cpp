@@ -15,15 +15,19 @@ using Vector = std::array<double, kMaxNnlsValues>;
 struct PassiveSet {
   std::array<int, kMaxNnlsValues> members{};
   int size = 0;
+  unsigned bits = 0;  // the same set
 
-  [[nodiscard]] bool Has(int value) const {
-    return std::find(members.begin(), members.begin() + size, value) != members.begin() + size;
+  [[nodiscard]] bool Has(int value) const { return (bits >> value & 1u) != 0; }
+  void Add(int value) {
+    members[size++] = value;
+    bits |= 1u << value;
   }
-  void Add(int value) { members[size++] = value; }
   template <class Predicate>
   void RemoveIf(Predicate predicate) {
     size = static_cast<int>(std::remove_if(members.begin(), members.begin() + size, predicate) -
                             members.begin());
+    bits = 0;
+    for (int i = 0; i < size; ++i) bits |= 1u << members[i];
   }
 };
 
@@ -69,7 +73,10 @@ int SteepestOutside(std::span<const double> gram, std::span<const double> rhs,
   for (int i = 0; i < n; ++i) {
     if (set.Has(i)) continue;
     double slope = rhs[i];
-    for (int k = 0; k < n; ++k) slope -= gram[i * n + k] * x[k];
+    for (int k = 0; k < n; ++k) {
+      // Unknowns outside the set are 0.
+      if (set.Has(k)) slope -= gram[i * n + k] * x[k];
+    }
     if (slope > best_slope) {
       best_slope = slope;
       best = i;
@@ -191,9 +198,7 @@ void NnlsTable::SolveByTable(std::span<const double> rhs, std::span<double> x) c
     if (entering < 0) return;
     set.Add(entering);
     while (set.size > 0) {
-      unsigned bits = 0;
-      for (int i = 0; i < set.size; ++i) bits |= 1u << set.members[i];
-      Multiply(inverses_.data() + bits * gram_.size(), rhs, &solution);
+      Multiply(inverses_.data() + set.bits * gram_.size(), rhs, &solution);
       if (StepTowards(solution, &set, x)) break;
     }
   }
