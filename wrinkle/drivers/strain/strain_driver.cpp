@@ -168,14 +168,16 @@ void StrainDriverSet::BindVertices(const StrainDriver& strain, std::span<const s
                                    Entry* entry) {
   entry->num_vertices = static_cast<std::uint32_t>(strain.vertices.size());
   for (const StrainDriver::Vertex& from : strain.vertices) {
-    Vertex vertex;
+    PatchVertex vertex;
     // The check accepts sums within 1% of 1. Skinning needs a sum of exactly 1, or else plain
     // motion would look like strain.
     float sum = 0.0f;
     for (const float skin_weight : from.skin_weights) sum += skin_weight;
+    std::size_t count = 0;
     for (std::size_t i = 0; i < from.joints.size(); ++i) {
-      vertex.influences[i] = {frames[static_cast<std::size_t>(from.joints[i])],
-                              from.skin_weights[i] / sum};
+      if (from.skin_weights[i] == 0.0f) continue;
+      vertex.influences[count++] = {frames[static_cast<std::size_t>(from.joints[i])],
+                                    from.skin_weights[i] / sum};
     }
     vertices_.push_back(vertex);
   }
@@ -197,7 +199,7 @@ void StrainDriverSet::BindTriangles(const StrainDriver& strain, const glm::vec3&
     const auto triangle =
         MakeRestTriangle(rest[corners[0]], rest[corners[1]], rest[corners[2]], direction);
     if (!triangle) continue;
-    Triangle& added = triangles_.emplace_back();
+    PatchTriangle& added = triangles_.emplace_back();
     for (int k = 0; k < 3; ++k) added.corners[k] = static_cast<std::uint16_t>(corners[k]);
     added.rest = *triangle;
     area += triangle->area;
@@ -221,8 +223,13 @@ void StrainDriverSet::EvaluatePoints(const Entry& entry, std::span<const Transfo
   }
 }
 
-void StrainDriverSet::Morph(const Entry& entry, std::span<const float> blend_shapes,
+void StrainDriverSet::Morph(int index, std::span<const float> blend_shapes,
                             std::span<glm::vec3> places) const {
+  MorphPlaces(entries_[static_cast<std::size_t>(index)], blend_shapes, places);
+}
+
+void StrainDriverSet::MorphPlaces(const Entry& entry, std::span<const float> blend_shapes,
+                                  std::span<glm::vec3> places) const {
   for (std::uint32_t i = 0; i < entry.num_vertices; ++i) {
     places[i] = vertices_[entry.first_vertex + i].place;
   }
@@ -242,13 +249,13 @@ void StrainDriverSet::Pose(const Entry& entry, std::span<const Frame> frames,
                            std::span<glm::vec3> positions) const {
   std::array<glm::vec3, kMaxPatchVertices> morphed;
   const bool morphs = entry.num_shapes > 0;
-  if (morphs) Morph(entry, blend_shapes, morphed);
+  if (morphs) MorphPlaces(entry, blend_shapes, morphed);
   for (std::uint32_t i = 0; i < entry.num_vertices; ++i) {
-    const Vertex& vertex = vertices_[entry.first_vertex + i];
+    const PatchVertex& vertex = vertices_[entry.first_vertex + i];
     const glm::vec4 place(morphs ? morphed[i] : vertex.place, 1.0f);
     glm::vec3 position(0.0f);
-    for (const Influence& influence : vertex.influences) {
-      if (influence.skin_weight == 0.0f) continue;  // most vertices have two or three influences
+    for (const PatchVertex::Influence& influence : vertex.influences) {
+      if (influence.skin_weight == 0.0f) break;  // most vertices have two or three influences
       const Frame& frame =
           influence.joint < entry.num_joints ? frames[influence.joint] : entry.resting;
       position += influence.skin_weight * (frame * place);
@@ -271,18 +278,19 @@ StrainDriverSet::Measured StrainDriverSet::Measure(int entry, std::span<const Tr
                                                    const JointChains& chains) const {
   std::array<Frame, kMaxPatchJoints> frames;
   EvaluatePoints(entries_[entry], local, chains, frames);
-  return MeasureFrames(entries_[entry], frames, blend_shapes);
+  const PrincipalStretches stretches = Principal(MeanTensor(entries_[entry], frames, blend_shapes));
+  return {.stretches = stretches, .shares = ShareCompression(stretches)};
 }
 
-StrainDriverSet::Measured StrainDriverSet::MeasureFrames(
-    const Entry& e, std::span<const Frame> frames, std::span<const float> blend_shapes) const {
+CauchyGreen StrainDriverSet::MeanTensor(const Entry& e, std::span<const Frame> frames,
+                                        std::span<const float> blend_shapes) const {
   std::array<glm::vec3, kMaxPatchVertices> positions;
   Pose(e, frames, blend_shapes, positions);
   // Tensors in axes of one direction may be averaged; stretches and angles may not. Large triangles
   // count more.
   CauchyGreen mean{0.0f, 0.0f, 0.0f};
   for (std::uint32_t i = e.first_triangle; i < e.first_triangle + e.num_triangles; ++i) {
-    const Triangle& triangle = triangles_[i];
+    const PatchTriangle& triangle = triangles_[i];
     const CauchyGreen c =
         RightCauchyGreen(Deform(triangle.rest, positions[triangle.corners[0]],
                                 positions[triangle.corners[1]], positions[triangle.corners[2]]));
@@ -291,14 +299,18 @@ StrainDriverSet::Measured StrainDriverSet::MeasureFrames(
     mean.xy += share * c.xy;
     mean.yy += share * c.yy;
   }
-  const PrincipalStretches stretches = Principal(mean);
-  return {.stretches = stretches, .shares = ShareCompression(stretches)};
+  return mean;
 }
 
 void StrainDriverSet::EvaluateFrames(int entry, std::span<const Frame> frames,
                                      std::span<const float> blend_shapes,
                                      std::span<float> values) const {
-  const CompressionShares shares = MeasureFrames(entries_[entry], frames, blend_shapes).shares;
+  WriteValues(entry, MeanTensor(entries_[entry], frames, blend_shapes), values);
+}
+
+void StrainDriverSet::WriteValues(int entry, const CauchyGreen& mean,
+                                  std::span<float> values) const {
+  const CompressionShares shares = ShareCompression(Principal(mean));
   const bool is_compressed = shares.compression > 0.0f;
   // A compression beyond the full one keeps its direction; the shares then sum to 1.
   const float share = Saturate(shares.compression * entries_[entry].inverse_full);
@@ -309,38 +321,17 @@ void StrainDriverSet::EvaluateFrames(int entry, std::span<const Frame> frames,
   values[3] = Saturate(gain * shares.diagonal_right);
 }
 
-// The joints of all patches are planned one after another, four points each.
 void StrainDriverSet::Plan(LanePlanner* planner) {
-  std::vector<std::pair<const int*, std::uint32_t>> frames;  // four points, driver's first value
-  for (int i = 0; i < num_entries(); ++i) {
-    const Entry& entry = entries_[static_cast<std::size_t>(i)];
-    SingleDriver driver{.entry = i,
-                        .first_value = static_cast<std::uint32_t>(entry.first_value),
-                        .num_values = kNumValues,
-                        .first_lane = static_cast<std::uint32_t>(frames.size()),
-                        .num_lanes = entry.num_joints};
-    planner->PlaceSingle(&driver);
-    drivers_.push_back(driver);
-    for (std::uint32_t k = 0; k < entry.num_joints; ++k) {
-      frames.emplace_back(&points_[entry.first_point + k * kFramePoints], driver.first_value);
-    }
+  std::vector<BoundPatch> patches;
+  for (const Entry& entry : entries_) {
+    patches.push_back(
+        {.first_value = entry.first_value,
+         .points = std::span(points_).subspan(entry.first_point, entry.num_joints * kFramePoints),
+         .vertices = std::span(vertices_).subspan(entry.first_vertex, entry.num_vertices),
+         .triangles = std::span(triangles_).subspan(entry.first_triangle, entry.num_triangles),
+         .inverse_area = entry.inverse_area});
   }
-  // Drivers are in the order of the rig, so the first driver of a block has its lowest value. A
-  // level of detail that skips the block needs none of its points.
-  for (std::size_t first = 0; first < frames.size(); first += kRowLanes) {
-    StrainFrameBlock& block = frame_blocks_.emplace_back();
-    block.first_value = frames[first].second;
-    block.first_row = planner->AddRows(3 * kFramePoints);
-    for (std::size_t corner = 0; corner < kFramePoints; ++corner) {
-      Lanes lanes;
-      for (std::size_t i = first; i < std::min(first + kRowLanes, frames.size()); ++i) {
-        lanes.Add(frames[i].first[corner]);
-      }
-      const std::uint32_t row = planner->AddPoints(lanes);
-      if (corner == 0) block.first_point = row;
-      block.num_lanes = static_cast<std::uint32_t>(lanes.count);
-    }
-  }
+  plan_ = PlanStrain(patches, kNumValues, planner);
 }
 
 void StrainDriverSet::Explain(const SolvedPose& pose, DriverExplanation* explanation) const {

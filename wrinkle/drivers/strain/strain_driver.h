@@ -12,12 +12,10 @@
 #include "wrinkle/drivers/common/driver_explanation.h"
 #include "wrinkle/drivers/strain/strain.h"
 #include "wrinkle/drivers/strain/strain_fields.h"
+#include "wrinkle/drivers/strain/strain_plan.h"
 #include "wrinkle/simd/lane_planner.h"
 
 namespace furrow::wrinkle {
-
-// The joints of all patches, sixteen per block, each with the four points of its frame.
-struct StrainFrameBlock : SinglePoints {};
 
 // All strain drivers of a binding. Private to wrinkle/. The formulas are in strain.h;
 // strain_lanes-inl.h evaluates the drivers.
@@ -33,7 +31,6 @@ struct StrainFrameBlock : SinglePoints {};
 class StrainDriverSet {
  public:
   static constexpr int kNumValues = 4;
-  static constexpr std::size_t kFramePoints = 4;
 
   // Maps a point of the patch at rest to where a joint takes it, in the base joint's space.
   using Frame = glm::mat4x3;
@@ -51,10 +48,24 @@ class StrainDriverSet {
   void Explain(const SolvedPose& pose, DriverExplanation* explanation) const;
 
   [[nodiscard]] static Frame MakeFrame(std::span<const glm::vec3, kFramePoints> points);
-  // The values of one driver. `frames`: one per joint that moves the patch. `blend_shapes`: the
-  // stream's coefficients; missing ones count as 0. `values`: kNumValues.
+  // The values of one driver, without lanes. `frames`: one per joint that moves the patch.
+  // `blend_shapes`: the stream's coefficients; missing ones count as 0. `values`: kNumValues.
   void EvaluateFrames(int entry, std::span<const Frame> frames, std::span<const float> blend_shapes,
                       std::span<float> values) const;
+  // The same from the patch's mean tensor.
+  void WriteValues(int entry, const CauchyGreen& mean, std::span<float> values) const;
+
+  // What the lanes need of an entry besides its plan.
+  [[nodiscard]] bool has_shapes(int entry) const {
+    return entries_[static_cast<std::size_t>(entry)].num_shapes > 0;
+  }
+  // The frame of a joint that does not move relative to the base joint.
+  [[nodiscard]] const Frame& resting(int entry) const {
+    return entries_[static_cast<std::size_t>(entry)].resting;
+  }
+  // The patch's vertices, moved by blend shapes alone.
+  void Morph(int entry, std::span<const float> blend_shapes, std::span<glm::vec3> places) const;
+  [[nodiscard]] const StrainPlan& plan() const { return plan_; }
 
   [[nodiscard]] int num_entries() const { return static_cast<int>(entries_.size()); }
   [[nodiscard]] int first_value(int entry) const {
@@ -67,8 +78,6 @@ class StrainDriverSet {
   [[nodiscard]] Measured Measure(int entry, std::span<const Transform> local,
                                  std::span<const float> blend_shapes,
                                  const JointChains& chains) const;
-  [[nodiscard]] const std::vector<StrainFrameBlock>& frame_blocks() const { return frame_blocks_; }
-  [[nodiscard]] const std::vector<SingleDriver>& drivers() const { return drivers_; }
 
  private:
   struct Entry {
@@ -83,15 +92,7 @@ class StrainDriverSet {
     std::uint32_t first_shape = 0;
     std::uint32_t num_shapes = 0;
     float inverse_area = 0.0f;  // of all triangles
-    Frame resting{1.0f};        // of a joint that does not move relative to the base joint
-  };
-  struct Influence {
-    std::uint8_t joint = 0;  // of the entry's; num_joints: it follows the base joint
-    float skin_weight = 0.0f;
-  };
-  struct Vertex {
-    glm::vec3 place{0.0f};  // from the patch's centre, in units of its radius
-    Influence influences[StrainDriver::kMaxInfluences];  // unused influences weigh 0
+    Frame resting{1.0f};
   };
   // A blend shape that moves the entry's vertices.
   struct Shape {
@@ -101,11 +102,7 @@ class StrainDriverSet {
   };
   struct Delta {
     std::uint32_t vertex = 0;  // of the entry's
-    glm::vec3 move{0.0f};      // at coefficient 1, in the unit of Vertex::place
-  };
-  struct Triangle {
-    std::uint16_t corners[3] = {};  // of the entry's vertices
-    RestTriangle rest;
+    glm::vec3 move{0.0f};      // at coefficient 1, in the unit of PatchVertex::place
   };
 
   void BindVertices(const StrainDriver& strain, std::span<const std::uint8_t> frames, Entry* entry);
@@ -114,26 +111,25 @@ class StrainDriverSet {
   // Fills one frame per joint of the entry.
   void EvaluatePoints(const Entry& entry, std::span<const Transform> local,
                       const JointChains& chains, std::span<Frame> frames) const;
-  // The patch's vertices, moved by blend shapes alone.
-  void Morph(const Entry& entry, std::span<const float> blend_shapes,
-             std::span<glm::vec3> places) const;
+  void MorphPlaces(const Entry& entry, std::span<const float> blend_shapes,
+                   std::span<glm::vec3> places) const;
   // The patch's vertices in the base joint's space.
   void Pose(const Entry& entry, std::span<const Frame> frames, std::span<const float> blend_shapes,
             std::span<glm::vec3> positions) const;
   void ExplainShapes(const Entry& entry, const SolvedPose& pose,
                      DriverExplanation* explanation) const;
-  [[nodiscard]] Measured MeasureFrames(const Entry& entry, std::span<const Frame> frames,
+  // The mean of F^T F over the patch.
+  [[nodiscard]] CauchyGreen MeanTensor(const Entry& entry, std::span<const Frame> frames,
                                        std::span<const float> blend_shapes) const;
 
   std::vector<Entry> entries_;
   std::vector<int> points_;  // into the binding's JointChains
-  std::vector<Vertex> vertices_;
-  std::vector<Triangle> triangles_;
+  std::vector<PatchVertex> vertices_;
+  std::vector<PatchTriangle> triangles_;
   std::vector<Shape> shapes_;
   std::vector<std::string> shape_names_;  // of shapes_, as in the rig
   std::vector<Delta> deltas_;
-  std::vector<StrainFrameBlock> frame_blocks_;
-  std::vector<SingleDriver> drivers_;
+  StrainPlan plan_;
 };
 
 }  // namespace furrow::wrinkle

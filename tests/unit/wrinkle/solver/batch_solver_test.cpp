@@ -13,11 +13,11 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include "tests/unit/allocation_counter.h"
 #include "tests/unit/wrinkle/bound_rig.h"
 #include "tests/unit/wrinkle/crowd.h"
+#include "tests/unit/wrinkle/instruction_sets.h"
 
 namespace furrow::wrinkle {
 namespace {
@@ -131,32 +131,8 @@ std::shared_ptr<const RigBinding> Bind(const Rig& rig, unsigned frame_seed = 0) 
   return BoundRig(rig, MakeBody(frame_seed), kShapes).binding();
 }
 
-// Runs each test once per instruction set.
-class BatchSolverTest : public testing::TestWithParam<std::int64_t> {
- protected:
-  BatchSolverTest() {
-    hwy::SetSupportedTargetsForTest(GetParam());
-    hwy::GetChosenTarget().DeInit();
-  }
-  ~BatchSolverTest() override {
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().DeInit();
-  }
-};
-
-std::vector<std::int64_t> Targets() {
-  std::vector<std::int64_t> targets = {HWY_SCALAR};
-  for (std::int64_t left = hwy::SupportedTargets(); left != 0; left &= left - 1) {
-    const std::int64_t lowest = left & -left;
-    if (lowest != HWY_SCALAR) targets.push_back(lowest);
-  }
-  return targets;
-}
-
-INSTANTIATE_TEST_SUITE_P(Instructions, BatchSolverTest, testing::ValuesIn(Targets()),
-                         [](const auto& target) {
-                           return std::string(hwy::TargetName(target.param));
-                         });
+class BatchSolverTest : public InstructionSetTest {};
+FURROW_FOR_INSTRUCTION_SETS(BatchSolverTest);
 
 TEST_P(BatchSolverTest, EqualsTheOracleOnChanceRigsPosesAndTimes) {
   std::mt19937 random(71);
