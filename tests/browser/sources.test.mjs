@@ -6,23 +6,11 @@ import { networkInterfaces } from 'node:os';
 import { after, before, test } from 'node:test';
 import { eventually, keep, launch, openPage } from './browser.mjs';
 import { Daemon } from './daemon.mjs';
+import { liveLinkFace } from './support/live_link_face.mjs';
 
 let browser;
 before(async () => (browser = await launch()));
 after(() => browser?.close());
-
-const NUM_CURVES = 61;
-
-/** One datagram of Live Link Face, version 6. */
-function liveLinkFace(subject, frame) {
-  const text = (words) => Buffer.concat([Buffer.from([0, 0, 0, words.length]), Buffer.from(words)]);
-  const rest = Buffer.alloc(17 + 4 * NUM_CURVES);
-  rest.writeInt32BE(frame, 0);
-  rest.writeInt32BE(60, 8);
-  rest.writeInt32BE(1, 12);
-  rest.writeUInt8(NUM_CURVES, 16);
-  return Buffer.concat([Buffer.from([6]), text('12345678-1234-1234-1234-123456789ABC'), text(subject), rest]);
-}
 
 /** One frame of VMC that raises a shape. */
 function* vmc(value) {

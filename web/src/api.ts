@@ -34,6 +34,9 @@ export interface SubjectInfo {
   age_ms: number;
   /** Time since the subject last moved visibly; null: unknown, because nobody watches. */
   moved_ms: number | null;
+  /** SMPTE timecode of the last pose, "10:00:00;00", and its frames per second; null: the source sends none. */
+  timecode: string | null;
+  timecode_rate_hz: number | null;
   /** A neutral pose was captured. */
   neutral: boolean;
 }
@@ -119,6 +122,9 @@ export interface StreamInfo {
   age_ms: number;
   /** The daemon's clock minus the sender's, plus the network delay; null: unknown, or the sender's does not count from 1970. */
   clock_offset_ms: number | null;
+  /** As in SubjectInfo. */
+  timecode: string | null;
+  timecode_rate_hz: number | null;
   joints: number;
   blend_shapes: number;
   /** Move neither weights nor pictures. */

@@ -19,6 +19,7 @@ import { SessionPanel } from './panels/session';
 import { SettingsText } from './panels/settings_text';
 import { SourcesPanel } from './panels/sources';
 import { DebugStrip } from './panels/strip';
+import { TimecodeBadge } from './panels/timecode';
 import { Timeline } from './panels/timeline';
 import { UploadPanel } from './panels/upload';
 import { ViewBar } from './panels/view_bar';
@@ -73,6 +74,7 @@ export class App {
   private readonly strip: DebugStrip;
   private readonly menu: SettingsMenu;
   private readonly timeline: Timeline;
+  private readonly timecode = new TimecodeBadge();
   private readonly upload: UploadPanel;
   private readonly tabs: Tabs;
   private readonly notice: Notice;
@@ -168,7 +170,8 @@ export class App {
 
   private buildLayout(parent: HTMLElement, dialog: HTMLElement): void {
     const { stage } = this.viewer;
-    stage.element.append(this.notice.element, this.guide.card, this.light.element, this.actions.element, this.against.nameOfFocus);
+    stage.element.append(this.notice.element, this.guide.card, this.light.element, this.actions.element, this.timecode.element,
+      this.against.nameOfFocus);
     this.actions.element.prepend(this.light.toggleButton);
     this.viewHolder.append(button(text.header.layout, () => this.layouts.open(), { title: text.header.layoutTitle }));
     const pair = h('div', { class: 'pair' }, stage.element, this.against.element);
@@ -217,6 +220,7 @@ export class App {
     this.weights.subject.watch((name) => {
       if (name !== '') this.elsewhere.reset();
       this.curves.reset();
+      this.timecode.show(this.history.current);
       this.guide.onSubject(name);
       this.curves.take.onSubject(name);
       void this.readRig();
@@ -284,6 +288,8 @@ export class App {
   }
 
   private onWeights(): void {
+    // Pictures of a pose at rest end, and its timecode goes on.
+    this.timecode.show(this.viewer.stats.still ? this.history.latest : this.history.current);
     this.curves.onFrame();
     this.faceMap.onFrame();
   }
@@ -398,6 +404,7 @@ export class App {
       date: new Date(), host: location.host, version: this.status?.version ?? '', userAgent: navigator.userAgent,
       width: innerWidth, height: innerHeight, density: devicePixelRatio, ...this.header.words(),
       sequence: this.viewer.picture()?.sequence ?? null,
+      timecode: history.current?.timecode?.text ?? '',
       weights: history.names.map((name) => [name, history.value(name)] as const),
       fragment: /#(.*)$/.exec(this.state.link())?.[1] ?? '',
     });

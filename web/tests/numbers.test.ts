@@ -46,6 +46,15 @@ test('the CSV equals the output of furrow watch', () => {
   assert.equal(weights.toCsv(weights.frames), 'frame,time,a,b,c\n41,0.000000,0.000000,0.500000,1.000000\n42,0.250000,0.000000,0.250000,1.000000\n');
 });
 
+test('timecodes are the last column of the CSV, if the source sends any', () => {
+  const weights = history();
+  const timecode = { text: '10:00:00;00', frame: 1_078_920, rateNumerator: 30_000, rateDenominator: 1001, subframe: 0, dropFrame: true };
+  weights.add({ sequence: 1, atS: 0, values: new Float32Array([0, 0, 0]), timecode: null });
+  weights.add({ sequence: 2, atS: 0.5, values: new Float32Array([0, 0, 1]), timecode });
+  assert.equal(weights.toCsv(weights.frames),
+    'frame,time,a,b,c,timecode\n1,0.000000,0.000000,0.000000,0.000000,\n2,0.500000,0.000000,0.000000,1.000000,10:00:00;00\n');
+});
+
 const FACTS = { sequence: 1, ageUs: 0, still: false, tier: 0, dropped: 0, receivedUs: 990_000, width: 640, height: 480, decodeMs: 4,
   codec: '', numBytes: 1000, drawnPercent: 100 };
 

@@ -7,7 +7,7 @@ import { wrapped } from '../src/screenshot/page_picture';
 const FACTS: PageFacts = {
   date: new Date('2026-11-29T13:30:15Z'), host: 'stage:7480', version: '0.1.0', userAgent: 'Mozilla/5.0 Firefox/145.0',
   width: 1280, height: 720, density: 2, condition: 'Live: ada', figures: [['Age', '12 ms'], ['Limit', 'network']],
-  sequence: 42, weights: [['a', 0.2], ['b', 0.9], ['c', 0.001]], fragment: 'shading=skin&subject=a%26b',
+  sequence: 42, timecode: '', weights: [['a', 0.2], ['b', 0.9], ['c', 0.001]], fragment: 'shading=skin&subject=a%26b',
 };
 
 test('the caption says when, where, what and how to come back', () => {

@@ -20,6 +20,8 @@ export interface PageFacts {
   figures: readonly (readonly [string, string])[];
   /** The pose on the screen; null: there is none. */
   sequence: number | null;
+  /** Of that pose; empty: its source sends none. */
+  timecode: string;
   weights: readonly (readonly [string, number])[];
   /** The fragment of the page's address. It restores subject, camera and settings. */
   fragment: string;
@@ -51,11 +53,12 @@ function plain(part: string): string {
 }
 
 export function captionLines(facts: PageFacts): string[] {
-  const { date, host, version, userAgent, width, height, density, condition, figures, sequence, weights, fragment } = facts;
+  const { date, host, version, userAgent, width, height, density, condition, figures, sequence, timecode, weights, fragment } = facts;
   const largest = [...weights].sort(([, a], [, b]) => b - a).slice(0, MOST_WEIGHTS).filter(([, value]) => value >= 0.005);
   return [
     [timeWords(date), t.daemon(version, host), browserWords(userAgent), t.screen(width, height, density)],
-    [condition, ...figures.map(([name, words]) => `${name} ${words}`), sequence === null ? '' : t.pose(sequence)],
+    [condition, ...figures.map(([name, words]) => `${name} ${words}`), sequence === null ? '' : t.pose(sequence),
+      timecode === '' ? '' : t.timecode(timecode)],
     [largest.length === 0 ? '' : t.weights(largest.map(([name, value]) => `${name} ${value.toFixed(2)}`).join(', '))],
     [fragment === '' ? t.noSettings : t.settings(fragment.split('&').map(plain).join('  '))],
   ].map((parts) => parts.filter((part) => part !== '').join(t.between)).filter((line) => line !== '');

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The wrinkle weights of the last seconds, for curves, the face map and the download.
+import type { Timecode } from 'furrow/protocol';
 
 export interface WeightFrame {
   sequence: number;
   /** Arrival time in seconds on the page's clock. */
   atS: number;
   values: Float32Array;
+  /** Null or absent: the source sends none. */
+  timecode?: Timecode | null;
 }
 
 /** Numbers that are kept at most, 8 MB. */
@@ -110,11 +113,15 @@ export class WeightHistory {
     return ranges.slice(0, count).sort((a, b) => a.i - b.i).map(({ name }) => name);
   }
 
-  /** The format of `furrow watch --format csv`; time in seconds since the first row. */
+  /**
+   * The format of `furrow watch --format csv`; time in seconds since the first row. If any frame has a timecode, the last
+   * column has them.
+   */
   toCsv(frames: readonly WeightFrame[], names = this.names): string {
     const first = frames[0]?.atS ?? 0;
-    const rows = frames.map(({ sequence, atS, values }) =>
-      [sequence, (atS - first).toFixed(6), ...Array.from(values, (v) => v.toFixed(6))].join(','));
-    return `${['frame,time', ...names].join(',')}\n${rows.map((row) => `${row}\n`).join('')}`;
+    const hasTimecodes = frames.some(({ timecode }) => timecode);
+    const rows = frames.map(({ sequence, atS, values, timecode }) =>
+      [sequence, (atS - first).toFixed(6), ...Array.from(values, (v) => v.toFixed(6)), ...(hasTimecodes ? [timecode?.text ?? ''] : [])].join(','));
+    return `${['frame,time', ...names, ...(hasTimecodes ? ['timecode'] : [])].join(',')}\n${rows.map((row) => `${row}\n`).join('')}`;
   }
 }

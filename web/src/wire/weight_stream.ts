@@ -53,6 +53,7 @@ export class WeightStream implements Subscriber {
       sequence: message.sequence,
       atS: performance.now() / 1000,
       values: weights.values,
+      timecode: weights.timecode,
     });
     this.onFrame();
   }
