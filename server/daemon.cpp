@@ -40,6 +40,7 @@ namespace {
 
 constexpr auto kTick = std::chrono::milliseconds(10);
 constexpr auto kSecond = std::chrono::seconds(1);
+constexpr double kMega = 1e6;
 
 // How long the last lines of the log may take where nothing else is waited for.
 constexpr auto kLastLines = std::chrono::milliseconds(100);
@@ -78,6 +79,8 @@ Status Daemon::StartRendering() {
        .device = config_.render_device,
        .settings = assets_.settings,
        .max_video_encoders = config_.max_video_encoders,
+       .budget = {.host = config_.max_host_megapixels_per_second * kMega,
+                  .total = config_.max_megapixels_per_second * kMega},
        .required = config_.require_render,
        .metrics = metrics_,
        .deliver =

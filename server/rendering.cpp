@@ -155,12 +155,14 @@ Status Rendering::Start(Parts parts) {
     thread_ =
         RenderThread::StartLater(parts.skeleton, MakeLateFactory(parts), parts.metrics, &ReadClock,
                                  std::move(parts.deliver), video_.get(), std::move(later));
+    thread_->SetBudget(parts.budget);
     return {};
   }
   auto started = RenderThread::Start(parts.skeleton, MakeFactory(parts), parts.metrics, &ReadClock,
                                      std::move(parts.deliver), video_.get());
   if (started.ok()) {
     thread_ = *std::move(started);
+    thread_->SetBudget(parts.budget);
     spdlog::info("rendering on {}", thread_->description());
     return {};
   }

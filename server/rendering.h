@@ -41,6 +41,7 @@ class Rendering {
     std::string device;
     render::Settings settings;  // of the first pictures
     int max_video_encoders = 0;
+    WorkBudget::Limits budget;                     // in pixels per second
     bool required = false;                         // without a renderer, Start() fails
     Metrics* metrics = nullptr;                    // not null; outlives this object
     std::function<void(FinishedPicture)> deliver;  // called on the render thread

@@ -191,6 +191,14 @@ Status ValidateConfig(const Config& config) {
     return Invalid("render.max_video_encoders is " + std::to_string(config.max_video_encoders) +
                    "; it must be 0 to 1000");
   }
+  for (const auto& [key, value] :
+       {std::pair{"max_host_megapixels_per_second", config.max_host_megapixels_per_second},
+        {"max_megapixels_per_second", config.max_megapixels_per_second}}) {
+    // Also false for NaN.
+    if (value >= 0.0 && value <= kMaxMegapixelsPerSecond) continue;
+    return Invalid(std::string("render.") + key + " is " + NumberText(value) +
+                   "; it must be 0 (no limit) to 1000000");
+  }
   if (Status status = CheckOscTarget({.prefix = config.osc_prefix}); !status.ok()) {
     return Invalid("osc." + status.where() + " " + status.what());
   }

@@ -36,6 +36,7 @@ struct RecordConfig {
 inline constexpr int kMaxThreads = 64;
 // Maximum of Config::busy_poll_us: enough for 10 poses per second.
 inline constexpr int kMaxBusyPollUs = 100'000;
+inline constexpr double kMaxMegapixelsPerSecond = 1e6;
 
 // The whole configuration of furrowd, from flags or a TOML file (furrow.example.toml lists every
 // key).
@@ -57,10 +58,14 @@ struct Config {
   // How long these threads look for datagrams before they sleep, [0, kMaxBusyPollUs].
   int busy_poll_us = 0;
   bool render = true;
-  bool require_render = false;                 // fail if OpenGL is unavailable
-  std::string render_device;                   // see render::RendererOptions::device
-  std::filesystem::path render_settings;       // TOML (render::LoadSettings); empty: the defaults
-  int max_video_encoders = 8;                  // viewers with H.264 at a time, [0, 1000]; 0: none
+  bool require_render = false;            // fail if OpenGL is unavailable
+  std::string render_device;              // see render::RendererOptions::device
+  std::filesystem::path render_settings;  // TOML (render::LoadSettings); empty: the defaults
+  int max_video_encoders = 8;             // viewers with H.264 at a time, [0, 1000]; 0: none
+  // Pixels that are shaded for the pictures of one host, and of all hosts, in millions per second,
+  // [0, kMaxMegapixelsPerSecond]; 0: without a limit. One picture may be larger than a second's.
+  double max_host_megapixels_per_second = 1000.0;
+  double max_megapixels_per_second = 0.0;
   std::optional<std::uint16_t> vmc;            // UDP port; absent: off
   std::optional<std::uint16_t> livelink_face;  // UDP port; absent: off
   std::vector<std::string> mocap_allow;        // numeric sender addresses; empty: any sender

@@ -80,6 +80,8 @@ void AddOutputs(const Config& config, std::vector<ConfigEntry>* entries) {
   add("render.settings", config.render_settings);
   add("render.device", config.render_device);
   add("render.max_video_encoders", config.max_video_encoders);
+  add("render.max_host_megapixels_per_second", config.max_host_megapixels_per_second);
+  add("render.max_megapixels_per_second", config.max_megapixels_per_second);
   add("osc.out", config.osc_out);
   add("osc.prefix", config.osc_prefix);
   add("osc.allow", config.osc.allow);

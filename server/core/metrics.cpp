@@ -189,6 +189,8 @@ constexpr CounterInfo kCounters[] = {
      "Pictures not rendered or not encoded because their viewer had left."},
     {Counter::kSnapshotsReplaced, "furrow_snapshots_replaced_total",
      "Render requests replaced by a newer pose before rendering started."},
+    {Counter::kPicturesHeld, "furrow_pictures_held_total",
+     "Pictures drawn later because their host, or all together, had used up the budget of pixels."},
     {Counter::kRendererRestarts, "furrow_renderer_restarts_total",
      "Renderers lost and created again."},
     {Counter::kRendererStuck, "furrow_renderer_stuck_total",

@@ -108,6 +108,7 @@ enum class Counter {
   kPicturesCrowded,
   kPicturesWithdrawn,
   kSnapshotsReplaced,
+  kPicturesHeld,
   kRendererRestarts,
   kRendererStuck,
   kAllocationsFailed,

@@ -107,6 +107,7 @@ RenderMailbox::PutResult RenderMailbox::Put(RenderJob&& job) {
     MergeTickets(*waiting, &job);
     job.entry = waiting->entry;
     job.submitted = waiting->submitted;  // the picture waits since then, whatever its pose
+    job.was_held = waiting->was_held;
     *waiting = std::move(job);
     changed_.notify_one();  // it may take a draft now
     return PutResult::kReplaced;
@@ -129,7 +130,7 @@ bool RenderMailbox::HasRoomFor(const RenderJob& job) const {
 
 // The fairest job among the stills, or among the others. First each host chooses among its viewers,
 // then the hosts are compared. A job for several viewers comes when the first of them would.
-RenderMailbox::Jobs::iterator RenderMailbox::Next(bool still, bool drafts) {
+RenderMailbox::Jobs::iterator RenderMailbox::Next(bool still, bool drafts, Time now) {
   struct Choice {
     Jobs::iterator job;
     double tag = 0.0;
@@ -137,7 +138,7 @@ RenderMailbox::Jobs::iterator RenderMailbox::Next(bool still, bool drafts) {
   };
   std::unordered_map<std::uint64_t, Choice> choices;  // by host
   for (auto job = jobs_.begin(); job != jobs_.end(); ++job) {
-    if (job->IsStill() != still || (drafts && !job->TakesDraft())) continue;
+    if (job->IsStill() != still || (drafts && !job->TakesDraft()) || ReadyAt(*job) > now) continue;
     const double work = job->Work();
     for (const PictureTicket& ticket : job->tickets) {
       const double tag = order_.ViewerTag(ticket.host, ticket.viewer, job->entry, work);
@@ -180,25 +181,62 @@ void RenderMailbox::PutPreparation(RenderJob job, bool first) {
 bool RenderMailbox::IsWanted(const RenderJob& job) const {
   const std::lock_guard lock(mutex_);
   if (closed_) return false;
-  if (job.prepares) return jobs_.empty();
+  if (job.prepares) return !HasJob(/*drafts=*/false);
   return std::ranges::any_of(job.tickets, [this](const PictureTicket& ticket) {
     return taken_.contains(ticket.subscription);
   });
 }
 
-bool RenderMailbox::HasJob(bool drafts) const {
-  return drafts ? std::ranges::any_of(jobs_, &RenderJob::TakesDraft) : !jobs_.empty();
+void RenderMailbox::SetBudget(const WorkBudget::Limits& limits, Clock clock) {
+  const std::lock_guard lock(mutex_);
+  budget_ = WorkBudget(limits);
+  clock_ = clock;
+}
+
+// A job for several hosts is drawn as soon as one of them may be served.
+Time RenderMailbox::ReadyAt(const RenderJob& job) const {
+  if (clock_ == nullptr) return Time(0);
+  Time ready = Time::max();
+  for (const PictureTicket& ticket : job.tickets) {
+    ready = std::min(ready, budget_.ReadyAt(ticket.host));
+  }
+  return ready;
+}
+
+// When the first job may be drawn; Time::max() if none waits.
+Time RenderMailbox::ReadyAt(bool drafts) const {
+  Time ready = Time::max();
+  for (const RenderJob& job : jobs_) {
+    if (!drafts || job.TakesDraft()) ready = std::min(ready, ReadyAt(job));
+  }
+  return ready;
+}
+
+void RenderMailbox::WaitForJob(std::unique_lock<std::mutex>* lock, bool drafts) {
+  while (!closed_ && !woken_ && (drafts || preparations_.empty())) {
+    const Time ready = ReadyAt(drafts);
+    const Time now = Now();
+    if (ready <= now) return;
+    MarkHeld(now);
+    if (ready == Time::max()) {
+      changed_.wait(*lock);
+    } else {
+      changed_.wait_for(*lock, ready - now);
+    }
+  }
+}
+
+void RenderMailbox::MarkHeld(Time now) {
+  for (RenderJob& job : jobs_) job.was_held |= ReadyAt(job) > now;
 }
 
 std::optional<RenderJob> RenderMailbox::Take(bool wait, bool drafts) {
   std::unique_lock lock(mutex_);
-  if (wait) {
-    changed_.wait(lock, [this, drafts] {
-      return closed_ || woken_ || HasJob(drafts) || (!drafts && !preparations_.empty());
-    });
-  }
+  if (wait) WaitForJob(&lock, drafts);
   if (closed_ || std::exchange(woken_, false)) return std::nullopt;
-  if (!HasJob(drafts)) {
+  const Time now = Now();
+  MarkHeld(now);
+  if (ReadyAt(drafts) > now) {
     if (!wait || drafts || preparations_.empty()) return std::nullopt;
     RenderJob job = std::move(preparations_.front());
     preparations_.pop_front();
@@ -206,8 +244,8 @@ std::optional<RenderJob> RenderMailbox::Take(bool wait, bool drafts) {
   }
   // A still takes longer (more samples), and nothing moves in it, so it can wait, but not for ever:
   // `passed_over_` counts how often stills were passed.
-  const auto still = Next(/*still=*/true, drafts);
-  auto next = Next(/*still=*/false, drafts);
+  const auto still = Next(/*still=*/true, drafts, now);
+  auto next = Next(/*still=*/false, drafts, now);
   if (next == jobs_.end() || (still != jobs_.end() && passed_over_ >= kMaxPassedOver)) next = still;
   passed_over_ = still == jobs_.end() || next == still ? 0 : passed_over_ + 1;
   const auto [hosts, viewers] = CountWaiting(next->tickets.front().host);
@@ -217,6 +255,7 @@ std::optional<RenderJob> RenderMailbox::Take(bool wait, bool drafts) {
   const double work = job.Work() / static_cast<double>(job.tickets.size());
   for (const PictureTicket& ticket : job.tickets) {
     order_.Serve(ticket.host, ticket.viewer, job.entry, work, hosts, viewers);
+    if (clock_ != nullptr) budget_.Charge(ticket.host, work, now);
     taken_.emplace(ticket.subscription, ticket.still);
   }
   return job;

@@ -19,6 +19,7 @@
 #include "server/core/time.h"
 #include "server/pipeline/snapshot.h"
 #include "server/shares/fair_order.h"
+#include "server/shares/work_budget.h"
 
 namespace furrow::server {
 
@@ -82,7 +83,8 @@ struct RenderJob {
   // Of PictureStreams; 0: none. Set by the render thread, unless the job prepares.
   std::uint64_t stream = 0;
   bool prepares = false;   // nobody sees the picture: it compiles what later pictures need
-  FairOrder::Entry entry;  // set by the mailbox
+  FairOrder::Entry entry;  // set by the mailbox, like the next
+  bool was_held = false;   // it waited for the budget of its hosts
 
   // True if at least one ticket wants a still, which is rendered with more samples.
   [[nodiscard]] bool IsStill() const;
@@ -105,10 +107,16 @@ inline constexpr int kStillSamples = 4;
 // spec that it requested last. Thread-safe; Put() never waits for rendering.
 //
 // The order is fair (FairOrder) between hosts, and between the viewers of a host. Large pictures
-// are more work, so a viewer gets fewer of them.
+// are more work, so a viewer gets fewer of them. A budget (WorkBudget) may limit the work of each
+// host and of all together.
 class RenderMailbox {
  public:
+  using Clock = Time (*)();
   explicit RenderMailbox(std::size_t capacity) : capacity_(capacity) {}
+
+  // From now on, jobs of a host that has used up its budget wait until it may be served again.
+  // `limits`: in RenderJob::Work() per second.
+  void SetBudget(const WorkBudget::Limits& limits, Clock clock);
 
   // How many jobs of moving subjects may pass a waiting still, so that stills are not starved.
   static constexpr int kMaxPassedOver = 8;
@@ -164,8 +172,13 @@ class RenderMailbox {
   void CloseLocked();
   void DropOlderTickets(const RenderJob& job);
   [[nodiscard]] bool HasRoomFor(const RenderJob& job) const;
-  [[nodiscard]] Jobs::iterator Next(bool still, bool drafts);
-  [[nodiscard]] bool HasJob(bool drafts) const;
+  [[nodiscard]] Jobs::iterator Next(bool still, bool drafts, Time now);
+  [[nodiscard]] bool HasJob(bool drafts) const { return ReadyAt(drafts) <= Now(); }
+  [[nodiscard]] Time ReadyAt(const RenderJob& job) const;
+  [[nodiscard]] Time ReadyAt(bool drafts) const;
+  [[nodiscard]] Time Now() const { return clock_ == nullptr ? Time(0) : clock_(); }
+  void WaitForJob(std::unique_lock<std::mutex>* lock, bool drafts);
+  void MarkHeld(Time now);
   [[nodiscard]] std::pair<std::size_t, std::size_t> CountWaiting(std::uint64_t host) const;
 
   const std::size_t capacity_;
@@ -176,7 +189,9 @@ class RenderMailbox {
   // The tickets being drawn: their subscriptions, and whether they are stills.
   std::unordered_multimap<std::uint64_t, bool> taken_;
   FairOrder order_;
-  int passed_over_ = 0;  // consecutive jobs that passed a still
+  WorkBudget budget_;
+  Clock clock_ = nullptr;  // null: there is no budget
+  int passed_over_ = 0;    // consecutive jobs that passed a still
   bool woken_ = false;
   bool closed_ = false;
 };

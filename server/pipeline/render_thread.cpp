@@ -239,6 +239,7 @@ void RenderThread::DrawAndCollect() {
     if (!job) break;
     job->taken = clock_();
     if (!job->prepares) metrics_->Observe(Timing::kPictureWait, job->taken - job->submitted);
+    if (job->was_held) metrics_->Add(Counter::kPicturesHeld);
     Draw(*std::move(job));
   }
   if (!in_flight_.empty()) Collect(/*wait=*/true);

@@ -98,6 +98,8 @@ class RenderThread : public PictureSource {
   RenderThread(const RenderThread&) = delete;
   RenderThread& operator=(const RenderThread&) = delete;
 
+  // At most this much work per second; see RenderMailbox::SetBudget().
+  void SetBudget(const WorkBudget::Limits& limits) { mailbox_.SetBudget(limits, clock_); }
   // Draws these jobs in this order while nobody wants a picture, and drops the results.
   void Prepare(std::vector<RenderJob> jobs);
   void Submit(RenderJob job) override;

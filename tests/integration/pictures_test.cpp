@@ -117,5 +117,26 @@ TEST_F(Pictures, ABurstOfPosesShowsTheNewest) {
   EXPECT_LE(count, 20);
 }
 
+// A picture of 64x64 is 0.054 megapixels with its meshes, so one per second is paid for.
+class PicturesWithABudget : public Pictures {
+ protected:
+  void Configure(server::Config* config) override { config->max_host_megapixels_per_second = 0.05; }
+};
+
+TEST_F(PicturesWithABudget, ComeLater) {
+  viewer->Send(protocol::SubscribePictures{.subject = "ann", .width = 64, .height = 64}, 0, 1);
+  ASSERT_TRUE(viewer->Await<protocol::SubscribeReply>().has_value());
+  // A picture that takes longer than a second to draw is paid for when it is done.
+  int frame = 0;
+  while (frame < 20 && daemon->Count(Counter::kPicturesHeld) == 0) {
+    SendPose(frame++);
+    protocol::Header header;
+    ASSERT_TRUE(viewer->Await<protocol::ImageFrame>(&header).has_value());
+    EXPECT_EQ(header.sequence, static_cast<std::uint32_t>(frame - 1));
+  }
+  EXPECT_EQ(daemon->Count(Counter::kPicturesHeld), 1u);
+  EXPECT_EQ(daemon->Count(Counter::kPicturesRendered), static_cast<std::uint64_t>(frame));
+}
+
 }  // namespace
 }  // namespace furrow::testing_net

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/config/config.h"
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -262,6 +263,7 @@ TEST(ParseConfig, ReadsEveryTable) {
       "[listen]\nbind = '0.0.0.0'\nopen = true\ntcp = 0\nudp = 1\nthreads = 3\nbusy_poll_us = 50\n"
       "[security]\nmode = 'required'\nkeys = '/abs/a.keys'\nname = 'n'\ntokens_in_clear = true\n"
       "[render]\nenabled = true\nrequired = true\ndevice = '1'\nmax_video_encoders = 3\n"
+      "max_host_megapixels_per_second = 4.5\nmax_megapixels_per_second = 90\n"
       "[mocap]\nvmc = 39539\nlivelink_face = 11111\n"
       "[osc]\nout = '[::1]:9000'\nprefix = 'x'\nallow = ['10.0.0.7']\n"
       "[[osc.target]]\nto = '10.0.0.8:39539'\nprofile = 'vmc'\nsubject = 'ada'\n"
@@ -283,6 +285,8 @@ TEST(ParseConfig, ReadsEveryTable) {
   EXPECT_EQ(config.up_axis, "y");
   EXPECT_TRUE(config.require_render);
   EXPECT_EQ(config.max_video_encoders, 3);
+  EXPECT_DOUBLE_EQ(config.max_host_megapixels_per_second, 4.5);
+  EXPECT_DOUBLE_EQ(config.max_megapixels_per_second, 90.0);
   EXPECT_EQ(config.osc_out->host, "::1");
   EXPECT_THAT(config.osc.allow, testing::ElementsAre("10.0.0.7"));
   ASSERT_EQ(config.osc.targets.size(), 2u);
@@ -312,6 +316,22 @@ TEST(ParseConfig, VideoEncodersAreLimited) {
        {std::pair{-1, false}, {0, true}, {1000, true}, {1001, false}}) {
     config.max_video_encoders = number;
     EXPECT_EQ(ValidateConfig(config).ok(), good) << number;
+  }
+}
+
+TEST(ParseConfig, BudgetsOfPixelsAreLimited) {
+  for (double Config::*const budget :
+       {&Config::max_host_megapixels_per_second, &Config::max_megapixels_per_second}) {
+    for (const auto& [value, good] : {std::pair{-1.0, false},
+                                      {0.0, true},
+                                      {0.5, true},
+                                      {1e6, true},
+                                      {1e7, false},
+                                      {NAN, false}}) {
+      Config config;
+      config.*budget = value;
+      EXPECT_EQ(ValidateConfig(config).ok(), good) << value;
+    }
   }
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/pipeline/render_mailbox.h"
 
+#include <atomic>
+#include <chrono>
 #include <memory>
 #include <thread>
 
@@ -248,6 +250,76 @@ TEST(RenderMailbox, ASmallPictureDoesNotWaitForAllLargeOnesOfItsHost) {
   mailbox.Put(JobOf(1, 20, 64));
   EXPECT_EQ(mailbox.Take(false)->tickets.front().viewer, 20u);
   EXPECT_NE(mailbox.Take(false)->tickets.front().viewer, 20u);
+}
+
+// Set by each test that uses it.
+std::atomic<Time> clock_time{std::chrono::seconds(100)};
+Time ClockTime() { return clock_time; }
+
+TEST(RenderMailbox, AHostBeyondItsBudgetWaits) {
+  clock_time = std::chrono::seconds(100);
+  RenderMailbox mailbox(64);
+  const double work = JobOf(1, 7, 512).Work();
+  mailbox.SetBudget({.host = work}, &ClockTime);
+  mailbox.Put(JobOf(1, 7, 512));
+  EXPECT_FALSE(mailbox.Take(false)->was_held);
+  mailbox.Put(JobOf(1, 7, 512));
+  EXPECT_FALSE(mailbox.Take(false)->was_held) << "the first was saved up";
+  mailbox.Put(JobOf(1, 7, 512));
+  EXPECT_FALSE(mailbox.Take(false).has_value());
+  mailbox.Put(JobOf(2, 20, 256));
+  EXPECT_EQ(mailbox.Take(false)->tickets.front().host, 2u) << "another host does not";
+  EXPECT_FALSE(mailbox.Take(false).has_value());
+  mailbox.Put(JobOf(1, 7, 512));  // a newer pose
+  clock_time = std::chrono::seconds(101);
+  EXPECT_TRUE(mailbox.Take(false)->was_held);
+}
+
+TEST(RenderMailbox, APictureForSeveralHostsComesWhenOneMayBeServed) {
+  clock_time = std::chrono::seconds(100);
+  RenderMailbox mailbox(64);
+  mailbox.SetBudget({.host = 1.0}, &ClockTime);
+  mailbox.Put(JobOf(1, 7, 512));
+  EXPECT_TRUE(mailbox.Take(false).has_value());
+  RenderJob shared = JobOf(1, 7, 512);
+  shared.tickets.push_back(JobOf(2, 20, 512).tickets.front());
+  shared.tickets.back().subscription = 20;
+  mailbox.Put(std::move(shared));
+  EXPECT_EQ(mailbox.Take(false)->tickets.size(), 2u);
+}
+
+TEST(RenderMailbox, PreparationsGoOnWhileAHostWaits) {
+  clock_time = std::chrono::seconds(100);
+  RenderMailbox mailbox(64);
+  mailbox.SetBudget({.host = 1.0}, &ClockTime);
+  mailbox.Put(JobOf(1, 7, 512));
+  EXPECT_TRUE(mailbox.Take(false).has_value());
+  mailbox.Put(JobOf(1, 7, 512));
+  RenderJob preparation = JobOf(0, 0, 96);
+  preparation.tickets.clear();
+  preparation.prepares = true;
+  mailbox.PutPreparation(std::move(preparation));
+  const auto taken = mailbox.Take(/*wait=*/true);
+  ASSERT_TRUE(taken.has_value());
+  EXPECT_TRUE(taken->prepares);
+  EXPECT_TRUE(mailbox.IsWanted(*taken));
+  clock_time = std::chrono::hours(2);
+  EXPECT_FALSE(mailbox.IsWanted(*taken)) << "the host may be served";
+}
+
+TEST(RenderMailbox, TakeWaitsUntilTheHostMayBeServed) {
+  RenderMailbox mailbox(64);
+  const RenderMailbox::Clock clock = [] {
+    return Time(std::chrono::steady_clock::now().time_since_epoch());
+  };
+  // The second job is free after 50 ms.
+  mailbox.SetBudget({.host = JobOf(1, 7, 512).Work() / 1.05}, clock);
+  mailbox.Put(JobOf(1, 7, 512));
+  const Time begun = clock();
+  EXPECT_TRUE(mailbox.Take(/*wait=*/true).has_value());
+  mailbox.Put(JobOf(1, 7, 512));
+  EXPECT_TRUE(mailbox.Take(/*wait=*/true)->was_held);
+  EXPECT_GE(clock() - begun, std::chrono::milliseconds(49));
 }
 
 TEST(RenderMailbox, WhatNobodyWantsAnyMoreIsNotDrawn) {
