@@ -19,6 +19,7 @@
 #include <spdlog/spdlog.h>
 
 #include "base/joined.h"
+#include "base/process/memory_reserve.h"
 #include "motion/find_recording.h"
 #include "rig/rig_file.h"
 #include "server/cluster/setup/make_coordinator.h"
@@ -59,7 +60,6 @@ Status Daemon::StartRendering() {
   if (!config_.render || assets_.character == nullptr) return {};
   Rendering::Later later;
   if (assets_.lacks_pictures) {
-    loads_later_ = true;
     later.load = [config = config_, former = assets_.character](
                      character::Pictures pictures) -> Result<Rendering::SharedCharacter> {
       auto assets = LoadWithPictures(config, *former, pictures);
@@ -91,7 +91,7 @@ Status Daemon::StartRendering() {
              asio::post(io_, [this, picture = std::move(picture)] { DeliverPicture(picture); });
            },
        .later = std::move(later)});
-  loads_later_ = loads_later_ && rendering_.thread() != nullptr;
+  loads_later_ = assets_.lacks_pictures && rendering_.thread() != nullptr;
   return status;
 }
 
@@ -509,6 +509,11 @@ asio::awaitable<void> Daemon::SecondLoop() {
 
 void Daemon::EverySecond(StatusLine* status_line) {
   const Time now = ReadClock();
+  if (const std::size_t used = MemoryReserve::Refill(); used > 0) {
+    metrics_->Add(Counter::kReserveUsed, used);
+    spdlog::warn("the system has no more memory: the daemon used {} MiB of its reserve",
+                 used * MemoryReserve::kChunkBytes >> 20);
+  }
   if (RenderThread* const render = rendering_.thread()) render->Watch(now);
   credentials_.ReadIfChanged();
   if (reload_) reload_->LookAtTerminal();

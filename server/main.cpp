@@ -10,6 +10,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include "base/process/memory_reserve.h"
 #include "base/status.h"
 #include "base/utc_time.h"
 #include "character/pictures/picture_codec.h"
@@ -85,6 +86,7 @@ int main(int argc, char** argv) {
   const furrow::server::Log log({.json = line.config->log_json,
                                  .level = line.config->log_level,
                                  .journal = furrow::server::StderrIsJournal()});
+  furrow::MemoryReserve::Install();
   LogStart(*line.config);
   if (!caches.ok()) spdlog::warn("shaders are compiled at every start: {}", caches.ToString());
   furrow::server::RunOptions options;

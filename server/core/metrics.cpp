@@ -197,6 +197,8 @@ constexpr CounterInfo kCounters[] = {
      "Times that the renderer did not respond, so that pictures were off."},
     {Counter::kAllocationsFailed, "furrow_allocations_failed_total",
      "Datagrams and requests dropped for lack of memory."},
+    {Counter::kReserveUsed, "furrow_memory_reserve_used_total",
+     "Parts of 2 MiB of the reserve that were used because the system had no more memory."},
     {Counter::kMocapPackets, "furrow_mocap_packets_total", "Packets received on mocap ports."},
     {Counter::kMocapMalformed, "furrow_mocap_malformed_total",
      "Mocap packets that could not be read."},

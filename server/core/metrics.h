@@ -112,6 +112,7 @@ enum class Counter {
   kRendererRestarts,
   kRendererStuck,
   kAllocationsFailed,
+  kReserveUsed,
   kMocapPackets,
   kMocapMalformed,
   kMocapReordered,
