@@ -14,8 +14,6 @@ import http.client
 import json
 import multiprocessing
 import pathlib
-import random
-import re
 import signal
 import socket
 import ssl
@@ -26,333 +24,13 @@ import sys
 import tempfile
 import time
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / folder) for folder in ("bench/report", "tests/conformance", "tests/end_to_end")]
-import flat_table  # pylint: disable=wrong-import-position
-from messages import fnv1a  # pylint: disable=wrong-import-position
-from processes import resident_kib  # pylint: disable=wrong-import-position
-from tracker_packets import vmc  # pylint: disable=wrong-import-position
+from attackers import (DEADLINE, VECTORS, Offers, api_flood, attackers, captures, forged_mocap, framed, leave_no_disk, leave_no_memory,
+                       long_patterns, offers, rival, snapshots, stalled_handshakes, strangers, subscribe_weights, table_of, tracker,
+                       udp_socket, unsubscribes, vector)
+from victims import Daemon, Table, weights_gap_ms
 
-VECTORS = ROOT / "protocol" / "vectors"
-STRANGER = "127.0.0.2"  # another host, for the daemon
-DEADLINE = 15.0  # seconds; whatever takes longer counts as an outage
 HEAVY = "occlusion.samples=64&subsurface.method=burley&subsurface.samples=64&shadow.taps=32"
-
-
-def vector(name, sequence=1, session=0x1234567):
-    """A message of the wire with another session and sequence (STANDARD.md section 2)."""
-    data = bytearray((VECTORS / f"{name}.bin").read_bytes())
-    struct.pack_into("<Q", data, 8, session)
-    struct.pack_into("<I", data, 16, sequence)
-    return bytes(data)
-
-
-def table_of(message):
-    """The FlatBuffers table of a message (STANDARD.md section 3)."""
-    return flat_table.Table(message, 32 + struct.unpack_from("<I", message, 32)[0])
-
-
-class Offers:
-    """SkeletonOffers that differ in the name of a joint and in their subject."""
-
-    def __init__(self):
-        self.bytes = vector("skeleton_offer")
-        known = json.loads((VECTORS / "skeleton_offer.json").read_text())["message"]
-        self.joint, self.subject = self.bytes.rindex(b"spine"), self.bytes.rindex(b'nna "1"')
-        self.hash = self.bytes.index(struct.pack("<Q", int(known["skeleton_hash"], 16)))
-        # What the hash is of (STANDARD.md section 4).
-        self.hashed = struct.pack("<H", len(known["joints"]))
-        for joint in known["joints"]:
-            tail = joint.get("tail", [])
-            self.hashed += joint["name"].encode() + b"\0" + struct.pack(
-                f"<h10fH{len(tail)}f", joint["parent"], *joint["rest_translation"], *joint["rest_rotation"], *joint["rest_scale"],
-                bool(tail), *tail)
-        self.hashed += struct.pack("<fH", known["metres_per_unit"], len(known["blend_shape_names"]))
-        self.hashed += b"".join(name.encode() + b"\0" for name in known["blend_shape_names"])
-
-    def make(self, joint, subject, stream=1):
-        """`joint`: 5 bytes. `subject`: 7 bytes, its end."""
-        offer = bytearray(self.bytes)
-        struct.pack_into("<H", offer, 6, stream)
-        offer[self.joint:self.joint + 5], offer[self.subject:self.subject + 7] = joint, subject
-        struct.pack_into("<Q", offer, self.hash, fnv1a(self.hashed.replace(b"spine\0", joint + b"\0")))
-        return bytes(offer)
-
-
-def udp_socket(port, host="127.0.0.1"):
-    one = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-    one.bind((host, 0))
-    one.connect(("127.0.0.1", port))
-    return one
-
-
-def framed(message):
-    return struct.pack("<I", len(message)) + message
-
-
-class Daemon:
-    def __init__(self, bin_folder, *arguments):
-        self.bin = bin_folder
-        self.process = subprocess.Popen([bin_folder / "furrowd", "--tcp", "0", "--udp", "0", "--http", "0", *arguments],
-                                        stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
-        ready = self.process.stdout.readline()
-        self.ports = {name: int(port) for name, port in re.findall(r"(\w+)=\S*?:(\d+)", ready)}
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        self.process.kill()
-        self.process.wait()
-
-    def mebibytes(self):
-        return resident_kib(self.process.pid) / 1024
-
-    def get(self, path, timeout=DEADLINE):
-        """Returns the status and the seconds; status 0: no answer."""
-        begun = time.monotonic()
-        status = 0
-        with contextlib.suppress(OSError, http.client.HTTPException):
-            web = http.client.HTTPConnection("127.0.0.1", self.ports["http"], timeout=timeout)
-            web.request("GET", path)
-            answer = web.getresponse()
-            answer.read()
-            status = answer.status
-            web.close()
-        return status, time.monotonic() - begun
-
-    def weights_ms(self, recording, seconds):
-        """The p50 and the longest latency of weights, in ms, and the part that was lost."""
-        with tempfile.NamedTemporaryFile(suffix=".json") as report:
-            subprocess.run([self.bin / "furrow", "load", f"127.0.0.1:{self.ports['udp']}", recording, "--subjects", "20",
-                            "--rate", "60", "--duration", str(seconds), "--quantise", "--json", report.name],
-                           capture_output=True, check=False)
-            run = json.loads(pathlib.Path(report.name).read_text())["run"]
-        lost = run["lost"] if "lost" in run else run["tally"]["lost"]
-        latency = run["latency_us"]
-        return latency["p50"] / 1000, latency["max"] / 1000, lost / max(1, run.get("sent", 20 * 60 * seconds))
-
-
-def weights_gap_ms(port, subject, seconds):
-    """The longest time without a new brow of the tracker() over HTTP, in ms."""
-    with socket.create_connection(("127.0.0.1", port), DEADLINE) as web:
-        web.sendall(f"GET /weights?subject={subject}&pattern=brow_l.* HTTP/1.1\r\nHost: localhost\r\n\r\n".encode())
-        last, longest, end, text, before = time.monotonic(), 0.0, time.monotonic() + seconds, b"", None
-        while (now := time.monotonic()) < end:
-            web.settimeout(end - now)
-            with contextlib.suppress(TimeoutError):
-                text += web.recv(1 << 16)
-            *lines, text = text.split(b"\n")
-            for line in lines:
-                values = json.loads(line).get("values", []) if line.startswith(b"{") else []
-                # Of the tracker, and not of whoever forges frames: see forged_mocap().
-                if 0.0 < max(values, default=0.0) < 0.3 and values != before:
-                    now, before = time.monotonic(), values
-                    longest, last = max(longest, now - last), now
-    return 1000 * max(longest, time.monotonic() - last)
-
-
-# --- Attackers, each a process of its own ------------------------------------------------------------------
-
-
-def tcp_flood(port, make, per_second):
-    """Sends make(i) over one connection and drops what comes back."""
-    with socket.create_connection(("127.0.0.1", port)) as connection:
-        connection.setblocking(False)
-        begun, sent, waiting = time.monotonic(), 0, b""
-        while True:
-            due = int((time.monotonic() - begun) * per_second)
-            while sent < due and len(waiting) < 1 << 20:
-                waiting += framed(make(sent))
-                sent += 1
-            with contextlib.suppress(BlockingIOError):
-                waiting = waiting[connection.send(waiting):]
-            with contextlib.suppress(BlockingIOError):
-                connection.recv(1 << 16)
-            if due <= sent:
-                time.sleep(0.001)
-
-
-def unsubscribes(port, per_second):
-    tcp_flood(port, lambda i: vector("unsubscribe", i), per_second)
-
-
-def long_patterns(port, per_second):
-    tcp_flood(port, lambda i: subscribe_weights(",".join(f"?a{i}{k}*z" for k in range(450))[:4000], i), per_second)
-
-
-def subscribe_weights(pattern, sequence, every=False):
-    """A SubscribeWeights message, written by hand: a FlatBuffers table with the fields pattern and every."""
-    text = pattern.encode()
-    # Root offset, identifier, vtable of 7 fields (subject, wait, pattern, max_rate_hz, format, source, every), table, string.
-    vtable = struct.pack("<9H", 18, 9, 0, 0, 4, 0, 0, 0, 8) + b"\0\0"
-    table_at = 8 + len(vtable)
-    table = struct.pack("<iIB3x", len(vtable), 8, every)
-    payload = struct.pack("<I", table_at) + IDENTIFIER_OF_WEIGHTS + vtable + table + struct.pack("<I", len(text)) + text + b"\0"
-    payload += b"\0" * (-len(payload) % 4)
-    envelope = bytearray(vector("subscribe_weights", sequence)[:32])
-    struct.pack_into("<I", envelope, 20, len(payload))
-    return bytes(envelope) + payload
-
-
-IDENTIFIER_OF_WEIGHTS = (VECTORS / "subscribe_weights.bin").read_bytes()[36:40]
-
-
-def api_flood(port, paths):
-    while True:
-        with contextlib.suppress(OSError, http.client.HTTPException):
-            web = http.client.HTTPConnection("127.0.0.1", port, timeout=DEADLINE)
-            while True:
-                web.request("GET", random.choice(paths))
-                web.getresponse().read()
-
-
-def snapshots(port, number, heavy, leaves):
-    """Asks for large pictures, each of another size. `leaves`: closes before the picture comes."""
-    side = 2048 - 16 * number
-    while True:
-        side = side - 1 if side > 1024 else 2048
-        with contextlib.suppress(OSError, http.client.HTTPException):
-            web = http.client.HTTPConnection("127.0.0.1", port, timeout=0.05 if leaves else DEADLINE)
-            web.request("GET", f"/snapshot.png?width={side}&height={side}&{heavy}")
-            web.getresponse().read()
-
-
-def captures(port, number):
-    web = http.client.HTTPConnection("127.0.0.1", port, timeout=DEADLINE)
-    i = 0
-    while True:
-        i += 1
-        with contextlib.suppress(OSError, http.client.HTTPException):
-            web.request("POST", "/api/capture", json.dumps({"pose": f"p{number}_{i % 300}"}))
-            web.getresponse().read()
-
-
-def strangers(port, per_second, counts, messages):
-    """Sends the messages in turn, from addresses that never prove themselves, each with a new session."""
-    sockets = [udp_socket(port) for _ in range(16)]
-    for one in sockets:
-        one.setblocking(False)
-    begun, sent = time.monotonic(), 0
-    while True:
-        due = int((time.monotonic() - begun) * per_second)
-        while sent < due:
-            one = sockets[sent % len(sockets)]
-            message = vector(messages[sent // len(sockets) % len(messages)], 0x7FFFFFFF, random.getrandbits(63) | 1)
-            with contextlib.suppress(OSError):
-                counts[0] += one.send(message)
-            sent += 1
-        for one in sockets:
-            with contextlib.suppress(OSError):
-                while True:
-                    counts[1] += len(one.recv(1 << 16))
-        time.sleep(0.001)
-
-
-def offers(port, per_second):
-    """Offers skeletons that the daemon does not know, each for another subject, over one connection of another host."""
-    template = Offers()
-    with socket.create_connection(("127.0.0.1", port), DEADLINE, (STRANGER, 0)) as connection:
-        connection.setblocking(False)
-        begun, sent, waiting = time.monotonic(), 0, b""
-        while True:
-            due = int((time.monotonic() - begun) * per_second)
-            while sent < due and len(waiting) < 1 << 20:
-                waiting += framed(template.make(b"%05d" % (sent % 100_000), b"%07d" % sent, 1 + sent % 65_535))
-                sent += 1
-            with contextlib.suppress(BlockingIOError):
-                waiting = waiting[connection.send(waiting):]
-            with contextlib.suppress(BlockingIOError):
-                connection.recv(1 << 16)
-            time.sleep(0.001)
-
-
-def forged_mocap(port, per_second):
-    """Sends frames to a port of VMC from another host, as if it were the face tracker."""
-    one = udp_socket(port, STRANGER)
-    while True:
-        for packet in vmc({"browInnerUp": 1.0}):
-            with contextlib.suppress(OSError):
-                one.send(packet)
-        time.sleep(1 / per_second)
-
-
-def tracker(port, rate):
-    """A face tracker that speaks VMC."""
-    one, due, frame = udp_socket(port), time.monotonic(), 0
-    while True:
-        frame += 1
-        for packet in vmc({"browInnerUp": 0.1 + 0.2 * (frame % 2)}):
-            with contextlib.suppress(OSError):
-                one.send(packet)
-        due += 1 / rate
-        time.sleep(max(0.0, due - time.monotonic()))
-
-
-def rival(bin_folder, port, recording):
-    """Publishes the subjects of the victim, over and over, soon after the victim has begun."""
-    time.sleep(2.5)
-    while True:
-        subprocess.run([bin_folder / "furrow", "load", f"127.0.0.1:{port}", recording, "--subjects", "20", "--rate", "60", "--duration", "5"],
-                       capture_output=True, check=False)
-
-
-def client_hello():
-    """The first bytes of a client that speaks TLS."""
-    context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
-    context.check_hostname = False
-    context.verify_mode = ssl.CERT_NONE
-    outgoing = ssl.MemoryBIO()
-    with contextlib.suppress(ssl.SSLWantReadError):
-        context.wrap_bio(ssl.MemoryBIO(), outgoing).do_handshake()
-    return outgoing.read()
-
-
-def stalled_handshakes(port):
-    """Keeps as many connections as it gets, each with a handshake that never ends."""
-    hello, held = client_hello(), []
-    while True:
-        with contextlib.suppress(OSError):
-            one = socket.create_connection(("127.0.0.1", port), timeout=DEADLINE)
-            one.sendall(hello)
-            held.append(one)
-        held = held[-400:]
-        time.sleep(0.01)
-
-
-@contextlib.contextmanager
-def attackers(*calls):
-    running = [multiprocessing.Process(target=call[0], args=call[1:], daemon=True) for call in calls]
-    for one in running:
-        one.start()
-    time.sleep(1.0)  # until the attack has its full strength
-    try:
-        yield
-    finally:
-        for one in running:
-            one.kill()
-            one.join()
-
-
-# --- Rows -----------------------------------------------------------------------------------------------
-
-
-class Table:
-    def __init__(self, options):
-        self.options = options
-        print("| attack | victim | without | with | memory |\n|---|---|---|---|---|")
-
-    def row(self, attack, victim, without, with_it, growth=None):
-        print(f"| {attack} | {victim} | {without} | {with_it} | {'' if growth is None else f'{growth:+.0f} MiB'} |", flush=True)
-
-    def weights(self, attack, daemon, *calls):
-        before, longest_before, _ = daemon.weights_ms(self.options.recording, self.options.seconds)
-        memory = daemon.mebibytes()
-        with attackers(*calls):
-            during, longest, lost = daemon.weights_ms(self.options.recording, self.options.seconds)
-            growth = daemon.mebibytes() - memory
-        self.row(attack, "weights, p50 (longest)", f"{before:.2f} ms ({longest_before:.0f} ms)",
-                 f"{during:.2f} ms ({longest:.0f} ms), {100 * lost:.1f}% lost", growth)
+API_PATHS = ["/api/status", "/api/subjects", "/api/rig", "/api/rig.json", "/metrics"]
 
 
 def waiting_tcp(table, options):
@@ -392,8 +70,7 @@ def waiting_web(table, options):
 def requests(table, options):
     with Daemon(options.bin, "--no-render", "--play", options.recording) as daemon:
         http_port, tcp = daemon.ports["http"], daemon.ports["tcp"]
-        paths = ["/api/status", "/api/subjects", "/api/rig", "/api/rig.json", "/metrics"]
-        table.weights("API, 8 connections without pause", daemon, *[(api_flood, http_port, paths)] * 8)
+        table.weights("API, 8 connections without pause", daemon, *[(api_flood, http_port, API_PATHS)] * 8)
         table.weights("/readyz, 8 connections without pause", daemon, *[(api_flood, http_port, ["/readyz"])] * 8)
         table.weights("19,000/s Unsubscribes of nothing", daemon, (unsubscribes, tcp, 19_000))
         table.weights("1,000/s patterns of 4 kB", daemon, (long_patterns, tcp, 1_000))
@@ -595,6 +272,32 @@ def variants(table, options):
         table.row("100 variants of the shaders", "", "", "", daemon.mebibytes() - memory)
 
 
+def scarce_memory(table, options):
+    with Daemon(options.bin, "--no-render") as daemon:
+        daemon.get("/api/status")
+        table.weights("no more memory, and the API on 8 connections without pause", daemon, (leave_no_memory, daemon.process.pid),
+                      *[(api_flood, daemon.ports["http"], API_PATHS)] * 8)
+        table.row("the same", "the daemon", "", "goes on" if daemon.process.poll() is None else "has ended")
+
+
+def full_disk(table, options):
+    with tempfile.TemporaryDirectory() as folder:
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=256m", "none", folder], capture_output=True, check=False).returncode != 0:
+            print("full_disk: only a user who may mount can measure it", file=sys.stderr)
+            return
+        try:
+            with Daemon(options.bin, "--no-render", "--record", folder) as daemon:
+                table.weights("a full disk under the recording", daemon, (leave_no_disk, folder))
+                before = daemon.get("/readyz")[0]
+                (pathlib.Path(folder) / "ballast").unlink()
+                begun = time.monotonic()
+                while daemon.get("/readyz")[0] != 200 and time.monotonic() - begun < DEADLINE:
+                    daemon.weights_ms(options.recording, 1)
+                table.row("the same, with room again", "/readyz", before, f"{daemon.get('/readyz')[0]} after {time.monotonic() - begun:.1f} s")
+        finally:
+            subprocess.run(["umount", folder], check=True)
+
+
 def sigterm(table, options):
     with Daemon(options.bin, "--play", options.recording) as daemon:
         daemon.get("/snapshot.png?width=160&height=160")
@@ -614,7 +317,8 @@ def main():
     parser.add_argument("--seconds", type=float, default=5.0, help="of each measurement")
     options = parser.parse_args()
     table = Table(options)
-    for group in (waiting_tcp, waiting_web, requests, forged, departed, skeletons, mocap, takeover, handshakes, unread, unread_weights, pictures, variants, sigterm):
+    for group in (waiting_tcp, waiting_web, requests, forged, departed, skeletons, mocap, takeover, handshakes, unread, unread_weights, pictures, variants, scarce_memory,
+                  full_disk, sigterm):
         if options.only in group.__name__:
             group(table, options)
 
