@@ -10,6 +10,8 @@
 #include <vector>
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "authoring/bake/strokes_file.h"
@@ -99,6 +101,24 @@ class DefaultRigTest : public ::testing::Test {
   std::shared_ptr<const wrinkle::RigBinding> binding_;
   std::unique_ptr<wrinkle::SubjectSolver> solver_;
 };
+
+TEST_F(DefaultRigTest, BindsWithoutWarnings) {
+  EXPECT_THAT(binding_->warnings(), testing::IsEmpty());
+}
+
+TEST_F(DefaultRigTest, MovingTheHeadFoldsNoFace) {
+  const int head = skeleton_.Find("head");
+  for (const glm::vec3 degrees : {glm::vec3(30, 0, 0), {-25, 0, 0}, {0, 45, 0}, {0, 0, -20}}) {
+    std::vector<wrinkle::Transform> joints = Rest();
+    joints[head].rotation = joints[head].rotation * glm::quat(glm::radians(degrees));
+    Solve(joints);
+    for (const std::string& name : binding_->weight_names()) {
+      if (!name.ends_with(".stretch") && !name.ends_with(".squash")) continue;  // cloth
+      EXPECT_LT(Weight(name), 0.02f)
+          << name << " at " << degrees.x << " " << degrees.y << " " << degrees.z;
+    }
+  }
+}
 
 TEST_F(DefaultRigTest, NeutralFaceHasNoWrinkles) {
   Solve(Rest());
