@@ -20,7 +20,6 @@
 
 #include "base/joined.h"
 #include "base/process/memory_reserve.h"
-#include "motion/find_recording.h"
 #include "rig/rig_file.h"
 #include "server/cluster/setup/make_coordinator.h"
 #include "server/config/log.h"
@@ -306,10 +305,7 @@ Status Daemon::StartOsc() {
 }
 
 Status Daemon::LoadPlayer() {
-  if (config_.play.empty()) return {};
-  const auto file = motion::FindRecording(config_.play.string());
-  FURROW_RETURN_IF_ERROR(file);
-  auto player = Player::Load(*file, PlayOptions(config_));
+  auto player = server::LoadPlayer(config_);
   FURROW_RETURN_IF_ERROR(player);
   playback_.SetConfigured(*std::move(player));
   return {};

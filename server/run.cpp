@@ -54,7 +54,7 @@ ExitCode LoadAndServe(const Config& asked, const RunOptions& options) {
   if (!osc_outputs.ok()) return Fail(ExitCode::kBadInput, osc_outputs.status());
   Daemon daemon(config, options, *std::move(assets), *std::move(osc_outputs), &former);
   if (Status status = daemon.LoadPlayer(); !status.ok()) {
-    return Fail(ExitCode::kBadInput, status.At("--play"));
+    return Fail(ExitCode::kBadInput, status);
   }
   if (Status status = daemon.StartRendering(); !status.ok()) {
     return Fail(ExitCode::kFailed, status);
@@ -117,6 +117,7 @@ Status CheckAll(const Config& config) {
   WarnAboutSecurity(config);
   WarnAboutAssets(*assets);
   FURROW_RETURN_IF_ERROR(LoadOscOutputs(config));
+  FURROW_RETURN_IF_ERROR(LoadPlayer(config));
   FURROW_RETURN_IF_ERROR(MakeCoordinator(config, 1));
   return CheckCredentials(config);
 }

@@ -6,6 +6,7 @@
 #include <spdlog/spdlog.h>
 
 #include "character/pictures/picture_codec.h"
+#include "motion/find_recording.h"
 #include "server/config/osc_profile_file.h"
 
 namespace furrow::server {
@@ -27,6 +28,15 @@ Result<OscOutputs> LoadOscOutputs(const Config& config) {
     outputs.emplace_back(std::move(target), *std::move(profile));
   }
   return outputs;
+}
+
+Result<std::unique_ptr<Player>> LoadPlayer(const Config& config) {
+  if (config.play.empty()) return std::unique_ptr<Player>();
+  const auto file = motion::FindRecording(config.play.string());
+  if (!file.ok()) return file.status().At("--play");
+  auto player = Player::Load(*file, PlayOptions(config));
+  if (!player.ok()) return player.status().At("--play");
+  return player;
 }
 
 void WarnAboutSecurity(const Config& config) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "protocol/mocap/osc_out.h"
 #include "server/assets.h"
 #include "server/config/config.h"
+#include "server/playback/player.h"
 
 namespace furrow::server {
 
@@ -22,6 +24,9 @@ using OscOutputs = std::vector<std::pair<OscTargetConfig, protocol::mocap::OscPr
 
 // Errors: those of LoadOscProfile().
 [[nodiscard]] Result<OscOutputs> LoadOscOutputs(const Config& config);
+
+// The recording of --play; null without one. Errors: motion::FindRecording(), Player::Load().
+[[nodiscard]] Result<std::unique_ptr<Player>> LoadPlayer(const Config& config);
 
 // Log what the operator may not expect.
 void WarnAboutSecurity(const Config& config);

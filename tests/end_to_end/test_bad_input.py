@@ -63,7 +63,10 @@ class BadFileTest(unittest.TestCase):
 
     def test_a_configuration_is_checked_without_a_start(self):
         self.assertEqual(self.check("[render]\nenabled = false\n")[:2], (DONE, "the configuration is valid\n"))
-        for text, fault in (("[listen]\ntpc = 1\n", "unknown key 'listen.tpc'"),
+        self.file("cut.bvh", BVH[:BVH.index("MOTION")])
+        for text, fault in (("play = 'cut.bvh'\n", "cut.bvh"),
+                            ("play = 'absent.bvh'\n", "absent.bvh"),
+                            ("[listen]\ntpc = 1\n", "unknown key 'listen.tpc'"),
                             ("rig = 'nosuch'\n", "nosuch"),
                             ("[security]\nmode = 'required'\nkeys = 'absent'\n", "security.keys: ")):
             with self.subTest(text):
