@@ -507,7 +507,7 @@ void Daemon::EverySecond(StatusLine* status_line) {
   const Time now = ReadClock();
   if (const std::size_t used = MemoryReserve::Refill(); used > 0) {
     metrics_->Add(Counter::kReserveUsed, used);
-    spdlog::warn("the system has no more memory: the daemon used {} MiB of its reserve",
+    spdlog::warn("an allocation failed: the daemon released {} MiB of its reserve of memory",
                  used * MemoryReserve::kChunkBytes >> 20);
   }
   if (RenderThread* const render = rendering_.thread()) render->Watch(now);

@@ -20,6 +20,7 @@
 #include <boost/beast/http/span_body.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
 
+#include "base/process/memory_reserve.h"
 #include "server/http/pictures/picture_stream.h"
 #include "server/http/request/elsewhere.h"
 #include "server/http/request/reply_writer.h"
@@ -55,8 +56,10 @@ net::awaitable<ApiReply> AskHub(WebContext* context, std::string host, ApiReques
                         request = std::move(request)](Hub& hub, Time now) {
     // On the hub's thread. Only the web thread may touch `pending`, so the reply is posted back.
     const Time begun = ReadClock();
+    const MemoryReserve::Scope scope;  // destructors of JSON allocate
     ApiReply reply;
     try {
+      if (MemoryReserve::IsShort()) throw std::bad_alloc();
       reply = answer(request, hub, now);
     } catch (const std::bad_alloc&) {  // it costs one request, not the daemon
       metrics->Add(Counter::kAllocationsFailed);

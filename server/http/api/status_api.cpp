@@ -115,7 +115,8 @@ ApiReply StatusApi::Health() const { return JsonReply({{"ok", true}}); }
 ApiReply StatusApi::Ready(const Hub& hub, Time now) const {
   if (hub.draining()) return ErrorReply(503, "unavailable", "", "the daemon is shutting down");
   if (parts_.wants_pictures && parts_.pictures == nullptr) {
-    return ErrorReply(503, "unavailable", "", "no renderer could start: pictures are off, weights go on; see the log");
+    return ErrorReply(503, "unavailable", "",
+                      "no renderer could start: pictures are off, weights go on; see the log");
   }
   if (parts_.pictures != nullptr && parts_.pictures->is_stuck()) {
     return ErrorReply(503, "unavailable", "",

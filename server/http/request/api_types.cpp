@@ -29,13 +29,16 @@ CodeInfo InfoOf(StatusCode code) {
 
 }  // namespace
 
+std::string JsonText(std::string_view text) {
+  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
 ApiReply ErrorReply(int status, std::string_view code, std::string_view field,
                     std::string_view message, std::string_view hint) {
-  const nlohmann::ordered_json json = {
-      {"error", {{"code", code}, {"field", field}, {"message", message}, {"hint", hint}}}};
-  // The text may contain bytes from the client that are not UTF-8.
-  constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;
-  return {.status = status, .body = json.dump(-1, ' ', false, kReplace)};
+  // Not by a document, whose destructor allocates: memory may be short.
+  return {.status = status,
+          .body = R"({"error":{"code":)" + JsonText(code) + R"(,"field":)" + JsonText(field) +
+                  R"(,"message":)" + JsonText(message) + R"(,"hint":)" + JsonText(hint) + "}}"};
 }
 
 ApiReply ErrorReply(const Status& status) {

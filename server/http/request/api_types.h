@@ -41,6 +41,9 @@ struct ApiReply {
   bool closes = false;    // the connection ends after the reply
 };
 
+// Quotes a text for JSON. Invalid UTF-8 in it becomes replacement characters.
+[[nodiscard]] std::string JsonText(std::string_view text);
+
 // Returns a reply with an error object: {"error": {"code", "field", "message", "hint"}}. `status`:
 // the HTTP status. `field`: the invalid field of the request; may be empty. `hint`: what to do. The
 // overload derives the HTTP status from the status code, and the field from `where`.

@@ -1,23 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/http/weights/weight_lines.h"
 
-#include <nlohmann/json.hpp>
-
 #include "base/numbers.h"
 #include "base/time/timecode.h"
 #include "protocol/codec/codec.h"
 #include "server/cluster/node/node_address.h"
+#include "server/http/request/api_types.h"
 
 namespace furrow::server {
 namespace {
 
 using protocol::DecodeStatus;
 using protocol::MessageKind;
-
-// Quotes a text. Bytes that are not UTF-8 are replaced.
-std::string JsonText(const std::string& text) {
-  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
 
 // {"type":"<type>","subject":<subject>
 void Begin(std::string_view type, const std::string& subject, std::string* line) {
