@@ -63,7 +63,7 @@ struct Config {
   std::filesystem::path render_settings;  // TOML (render::LoadSettings); empty: the defaults
   int max_video_encoders = 8;             // viewers with H.264 at a time, [0, 1000]; 0: none
   // Pixels that are shaded for the pictures of one host, and of all hosts, in millions per second,
-  // [0, kMaxMegapixelsPerSecond]; 0: without a limit. One picture may be larger than a second's.
+  // [0, kMaxMegapixelsPerSecond]; 0: without a limit. A single picture may exceed it.
   double max_host_megapixels_per_second = 1000.0;
   double max_megapixels_per_second = 0.0;
   std::optional<std::uint16_t> vmc;            // UDP port; absent: off

@@ -83,7 +83,7 @@ struct RenderJob {
   // Of PictureStreams; 0: none. Set by the render thread, unless the job prepares.
   std::uint64_t stream = 0;
   bool prepares = false;   // nobody sees the picture: it compiles what later pictures need
-  FairOrder::Entry entry;  // set by the mailbox, like the next
+  FairOrder::Entry entry;  // set by the mailbox, as is was_held
   bool was_held = false;   // it waited for the budget of its hosts
 
   // True if at least one ticket wants a still, which is rendered with more samples.

@@ -12,9 +12,9 @@ namespace furrow::server {
 
 // Limits how much work per second is done for each host, and for all hosts together. Work is paid
 // for afterwards: a host without debts gets a job of any size, and the next one when that is paid
-// for. Who asks for nothing saves up to one second of work.
+// for. A host that asks for nothing saves up at most one second of work.
 //
-// A job is neither refused nor forgotten, only later. Not thread-safe.
+// Jobs are delayed, never dropped. Not thread-safe.
 class WorkBudget {
  public:
   // In units of work per second; 0: without a limit.
@@ -41,8 +41,9 @@ class WorkBudget {
     // Those whose savings are full need no memory.
     std::erase_if(paid_at_, [now](const auto& each) { return each.second <= now - kSavings; });
     if (paid_at_.size() <= kMaxHosts) return;
-    paid_at_.erase(
-        std::ranges::min_element(paid_at_, {}, [](const auto& each) { return each.second; }));
+    paid_at_.erase(std::ranges::min_element(paid_at_, {}, [host](const auto& each) {
+      return each.first == host ? Time::max() : each.second;
+    }));
   }
   [[nodiscard]] std::size_t num_hosts() const { return paid_at_.size(); }
 
@@ -50,8 +51,11 @@ class WorkBudget {
   static constexpr std::size_t kMaxHosts = 1024;
 
  private:
+  // A host in debt is charged for pictures that another host has asked for, too. Its debt stays
+  // within one second, or within the cost of that picture.
   static Time After(Time paid_at, double seconds, Time now) {
-    return std::max(paid_at, now - kSavings) + FromSeconds(std::min(seconds, kMaxDebtSeconds));
+    const Time cost = FromSeconds(std::min(seconds, kMaxDebtSeconds));
+    return std::min(std::max(paid_at, now - kSavings) + cost, now + std::max(cost, kSavings));
   }
   static constexpr double kMaxDebtSeconds = 3600.0;
 

@@ -61,6 +61,25 @@ TEST(WorkBudget, WithoutLimitsEverybodyIsServed) {
   EXPECT_EQ(budget.num_hosts(), 0u);
 }
 
+// Host 1 wants the same pictures as others, so it is charged while it is in debt.
+TEST(WorkBudget, SharedWorkPilesUpNoDebt) {
+  WorkBudget budget({.host = 100.0});
+  for (Time now = seconds(100); now < seconds(200); now += milliseconds(10)) {
+    budget.Charge(1, 50.0, now);
+  }
+  EXPECT_LE(budget.ReadyAt(1), seconds(201));
+  budget.Charge(1, 500.0, seconds(200));
+  EXPECT_EQ(budget.ReadyAt(1), seconds(205));
+}
+
+TEST(WorkBudget, AHostIsLimitedAlthoughManyOthersAreInDebt) {
+  WorkBudget budget({.host = 1.0});
+  for (std::uint64_t host = 1; host <= WorkBudget::kMaxHosts; ++host) {
+    budget.Charge(host, 1000.0, seconds(1));
+  }
+  EXPECT_NEAR(Served(&budget, 5000, 1.5, seconds(2), seconds(12)), 11.0, 1.5);
+}
+
 TEST(WorkBudget, ManyHostsTakeBoundedMemoryAndTheLargestDebtStays) {
   WorkBudget budget({.host = 1.0});
   budget.Charge(0, 1000.0, seconds(1));
