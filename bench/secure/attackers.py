@@ -256,7 +256,7 @@ def leave_no_memory(pid):
 
 
 def leave_no_disk(folder):
-    """Takes all room of a disk, also what others give back."""
+    """Fills a disk, and fills it again whenever others free space."""
     with open(pathlib.Path(folder) / "ballast", "wb", buffering=0) as file:
         while True:
             with contextlib.suppress(OSError):

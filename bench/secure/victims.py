@@ -48,8 +48,18 @@ class Daemon:
             web.close()
         return status, time.monotonic() - begun
 
+    def metric(self, name):
+        with contextlib.suppress(OSError, http.client.HTTPException):
+            web = http.client.HTTPConnection("127.0.0.1", self.ports["http"], timeout=DEADLINE)
+            web.request("GET", "/metrics")
+            found = re.search(rf"^{name} (\S+)$", web.getresponse().read().decode(), re.M)
+            return found[1] if found else "absent"
+        return "no answer"
+
     def weights_ms(self, recording, seconds):
         """The p50 and the longest latency of weights, in ms, and the part that was lost."""
+        if self.process.poll() is not None:
+            raise RuntimeError("the daemon has ended")
         with tempfile.NamedTemporaryFile(suffix=".json") as report:
             subprocess.run([self.bin / "furrow", "load", f"127.0.0.1:{self.ports['udp']}", recording, "--subjects", "20",
                             "--rate", "60", "--duration", str(seconds), "--quantise", "--json", report.name],
