@@ -2,6 +2,7 @@
 #include "base/time/timecode.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -28,6 +29,18 @@ std::uint32_t FrameNumber(const Timecode& timecode, std::uint32_t nominal) {
   // The first minute of ten has all its numbers, so it is longer than the others.
   const std::uint32_t minutes = rest < 60 * nominal ? 0 : (rest - dropped) / per_minute;
   return timecode.frame + dropped * (9 * tens + minutes);
+}
+
+bool IsDigits(std::string_view text) {
+  return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+// -1: the text is not a whole number, or too large.
+int ReadDigits(std::string_view text) {
+  int number = -1;
+  // from_chars() leaves `number` as it is if the digits do not fit.
+  if (IsDigits(text)) std::from_chars(text.data(), text.data() + text.size(), number);
+  return number;
 }
 
 }  // namespace
@@ -92,54 +105,61 @@ std::string TimecodeText(const Timecode& timecode) {
   return text;
 }
 
-std::optional<Timecode> ParseTimecode(std::string_view text, std::uint32_t rate_numerator,
-                                      std::uint16_t rate_denominator) {
-  const auto nominal =
-      static_cast<std::uint32_t>(NominalTimecodeRate(rate_numerator, rate_denominator));
-  if (nominal == 0) return std::nullopt;
+std::optional<TimecodeFields> ParseTimecodeFields(std::string_view text) {
   const std::size_t last = text.find_last_of(":;");
   if (last == std::string_view::npos) return std::nullopt;
-  Timecode timecode{.rate_numerator = rate_numerator, .rate_denominator = rate_denominator};
-  if (text[last] == ';') {
-    if (!HasDropFrame(rate_numerator, rate_denominator)) {
-      timecode.rate_numerator = nominal * 1000;
-      timecode.rate_denominator = 1001;
-    }
-    timecode.drop_frame = true;
-  }
-  // Hours, minutes, seconds, and frames with their parts.
-  double fields[4] = {};
-  constexpr double kLimits[] = {24.0, 60.0, 60.0};
-  for (int i = 0; i < 4; ++i) {
-    const std::size_t end = i < 3 ? text.find_first_of(":;") : text.size();
-    if (end == std::string_view::npos || !TryParseNumber(text.substr(0, end), &fields[i]) ||
-        std::signbit(fields[i]) || fields[i] >= (i < 3 ? kLimits[i] : nominal) ||
-        (i < 3 && fields[i] != std::floor(fields[i]))) {
+  TimecodeFields fields;
+  fields.drop_frame = text[last] == ';';
+  std::string_view clock = text.substr(0, last);  // HH:MM:SS
+  for (int i = 0; i < 3; ++i) {
+    const std::size_t end = clock.find(':');
+    const int field = ReadDigits(clock.substr(0, end));
+    if (field < 0 || field >= (i == 0 ? 24 : 60) || (end == std::string_view::npos) != (i == 2)) {
       return std::nullopt;
     }
-    if (i < 3) text.remove_prefix(end + 1);
+    fields.seconds = fields.seconds * 60 + field;
+    if (i < 2) clock.remove_prefix(end + 1);
   }
-  const auto minutes = static_cast<std::uint32_t>(fields[0] * 60.0 + fields[1]);
-  const double frames = std::floor(fields[3]);
-  timecode.subframe = static_cast<std::uint8_t>((fields[3] - frames) * 256.0);
-  timecode.frame = (minutes * 60 + static_cast<std::uint32_t>(fields[2])) * nominal +
-                   static_cast<std::uint32_t>(frames);
+  const std::string_view frames = text.substr(last + 1);
+  const std::size_t point = frames.find('.');
+  const bool has_part = point != std::string_view::npos;
+  if (!IsDigits(frames.substr(0, point)) || (has_part && !IsDigits(frames.substr(point + 1))) ||
+      !TryParseNumber(frames, &fields.frames) || fields.frames >= kMaxTimecodeRate) {
+    return std::nullopt;
+  }
+  return fields;
+}
+
+std::optional<Timecode> MakeTimecode(const TimecodeFields& fields, std::uint32_t rate_numerator,
+                                     std::uint16_t rate_denominator) {
+  const auto nominal =
+      static_cast<std::uint32_t>(NominalTimecodeRate(rate_numerator, rate_denominator));
+  if (fields.seconds < 0 || !(fields.frames >= 0.0) || fields.frames >= nominal) {
+    return std::nullopt;
+  }
+  Timecode timecode{.rate_numerator = rate_numerator, .rate_denominator = rate_denominator};
+  timecode.drop_frame = fields.drop_frame;
+  if (fields.drop_frame && !HasDropFrame(rate_numerator, rate_denominator)) {
+    timecode.rate_numerator = nominal * 1000;
+    timecode.rate_denominator = 1001;
+  }
+  const auto seconds = static_cast<std::uint32_t>(fields.seconds);
+  const auto frames = static_cast<std::uint32_t>(fields.frames);
+  timecode.subframe = static_cast<std::uint8_t>((fields.frames - frames) * 256.0);
+  timecode.frame = seconds * nominal + frames;
   if (timecode.drop_frame) {
+    const std::uint32_t minutes = seconds / 60;
     const std::uint32_t dropped = DroppedPerMinute(nominal);
-    if (minutes % 10 != 0 && fields[2] == 0.0 && frames < dropped) return std::nullopt;
+    if (minutes % 10 != 0 && seconds % 60 == 0 && frames < dropped) return std::nullopt;
     timecode.frame -= dropped * (minutes - minutes / 10);
   }
   return IsValid(timecode) ? std::optional(timecode) : std::nullopt;
 }
 
-std::string TimecodeRateText(const Timecode& timecode) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3f",
-                static_cast<double>(timecode.rate_numerator) / timecode.rate_denominator);
-  std::string rate = text;
-  rate.erase(rate.find_last_not_of('0') + 1);
-  if (rate.back() == '.') rate.pop_back();
-  return rate;
+std::optional<Timecode> ParseTimecode(std::string_view text, std::uint32_t rate_numerator,
+                                      std::uint16_t rate_denominator) {
+  const std::optional<TimecodeFields> fields = ParseTimecodeFields(text);
+  return fields ? MakeTimecode(*fields, rate_numerator, rate_denominator) : std::nullopt;
 }
 
 }  // namespace furrow

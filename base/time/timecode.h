@@ -19,7 +19,7 @@ struct Timecode {
   std::uint32_t rate_numerator = 30;  // frames per second: numerator / denominator
   std::uint16_t rate_denominator = 1;
   std::uint8_t subframe = 0;  // part of the frame that has passed, in 1/256 of a frame
-  bool drop_frame = false;    // 29.97 and 59.94 frames per second only
+  bool drop_frame = false;    // only if HasDropFrame()
   friend bool operator==(const Timecode&, const Timecode&) = default;
 };
 
@@ -30,7 +30,8 @@ inline constexpr int kMaxTimecodeRate = 240;
 // kMaxTimecodeRate frames per second, or up to 0.2% less than a whole number, such as 30000/1001
 // and 23.976. Returns 0 for any other rate.
 [[nodiscard]] int NominalTimecodeRate(std::uint32_t numerator, std::uint32_t denominator);
-// True for 29.97 and 59.94 frames per second, in any spelling.
+// True for rates that have drop-frame timecode: up to 0.2% below 30 or 60 frames per second, such
+// as 30000/1001, 2997/100 and 60000/1001.
 [[nodiscard]] bool HasDropFrame(std::uint32_t numerator, std::uint32_t denominator);
 
 // The number of frames before 24:00:00:00. 0: the rate, or drop_frame, is invalid.
@@ -43,8 +44,8 @@ inline constexpr int kMaxTimecodeRate = 240;
 // frames per second are drop-frame, as in Unreal Engine. A count that runs on after midnight starts
 // again.
 //
-// Returns nullopt for a count of two days or more, numbers below 0, an invalid rate, and a subframe
-// that is not finite.
+// Returns nullopt for a count that is negative or two days or more, an invalid rate, and a subframe
+// that is not finite. A subframe outside [0, 1) is clamped.
 [[nodiscard]] std::optional<Timecode> MakeTimecode(std::int64_t frame, double subframe,
                                                    std::int64_t rate_numerator,
                                                    std::int64_t rate_denominator);
@@ -52,14 +53,26 @@ inline constexpr int kMaxTimecodeRate = 240;
 // "HH:MM:SS:FF", with ';' before the frames of drop-frame timecode. Above 100 frames per second, FF
 // has three digits. The subframe is left out.
 [[nodiscard]] std::string TimecodeText(const Timecode& timecode);
-// Reads the text of TimecodeText(). A part of a frame may follow, as apps write it: "07.123". A ';'
-// before the frames means drop-frame at 29.97 or 59.94 frames per second, also if the rate is given
-// as 30 or 60, because files do not always distinguish the two. Returns nullopt if the text is not
-// a timecode of this rate, such as 00:01:00;00, which drop-frame leaves out.
+
+// What the text of a timecode says by itself, without a rate.
+struct TimecodeFields {
+  int seconds = 0;      // HH:MM:SS, below 86400
+  double frames = 0.0;  // FF and the part of a frame, below kMaxTimecodeRate
+  bool drop_frame = false;
+  friend bool operator==(const TimecodeFields&, const TimecodeFields&) = default;
+};
+// Reads the text of TimecodeText(). A part of a frame may follow, as apps write it: "07.123".
+// Fields consist of digits. Returns nullopt for any other text.
+[[nodiscard]] std::optional<TimecodeFields> ParseTimecodeFields(std::string_view text);
+// Drop-frame means 29.97 or 59.94 frames per second, also if the rate is given as 30 or 60, because
+// files do not always distinguish the two. Returns nullopt if the rate is invalid, or the fields
+// are not a timecode of this rate, such as 00:01:00;00, which drop-frame leaves out.
+[[nodiscard]] std::optional<Timecode> MakeTimecode(const TimecodeFields& fields,
+                                                   std::uint32_t rate_numerator,
+                                                   std::uint16_t rate_denominator = 1);
+// ParseTimecodeFields(), then MakeTimecode().
 [[nodiscard]] std::optional<Timecode> ParseTimecode(std::string_view text,
                                                     std::uint32_t rate_numerator,
                                                     std::uint16_t rate_denominator = 1);
-// Frames per second, "29.97", "23.976", "60".
-[[nodiscard]] std::string TimecodeRateText(const Timecode& timecode);
 
 }  // namespace furrow

@@ -22,7 +22,7 @@ struct Clip {
   std::vector<double> times;               // seconds, strictly increasing, one per frame
   std::vector<wrinkle::Transform> locals;  // local transforms, num_frames x num_joints, frame-major
   std::vector<float> blend_shapes;         // num_frames x num names, frame-major
-  // Those of the source, one per frame. Empty: it has none.
+  // The source's timecodes, one per frame. Empty: none.
   std::vector<std::optional<Timecode>> timecodes;
 
   [[nodiscard]] int num_frames() const { return static_cast<int>(times.size()); }

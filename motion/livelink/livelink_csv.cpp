@@ -27,15 +27,9 @@ namespace {
 // Frame rates of cameras, in ascending order. The timecode does not state its rate; the highest
 // frame number of a second reveals it.
 constexpr int kRates[] = {24, 25, 30, 48, 50, 60, 100, 120, 240};
-constexpr double kDefaultRate = 60.0;  // the app's default
+static_assert(kRates[std::size(kRates) - 1] == kMaxTimecodeRate);
+constexpr int kDefaultRate = 60;  // the app's default
 constexpr double kSecondsADay = 86400.0;
-
-// A cell of the column Timecode.
-struct TimeCell {
-  int seconds = 0;      // since midnight
-  double frames = 0.0;  // within the second
-  std::string_view text;
-};
 
 std::string_view Trim(std::string_view text) {
   while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
@@ -59,24 +53,73 @@ std::vector<std::string_view> SplitCells(std::string_view line, std::size_t most
   return cells;
 }
 
-// "HH:MM:SS:FF.mmm"; drop-frame timecodes have a ';' before the frames.
-Result<TimeCell> ParseTimeCell(std::string_view text, const TextCursor& cursor) {
-  double field[4] = {};
-  std::string_view rest = text;
-  bool good = true;
-  for (int i = 0; i < 4; ++i) {
-    const std::size_t end = i < 3 ? rest.find_first_of(i < 2 ? ":" : ":;") : rest.size();
-    good = good && end != std::string_view::npos && TryParseNumber(rest.substr(0, end), &field[i]);
-    if (good && i < 3) rest.remove_prefix(end + 1);
+// What the frame numbers of a recording reveal about its rate.
+struct FrameNumbers {
+  double highest = 0.0;
+  bool second_ended = false;  // only a second that ended shows all of its frame numbers
+};
+
+FrameNumbers FrameNumbersOf(const std::vector<TimecodeFields>& cells) {
+  FrameNumbers found;
+  for (const TimecodeFields& cell : cells) {
+    found.highest = std::max(found.highest, cell.frames);
+    found.second_ended = found.second_ended || cell.seconds != cells.front().seconds;
   }
-  for (int i = 0; i < 3; ++i) {
-    good = good && field[i] >= 0.0 && field[i] < (i == 0 ? 24.0 : 60.0) &&
-           field[i] == std::floor(field[i]);
+  return found;
+}
+
+// The smallest common rate above all frame numbers. nullopt: the recording is too short, and the
+// reader assumes kDefaultRate.
+std::optional<int> InferRate(const FrameNumbers& numbers) {
+  if (!numbers.second_ended && numbers.highest < kDefaultRate) return std::nullopt;
+  const auto above = std::find_if(std::begin(kRates), std::end(kRates),
+                                  [&](int rate) { return rate > numbers.highest; });
+  return *above;  // ParseTimecodeFields() rejects frames above the last rate
+}
+
+// The column Timecode at one rate.
+struct TimeColumn {
+  std::vector<std::optional<Timecode>> timecodes;  // nullopt: invalid at this rate
+  std::vector<double> seconds;                     // since midnight
+  double day = kSecondsADay;                       // from midnight to midnight
+};
+
+TimeColumn MakeTimeColumn(const std::vector<TimecodeFields>& cells, double rate) {
+  TimeColumn column;
+  column.timecodes.resize(cells.size());
+  // Rates with a fraction are n * 1000 / 1001.
+  const double nominal = std::ceil(rate);
+  if (nominal >= 1.0 && nominal <= kMaxTimecodeRate && (nominal - rate) * 500.0 <= nominal) {
+    const bool is_whole = nominal == rate;
+    const auto numerator = static_cast<std::uint32_t>(is_whole ? nominal : nominal * 1000.0);
+    std::transform(cells.begin(), cells.end(), column.timecodes.begin(),
+                   [&](const TimecodeFields& cell) {
+                     return MakeTimecode(cell, numerator, is_whole ? 1 : 1001);
+                   });
   }
-  if (!good || field[3] < 0.0 || field[3] >= kRates[std::size(kRates) - 1]) {
-    return cursor.Error(StatusCode::kParse, "the timecode is not HH:MM:SS:FF.mmm");
+  // The numbers of drop-frame timecodes have gaps, and their frames have none. A column of both
+  // would not rise, so a column with an invalid timecode counts numbers alone.
+  const auto counts_frames = [](const std::optional<Timecode>& timecode) {
+    return timecode && timecode->drop_frame;
+  };
+  const bool all_count_frames = std::ranges::all_of(column.timecodes, counts_frames);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const double frames = cells[i].frames;
+    if (all_count_frames) {
+      const Timecode& timecode = *column.timecodes[i];
+      const double part = frames - std::floor(frames);
+      column.seconds.push_back((timecode.frame + part) * timecode.rate_denominator /
+                               timecode.rate_numerator);
+    } else {
+      column.seconds.push_back(cells[i].seconds + frames / rate);
+    }
   }
-  return TimeCell{static_cast<int>((field[0] * 60.0 + field[1]) * 60.0 + field[2]), field[3], text};
+  if (all_count_frames && !cells.empty()) {  // 86 ms shorter
+    const Timecode& timecode = *column.timecodes.front();
+    column.day = static_cast<double>(TimecodeFramesPerDay(timecode)) * timecode.rate_denominator /
+                 timecode.rate_numerator;
+  }
+  return column;
 }
 
 class TakeReader {
@@ -153,8 +196,8 @@ class TakeReader {
                                std::to_string(columns_.size()),
                            cursor_.line_was_ended() ? "" : "the file seems to be cut off");
     }
-    const Result<TimeCell> time = ParseTimeCell(timecode, cursor_);
-    FURROW_RETURN_IF_ERROR(time);
+    const std::optional<TimecodeFields> time = ParseTimecodeFields(timecode);
+    if (!time) return cursor_.Error(StatusCode::kParse, "the timecode is not HH:MM:SS:FF.mmm");
     const std::size_t num_shapes = clip_.blend_shape_names.size();
     if (clip_.times.size() >= kMaxFrames ||
         (clip_.times.size() + 1) * num_shapes > kMaxBlendShapeValues) {
@@ -191,71 +234,27 @@ class TakeReader {
 
   [[nodiscard]] double Rate() {
     if (options_.timecode_rate > 0.0) return options_.timecode_rate;
-    double highest = 0.0;
-    bool second_ended = false;
-    for (std::size_t i = 0; i < cells_.size(); ++i) {
-      highest = std::max(highest, cells_[i].frames);
-      // Only a second that ended shows all of its frame numbers.
-      second_ended = second_ended || cells_[i].seconds != cells_[0].seconds;
+    const std::optional<int> inferred = InferRate(FrameNumbersOf(cells_));
+    if (!inferred && report_ != nullptr && cells_.size() > 1) {
+      report_->warnings.push_back(cursor_.Where() + ": the recording is too short to infer " +
+                                  "the timecode's rate; 60 frames per second are assumed");
     }
-    if (!second_ended && highest < kDefaultRate) {
-      if (report_ != nullptr && cells_.size() > 1) {
-        report_->warnings.push_back(cursor_.Where() + ": the recording is too short to infer " +
-                                    "the timecode's rate; 60 frames per second are assumed");
-      }
-      return kDefaultRate;
-    }
-    const auto above = std::find_if(std::begin(kRates), std::end(kRates),
-                                    [&](int rate) { return rate > highest; });
-    return *above;  // ParseTimeCell() rejects frames above the last rate
-  }
-
-  void ReadTimecodes(double rate) {
-    // A rate that the user states may have a fraction, 29.97. Its numerator then is that of a
-    // nominal rate, as all fractions of timecodes.
-    const double nominal = std::ceil(rate);
-    const bool is_whole = nominal == rate;
-    if (nominal < 1.0 || nominal > kMaxTimecodeRate) {
-      clip_.timecodes.assign(cells_.size(), std::nullopt);
-      return;
-    }
-    const auto numerator = static_cast<std::uint32_t>(is_whole ? nominal : nominal * 1000.0);
-    for (const TimeCell& cell : cells_) {
-      clip_.timecodes.push_back(ParseTimecode(cell.text, numerator, is_whole ? 1 : 1001));
-    }
-  }
-
-  // Since midnight. The numbers of drop-frame timecodes have gaps, and their frames have none.
-  [[nodiscard]] double SecondsOf(std::size_t row, double rate) const {
-    const std::optional<Timecode>& timecode = clip_.timecodes[row];
-    const double frames = cells_[row].frames;
-    if (timecode && timecode->drop_frame) {
-      const double part = frames - std::floor(frames);
-      return (timecode->frame + part) * timecode->rate_denominator / timecode->rate_numerator;
-    }
-    return cells_[row].seconds + frames / rate;
+    return inferred.value_or(kDefaultRate);
   }
 
   Status SetTimes() {
-    const double rate = Rate();
-    ReadTimecodes(rate);
+    const TimeColumn column = MakeTimeColumn(cells_, Rate());
+    clip_.timecodes.resize(cells_.size());
     double midnight = 0.0;
     double previous = 0.0;
     std::size_t kept = 0;
     const std::size_t num_shapes = clip_.blend_shape_names.size();
-    const double first = SecondsOf(0, rate);
-    // A day of drop-frame timecodes is 86 ms shorter.
-    const std::optional<Timecode>& start = clip_.timecodes[0];
-    const double day = start && start->drop_frame
-                           ? static_cast<double>(TimecodeFramesPerDay(*start)) *
-                                 start->rate_denominator / start->rate_numerator
-                           : kSecondsADay;
     for (std::size_t i = 0; i < cells_.size(); ++i) {
-      double time = SecondsOf(i, rate) - first + midnight;
+      double time = column.seconds[i] - column.seconds[0] + midnight;
       // A jump back by more than half a day is midnight.
       if (time < previous - kSecondsADay / 2) {
-        midnight += day;
-        time += day;
+        midnight += column.day;
+        time += column.day;
       }
       // A step back of at most 1 second counts as a repetition, and the row is skipped.
       if (i > 0 && time <= previous) {
@@ -267,7 +266,7 @@ class TakeReader {
       }
       // Moves the row to the front, over skipped rows.
       previous = clip_.times[kept] = time;
-      clip_.timecodes[kept] = clip_.timecodes[i];
+      clip_.timecodes[kept] = column.timecodes[i];
       std::copy_n(clip_.blend_shapes.begin() + static_cast<std::ptrdiff_t>(i * num_shapes),
                   num_shapes,
                   clip_.blend_shapes.begin() + static_cast<std::ptrdiff_t>(kept * num_shapes));
@@ -295,39 +294,55 @@ class TakeReader {
   const LoadOptions& options_;
   ClipReport* report_;
   Clip clip_;
-  std::vector<int> columns_;     // index into blend_shape_names, or one of the constants above
-  std::vector<TimeCell> cells_;  // of the column Timecode
+  std::vector<int> columns_;  // index into blend_shape_names, or one of the constants above
+  std::vector<TimecodeFields> cells_;  // of the column Timecode
   std::vector<std::size_t> lines_;
   std::size_t rows_without_face_ = 0;
   std::size_t rows_repeated_ = 0;
 };
 
-// The smallest common rate with frames that are no longer than the clip's.
-int WritingRate(const Clip& clip) {
-  const double step = MeanFrameTime(clip);
-  if (step <= 0.0) return static_cast<int>(kDefaultRate);
-  for (const int rate : kRates) {
-    if (rate >= 0.999 / step) return rate;
-  }
-  return kRates[std::size(kRates) - 1];
-}
-
-void AppendTimecode(double seconds, int rate, std::string* text) {
+// A time since the clip's start as a timecode, rounded to a thousandth of a frame.
+TimecodeFields FieldsOf(double seconds, int rate) {
   const std::int64_t a_second = std::int64_t{rate} * 1000;
   const std::int64_t total = std::llround(seconds * static_cast<double>(a_second));
-  const std::int64_t s = total / a_second;
-  const std::int64_t part = total % a_second;
+  return {.seconds = static_cast<int>(total / a_second),
+          .frames = static_cast<double>(total % a_second) / 1000.0};
+}
+
+// The smallest common rate with frames that are no longer than the clip's and that the reader will
+// infer.
+int WritingRate(const Clip& clip) {
+  const double step = MeanFrameTime(clip);
+  std::vector<TimecodeFields> cells(clip.times.size());
+  for (const int rate : kRates) {
+    if (step <= 0.0 || rate < 0.999 / step) continue;
+    std::transform(clip.times.begin(), clip.times.end(), cells.begin(),
+                   [&](double time) { return FieldsOf(time - clip.times[0], rate); });
+    if (InferRate(FrameNumbersOf(cells)) == rate) return rate;
+  }
+  // The reader infers these from any frame numbers below them.
+  return FieldsOf(clip.duration(), kDefaultRate).seconds == 0 ? kDefaultRate : kRates[0];
+}
+
+void AppendTimecode(const TimecodeFields& fields, std::string* text) {
+  const auto thousandths = static_cast<int>(std::lround(fields.frames * 1000.0));
   char buffer[64];
-  std::snprintf(buffer, sizeof(buffer), "%02d:%02d:%02d:%02d.%03d", static_cast<int>(s / 3600),
-                static_cast<int>(s / 60 % 60), static_cast<int>(s % 60),
-                static_cast<int>(part / 1000), static_cast<int>(part % 1000));
+  std::snprintf(buffer, sizeof(buffer), "%02d:%02d:%02d:%02d.%03d", fields.seconds / 3600,
+                fields.seconds / 60 % 60, fields.seconds % 60, thousandths / 1000,
+                thousandths % 1000);
   text->append(buffer);
 }
 
-// True if the recording can have the timecodes of the clip's source: the reader needs one rate, and
-// times that rise.
-bool HasTimecodes(const Clip& clip) {
-  const auto& all = clip.timecodes;
+void AppendTimecode(const Timecode& timecode, std::string* text) {
+  // Rounded up, so that the reader gets the same 256th again.
+  const int thousandths = (timecode.subframe * 1000 + 255) / 256;
+  char part[8];
+  std::snprintf(part, sizeof(part), ".%03d", thousandths);
+  text->append(TimecodeText(timecode)).append(part);
+}
+
+// True if the timecodes have one rate and rise. They may pass midnight once.
+bool DoTimecodesRise(const std::vector<std::optional<Timecode>>& all) {
   if (all.empty() || !all.front()) return false;
   int midnights = 0;
   for (std::size_t i = 1; i < all.size(); ++i) {
@@ -346,12 +361,30 @@ bool HasTimecodes(const Clip& clip) {
   return true;
 }
 
-void AppendTimecode(const Timecode& timecode, std::string* text) {
-  // Rounded up, so that the reader gets the same 256th again.
-  const int thousandths = (timecode.subframe * 1000 + 255) / 256;
-  char part[8];
-  std::snprintf(part, sizeof(part), ".%03d", thousandths);
-  text->append(TimecodeText(timecode)).append(part);
+// True if the recording can have the timecodes of the clip's source: the reader will infer their
+// rate and get the clip's times from them.
+bool CanKeepTimecodes(const Clip& clip) {
+  const auto& all = clip.timecodes;
+  if (!DoTimecodesRise(all)) return false;
+  std::vector<TimecodeFields> cells;
+  cells.reserve(all.size());
+  std::string text;
+  for (const std::optional<Timecode>& timecode : all) {
+    text.clear();
+    AppendTimecode(*timecode, &text);  // what the reader will see
+    cells.push_back(ParseTimecodeFields(text).value_or(TimecodeFields()));
+  }
+  const int rate = InferRate(FrameNumbersOf(cells)).value_or(kDefaultRate);
+  if (rate != NominalTimecodeRate(all[0]->rate_numerator, all[0]->rate_denominator)) return false;
+  // Capture times jitter, and timecodes of 23.976 frames per second run 0.1% slow.
+  const double tolerance = std::max(1.0, 0.002 * clip.duration());
+  const TimeColumn column = MakeTimeColumn(cells, rate);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    double time = column.seconds[i] - column.seconds[0];
+    if (all[i]->frame < all[0]->frame) time += column.day;  // after midnight
+    if (std::abs(time - (clip.times[i] - clip.times[0])) >= tolerance) return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -384,13 +417,19 @@ Result<std::string> LiveLinkCsvToText(const Clip& clip, ClipReport* report) {
     text += "," + name;
   }
   text += '\n';
-  const int rate = WritingRate(clip);
-  const bool has_timecodes = HasTimecodes(clip);
+  const bool has_timecodes = CanKeepTimecodes(clip);
+  const auto is_timecode = [](const std::optional<Timecode>& timecode) { return !!timecode; };
+  if (!has_timecodes && report != nullptr && std::ranges::any_of(clip.timecodes, is_timecode)) {
+    report->warnings.emplace_back(
+        "the timecodes are incomplete, repeat or jump, or their rate cannot be inferred; the file "
+        "starts at 00:00:00:00");
+  }
+  const int rate = has_timecodes ? 0 : WritingRate(clip);
   for (std::size_t f = 0; f < clip.times.size(); ++f) {
     if (has_timecodes) {
       AppendTimecode(*clip.timecodes[f], &text);
     } else {
-      AppendTimecode(clip.times[f] - clip.times[0], rate, &text);
+      AppendTimecode(FieldsOf(clip.times[f] - clip.times[0], rate), &text);
     }
     text += "," + std::to_string(num_shapes);
     for (std::size_t s = 0; s < num_shapes; ++s) {

@@ -92,6 +92,7 @@ TEST(Timecode, RatesAreWholeOrUpTo02PercentSlower) {
   }
   EXPECT_TRUE(HasDropFrame(30000, 1001));
   EXPECT_TRUE(HasDropFrame(5994, 100));
+  EXPECT_TRUE(HasDropFrame(2999, 100)) << "as protocol/STANDARD.md";
   EXPECT_FALSE(HasDropFrame(30, 1));
   EXPECT_FALSE(HasDropFrame(24000, 1001));
 }
@@ -155,10 +156,39 @@ TEST(Timecode, ReadsTheTextsOfApps) {
   EXPECT_EQ(ParseTimecode("00:10:00;00", 30), (Timecode{17'982, 30'000, 1001, 0, true}));
   EXPECT_EQ(ParseTimecode("00:01:00:00", 30'000, 1001), (Timecode{1800, 30'000, 1001, 0, false}))
       << "29.97 without drop-frame";
-  for (const char* bad :
-       {"", "00:00:00", "00:00:00:30", "24:00:00:00", "00:60:00:00", "00:00:60:00", "00:01:00;00",
-        "00:01:00;01", "-1:00:00:00", "00:00:00:-0", "00:00:0.5:00", "a:b:c:d", "00:00:00:nan",
-        "00:00:00:00:00", "1e9:00:00:00", ":::"}) {
+  for (const char* bad : {"",
+                          "00:00:00",
+                          "00:00:00:30",
+                          "24:00:00:00",
+                          "00:60:00:00",
+                          "00:00:60:00",
+                          "00:01:00;00",
+                          "00:01:00;01",
+                          "-1:00:00:00",
+                          "00:00:00:-0",
+                          "00:00:0.5:00",
+                          "a:b:c:d",
+                          "00:00:00:nan",
+                          "00:00:00:00:00",
+                          "1e9:00:00:00",
+                          ":::",
+                          "1e1:00:00:00",
+                          "+1:00:00:00",
+                          "1.0:0:0:0",
+                          "00;00;00:00",
+                          "00;00:00;00",
+                          "00:00;00:00",
+                          "00:00:00:1e1",
+                          "00:00:00:+1",
+                          "00:00:00:.5",
+                          "00:00:00:1.",
+                          "00:00:00:1.-5",
+                          "00:00:00:1.2.3",
+                          "00:00:00: 1",
+                          "99999999999:00:00:00",
+                          "00:00:00:99999999999999999999",
+                          ";",
+                          ":00:00:00"}) {
     EXPECT_FALSE(ParseTimecode(bad, 30)) << bad;
   }
   EXPECT_FALSE(ParseTimecode("00:00:00;00", 25)) << "no drop-frame at this rate";
@@ -166,11 +196,19 @@ TEST(Timecode, ReadsTheTextsOfApps) {
   EXPECT_FALSE(ParseTimecode("00:00:00:00", 30, 0));
 }
 
-TEST(Timecode, RateAsText) {
-  EXPECT_EQ(TimecodeRateText({.rate_numerator = 60}), "60");
-  EXPECT_EQ(TimecodeRateText({.rate_numerator = 30000, .rate_denominator = 1001}), "29.97");
-  EXPECT_EQ(TimecodeRateText({.rate_numerator = 24000, .rate_denominator = 1001}), "23.976");
-  EXPECT_EQ(TimecodeRateText({.rate_numerator = 120}), "120");
+TEST(Timecode, FieldsNeedNoRate) {
+  EXPECT_EQ(ParseTimecodeFields("05:42:56:07.250"), (TimecodeFields{20'576, 7.25, false}));
+  EXPECT_EQ(ParseTimecodeFields("23:59:59;239"), (TimecodeFields{86'399, 239.0, true}));
+  EXPECT_EQ(ParseTimecodeFields("1:2:3:4"), (TimecodeFields{3723, 4.0, false})) << "no zeros";
+  EXPECT_FALSE(ParseTimecodeFields("00:00:00:240")) << "above all rates";
+  EXPECT_EQ(MakeTimecode(TimecodeFields{60, 2.5, true}, 60),  // the first 4 numbers are left out
+            std::nullopt);
+  EXPECT_EQ(MakeTimecode(TimecodeFields{60, 2.5, true}, 30),
+            (Timecode{1800, 30'000, 1001, 128, true}));
+  EXPECT_FALSE(MakeTimecode(TimecodeFields{-1, 0.0, false}, 30));
+  EXPECT_FALSE(MakeTimecode(TimecodeFields{0, -1.0, false}, 30));
+  EXPECT_FALSE(MakeTimecode(TimecodeFields{0, NAN, false}, 30));
+  EXPECT_FALSE(MakeTimecode(TimecodeFields{86'400, 0.0, false}, 30));
 }
 
 }  // namespace

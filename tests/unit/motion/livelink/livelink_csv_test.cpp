@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "motion/livelink/livelink_csv.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -95,6 +96,7 @@ TEST(LiveLinkCsv, NamesTheLineOfEveryError) {
       {good + "00:00:00:240,3,0,0,0\n", StatusCode::kParse, "t.csv:3"},
       {good + "00:00:02,3,0,0,0\n", StatusCode::kParse, "t.csv:3"},
       {good + "1.5:00:00:00,3,0,0,0\n", StatusCode::kParse, "t.csv:3"},
+      {good + "1e1:00:00:00,3,0,0,0\n", StatusCode::kParse, "t.csv:3"},
       {good + "00:01:00:00,3,0,0,0\n00:00:30:00,3,0,0,0\n", StatusCode::kParse, "t.csv:4"}};
   for (const auto& [text, code, where] : kCases) {
     const Result<Clip> clip = ParseLiveLinkCsv(text, "t.csv");
@@ -170,21 +172,160 @@ TEST(LiveLinkCsv, TimesOfDropFrameTimecodesHaveNoGaps) {
   EXPECT_NEAR(midnight.times[1], 1001.0 / 30'000, 1e-6);
 }
 
+// 4 of 5 rows, if rows in the gap counted otherwise than the others.
+TEST(LiveLinkCsv, AnInvalidDropFrameTimecodeLosesNoRow) {
+  std::string text = kHeader;
+  for (const char* timecode :
+       {"00:09:00;00", "00:09:00;01", "00:09:00;02", "00:09:00;29", "00:09:01;00"}) {
+    text += std::string(timecode) + ",3,0,0,0\n";
+  }
+  ClipReport report;
+  const Clip clip = Parse(text, {}, &report);
+  ASSERT_EQ(clip.num_frames(), 5);
+  EXPECT_THAT(report.warnings, SizeIs(0));
+  EXPECT_NEAR(clip.times[2], 2.0 / 30.0, 1e-9);
+  EXPECT_NEAR(clip.times[4], 1.0, 1e-9);
+  EXPECT_FALSE(clip.timecodes[0]) << "left out";
+  EXPECT_TRUE(clip.timecodes[2]);
+}
+
+TEST(LiveLinkCsv, RatesThatNoTimecodeHasGiveNone) {
+  const std::string text = std::string(kHeader) + "00:00:10:00,3,0,0,0\n00:00:10:05,3,0,0,0\n";
+  for (const double rate : {12.5, 29.5, 0.5, 300.0}) {
+    const Clip clip = Parse(text, {.timecode_rate = rate});
+    EXPECT_THAT(clip.timecodes, ElementsAre(std::nullopt, std::nullopt)) << rate;
+    EXPECT_NEAR(clip.times[1], 5.0 / rate, 1e-9);
+  }
+  for (const double rate : {29.97, 30'000.0 / 1001.0}) {
+    EXPECT_EQ(Parse(text, {.timecode_rate = rate}).timecodes[0],
+              (Timecode{.frame = 300, .rate_numerator = 30'000, .rate_denominator = 1001}));
+  }
+  EXPECT_EQ(Parse(text, {.timecode_rate = 25.0}).timecodes[0],
+            (Timecode{.frame = 250, .rate_numerator = 25}));
+}
+
+struct Written {
+  std::string first;  // timecode
+  Clip read;
+  std::vector<std::string> warnings;
+};
+
+Written WriteAndRead(const Clip& clip) {
+  ClipReport report;
+  const std::string text = *LiveLinkCsvToText(clip, &report);
+  return {text.substr(text.find('\n') + 1, 11), Parse(text), report.warnings};
+}
+
+// A take of `frames` poses, one every `step` frames of timecode, from 01:00:00:00.
+Clip MakeTimedTake(std::uint32_t numerator, std::uint32_t denominator, int frames, double step) {
+  const double rate = static_cast<double>(numerator) / denominator;
+  Clip clip = MakeTake(rate / step, frames);
+  const std::int64_t hour =
+      TimecodeFramesPerDay(*MakeTimecode(0, 0.0, numerator, denominator)) / 24;
+  for (int f = 0; f < frames; ++f) {
+    const double frame = f * step;
+    const double whole = std::floor(frame);
+    clip.timecodes.push_back(MakeTimecode(hour + static_cast<std::int64_t>(whole), frame - whole,
+                                          numerator, denominator));
+  }
+  return clip;
+}
+
+TEST(LiveLinkCsv, WritesTimecodesThatGiveTheTimesBack) {
+  for (const auto& [numerator, denominator] : {std::pair<std::uint32_t, std::uint32_t>{24, 1},
+                                               {25, 1},
+                                               {30, 1},
+                                               {60, 1},
+                                               {120, 1},
+                                               {30'000, 1001},
+                                               {60'000, 1001},
+                                               {24'000, 1001}}) {
+    const Clip clip = MakeTimedTake(numerator, denominator, 900, 1.0);
+    const Written written = WriteAndRead(clip);
+    EXPECT_EQ(written.first.substr(0, 8), "01:00:00") << numerator;
+    EXPECT_EQ(written.warnings.size(), 0u) << numerator;
+    ASSERT_EQ(written.read.num_frames(), 900);
+    // Only 23.976 frames per second are read 0.1% slow.
+    const double error = numerator == 24'000 ? 0.0011 * clip.duration() : 1e-9;
+    EXPECT_NEAR(written.read.times.back(), clip.times.back(), error) << numerator;
+  }
+}
+
+TEST(LiveLinkCsv, TimecodesWithOtherTimesAreNotWritten) {
+  // The clock of the shoot was set forward by ten hours.
+  Clip jump = MakeTimedTake(60, 1, 180, 1.0);
+  for (std::size_t i = 90; i < 180; ++i) jump.timecodes[i]->frame += 10 * 3600 * 60;
+  // The reader would take them for 24, 100, 50 and 25 frames per second, and the last for 60.
+  Clip slow = MakeTimedTake(15, 1, 150, 1.0);
+  Clip fast = MakeTimedTake(72, 1, 720, 1.0);
+  Clip sparse60 = MakeTimedTake(60, 1, 50, 12.0);
+  Clip sparse30 = MakeTimedTake(30, 1, 50, 6.0);
+  Clip brief = MakeTimedTake(30, 1, 15, 1.0);
+  // Times of another speed.
+  Clip half = MakeTimedTake(60, 1, 600, 1.0);
+  for (double& time : half.times) time *= 0.5;
+  for (const Clip* clip : {&jump, &slow, &fast, &sparse60, &sparse30, &brief, &half}) {
+    const Written written = WriteAndRead(*clip);
+    EXPECT_EQ(written.first, "00:00:00:00");
+    EXPECT_THAT(written.warnings, ElementsAre(HasSubstr("starts at 00:00:00:00")));
+    ASSERT_EQ(written.read.num_frames(), clip->num_frames());
+    for (std::size_t i = 0; i < clip->times.size(); ++i) {
+      EXPECT_NEAR(written.read.times[i], clip->times[i], 0.001 / 24.0);
+    }
+  }
+}
+
+// At 23.976 frames per second, the timecode is 3.6 s behind after an hour.
+TEST(LiveLinkCsv, ASlowTimecodeIsWrittenOnlyWithinItsTolerance) {
+  const Clip slow = MakeTimedTake(24'000, 1001, 3600 * 24, 1.0);
+  const Written written = WriteAndRead(slow);
+  EXPECT_EQ(written.first, "01:00:00:00");
+  EXPECT_NEAR(written.read.times.back(), slow.times.back() / 1.001, 1e-3);
+  // 1.5 s beside the clock is within the 7.2 s that an hour may differ, but not within a minute's 1
+  // s.
+  for (const auto& [frames, first] :
+       {std::pair{3600 * 30, "01:00:00:00"}, {60 * 30, "00:00:00:00"}}) {
+    Clip clip = MakeTimedTake(30, 1, frames, 1.0);
+    for (std::size_t i = 1; i < clip.times.size(); ++i) clip.times[i] += 1.5;
+    EXPECT_EQ(WriteAndRead(clip).first, first);
+  }
+}
+
+// The reader cannot infer the smallest rate that fits from uneven or few frames.
+TEST(LiveLinkCsv, WithoutTimecodesTheReaderGetsTheTimesBack) {
+  for (const double rate : {5.0, 15.0, 26.0, 30.0, 49.0, 72.0, 90.0, 120.0, 240.0}) {
+    for (const double seconds : {0.2, 0.5, 0.99999999, 1.0, 1.2, 3.0}) {
+      Clip clip = MakeTake(rate, static_cast<int>(rate * seconds) + 2);
+      clip.times.back() = std::max(seconds, clip.times[clip.times.size() - 2] + 0.001);
+      const Clip read = WriteAndRead(clip).read;
+      ASSERT_EQ(read.num_frames(), clip.num_frames());
+      for (std::size_t i = 0; i < clip.times.size(); ++i) {
+        EXPECT_NEAR(read.times[i], clip.times[i], 0.001 / 24.0)
+            << rate << " Hz, " << seconds << " s";
+      }
+    }
+  }
+  Clip uneven = MakeTake(1.0, 5);
+  uneven.times = {0.0, 0.01, 0.02, 0.03, 1.1};  // 30 frames per second or less, by the mean
+  EXPECT_NEAR(WriteAndRead(uneven).read.times[3], 0.03, 1e-4);
+  uneven.times = {0.0, 0.001, 0.002, 0.003, 0.1};  // 48
+  EXPECT_NEAR(WriteAndRead(uneven).read.times[4], 0.1, 1e-4);
+}
+
 // A file with them could not be read again as it is.
 TEST(LiveLinkCsv, TimecodesThatDoNotRiseAreNotWritten) {
   const auto first_of = [](std::vector<std::optional<Timecode>> timecodes) {
-    Clip clip = MakeTake(30.0, 3);
+    Clip clip = MakeTake(60.0, 3);
     clip.timecodes = std::move(timecodes);
-    const std::string text = *LiveLinkCsvToText(clip);
-    return text.substr(text.find('\n') + 1, 11);
+    return WriteAndRead(clip).first;
   };
-  const auto at = [](std::uint32_t frame) { return MakeTimecode(frame, 0.0, 30, 1); };
-  EXPECT_EQ(first_of({at(300), at(301), at(302)}), "00:00:10:00");
-  EXPECT_EQ(first_of({at(30 * 86'400 - 1), at(0), at(1)}), "23:59:59:29") << "midnight";
-  EXPECT_EQ(first_of({at(300), at(300), at(302)}), "00:00:00:00") << "repeated";
-  EXPECT_EQ(first_of({at(300), at(100), at(302)}), "00:00:00:00") << "back";
-  EXPECT_EQ(first_of({at(300), std::nullopt, at(302)}), "00:00:00:00") << "missing";
-  EXPECT_EQ(first_of({at(300), MakeTimecode(301, 0.0, 25, 1), at(302)}), "00:00:00:00")
+  const auto at = [](std::uint32_t frame) { return MakeTimecode(frame, 0.0, 60, 1); };
+  EXPECT_EQ(first_of({at(600), at(601), at(602)}), "00:00:10:00");
+  EXPECT_EQ(first_of({at(60 * 86'400 - 1), at(0), at(1)}), "23:59:59:59") << "midnight";
+  EXPECT_EQ(first_of({at(600), at(600), at(602)}), "00:00:00:00") << "repeated";
+  EXPECT_EQ(first_of({at(600), at(100), at(602)}), "00:00:00:00") << "back";
+  EXPECT_EQ(first_of({at(600), std::nullopt, at(602)}), "00:00:00:00") << "missing";
+  EXPECT_EQ(first_of({at(600), MakeTimecode(601, 0.0, 25, 1), at(602)}), "00:00:00:00")
       << "another rate";
 }
 
