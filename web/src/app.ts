@@ -30,7 +30,7 @@ import { Elsewhere } from './state/elsewhere';
 import { isAcross, isCompact } from './state/layout';
 import { browserStore } from './state/presets';
 import { setToken } from './state/token';
-import { WeightHistory } from './state/weight_history';
+import { type WeightFrame, WeightHistory } from './state/weight_history';
 import { text } from './text';
 import { button, h } from './ui/dom';
 import { returnFocus } from './ui/focus';
@@ -220,7 +220,7 @@ export class App {
     this.weights.subject.watch((name) => {
       if (name !== '') this.elsewhere.reset();
       this.curves.reset();
-      this.timecode.show(this.history.current);
+      this.timecode.show(this.timed);
       this.guide.onSubject(name);
       this.curves.take.onSubject(name);
       void this.readRig();
@@ -287,9 +287,13 @@ export class App {
     this.explain.show(region, weights);
   }
 
+  /** The frame whose timecode the page shows. Pictures of a pose at rest end, and its timecode goes on. */
+  private get timed(): WeightFrame | undefined {
+    return this.isAtRest() ? this.history.latest : this.history.current;
+  }
+
   private onWeights(): void {
-    // Pictures of a pose at rest end, and its timecode goes on.
-    this.timecode.show(this.viewer.stats.still ? this.history.latest : this.history.current);
+    this.timecode.show(this.timed);
     this.curves.onFrame();
     this.faceMap.onFrame();
   }
@@ -404,7 +408,7 @@ export class App {
       date: new Date(), host: location.host, version: this.status?.version ?? '', userAgent: navigator.userAgent,
       width: innerWidth, height: innerHeight, density: devicePixelRatio, ...this.header.words(),
       sequence: this.viewer.picture()?.sequence ?? null,
-      timecode: history.current?.timecode?.text ?? '',
+      timecode: this.timed?.timecode?.text ?? '',
       weights: history.names.map((name) => [name, history.value(name)] as const),
       fragment: /#(.*)$/.exec(this.state.link())?.[1] ?? '',
     });

@@ -82,7 +82,7 @@ export class Header {
     this.open.hidden = !open;
   }
 
-  /** The advice is beside the picture, where there is room for it. */
+  /** The advice is beside the picture, where there is room for it, and in the tooltip. */
   showCondition({ state, text: words, advice }: Condition): void {
     const title = advice === '' ? words : `${words}. ${advice}`;
     if (this.status.title === title && this.status.dataset.state === state) return;
