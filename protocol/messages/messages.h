@@ -181,7 +181,7 @@ struct PoseFrame {
   // (DecodePrevious()); at most kMaxDatagramBytes; empty: not repeated.
   std::vector<std::uint8_t> previous;
   std::uint32_t previous_age_us = 0;  // capture time of this pose minus that of the previous one
-  // That of the source, if it has one. It changes nothing: times come from the capture time.
+  // The source's timecode, if it sends one. It is only a label: times come from the capture time.
   std::optional<Timecode> timecode;
 };
 

@@ -24,8 +24,8 @@ inline constexpr int kNumLiveLinkFaceShapes = 61;
 // - The capture time follows from the sender's frame number, subframe and frame rate. A frame that
 //   is not newer than the last one is dropped as reordered, unless it is more than 5 s older: then
 //   the sender restarted or its clock passed midnight.
-// - The same numbers are the timecode (MakeTimecode()), except if they are none: a rate that no
-//   timecode has, or a count of two days and more. Such frames are used without a timecode.
+// - The timecode follows from these numbers, too (MakeTimecode()). A frame has none if its rate is
+//   not one of timecodes, or if it is two days or more after midnight.
 // - If two devices use one subject name, the first eight characters of the device id are appended
 //   to the name of the later device. Above 16 devices, the one that was silent longest is dropped.
 // - Malformed: another packet version, a string above 255 bytes, another count than 61, or a size
