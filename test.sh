@@ -23,17 +23,22 @@ while [[ $# -gt 0 ]]; do
 done
 
 jobs=$(nproc)
+ahead=  # the process of build_fuzz_ahead
 
 step() { printf '\n== %s\n' "$*"; }
+
+# configure PRESET
+configure() {
+  [[ ! -f build/$1/build.ninja ]] || return 0
+  local log=build/$1-configure.log
+  mkdir -p build
+  cmake --preset "$1" >"$log" 2>&1 || { cat "$log" >&2; exit 1; }
+}
 
 # build PRESET [TARGET]
 build() {
   step "build: $1"
-  if [[ ! -f build/$1/build.ninja ]]; then
-    local log=build/$1-configure.log
-    mkdir -p build
-    cmake --preset "$1" >"$log" 2>&1 || { cat "$log" >&2; exit 1; }
-  fi
+  configure "$1"
   cmake --build --preset "$1" -j "$jobs" --target "${2:-all}"
 }
 
@@ -44,6 +49,15 @@ run_tests() {
   local exclude=()
   [[ $tier != default ]] || exclude=(--label-exclude '^all$')
   ctest --preset "$1" -j "$((jobs + 1))" "${exclude[@]}" "${@:2}"
+}
+
+# Builds the fuzz targets in the background, with what the tests leave of the processor: many of them run alone, and often wait.
+# fuzz_all completes the build, and shows its faults.
+build_fuzz_ahead() {
+  configure fuzz
+  nice -n 19 ninja -C build/fuzz -j "$jobs" fuzz_targets >build/fuzz-ahead.log 2>&1 &
+  ahead=$!
+  trap 'kill "$ahead" 2>/dev/null || true' EXIT
 }
 
 # fuzz_one TARGET SECONDS: runs one fuzz target with the committed seeds, and prints what it did when it ends.
@@ -76,6 +90,8 @@ fuzz_one() {
 
 # fuzz_all SECONDS: runs every fuzz target for SECONDS, one per core at a time.
 fuzz_all() {
+  [[ -z $ahead ]] || wait "$ahead" || true
+  ahead=
   build fuzz fuzz_targets
   local target running=0 failed=0
   for target in build/fuzz/bin/fuzz_*; do
@@ -98,6 +114,7 @@ case "$tier" in
   *) deploy/install-deps.sh "$tier" ;;
 esac
 build "$preset"
+[[ $tier != all ]] || build_fuzz_ahead
 run_tests "$preset" "$@"
 case "$tier" in
   all) fuzz_all 10 ;;
