@@ -7,6 +7,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/sanitizers.h"
+
 namespace furrow {
 namespace {
 
@@ -70,9 +72,7 @@ TEST(LimitedProcess, OversizedOutputIsALimit) {
 }
 
 TEST(LimitedProcess, MemoryAndCoreAreLimited) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "memory is not limited under sanitizers";
-#endif
+  if (!kLimitsMemory) GTEST_SKIP() << "memory is not limited under sanitizers";
   const auto output = Shell("cat >/dev/null; ulimit -v; ulimit -c", {},
                             {.max_memory_bytes = std::size_t{256} << 20});
   ASSERT_TRUE(output.ok()) << output.status().ToString();

@@ -14,6 +14,8 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "tests/sanitizers.h"
+
 namespace furrow {
 namespace {
 
@@ -21,12 +23,6 @@ TEST(MemoryReserve, DoesNothingUnlessItIsInstalled) {
   EXPECT_EQ(MemoryReserve::Refill(), 0u);
   EXPECT_FALSE(MemoryReserve::IsShort());
 }
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kIsSanitized = true;  // sanitizers need address space
-#else
-constexpr bool kIsSanitized = false;
-#endif
 
 constexpr std::size_t kMebibyte = std::size_t{1} << 20;
 constexpr std::size_t kThird = MemoryReserve::kChunks / 3;
@@ -136,7 +132,7 @@ void StartWithASmallStack() {
 class MemoryReserveDeathTest : public testing::Test {
  protected:
   void SetUp() override {
-    if (kIsSanitized) GTEST_SKIP() << "sanitizers need address space";
+    if (!kLimitsMemory) GTEST_SKIP() << "sanitizers need address space";
     // In a new process: this one may have free memory of its own.
     GTEST_FLAG_SET(death_test_style, "threadsafe");
   }
