@@ -35,26 +35,25 @@ class Daemon:
     def mebibytes(self):
         return resident_kib(self.process.pid) / 1024
 
-    def get(self, path, timeout=DEADLINE):
+    def fetch(self, path):
+        """Returns the status and the body; status 0: no answer."""
+        with contextlib.suppress(OSError, http.client.HTTPException):
+            web = http.client.HTTPConnection("127.0.0.1", self.ports["http"], timeout=DEADLINE)
+            with contextlib.closing(web):
+                web.request("GET", path)
+                answer = web.getresponse()
+                return answer.status, answer.read()
+        return 0, b""
+
+    def get(self, path):
         """Returns the status and the seconds; status 0: no answer."""
         begun = time.monotonic()
-        status = 0
-        with contextlib.suppress(OSError, http.client.HTTPException):
-            web = http.client.HTTPConnection("127.0.0.1", self.ports["http"], timeout=timeout)
-            web.request("GET", path)
-            answer = web.getresponse()
-            answer.read()
-            status = answer.status
-            web.close()
+        status, _ = self.fetch(path)
         return status, time.monotonic() - begun
 
     def metric(self, name):
-        with contextlib.suppress(OSError, http.client.HTTPException):
-            web = http.client.HTTPConnection("127.0.0.1", self.ports["http"], timeout=DEADLINE)
-            web.request("GET", "/metrics")
-            found = re.search(rf"^{name} (\S+)$", web.getresponse().read().decode(), re.M)
-            return found[1] if found else "absent"
-        return "no answer"
+        found = re.search(rf"^{name} (\S+)$", self.fetch("/metrics")[1].decode(), re.M)
+        return found[1] if found else "absent"
 
     def weights_ms(self, recording, seconds):
         """The p50 and the longest latency of weights, in ms, and the part that was lost."""
