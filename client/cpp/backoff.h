@@ -33,7 +33,7 @@ class Backoff {
   }
   // The next attempt is not due before `time_us`.
   void NotBefore(std::int64_t time_us) { due_us_ = std::max(due_us_, time_us); }
-  // The peer answered: the next pause is short again.
+  // The connection works: the next pause is short again.
   void Succeeded() { pause_us_ = limits_.first_us; }
 
   // Time until the next attempt is due, microseconds; 0 or less: now.

@@ -15,6 +15,9 @@ namespace {
 
 // A TCP attempt that takes longer has failed.
 constexpr std::int64_t kConnectTimeoutUs = 3'000'000;
+// A message that arrives this long after opening proves that the connection works. An earlier one
+// may be a refusal.
+constexpr std::int64_t kProvenUs = 1'000'000;
 // A UDP socket that only fails for this time is opened again.
 constexpr std::int64_t kReopenUs = 5'000'000;
 // The same if other servers may be there.
@@ -47,7 +50,7 @@ ReconnectingTransport::ReconnectingTransport(TransportKind kind, Opener open, Cl
   up_ = true;
   generation_ = 1;
   inner_generation_ = inner_->generation();
-  opened_us_ = now_us_();
+  opened_us_ = up_us_ = now_us_();
 }
 
 std::unique_ptr<ReconnectingTransport> ReconnectingTransport::Create(
@@ -166,6 +169,7 @@ IoStatus ReconnectingTransport::Receive(std::span<const std::uint8_t>& message,
   // A secure session may begin again in the same socket.
   if (inner_->connected() && (!up_ || inner_->generation() != inner_generation_)) {
     up_ = true;
+    up_us_ = now_us;
     inner_generation_ = inner_->generation();
     refusal_ = protocol::secure::Refusal::kNone;
     ++generation_;
@@ -173,7 +177,7 @@ IoStatus ReconnectingTransport::Receive(std::span<const std::uint8_t>& message,
   switch (status) {
     case IoStatus::kOk:
       // An open port alone proves nothing: it may close each connection at once.
-      backoff_.Succeeded();
+      if (now_us - up_us_ >= kProvenUs) backoff_.Succeeded();
       failing_since_us_.reset();
       tls_failed_ = false;
       return status;

@@ -93,7 +93,8 @@ class ReconnectingTransport : public Transport {
   std::uint64_t generation_ = 0;
   std::uint64_t inner_generation_ = 0;  // of inner_, that generation_ has counted
   protocol::secure::Refusal refusal_ = protocol::secure::Refusal::kNone;
-  std::int64_t opened_us_ = 0;                    // when inner_ was opened
+  std::int64_t opened_us_ = 0;                    // when the attempt of inner_ began
+  std::int64_t up_us_ = 0;                        // when inner_ was connected
   std::optional<std::int64_t> failing_since_us_;  // UDP: first failure without a message since
   std::string failure_;
   bool tls_failed_ = false;

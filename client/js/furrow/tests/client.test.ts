@@ -210,6 +210,19 @@ test('a dead connection is given up', async () => {
   await until(machine, () => client.state === 'connected');
 });
 
+test('a daemon that refuses every connection is tried less often', async () => {
+  const { machine, daemon } = start('tcp');
+  for (let ms = 0; ms < 10_000; ms += 10) {
+    machine.advance(10);
+    await settle();
+    daemon.refuse(0, 6, 'no room');
+    await settle();
+    daemon.events?.onClose('closed');
+  }
+  // The pauses grow to 0.8 s, of which the test's random numbers take three quarters.
+  assert(daemon.numOpened >= 10 && daemon.numOpened <= 25, `${daemon.numOpened} connections in 10 s`);
+});
+
 test('a daemon that is silent after a restart is not reported as connected', async () => {
   const { machine, daemon, client } = start('udp');
   await until(machine, () => client.names().length > 0);

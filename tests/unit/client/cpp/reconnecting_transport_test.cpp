@@ -141,6 +141,34 @@ TEST_F(ReconnectingTransportTest, APortThatClosesEveryConnectionIsTriedLessOften
   EXPECT_GE(attempts_, 20);
 }
 
+TEST_F(ReconnectingTransportTest, ADaemonThatRefusesEveryConnectionIsTriedLessOften) {
+  ReconnectingTransport transport = Make(TransportKind::kTcp);
+  for (std::int64_t end = now_us_ + 100'000; now_us_ < end; now_us_ += 100) {
+    const int before = attempts_;
+    (void)Receive(transport);
+    // One error, then the end.
+    if (attempts_ != before) far_->to_receive.push_back(bytes_);
+    if (far_ != nullptr) far_->when_empty = IoStatus::kClosed;
+  }
+  EXPECT_LE(attempts_, 54);
+  EXPECT_GE(attempts_, 20);
+}
+
+TEST_F(ReconnectingTransportTest, AConnectionThatWorkedIsOpenedAgainSoon) {
+  ReconnectingTransport transport = Make(TransportKind::kTcp);
+  reachable_ = false;
+  for (int i = 0; i < 10; ++i, now_us_ += 4000) (void)Receive(transport);
+  reachable_ = true;
+  EXPECT_EQ(Receive(transport), IoStatus::kTimeout);
+  now_us_ += 1'000'000;
+  far_->to_receive.push_back(bytes_);
+  EXPECT_EQ(Receive(transport), IoStatus::kOk);
+  far_->when_empty = IoStatus::kClosed;
+  EXPECT_EQ(Receive(transport), IoStatus::kNoConnection);
+  now_us_ += 1000;
+  EXPECT_EQ(Receive(transport), IoStatus::kTimeout) << "the first pause is the short one again";
+}
+
 TEST_F(ReconnectingTransportTest, AUdpSocketIsKeptForSomeSeconds) {
   ReconnectingTransport transport = Make(TransportKind::kUdp);
   EXPECT_EQ(Receive(transport), IoStatus::kTimeout);

@@ -18,7 +18,7 @@ export class Backoff {
     return pauseMs;
   }
 
-  /** The daemon answered, so the next pause is short again. */
+  /** The connection works, so the next pause is short again. */
   succeeded(): void {
     this.pauseMs = FIRST_MS;
   }

@@ -22,7 +22,9 @@ const PING_MS = { ws: 1000, tcp: 1000, udp: 400 } as const;
 const SILENCE_MS = 5000;
 /** An attempt that takes longer has failed. */
 const CONNECT_MS = 3000;
-/** The same if there are other servers to go to. */
+/** A message that arrives this long after opening proves that the connection works. An earlier one may be a refusal. */
+const PROVEN_MS = 1000;
+/** The same as SILENCE_MS if there are other servers to go to. */
 const SILENCE_WITH_OTHERS_MS = 2000;
 /** A client that was sent elsewhere, but stays, asks again after this time. */
 const STAY_MS = 800;
@@ -113,6 +115,7 @@ export class Connection {
   private serverSession = 0n;
   private sequence = 0;
   private openedMs = 0;
+  private upMs = 0;
   private heardMs = 0;
   private sentMs = 0;
   private numConnects = 0;
@@ -239,7 +242,7 @@ export class Connection {
   }
 
   private opened(): void {
-    this.heardMs = this.environment.nowMs();
+    this.heardMs = this.upMs = this.environment.nowMs();
     this.isUp = true;
     this.clock.reset();
     this.proveAgain();
@@ -368,7 +371,7 @@ export class Connection {
 
   private handle(message: Envelope): void {
     this.heardMs = this.environment.nowMs();
-    this.backoff.succeeded();
+    if (this.heardMs - this.upMs >= PROVEN_MS) this.backoff.succeeded();
     this.noticeRestart(message.session);
     switch (message.identifier) {
       case 'FWEL':
