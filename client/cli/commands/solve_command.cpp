@@ -71,7 +71,7 @@ int SolveFile(const SolveOptions& options) {
                    options.file, "please report this file"});
     }
     const auto values = options.drivers ? solver.driver_values() : solver.wrinkle_weights();
-    if (!writer->Row(frame, clip->times[frame] - clip->times[0], values)) {
+    if (!writer->Row({frame, clip->times[frame] - clip->times[0], {}}, values)) {
       return StandardOutputFailed();
     }
     progress.Set(frame + 1);

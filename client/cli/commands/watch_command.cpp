@@ -21,6 +21,7 @@ struct WatchOptions {
   bool udp = false;
   bool u8 = false;
   bool drivers = false;
+  bool timecode = false;
   protocol::SubscribeWeights request;
 };
 
@@ -29,7 +30,7 @@ class WeightRows {
  public:
   WeightRows(const WatchOptions& options, client::Subscriber& subscriber)
       : subscriber_(subscriber),
-        writer_(WeightWriter::Create(options.format)),
+        writer_(WeightWriter::Create(options.format, options.timecode)),
         left_(options.listen.frames) {}
 
   bool operator()(const client::Event& event) {
@@ -43,7 +44,7 @@ class WeightRows {
     if (frame.age_us > 0 || !names_hash_ || frame.names_hash != *names_hash_) return true;
     if (!first_us_) first_us_ = event.header.capture_time_us;
     const double seconds = static_cast<double>(event.header.capture_time_us - *first_us_) * 1e-6;
-    if (!writer_->Row(event.header.sequence, seconds, frame.values)) {
+    if (!writer_->Row({event.header.sequence, seconds, frame.timecode}, frame.values)) {
       failure_ = StandardOutputFailed();
       return false;
     }
@@ -113,6 +114,9 @@ void AddWatch(CLI::App& app, Action& action) {
   command->add_flag("--u8", options->u8, "Receive 8-bit weights (error up to 1/510)");
   command->add_flag("--drivers", options->drivers,
                     "Receive driver values, before modulation and filter, instead of weights");
+  command->add_flag(
+      "--timecode", options->timecode,
+      "Add a last column 'timecode' to CSV; other formats show it if the source sends it");
   command->callback([options, &action] { action = [options] { return Watch(*options); }; });
 }
 

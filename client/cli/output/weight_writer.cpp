@@ -19,18 +19,27 @@ bool Flush() { return std::fflush(stdout) == 0 && std::ferror(stdout) == 0; }
 
 class CsvWriter : public WeightWriter {
  public:
+  explicit CsvWriter(bool timecodes) : timecodes_(timecodes) {}
+
   void Names(std::span<const std::string> names) override {
     std::fputs("frame,time", stdout);
     for (const std::string& name : names) std::printf(",%s", name.c_str());
-    std::fputc('\n', stdout);
+    std::fputs(timecodes_ ? ",timecode\n" : "\n", stdout);
   }
 
-  bool Row(std::int64_t frame, double seconds, std::span<const float> values) override {
-    std::printf("%" PRId64 ",%.6f", frame, seconds);
+  bool Row(const RowLabel& label, std::span<const float> values) override {
+    std::printf("%" PRId64 ",%.6f", label.frame, label.seconds);
     for (const float value : values) std::printf(",%.6f", static_cast<double>(value));
+    if (timecodes_) {
+      std::fputc(',', stdout);
+      if (label.timecode) std::fputs(TimecodeText(*label.timecode).c_str(), stdout);
+    }
     std::fputc('\n', stdout);
     return Flush();
   }
+
+ private:
+  bool timecodes_;
 };
 
 // One JSON object per line, for programs that read a stream. Written by hand: a JSON library writes
@@ -46,9 +55,11 @@ class JsonlWriter : public WeightWriter {
     }
   }
 
-  bool Row(std::int64_t frame, double seconds, std::span<const float> values) override {
-    line_ = "{\"frame\":" + std::to_string(frame) + ",\"time\":" + nlohmann::json(seconds).dump() +
-            ",\"weights\":{";
+  bool Row(const RowLabel& label, std::span<const float> values) override {
+    line_ = "{\"frame\":" + std::to_string(label.frame) +
+            ",\"time\":" + nlohmann::json(label.seconds).dump();
+    if (label.timecode) line_ += ",\"timecode\":\"" + TimecodeText(*label.timecode) + '"';
+    line_ += ",\"weights\":{";
     for (std::size_t i = 0; i < std::min(keys_.size(), values.size()); ++i) {
       if (i > 0) line_ += ',';
       line_ += keys_[i];
@@ -72,7 +83,7 @@ class TableWriter : public WeightWriter {
     order_.resize(names_.size());
   }
 
-  bool Row(std::int64_t frame, double seconds, std::span<const float> values) override {
+  bool Row(const RowLabel& label, std::span<const float> values) override {
     constexpr std::size_t kRows = 8;
     constexpr int kBar = 30;
     const std::size_t count = std::min(kRows, std::min(order_.size(), values.size()));
@@ -81,7 +92,9 @@ class TableWriter : public WeightWriter {
     std::partial_sort(
         order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(count), order_.end(),
         [&](int a, int b) { return values[a] > values[b] || (values[a] == values[b] && a < b); });
-    std::printf("frame %" PRId64 "  %.3f s\n", frame, seconds);
+    std::printf("frame %" PRId64 "  %.3f s", label.frame, label.seconds);
+    if (label.timecode) std::printf("  %s", TimecodeText(*label.timecode).c_str());
+    std::fputc('\n', stdout);
     for (std::size_t i = 0; i < count; ++i) {
       const float value = values[order_[i]];
       // Too small to matter; the values are sorted, so all others are smaller.
@@ -100,9 +113,9 @@ class TableWriter : public WeightWriter {
 
 }  // namespace
 
-std::unique_ptr<WeightWriter> WeightWriter::Create(TableFormat format) {
+std::unique_ptr<WeightWriter> WeightWriter::Create(TableFormat format, bool timecodes) {
   switch (format) {
-    case TableFormat::kCsv: return std::make_unique<CsvWriter>();
+    case TableFormat::kCsv: return std::make_unique<CsvWriter>(timecodes);
     case TableFormat::kJsonl: return std::make_unique<JsonlWriter>();
     case TableFormat::kTable: break;
   }

@@ -12,17 +12,36 @@ namespace {
 const std::vector<std::string> kNames{"brow_l.squash", "knee_l_inner.folds"};
 constexpr std::array<float, 2> kValues{0.25f, 1.0f};
 
-std::string Write(TableFormat format) {
+// Of 30000/1001 frames per second, drop-frame.
+constexpr Timecode kTenPastOne{
+    .frame = 125874, .rate_numerator = 30000, .rate_denominator = 1001, .drop_frame = true};
+
+std::string Write(TableFormat format, std::optional<Timecode> timecode = {},
+                  bool timecodes = false) {
   ::testing::internal::CaptureStdout();
-  const auto writer = WeightWriter::Create(format);
+  const auto writer = WeightWriter::Create(format, timecodes);
   writer->Names(kNames);
-  EXPECT_TRUE(writer->Row(7, 1.5, kValues));
+  EXPECT_TRUE(writer->Row({7, 1.5, timecode}, kValues));
   return ::testing::internal::GetCapturedStdout();
 }
 
 TEST(WeightWriterTest, CsvHasTheDocumentedFormat) {
   EXPECT_EQ(Write(TableFormat::kCsv),
             "frame,time,brow_l.squash,knee_l_inner.folds\n7,1.500000,0.250000,1.000000\n");
+}
+
+TEST(WeightWriterTest, TimecodesAreShown) {
+  EXPECT_EQ(Write(TableFormat::kCsv, kTenPastOne),
+            "frame,time,brow_l.squash,knee_l_inner.folds\n7,1.500000,0.250000,1.000000\n");
+  EXPECT_EQ(Write(TableFormat::kCsv, kTenPastOne, true),
+            "frame,time,brow_l.squash,knee_l_inner.folds,timecode\n"
+            "7,1.500000,0.250000,1.000000,01:10:00;00\n");
+  EXPECT_EQ(Write(TableFormat::kCsv, {}, true),
+            "frame,time,brow_l.squash,knee_l_inner.folds,timecode\n"
+            "7,1.500000,0.250000,1.000000,\n");
+  const auto row = nlohmann::json::parse(Write(TableFormat::kJsonl, kTenPastOne));
+  EXPECT_EQ(row["timecode"], "01:10:00;00");
+  EXPECT_EQ(Write(TableFormat::kTable, kTenPastOne).find("frame 7  1.500 s  01:10:00;00\n"), 0u);
 }
 
 TEST(WeightWriterTest, JsonLinesParse) {
