@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::size_t kElementPrefixBytes = 4;
 constexpr std::size_t kBundleHeadBytes = 16;  // "#bundle" and the time tag
+constexpr std::size_t kTimecodeLength = 12;   // of the longest, "23:59:59:239"
 
 std::string AddressPart(std::string_view name) {
   constexpr std::string_view kForbidden = " #*,/?[]{}";
@@ -60,7 +61,8 @@ std::string Expand(std::string_view text,
 char TagOf(OscField field) {
   switch (field) {
     case OscField::kName:
-    case OscField::kSubject: return 's';
+    case OscField::kSubject:
+    case OscField::kTimecode: return 's';
     case OscField::kValue: return 'f';
     case OscField::kSequence: return 'i';
     case OscField::kCaptureTime: return 'h';
@@ -89,8 +91,17 @@ OscWeightWriter::Message OscWeightWriter::MakeMessage(const OscTemplate& form,
       case OscField::kValue:
       case OscField::kSequence: message.bytes += 4; break;
       case OscField::kCaptureTime: message.bytes += 8; break;
+      case OscField::kTimecode: message.bytes += OscStringBytes(kTimecodeLength); break;
     }
   }
+  return message;
+}
+
+std::optional<OscWeightWriter::Message> OscWeightWriter::MakeOptional(
+    const std::optional<OscTemplate>& form) const {
+  if (!form) return {};
+  Message message = MakeMessage(*form, {});
+  if (kBundleHeadBytes + message.bytes > kMaxDatagramBytes) return {};
   return message;
 }
 
@@ -99,7 +110,6 @@ std::size_t OscWeightWriter::SetNames(const std::string& subject,
                                       std::string_view pattern) {
   subject_ = subject;
   messages_.clear();
-  end_.reset();
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (!MatchesPattern(pattern, names[i])) continue;
     const auto renamed = profile_->names.find(names[i]);
@@ -111,15 +121,14 @@ std::size_t OscWeightWriter::SetNames(const std::string& subject,
       messages_.push_back(std::move(message));
     }
   }
-  if (profile_->end) {
-    end_ = MakeMessage(*profile_->end, {});
-    if (kBundleHeadBytes + end_->bytes > kMaxDatagramBytes) end_.reset();
-  }
+  timecode_ = MakeOptional(profile_->timecode);
+  end_ = MakeOptional(profile_->end);
   return messages_.size();
 }
 
-void OscWeightWriter::Write(std::uint32_t sequence, std::int64_t capture_time_us,
-                            std::span<const float> values, const Emit& emit) {
+void OscWeightWriter::Write(const OscFrame& frame, std::span<const float> values,
+                            const Emit& emit) {
+  const std::string timecode = frame.timecode ? TimecodeText(*frame.timecode) : std::string();
   OscWriter writer(datagram_);
   writer.BeginBundle();
   const auto add = [&](const OscTemplate& form, const Message& message, float value) {
@@ -135,8 +144,9 @@ void OscWeightWriter::Write(std::uint32_t sequence, std::int64_t capture_time_us
         case OscField::kName: writer.String(message.name); break;
         case OscField::kSubject: writer.String(subject_); break;
         case OscField::kValue: writer.Float(value); break;
-        case OscField::kSequence: writer.Int(static_cast<std::int32_t>(sequence)); break;
-        case OscField::kCaptureTime: writer.Int64(capture_time_us); break;
+        case OscField::kSequence: writer.Int(static_cast<std::int32_t>(frame.sequence)); break;
+        case OscField::kCaptureTime: writer.Int64(frame.capture_time_us); break;
+        case OscField::kTimecode: writer.String(timecode); break;
       }
     }
     writer.EndMessage();
@@ -144,6 +154,7 @@ void OscWeightWriter::Write(std::uint32_t sequence, std::int64_t capture_time_us
   for (const Message& message : messages_) {
     if (message.index < values.size()) add(profile_->value, message, values[message.index]);
   }
+  if (timecode_ && frame.timecode) add(*profile_->timecode, *timecode_, 0.0f);
   if (end_) add(*profile_->end, *end_, 0.0f);
   if (datagram_.size() > kBundleHeadBytes) emit(datagram_);
 }

@@ -11,6 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/time/timecode.h"
+
 namespace furrow::protocol::mocap {
 
 // An argument of a message.
@@ -20,6 +22,7 @@ enum class OscField : std::uint8_t {
   kValue,        // f: the weight, in [0, 1]
   kSequence,     // i: sequence number of the pose
   kCaptureTime,  // h: capture time of the pose, microseconds
+  kTimecode,     // s: "HH:MM:SS:FF" (TimecodeText()), "" if the source sends none
 };
 
 // A message with placeholders in its address:
@@ -36,12 +39,20 @@ struct OscTemplate {
 // The form in which weights leave as OSC (docs/engines/osc.md). Data files describe profiles.
 struct OscProfile {
   std::string name;
-  OscTemplate value;               // sent for each weight
-  std::optional<OscTemplate> end;  // sent last in each frame
+  OscTemplate value;                    // sent for each weight
+  std::optional<OscTemplate> timecode;  // sent after the weights, if the source sends a timecode
+  std::optional<OscTemplate> end;       // sent last in each frame
   // Other names for some weights: "brow_l.squash" -> "BrowDownLeft". If `only_renamed`, no other
   // weights are sent.
   std::map<std::string, std::string> names;
   bool only_renamed = false;
+};
+
+// The pose whose weights are sent.
+struct OscFrame {
+  std::uint32_t sequence = 0;
+  std::int64_t capture_time_us = 0;
+  std::optional<Timecode> timecode;
 };
 
 // Writes the weights of one subject as OSC bundles of at most kMaxDatagramBytes, one per datagram.
@@ -61,11 +72,10 @@ class OscWeightWriter {
   std::size_t SetNames(const std::string& subject, std::span<const std::string> names,
                        std::string_view pattern = "*");
 
-  // Writes one message per selected value and the end mark. `values`: one per name of SetNames();
-  // selected values that are missing are left out. Calls `emit` once per datagram, which is valid
-  // during the call. `sequence` and `capture_time_us` are those of the pose.
-  void Write(std::uint32_t sequence, std::int64_t capture_time_us, std::span<const float> values,
-             const Emit& emit);
+  // Writes one message per selected value, the timecode and the end mark. `values`: one per name of
+  // SetNames(); selected values that are missing are left out. Calls `emit` once per datagram,
+  // which is valid during the call.
+  void Write(const OscFrame& frame, std::span<const float> values, const Emit& emit);
 
  private:
   struct Message {
@@ -76,11 +86,14 @@ class OscWeightWriter {
     std::size_t bytes = 0;  // as an element of a bundle
   };
   [[nodiscard]] Message MakeMessage(const OscTemplate& form, const std::string& name) const;
+  // Of a message that each frame has once; absent: the profile has none, or it never fits.
+  [[nodiscard]] std::optional<Message> MakeOptional(const std::optional<OscTemplate>& form) const;
 
   const OscProfile* profile_;
   std::string prefix_;
   std::string subject_;
   std::vector<Message> messages_;
+  std::optional<Message> timecode_;
   std::optional<Message> end_;
   std::vector<std::uint8_t> datagram_;
 };

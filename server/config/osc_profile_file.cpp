@@ -30,7 +30,8 @@ constexpr std::pair<std::string_view, OscField> kFields[] = {
     {"subject", OscField::kSubject},
     {"value", OscField::kValue},
     {"sequence", OscField::kSequence},
-    {"capture_time", OscField::kCaptureTime}};
+    {"capture_time", OscField::kCaptureTime},
+    {"timecode", OscField::kTimecode}};
 constexpr std::string_view kPlaceholders[] = {"{prefix}", "{subject}", "{name}", "{identifier}"};
 
 // Returns the fault of an address; empty: none. Values fill the placeholders and are made safe
@@ -76,7 +77,7 @@ toml_file::Key Arguments(std::vector<OscField>* target) {
               const auto field = std::ranges::find_if(
                   kFields, [&word](const auto& known) { return word && known.first == *word; });
               if (field == std::end(kFields)) {
-                return "may list name, subject, value, sequence and capture_time";
+                return "may list name, subject, value, sequence, capture_time and timecode";
               }
               target->push_back(field->second);
             }
@@ -102,6 +103,18 @@ toml_file::Key Names(std::map<std::string, std::string>* target) {
           }};
 }
 
+// Sets a message that a profile may leave out.
+Status SetOptional(OscTemplate read, std::string_view table, std::string_view source_name,
+                   std::optional<OscTemplate>* target) {
+  if (!read.address.empty()) {
+    *target = std::move(read);
+  } else if (!read.arguments.empty()) {
+    return Status(StatusCode::kSchema, std::string(table) + ".address is missing",
+                  std::string(source_name));
+  }
+  return {};
+}
+
 bool IsFile(const std::string& name) {
   return name.find('/') != std::string::npos || name.ends_with(".toml");
 }
@@ -111,6 +124,7 @@ bool IsFile(const std::string& name) {
 Result<OscProfile> ParseOscProfile(std::string_view text, std::string_view source_name) {
   OscProfile profile;
   profile.name = std::filesystem::path(source_name).stem().string();
+  OscTemplate timecode;
   OscTemplate end;
   std::string description;
   const toml_file::NamedKeys tables[] = {
@@ -118,16 +132,15 @@ Result<OscProfile> ParseOscProfile(std::string_view text, std::string_view sourc
        {toml_file::Text("description", &description),
         toml_file::Flag("only_renamed", &profile.only_renamed), Names(&profile.names)}},
       {"value", {Address(&profile.value.address), Arguments(&profile.value.arguments)}},
+      {"timecode", {Address(&timecode.address), Arguments(&timecode.arguments)}},
       {"end", {Address(&end.address), Arguments(&end.arguments)}}};
   FURROW_RETURN_IF_ERROR(toml_file::ReadText(text, source_name, tables));
   if (profile.value.address.empty()) {
     return Status(StatusCode::kSchema, "value.address is missing", std::string(source_name));
   }
-  if (!end.address.empty()) {
-    profile.end = std::move(end);
-  } else if (!end.arguments.empty()) {
-    return Status(StatusCode::kSchema, "end.address is missing", std::string(source_name));
-  }
+  FURROW_RETURN_IF_ERROR(
+      SetOptional(std::move(timecode), "timecode", source_name, &profile.timecode));
+  FURROW_RETURN_IF_ERROR(SetOptional(std::move(end), "end", source_name, &profile.end));
   return profile;
 }
 

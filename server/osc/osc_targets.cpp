@@ -211,26 +211,26 @@ void OscTargets::SendOwed(const Target& target, Lane& lane, const SubjectRegistr
 
 void OscTargets::Write(Lane& lane, Stream& stream, const Subject& subject) {
   const SubjectPipeline& pipeline = *subject.pipeline;
-  stream.writer.Write(pipeline.sequence(), pipeline.capture_time_us(), pipeline.wrinkle_weights(),
-                      [this, &lane](std::span<const std::uint8_t> datagram) {
-                        const auto send = [&] {
-                          asio::error_code error;
-                          lane.socket.send(asio::buffer(datagram.data(), datagram.size()), 0,
-                                           error);
-                          return error;
-                        };
-                        asio::error_code error = send();
-                        if (error) {
-                          ++lane.errors;
-                          lane.last_error = error;
-                          parts_.metrics->Add(Counter::kOscPacketsUnsendable);
-                          // The error is that of an earlier packet, and this one was not sent.
-                          if (error == asio::error::connection_refused) error = send();
-                        }
-                        if (error) return;
-                        ++lane.packets;
-                        parts_.metrics->Add(Counter::kOscPacketsSent);
-                      });
+  stream.writer.Write(
+      {pipeline.sequence(), pipeline.capture_time_us(), subject.timecode},
+      pipeline.wrinkle_weights(), [this, &lane](std::span<const std::uint8_t> datagram) {
+        const auto send = [&] {
+          asio::error_code error;
+          lane.socket.send(asio::buffer(datagram.data(), datagram.size()), 0, error);
+          return error;
+        };
+        asio::error_code error = send();
+        if (error) {
+          ++lane.errors;
+          lane.last_error = error;
+          parts_.metrics->Add(Counter::kOscPacketsUnsendable);
+          // The error is that of an earlier packet, and this one was not sent.
+          if (error == asio::error::connection_refused) error = send();
+        }
+        if (error) return;
+        ++lane.packets;
+        parts_.metrics->Add(Counter::kOscPacketsSent);
+      });
 }
 
 }  // namespace furrow::server

@@ -70,6 +70,29 @@ class ForeignWireTest(unittest.TestCase):
         self.assertNotIn("lacks", daemon.stderr)
         self.assertNotIn("missing", daemon.stderr)
 
+    def test_watch_prints_the_timecode_of_a_phone(self):
+        with Daemon("--no-render", "--livelink-face", "0") as daemon:
+            out = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+            self.addCleanup(out.close)
+            watcher = spawn("watch", daemon.tcp, "--wait", "--format", "csv", "--timecode")
+            frame = [3600]
+
+            def send():
+                frame[0] += 1
+                out.sendto(livelink_face("phone", frame[0], {"JawOpen": 0.5}),
+                           ("127.0.0.1", daemon.ports["livelink_face"]))
+
+            self.keep_sending_until_header(watcher, send)
+            header = watcher.stdout.readline().decode().strip().split(",")
+            send()
+            row = watcher.stdout.readline().decode().strip().split(",")
+            watcher.terminate()
+            finish(watcher)
+        self.assertEqual(header[-1], "timecode")
+        self.assertEqual(len(row), len(header))
+        # A minute at 60 frames per second has passed since midnight.
+        self.assertRegex(row[-1], r"^00:01:\d\d:\d\d$")
+
     def keep_sending_until_header(self, watcher, send):
         """Sends first frames until the subject exists, because early datagrams may be lost."""
         for _ in range(2000):
@@ -114,11 +137,16 @@ class ForeignWireTest(unittest.TestCase):
                            ("127.0.0.1", daemon.ports["livelink_face"]))
                 if select.select([dump.stdout], [], [], 0.02)[0]:
                     break
-            lines = [dump.stdout.readline().decode() for _ in range(20)]
+            lines = [dump.stdout.readline().decode()]
+            while "/furrow/phone/frame" not in lines[-1]:
+                lines.append(dump.stdout.readline().decode())
+                self.assertTrue(lines[-1], "oscdump ended")
         weights = [l for l in lines if "/furrow/phone/" in l and " f " in l]
         self.assertTrue(weights, lines)
         for line in weights:
             self.assertTrue(0.0 <= float(line.split()[-1]) <= 1.0, line)
+        # The last message but one of a frame.
+        self.assertRegex(lines[-2], r'/furrow/phone/timecode s "00:00:\d\d:\d\d"')
 
 
 if __name__ == "__main__":

@@ -29,11 +29,13 @@ std::vector<float> Values(int count) {
 const OscProfile kFurrow{
     .name = "furrow",
     .value = {"/{prefix}/{subject}/{name}", {OscField::kValue}},
+    .timecode = OscTemplate{"/{prefix}/{subject}/timecode", {OscField::kTimecode}},
     .end = OscTemplate{"/{prefix}/{subject}/frame", {OscField::kSequence, OscField::kCaptureTime}},
     .names = {},
     .only_renamed = false};
 const OscProfile kVmc{.name = "vmc",
                       .value = {"/VMC/Ext/Blend/Val", {OscField::kName, OscField::kValue}},
+                      .timecode = std::nullopt,
                       .end = OscTemplate{"/VMC/Ext/Blend/Apply", {}},
                       .names = {},
                       .only_renamed = false};
@@ -41,7 +43,7 @@ const OscProfile kVmc{.name = "vmc",
 // The addresses of the messages that a writer sends.
 std::vector<std::string> Addresses(OscWeightWriter& writer, const std::vector<float>& values) {
   std::vector<std::string> addresses;
-  writer.Write(0, 0, values, [&](std::span<const std::uint8_t> datagram) {
+  writer.Write({}, values, [&](std::span<const std::uint8_t> datagram) {
     EXPECT_LE(datagram.size(), 1200u);
     EXPECT_EQ(VisitOsc(datagram, [&](const OscMessage& m) { addresses.emplace_back(m.address); }),
               OscStatus::kOk);
@@ -53,9 +55,10 @@ TEST(OscWeightWriter, WritesEveryWeightInBoundedBundlesAndTheMarkLast) {
   OscWeightWriter writer(&kFurrow);
   writer.SetNames("anna b", Names(100));
   std::vector<test::Bytes> datagrams;
-  writer.Write(41, 1'234'567'890'123, Values(100), [&](std::span<const std::uint8_t> datagram) {
-    datagrams.emplace_back(datagram.begin(), datagram.end());
-  });
+  writer.Write({41, 1'234'567'890'123, {}}, Values(100),
+               [&](std::span<const std::uint8_t> datagram) {
+                 datagrams.emplace_back(datagram.begin(), datagram.end());
+               });
   EXPECT_GT(datagrams.size(), 2u);
   std::map<std::string, float> heard;
   std::string last;
@@ -85,7 +88,7 @@ TEST(OscWeightWriter, VmcProfileSuitsVmcReceivers) {
   writer.SetNames("anna", Names(60));
   const auto receiver = MakeVmcAdapter();
   std::vector<NeutralFrame> frames;
-  writer.Write(0, 0, Values(60), [&](std::span<const std::uint8_t> datagram) {
+  writer.Write({}, Values(60), [&](std::span<const std::uint8_t> datagram) {
     EXPECT_LE(datagram.size(), 1200u);
     receiver->Push(datagram, 0, [&](const NeutralFrame& frame) { frames.push_back(frame); });
   });
@@ -94,6 +97,31 @@ TEST(OscWeightWriter, VmcProfileSuitsVmcReceivers) {
   EXPECT_EQ(frames[0].blend_shapes[32].name, "region_32.squash");
   EXPECT_EQ(frames[0].blend_shapes[32].value, 0.0625f);
   EXPECT_EQ(receiver->counters().malformed, 0u);
+}
+
+TEST(OscWeightWriter, SendsTheTimecodeOfASourceThatHasOne) {
+  OscWeightWriter writer(&kFurrow);
+  // Bundles of all fills, so that the timecode is also the message that does not fit any more.
+  for (int count = 0; count < 60; ++count) {
+    writer.SetNames("ada", Names(count));
+    std::vector<std::string> texts;
+    std::vector<std::string> addresses;
+    const Timecode longest{.frame = 24u * 3600 * 240 - 1, .rate_numerator = 240};
+    writer.Write({0, 0, longest}, Values(count), [&](std::span<const std::uint8_t> datagram) {
+      EXPECT_LE(datagram.size(), 1200u);
+      const OscStatus status = VisitOsc(datagram, [&](const OscMessage& message) {
+        addresses.emplace_back(message.address);
+        OscArguments arguments(message);
+        std::string_view text;
+        if (message.tags == "s" && arguments.String(text)) texts.emplace_back(text);
+      });
+      EXPECT_EQ(status, OscStatus::kOk);
+    });
+    EXPECT_EQ(texts, std::vector<std::string>{"23:59:59:239"});
+    ASSERT_EQ(addresses.size(), static_cast<std::size_t>(count) + 2);
+    EXPECT_EQ(addresses[addresses.size() - 2], "/furrow/ada/timecode");
+    EXPECT_EQ(addresses.back(), "/furrow/ada/frame");
+  }
 }
 
 TEST(OscWeightWriter, ReplacesForbiddenCharacters) {
@@ -112,6 +140,7 @@ TEST(OscWeightWriter, NamesThatLookLikePlaceholdersAreNotExpanded) {
 TEST(OscWeightWriter, SendsIdentifiersRenamedWeightsAndPatterns) {
   OscProfile profile{.name = "vrchat",
                      .value = {"/avatar/parameters/{prefix}_{identifier}", {OscField::kValue}},
+                     .timecode = std::nullopt,
                      .end = std::nullopt,
                      .names = {{"brow_l.squash", "BrowDownLeft"}},
                      .only_renamed = false};
@@ -139,9 +168,10 @@ TEST(OscWeightWriter, DoesNotAllocateAfterWarmUp) {
   writer.SetNames("anna", Names(100));
   const std::vector<float> values = Values(100);
   const OscWeightWriter::Emit emit = [](std::span<const std::uint8_t>) {};
-  writer.Write(0, 0, values, emit);
+  const Timecode longest{.frame = 24u * 3600 * 240 - 1, .rate_numerator = 240};
+  writer.Write({0, 0, longest}, values, emit);
   const std::uint64_t before = furrow::test::NumAllocations();
-  for (std::uint32_t i = 1; i < 10; ++i) writer.Write(i, i, values, emit);
+  for (std::uint32_t i = 1; i < 10; ++i) writer.Write({i, i, longest}, values, emit);
   EXPECT_EQ(furrow::test::NumAllocations(), before);
 }
 

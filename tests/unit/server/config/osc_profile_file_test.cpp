@@ -18,6 +18,9 @@ only_renamed = true
 [value]
 address = "/{prefix}/{subject}/{name}/{identifier}"
 arguments = ["name", "subject", "value", "sequence", "capture_time"]
+[timecode]
+address = "/time"
+arguments = ["timecode"]
 [end]
 address = "/done"
 arguments = []
@@ -31,6 +34,9 @@ arguments = []
   EXPECT_THAT(profile->value.arguments,
               ElementsAre(OscField::kName, OscField::kSubject, OscField::kValue,
                           OscField::kSequence, OscField::kCaptureTime));
+  ASSERT_TRUE(profile->timecode.has_value());
+  EXPECT_EQ(profile->timecode->address, "/time");
+  EXPECT_THAT(profile->timecode->arguments, ElementsAre(OscField::kTimecode));
   ASSERT_TRUE(profile->end.has_value());
   EXPECT_EQ(profile->end->address, "/done");
   EXPECT_TRUE(profile->only_renamed);
@@ -48,6 +54,8 @@ TEST(OscProfileFile, ErrorsNameFileLineAndKey) {
       {"[names]\na = 1", "names 'a' must be a text"},
       {"[names]\na = \"b\\u0000c\"", "without control characters"},
       {"[value]\naddress = '/a'\n[end]\narguments = ['sequence']", "end.address is missing"},
+      {"[value]\naddress = '/a'\n[timecode]\narguments = ['timecode']",
+       "timecode.address is missing"},
       {"[value]\nadress = '/a'", "unknown key 'value.adress'"},
       {"speed = 1", "unknown key 'speed'"},
       {"[end]\naddress = '/a'", "value.address is missing"},
