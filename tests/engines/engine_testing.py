@@ -16,11 +16,14 @@ import selectors
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "end_to_end"))
-from furrow_testing import BIN, GUARD, SHARE, SOURCE, Daemon, furrow, spawn  # pylint: disable=wrong-import-position
+# pylint: disable=wrong-import-position
+from furrow_testing import BIN, GUARD, SHARE, SOURCE, Daemon, furrow, spawn
+from tracker_packets import CURVES
 
 EVENT = "furrow-test: "
 FRAMES = 1000
@@ -92,13 +95,28 @@ class Program:
 class EngineTest(unittest.TestCase):
     """A plug-in receives, survives a restart of the daemon, and ends cleanly."""
 
+    def start_performer(self, *args):
+        performer = spawn("play", *args, "--loop")
+        self.addCleanup(performer.stdout.close)
+        self.addCleanup(performer.stderr.close)
+        self.addCleanup(performer.wait, timeout=GUARD)
+        self.addCleanup(performer.send_signal, signal.SIGINT)
+
     def start_performers(self, daemon):
         for subject in SUBJECTS:
-            performer = spawn("play", PERFORMANCE, "--to", daemon.udp, "--subject", subject, "--rate", RATE, "--loop")
-            self.addCleanup(performer.stdout.close)
-            self.addCleanup(performer.stderr.close)
-            self.addCleanup(performer.wait, timeout=GUARD)
-            self.addCleanup(performer.send_signal, signal.SIGINT)
+            self.start_performer(PERFORMANCE, "--to", daemon.udp, "--subject", subject, "--rate", RATE)
+
+    def start_phone(self, daemon, subject):
+        """Plays a second of a face tracker again and again, with timecodes from 10:00:00:00 at 60 frames per second."""
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        path = pathlib.Path(folder.name) / "phone.csv"
+        rows = ["Timecode,BlendShapeCount," + ",".join(CURVES)]
+        for frame in range(60):
+            values = ",".join(str(frame / 60 if curve == "JawOpen" else 0.0) for curve in CURVES)
+            rows.append(f"10:00:00:{frame:02}.000,{len(CURVES)},{values}")
+        path.write_text("\n".join(rows) + "\n")
+        self.start_performer(path, "--to", daemon.udp, "--subject", subject)
 
     def time_of_weights(self, daemon):
         """Starts a plain client for each subject. Returns a function that waits for their weights and returns the time of
@@ -112,11 +130,13 @@ class EngineTest(unittest.TestCase):
         times = [pool.submit(watch, subject) for subject in SUBJECTS]
         return lambda: max(one.result(timeout=GUARD) for one in times)
 
-    def check_plugin(self, make_command, env=None, cwd=None, daemon_args=()):
-        """Runs the plug-in through the whole story. `make_command(daemon)` returns its command line. Returns the
-        Program."""
+    def check_plugin(self, make_command, env=None, cwd=None, daemon_args=(), phone=""):
+        """Runs the plug-in through the whole story. `make_command(daemon)` returns its command line. `phone`: a third
+        performer, whose poses have timecodes. Returns the Program."""
         with Killed("--no-render", "--http", "0", *daemon_args) as daemon:
             self.start_performers(daemon)
+            if phone:
+                self.start_phone(daemon, phone)
             program = Program(make_command(daemon), env, cwd)
             self.addCleanup(program.stop)
             received = program.wait_for("received")

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs inside Blender: installs the add-on as users do, follows two subjects on two objects, records and clears."""
 import json
+import re
 import sys
 import time
 
@@ -41,6 +42,7 @@ def poll():
 
 
 bpy.ops.preferences.addon_enable(module="furrow")
+from furrow import library  # pylint: disable=wrong-import-position
 from furrow.session import session, tick  # pylint: disable=wrong-import-position
 
 bpy.context.preferences.addons["furrow"].preferences.library_path = LIBRARY
@@ -58,12 +60,22 @@ seen = {subject: [1.0, 0.0] for subject in SUBJECTS}  # lowest and highest value
 
 
 def count(frame):
+    assert frame.timecode == "", "BVH has no timecode"
     following = last.get(frame.subject, frame.sequence - 1) + 1 == frame.sequence
     runs[frame.subject] = runs[frame.subject] + 1 if following and not frame.decaying else 1
     longest[frame.subject] = max(longest[frame.subject], runs[frame.subject])
     last[frame.subject] = frame.sequence
 
 
+# Scripts read the timecode of a face tracker.
+phone = library.Connection(library.load(LIBRARY), ADDRESS)
+phone.subscribe("cam")
+arrived = []
+while not arrived:
+    arrived = phone.poll()
+    time.sleep(0.002)
+phone.close()
+assert re.fullmatch("10:00:00:[0-5][0-9]", arrived[0].timecode), arrived[0].timecode
 session.on_frame = count
 assert bpy.ops.furrow.connect() == {"FINISHED"}
 while not all(cube.get("furrow_brow_l_squash") for cube in cubes.values()):

@@ -21,7 +21,7 @@ class BlenderTest(EngineTest):
         program = self.check_plugin(
             lambda daemon: [blender, "-b", "--factory-startup", "--python-exit-code", "3", "--python", HERE / "client.py",
                             "--", f"furrow://127.0.0.1:{daemon.ports['udp']}", LIBRARY, FRAMES],
-            env={"BLENDER_USER_SCRIPTS": str(scripts)})
+            env={"BLENDER_USER_SCRIPTS": str(scripts)}, phone="cam")
         received = program.wait_for("received")
         for line in received["status"]:
             # A shape key, an Attribute node and a driver read a weight each.

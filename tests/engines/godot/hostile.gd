@@ -48,6 +48,11 @@ func _init():
 	var strange = frames
 	client._on_message(WEIGHTS)
 	var good = frames
+	client._on_message('{"type": "weights", "subject": "ada", "sequence": 7, "values": [0, 1], "timecode": "10:00:00;02"}')
+	var timecodes = [client.get_stream("ada").timecode]
+	for timecode in ["[1]", '"%s"' % "9".repeat(13)]:
+		client._on_message('{"type": "weights", "subject": "ada", "sequence": 7, "values": [0, 1], "timecode": %s}' % timecode)
+		timecodes.append(client.get_stream("ada").timecode)
 	# Numbers outside of [0, 1], and what are no numbers.
 	client._on_message('{"type": "weights", "subject": "ada", "sequence": 9, "values": [-7, 1e300]}')
 	client._on_message('{"type": "weights", "subject": "ada", "sequence": 10, "values": [null, "x"]}')
@@ -61,6 +66,6 @@ func _init():
 	client.open()
 	print("furrow-test: " + JSON.print({"event": "hostile", "before_names": before_names, "strange": strange, "good": good,
 			"subjects": client.get_subjects().size(), "missed": client.get_stream("ada").missed,
-			"too_many": client.get_status()}))
+			"too_many": client.get_status(), "timecodes": timecodes}))
 	client.free()
 	quit()

@@ -39,6 +39,7 @@ class GodotTest(EngineTest):
         self.assertEqual(program.finish(), 0)
         self.assertEqual((seen["before_names"], seen["strange"], seen["good"]), (0, 0, 1))
         self.assertEqual((seen["subjects"], seen["missed"]), (256, 1))
+        self.assertEqual(seen["timecodes"], ["10:00:00;02", "", ""])
         self.assertTrue(seen["too_many"].startswith("not connected: 65 subjects"), seen["too_many"])
         self.assertNotRegex(program.text, "FAILED|SCRIPT ERROR")
 

@@ -5,6 +5,7 @@ using System;
 using System.Collections.Generic;
 using System.Linq;
 using System.Reflection;
+using System.Runtime.InteropServices;
 using System.Threading;
 using Furrow;
 using UnityEngine;
@@ -61,6 +62,25 @@ public static class Program
         Check(count == 4, "tests of the package");
     }
 
+    private static void CheckFrameOfAnOlderLibrary()
+    {
+        int whole = Marshal.SizeOf(typeof(Native.Frame));
+        IntPtr frame = Marshal.AllocHGlobal(whole);
+        for (int i = 0; i < whole; ++i)
+        {
+            Marshal.WriteByte(frame, i, 0x31);
+        }
+        foreach (int size in new[] { 56, whole })
+        {
+            Marshal.WriteInt32(frame, size);
+            Native.Frame read = Native.ReadFrame(frame);
+            Check(read.CaptureTimeUs == 0x3131313131313131L, "what both libraries have");
+            Check(read.TimecodeRateNumerator == (size == whole ? 0x31313131u : 0u), "the rate");
+            Check((read.TimecodeBytes0To7 != 0) == (size == whole), "the timecode");
+        }
+        Marshal.FreeHGlobal(frame);
+    }
+
     private static SkinnedMeshRenderer MeshWithShape(string name)
     {
         var mesh = new SkinnedMeshRenderer { name = name };
@@ -85,6 +105,7 @@ public static class Program
     public static int Main(string[] arguments)
     {
         RunTestsOfThePackage();
+        CheckFrameOfAnOlderLibrary();
         CheckTextures();
         int needed = int.Parse(arguments[1]);
         var sample = new TwoFaces { first = MeshWithShape("Ada's face"), second = MeshWithShape("bob") };
@@ -120,6 +141,7 @@ public static class Program
             Check(array.Length == 3 && array[1] == 0 && Math.Abs(array[2] - shape) < 1e-6f, "the order of wrinkles.json");
             highest = Math.Max(highest, shape);
         }
+        CheckTimecode();
         Tell("received", ", \"runs\": {" + string.Join(", ", Runs.Select(run => "\"" + run.Key + "\": " + run.Value.Longest)) +
              "}, \"highest\": " + highest.ToString(System.Globalization.CultureInfo.InvariantCulture) +
              ", \"status\": \"" + Targets[0].Status + "\"");
@@ -154,6 +176,19 @@ public static class Program
         Check(!receiver.IsOpen && receiver.Status.Contains("furrow://"), "an invalid address is explained");
         Tell("end");
         return 0;
+    }
+
+    private static void CheckTimecode()
+    {
+        Subject phone = receiver.Follow("cam");
+        while (phone.Frames == 0)
+        {
+            Picture();
+        }
+        // The recording of the phone lasts a second, and repeats.
+        Check(phone.Timecode.Length == 11 && phone.Timecode.StartsWith("10:00:00:"), "timecode " + phone.Timecode);
+        Check(phone.TimecodeRateNumerator == 60 && phone.TimecodeRateDenominator == 1, "rate of the timecode");
+        Check(receiver.Follow("ada").Timecode == "" && receiver.Follow("ada").TimecodeRateNumerator == 0, "BVH has none");
     }
 
     private static void CheckRecording()
@@ -212,7 +247,7 @@ public static class Program
         {
             Picture();
         }
-        Check(SubjectNames.Contains(oldest.Name), "the oldest subject has a name");
+        Check(SubjectNames.Contains(oldest.Name) || oldest.Name == "cam", "the oldest subject has a name");
         Check(oldest.Names.Length == oldest.Values.Length, "names and values");
     }
 }

@@ -40,7 +40,7 @@ class UnityTest(EngineTest):
         program = self.check_plugin(
             lambda daemon: [self.mono, self.compile("program.exe", *sources, HERE / "StandIns.cs", HERE / "Program.cs"),
                             f"furrow://127.0.0.1:{daemon.ports['udp']}", FRAMES],
-            env={"LD_LIBRARY_PATH": str(LIBRARY)})
+            env={"LD_LIBRARY_PATH": str(LIBRARY)}, phone="cam")
         received = program.wait_for("received")
         # One blend shape and two entries of wrinkles.json use two weights.
         self.assertRegex(received["status"], r"^\d+ ms old, 0 missed, 2 of \d\d+ names in use$")

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "FurrowLiveLinkSourceFactory.h"
+#include "FurrowSceneTime.h"
 #include "ILiveLinkClient.h"
 #include "Roles/LiveLinkBasicRole.h"
 
@@ -24,6 +25,9 @@ struct Subject {
   TArray<FName> names;
   long frames = 0;
   float highest = 0.0f;
+  int32 scene_rate = 0;  // frames per second of the timecode, of the newest frame
+  int32 first_scene_frame = 0;
+  bool scene_moves = false;  // its timecode changes
 };
 
 class Client : public ILiveLinkClient {
@@ -40,6 +44,10 @@ class Client : public ILiveLinkClient {
     Check(frame.PropertyValues.Num() == subject.names.Num() && subject.names.Num() > 50, "names come first");
     Check(frame.WorldTime.seconds_ >= last_time, "time ascends");
     last_time = frame.WorldTime.seconds_;
+    const FQualifiedFrameTime& scene = frame.MetaData.SceneTime;
+    subject.scene_rate = scene.Rate.Denominator == 1 ? scene.Rate.Numerator : 0;
+    if (subject.frames == 0) subject.first_scene_frame = scene.Time.FrameNumber.Value;
+    subject.scene_moves |= scene.Time.FrameNumber.Value != subject.first_scene_frame;
     ++subject.frames;
     for (int32 i = 0; i < subject.names.Num(); ++i) {
       if (subject.names[i].ToString() == "brow_l.squash") {
@@ -56,9 +64,32 @@ void Tell(const char* event, const std::string& more = {}) {
   std::fflush(stdout);
 }
 
+// A frame with a timecode at 30000/1001 frames per second.
+furrow_frame FrameAt(const char* timecode) {
+  furrow_frame frame{};
+  frame.struct_size = sizeof frame;
+  std::snprintf(frame.timecode, sizeof frame.timecode, "%s", timecode);
+  frame.timecode_rate_numerator = 30000;
+  frame.timecode_rate_denominator = 1001;
+  return frame;
+}
+
+void CheckSceneTimes() {
+  furrow_frame frame = FrameAt("01:10:00;00");
+  // 70 minutes at 29.97 frames per second.
+  Check(SceneTimeOf(frame).Time.FrameNumber.Value == 125874, "drop-frame");
+  Check(SceneTimeOf(frame).Rate.Numerator == 30000 && SceneTimeOf(frame).Rate.Denominator == 1001, "the rate");
+  Check(SceneTimeOf(FrameAt("00:00:01:05")).Time.FrameNumber.Value == 35, "without drop-frame");
+  frame.struct_size = 56;
+  for (const furrow_frame& none : {FrameAt(""), FrameAt("later"), frame}) {
+    Check(SceneTimeOf(none).Rate.Numerator == FQualifiedFrameTime().Rate.Numerator, "no timecode");
+  }
+}
+
 }  // namespace
 
 int main(int, char** arguments) {
+  CheckSceneTimes();
   const long needed = std::atol(arguments[2]);
   const UFurrowLiveLinkSourceFactory factory;
   Client client;
@@ -75,6 +106,10 @@ int main(int, char** arguments) {
          client.subjects["ada"].highest <= 0.2f) {
     tick();
   }
+  while (!client.subjects["cam"].scene_moves) tick();
+  Check(client.subjects["cam"].scene_rate == 60, "the phone's timecode");
+  Check(client.subjects["cam"].first_scene_frame >= 36000 * 60, "it begins at 10:00:00:00");
+  Check(client.subjects["ada"].scene_rate == 0 && !client.subjects["ada"].scene_moves, "BVH has no timecode");
   const std::string status = source->GetSourceStatus().ToString();
   // "Connected, 3 ms old, 0 missed, 77 names": the frames were consecutive.
   Check(status.find("Connected, ") == 0 && status.find(" 0 missed, ") != std::string::npos, status.c_str());

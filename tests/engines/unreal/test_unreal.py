@@ -24,13 +24,13 @@ class UnrealTest(EngineTest):
         self.addCleanup(shutil.rmtree, folder)
         program = folder / "program"
         done = subprocess.run(
-            [*COMPILER, "-I", MODULE / "Public", "-I", SOURCE / "client" / "c" / "include", HERE / "program.cpp",
+            [*COMPILER, "-I", MODULE / "Public", "-I", MODULE / "Private", "-I", SOURCE / "client" / "c" / "include", HERE / "program.cpp",
              *sorted(MODULE.glob("Private/*.cpp")), "-o", program, "-L", LIBRARY, "-lfurrow", "-pthread"],
             capture_output=True, text=True, timeout=GUARD, check=False)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.check_plugin(
-            lambda daemon: [program, f"furrow://127.0.0.1:{daemon.ports['udp']}?subject=ada&subject=bob", FRAMES],
-            env={"LD_LIBRARY_PATH": str(LIBRARY)}).wait_for("end")
+            lambda daemon: [program, f"furrow://127.0.0.1:{daemon.ports['udp']}?subject=ada&subject=bob&subject=cam", FRAMES],
+            env={"LD_LIBRARY_PATH": str(LIBRARY)}, phone="cam").wait_for("end")
 
     def test_exported_shaders_are_found(self):
         """Custom nodes include /Plugin/Furrow/..., which Unreal knows only if a module maps it before the engine starts."""

@@ -30,7 +30,8 @@
  * Versions  Structs begin with `struct_size`: set it to sizeof of the struct, and zero every field
  *           that you do not set. An old program works with a new library: a new library accepts
  *           the old size. A new program works with an old library as long as it leaves the fields
- *           that the library does not know at zero; otherwise it gets FURROW_UNSUPPORTED.
+ *           that the library does not know at zero; otherwise it gets FURROW_UNSUPPORTED. A struct
+ *           that a callback receives may be shorter: its struct_size says how long it is.
  *           FURROW_ABI_VERSION 0 means that the interface may still change.
  *
  * Needs: a C99 or C++ compiler. The library itself needs the C++ runtime and nothing else.

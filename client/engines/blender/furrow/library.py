@@ -41,7 +41,9 @@ class _Subscription(ctypes.Structure):
 class _Frame(ctypes.Structure):
     _fields_ = [("struct_size", ctypes.c_uint32), ("flags", ctypes.c_uint32), ("count", ctypes.c_uint32),
                 ("sequence", ctypes.c_uint32), ("layout", ctypes.c_uint64), ("number", ctypes.c_uint64),
-                ("missed", ctypes.c_uint64), ("capture_time_us", ctypes.c_int64), ("age_us", ctypes.c_int64)]
+                ("missed", ctypes.c_uint64), ("capture_time_us", ctypes.c_int64), ("age_us", ctypes.c_int64),
+                ("timecode", ctypes.c_char * 16), ("timecode_rate_numerator", ctypes.c_uint32),
+                ("timecode_rate_denominator", ctypes.c_uint32)]
 
 
 _ON_WEIGHTS = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_char_p, ctypes.POINTER(_Frame),
@@ -115,13 +117,14 @@ def _declare(library):
 class Frame:
     """The weights of one subject at one moment."""
 
-    __slots__ = ("subject", "values", "sequence", "capture_time_us", "decaying")
+    __slots__ = ("subject", "values", "sequence", "capture_time_us", "timecode", "decaying")
 
-    def __init__(self, subject, values, sequence, capture_time_us, decaying):
+    def __init__(self, subject, values, sequence, capture_time_us, timecode, decaying):
         self.subject = subject  # the name that the daemon uses
         self.values = values  # in [0, 1], in the order of Connection.names()
         self.sequence = sequence  # of the pose; it wraps around at 2^32
         self.capture_time_us = capture_time_us  # of the pose, on the publisher's clock
+        self.timecode = timecode  # SMPTE, of the pose: "10:00:00;00", with ';' if drop-frame; "": its source sends none
         self.decaying = decaying  # no new pose: the daemon holds, then fades to neutral
 
 
@@ -234,8 +237,10 @@ class Connection:
     def _on_weights(self, _user, subject, frame, values):
         # Runs inside furrow_poll(). An exception must not pass through C; nothing below raises one.
         one = frame.contents
+        # An older library passes a shorter struct.
+        timecode = one.timecode.decode("ascii", "replace") if one.struct_size >= ctypes.sizeof(_Frame) else ""
         self._frames.append(Frame(subject.decode("utf-8", "replace"), values[:one.count], one.sequence,
-                                  one.capture_time_us, bool(one.flags & FRAME_DECAYING)))
+                                  one.capture_time_us, timecode, bool(one.flags & FRAME_DECAYING)))
 
     def _check(self, status):
         if status < OK:

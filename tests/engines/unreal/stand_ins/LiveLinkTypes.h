@@ -2,6 +2,7 @@
 #pragma once
 
 #include "CoreMinimal.h"
+#include "Misc/QualifiedFrameTime.h"
 
 struct UScriptStruct {};
 struct UClass {};
@@ -14,9 +15,13 @@ struct FLiveLinkWorldTime {
   explicit FLiveLinkWorldTime(double seconds = 0.0) : seconds_(seconds) {}
   double seconds_;
 };
+struct FLiveLinkMetaData {
+  FQualifiedFrameTime SceneTime;
+};
 struct FLiveLinkBaseFrameData {
   static UScriptStruct* StaticStruct() { return nullptr; }
   FLiveLinkWorldTime WorldTime;
+  FLiveLinkMetaData MetaData;
   TArray<float> PropertyValues;
 };
 

@@ -24,6 +24,8 @@ const MAX_SEQUENCE = 4294967296.0
 const MAX_BRACKETS = 4096
 const FIRST_PAUSE_MSEC = 100
 const MAX_PAUSE_MSEC = 800
+# A message that arrives this long after opening proves that the connection works. An earlier one may be a refusal.
+const PROVEN_MSEC = 1000
 const CONNECT_MSEC = 5000
 # The daemon sends an object at least every 10 s. A silent connection is dead and is replaced.
 const SILENCE_MSEC = 30000
@@ -52,6 +54,7 @@ var _is_lost = false  # the socket has ended
 var _pause_msec = FIRST_PAUSE_MSEC
 var _due_msec = 0
 var _heard_msec = 0
+var _opened_msec = 0
 var _streams = {}  # subject -> Stream
 
 
@@ -62,6 +65,7 @@ class Stream:
 	var sequence = -1
 	var time_us = 0.0  # capture time, on the publisher's clock
 	var age_ms = 0.0  # time without a new pose when the frame was sent
+	var timecode = ""  # SMPTE, of the pose: "10:00:00:00", ';' before the frames of drop-frame; "": its source sends none
 	var received_msec = 0
 	var frames = 0
 	var missed = 0
@@ -138,7 +142,7 @@ func get_subjects():
 	return _streams.keys()
 
 
-# The state of a subject: names, values, sequence, time_us, frames, missed, gone; null before its first names.
+# The state of a subject: names, values, sequence, time_us, timecode, frames, missed, gone; null before its first names.
 func get_stream(subject):
 	return _streams.get(subject)
 
@@ -217,8 +221,8 @@ func _query():
 
 
 func _on_established(_protocol):
-	_pause_msec = FIRST_PAUSE_MSEC
 	_heard_msec = OS.get_ticks_msec()
+	_opened_msec = _heard_msec
 	last_error = ""
 	_set_state(State.CONNECTED)
 
@@ -251,6 +255,8 @@ func _set_state(to):
 
 func _on_data():
 	_heard_msec = OS.get_ticks_msec()
+	if _heard_msec - _opened_msec >= PROVEN_MSEC:
+		_pause_msec = FIRST_PAUSE_MSEC
 	_on_message(_socket.get_peer(1).get_packet().get_string_from_utf8())
 
 
@@ -317,6 +323,7 @@ func _on_weights(message):
 	stream.sequence = int(sequence)
 	stream.time_us = _number(message.get("time_us"))
 	stream.age_ms = _number(message.get("age_ms"))
+	stream.timecode = _timecode(message.get("timecode"))
 	stream.received_msec = OS.get_ticks_msec()
 	stream.frames += 1
 	stream.gone = false
@@ -328,6 +335,11 @@ func _on_gone(message):
 	if stream != null and not stream.gone:
 		stream.gone = true
 		emit_signal("subject_gone", message.subject)
+
+
+# The longest is "23:59:59:239".
+func _timecode(value):
+	return value if typeof(value) == TYPE_STRING and value.length() <= 12 else ""
 
 
 func _number(value):

@@ -16,6 +16,8 @@ const MAX_ASKED := 64  # subjects of one connection, the daemon's limit
 const MAX_SEQUENCE := 4294967296.0
 const FIRST_PAUSE_MSEC := 100
 const MAX_PAUSE_MSEC := 800
+# A message that arrives this long after opening proves that the connection works. An earlier one may be a refusal.
+const PROVEN_MSEC := 1000
 const CONNECT_MSEC := 5000
 # The daemon sends an object at least every 10 s. A silent connection is dead and is replaced.
 const SILENCE_MSEC := 30000
@@ -41,6 +43,7 @@ var _socket: WebSocketPeer = null
 var _pause_msec := FIRST_PAUSE_MSEC
 var _due_msec := 0
 var _heard_msec := 0
+var _opened_msec := 0
 var _streams := {}  # subject -> Stream
 
 
@@ -51,6 +54,7 @@ class Stream:
 	var sequence := -1
 	var time_us := 0.0
 	var age_ms := 0.0
+	var timecode := ""  # SMPTE, of the pose: "10:00:00:00", ';' before the frames of drop-frame; "": its source sends none
 	var received_msec := 0
 	var frames := 0
 	var missed := 0
@@ -98,12 +102,14 @@ func poll() -> void:
 	socket.poll()
 	if socket.get_ready_state() == WebSocketPeer.STATE_OPEN:
 		if state != State.CONNECTED:
-			_pause_msec = FIRST_PAUSE_MSEC
+			_opened_msec = now
 			_heard_msec = now
 			last_error = ""
 			_set_state(State.CONNECTED)
 		while _socket == socket and socket.get_available_packet_count() > 0:
 			_heard_msec = now
+			if now - _opened_msec >= PROVEN_MSEC:
+				_pause_msec = FIRST_PAUSE_MSEC
 			_on_message(socket.get_packet().get_string_from_utf8())
 	elif socket.get_ready_state() == WebSocketPeer.STATE_CLOSED:
 		_lose("no connection to " + get_address() + "; is furrowd running there?")
@@ -251,6 +257,7 @@ func _on_weights(message: Dictionary) -> void:
 	stream.sequence = int(sequence)
 	stream.time_us = _number(message.get("time_us"))
 	stream.age_ms = _number(message.get("age_ms"))
+	stream.timecode = _timecode(message.get("timecode"))
 	stream.received_msec = Time.get_ticks_msec()
 	stream.frames += 1
 	stream.gone = false
@@ -262,6 +269,11 @@ func _on_gone(message: Dictionary) -> void:
 	if stream != null and not stream.gone:
 		stream.gone = true
 		subject_gone.emit(message.subject)
+
+
+# The longest is "23:59:59:239".
+func _timecode(value: Variant) -> String:
+	return value if typeof(value) == TYPE_STRING and value.length() <= 12 else ""
 
 
 func _number(value: Variant) -> float:

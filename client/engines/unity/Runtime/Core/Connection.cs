@@ -218,7 +218,7 @@ namespace Furrow
             var connection = (Connection)GCHandle.FromIntPtr(user).Target;
             try
             {
-                connection.Take(subject, (Native.Frame)Marshal.PtrToStructure(frame, typeof(Native.Frame)), values);
+                connection.Take(subject, Native.ReadFrame(frame), values);
             }
             catch (Exception error)
             {
@@ -253,6 +253,10 @@ namespace Furrow
                 Marshal.Copy(values, subject.Values, 0, (int)frame.Count);
                 subject.LastSequence = subject.Sequence = frame.Sequence;
                 subject.LastTimeUs = subject.CaptureTimeUs = frame.CaptureTimeUs;
+                subject.TimecodeBytes0To7 = frame.TimecodeBytes0To7;
+                subject.TimecodeBytes8To15 = frame.TimecodeBytes8To15;
+                subject.TimecodeRateNumerator = frame.TimecodeRateNumerator;
+                subject.TimecodeRateDenominator = frame.TimecodeRateDenominator;
                 subject.IsDecaying = decaying;
                 subject.Frames += 1;
                 subject.Raise();

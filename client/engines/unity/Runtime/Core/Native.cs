@@ -66,6 +66,34 @@ namespace Furrow
             public ulong Missed;
             public long CaptureTimeUs;
             public long AgeUs;
+            public ulong TimecodeBytes0To7;  // 16 bytes of text
+            public ulong TimecodeBytes8To15;
+            public uint TimecodeRateNumerator;
+            public uint TimecodeRateDenominator;
+        }
+
+        /// <summary>Copies a frame of a callback. An older library passes a shorter one; what it lacks is 0.</summary>
+        public static Frame ReadFrame(IntPtr frame)
+        {
+            int size = Marshal.SizeOf(typeof(Frame));
+            int given = Marshal.ReadInt32(frame);
+            if (given >= size)
+            {
+                return (Frame)Marshal.PtrToStructure(frame, typeof(Frame));
+            }
+            IntPtr whole = Marshal.AllocHGlobal(size);
+            try
+            {
+                for (int i = 0; i < size; ++i)
+                {
+                    Marshal.WriteByte(whole, i, i < given ? Marshal.ReadByte(frame, i) : (byte)0);
+                }
+                return (Frame)Marshal.PtrToStructure(whole, typeof(Frame));
+            }
+            finally
+            {
+                Marshal.FreeHGlobal(whole);
+            }
         }
 
         [UnmanagedFunctionPointer(CallingConvention.Cdecl)]

@@ -11,6 +11,8 @@ namespace Furrow
         internal ulong Layout;
         internal uint LastSequence;
         internal long LastTimeUs;
+        internal ulong TimecodeBytes0To7;  // 16 bytes of text
+        internal ulong TimecodeBytes8To15;
 
         internal Subject(string requested)
         {
@@ -39,6 +41,27 @@ namespace Furrow
 
         /// <summary>When the pose was captured, microseconds, on the publisher's clock.</summary>
         public long CaptureTimeUs { get; internal set; }
+
+        /// <summary>
+        /// The SMPTE timecode that the source gives to the pose, "10:00:00:00"; ';' before the frames means drop-frame.
+        /// Empty: the source sends none. Makes a new string.
+        /// </summary>
+        public string Timecode
+        {
+            get
+            {
+                var text = new byte[16];
+                BitConverter.GetBytes(TimecodeBytes0To7).CopyTo(text, 0);
+                BitConverter.GetBytes(TimecodeBytes8To15).CopyTo(text, 8);
+                return Text.FromC(text);
+            }
+        }
+
+        /// <summary>Frames per second of the timecode, as a fraction with TimecodeRateDenominator; 0: there is none.</summary>
+        public uint TimecodeRateNumerator { get; internal set; }
+
+        /// <summary>See TimecodeRateNumerator.</summary>
+        public uint TimecodeRateDenominator { get; internal set; }
 
         /// <summary>No new pose arrives: the daemon holds the weights, then fades them to neutral.</summary>
         public bool IsDecaying { get; internal set; }

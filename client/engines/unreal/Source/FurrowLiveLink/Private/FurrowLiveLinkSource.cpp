@@ -6,6 +6,7 @@
 #include "LiveLinkTypes.h"
 #include "Roles/LiveLinkBasicRole.h"
 
+#include "FurrowSceneTime.h"
 #include "furrow/furrow.hpp"
 
 // Apart from the header, so that files that use the source do not need Furrow's headers.
@@ -34,6 +35,7 @@ struct FFurrowLiveLinkSource::FConnection
 		FLiveLinkFrameDataStruct Data(FLiveLinkBaseFrameData::StaticStruct());
 		FLiveLinkBaseFrameData& Base = *Data.Cast<FLiveLinkBaseFrameData>();
 		Base.WorldTime = FLiveLinkWorldTime(FPlatformTime::Seconds());
+		Base.MetaData.SceneTime = SceneTimeOf(Frame);
 		Base.PropertyValues.Append(Values, Frame.count);
 		Client->PushSubjectFrameData_AnyThread(Key(Subject), MoveTemp(Data));
 	}
