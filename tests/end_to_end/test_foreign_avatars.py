@@ -10,6 +10,7 @@ import tempfile
 import unittest
 
 from furrow_testing import Table, furrow
+from tracker_packets import livelink_csv
 
 DONE = 0
 AVATAR = pathlib.Path(__file__).resolve().parent / "fixtures" / "avatar.glb"
@@ -30,12 +31,7 @@ EXPRESSIONS = {  # ARKit's shapes, and the weights that they raise above 0.5
 def csv():
     """Live Link Face's CSV: each expression in turn."""
     names = sorted({name for shapes, _ in EXPRESSIONS.values() for name in shapes})
-    rows = ["Timecode,BlendShapeCount," + ",".join(names)]
-    for shapes, _ in EXPRESSIONS.values():
-        for _ in range(HELD):
-            at = len(rows) - 1
-            rows.append(f"00:00:{at // 60:02}:{at % 60:02}.000,{len(names)}," + ",".join(str(shapes.get(n, 0)) for n in names))
-    return "\n".join(rows) + "\n"
+    return livelink_csv([shapes for shapes, _ in EXPRESSIONS.values() for _ in range(HELD)], names)
 
 
 class ForeignAvatarTest(unittest.TestCase):

@@ -9,7 +9,7 @@ import tempfile
 import unittest
 
 from furrow_testing import BIN, GUARD, SHARE, Daemon, furrow, picture_difference, png_rows, solve
-from tracker_packets import CURVES, vmc
+from tracker_packets import CURVES, livelink_csv, vmc
 from wire_testing import Phone, Tracker
 
 DONE = 0
@@ -56,11 +56,7 @@ SMALL = {"width": 96, "height": 96}
 
 def recording(path, frames):
     """Writes a CSV of Live Link Face with the given frames of curves."""
-    rows = ["Timecode,BlendShapeCount," + ",".join(CURVES)]
-    for frame, shapes in enumerate(frames):
-        values = ",".join(str(shapes.get(curve, 0.0)) for curve in CURVES)
-        rows.append(f"00:00:00:{frame:02}.000,{len(CURVES)},{values}")
-    path.write_text("\n".join(rows) + "\n")
+    path.write_text(livelink_csv(frames))
     return path
 
 

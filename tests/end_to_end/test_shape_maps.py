@@ -6,6 +6,7 @@ import tempfile
 import unittest
 
 from furrow_testing import furrow
+from tracker_packets import livelink_csv
 
 DONE, BAD_INPUT = 0, 3
 ARKIT = ["browInnerUp", "mouthSmileLeft", "mouthSmileRight", "jawOpen", "browDownLeft", "browDownRight"]
@@ -15,11 +16,7 @@ PRESETS = ["Joy", "Angry", "Sorrow", "A", "Blink", "Fun"]
 
 def csv(names):
     """Live Link Face's CSV: two frames; the shapes rise from 0 to a tenth of their place in the list."""
-    rows = ["Timecode,BlendShapeCount," + ",".join(names)]
-    for frame in range(2):
-        values = [f"{frame * 0.1 * (i + 1):.1f}" for i in range(len(names))]
-        rows.append(f"00:00:00:{frame:02}.000,{len(names)}," + ",".join(values))
-    return "\n".join(rows) + "\n"
+    return livelink_csv([{}, {name: round(0.1 * (i + 1), 1) for i, name in enumerate(names)}], names)
 
 
 class ShapeMapsTest(unittest.TestCase):

@@ -24,6 +24,15 @@ def livelink_face(subject, frame, shapes, rate=(60, 1)):
     return packet
 
 
+def livelink_csv(frames, curves=CURVES, hour=0):
+    """Returns the CSV that Live Link Face records: one frame per map of curves, at 60 frames per second from `hour` on."""
+    rows = ["Timecode,BlendShapeCount," + ",".join(curves)]
+    for at, shapes in enumerate(frames):
+        values = ",".join(str(shapes.get(curve, 0.0)) for curve in curves)
+        rows.append(f"{hour:02}:00:{at // 60:02}:{at % 60:02}.000,{len(curves)},{values}")
+    return "\n".join(rows) + "\n"
+
+
 def osc(address, *values):
     """Returns an OSC message. Values are integers, floats or text."""
     def text(s):

@@ -23,7 +23,7 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "end_to_end"))
 # pylint: disable=wrong-import-position
 from furrow_testing import BIN, GUARD, SHARE, SOURCE, Daemon, furrow, spawn
-from tracker_packets import CURVES
+from tracker_packets import livelink_csv
 
 EVENT = "furrow-test: "
 FRAMES = 1000
@@ -111,11 +111,7 @@ class EngineTest(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         path = pathlib.Path(folder.name) / "phone.csv"
-        rows = ["Timecode,BlendShapeCount," + ",".join(CURVES)]
-        for frame in range(60):
-            values = ",".join(str(frame / 60 if curve == "JawOpen" else 0.0) for curve in CURVES)
-            rows.append(f"10:00:00:{frame:02}.000,{len(CURVES)},{values}")
-        path.write_text("\n".join(rows) + "\n")
+        path.write_text(livelink_csv([{"JawOpen": frame / 60} for frame in range(60)], hour=10))
         self.start_performer(path, "--to", daemon.udp, "--subject", subject)
 
     def time_of_weights(self, daemon):
