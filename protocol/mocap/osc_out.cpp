@@ -128,7 +128,6 @@ std::size_t OscWeightWriter::SetNames(const std::string& subject,
 
 void OscWeightWriter::Write(const OscFrame& frame, std::span<const float> values,
                             const Emit& emit) {
-  const std::string timecode = frame.timecode ? TimecodeText(*frame.timecode) : std::string();
   OscWriter writer(datagram_);
   writer.BeginBundle();
   const auto add = [&](const OscTemplate& form, const Message& message, float value) {
@@ -146,7 +145,9 @@ void OscWeightWriter::Write(const OscFrame& frame, std::span<const float> values
         case OscField::kValue: writer.Float(value); break;
         case OscField::kSequence: writer.Int(static_cast<std::int32_t>(frame.sequence)); break;
         case OscField::kCaptureTime: writer.Int64(frame.capture_time_us); break;
-        case OscField::kTimecode: writer.String(timecode); break;
+        case OscField::kTimecode:
+          writer.String(frame.timecode ? TimecodeText(*frame.timecode) : std::string());
+          break;
       }
     }
     writer.EndMessage();

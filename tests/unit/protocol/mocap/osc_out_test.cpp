@@ -40,6 +40,9 @@ const OscProfile kVmc{.name = "vmc",
                       .names = {},
                       .only_renamed = false};
 
+// The timecode with the longest text: 23:59:59:239.
+constexpr Timecode kLongest{.frame = 24u * 3600 * 240 - 1, .rate_numerator = 240};
+
 // The addresses of the messages that a writer sends.
 std::vector<std::string> Addresses(OscWeightWriter& writer, const std::vector<float>& values) {
   std::vector<std::string> addresses;
@@ -106,8 +109,7 @@ TEST(OscWeightWriter, SendsTheTimecodeOfASourceThatHasOne) {
     writer.SetNames("ada", Names(count));
     std::vector<std::string> texts;
     std::vector<std::string> addresses;
-    const Timecode longest{.frame = 24u * 3600 * 240 - 1, .rate_numerator = 240};
-    writer.Write({0, 0, longest}, Values(count), [&](std::span<const std::uint8_t> datagram) {
+    writer.Write({0, 0, kLongest}, Values(count), [&](std::span<const std::uint8_t> datagram) {
       EXPECT_LE(datagram.size(), 1200u);
       const OscStatus status = VisitOsc(datagram, [&](const OscMessage& message) {
         addresses.emplace_back(message.address);
@@ -168,10 +170,9 @@ TEST(OscWeightWriter, DoesNotAllocateAfterWarmUp) {
   writer.SetNames("anna", Names(100));
   const std::vector<float> values = Values(100);
   const OscWeightWriter::Emit emit = [](std::span<const std::uint8_t>) {};
-  const Timecode longest{.frame = 24u * 3600 * 240 - 1, .rate_numerator = 240};
-  writer.Write({0, 0, longest}, values, emit);
+  writer.Write({0, 0, kLongest}, values, emit);
   const std::uint64_t before = furrow::test::NumAllocations();
-  for (std::uint32_t i = 1; i < 10; ++i) writer.Write({i, i, longest}, values, emit);
+  for (std::uint32_t i = 1; i < 10; ++i) writer.Write({i, i, kLongest}, values, emit);
   EXPECT_EQ(furrow::test::NumAllocations(), before);
 }
 
