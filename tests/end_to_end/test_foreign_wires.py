@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """VMC input from oscsend, Live Link Face input from an encoder in this test, OSC output to oscdump."""
+import itertools
 import select
 import shutil
 import socket
@@ -27,15 +28,16 @@ class ForeignWireTest(unittest.TestCase):
                 return table
         self.fail("the weights never rose")
 
+    def phone(self, daemon, shapes, frame=0):
+        """Returns a function that sends the next frame of a phone after `frame`."""
+        out = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.addCleanup(out.close)
+        frames = itertools.count(frame + 1)
+        return lambda: out.sendto(livelink_face("phone", next(frames), shapes), ("127.0.0.1", daemon.ports["livelink_face"]))
+
     def test_livelink_face_raises_the_right_weights(self):
         with Daemon("--rig", ARKIT, "--livelink-face", "0") as daemon:
-            out = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-            frame = [0]
-
-            def send():
-                frame[0] += 1
-                out.sendto(livelink_face("phone", frame[0], {"BrowInnerUp": 1.0, "MouthSmileLeft": 0.9}),
-                           ("127.0.0.1", daemon.ports["livelink_face"]))
+            send = self.phone(daemon, {"BrowInnerUp": 1.0, "MouthSmileLeft": 0.9})
 
             send()
             watcher = spawn("watch", daemon.tcp, "--subject", "phone", "--wait", "--format", "csv")
@@ -53,34 +55,20 @@ class ForeignWireTest(unittest.TestCase):
     def test_a_phone_on_the_default_character_lacks_nothing(self):
         # Its rig also reads joints, which a phone has none of.
         with Daemon("--no-render", "--livelink-face", "0") as daemon:
-            out = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
             watcher = spawn("watch", daemon.tcp, "--wait", "--format", "csv")
-            frame = [0]
-
-            def send():
-                frame[0] += 1
-                out.sendto(livelink_face("phone", frame[0], {"JawOpen": 0.5}),
-                           ("127.0.0.1", daemon.ports["livelink_face"]))
+            send = self.phone(daemon, {"JawOpen": 0.5})
 
             self.keep_sending_until_header(watcher, send)
             watcher.terminate()
             finish(watcher)
-            out.close()
         self.assertIn("phone", daemon.stderr)
         self.assertNotIn("lacks", daemon.stderr)
         self.assertNotIn("missing", daemon.stderr)
 
     def test_watch_prints_the_timecode_of_a_phone(self):
         with Daemon("--no-render", "--livelink-face", "0") as daemon:
-            out = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-            self.addCleanup(out.close)
             watcher = spawn("watch", daemon.tcp, "--wait", "--format", "csv", "--timecode")
-            frame = [3600]
-
-            def send():
-                frame[0] += 1
-                out.sendto(livelink_face("phone", frame[0], {"JawOpen": 0.5}),
-                           ("127.0.0.1", daemon.ports["livelink_face"]))
+            send = self.phone(daemon, {"JawOpen": 0.5}, frame=3600)
 
             self.keep_sending_until_header(watcher, send)
             header = watcher.stdout.readline().decode().strip().split(",")
