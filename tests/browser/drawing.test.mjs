@@ -11,11 +11,13 @@ import { Daemon, recording, SHARE } from './daemon.mjs';
 
 const FROWN_S = 6.5;
 const SMALL = { viewport: { width: 910, height: 510 } }; // large pictures take seconds in software
+/** A character with a package for browsers. */
+const SHIPPED = ['--character', join(SHARE, 'default.glb'), '--play', recording('performance')];
 let daemon;
 let browser;
 
 before(async () => {
-  daemon = await Daemon.start(['--play', recording('performance')]);
+  daemon = await Daemon.start(SHIPPED);
   browser = await launch(['--enable-unsafe-swiftshader']);
 });
 after(async () => {
@@ -93,6 +95,40 @@ test('the browser draws skin shading by the page\'s settings', async (context) =
   await page.context().close();
 });
 
+test('a pose at rest is drawn once, however often it arrives', async () => {
+  await daemon.hold(FROWN_S);
+  const page = await openPage(browser, `${daemon.address}#drawn=browser&panel=`, SMALL, (opened) => opened.addInitScript(() => {
+    window.calls = 0;
+    const { prototype } = WebGL2RenderingContext;
+    for (const name of ['drawElements', 'drawArrays']) {
+      const draw = prototype[name];
+      prototype[name] = function (...rest) {
+        ++window.calls;
+        return draw.apply(this, rest);
+      };
+    }
+  }));
+  await drawnBy(page, 'browser');
+  const calls = () => page.evaluate(() => window.calls);
+  const received = async () => (await daemon.get('api/subjects')).subjects[0].poses;
+  const more = async (count) => {
+    const poses = await received();
+    await eventually(`${count} more poses`, async () => (await received()) >= poses + count);
+  };
+  await eventually('the filtered weights are at rest', async () => {
+    const before = await calls();
+    await more(60); // in software, a picture takes as long as many poses
+    return (await calls()) === before;
+  });
+  const drawn = await calls();
+  await more(20);
+  assert.equal(await calls(), drawn);
+  assert.equal(await page.locator('.stage').getAttribute('data-drawn-by'), 'browser');
+  await page.keyboard.press('3');
+  await eventually('another camera', async () => (await calls()) > drawn);
+  await page.context().close();
+});
+
 test('a change of the settings changes the picture that the browser draws', async () => {
   await daemon.hold(FROWN_S);
   const page = await openPage(browser, `${daemon.address}#drawn=browser&shading=skin`, { viewport: { width: 1100, height: 510 } });
@@ -144,7 +180,7 @@ test('after a restart the page asks for the character again', async (context) =>
   for (const [name, copy] of [['default.glb', 'other.glb'], ['default.rig.json', 'other.rig.json']]) {
     copyFileSync(join(SHARE, name), join(folder, copy));
   }
-  const first = await Daemon.start(['--play', recording('performance')]);
+  const first = await Daemon.start(SHIPPED);
   context.after(() => first.stop('SIGKILL'));
   const page = await openPage(browser, `${first.address}#drawn=browser&panel=`, SMALL);
   await drawnBy(page, 'browser');

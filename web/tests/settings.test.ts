@@ -22,6 +22,17 @@ test('a value equal to the daemon’s is not an override', () => {
   assert.equal(settings.value('shadow.softness_mm'), '3');
 });
 
+test('equal settings of the daemon, which the page reads every few seconds, change nothing', () => {
+  const settings = model();
+  let told = 0;
+  settings.changed.watch(() => ++told);
+  settings.setInfos(someSettings());
+  assert.equal(told, 0);
+  settings.setInfos(someSettings().map((info) => (info.name === 'shadow.taps' ? { ...info, value: '17' } : info)));
+  assert.equal(told, 1);
+  assert.equal(settings.value('shadow.taps'), '17');
+});
+
 test('a drag is one undo step, a later change another', () => {
   const settings = model();
   for (let i = 0; i < 10; ++i) settings.set('shadow.taps', String(10 + i), 50 * i);

@@ -60,8 +60,9 @@ export class SettingsModel {
     return this.own.get(name) ?? this.byName.get(name)?.value ?? '';
   }
 
-  /** Sets the daemon's settings, also after a reconnection or a PATCH. Undo steps remain. */
+  /** Sets the daemon's settings, also after a reconnection or a PATCH. Undo steps remain. Equal ones change nothing. */
   setInfos(infos: SettingInfo[]): void {
+    if (JSON.stringify(infos) === JSON.stringify(this.infos_)) return;
     this.infos_ = infos;
     this.byName = new Map(infos.map((info) => [info.name, info]));
     this.own = this.normalised(this.own);

@@ -11,6 +11,7 @@ import { Signal } from '../ui/signal';
 import type { Connection } from '../wire/connection';
 import type { BrowserScene } from './browser_scene';
 import { decide, type DrawDecision } from './draw_choice';
+import { DrawnMoment } from './drawn_moment';
 import type { ShownPicture } from './picture_stats';
 import { pictureSize } from './resolution';
 
@@ -56,7 +57,9 @@ export class BrowserView {
   private measured: number[] = [];
   private shownAtS: number[] = [];
   private slowS = 0;
-  private lastDrawn = '';
+  private readonly moment = new DrawnMoment();
+  private lastNumber = -1;
+  private restedAtS = -Infinity;
   private drawn: (ShownPicture & { ageMs: number; atMs: number }) | null = null;
   private isScheduled = false;
 
@@ -86,7 +89,7 @@ export class BrowserView {
 
   /** The canvas with its picture, which browsers drop after the task that drew it. */
   canvas(): HTMLCanvasElement | null {
-    this.lastDrawn = '';
+    this.moment.forget();
     this.draw();
     return this.element.querySelector('canvas');
   }
@@ -100,9 +103,11 @@ export class BrowserView {
     this.update();
   }
 
-  /** The GPU may be busier than it was when it was measured. A hidden page draws nothing, which says nothing. */
+  /** The GPU may be busier than it was when it was measured. A hidden page and a pose at rest draw nothing, which says nothing. */
   private checkRate(posesHz: number): void {
-    const hz = this.rateHz(performance.now() / 1000);
+    const nowS = performance.now() / 1000;
+    const hz = this.rateHz(nowS);
+    if (nowS - this.restedAtS <= RATE_WINDOW_S) return;
     const isSlow = document.visibilityState === 'visible' && hz < ENOUGH * Math.min(this.daemonHz, posesHz);
     this.slowS = isSlow ? this.slowS + 1 : 0;
     if (this.slowS >= SLOW_S) this.browserHz = hz;
@@ -161,7 +166,6 @@ export class BrowserView {
     else if (this.scene !== null) this.follow();
     const active = step === 'browser';
     if (active === this.active.value) return;
-    this.lastDrawn = '';
     this.shownAtS = [];
     // Shown with the first picture (draw()), so that the daemon's stays until then.
     if (!active) {
@@ -256,23 +260,25 @@ export class BrowserView {
     if (this.scene === null || pose === null || weights === null || camera === null || surface === null) return;
     if (step !== 'measure' && step !== 'browser') return;
     const { width, height } = pictureSize(surface.clientWidth, surface.clientHeight, devicePixelRatio, 1);
-    const drawn = JSON.stringify([pose.number, weights.number, camera, width, height, this.state.settings.changed.value]);
-    if (step === 'browser' && drawn === this.lastDrawn) {
-      this.schedule(); // nothing has changed
-      return;
-    }
-    this.lastDrawn = drawn;
+    const view = JSON.stringify([camera, width, height, this.state.settings.changed.value]);
+    const isSame = step === 'browser' && this.active.value && this.moment.isSame(pose, weights, view);
     const beganMs = performance.now();
-    try {
-      this.scene.draw(pose, weights, this.settings().settings, camera, width, height, step === 'measure');
-    } catch (error) {
-      this.fail(error);
-      return;
+    if (!isSame) {
+      this.moment.set(pose, weights, view);
+      try {
+        this.scene.draw(pose, weights, this.settings().settings, camera, width, height, step === 'measure');
+      } catch (error) {
+        this.fail(error);
+        return;
+      }
     }
     const endedMs = performance.now();
     if (step === 'measure') {
       this.note(endedMs - beganMs);
-    } else {
+    } else if (!isSame || pose.number !== this.lastNumber) {
+      // The last picture also shows an equal pose that has arrived since.
+      if (isSame) this.restedAtS = endedMs / 1000;
+      this.lastNumber = pose.number;
       this.drawn = { sequence: pose.sequence, width, height, isStill: false, drawnPercent: 100, ageMs: pose.ageMs, atMs: endedMs };
       this.show(endedMs / 1000);
       this.onShown();
