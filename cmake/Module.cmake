@@ -52,7 +52,7 @@ function(furrow_test name)
   target_compile_definitions(${name} PRIVATE
     FURROW_SOURCE_DIR="${PROJECT_SOURCE_DIR}" FURROW_BINARY_DIR="${PROJECT_BINARY_DIR}"
     FURROW_SHARED_DATA="${FURROW_SHARED_DATA}")
-  furrow_precompile_tests(${name})
+  furrow_unity_tests(${name})
   if(NOT ARG_LABEL)
     set(ARG_LABEL unit)
   endif()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Makes clean builds faster. They spend most of their time on parsing the same headers again and again, so each
-# folder of a library is compiled as one translation unit, and precompiled headers hold the standard library.
-option(FURROW_UNITY "Compile each folder of a library as one unit, and precompile common headers" ON)
+# folder of a library or a test program is compiled as one translation unit, and precompiled headers hold the standard library.
+option(FURROW_UNITY "Compile each folder of a target as one unit, and precompile common headers" ON)
 
 # Folders whose rooms share one unit, because all of them parse the same heavy headers (CLI11, Beast).
 set(FURROW_UNITY_SHARED client/cli server/http)
@@ -12,14 +12,9 @@ set(FURROW_STANDARD_HEADERS
   <memory> <mutex> <numeric> <optional> <span> <sstream> <string> <string_view> <thread> <unordered_map>
   <unordered_set> <utility> <variant> <vector>)
 
-# furrow_unity(TARGET): compiles the sources of each folder as one translation unit, and precompiles the
-# standard library and GLM once for all libraries. Sources with the property SKIP_UNITY_BUILD_INCLUSION are
-# compiled separately.
-function(furrow_unity target)
-  # The client library alone is small, and the precompiled header needs GLM.
-  if(NOT FURROW_UNITY OR NOT FURROW_BUILD_PROGRAMS)
-    return()
-  endif()
+# furrow_group_by_folder(TARGET): compiles the sources of each folder as one translation unit. Sources with the property
+# SKIP_UNITY_BUILD_INCLUSION are compiled separately.
+function(furrow_group_by_folder target)
   get_target_property(sources ${target} SOURCES)
   foreach(source IN LISTS sources)
     cmake_path(ABSOLUTE_PATH source BASE_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}" NORMALIZE)
@@ -39,7 +34,17 @@ function(furrow_unity target)
   endforeach()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
   # g++ takes the sources that a unit includes for headers, and warns about their anonymous namespaces.
-  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+  target_compile_options(${target} PRIVATE $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-subobject-linkage>)
+endfunction()
+
+# furrow_unity(TARGET): compiles a library by folder, and precompiles the standard library and GLM once for all
+# libraries.
+function(furrow_unity target)
+  # The client library alone is small, and the precompiled header needs GLM.
+  if(NOT FURROW_UNITY OR NOT FURROW_BUILD_PROGRAMS)
+    return()
+  endif()
+  furrow_group_by_folder(${target})
   if(NOT TARGET furrow_library_headers)
     file(WRITE "${PROJECT_BINARY_DIR}/library_headers.cpp" "// Carries the libraries' precompiled header.\n")
     add_library(furrow_library_headers STATIC "${PROJECT_BINARY_DIR}/library_headers.cpp")
@@ -72,11 +77,13 @@ function(furrow_compile_alone)
   set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
-# furrow_precompile_tests(TARGET): precompiles GoogleTest and the standard library once for all test programs.
-function(furrow_precompile_tests target)
+# furrow_unity_tests(TARGET): compiles a test program by folder, and precompiles GoogleTest and the standard library once
+# for all test programs.
+function(furrow_unity_tests target)
   if(NOT FURROW_UNITY)
     return()
   endif()
+  furrow_group_by_folder(${target})
   if(NOT TARGET furrow_test_headers)
     # An executable, since the header must be compiled with the tests' -fPIE.
     file(WRITE "${PROJECT_BINARY_DIR}/test_headers.cpp" "// Carries the tests' precompiled header.\nint main() {}\n")

@@ -20,10 +20,7 @@
 namespace furrow::render::golden {
 namespace {
 
-constexpr auto kBlend = NormalBlend::kPartialDerivative;
 constexpr auto kSkin = Shading::kSkin;
-// Under the default threshold only the brightest highlights glow.
-constexpr float kGlow = 0.3f;
 
 constexpr Shot kDefault[] = {
     {"final", View::kFinal, "face"},

@@ -7,11 +7,6 @@
 namespace furrow::render::golden {
 namespace {
 
-constexpr auto kBlend = NormalBlend::kPartialDerivative;
-
-// Under the default threshold only the brightest highlights glow.
-constexpr float kGlow = 0.3f;
-
 constexpr Shot kShots[] = {
     {"final", View::kFinal, "face"},
     {"final_tangent_space", View::kFinal, "face", NormalBlend::kTangentSpace},

@@ -12,12 +12,17 @@
 // filtering, so every pixel may differ slightly, and a few may differ a lot.
 namespace furrow::render::golden {
 
+// The default of Shot.
+inline constexpr auto kBlend = NormalBlend::kPartialDerivative;
+// Under the default threshold of bloom only the brightest highlights glow.
+inline constexpr float kGlow = 0.3f;
+
 // One picture. `name` is the name of a file in images/ without ".png".
 struct Shot {
   const char* name;
   View view;
   const char* camera;
-  NormalBlend blend = NormalBlend::kPartialDerivative;
+  NormalBlend blend = kBlend;
   Shading shading = Shading::kDiffuse;
   int samples = 4;  // on every device
   float bloom_threshold = BloomSettings().threshold;

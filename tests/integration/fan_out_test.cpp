@@ -12,9 +12,9 @@
 namespace furrow::testing_net {
 namespace {
 
-constexpr int kSubjects = 16;
+constexpr int kPerformers = 16;
 constexpr int kSubscribers = 64;
-constexpr int kFrames = 20;
+constexpr int kPosesEach = 20;
 constexpr int kShapes = 52;
 
 // The clip starting at a later frame.
@@ -33,8 +33,8 @@ struct Performer {
 
 std::vector<Performer> MakePerformers(UdpClient& sender) {
   std::vector<Performer> performers;
-  const motion::Clip clip = ArkitClip(kFrames + kSubjects);
-  for (int i = 0; i < kSubjects; ++i) {
+  const motion::Clip clip = ArkitClip(kPosesEach + kPerformers);
+  for (int i = 0; i < kPerformers; ++i) {
     Performer& performer = performers.emplace_back();
     performer.clip = From(clip, i);
     performer.offer = OfferOf(performer.clip, "subject " + std::to_string(i));
@@ -46,8 +46,8 @@ std::vector<Performer> MakePerformers(UdpClient& sender) {
 
 // Receives the weights of one frame of every subject once, in any order.
 void ExpectFrame(UdpClient& watcher, const std::vector<Performer>& performers, int frame) {
-  std::vector<bool> seen(kSubjects);
-  for (int i = 0; i < kSubjects; ++i) {
+  std::vector<bool> seen(kPerformers);
+  for (int i = 0; i < kPerformers; ++i) {
     protocol::Header header;
     const auto weights = watcher.Await<protocol::WeightFrame>(&header);
     ASSERT_TRUE(weights.has_value());
@@ -72,13 +72,13 @@ TEST(FanOut, WeightsArriveAtEverySubscriberInFewerDatagrams) {
   for (int i = 0; i < kSubscribers; ++i) {
     UdpClient& watcher = watchers.emplace_back(daemon.ready().udp);
     ASSERT_TRUE(watcher.Prove(/*bundles=*/i > 0));  // the first is an old client without bundles
-    for (std::uint32_t k = 0; k < kSubjects; ++k) {
+    for (std::uint32_t k = 0; k < kPerformers; ++k) {
       const auto reply = Watch(watcher, {.subject = performers[k].offer.subject}, k + 1);
       ASSERT_TRUE(reply.has_value());
     }
   }
   const std::uint64_t before = watchers[0].datagrams();
-  for (int frame = 0; frame < kFrames; ++frame) {
+  for (int frame = 0; frame < kPosesEach; ++frame) {
     const auto index = static_cast<std::size_t>(frame);
     for (std::size_t i = 0; i < performers.size(); ++i) {
       const double time = performers[i].clip.times[index];
@@ -92,9 +92,9 @@ TEST(FanOut, WeightsArriveAtEverySubscriberInFewerDatagrams) {
     }
   }
   EXPECT_EQ(daemon.Count(server::Counter::kWeightsSent),
-            std::uint64_t{kSubscribers * kSubjects * kFrames});
-  EXPECT_GE(watchers[0].datagrams() - before, std::uint64_t{kSubjects * kFrames});
-  EXPECT_LE(watchers[0].datagrams() - before, kSubjects * kFrames + watchers[0].challenges());
+            std::uint64_t{kSubscribers * kPerformers * kPosesEach});
+  EXPECT_GE(watchers[0].datagrams() - before, std::uint64_t{kPerformers * kPosesEach});
+  EXPECT_LE(watchers[0].datagrams() - before, kPerformers * kPosesEach + watchers[0].challenges());
   // While the first pose goes to 64 subscribers, the others arrive, so some messages share
   // datagrams.
   EXPECT_GT(daemon.Count(server::Counter::kMessagesBundled), 0u);

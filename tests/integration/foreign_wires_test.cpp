@@ -73,9 +73,9 @@ Bytes LiveLinkFace(std::string_view subject, std::uint32_t frame, std::map<int, 
 }
 
 // A UDP socket on a free loopback port.
-class Listener {
+class UdpListener {
  public:
-  Listener() : socket_(::socket(AF_INET, SOCK_DGRAM, 0)) {
+  UdpListener() : socket_(::socket(AF_INET, SOCK_DGRAM, 0)) {
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
@@ -84,7 +84,7 @@ class Listener {
     ::getsockname(socket_, reinterpret_cast<sockaddr*>(&address), &size);
     port = ntohs(address.sin_port);
   }
-  ~Listener() { Close(); }
+  ~UdpListener() { Close(); }
   void Close() {
     if (socket_ >= 0) ::close(socket_);
     socket_ = -1;
@@ -240,7 +240,7 @@ TEST(ForeignWires, OscdumpOfLibloReadsWhatWeSend) {
   const std::string oscdump = FindProgram("oscdump");
   const std::string stdbuf = FindProgram("stdbuf");
   if (oscdump.empty() || stdbuf.empty()) GTEST_SKIP() << "no oscdump: install liblo-tools";
-  Listener reserved;
+  UdpListener reserved;
   server::Config config = WeightsConfig("arkit.json");
   config.osc_out = server::HostPort{"127.0.0.1", reserved.port};
   reserved.Close();  // for oscdump

@@ -23,7 +23,7 @@ using testing::HasSubstr;
 using testing::MatchesRegex;
 using testing::StartsWith;
 
-std::vector<std::string> Command(std::vector<std::string> more = {}) {
+std::vector<std::string> ServiceCommand(std::vector<std::string> more = {}) {
   std::vector<std::string> command = {FURROW_BINARY_DIR "/bin/furrowd",
                                       "--rig",
                                       FURROW_SOURCE_DIR "/rig/rigs/arkit.json",
@@ -39,9 +39,9 @@ std::vector<std::string> Command(std::vector<std::string> more = {}) {
 }
 
 // A TCP socket that listens on a free port.
-class Listener {
+class TcpListener {
  public:
-  explicit Listener(std::uint32_t address)
+  explicit TcpListener(std::uint32_t address)
       : socket_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
     sockaddr_in any{};
     any.sin_family = AF_INET;
@@ -49,9 +49,9 @@ class Listener {
     EXPECT_EQ(bind(socket_, reinterpret_cast<const sockaddr*>(&any), sizeof(any)), 0);
     EXPECT_EQ(listen(socket_, 16), 0);
   }
-  ~Listener() { close(socket_); }
-  Listener(const Listener&) = delete;
-  Listener& operator=(const Listener&) = delete;
+  ~TcpListener() { close(socket_); }
+  TcpListener(const TcpListener&) = delete;
+  TcpListener& operator=(const TcpListener&) = delete;
 
   [[nodiscard]] int socket_number() const { return socket_; }
   [[nodiscard]] std::uint16_t port() const {
@@ -67,7 +67,7 @@ class Listener {
 
 TEST(Service, TheManagerHearsThatTheDaemonServesLivesAndEnds) {
   const NotifySocket manager;
-  Process daemon(Command(), {.notify_socket = manager.path()});
+  Process daemon(ServiceCommand(), {.notify_socket = manager.path()});
   const std::string ready = manager.Next();
   EXPECT_THAT(ready, StartsWith("READY=1\n"));
   EXPECT_THAT(ready, HasSubstr("STATUS=furrowd ready tcp=127.0.0.1:"));
@@ -79,12 +79,12 @@ TEST(Service, TheManagerHearsThatTheDaemonServesLivesAndEnds) {
 
 // The clients have connected before the daemon runs.
 TEST(Service, ServesTheSocketsOfTheManager) {
-  const Listener tcp(INADDR_LOOPBACK);
-  const Listener http(INADDR_LOOPBACK);
+  const TcpListener tcp(INADDR_LOOPBACK);
+  const TcpListener http(INADDR_LOOPBACK);
   TcpClient client(tcp.port());
   client.Send(protocol::Hello{"test", 0});
   WebClient web(http.port());
-  Process daemon(Command(),
+  Process daemon(ServiceCommand(),
                  {.sockets = {http.socket_number(), tcp.socket_number()}, .names = "http:tcp"});
   EXPECT_TRUE(client.Await<protocol::Welcome>().has_value());
   EXPECT_EQ(web.Ask("GET", "/healthz").status, 200);
@@ -94,18 +94,18 @@ TEST(Service, ServesTheSocketsOfTheManager) {
 }
 
 TEST(Service, AnOpenDaemonTakesNoSocketOnTheNetwork) {
-  const Listener tcp(INADDR_ANY);
-  Process daemon(Command(), {.sockets = {tcp.socket_number()}, .names = "tcp"});
+  const TcpListener tcp(INADDR_ANY);
+  Process daemon(ServiceCommand(), {.sockets = {tcp.socket_number()}, .names = "tcp"});
   EXPECT_EQ(daemon.Wait(), 1);
   EXPECT_THAT(daemon.ReadErrors(), HasSubstr("listens on 0.0.0.0"));
-  Process open(Command({"--open"}), {.sockets = {tcp.socket_number()}, .names = "tcp"});
+  Process open(ServiceCommand({"--open"}), {.sockets = {tcp.socket_number()}, .names = "tcp"});
   EXPECT_THAT(open.ReadLine().value_or(""), HasSubstr("tcp=0.0.0.0:"));
 }
 
 // sd_notify(3) describes the messages of a reload.
 TEST(Service, TheManagerHearsWhenAReloadBeginsAndEnds) {
   const NotifySocket manager;
-  Process daemon(Command(), {.notify_socket = manager.path()});
+  Process daemon(ServiceCommand(), {.notify_socket = manager.path()});
   EXPECT_THAT(manager.Next(), StartsWith("READY=1\n"));
   daemon.Signal(SIGHUP);
   EXPECT_THAT(manager.NextBut("WATCHDOG=1"),
@@ -123,8 +123,8 @@ TEST(Service, LinesForTheJournalBeginWithTheirPriority) {
 }
 
 TEST(Service, OtherSocketsAreNamedAndClosed) {
-  const Listener other(INADDR_LOOPBACK);
-  Process daemon(Command(), {.sockets = {other.socket_number()}, .names = "telnet"});
+  const TcpListener other(INADDR_LOOPBACK);
+  Process daemon(ServiceCommand(), {.sockets = {other.socket_number()}, .names = "telnet"});
   EXPECT_THAT(daemon.ReadLine().value_or(""), StartsWith("furrowd ready"));
   daemon.Signal(SIGTERM);
   EXPECT_EQ(daemon.Wait(), 0);

@@ -40,7 +40,7 @@ using testing::HasSubstr;
 
 using Context = std::shared_ptr<SSL_CTX>;
 const std::string kHttp = "\x08http/1.1";
-constexpr std::chrono::seconds kGuard(60);  // only prevents hanging tests
+constexpr std::chrono::seconds kTlsGuard(60);  // only prevents hanging tests
 
 Context ContextOf(const ClientTlsFiles& files) {
   auto context = client::MakeTlsContext(files);
@@ -64,7 +64,7 @@ class Tls : public testing::Test {
   // The status of a client of the library that connects to `host`.
   [[nodiscard]] Status Connect(const ClientTlsFiles& files,
                                const std::string& host = "127.0.0.1") const {
-    return client::OpenTransport(TransportKind::kTcp, host, daemon->ready().tcp, kGuard,
+    return client::OpenTransport(TransportKind::kTcp, host, daemon->ready().tcp, kTlsGuard,
                                  {.tls = ContextOf(files)})
         .status();
   }
@@ -323,14 +323,14 @@ class ClientCertificates : public Tls {
   // What the client of the library receives, or why it failed.
   std::string Ping(const ClientTlsFiles& files) {
     auto transport = client::OpenTransport(TransportKind::kTcp, "127.0.0.1", daemon->ready().tcp,
-                                           kGuard, {.tls = ContextOf(files)});
+                                           kTlsGuard, {.tls = ContextOf(files)});
     if (!transport.ok()) return transport.status().what();
     protocol::Encoder encoder;
     std::vector<std::uint8_t> bytes;
     encoder.Encode({.session = 1}, protocol::Ping{1}, bytes);
     (void)(*transport)->Send(bytes);
     std::span<const std::uint8_t> message;
-    const auto status = (*transport)->Receive(message, kGuard);
+    const auto status = (*transport)->Receive(message, kTlsGuard);
     return status == client::IoStatus::kOk ? "pong" : (*transport)->failure();
   }
 
@@ -386,7 +386,7 @@ TEST_F(Tls, TokensMayComeFromOtherComputers) {
   Start({.names = "IP:" + host}, config);
   client::Security security{.token = keys.Token(protocol::secure::Role::kWatch), .tls = trusted};
   auto transport =
-      client::OpenTransport(TransportKind::kTcp, host, daemon->ready().tcp, kGuard, security);
+      client::OpenTransport(TransportKind::kTcp, host, daemon->ready().tcp, kTlsGuard, security);
   ASSERT_TRUE(transport.ok()) << transport.status().ToString();
   protocol::Encoder encoder;
   std::vector<std::uint8_t> bytes;
@@ -395,7 +395,7 @@ TEST_F(Tls, TokensMayComeFromOtherComputers) {
   std::span<const std::uint8_t> message;
   protocol::SubscribeReply reply;
   bool subscribed = false;
-  while (!subscribed && (*transport)->Receive(message, kGuard) == client::IoStatus::kOk) {
+  while (!subscribed && (*transport)->Receive(message, kTlsGuard) == client::IoStatus::kOk) {
     protocol::MessageView view;
     subscribed = protocol::OpenMessage(message, view, protocol::kMaxReplyBytes) ==
                      protocol::DecodeStatus::kOk &&
@@ -406,7 +406,7 @@ TEST_F(Tls, TokensMayComeFromOtherComputers) {
   // Without TLS, the client does not even connect.
   security.tls = nullptr;
   const Status refused =
-      client::OpenTransport(TransportKind::kTcp, host, daemon->ready().tcp, kGuard, security)
+      client::OpenTransport(TransportKind::kTcp, host, daemon->ready().tcp, kTlsGuard, security)
           .status();
   EXPECT_EQ(refused.code(), StatusCode::kInvalidArgument);
   EXPECT_THAT(refused.what(), HasSubstr("unencrypted"));

@@ -14,12 +14,12 @@
 namespace furrow::testing_net {
 namespace {
 
-constexpr timeval kGuard{.tv_sec = 60, .tv_usec = 0};
+constexpr timeval kWebGuard{.tv_sec = 60, .tv_usec = 0};
 
 }  // namespace
 
 WebClient::WebClient(Connected stream) : socket_(stream.socket) {
-  setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &kGuard, sizeof kGuard);
+  setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &kWebGuard, sizeof kWebGuard);
 }
 
 WebClient::WebClient(std::uint16_t port) : WebClient(Connected{::socket(AF_INET, SOCK_STREAM, 0)}) {

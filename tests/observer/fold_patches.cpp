@@ -23,7 +23,7 @@ using authoring::Tensor2;
 using character::Character;
 using character::Picture;
 
-constexpr float kLeastMask = 0.5f;
+constexpr float kLeastRegionMask = 0.5f;
 constexpr float kDrawnWidths = 1.25f;    // to the far flank of a stroke's ridges
 constexpr float kMillimetres = 1000.0f;  // per metre
 
@@ -81,7 +81,7 @@ class PatchMaker {
     patch.wavelength = WavelengthOf(region.name);
     for (const SurfaceTexel& texel : surface_.texels()) {
       const glm::vec2 uv = (glm::vec2(texel.x, texel.y) + 0.5f) / static_cast<float>(size_);
-      if (character::ChannelAt(mask, uv, region.mask.channel) < kLeastMask) continue;
+      if (character::ChannelAt(mask, uv, region.mask.channel) < kLeastRegionMask) continue;
       FoldPlace place = PlaceAt(texel, uv, map);
       SetStrain(texel, strain, &place);
       place.drawn = std::ranges::any_of(lines, [&](const DrawnLine& drawn) {

@@ -20,7 +20,7 @@ using glm::vec2;
 using glm::vec3;
 
 constexpr float kSide = 0.5f;        // millimetres between places
-constexpr float kSize = 60.0f;       // millimetres
+constexpr float kPatchSize = 60.0f;  // millimetres
 constexpr float kWavelength = 6.0f;  // millimetres
 
 using Height = std::function<float(const vec2&)>;
@@ -30,8 +30,8 @@ FoldPatch Sheet(const Height& height) {
   FoldPatch patch;
   patch.wavelength = static_cast<double>(kWavelength);
   constexpr float kStep = 0.01f;
-  for (float y = 0.0f; y < kSize; y += kSide) {
-    for (float x = 0.0f; x < kSize; x += kSide) {
+  for (float y = 0.0f; y < kPatchSize; y += kSide) {
+    for (float x = 0.0f; x < kPatchSize; x += kSide) {
       const vec2 p(x, y);
       const auto slope = [&](const vec2& step) {
         return (height(p + step) - height(p - step)) / (2.0f * kStep);

@@ -17,8 +17,8 @@ using character::Character;
 using character::Material;
 
 constexpr char kMaskColour[] = "observer_mask_colour";
-constexpr float kLeastMask = 0.5f;     // of a region, where its folds have half their height
-constexpr float kLeastAlbedo = 1e-3f;  // linear; the background of data views is black
+constexpr float kLeastRegionHeight = 0.5f;  // of a region, where its folds have half their height
+constexpr float kLeastAlbedo = 1e-3f;       // linear; the background of data views is black
 
 float LinearOf(std::uint8_t value) {
   static const std::array<float, 256> table = [] {
@@ -153,7 +153,7 @@ void FoldSitter::DrawMasks(const Shot& shot, FoldPictures* pictures) {
   request.settings = MaskSettings();
   const render::Image image = render::test::Expect(mask_renderer_->Render(request));
   pictures->region = Mapped(image, [](float r, float g, float) {
-    return g > kLeastAlbedo && r / g <= 1.0f - kLeastMask ? 1.0f : 0.0f;
+    return g > kLeastAlbedo && r / g <= 1.0f - kLeastRegionHeight ? 1.0f : 0.0f;
   });
   pictures->subject =
       Mapped(image, [](float, float g, float) { return g > kLeastAlbedo ? 1.0f : 0.0f; });

@@ -14,21 +14,21 @@
 namespace furrow::observer {
 namespace {
 
-constexpr int kSize = 256;
+constexpr int kFieldSize = 256;
 constexpr int kRegion = 132;  // a square in the middle; 130 pixels without its rim
 constexpr float kGrey = 0.5f;
 constexpr double kBandWavelength = 13.07;  // pixels, of the band with sigma 2
 
 Plane Fill(const std::function<double(int x, int y)>& function) {
-  Plane plane{kSize, kSize, {}};
-  for (int y = 0; y < kSize; ++y) {
-    for (int x = 0; x < kSize; ++x) plane.values.push_back(static_cast<float>(function(x, y)));
+  Plane plane{kFieldSize, kFieldSize, {}};
+  for (int y = 0; y < kFieldSize; ++y) {
+    for (int x = 0; x < kFieldSize; ++x) plane.values.push_back(static_cast<float>(function(x, y)));
   }
   return plane;
 }
 
 bool InSquare(int x, int y, int side) {
-  return std::abs(2 * x + 1 - kSize) < side && std::abs(2 * y + 1 - kSize) < side;
+  return std::abs(2 * x + 1 - kFieldSize) < side && std::abs(2 * y + 1 - kFieldSize) < side;
 }
 
 FoldPictures OnGrey(const std::function<double(int x, int y)>& contrast) {
@@ -110,7 +110,7 @@ TEST(MeasureFolds, ReadsAGratingOfAFoldAsTheFormulaDoes) {
   EXPECT_NEAR(found.bands[1].visibility, 8.29, 0.15);
   EXPECT_NEAR(found.visibility, 8.29, 0.4);
   // A place pools 4 square cycles, (0.375 * 4)^(1/4) = 1.107, and not 98.9.
-  const double place = found.places.at(kSize / 2, kSize / 2);
+  const double place = found.places.at(kFieldSize / 2, kFieldSize / 2);
   EXPECT_NEAR(place, 8.29 * 1.107 / 2.468, 0.1);
 }
 
@@ -165,9 +165,9 @@ TEST(MeasureFolds, TheBaseMasksFoldsOfItsOwnBand) {
   // 20% of base contrast at S 69.9: (14 * 0.5 / 0.52)^0.7 = 6.2 times the threshold in that band.
   FoldPictures pictures = Grating(0.05, kBandWavelength);
   const FoldVisibility plain = Measure(pictures);
-  for (int i = 0; i < kSize * kSize; ++i) {
+  for (int i = 0; i < kFieldSize * kFieldSize; ++i) {
     const auto at = static_cast<std::size_t>(i);
-    const double base = kGrey * 0.2 * Sine(i / kSize, kBandWavelength);
+    const double base = kGrey * 0.2 * Sine(i / kFieldSize, kBandWavelength);
     pictures.on.values[at] += static_cast<float>(base);
     pictures.off.values[at] += static_cast<float>(base);
   }
@@ -179,7 +179,7 @@ TEST(MeasureFolds, TheBaseMasksFoldsOfItsOwnBand) {
 TEST(MeasureFolds, TheBackdropDoesNotChangeALimb) {
   // A limb 60 pixels wide with folds across it, before a black and before a white backdrop.
   const auto limb = [](double backdrop) {
-    const auto inside = [](int x) { return std::abs(2 * x + 1 - kSize) < 60; };
+    const auto inside = [](int x) { return std::abs(2 * x + 1 - kFieldSize) < 60; };
     return FoldPictures{
         .on = Fill([=](int x, int y) {
           return inside(x) ? kGrey * (1.0 + 0.05 * Sine(y, kBandWavelength)) : backdrop;
@@ -196,7 +196,7 @@ TEST(MeasureFolds, TheBackdropDoesNotChangeALimb) {
 TEST(MeasureFolds, TheShareIsThatOfTheFoldedPart) {
   // Folds in the left half of the region only.
   const auto half =
-      OnGrey([](int x, int) { return x < kSize / 2 ? 0.2 * Sine(x, kBandWavelength) : 0.0; });
+      OnGrey([](int x, int) { return x < kFieldSize / 2 ? 0.2 * Sine(x, kBandWavelength) : 0.0; });
   const FoldVisibility found = Measure(half);
   EXPECT_NEAR(found.ShareAtLeast(10.0), 0.5, 0.1);
   EXPECT_EQ(found.ShareAtLeast(1000.0), 0.0);

@@ -31,8 +31,9 @@
 namespace furrow::observer {
 namespace {
 
-constexpr int kSize = 512;       // pixels: the height of the picture, which a head or a body fills
-constexpr double kPlain = 10.0;  // JND
+// Pixels. A head or a body fills the picture.
+constexpr int kPictureHeight = 512;
+constexpr double kPlain = 10.0;     // JND
 constexpr double kPlainHalf = 5.0;  // JND, at half the size
 constexpr double kLeastShare = 0.3;
 constexpr double kUnseen = 1.0;  // JND: the most that folds may change the picture elsewhere
@@ -149,7 +150,7 @@ class ShippedFolds : public testing::Test {
   // The visibility of the case's folds.
   static double MeasureFace(const FoldCase& face, FoldSitter* sitter) {
     sitter->Hold(face);
-    const FoldSitter::Shot shot{"face", kSize};
+    const FoldSitter::Shot shot{"face", kPictureHeight};
     const Viewing viewing{.millimetres_per_pixel = sitter->MillimetresPerPixel(shot),
                           .shortest_mm = kSkinMm[0],
                           .longest_mm = kSkinMm[1]};
@@ -167,7 +168,7 @@ class ShippedFolds : public testing::Test {
     for (const auto& [view, camera] : kBodyViews) {
       BendView seen{.bend = bend.name, .view = view};
       for (int half = 0; half < 2; ++half) {
-        const FoldSitter::Shot shot{camera, half == 0 ? kSize : kSize / 2};
+        const FoldSitter::Shot shot{camera, half == 0 ? kPictureHeight : kPictureHeight / 2};
         const Viewing viewing{.millimetres_per_pixel = sitter->MillimetresPerPixel(shot),
                               .shortest_mm = kClothMm[0],
                               .longest_mm = kClothMm[1]};

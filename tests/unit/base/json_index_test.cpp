@@ -9,7 +9,7 @@
 namespace furrow {
 namespace {
 
-constexpr std::string_view kText = R"({
+constexpr std::string_view kIndexed = R"({
   // a comment
   "drivers": [
     {"name": "a", "hinge": {"axis": [1, 0, 0]}},
@@ -18,7 +18,7 @@ constexpr std::string_view kText = R"({
 })";
 
 TEST(JsonIndex, KnowsLinesAndPaths) {
-  const Result<JsonIndex> index = JsonIndex::Create(kText);
+  const Result<JsonIndex> index = JsonIndex::Create(kIndexed);
   ASSERT_TRUE(index.ok()) << index.status().ToString();
   EXPECT_EQ(index->Where(""), "1");
   EXPECT_EQ(index->Where("drivers[0].hinge.axis[2]"), "4: drivers[0].hinge.axis[2]");
@@ -30,10 +30,10 @@ TEST(JsonIndex, KnowsLinesAndPaths) {
 }
 
 TEST(JsonIndex, RejectsEveryTruncation) {
-  for (std::size_t length = 0; length < kText.size(); ++length) {
+  for (std::size_t length = 0; length < kIndexed.size(); ++length) {
     // A buffer of exactly this length, so that a read past its end is seen by sanitizers.
     const auto cut = std::make_unique<char[]>(length);
-    kText.copy(cut.get(), length);
+    kIndexed.copy(cut.get(), length);
     const Result<JsonIndex> index = JsonIndex::Create({cut.get(), length});
     ASSERT_FALSE(index.ok()) << length;
     EXPECT_EQ(index.status().code(), StatusCode::kParse) << length;

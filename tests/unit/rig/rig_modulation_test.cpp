@@ -10,7 +10,7 @@ namespace furrow::rig {
 namespace {
 
 // A rig with one region. `region` and `feed`: more fields of both, each after a comma.
-Result<wrinkle::Rig> Parse(const std::string& region, const std::string& feed) {
+Result<wrinkle::Rig> ParseCurves(const std::string& region, const std::string& feed) {
   const std::string json = R"({"name": "jaw",
     "drivers": [{"name": "jaw", "blend_shape": {"blend_shape": "jawOpen"}}],
     "wrinkle_maps": [{"name": "folds"}],
@@ -23,8 +23,8 @@ Result<wrinkle::Rig> Parse(const std::string& region, const std::string& feed) {
 
 TEST(ModulationInARig, ReadsNamesAndCurvesAndWritesThemBack) {
   using Points = std::vector<wrinkle::CurvePoint>;
-  const auto rig =
-      Parse(R"(, "curve": [[0, 0], [0.3, 0.4], {"x": 1, "y": 1}])", R"(, "modulation": "cosine")");
+  const auto rig = ParseCurves(R"(, "curve": [[0, 0], [0.3, 0.4], {"x": 1, "y": 1}])",
+                               R"(, "modulation": "cosine")");
   ASSERT_TRUE(rig.ok()) << rig.status().ToString();
   const wrinkle::Region& region = rig->regions[0];
   EXPECT_EQ(region.curve, (Points{{0.0f, 0.0f}, {0.3f, 0.4f}, {1.0f, 1.0f}}));
@@ -36,7 +36,8 @@ TEST(ModulationInARig, ReadsNamesAndCurvesAndWritesThemBack) {
   EXPECT_EQ(again->regions[0].curve, region.curve);
   EXPECT_EQ(again->regions[0].feeds[0].modulation, wrinkle::Modulation::kCosine);
 
-  const auto other = Parse(R"(, "modulation": "linear")", R"(, "curve": [[0, 0.1], [0.9, 1]])");
+  const auto other =
+      ParseCurves(R"(, "modulation": "linear")", R"(, "curve": [[0, 0.1], [0.9, 1]])");
   ASSERT_TRUE(other.ok()) << other.status().ToString();
   const auto other_again = ParseRig(RigToJson(*other), "again.rig.json", ".");
   ASSERT_TRUE(other_again.ok()) << other_again.status().ToString();
@@ -47,7 +48,7 @@ TEST(ModulationInARig, ReadsNamesAndCurvesAndWritesThemBack) {
 }
 
 TEST(ModulationInARig, IsCosineByDefaultAndNotWritten) {
-  const auto rig = Parse("", "");
+  const auto rig = ParseCurves("", "");
   ASSERT_TRUE(rig.ok()) << rig.status().ToString();
   EXPECT_EQ(rig->regions[0].modulation, wrinkle::Modulation::kCosine);
   EXPECT_FALSE(rig->regions[0].feeds[0].modulation.has_value());
@@ -55,7 +56,7 @@ TEST(ModulationInARig, IsCosineByDefaultAndNotWritten) {
   EXPECT_EQ(RigToJson(*rig).find("curve"), std::string::npos);
 }
 
-struct Wrong {
+struct WrongCurve {
   const char* field;
   StatusCode code;
   const char* where;  // after the region or the feed
@@ -63,33 +64,33 @@ struct Wrong {
 
 // In a region and in a feed alike.
 TEST(ModulationInARig, RejectsWhatIsNoCurve) {
-  constexpr StatusCode kInvalid = StatusCode::kInvalidArgument;
-  const Wrong wrongs[] = {
-      {R"(, "curve": [])", kInvalid, ".curve"},
-      {R"(, "curve": [[0, 0]])", kInvalid, ".curve"},
-      {R"(, "curve": [[0, 0], [1, 1]], "modulation": "cosine")", kInvalid, ".curve"},
-      {R"(, "curve": [[0, 0], [1.5, 1]])", kInvalid, ".curve[1][0]"},
-      {R"(, "curve": [[0, -0.5], [1, 1]])", kInvalid, ".curve[0][1]"},
-      {R"(, "curve": [[0, 0], [0.5, 1], [0.5, 0]])", kInvalid, ".curve[2][0]"},
-      {R"(, "curve": [[0, 0], [0.5, 1], [0.4, 0]])", kInvalid, ".curve[2][0]"},
-      {R"(, "curve": [[0, 0], [0.5, 0.1], [0.509, 1]])", kInvalid, ".curve[2][0]"},
+  constexpr StatusCode kBadCurve = StatusCode::kInvalidArgument;
+  const WrongCurve wrongs[] = {
+      {R"(, "curve": [])", kBadCurve, ".curve"},
+      {R"(, "curve": [[0, 0]])", kBadCurve, ".curve"},
+      {R"(, "curve": [[0, 0], [1, 1]], "modulation": "cosine")", kBadCurve, ".curve"},
+      {R"(, "curve": [[0, 0], [1.5, 1]])", kBadCurve, ".curve[1][0]"},
+      {R"(, "curve": [[0, -0.5], [1, 1]])", kBadCurve, ".curve[0][1]"},
+      {R"(, "curve": [[0, 0], [0.5, 1], [0.5, 0]])", kBadCurve, ".curve[2][0]"},
+      {R"(, "curve": [[0, 0], [0.5, 1], [0.4, 0]])", kBadCurve, ".curve[2][0]"},
+      {R"(, "curve": [[0, 0], [0.5, 0.1], [0.509, 1]])", kBadCurve, ".curve[2][0]"},
       {R"(, "curve": [[0, 0], [0.5]])", StatusCode::kSchema, ".curve[1]"},
       {R"(, "curve": [[0, 0], [0.5, "nan"]])", StatusCode::kNonFinite, ".curve[1][1]"},
       {R"(, "curve": [[0, 0], [0.04, 0], [0.08, 0], [0.12, 0], [0.16, 0], [0.2, 0], [0.24, 0],
                       [0.28, 0], [0.32, 0], [0.36, 0], [0.4, 0], [0.44, 0], [0.48, 0], [0.52, 0],
                       [0.56, 0], [0.6, 0], [0.64, 0]])",
        StatusCode::kLimit, ".curve"},
-      {R"(, "modulation": 3)", kInvalid, ".modulation"},
+      {R"(, "modulation": 3)", kBadCurve, ".modulation"},
       {R"(, "modulation": "soft")", StatusCode::kSchema, ".modulation"}};
-  for (const Wrong& wrong : wrongs) {
+  for (const WrongCurve& wrong : wrongs) {
     const auto ends_with = [](const std::string& text, const std::string& end) {
       return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
     };
-    const Status of_region = Parse(wrong.field, "").status();
+    const Status of_region = ParseCurves(wrong.field, "").status();
     EXPECT_EQ(of_region.code(), wrong.code) << of_region.ToString();
     EXPECT_TRUE(ends_with(of_region.where(), std::string("regions[0]") + wrong.where))
         << of_region.ToString();
-    const Status of_feed = Parse("", wrong.field).status();
+    const Status of_feed = ParseCurves("", wrong.field).status();
     EXPECT_EQ(of_feed.code(), wrong.code) << of_feed.ToString();
     EXPECT_TRUE(ends_with(of_feed.where(), std::string("regions[0].feeds[0]") + wrong.where))
         << of_feed.ToString();
@@ -100,7 +101,8 @@ TEST(ModulationInARig, RejectsWhatIsNoCurve) {
 TEST(ModulationInARig, AcceptsTheLeastStepAnywhere) {
   for (int i = 0; i < 99; ++i) {
     const auto number = [](int hundredths) { return std::to_string(hundredths / 100.0); };
-    const auto rig = Parse(", \"curve\": [[" + number(i) + ", 0], [" + number(i + 1) + ", 1]]", "");
+    const auto rig =
+        ParseCurves(", \"curve\": [[" + number(i) + ", 0], [" + number(i + 1) + ", 1]]", "");
     EXPECT_TRUE(rig.ok()) << rig.status().ToString();
   }
 }
@@ -133,7 +135,7 @@ TEST(AnglesInARig, AreReadAndWrittenBack) {
 }
 
 TEST(AnglesInARig, AreCheckedPointByPoint) {
-  constexpr StatusCode kInvalid = StatusCode::kInvalidArgument;
+  constexpr StatusCode kBadCurve = StatusCode::kInvalidArgument;
   const std::string at = "regions[0].feeds[0].angles";
   struct WrongAngles {
     const char* angles;
@@ -142,14 +144,14 @@ TEST(AnglesInARig, AreCheckedPointByPoint) {
     std::string where;
   };
   const WrongAngles wrongs[] = {
-      {"[]", "knee.flexed", kInvalid, at},
-      {"[[12, 0]]", "knee.flexed", kInvalid, at},
-      {"[[-1, 0], [45, 1]]", "knee.flexed", kInvalid, at + "[0][0]"},
-      {"[[0, 0], [181, 1]]", "knee.flexed", kInvalid, at + "[1][0]"},
-      {"[[0, 0], [45, 1.1]]", "knee.flexed", kInvalid, at + "[1][1]"},
-      {"[[45, 0], [12, 1]]", "knee.flexed", kInvalid, at + "[1][0]"},
-      {"[[45, 0], [46.9, 1]]", "knee.flexed", kInvalid, at + "[1][0]"},
-      {"[[0, 0], [45, 1]]", "jaw.value", kInvalid, at},
+      {"[]", "knee.flexed", kBadCurve, at},
+      {"[[12, 0]]", "knee.flexed", kBadCurve, at},
+      {"[[-1, 0], [45, 1]]", "knee.flexed", kBadCurve, at + "[0][0]"},
+      {"[[0, 0], [181, 1]]", "knee.flexed", kBadCurve, at + "[1][0]"},
+      {"[[0, 0], [45, 1.1]]", "knee.flexed", kBadCurve, at + "[1][1]"},
+      {"[[45, 0], [12, 1]]", "knee.flexed", kBadCurve, at + "[1][0]"},
+      {"[[45, 0], [46.9, 1]]", "knee.flexed", kBadCurve, at + "[1][0]"},
+      {"[[0, 0], [45, 1]]", "jaw.value", kBadCurve, at},
       {"[[0, 0], [\"nan\", 1]]", "knee.flexed", StatusCode::kNonFinite, at + "[1][0]"}};
   for (const WrongAngles& wrong : wrongs) {
     const Status status = ParseAngles(wrong.angles, wrong.from).status();
@@ -158,7 +160,7 @@ TEST(AnglesInARig, AreCheckedPointByPoint) {
   }
   const Status both =
       ParseAngles("[[0, 0], [45, 1]]", "knee.flexed", R"(, "modulation": "linear")").status();
-  EXPECT_EQ(both.code(), kInvalid);
+  EXPECT_EQ(both.code(), kBadCurve);
   EXPECT_NE(both.what().find("angles excludes modulation and curve"), std::string::npos);
 }
 

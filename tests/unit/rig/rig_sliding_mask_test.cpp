@@ -11,7 +11,7 @@ namespace furrow::rig {
 namespace {
 
 // A rig for a hip with a sliding mask. `mask`: more fields of the mask, each after a comma.
-Result<wrinkle::Rig> Parse(const std::string& mask) {
+Result<wrinkle::Rig> ParseMask(const std::string& mask) {
   const std::string json = R"({"name": "hip", "drivers": [
       {"name": "hip_l", "ball": {"parent": "hips", "joint": "thigh_l"}},
       {"name": "knee_l", "hinge": {"parent": "thigh_l", "joint": "shin_l"}},
@@ -26,7 +26,7 @@ Result<wrinkle::Rig> Parse(const std::string& mask) {
 }
 
 TEST(SlidingMaskInARig, ReadsDefaultsAndWritesBack) {
-  const auto rig = Parse(R"(, "driver": "hip_l", "spread_degrees": 70, "radius": 0.6)");
+  const auto rig = ParseMask(R"(, "driver": "hip_l", "spread_degrees": 70, "radius": 0.6)");
   ASSERT_TRUE(rig.ok()) << rig.status().ToString();
   const wrinkle::Mask& mask = rig->regions[0].mask;
   EXPECT_EQ(mask.kind, wrinkle::Mask::Kind::kSliding);
@@ -43,18 +43,18 @@ TEST(SlidingMaskInARig, ReadsDefaultsAndWritesBack) {
 }
 
 TEST(SlidingMaskInARig, ReadsTheFormerNameOfItsDriver) {
-  const auto rig = Parse(R"(, "ball": "hip_l")");
+  const auto rig = ParseMask(R"(, "ball": "hip_l")");
   ASSERT_TRUE(rig.ok()) << rig.status().ToString();
   EXPECT_EQ(rig->regions[0].mask.driver, "hip_l");
   EXPECT_NE(RigToJson(*rig).find(R"("driver": "hip_l")"), std::string::npos);
-  const Status both = Parse(R"(, "ball": "hip_l", "driver": "hip_l")").status();
+  const Status both = ParseMask(R"(, "ball": "hip_l", "driver": "hip_l")").status();
   EXPECT_EQ(both.code(), StatusCode::kInvalidArgument);
   EXPECT_NE(both.where().find("regions[0].mask.ball"), std::string::npos) << both.ToString();
 }
 
 TEST(SlidingMaskInARig, AcceptsEveryDriverWithADirection) {
   for (const char* driver : {"hip_l", "elbow_l", "neck"}) {
-    const auto rig = Parse(std::string(R"(, "driver": ")") + driver + "\"");
+    const auto rig = ParseMask(std::string(R"(, "driver": ")") + driver + "\"");
     EXPECT_TRUE(rig.ok()) << rig.status().ToString();
   }
 }
@@ -66,7 +66,7 @@ TEST(SlidingMaskInARig, SaysWhyADriverHasNoDirection) {
       {R"(, "driver": "knee_l")", "a hinge without an axis has no direction"},
       {R"(, "driver": "blink")", "this kind of driver has no direction"}};
   for (const auto& [mask, why] : wrongs) {
-    const Status status = Parse(mask).status();
+    const Status status = ParseMask(mask).status();
     EXPECT_EQ(status.code(), StatusCode::kInvalidArgument) << mask;
     EXPECT_EQ(status.what(), why);
     EXPECT_NE(status.where().find("regions[0].mask.driver"), std::string::npos)
@@ -78,7 +78,7 @@ TEST(SlidingMaskInARig, RequiresAnExtent) {
   for (const char* mask :
        {R"(, "driver": "hip_l", "radius": 0)", R"(, "driver": "hip_l", "spread_degrees": 181)",
         R"(, "driver": "hip_l", "above": 0, "below": 0)"}) {
-    const Status status = Parse(mask).status();
+    const Status status = ParseMask(mask).status();
     EXPECT_EQ(status.code(), StatusCode::kInvalidArgument) << mask;
     EXPECT_NE(status.ToString().find("regions[0].mask"), std::string::npos) << status.ToString();
   }

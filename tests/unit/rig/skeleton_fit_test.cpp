@@ -25,8 +25,8 @@ struct Part {
 };
 
 // A body with its roles, whose joints lie in a line.
-struct Body {
-  explicit Body(const std::vector<Part>& parts) {
+struct FitBody {
+  explicit FitBody(const std::vector<Part>& parts) {
     std::vector<wrinkle::JointDesc> joints;
     for (const Part& part : parts) {
       wrinkle::JointDesc& joint = joints.emplace_back();
@@ -73,7 +73,7 @@ std::vector<Part> WholeBody() {
 }
 
 TEST(SkeletonFit, HairFingersTwistsAndTheSceneAreNotLeftOut) {
-  const Body body(WholeBody());
+  const FitBody body(WholeBody());
   const SkeletonFit fit = body.Fit();
   EXPECT_EQ(fit.num_joints, 21);
   EXPECT_EQ(fit.num_explained, 15);
@@ -86,7 +86,7 @@ TEST(SkeletonFit, HairFingersTwistsAndTheSceneAreNotLeftOut) {
 TEST(SkeletonFit, AMapWithoutArmsIsWarnedOf) {
   std::vector<Part> parts = WholeBody();
   for (const std::size_t arm : {6u, 7u, 9u, 12u, 13u, 14u}) parts[arm].role = kNone;
-  const Body body(parts);
+  const FitBody body(parts);
   EXPECT_THAT(body.Fit().left_out,
               ElementsAre("arm_l", "elbow_l", "hand_l", "finger_l", "arm_r", "elbow_r"));
   EXPECT_THAT(
@@ -102,7 +102,7 @@ TEST(SkeletonFit, AMapWithoutArmsIsWarnedOf) {
 TEST(SkeletonFit, ARecordingWithoutLegsIsNoFault) {
   std::vector<Part> parts = WholeBody();
   parts.resize(15);
-  const Body body(parts);
+  const FitBody body(parts);
   EXPECT_THAT(body.Fit().missing,
               ElementsAre(kLeftUpperLeg, kLeftLowerLeg, kRightUpperLeg, kRightLowerLeg));
   EXPECT_THAT(body.Warnings(), IsEmpty());
@@ -118,20 +118,21 @@ TEST(SkeletonFit, AStiffSpineIsWarnedOf) {
     if (part.role == kNone || part.role == kHips || part.role == kSpine) continue;
     parts.push_back({part.name, chest, part.role});
   }
-  EXPECT_EQ(Body(parts).Fit().num_between, 5);
-  EXPECT_THAT(Body(parts).Warnings(), ElementsAre(HasSubstr("(s1, s2, s3, s4, ...), which move")));
+  EXPECT_EQ(FitBody(parts).Fit().num_between, 5);
+  EXPECT_THAT(FitBody(parts).Warnings(),
+              ElementsAre(HasSubstr("(s1, s2, s3, s4, ...), which move")));
   parts[1].role = parts[2].role = kSpine;
-  EXPECT_THAT(Body(parts).Warnings(), IsEmpty());
+  EXPECT_THAT(FitBody(parts).Warnings(), IsEmpty());
 }
 
 TEST(SkeletonFit, AMapThatKnowsNothingIsWarnedOf) {
   std::vector<Part> parts = WholeBody();
   for (Part& part : parts) part.role = kNone;
-  EXPECT_THAT(Body(parts).Warnings(), ElementsAre(HasSubstr("knows none of the 21 joints")));
+  EXPECT_THAT(FitBody(parts).Warnings(), ElementsAre(HasSubstr("knows none of the 21 joints")));
 }
 
 TEST(SkeletonFit, GuessesAndPackagesAreNamed) {
-  Body body(WholeBody());
+  FitBody body(WholeBody());
   body.roles.map = kFromPackage;
   EXPECT_EQ(Describe(body.roles),
             "joint roles of the character's package: 15 roles, 15 of 21 joints");
@@ -147,21 +148,21 @@ TEST(SkeletonFit, GuessesAndPackagesAreNamed) {
 TEST(SkeletonFit, AMatchNamesTheShareAndUnknownSkeletons) {
   const auto matcher = ShippedMatcher();
   ASSERT_TRUE(matcher.ok()) << matcher.status().ToString();
-  const Body unknown({{"box", -1, kNone}, {"lid", 0, kNone}});
+  const FitBody unknown({{"box", -1, kNone}, {"lid", 0, kNone}});
   const SkeletonMatch none = matcher->Match(unknown.skeleton, wrinkle::Rig(), nullptr);
   EXPECT_EQ(Describe(none), "no skeleton map fits; joints are matched by equal names");
   EXPECT_EQ(Describe(matcher->Match(wrinkle::Skeleton(), wrinkle::Rig(), nullptr)), "");
 
-  const Body trunk({{"Hips", -1, kNone},
-                    {"Spine", 0, kNone},
-                    {"Spine1", 1, kNone},
-                    {"Neck", 2, kNone},
-                    {"Head", 3, kNone},
-                    {"LeftUpLeg", 0, kNone},
-                    {"LeftLeg", 5, kNone},
-                    {"LeftFoot", 6, kNone},
-                    {"Arm_of_nobody", 2, kNone},
-                    {"Hand_of_nobody", 8, kNone}});
+  const FitBody trunk({{"Hips", -1, kNone},
+                       {"Spine", 0, kNone},
+                       {"Spine1", 1, kNone},
+                       {"Neck", 2, kNone},
+                       {"Head", 3, kNone},
+                       {"LeftUpLeg", 0, kNone},
+                       {"LeftLeg", 5, kNone},
+                       {"LeftFoot", 6, kNone},
+                       {"Arm_of_nobody", 2, kNone},
+                       {"Hand_of_nobody", 8, kNone}});
   const SkeletonMatch half = matcher->Match(trunk.skeleton, wrinkle::Rig(), nullptr);
   EXPECT_THAT(Describe(half), HasSubstr(" roles, 8 of 10 joints"));
   EXPECT_THAT(WarningsOf(half), ElementsAre(HasSubstr("1 joint of trunk and limbs (Arm_of")));

@@ -27,10 +27,10 @@ using testing::Not;
 using enum wrinkle::JointRole;
 
 // A body whose torso, neck and head are `column`, from bottom to top, after the hips.
-class Body {
+class NamedBody {
  public:
-  Body(const std::string& hips, const std::vector<std::string>& column,
-       const std::vector<std::string>& limbs) {
+  NamedBody(const std::string& hips, const std::vector<std::string>& column,
+            const std::vector<std::string>& limbs) {
     std::vector<wrinkle::JointDesc> joints = {{hips, -1, {{0, 1, 0}}, {}}};
     for (const std::string& name : column) {
       joints.push_back({name, static_cast<int>(joints.size()) - 1, {{0, 0.1f, 0}}, {}});
@@ -62,7 +62,7 @@ class SkeletonMatching : public testing::Test {
   static wrinkle::Rig Shipped(const std::string& name) {
     return *LoadRig(std::string(FURROW_SOURCE_DIR "/rig/rigs/") + name);
   }
-  float Value(const wrinkle::Rig& rig, const Body& body, const std::string& name) const {
+  float Value(const wrinkle::Rig& rig, const NamedBody& body, const std::string& name) const {
     const SkeletonMatch match = matcher_.Match(body.skeleton(), rig, nullptr);
     auto binding = wrinkle::RigBinding::Create(rig, body.skeleton(), {}, match.Options(true));
     EXPECT_TRUE(binding.ok()) << binding.status().ToString();
@@ -96,10 +96,10 @@ const std::vector<std::string> kMakeHumanLimbs = {"upperleg01.L", "upperleg01.R"
 
 // CMU's neck has two joints, Mixamo's has one. Neck and head together give 1 at 75 degrees.
 TEST_F(SkeletonMatching, AJointThatPlaysTwoTwistsOnce) {
-  Body body("mixamorig:Hips",
-            {"mixamorig:Spine", "mixamorig:Spine1", "mixamorig:Spine2", "mixamorig:Neck",
-             "mixamorig:Head"},
-            kMixamoLimbs);
+  NamedBody body("mixamorig:Hips",
+                 {"mixamorig:Spine", "mixamorig:Spine1", "mixamorig:Spine2", "mixamorig:Neck",
+                  "mixamorig:Head"},
+                 kMixamoLimbs);
   body.Twist("mixamorig:Neck", 30.0f);
   EXPECT_NEAR(Value(Shipped("cmu.json"), body, "neck.twist_left"), 0.4f, 1e-5f);
   body.Twist("mixamorig:Head", 15.0f);
@@ -110,10 +110,10 @@ TEST_F(SkeletonMatching, AJointThatPlaysTwoTwistsOnce) {
 TEST_F(SkeletonMatching, AllJointsOfAChainCount) {
   const wrinkle::Rig rig = Shipped("default.json");
   for (const char* joint : {"spine05", "spine04", "spine03", "spine02", "spine01"}) {
-    Body body("root",
-              {"spine05", "spine04", "spine03", "spine02", "spine01", "neck01", "neck02", "neck03",
-               "head"},
-              kMakeHumanLimbs);
+    NamedBody body("root",
+                   {"spine05", "spine04", "spine03", "spine02", "spine01", "neck01", "neck02",
+                    "neck03", "head"},
+                   kMakeHumanLimbs);
     body.Twist(joint, -9.0f);
     EXPECT_NEAR(Value(rig, body, "waist_twist.twist_right"), 0.2f, 1e-5f) << joint;
     EXPECT_EQ(Value(rig, body, "neck.twist_right"), 0.0f) << joint;
@@ -124,8 +124,8 @@ TEST_F(SkeletonMatching, AllJointsOfAChainCount) {
 
 // CMU's spine has three roles. A body with two of them can still twist its waist.
 TEST_F(SkeletonMatching, ARoleThatOnlyTheRigHasIsNoGap) {
-  Body body("hips", {"spine", "chest", "neck", "head"},
-            {"upper_leg_l", "upper_leg_r", "upper_arm_l", "upper_arm_r"});
+  NamedBody body("hips", {"spine", "chest", "neck", "head"},
+                 {"upper_leg_l", "upper_leg_r", "upper_arm_l", "upper_arm_r"});
   body.Twist("spine", 9.0f);
   body.Twist("chest", 18.0f);
   EXPECT_NEAR(Value(Shipped("cmu.json"), body, "waist_twist.twist_left"), 0.6f, 1e-5f);
@@ -133,9 +133,9 @@ TEST_F(SkeletonMatching, ARoleThatOnlyTheRigHasIsNoGap) {
 
 // "Spine" is the chest of CMU's files and the spine of Mixamo's.
 TEST_F(SkeletonMatching, RolesDecideWhereEqualNamesMeanOtherJoints) {
-  Body body("Hips", {"Spine", "Spine1", "Spine2", "Neck", "Head", "HeadTop_End"},
-            {"LeftUpLeg", "RightUpLeg", "LeftArm", "RightArm", "LeftHandThumb1", "LeftHandThumb2",
-             "LeftHandIndex2", "LeftHandIndex3"});
+  NamedBody body("Hips", {"Spine", "Spine1", "Spine2", "Neck", "Head", "HeadTop_End"},
+                 {"LeftUpLeg", "RightUpLeg", "LeftArm", "RightArm", "LeftHandThumb1",
+                  "LeftHandThumb2", "LeftHandIndex2", "LeftHandIndex3"});
   const wrinkle::Rig rig = Shipped("cmu.json");
   ASSERT_EQ(matcher_.Match(body.skeleton(), rig, nullptr).stream.map, "mixamo");
   body.Twist("Spine", 3.0f);
@@ -151,8 +151,8 @@ TEST_F(SkeletonMatching, EqualNamesStayAlone) {
   rig.drivers[0].name = "waist";
   rig.drivers[0].kind = wrinkle::Driver::Kind::kTwist;
   rig.drivers[0].twist = {.joint = "spine05", .full_degrees = 45.0f, .through = {"spine03"}};
-  Body body("root", {"spine05", "spine04", "spine03", "spine02", "spine01", "neck01", "head"},
-            kMakeHumanLimbs);
+  NamedBody body("root", {"spine05", "spine04", "spine03", "spine02", "spine01", "neck01", "head"},
+                 kMakeHumanLimbs);
   EXPECT_THAT(matcher_.Match(body.skeleton(), rig, nullptr).role_chains, IsEmpty());
   body.Twist("spine04", 9.0f);
   EXPECT_EQ(Value(rig, body, "waist.twist_left"), 0.0f);
@@ -161,7 +161,7 @@ TEST_F(SkeletonMatching, EqualNamesStayAlone) {
 }
 
 TEST_F(SkeletonMatching, OnlyTwistDriversReadWholeChains) {
-  const Body body("root", {"spine05", "spine04", "neck01", "head"}, kMakeHumanLimbs);
+  const NamedBody body("root", {"spine05", "spine04", "neck01", "head"}, kMakeHumanLimbs);
   const SkeletonMatch match = matcher_.Match(body.skeleton(), Shipped("default.json"), nullptr);
   std::vector<std::string> joints;
   for (const wrinkle::RoleChain& chain : match.role_chains) joints.push_back(chain.joint);

@@ -29,15 +29,15 @@ namespace {
 using glm::vec2;
 using glm::vec3;
 
-constexpr int kSize = 512;
+constexpr int kMapSize = 512;
 constexpr int kTextureSize = 128;
 
 const std::filesystem::path kRigs = std::filesystem::path(FURROW_SOURCE_DIR) / "rig/rigs";
 const std::filesystem::path kMakeHuman = std::filesystem::path(FURROW_SHARED_DATA) / "makehuman";
 
-BakeOptions Exact() {
+BakeOptions ExactSkin() {
   BakeOptions options = toys::Exact();
-  options.size = kSize;
+  options.size = kMapSize;
   options.threads = 2;
   options.skin.wavelength_mm = 9.0f;
   options.skin.threshold = 0.02f;
@@ -80,13 +80,14 @@ Result<Folded> Fold(character::Character character) {
   if (pose == poses->poses.end()) return Status(StatusCode::kNotFound, "no pose of mouth_l");
   pose->region.clear();
   BakeProgress progress({});
-  auto surface = BakeSurface::Create(*folded.character, false, Exact(), &progress);
+  auto surface = BakeSurface::Create(*folded.character, false, ExactSkin(), &progress);
   FURROW_RETURN_IF_ERROR(surface);
   folded.surface = std::move(*surface);
-  folded.strain =
-      folded.surface->solver().Solve(pose->skin_matrices, {}, Exact().skin.max_compression).tensors;
+  folded.strain = folded.surface->solver()
+                      .Solve(pose->skin_matrices, {}, ExactSkin().skin.max_compression)
+                      .tensors;
   folded.pose = *pose;
-  folded.map = toys::BakeFolds(*folded.character, {folded.pose}, Exact());
+  folded.map = toys::BakeFolds(*folded.character, {folded.pose}, ExactSkin());
   return folded;
 }
 
@@ -139,11 +140,11 @@ class CharacterFolds : public ::testing::TestWithParam<Subject> {
 
   // The height at a UV, interpolated between four texels.
   [[nodiscard]] float HeightAt(const vec2& uv) const {
-    const vec2 at = uv * static_cast<float>(kSize) - 0.5f;
+    const vec2 at = uv * static_cast<float>(kMapSize) - 0.5f;
     const vec2 low = glm::floor(at), part = at - low;
     const auto texel = [&](int dx, int dy) {
-      const int x = std::clamp(static_cast<int>(low.x) + dx, 0, kSize - 1);
-      const int y = std::clamp(static_cast<int>(low.y) + dy, 0, kSize - 1);
+      const int x = std::clamp(static_cast<int>(low.x) + dx, 0, kMapSize - 1);
+      const int y = std::clamp(static_cast<int>(low.y) + dy, 0, kMapSize - 1);
       return folded_->map.height_mm[toys::At(folded_->map, x, y)];
     };
     return glm::mix(glm::mix(texel(0, 0), texel(1, 0), part.x),
@@ -162,7 +163,7 @@ INSTANTIATE_TEST_SUITE_P(Of, CharacterFolds,
 TEST_P(CharacterFolds, KeepTheArcLength) {
   double arc = 0.0, count = 0.0;
   for (const std::uint32_t seed : {1u, 2u, 3u, 4u, 5u}) {
-    BakeOptions options = Exact();
+    BakeOptions options = ExactSkin();
     options.seed = seed;
     const std::vector<Place> places =
         FoldedPlaces(toys::BakeFolds(*folded_->character, {folded_->pose}, options));
@@ -218,7 +219,7 @@ TEST_P(CharacterFolds, AreContinuousAcrossUvSeams) {
         if (std::abs(height) < 0.002f) continue;
         // Inside an island, compare with the next texel.
         const vec2 there = is_seam ? glm::mix(corner(n, a), corner(n, b), at)
-                                   : here + vec2(1.0f / static_cast<float>(kSize), 0.0f);
+                                   : here + vec2(1.0f / static_cast<float>(kMapSize), 0.0f);
         (is_seam ? seam : interior).push_back(std::abs(height - HeightAt(there)));
       }
     }

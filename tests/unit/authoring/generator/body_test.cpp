@@ -25,9 +25,9 @@ namespace furrow::authoring {
 namespace {
 
 using glm::vec3;
-using Place = std::array<long, 3>;
+using RoundedPlace = std::array<long, 3>;
 
-Place PlaceOf(const vec3& p) {
+RoundedPlace PlaceOf(const vec3& p) {
   return {std::lround(p.x * 1e5), std::lround(p.y * 1e5), std::lround(p.z * 1e5)};
 }
 
@@ -41,16 +41,16 @@ class BodyTest : public ::testing::TestWithParam<int> {
 };
 
 // The rims of a surface: the positions of edges that belong to one triangle only, with counts.
-std::map<Place, int> Rims(const character::Mesh& mesh) {
-  std::map<std::pair<Place, Place>, int> uses;
+std::map<RoundedPlace, int> Rims(const character::Mesh& mesh) {
+  std::map<std::pair<RoundedPlace, RoundedPlace>, int> uses;
   for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
     for (int k = 0; k < 3; ++k) {
-      const Place a = PlaceOf(mesh.vertices[mesh.indices[i + k]].position);
-      const Place b = PlaceOf(mesh.vertices[mesh.indices[i + (k + 1) % 3]].position);
+      const RoundedPlace a = PlaceOf(mesh.vertices[mesh.indices[i + k]].position);
+      const RoundedPlace b = PlaceOf(mesh.vertices[mesh.indices[i + (k + 1) % 3]].position);
       ++uses[std::minmax(a, b)];
     }
   }
-  std::map<Place, int> rims;
+  std::map<RoundedPlace, int> rims;
   for (const auto& [edge, count] : uses) {
     if (count == 1) ++rims[edge.first], ++rims[edge.second];
   }
@@ -116,7 +116,7 @@ TEST_P(BodyTest, SeamsStayClosed) {
   const Clothes clothes = MakeClothes(Shape());
   ASSERT_EQ(clothes.vertex_panels.size(), clothes.mesh.vertices.size());
   ASSERT_EQ(clothes.panels.size(), static_cast<std::size_t>(kNumClothPanels));
-  std::map<Place, const character::Vertex*> first;
+  std::map<RoundedPlace, const character::Vertex*> first;
   int pairs = 0;
   for (const character::Vertex& vertex : clothes.mesh.vertices) {
     const auto [found, is_new] = first.emplace(PlaceOf(vertex.position), &vertex);

@@ -11,11 +11,11 @@
 namespace furrow::authoring {
 namespace {
 
-constexpr int kSize = 512;
+constexpr int kPictureSize = 512;
 
 struct Painted {
-  character::Picture colour = BlankPicture("colour", kSize, kSize, 4);
-  character::Picture normals = BlankPicture("normals", kSize, kSize, 3);
+  character::Picture colour = BlankPicture("colour", kPictureSize, kPictureSize, 4);
+  character::Picture normals = BlankPicture("normals", kPictureSize, kPictureSize, 3);
 };
 
 Painted Paint(const StrandLook& look) {
@@ -28,8 +28,10 @@ Painted Paint(const StrandLook& look) {
 float Coverage(Painted* painted, int tile, float from, float to) {
   int covered = 0, all = 0;
   const auto low = StrandUv(tile, -1.0f, from), high = StrandUv(tile, 1.0f, to);
-  for (int y = static_cast<int>(low.y * kSize); y < static_cast<int>(high.y * kSize); ++y) {
-    for (int x = static_cast<int>(low.x * kSize); x < static_cast<int>(high.x * kSize); ++x) {
+  for (int y = static_cast<int>(low.y * kPictureSize); y < static_cast<int>(high.y * kPictureSize);
+       ++y) {
+    for (int x = static_cast<int>(low.x * kPictureSize);
+         x < static_cast<int>(high.x * kPictureSize); ++x) {
       covered += TexelAt(&painted->colour, x, y)[3] >= kStrandCutoff * 255.0f;
       ++all;
     }
@@ -55,8 +57,8 @@ TEST(HairStrands, AreDensestInTheMiddle) {
 
 TEST(HairStrands, DoNotChangeOtherRows) {
   Painted painted = Paint({});
-  for (int y = static_cast<int>(std::ceil(kStrandBottom * kSize)); y < kSize; ++y) {
-    for (int x = 0; x < kSize; ++x) {
+  for (int y = static_cast<int>(std::ceil(kStrandBottom * kPictureSize)); y < kPictureSize; ++y) {
+    for (int x = 0; x < kPictureSize; ++x) {
       ASSERT_EQ(TexelAt(&painted.colour, x, y)[3], 0);
       ASSERT_EQ(TexelAt(&painted.normals, x, y)[2], 0);
     }
@@ -66,8 +68,8 @@ TEST(HairStrands, DoNotChangeOtherRows) {
 TEST(HairStrands, NormalsVaryOnlyAcrossStrands) {
   Painted painted = Paint({});
   int left = 255, right = 0;
-  for (int y = 0; y < static_cast<int>(kStrandBottom * kSize); ++y) {
-    for (int x = 0; x < kSize; ++x) {
+  for (int y = 0; y < static_cast<int>(kStrandBottom * kPictureSize); ++y) {
+    for (int x = 0; x < kPictureSize; ++x) {
       const std::uint8_t* normal = TexelAt(&painted.normals, x, y);
       ASSERT_NEAR(normal[1], 128, 1);
       left = std::min<int>(left, normal[0]);
@@ -81,7 +83,7 @@ TEST(HairStrands, NormalsVaryOnlyAcrossStrands) {
 TEST(HairStrands, GreyIsBrighterAndLessSaturated) {
   Painted brown = Paint({}), grey = Paint({.grey_share = 1.0f});
   const auto uv = StrandUv(0, 0.0f, 0.5f);
-  const int x = static_cast<int>(uv.x * kSize), y = static_cast<int>(uv.y * kSize);
+  const int x = static_cast<int>(uv.x * kPictureSize), y = static_cast<int>(uv.y * kPictureSize);
   const std::uint8_t* a = TexelAt(&brown.colour, x, y);
   const std::uint8_t* b = TexelAt(&grey.colour, x, y);
   EXPECT_GT(b[1], 2 * a[1]);

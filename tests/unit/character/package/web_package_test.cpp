@@ -23,10 +23,10 @@ std::string LittleEndian(std::size_t value) {
   return bytes;
 }
 
-std::string Glb(std::string json) {
-  json.resize((json.size() + 3) / 4 * 4, ' ');
-  return "glTF" + LittleEndian(2) + LittleEndian(20 + json.size()) + LittleEndian(json.size()) +
-         "JSON" + json;
+std::string Glb(std::string text) {
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  return "glTF" + LittleEndian(2) + LittleEndian(20 + text.size()) + LittleEndian(text.size()) +
+         "JSON" + text;
 }
 
 std::string Stated(const std::string& content) {

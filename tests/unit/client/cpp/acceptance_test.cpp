@@ -10,7 +10,6 @@ namespace furrow::client {
 namespace {
 
 using protocol::SkeletonStatus;
-using Kind = Acceptance::Kind;
 
 class AcceptanceTest : public ::testing::Test {
  protected:
@@ -41,18 +40,18 @@ class AcceptanceTest : public ::testing::Test {
 
 TEST_F(AcceptanceTest, AnAnswerEndsTheWait) {
   Answer(SkeletonStatus::kAccepted);
-  EXPECT_EQ(Wait(1).kind, Kind::kAccepted);
+  EXPECT_EQ(Wait(1).kind, Acceptance::Kind::kAccepted);
 }
 
 TEST_F(AcceptanceTest, ARejectionHasAReason) {
   Answer(SkeletonStatus::kRejected, "no such joint");
   const Acceptance answer = Wait(1);
-  EXPECT_EQ(answer.kind, Kind::kRefused);
+  EXPECT_EQ(answer.kind, Acceptance::Kind::kRefused);
   EXPECT_EQ(answer.reason, "no such joint");
 }
 
 TEST_F(AcceptanceTest, WithoutAnAnswerTheOfferIsRepeatedForFiveSeconds) {
-  EXPECT_EQ(Wait(10'000).kind, Kind::kNoAnswer);
+  EXPECT_EQ(Wait(10'000).kind, Acceptance::Kind::kNoAnswer);
   EXPECT_GE(now_us_, 5'000'000);
   EXPECT_LT(now_us_, 5'100'000);
   EXPECT_GE(far_->sent.size(), 20u) << "five per second";
@@ -62,13 +61,13 @@ TEST_F(AcceptanceTest, AnErrorOfTheDaemonIsReported) {
   far_->Answer({.session = 7},
                protocol::ErrorMessage{.code = protocol::ErrorCode::kLimit, .message = "full"});
   const Acceptance answer = Wait(10'000);
-  EXPECT_EQ(answer.kind, Kind::kError);
+  EXPECT_EQ(answer.kind, Acceptance::Kind::kError);
   EXPECT_EQ(answer.reason, "full");
 }
 
 TEST_F(AcceptanceTest, AClosedPortIsDistinguishedFromATimeout) {
   far_->when_empty = IoStatus::kNoConnection;
-  EXPECT_EQ(Wait(5'000'000).kind, Kind::kNoConnection);
+  EXPECT_EQ(Wait(5'000'000).kind, Acceptance::Kind::kNoConnection);
   // The port is reported as closed once per offer; in between Receive() times out.
   int looks = 0;
   const auto keep_going = [&] {
@@ -76,18 +75,19 @@ TEST_F(AcceptanceTest, AClosedPortIsDistinguishedFromATimeout) {
     return true;
   };
   const auto clock = [&] { return now_us_ += 1'000'000; };
-  EXPECT_EQ(WaitUntilAccepted(publisher_, stream_, clock, keep_going).kind, Kind::kNoConnection);
+  EXPECT_EQ(WaitUntilAccepted(publisher_, stream_, clock, keep_going).kind,
+            Acceptance::Kind::kNoConnection);
 }
 
 TEST_F(AcceptanceTest, AClosedConnectionEndsTheWait) {
   far_->when_empty = IoStatus::kClosed;
-  EXPECT_EQ(Wait(1).kind, Kind::kNoAnswer);
+  EXPECT_EQ(Wait(1).kind, Acceptance::Kind::kNoAnswer);
   EXPECT_LT(now_us_, 10);
 }
 
 TEST_F(AcceptanceTest, TheCallerCanCancelTheWait) {
   go_on_ = false;
-  EXPECT_EQ(Wait(1).kind, Kind::kCancelled);
+  EXPECT_EQ(Wait(1).kind, Acceptance::Kind::kCancelled);
 }
 
 }  // namespace

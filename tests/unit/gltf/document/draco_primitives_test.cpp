@@ -149,7 +149,7 @@ TEST_P(DracoFaults, AreErrorsThatNameTheField) {
       << document.status().ToString();
 }
 
-Json& Extension(Json* json) { return (*json)["meshes"][0]["primitives"][0]["extensions"][kDraco]; }
+Json& Extension(Json* root) { return (*root)["meshes"][0]["primitives"][0]["extensions"][kDraco]; }
 
 INSTANTIATE_TEST_SUITE_P(
     Each, DracoFaults,

@@ -22,13 +22,13 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-struct Read {
+struct BindsRead {
   std::vector<MaterialBind> binds;
   std::vector<std::string> warnings;
   Status status;
 };
 
-Read BindsOf(const HandMadeGltf& gltf) {
+BindsRead BindsOf(const HandMadeGltf& gltf) {
   const std::string glb = gltf.Glb();
   Result<Document> document = Document::Open(glb, {});
   if (!document.ok()) return {{}, {}, document.status()};
@@ -77,7 +77,7 @@ TEST(MaterialBinds, OfVrm1) {
          {{"textureTransformBinds",
            {{{"material", 1}, {"scale", {1.0, 1.0}}, {"offset", {0.1, -0.2}}}}}}}}},
       {"custom", {{"nothing", {{"overrideBlink", "block"}}}}}};
-  const Read read = BindsOf(gltf);
+  const BindsRead read = BindsOf(gltf);
   ASSERT_TRUE(read.status.ok()) << read.status.ToString();
   EXPECT_THAT(read.warnings, IsEmpty());
   ASSERT_THAT(read.binds, SizeIs(3));
@@ -97,7 +97,7 @@ TEST(MaterialBinds, ReplaceTheTransformAtRest) {
   HandMadeGltf gltf = TwoMaterials();
   Expressions(&gltf)["preset"]["sad"]["textureTransformBinds"] = {
       {{"material", 0}, {"scale", {2.0, 0.5}}, {"offset", {0.75, 0.5}}}};
-  const Read read = BindsOf(gltf);
+  const BindsRead read = BindsOf(gltf);
   ASSERT_THAT(read.binds, SizeIs(1)) << read.status.ToString();
   EXPECT_EQ(read.binds[0].uv_scale, glm::vec2(3.0f, 0.0f));
   EXPECT_EQ(read.binds[0].uv_offset, glm::vec2(-0.25f, 0.5f));
@@ -127,7 +127,7 @@ TEST(MaterialBinds, OfVrm0) {
       {{"name", "LookDown"},
        {"presetName", "lookdown"},
        {"materialValues", {value("Eye", "_MainTex_ST_T", {7.0, 1.0, 7.0, 0.125})}}}};
-  const Read read = BindsOf(gltf);
+  const BindsRead read = BindsOf(gltf);
   ASSERT_TRUE(read.status.ok()) << read.status.ToString();
   EXPECT_THAT(read.warnings, IsEmpty()) << "_BumpMap_ST says what _MainTex_ST does";
   ASSERT_THAT(read.binds, SizeIs(5));
@@ -151,7 +151,7 @@ TEST(MaterialBinds, TheShadesColourAloneMovesTheBaseColourByHalf) {
   Expressions(&gltf)["custom"]["paler"]["materialColorBinds"] = {
       {{"material", 1}, {"type", "shadeColor"}, {"targetValue", {0.2, 0.4, 0.4, 1}}},
       {{"material", 1}, {"type", "color"}, {"targetValue", {0.5, 1, 1, 1}}}};
-  const Read read = BindsOf(gltf);
+  const BindsRead read = BindsOf(gltf);
   ASSERT_THAT(read.binds, SizeIs(2)) << read.status.ToString();
   EXPECT_LT(glm::distance(read.binds[0].base_colour, glm::vec4(-0.2f, 0.0f, 0.1f, 0.0f)), 1e-6f);
   EXPECT_EQ(read.binds[1].base_colour, glm::vec4(-0.5f, 0.0f, 0.0f, 0.0f));
@@ -170,7 +170,7 @@ TEST(MaterialBinds, OfAPackage) {
       {{"shape", "rest"}, {"material", 1}},
       {{"material", 1}, {"emission", {0, 2, 0}}},
       {{"shape", "blush"}, {"material", 7}, {"emission", {0, 2, 0}}}};
-  const Read read = BindsOf(gltf);
+  const BindsRead read = BindsOf(gltf);
   ASSERT_THAT(read.binds, SizeIs(2)) << read.status.ToString();
   EXPECT_EQ(read.binds[0].base_colour, glm::vec4(0.1f, -0.5f, -0.5f, 0.5f));
   EXPECT_EQ(read.binds[1].emission, glm::vec3(0, 2, 0));
@@ -188,7 +188,7 @@ TEST(MaterialBinds, PropertiesThatAreNotDrawnAreNamedOnce) {
   }
   Expressions(&gltf)["preset"]["happy"]["materialColorBinds"] = binds;
   Expressions(&gltf)["preset"]["angry"]["materialColorBinds"] = binds;
-  const Read read = BindsOf(gltf);
+  const BindsRead read = BindsOf(gltf);
   EXPECT_THAT(read.binds, IsEmpty());
   EXPECT_THAT(read.warnings,
               ElementsAre(HasSubstr("properties of materials that are not drawn: 'heat', "
@@ -219,7 +219,7 @@ TEST(MaterialBinds, BrokenOnesAreIgnored) {
         Json{{"material", 0}, {"type", 3}, {"targetValue", {1, 1, 1, 1}}}}) {
     HandMadeGltf gltf = TwoMaterials();
     Expressions(&gltf)["preset"]["happy"]["materialColorBinds"] = Json::array({bind});
-    const Read read = BindsOf(gltf);
+    const BindsRead read = BindsOf(gltf);
     EXPECT_TRUE(read.status.ok()) << bind << read.status.ToString();
     EXPECT_THAT(read.binds, IsEmpty()) << bind;
     EXPECT_THAT(read.warnings, SizeIs(1)) << bind;
@@ -229,7 +229,7 @@ TEST(MaterialBinds, BrokenOnesAreIgnored) {
         Json{{"material", 0}, {"offset", {2e4, 0}}}}) {
     HandMadeGltf gltf = TwoMaterials();
     Expressions(&gltf)["preset"]["happy"]["textureTransformBinds"] = Json::array({bind});
-    const Read read = BindsOf(gltf);
+    const BindsRead read = BindsOf(gltf);
     EXPECT_THAT(read.binds, IsEmpty()) << bind;
     EXPECT_THAT(read.warnings, ElementsAre(HasSubstr("values that cannot be drawn"))) << bind;
   }
@@ -243,7 +243,7 @@ TEST(MaterialBinds, TransformsThatUvsAtRestCannotExpressAreIgnored) {
         {"KHR_texture_transform", transform}};
     Expressions(&gltf)["preset"]["happy"]["textureTransformBinds"] = {
         {{"material", 0}, {"scale", {2.0, 1.0}}}};
-    const Read read = BindsOf(gltf);
+    const BindsRead read = BindsOf(gltf);
     EXPECT_THAT(read.binds, IsEmpty()) << transform;
     EXPECT_THAT(read.warnings, ElementsAre(HasSubstr("cannot be drawn"))) << transform;
   }
@@ -256,7 +256,7 @@ TEST(MaterialBinds, SumsStayInTheirRanges) {
     binds.push_back({{"material", 0}, {"type", "color"}, {"targetValue", {1, 0, 1, 1}}});
   }
   Expressions(&gltf)["preset"]["happy"]["materialColorBinds"] = binds;
-  const Read read = BindsOf(gltf);
+  const BindsRead read = BindsOf(gltf);
   ASSERT_THAT(read.binds, SizeIs(1));
   EXPECT_EQ(read.binds[0].base_colour, glm::vec4(1.0f, -1.0f, 1.0f, 1.0f));
 }

@@ -15,14 +15,14 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-struct Read {
+struct MaterialsRead {
   std::vector<Material> materials;
   std::vector<std::string> warnings;
   Status status;
 };
 
 // A material whose texture names its image by this extension only.
-Read ReadExtension(const std::string& name) {
+MaterialsRead ReadExtension(const std::string& name) {
   HandMadeGltf gltf;
   gltf.AddFloats({0}, "SCALAR");
   gltf.json["images"] = {{{"uri", "a.png"}}, {{"uri", "b.webp"}}};
@@ -37,14 +37,14 @@ Read ReadExtension(const std::string& name) {
 }
 
 TEST(Materials, UseWebpImages) {
-  const Read read = ReadExtension("EXT_texture_webp");
+  const MaterialsRead read = ReadExtension("EXT_texture_webp");
   ASSERT_TRUE(read.status.ok()) << read.status.ToString();
   EXPECT_EQ(read.materials[0].base_colour_image, 1);
   EXPECT_THAT(read.warnings, IsEmpty());
 }
 
 TEST(Materials, WarnOfTexturesThatNobodyReads) {
-  const Read read = ReadExtension("KHR_texture_basisu");
+  const MaterialsRead read = ReadExtension("KHR_texture_basisu");
   ASSERT_TRUE(read.status.ok()) << read.status.ToString();
   EXPECT_EQ(read.materials[0].base_colour_image, kNone);
   EXPECT_THAT(read.warnings, ElementsAre(HasSubstr("'KHR_texture_basisu' is not supported")));
@@ -52,7 +52,7 @@ TEST(Materials, WarnOfTexturesThatNobodyReads) {
 
 // The materials of a VRM 0.x file with these MToon properties; only the first has a texture in
 // glTF.
-Read ReadMToon(const json& properties) {
+MaterialsRead ReadMToon(const json& properties) {
   HandMadeGltf gltf;
   gltf.AddFloats({0}, "SCALAR");
   gltf.json["images"] = {{{"uri", "a.png"}}, {{"uri", "b.png"}}};
@@ -70,7 +70,7 @@ Read ReadMToon(const json& properties) {
 }
 
 TEST(Materials, TakeMToonsTextureWhereGltfStatesNone) {
-  const Read read = ReadMToon(
+  const MaterialsRead read = ReadMToon(
       {{"shader", "VRM/MToon"},
        {"textureProperties", {{"_MainTex", 1}, {"_ShadeTexture", 0}}},
        {"vectorProperties", {{"_MainTex", {0.5, 0.25, 2, 0.5}}, {"_Color", {1, 1, 1, 1}}}}});
@@ -83,7 +83,7 @@ TEST(Materials, TakeMToonsTextureWhereGltfStatesNone) {
 
 // Material 0 has a texture of glTF's; material 1 states nothing.
 TEST(Materials, TakeMToonsColourWhereGltfStatesNone) {
-  const Read read =
+  const MaterialsRead read =
       ReadMToon({{"shader", "VRM/MToon"}, {"vectorProperties", {{"_Color", {0.5, 0, 7, 0.25}}}}});
   ASSERT_TRUE(read.status.ok()) << read.status.ToString();
   EXPECT_EQ(read.materials[0].base_colour, glm::vec4(1.0f));
@@ -108,7 +108,7 @@ TEST(Materials, SurviveFaultyMToon) {
 }
 
 // One material whose base colour and normal texture have these transforms.
-Read ReadMaterial(const json& colour, const json& normal) {
+MaterialsRead ReadMaterial(const json& colour, const json& normal) {
   HandMadeGltf gltf;
   gltf.AddFloats({0}, "SCALAR");  // a buffer must not be empty
   gltf.json["images"] = {{{"uri", "a.png"}}};
@@ -139,14 +139,14 @@ TEST(UvTransform, ScalesThenTurnsThenMoves) {
 
 TEST(Materials, ReadTheTextureTransform) {
   const json transform = {{"offset", {0.5, 0.25}}, {"scale", {2, 3}}, {"rotation", 0.125}};
-  const Read read = ReadMaterial(transform, transform);
+  const MaterialsRead read = ReadMaterial(transform, transform);
   ASSERT_TRUE(read.status.ok()) << read.status.ToString();
   EXPECT_THAT(read.warnings, IsEmpty());
   EXPECT_EQ(read.materials[0].uv_transform, (UvTransform{{0.5f, 0.25f}, 0.125f, {2, 3}}));
 }
 
 TEST(Materials, WarnOfTransformsThatDiffer) {
-  const Read read = ReadMaterial({{"scale", {2, 2}}}, json());
+  const MaterialsRead read = ReadMaterial({{"scale", {2, 2}}}, json());
   ASSERT_TRUE(read.status.ok()) << read.status.ToString();
   EXPECT_THAT(read.warnings, ElementsAre(HasSubstr("different KHR_texture_transform")));
   EXPECT_EQ(read.materials[0].uv_transform.scale, glm::vec2(2));
@@ -158,11 +158,11 @@ TEST(Materials, RejectInvalidTransforms) {
 }
 
 TEST(Materials, UseOneSetOfUvs) {
-  const Read both = ReadMaterial({{"texCoord", 1}}, {{"texCoord", 1}});
+  const MaterialsRead both = ReadMaterial({{"texCoord", 1}}, {{"texCoord", 1}});
   ASSERT_TRUE(both.status.ok()) << both.status.ToString();
   EXPECT_THAT(both.warnings, IsEmpty());
   EXPECT_EQ(both.materials[0].uv_set, 1);
-  const Read differ = ReadMaterial({{"texCoord", 1}}, json());
+  const MaterialsRead differ = ReadMaterial({{"texCoord", 1}}, json());
   ASSERT_TRUE(differ.status.ok()) << differ.status.ToString();
   EXPECT_EQ(differ.materials[0].uv_set, 1);
   EXPECT_GE(differ.materials[0].base_colour_image, 0);

@@ -20,12 +20,12 @@ using ::testing::Pair;
 using ::testing::UnorderedElementsAre;
 using Bones = std::vector<std::pair<std::string, int>>;
 
-struct Read {
+struct BonesRead {
   Bones bones;
   std::vector<std::string> warnings;
 };
 
-Read BonesOf(const HandMadeGltf& gltf) {
+BonesRead BonesOf(const HandMadeGltf& gltf) {
   const std::string glb = gltf.Glb();
   Result<Document> document = Document::Open(glb, {});
   EXPECT_TRUE(document.ok()) << document.status().ToString();
@@ -38,7 +38,7 @@ TEST(VrmHumanoid, OfVrm1) {
   HandMadeGltf gltf = TwoJoints();
   gltf.json["extensions"]["VRMC_vrm"]["humanoid"]["humanBones"] = {
       {"hips", {{"node", 0}}}, {"leftThumbProximal", {{"node", 1}}}, {"tail", {{"node", 1}}}};
-  const Read read = BonesOf(gltf);
+  const BonesRead read = BonesOf(gltf);
   EXPECT_THAT(read.bones,
               UnorderedElementsAre(Pair("hips", 0), Pair("leftThumbProximal", 1), Pair("tail", 1)));
   EXPECT_THAT(read.warnings, IsEmpty());
@@ -53,7 +53,7 @@ TEST(VrmHumanoid, OfVrm0) {
       {{"bone", "rightThumbIntermediate"}, {"node", 1}},
       {{"bone", "rightThumbDistal"}, {"node", 1}},
       {{"bone", "leftEye"}, {"node", -1}}};
-  const Read read = BonesOf(gltf);
+  const BonesRead read = BonesOf(gltf);
   EXPECT_THAT(read.bones, ElementsAre(Pair("hips", 0), Pair("rightThumbMetacarpal", 1),
                                       Pair("rightThumbProximal", 1), Pair("rightThumbDistal", 1)));
   EXPECT_THAT(read.warnings, IsEmpty());
@@ -66,7 +66,7 @@ TEST(VrmHumanoid, LeavesOutWhatIsWrong) {
                                                               {{"bone", "head"}, {"node", 0}},
                                                               {{"bone", "head"}, {"node", 1}},
                                                               9};
-  const Read read = BonesOf(gltf);
+  const BonesRead read = BonesOf(gltf);
   EXPECT_THAT(read.bones, ElementsAre(Pair("head", 0)));
   EXPECT_EQ(read.warnings.size(), 4u);
 }
@@ -76,7 +76,7 @@ TEST(VrmHumanoid, AJawIsCalledOne) {
   HandMadeGltf gltf = TwoJoints();
   gltf.json["extensions"]["VRMC_vrm"]["humanoid"]["humanBones"] = {{"jaw", {{"node", 1}}}};
   gltf.json["nodes"][1]["name"] = "Hair_front_01";
-  const Read read = BonesOf(gltf);
+  const BonesRead read = BonesOf(gltf);
   EXPECT_THAT(read.bones, IsEmpty());
   EXPECT_THAT(read.warnings, ElementsAre(HasSubstr("not called a jaw")));
   gltf.json["nodes"][1]["name"] = "c_JawBone";

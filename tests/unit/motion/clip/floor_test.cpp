@@ -10,20 +10,17 @@
 
 #include "motion/clip_file.h"
 #include "tests/temporary_folder.h"
+#include "tests/unit/motion/clip/offset_joint.h"
 
 namespace furrow::motion {
 namespace {
 
-wrinkle::JointDesc Joint(const char* name, int parent, const glm::vec3& offset) {
-  return {.name = name, .parent = parent, .rest = {.translation = offset}, .tail = {}};
-}
-
 // A body with legs of length 0.9, whose hips rest and move at these heights.
 Clip Body(float rest, const std::vector<float>& heights, const char* head = "Head") {
   Clip clip;
-  clip.skeleton =
-      *wrinkle::Skeleton::Create({Joint("Hips", -1, {0.1f, rest, 0.2f}),
-                                  Joint(head, 0, {0, 0.6f, 0}), Joint("Foot", 0, {0, -0.9f, 0})});
+  clip.skeleton = *wrinkle::Skeleton::Create({OffsetJoint("Hips", -1, {0.1f, rest, 0.2f}),
+                                              OffsetJoint(head, 0, {0, 0.6f, 0}),
+                                              OffsetJoint("Foot", 0, {0, -0.9f, 0})});
   for (std::size_t i = 0; i < heights.size(); ++i) {
     clip.times.push_back(0.1 * static_cast<double>(i));
     const auto pose = clip.skeleton.rest_pose();
@@ -69,16 +66,16 @@ TEST(Floor, ARootThatStaysAtRestStatesNoPosition) {
 
 TEST(Floor, LegsNeedNoNames) {
   Clip clip;
-  std::vector<wrinkle::JointDesc> joints = {Joint("a", -1, {}), Joint("b", 0, {0, 0.3f, 0}),
-                                            Joint("c", 1, {0, 0.3f, 0}),
-                                            Joint("d", 2, {0, 0.2f, 0})};
+  std::vector<wrinkle::JointDesc> joints = {
+      OffsetJoint("a", -1, {}), OffsetJoint("b", 0, {0, 0.3f, 0}),
+      OffsetJoint("c", 1, {0, 0.3f, 0}), OffsetJoint("d", 2, {0, 0.2f, 0})};
   std::vector<std::string> names;
   for (int i = 0; i < 12; ++i) names.push_back("limb" + std::to_string(i));
   const auto limb = [&](int parent, glm::vec3 start, glm::vec3 bone) {
     for (int i = 0; i < 3; ++i) {
-      joints.push_back(Joint(names[joints.size() - 4].c_str(),
-                             i == 0 ? parent : static_cast<int>(joints.size()) - 1,
-                             i == 0 ? start : bone));
+      joints.push_back(OffsetJoint(names[joints.size() - 4].c_str(),
+                                   i == 0 ? parent : static_cast<int>(joints.size()) - 1,
+                                   i == 0 ? start : bone));
     }
   };
   for (const float side : {0.1f, -0.1f}) {
@@ -106,9 +103,9 @@ TEST(Floor, OthersStayAsTheyAre) {
   Clip nothing;
   EXPECT_FALSE(*RaiseToFloor(&nothing));
   Clip bust = Body(0.0f, {0.0f});
-  bust.skeleton =
-      *wrinkle::Skeleton::Create({Joint("Chest", -1, {0, 0, 0}), Joint("Head", 0, {0, 0.6f, 0}),
-                                  Joint("Hand", 0, {0, -0.2f, 0})});
+  bust.skeleton = *wrinkle::Skeleton::Create({OffsetJoint("Chest", -1, {0, 0, 0}),
+                                              OffsetJoint("Head", 0, {0, 0.6f, 0}),
+                                              OffsetJoint("Hand", 0, {0, -0.2f, 0})});
   bust.locals.assign(bust.skeleton.rest_pose().begin(), bust.skeleton.rest_pose().end());
   EXPECT_TRUE(stays(bust)) << "no legs";
 }

@@ -12,22 +12,15 @@
 
 #include "motion/clip_file.h"
 #include "tests/temporary_folder.h"
+#include "tests/unit/motion/clip/offset_joint.h"
 
 namespace furrow::motion {
 namespace {
 
-wrinkle::JointDesc Joint(const char* name, int parent, const glm::vec3& offset) {
-  wrinkle::JointDesc joint;
-  joint.name = name;
-  joint.parent = parent;
-  joint.rest.translation = offset;
-  return joint;
-}
-
 Clip Standing(const char* top, const glm::vec3& up) {
   Clip clip;
-  clip.skeleton =
-      *wrinkle::Skeleton::Create({Joint("Hips", -1, up), Joint("Spine", 0, up), Joint(top, 1, up)});
+  clip.skeleton = *wrinkle::Skeleton::Create(
+      {OffsetJoint("Hips", -1, up), OffsetJoint("Spine", 0, up), OffsetJoint(top, 1, up)});
   return clip;
 }
 
@@ -45,13 +38,15 @@ Clip OnLegs(bool fox, const char* top, const glm::quat& turn) {
   Clip clip;
   const glm::vec3 trunk = fox ? glm::vec3(0, 0, 0.3f) : glm::vec3(0, 0.25f, 0);
   std::vector<wrinkle::JointDesc> joints = {
-      Joint("j0", -1, turn * glm::vec3(0, fox ? 0.5f : 1.0f, 0)), Joint("j1", 0, turn * trunk),
-      Joint("j2", 1, turn * trunk), Joint(top, 2, turn * glm::vec3(0, 0.1f, fox ? 0.2f : 0.0f))};
+      OffsetJoint("j0", -1, turn * glm::vec3(0, fox ? 0.5f : 1.0f, 0)),
+      OffsetJoint("j1", 0, turn * trunk), OffsetJoint("j2", 1, turn * trunk),
+      OffsetJoint(top, 2, turn * glm::vec3(0, 0.1f, fox ? 0.2f : 0.0f))};
   const auto limb = [&](int parent, glm::vec3 start, glm::vec3 bone) {
     for (int i = 0; i < 3; ++i) {
       const std::string name = "j" + std::to_string(joints.size());
-      joints.push_back(Joint(name.c_str(), i == 0 ? parent : static_cast<int>(joints.size()) - 1,
-                             turn * (i == 0 ? start : bone)));
+      joints.push_back(OffsetJoint(name.c_str(),
+                                   i == 0 ? parent : static_cast<int>(joints.size()) - 1,
+                                   turn * (i == 0 ? start : bone)));
     }
   };
   for (const float side : {0.1f, -0.1f}) {
@@ -120,8 +115,9 @@ TEST(UpAxis, TurningAClipTurnsItsPoses) {
 // A body that walks in some direction on a floor of height 0, with a turn of the whole about X.
 Clip Walking(float degrees, const glm::vec3& floor_axis, float height) {
   Clip clip;
-  clip.skeleton = *wrinkle::Skeleton::Create(
-      {Joint("Hips", -1, {0, 1, 0}), Joint("Head", 0, {0, 0.6f, 0}), Joint("Foot", 0, {0, -1, 0})});
+  clip.skeleton = *wrinkle::Skeleton::Create({OffsetJoint("Hips", -1, {0, 1, 0}),
+                                              OffsetJoint("Head", 0, {0, 0.6f, 0}),
+                                              OffsetJoint("Foot", 0, {0, -1, 0})});
   const glm::quat turn = glm::angleAxis(glm::radians(degrees), glm::vec3(1, 0, 0));
   for (int frame = 0; frame < 30; ++frame) {
     clip.times.push_back(0.1 * frame);
@@ -144,8 +140,9 @@ TEST(UpAxis, MotionAlongZIsTold) {
   EXPECT_FALSE(MovesAlongZ(Walking(90.0f, {0, 0, 1}, 0.0f)));
   EXPECT_FALSE(MovesAlongZ(Clip()));
   Clip nobody = Walking(90.0f, {0, 1, 0}, 1.0f);
-  nobody.skeleton = *wrinkle::Skeleton::Create(
-      {Joint("a", -1, {0, 1, 0}), Joint("b", 0, {0, 0.6f, 0}), Joint("c", 0, {0, -1, 0})});
+  nobody.skeleton = *wrinkle::Skeleton::Create({OffsetJoint("a", -1, {0, 1, 0}),
+                                                OffsetJoint("b", 0, {0, 0.6f, 0}),
+                                                OffsetJoint("c", 0, {0, -1, 0})});
   EXPECT_FALSE(MovesAlongZ(nobody));
 }
 

@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<std::uint8_t> Bytes(std::string_view text) { return {text.begin(), text.end()}; }
+std::vector<std::uint8_t> TextBytes(std::string_view text) { return {text.begin(), text.end()}; }
 
 struct Seen {
   std::string topic;
@@ -45,13 +45,13 @@ class McapTest : public testing::Test {
   void WriteTake(const fs::path& path, int count, std::uint64_t chunk_bytes, bool close = true) {
     auto writer = Writer::Create(path, {.chunk_bytes = chunk_bytes});
     ASSERT_TRUE(writer.ok()) << writer.status().ToString();
-    const auto schema = (*writer)->AddSchema("test.Pose", "flatbuffer", Bytes("schema bytes"));
+    const auto schema = (*writer)->AddSchema("test.Pose", "flatbuffer", TextBytes("schema bytes"));
     const std::uint16_t channels[2] = {
         (*writer)->AddChannel("/a/pose", "flatbuffer", schema, {{"subject", "a"}}),
         (*writer)->AddChannel("/raw", "datagram", 0)};
-    ASSERT_TRUE((*writer)->Attach("rig.json", "application/json", 5, Bytes("{}")).ok());
+    ASSERT_TRUE((*writer)->Attach("rig.json", "application/json", 5, TextBytes("{}")).ok());
     for (int i = 0; i < count; ++i) {
-      const auto data = Bytes("message " + std::to_string(i));
+      const auto data = TextBytes("message " + std::to_string(i));
       Message message;
       message.channel_id = channels[i % 2];
       message.sequence = static_cast<std::uint32_t>(i);
@@ -100,14 +100,14 @@ TEST_F(McapTest, RoundTrip) {
   EXPECT_TRUE((*reader)->warnings().empty());
   EXPECT_EQ((*reader)->profile(), "furrow");
   EXPECT_GT((*reader)->chunks().size(), 5u);
-  EXPECT_EQ((*reader)->schemas().at(1).data, Bytes("schema bytes"));
+  EXPECT_EQ((*reader)->schemas().at(1).data, TextBytes("schema bytes"));
   EXPECT_EQ((*reader)->channels().at(1).metadata.at("subject"), "a");
   ASSERT_EQ((*reader)->metadata().size(), 1u);
   EXPECT_EQ((*reader)->metadata()[0].values.at("scene"), "12");
   ASSERT_EQ((*reader)->attachments().size(), 1u);
   const auto rig = (*reader)->ReadAttachment((*reader)->attachments()[0]);
   ASSERT_TRUE(rig.ok()) << rig.status().ToString();
-  EXPECT_EQ(*rig, Bytes("{}"));
+  EXPECT_EQ(*rig, TextBytes("{}"));
 
   const auto seen = ReadAll(**reader);
   ASSERT_EQ(seen.size(), 100u);
@@ -120,13 +120,13 @@ TEST_F(McapTest, RoundTrip) {
 
 TEST_F(McapTest, ReadsBytesLikeTheirFile) {
   WriteTake(Path(), 100, 400);
-  const std::vector<std::uint8_t> whole = Bytes(Slurp(Path()));
+  const std::vector<std::uint8_t> whole = TextBytes(Slurp(Path()));
   auto file = Reader::Open(Path());
   auto reader = Reader::OpenBytes(whole, "take.mcap");
   ASSERT_TRUE(file.ok() && reader.ok()) << reader.status().ToString();
   EXPECT_TRUE((*reader)->complete());
   EXPECT_EQ(ReadAll(**reader), ReadAll(**file));
-  EXPECT_EQ(*(*reader)->ReadAttachment((*reader)->attachments()[0]), Bytes("{}"));
+  EXPECT_EQ(*(*reader)->ReadAttachment((*reader)->attachments()[0]), TextBytes("{}"));
   // A buffer of its own for each length, so that AddressSanitizer sees every read past its end.
   for (std::size_t size = 0; size < whole.size(); ++size) {
     const std::vector<std::uint8_t> part(whole.begin(), whole.begin() + static_cast<long>(size));
@@ -367,7 +367,7 @@ TEST_F(McapTest, TheIndexIsRightAfterAFullDisk) {
     const auto seen = ReadAll(**reader);
     ASSERT_FALSE(seen.empty());
     const std::string text = Slurp(path);
-    const Summary summary = ReadSummary(Bytes(text));
+    const Summary summary = ReadSummary(TextBytes(text));
     EXPECT_EQ(summary.messages, seen.size()) << bytes;
     EXPECT_EQ(summary.chunks, (*reader)->chunks().size());
     EXPECT_EQ(summary.start_time, seen.front().log_time);
@@ -412,8 +412,8 @@ TEST(McapCompression, RejectsUnknownMethodsAndWrongSizes) {
 
 TEST(McapCompression, Crc32MatchesTheFormat) {
   // The published check value of CRC-32/ISO-HDLC.
-  EXPECT_EQ(Crc32(Bytes("123456789")), 0xCBF43926u);
-  EXPECT_EQ(Crc32(Bytes("6789"), Crc32(Bytes("12345"))), 0xCBF43926u);
+  EXPECT_EQ(Crc32(TextBytes("123456789")), 0xCBF43926u);
+  EXPECT_EQ(Crc32(TextBytes("6789"), Crc32(TextBytes("12345"))), 0xCBF43926u);
 }
 
 }  // namespace

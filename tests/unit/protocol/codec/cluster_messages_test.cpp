@@ -17,7 +17,7 @@ using test::OpenAndDecode;
 
 // Encodes a state after `change`, and decodes it.
 template <class Change>
-DecodeStatus DecodeChanged(const Change& change) {
+DecodeStatus DecodeChangedState(const Change& change) {
   SubjectState state = MakeState(5, 3);
   change(state);
   SubjectState out;
@@ -60,7 +60,7 @@ TEST(ClusterMessages, AStateMayHaveNoPosesYet) {
 
 TEST(ClusterMessages, RejectsBadStates) {
   using S = SubjectState;
-  const auto with = [](const auto& change) { return DecodeChanged(change); };
+  const auto with = [](const auto& change) { return DecodeChangedState(change); };
   EXPECT_EQ(with([](S& s) { s.subject = ""; }), DecodeStatus::kMissingField);
   EXPECT_EQ(with([](S& s) { s.subject = std::string(256, 'a'); }), DecodeStatus::kLimit);
   EXPECT_EQ(with([](S& s) { s.subject = "\x01"; }), DecodeStatus::kBadText);

@@ -24,7 +24,7 @@ SubscribePictures ViewersPictures() {
 
 // Encodes a default picture request after `change`, and decodes it.
 template <class Change>
-DecodeStatus DecodeChanged(const Change& change) {
+DecodeStatus DecodeChangedRequest(const Change& change) {
   SubscribePictures message;
   change(message);
   SubscribePictures out;
@@ -61,9 +61,9 @@ TEST(PictureMessages, RequestRoundTrip) {
 
 TEST(PictureMessages, RejectsBadRequest) {
   using S = SubscribePictures;
-  const auto with = [](const auto& change) { return DecodeChanged(change); };
+  const auto with = [](const auto& change) { return DecodeChangedRequest(change); };
   const auto with_camera = [](const auto& change) {
-    return DecodeChanged([&change](S& s) {
+    return DecodeChangedRequest([&change](S& s) {
       s.has_camera = true;
       change(s);
     });

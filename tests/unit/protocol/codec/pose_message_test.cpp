@@ -16,7 +16,7 @@ using test::Encoded;
 using test::OpenAndDecode;
 
 template <class Change>
-DecodeStatus DecodeChanged(const Change& change, const PoseEncoding& encoding = {}) {
+DecodeStatus DecodeChangedPose(const Change& change, const PoseEncoding& encoding = {}) {
   PoseFrame pose = test::MakePose(9, 4, 1);
   change(pose);
   PoseFrame out;
@@ -140,30 +140,38 @@ TEST(PoseMessage, SizesMatchTheStandard) {
 }
 
 TEST(PoseMessage, RejectsEachFault) {
-  EXPECT_EQ(DecodeChanged([](auto&) {}), DecodeStatus::kOk);
-  EXPECT_EQ(DecodeChanged([](auto& p) { p.rotations[3].x = NAN; }), DecodeStatus::kNonFinite);
-  EXPECT_EQ(DecodeChanged([](auto& p) { p.rotations[3].x = 1e30f; }), DecodeStatus::kNotUnit);
-  EXPECT_EQ(DecodeChanged([](auto& p) { p.rotations[3] = {0, 0, 0, 0}; }), DecodeStatus::kNotUnit);
-  EXPECT_EQ(DecodeChanged([](auto& p) { p.translations[0].z = INFINITY; }),
+  EXPECT_EQ(DecodeChangedPose([](auto&) {}), DecodeStatus::kOk);
+  EXPECT_EQ(DecodeChangedPose([](auto& p) { p.rotations[3].x = NAN; }), DecodeStatus::kNonFinite);
+  EXPECT_EQ(DecodeChangedPose([](auto& p) { p.rotations[3].x = 1e30f; }), DecodeStatus::kNotUnit);
+  EXPECT_EQ(DecodeChangedPose([](auto& p) {
+              p.rotations[3] = {0, 0, 0, 0};
+            }),
+            DecodeStatus::kNotUnit);
+  EXPECT_EQ(DecodeChangedPose([](auto& p) { p.translations[0].z = INFINITY; }),
             DecodeStatus::kNonFinite);
-  EXPECT_EQ(DecodeChanged([](auto& p) { p.translations[0].z = -2e6f; }), DecodeStatus::kBadValue);
-  EXPECT_EQ(DecodeChanged([](auto& p) {
+  EXPECT_EQ(DecodeChangedPose([](auto& p) { p.translations[0].z = -2e6f; }),
+            DecodeStatus::kBadValue);
+  EXPECT_EQ(DecodeChangedPose([](auto& p) {
               p.scales.assign(9, {1, NAN, 1});
             }),
             DecodeStatus::kNonFinite);
-  EXPECT_EQ(DecodeChanged([](auto& p) { p.blend_shapes[1] = -INFINITY; }),
+  EXPECT_EQ(DecodeChangedPose([](auto& p) { p.blend_shapes[1] = -INFINITY; }),
             DecodeStatus::kNonFinite);
-  EXPECT_EQ(DecodeChanged([](auto& p) { p.rotations.pop_back(); }), DecodeStatus::kBadCount);
-  EXPECT_EQ(DecodeChanged([](auto& p) { p.blend_shapes.push_back(0); }), DecodeStatus::kBadCount);
-  EXPECT_EQ(DecodeChanged([](auto& p) { p.scales = {{1, 1, 1}}; }), DecodeStatus::kBadCount);
-  EXPECT_EQ(DecodeChanged([](auto& p) { p.num_joints = 1025; }), DecodeStatus::kLimit);
-  EXPECT_EQ(DecodeChanged([](auto& p) { p.num_blend_shapes = 513; }), DecodeStatus::kLimit);
+  EXPECT_EQ(DecodeChangedPose([](auto& p) { p.rotations.pop_back(); }), DecodeStatus::kBadCount);
+  EXPECT_EQ(DecodeChangedPose([](auto& p) { p.blend_shapes.push_back(0); }),
+            DecodeStatus::kBadCount);
+  EXPECT_EQ(DecodeChangedPose([](auto& p) { p.scales = {{1, 1, 1}}; }), DecodeStatus::kBadCount);
+  EXPECT_EQ(DecodeChangedPose([](auto& p) { p.num_joints = 1025; }), DecodeStatus::kLimit);
+  EXPECT_EQ(DecodeChangedPose([](auto& p) { p.num_blend_shapes = 513; }), DecodeStatus::kLimit);
   // Masks with another number of bits than values.
-  EXPECT_EQ(DecodeChanged([](auto& p) { p.rotation_joints = {1, 2}; }), DecodeStatus::kBadCount);
-  EXPECT_EQ(DecodeChanged([](auto& p) { p.translation_joints.pop_back(); }),
+  EXPECT_EQ(DecodeChangedPose([](auto& p) {
+              p.rotation_joints = {1, 2};
+            }),
+            DecodeStatus::kBadCount);
+  EXPECT_EQ(DecodeChangedPose([](auto& p) { p.translation_joints.pop_back(); }),
             DecodeStatus::kBadCount);
   const auto packed_nan = [](auto& p) { p.translations[0].x = INFINITY; };
-  EXPECT_EQ(DecodeChanged(packed_nan, PoseEncoding::Small()), DecodeStatus::kNonFinite)
+  EXPECT_EQ(DecodeChangedPose(packed_nan, PoseEncoding::Small()), DecodeStatus::kNonFinite)
       << "translation range";
 }
 

@@ -14,7 +14,7 @@ namespace furrow::render {
 namespace {
 
 constexpr int kJoints = 4;
-constexpr int kTexels = 64;  // per side
+constexpr int kMaskSide = 64;  // per side
 
 SkinnedShare ShareOf(int joint, int column, wrinkle::LambdaMode lambda) {
   return {joint, column, {column, lambda, 0.25f}};
@@ -55,7 +55,7 @@ SkinnedMasks MasksOf(const std::vector<character::Mesh>& meshes,
 }
 
 std::vector<ComposeTile> EmptyTiles() {
-  constexpr int kTiles = kTexels / ComposeTile::kSide;
+  constexpr int kTiles = kMaskSide / ComposeTile::kSide;
   std::vector<ComposeTile> tiles(kTiles * kTiles);
   for (int i = 0; i < kTiles * kTiles; ++i) {
     tiles[static_cast<std::size_t>(i)].place = {i % kTiles, i / kTiles};
@@ -115,12 +115,12 @@ TEST_P(SkinnedMasksTest, TexelsMatchInterpolatedVertices) {
   ASSERT_TRUE(masks.is_unique());
   ASSERT_EQ(masks.channels().size(), 2u);  // no vertex is skinned to joint 3
   std::vector<ComposeTile> tiles = EmptyTiles();
-  masks.AddTo({kTexels, kTexels}, 5, &tiles);
+  masks.AddTo({kMaskSide, kMaskSide}, 5, &tiles);
   int within = 0;
   for (std::size_t channel = 0; channel < 2; ++channel) {
-    for (int y = 0; y < kTexels; ++y) {
-      for (int x = 0; x < kTexels; ++x) {
-        const glm::vec2 uv = (glm::vec2(x, y) + 0.5f) / static_cast<float>(kTexels);
+    for (int y = 0; y < kMaskSide; ++y) {
+      for (int x = 0; x < kMaskSide; ++x) {
+        const glm::vec2 uv = (glm::vec2(x, y) + 0.5f) / static_cast<float>(kMaskSide);
         if (uv.x < 0.1f || uv.x > 0.8f || uv.y < 0.2f || uv.y > 0.9f) continue;
         EXPECT_NEAR(At(tiles, {x, y}, 5 + channel), MaskAt(sheet, uv, masks.channels()[channel]),
                     0.6f / 255.0f)
@@ -142,9 +142,9 @@ TEST(SkinnedMasks, ExtendBeyondTheSurface) {
   const SkinnedMasks masks = MasksOf({Sheet({0.25f, 0.25f}, {0.5f, 0.5f}, all)},
                                      {ShareOf(1, 0, wrinkle::LambdaMode::kLinear)});
   std::vector<ComposeTile> tiles = EmptyTiles();
-  masks.AddTo({kTexels, kTexels}, 0, &tiles);
-  for (int y = 0; y < kTexels; ++y) {
-    for (int x = 0; x < kTexels; ++x) {
+  masks.AddTo({kMaskSide, kMaskSide}, 0, &tiles);
+  for (int y = 0; y < kMaskSide; ++y) {
+    for (int x = 0; x < kMaskSide; ++x) {
       const bool touches = x >= 15 && x <= 32 && y >= 15 && y <= 32;
       const bool is_far = x < 14 || x > 33 || y < 14 || y > 33;
       const float mask = At(tiles, {x, y}, 0);

@@ -8,7 +8,7 @@
 namespace furrow::render {
 namespace {
 
-constexpr ShaderFile kFiles[] = {
+constexpr ShaderFile kLibrary[] = {
     {"scene/main.glsl", "first\n#include \"common/a.glsl\"\nthird\n"},
     {"common/a.glsl", "in a\n#include \"b.glsl\"\n"},
     {"b.glsl", "in b\n#include \"common/a.glsl\"\n"},
@@ -18,7 +18,7 @@ constexpr ShaderFile kFiles[] = {
 
 TEST(ShaderLoader, IncludesEachFileOnceAndKeepsLineNumbers) {
   const std::vector<std::string> defines = {"SIZE 4"};
-  const Result<ShaderSource> source = ExpandShader("scene/main.glsl", defines, kFiles);
+  const Result<ShaderSource> source = ExpandShader("scene/main.glsl", defines, kLibrary);
   ASSERT_TRUE(source.ok()) << source.status().ToString();
   EXPECT_EQ(source->text,
             "#version 450 core\n"
@@ -34,14 +34,14 @@ TEST(ShaderLoader, IncludesEachFileOnceAndKeepsLineNumbers) {
 }
 
 TEST(ShaderLoader, AMissingFileIsReportedWithTheIncludingLine) {
-  const Status status = ExpandShader("scene/missing.glsl", {}, kFiles).status();
+  const Status status = ExpandShader("scene/missing.glsl", {}, kLibrary).status();
   EXPECT_EQ(status.code(), StatusCode::kNotFound);
   EXPECT_EQ(status.where(), "scene/missing.glsl:2");
   EXPECT_NE(status.what().find("nowhere.glsl"), std::string::npos);
 }
 
 TEST(ShaderLoader, AnUnquotedIncludeIsAnError) {
-  const Status status = ExpandShader("unquoted.glsl", {}, kFiles).status();
+  const Status status = ExpandShader("unquoted.glsl", {}, kLibrary).status();
   EXPECT_EQ(status.code(), StatusCode::kParse);
   EXPECT_EQ(status.where(), "unquoted.glsl:1");
 }

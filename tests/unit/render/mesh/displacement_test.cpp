@@ -18,7 +18,7 @@
 namespace furrow::render {
 namespace {
 
-constexpr int kSize = 192;
+constexpr int kSheetPixels = 192;
 constexpr int kCells = 20;  // per side of the sheet
 constexpr float kTwoPi = glm::two_pi<float>();
 constexpr float kNothing = 1e5f;  // metres; anything farther is background
@@ -98,7 +98,7 @@ class DepthWatcher : public FrameGraphObserver {
     }
   }
   [[nodiscard]] float At(int x, int y) const {
-    return depth[static_cast<std::size_t>(y * kSize + x)];
+    return depth[static_cast<std::size_t>(y * kSheetPixels + x)];
   }
 
   std::vector<float> depth;
@@ -115,7 +115,7 @@ class Displacement : public testing::Test {
     subject_ = std::make_unique<test::Subject>(character_);
     request_.model = subject_->model;
     request_.binding = &subject_->binding;
-    request_.width = request_.height = kSize;
+    request_.width = request_.height = kSheetPixels;
     request_.settings.shading = Shading::kSkin;
     request_.settings.anti_aliasing.samples = 1;
     request_.settings.displacement = {.enabled = true, .edge_pixels = 2.0f, .max_level = 64};
@@ -137,7 +137,7 @@ class Displacement : public testing::Test {
   // Tangent of the angle between the camera's axis and the centre of a pixel.
   [[nodiscard]] float Slope(int pixel) const {
     const float half = std::tan(glm::radians(0.5f * request_.camera.fov_y_degrees));
-    return (2.0f * (static_cast<float>(pixel) + 0.5f) / kSize - 1.0f) * half;
+    return (2.0f * (static_cast<float>(pixel) + 0.5f) / kSheetPixels - 1.0f) * half;
   }
 
   character::Character character_;
@@ -162,8 +162,8 @@ TEST_F(Displacement, TheSurfaceIsWhereTheHeightsSay) {
   for (const float weight : {1.0f, 0.5f, 0.0f}) {
     (void)Draw("r0", weight);
     float worst = 0.0f;
-    for (int y = 20; y < kSize - 20; ++y) {
-      for (int x = 20; x < kSize - 20; ++x) {
+    for (int y = 20; y < kSheetPixels - 20; ++y) {
+      for (int x = 20; x < kSheetPixels - 20; ++x) {
         worst = std::max(worst, std::abs(watcher_.At(x, y) - ExpectedDepth(Slope(x), weight)));
       }
     }
@@ -183,16 +183,16 @@ TEST_F(Displacement, TheOutlineShowsTheFolds) {
   LookFrom({0.0f, -6.0f, 0.0f}, glm::vec3(0.0f, 0.0f, 0.0f), 8.0f);
   const auto thickness = [&](int x) {
     int pixels = 0;
-    for (int y = 0; y < kSize; ++y) pixels += watcher_.At(x, y) < kNothing ? 1 : 0;
+    for (int y = 0; y < kSheetPixels; ++y) pixels += watcher_.At(x, y) < kNothing ? 1 : 0;
     return pixels;
   };
   request_.settings.displacement.enabled = false;
   (void)Draw("r0", 1.0f);
-  for (int x = 0; x < kSize; ++x) EXPECT_LE(thickness(x), 1);
+  for (int x = 0; x < kSheetPixels; ++x) EXPECT_LE(thickness(x), 1);
   request_.settings.displacement.enabled = true;
   (void)Draw("r0", 1.0f);
   int compared = 0;
-  for (int x = 30; x < kSize - 30; ++x) {
+  for (int x = 30; x < kSheetPixels - 30; ++x) {
     // The visible outline is the highest and lowest point over all rows of the sheet.
     float high = 0.0f;
     float low = 0.0f;
@@ -201,7 +201,7 @@ TEST_F(Displacement, TheOutlineShowsTheFolds) {
       high = std::max(high, slope);
       low = std::min(low, slope);
     }
-    const float pixels_per_slope = 0.5f * kSize / std::tan(glm::radians(4.0f));
+    const float pixels_per_slope = 0.5f * kSheetPixels / std::tan(glm::radians(4.0f));
     EXPECT_NEAR(thickness(x), (high - low) * pixels_per_slope, 2.0f) << x;
     ++compared;
   }
@@ -222,11 +222,11 @@ TEST_F(Displacement, ASeamStaysClosed) {
     LookFrom(middle + glm::vec3(std::sin(angle), 0.0f, std::cos(angle)), middle, 18.0f);
     (void)Draw("l_squash", 1.0f);
     int covered = 0;
-    for (int y = 0; y < kSize; ++y) {
-      int first = kSize;
+    for (int y = 0; y < kSheetPixels; ++y) {
+      int first = kSheetPixels;
       int last = -1;
       int pixels = 0;
-      for (int x = 0; x < kSize; ++x) {
+      for (int x = 0; x < kSheetPixels; ++x) {
         if (!(watcher_.At(x, y) < kNothing)) continue;
         first = std::min(first, x);
         last = x;
@@ -235,7 +235,7 @@ TEST_F(Displacement, ASeamStaysClosed) {
       EXPECT_EQ(pixels, std::max(last - first + 1, 0)) << degrees << ", row " << y;
       covered += pixels;
     }
-    EXPECT_GT(covered, kSize * kSize / 4);
+    EXPECT_GT(covered, kSheetPixels * kSheetPixels / 4);
   }
 }
 
@@ -247,9 +247,9 @@ TEST_F(Displacement, RidgesCastShadows) {
   const auto dark = [&] {
     const Image image = Draw("r0", 1.0f);
     int pixels = 0;
-    for (int y = 40; y < kSize - 40; ++y) {
-      for (int x = 40; x < kSize - 40; ++x) {
-        pixels += image.rgb[static_cast<std::size_t>(3 * (y * kSize + x))] < 40 ? 1 : 0;
+    for (int y = 40; y < kSheetPixels - 40; ++y) {
+      for (int x = 40; x < kSheetPixels - 40; ++x) {
+        pixels += image.rgb[static_cast<std::size_t>(3 * (y * kSheetPixels + x))] < 40 ? 1 : 0;
       }
     }
     return pixels;
@@ -268,9 +268,9 @@ TEST_F(Displacement, NormalsComeFromTheDerivativeMaps) {
   const Image moved = Draw("r0", 1.0f);
   request_.settings.displacement.enabled = false;
   const Image still = Draw("r0", 1.0f);
-  for (int y = 20; y < kSize - 20; ++y) {
-    for (int x = 20; x < kSize - 20; ++x) {
-      const std::size_t at = static_cast<std::size_t>(3 * (y * kSize + x));
+  for (int y = 20; y < kSheetPixels - 20; ++y) {
+    for (int x = 20; x < kSheetPixels - 20; ++x) {
+      const std::size_t at = static_cast<std::size_t>(3 * (y * kSheetPixels + x));
       ASSERT_TRUE(std::equal(&moved.rgb[at], &moved.rgb[at + 3], &still.rgb[at])) << x << ", " << y;
     }
   }

@@ -13,7 +13,7 @@
 namespace furrow::render {
 namespace {
 
-constexpr int kSize = 200;
+constexpr int kBoundsPixels = 200;
 
 glm::mat4 LookFrom(const glm::vec3& position) {
   return glm::perspective(0.5f, 1.0f, 0.01f, 10.0f) *
@@ -31,9 +31,9 @@ TEST(JointBounds, ContainEverySkinnedVertex) {
   subject.pose.joints[2].rotation = glm::angleAxis(-0.8f, glm::vec3(1, 0, 0));
   subject.Solve();
   const glm::mat4 camera = LookFrom({0.3f, 1.7f, 1.0f});
-  const ScreenRect rect =
-      JointBounds(head, Everything).Project({subject.model, {}}, camera, kSize, kSize);
-  glm::vec2 low(kSize);
+  const ScreenRect rect = JointBounds(head, Everything)
+                              .Project({subject.model, {}}, camera, kBoundsPixels, kBoundsPixels);
+  glm::vec2 low(kBoundsPixels);
   glm::vec2 high(0.0f);
   for (const character::Vertex& vertex : head.meshes[0].vertices) {
     glm::vec4 place(0.0f);
@@ -43,7 +43,8 @@ TEST(JointBounds, ContainEverySkinnedVertex) {
                                          glm::vec4(vertex.position, 1.0f));
     }
     const glm::vec4 clip = camera * place;
-    const glm::vec2 pixel = (glm::vec2(clip) / clip.w * 0.5f + 0.5f) * static_cast<float>(kSize);
+    const glm::vec2 pixel =
+        (glm::vec2(clip) / clip.w * 0.5f + 0.5f) * static_cast<float>(kBoundsPixels);
     low = glm::min(low, pixel);
     high = glm::max(high, pixel);
   }
@@ -95,12 +96,14 @@ TEST(JointBounds, NoBoxesAreEmptyAndBoxesBehindTheCameraCoverThePicture) {
   const character::Character head = test::MakeHead();
   const test::Subject subject(head);
   const JointBounds none(head, [](const character::Material&) { return false; });
-  EXPECT_TRUE(none.Project({subject.model, {}}, LookFrom({0, 1.6f, 1}), kSize, kSize).empty());
+  EXPECT_TRUE(
+      none.Project({subject.model, {}}, LookFrom({0, 1.6f, 1}), kBoundsPixels, kBoundsPixels)
+          .empty());
   const ScreenRect inside =
       JointBounds(head, Everything)
-          .Project({subject.model, {}}, LookFrom({0, 1.6f, 0.01f}), kSize, kSize);
-  EXPECT_EQ(inside.x1 - inside.x0, kSize);
-  EXPECT_EQ(inside.y1 - inside.y0, kSize);
+          .Project({subject.model, {}}, LookFrom({0, 1.6f, 0.01f}), kBoundsPixels, kBoundsPixels);
+  EXPECT_EQ(inside.x1 - inside.x0, kBoundsPixels);
+  EXPECT_EQ(inside.y1 - inside.y0, kBoundsPixels);
 }
 
 }  // namespace

@@ -16,7 +16,7 @@
 namespace furrow::render {
 namespace {
 
-glm::vec3 Corner(const character::Mesh& mesh, const MeshLevel& level, std::size_t i) {
+glm::vec3 CornerOf(const character::Mesh& mesh, const MeshLevel& level, std::size_t i) {
   return mesh.vertices[level.indices[i]].position;
 }
 
@@ -43,9 +43,9 @@ TEST(MeshLevels, StayNearTheSurfaceAndFlipNoTriangle) {
   for (const MeshLevel& level : MakeMeshLevels(mesh, Borders::kKeep)) {
     double squares = 0.0;
     for (std::size_t i = 0; i < level.indices.size(); i += 3) {
-      const glm::vec3 a = Corner(mesh, level, i);
-      const glm::vec3 b = Corner(mesh, level, i + 1);
-      const glm::vec3 c = Corner(mesh, level, i + 2);
+      const glm::vec3 a = CornerOf(mesh, level, i);
+      const glm::vec3 b = CornerOf(mesh, level, i + 1);
+      const glm::vec3 c = CornerOf(mesh, level, i + 2);
       const glm::vec3 cross = glm::cross(b - a, c - a);
       const glm::vec3 middle = (a + b + c) / 3.0f;
       EXPECT_GE(glm::dot(cross, middle - centre), -1e-9f);  // triangles at a pole have no area
@@ -114,7 +114,7 @@ TEST(MeshLevels, SimplifyBordersAlongThemselves) {
     double furthest = 0.0;
     for (std::size_t i = 0; i < level.indices.size(); ++i) {
       const std::size_t next = i % 3 == 2 ? i - 2 : i + 1;
-      const glm::vec3 middle = 0.5f * (Corner(mesh, level, i) + Corner(mesh, level, next));
+      const glm::vec3 middle = 0.5f * (CornerOf(mesh, level, i) + CornerOf(mesh, level, next));
       furthest = std::max(furthest, double{kRadius} - glm::length(glm::vec2(middle.y, middle.z)));
     }
     EXPECT_LT(furthest, 0.001 + 4.0 * level.error);
@@ -178,9 +178,9 @@ TEST(MeshLevels, CountWhatMorphTargetsMove) {
       const glm::vec2 at(sheet.vertices[v].position);
       float nearest = std::numeric_limits<float>::max();
       for (std::size_t i = 0; i < level.indices.size(); i += 3) {
-        const glm::vec2 a(Corner(sheet, level, i));
-        const glm::vec2 b = glm::vec2(Corner(sheet, level, i + 1)) - a;
-        const glm::vec2 c = glm::vec2(Corner(sheet, level, i + 2)) - a;
+        const glm::vec2 a(CornerOf(sheet, level, i));
+        const glm::vec2 b = glm::vec2(CornerOf(sheet, level, i + 1)) - a;
+        const glm::vec2 c = glm::vec2(CornerOf(sheet, level, i + 2)) - a;
         const float area = b.x * c.y - b.y * c.x;
         const float s = ((at - a).x * c.y - (at - a).y * c.x) / area;
         const float t = (b.x * (at - a).y - b.y * (at - a).x) / area;

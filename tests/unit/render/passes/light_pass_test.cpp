@@ -18,7 +18,7 @@
 namespace furrow::render {
 namespace {
 
-constexpr int kSize = 192;
+constexpr int kLightSize = 192;
 
 class LightPassTest : public testing::Test {
  protected:
@@ -39,7 +39,7 @@ class LightPassTest : public testing::Test {
     request.wrinkle_weights = subject_.weights;
     request.filtered_values = subject_.driver_values;
     request.camera = *renderer_->Preset("three_quarter");
-    request.width = request.height = kSize;
+    request.width = request.height = kLightSize;
     request.settings.shading = Shading::kSkin;
     request.settings.view = view;
     request.settings.anti_aliasing.samples = samples;
@@ -89,11 +89,12 @@ class RestrictedPasses : public LightPassTest {
     EXPECT_TRUE(scene_.Update(request).ok());
     FrameGraph graph;
     const CameraFrame& camera = scene_.setup().camera;
-    const float slope = camera.PixelsPerSlope(kSize);
-    const OcclusionGeometry view{kSize, kSize,        glm::mat3(camera.view),
-                                 slope, where.bounds, glm::vec3(0.1f)};
+    const float slope = camera.PixelsPerSlope(kLightSize);
+    const OcclusionGeometry view{kLightSize, kLightSize,   glm::mat3(camera.view),
+                                 slope,      where.bounds, glm::vec3(0.1f)};
     ScenePass scene_pass(&scene_, &device_);
-    const FacetTargets facets = scene_pass.AddFacets(&graph, request.settings, kSize, kSize);
+    const FacetTargets facets =
+        scene_pass.AddFacets(&graph, request.settings, kLightSize, kLightSize);
     OcclusionPass occlusion(&fullscreen_);
     const OcclusionPass::Openness open =
         occlusion.Add(&graph, facets.depth, facets.normal, request.settings.occlusion, view);
@@ -101,15 +102,15 @@ class RestrictedPasses : public LightPassTest {
         AddLightPass(&graph, facets, {}, open, request.settings, view, &scene_, &fullscreen_);
     if (!where.on_surface) lit.z = {};
     SubsurfacePass subsurface(&fullscreen_);
-    const SkinGeometry skin{.width = kSize,
-                            .height = kSize,
+    const SkinGeometry skin{.width = kLightSize,
+                            .height = kLightSize,
                             .focus_distance = camera.focus_distance(),
                             .pixels_per_mm = 0.001f * slope / camera.focus_distance(),
                             .bounds = where.bounds,
                             .surface_z = lit.z};
     const FrameGraph::Handle scattered =
         subsurface.Add(&graph, lit.irradiance, request.settings.subsurface, skin);
-    const TextureDesc desc{kSize, kSize, PixelFormat::kRgba16F, 1};
+    const TextureDesc desc{kLightSize, kLightSize, PixelFormat::kRgba16F, 1};
     const FrameGraph::Handle combined =
         AddCombinePass(&graph, scattered, lit, desc, where.bounds, view.background, &fullscreen_);
     Keep(&graph, {open.target, scattered, combined});
@@ -151,12 +152,14 @@ TEST_F(RestrictedPasses, MatchUnrestrictedPasses) {
     FrameRequest request = Request(View::kFinal, 1);
     request.settings.subsurface.method = method;
     request.settings.shadow.filter = ShadowFilter::kOff;
-    const auto whole = Draw(request, {{0, 0, kSize, kSize}, false});
+    const auto whole = Draw(request, {{0, 0, kLightSize, kLightSize}, false});
     const JointBounds bounds(head_, [](const character::Material&) { return true; });
     const ScreenRect rect =
-        bounds.Project({subject_.model, {}}, scene_.setup().camera.view_projection, kSize, kSize)
-            .Grown(1, kSize, kSize);
-    ASSERT_LT((rect.x1 - rect.x0) * (rect.y1 - rect.y0), kSize * kSize);
+        bounds
+            .Project({subject_.model, {}}, scene_.setup().camera.view_projection, kLightSize,
+                     kLightSize)
+            .Grown(1, kLightSize, kLightSize);
+    ASSERT_LT((rect.x1 - rect.x0) * (rect.y1 - rect.y0), kLightSize * kLightSize);
     const auto restricted = Draw(request, {rect, true});
     for (const auto& [name, texels] : whole) {
       EXPECT_EQ(texels, restricted.at(name)) << name;

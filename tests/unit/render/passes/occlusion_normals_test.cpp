@@ -11,7 +11,7 @@
 namespace furrow::render {
 namespace {
 
-constexpr int kSize = 128;
+constexpr int kFoldSize = 128;
 constexpr float kFoldHalfWidth = 0.02f;  // of the texture; 40 mm
 
 float Flat(float, float) { return 0.0f; }
@@ -38,7 +38,7 @@ class OcclusionNormals : public testing::TestWithParam<OcclusionSettings> {
     request.camera.position = {0.0f, 0.0f, 0.5f};
     request.camera.target = {0.0f, 0.0f, 0.0f};
     request.camera.fov_y_degrees = 18.18f;
-    request.width = request.height = kSize;
+    request.width = request.height = kFoldSize;
     request.settings.view = View::kOcclusion;
     request.settings.occlusion = GetParam();
     request.settings.anti_aliasing.samples = 1;
@@ -46,12 +46,12 @@ class OcclusionNormals : public testing::TestWithParam<OcclusionSettings> {
   }
   // Mean over the columns [from, to), in millimetres from the picture's centre.
   [[nodiscard]] static double Open(const Image& image, double from_mm, double to_mm) {
-    const auto column = [](double mm) { return static_cast<int>(kSize * (0.5 + mm / 160.0)); };
+    const auto column = [](double mm) { return static_cast<int>(kFoldSize * (0.5 + mm / 160.0)); };
     double sum = 0.0;
     int pixels = 0;
-    for (int y = 0; y < kSize; ++y) {
+    for (int y = 0; y < kFoldSize; ++y) {
       for (int x = column(from_mm); x < column(to_mm); ++x, ++pixels) {
-        sum += image.rgb[static_cast<std::size_t>(3 * (y * kSize + x))] / 255.0;
+        sum += image.rgb[static_cast<std::size_t>(3 * (y * kFoldSize + x))] / 255.0;
       }
     }
     return sum / pixels;

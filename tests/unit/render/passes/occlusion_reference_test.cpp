@@ -19,15 +19,15 @@ namespace {
 
 using test::SphereOnPlane;
 
-constexpr int kSize = 160;
-constexpr double kPlaneSize = 0.6;
+constexpr int kOcclusionSize = 160;
+constexpr double kOcclusionPlane = 0.6;
 // Half of the sphere is above the plane. The camera sees everything that occludes.
 constexpr SphereOnPlane kDome{{0.0, 0.0, 0.0}, 0.08};
 // A sphere that rests on the plane. The camera does not see its overhanging part, which occludes
 // too.
 constexpr SphereOnPlane kBall{{0.0, 0.08, 0.0}, 0.08};
 
-Camera AboveThePlane() {
+Camera OcclusionCamera() {
   Camera camera;
   camera.position = {0.0f, 0.40f, 0.50f};
   camera.target = {0.0f, 0.05f, 0.0f};
@@ -49,14 +49,14 @@ OcclusionError ErrorOf(const Image& image, const SphereOnPlane& scene, double ra
   std::vector<double> differences;
   int open = 0;
   const int size = image.width;
-  const int step = 3 * size / kSize;
-  const Camera camera = AboveThePlane();
+  const int step = 3 * size / kOcclusionSize;
+  const Camera camera = OcclusionCamera();
   // Fades occluders towards the radius like the shaders.
   const auto hides = [radius](double distance) {
     return std::clamp(1.5 - 1.5 * distance * distance / (radius * radius), 0.0, 1.0);
   };
   const auto hit_at = [&](int x, int y) {
-    return FirstHit(scene, 0.95 * kPlaneSize, test::PixelRay(camera, x, y, size, size));
+    return FirstHit(scene, 0.95 * kOcclusionPlane, test::PixelRay(camera, x, y, size, size));
   };
   for (int y = 2; y < size - 2; y += step) {
     for (int x = 2; x < size - 2; x += step) {
@@ -96,8 +96,8 @@ struct Look {
   int size;
   float radius_mm;
 };
-const std::vector<Look> kFar = {{kSize, 40.0f}, {kSize, 80.0f}};
-const std::vector<Look> kNear = {{4 * kSize, 190.0f}};  // the radius is 350 pixels
+const std::vector<Look> kFar = {{kOcclusionSize, 40.0f}, {kOcclusionSize, 80.0f}};
+const std::vector<Look> kNear = {{4 * kOcclusionSize, 190.0f}};  // the radius is 350 pixels
 
 OcclusionSettings Fine(OcclusionMethod method) {
   OcclusionSettings settings;
@@ -120,14 +120,14 @@ void PrintTo(const Case& tested, std::ostream* out) { *out << tested.name; }
 class OcclusionReference : public testing::TestWithParam<Case> {
  protected:
   [[nodiscard]] Image Draw(int size, float radius_mm) {
-    FrameRequest request = test::SceneRequest(scene_, AboveThePlane(), size, size);
+    FrameRequest request = test::SceneRequest(scene_, OcclusionCamera(), size, size);
     request.settings.view = View::kOcclusion;
     request.settings.occlusion = GetParam().settings;
     request.settings.occlusion.radius_mm = radius_mm;
     return test::Expect(renderer_->Render(request));
   }
 
-  character::Character scene_ = test::MakeSphereOnPlane(GetParam().scene, kPlaneSize);
+  character::Character scene_ = test::MakeSphereOnPlane(GetParam().scene, kOcclusionPlane);
   std::unique_ptr<Renderer> renderer_ = test::Expect(Renderer::Create(scene_));
 };
 
@@ -158,10 +158,10 @@ TEST_P(OcclusionReference, IsIndependentOfTheResolution) {
     return sum / static_cast<double>(image.rgb.size());
   };
   const float radius_mm = GetParam().looks.back().radius_mm;
-  const double small = hidden(kSize, radius_mm);
+  const double small = hidden(kOcclusionSize, radius_mm);
   EXPECT_GT(small, 0.015);
-  EXPECT_NEAR(hidden(2 * kSize, radius_mm), small, 0.0035);
-  EXPECT_NEAR(hidden(4 * kSize, radius_mm), small, 0.0035);
+  EXPECT_NEAR(hidden(2 * kOcclusionSize, radius_mm), small, 0.0035);
+  EXPECT_NEAR(hidden(4 * kOcclusionSize, radius_mm), small, 0.0035);
 }
 
 constexpr auto kGtao = OcclusionMethod::kGtao;

@@ -14,7 +14,7 @@
 namespace furrow::render {
 namespace {
 
-constexpr int kSize = 128;
+constexpr int kSceneSize = 128;
 constexpr float kTwoPi = 6.2831853f;
 
 FrameRequest RequestOf(const test::Subject& subject, View view) {
@@ -24,13 +24,13 @@ FrameRequest RequestOf(const test::Subject& subject, View view) {
   request.wrinkle_weights = subject.weights;
   request.filtered_values = subject.driver_values;
   request.settings.view = view;
-  request.width = request.height = kSize;
+  request.width = request.height = kSceneSize;
   return request;
 }
 
 Camera FaceOf(const character::Character& character) { return CameraPresets(character)[0].second; }
 
-// A camera that maps texel (x, y) of a plane's kSize maps to pixel (x, kSize - 1 - y).
+// A camera that maps texel (x, y) of a plane's kSceneSize maps to pixel (x, kSceneSize - 1 - y).
 Camera OverPlane() {
   Camera camera;
   camera.fov_y_degrees = 30.0f;
@@ -57,7 +57,7 @@ constexpr Wave kBase{1, 2, 0.02f};
 constexpr Wave kFirst{2, -1, 0.015f};
 constexpr Wave kSecond{0, 3, 0.01f};
 
-character::Character WavyPlane() { return test::MakePlane(kSize, kBase, {kFirst, kSecond}); }
+character::Character WavyPlane() { return test::MakePlane(kSceneSize, kBase, {kFirst, kSecond}); }
 
 // Unit normal of the sum of both height fields, in a tangent space with y up in the picture.
 glm::dvec3 NormalOf(double u, double v, double first, double second) {
@@ -67,7 +67,8 @@ glm::dvec3 NormalOf(double u, double v, double first, double second) {
 }
 
 glm::vec3 NormalAt(const std::vector<glm::vec4>& pixels, int x, int y) {
-  return glm::vec3(pixels[static_cast<std::size_t>((kSize - 1 - y) * kSize + x)]) * 2.0f - 1.0f;
+  return glm::vec3(pixels[static_cast<std::size_t>((kSceneSize - 1 - y) * kSceneSize + x)]) * 2.0f -
+         1.0f;
 }
 
 TEST(ScenePass, PartialDerivativesGiveTheNormalOfTheSummedHeights) {
@@ -81,9 +82,10 @@ TEST(ScenePass, PartialDerivativesGiveTheNormalOfTheSummedHeights) {
   request.camera = OverPlane();
   const std::vector<glm::vec4> pixels = probe.Draw(request);
   double worst = 0.0;
-  for (int y = 0; y < kSize; ++y) {
-    for (int x = 0; x < kSize; ++x) {
-      const glm::dvec3 expected = NormalOf((x + 0.5) / kSize, (y + 0.5) / kSize, 0.3, 0.8);
+  for (int y = 0; y < kSceneSize; ++y) {
+    for (int x = 0; x < kSceneSize; ++x) {
+      const glm::dvec3 expected =
+          NormalOf((x + 0.5) / kSceneSize, (y + 0.5) / kSceneSize, 0.3, 0.8);
       worst = std::max(worst, glm::length(expected - glm::dvec3(NormalAt(pixels, x, y))));
     }
   }
@@ -106,10 +108,10 @@ TEST(ScenePass, TheTangentSpaceBlendMatchesTheFormula) {
     return glm::normalize(glm::dvec3(-gradient.x, gradient.y, 1.0));
   };
   double worst = 0.0;
-  for (int y = 0; y < kSize; ++y) {
-    for (int x = 0; x < kSize; ++x) {
-      const double u = (x + 0.5) / kSize;
-      const double v = (y + 0.5) / kSize;
+  for (int y = 0; y < kSceneSize; ++y) {
+    for (int x = 0; x < kSceneSize; ++x) {
+      const double u = (x + 0.5) / kSceneSize;
+      const double v = (y + 0.5) / kSceneSize;
       const glm::dvec3 b = normal(kBase, u, v);
       const glm::dvec3 n0 = normal(kFirst, u, v);
       const glm::dvec3 n1 = normal(kSecond, u, v);
@@ -189,7 +191,7 @@ TEST(ScenePass, GpuSkinningMatchesCpuSkinning) {
     if (glm::length(on_gpu[i] - on_cpu[i]) > 2e-3f) ++different;
     if (glm::length(glm::vec3(on_cpu[i])) > 0.0f) ++covered;
   }
-  EXPECT_GT(covered, kSize * kSize / 4);
+  EXPECT_GT(covered, kSceneSize * kSceneSize / 4);
   EXPECT_LE(different, 4);  // pixels on an edge may belong to either side
 }
 
@@ -237,12 +239,12 @@ TEST_P(DynamicMask, MatchesTheCpuReference) {
         (vertices[i].position + vertices[i + 1].position + vertices[i + 2].position) / 3.0f;
     if (glm::dot(vertices[i].normal, glm::normalize(camera.position - centre)) < 0.6f) continue;
     const glm::vec4 clip = camera.view_projection * glm::vec4(centre, 1.0f);
-    const int x = static_cast<int>((clip.x / clip.w * 0.5f + 0.5f) * kSize);
-    const int y = static_cast<int>((clip.y / clip.w * 0.5f + 0.5f) * kSize);
+    const int x = static_cast<int>((clip.x / clip.w * 0.5f + 0.5f) * kSceneSize);
+    const int y = static_cast<int>((clip.y / clip.w * 0.5f + 0.5f) * kSceneSize);
     const float expected = wrinkle::VertexInfluence(
         vertices[i].joints, vertices[i].skin_weights, probe.tables().influences(),
         probe.tables().mask_columns(), mask.column, GetParam(), 0.25f);
-    const float drawn = pixels[static_cast<std::size_t>(y * kSize + x)].b / map.colour.b;
+    const float drawn = pixels[static_cast<std::size_t>(y * kSceneSize + x)].b / map.colour.b;
     // Triangles smaller than a pixel may miss its centre; the masks of their neighbours are
     // similar.
     EXPECT_NEAR(drawn, expected, GetParam() == wrinkle::LambdaMode::kBinary ? 0.71f : 0.25f);

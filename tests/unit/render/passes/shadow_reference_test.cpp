@@ -20,15 +20,15 @@ namespace {
 using test::FloatPicture;
 using test::SphereOnPlane;
 
-constexpr int kSize = 256;
-constexpr double kPlaneSize = 0.6;
+constexpr int kShadowSize = 256;
+constexpr double kShadowPlane = 0.6;
 // As large as a head, at the distance of a portrait.
 constexpr SphereOnPlane kScene{{0.0, 0.08, 0.0}, 0.08};
 // Allowed distance of a shadow's edge on the surface, metres: the filter's radius, the normal
 // offset and two texels of the map.
 constexpr double kTolerance = 0.003;
 
-Camera AboveThePlane() {
+Camera ShadowCamera() {
   Camera camera;
   camera.position = {0.0f, 0.35f, 0.60f};
   camera.target = {0.0f, 0.05f, 0.0f};
@@ -81,10 +81,10 @@ struct Comparison {
 Comparison Compare(const FloatPicture& visible, const Camera& camera, int light,
                    const LightSource& lamp) {
   Comparison found{.light = light, .height = static_cast<double>(lamp.direction.y)};
-  for (int y = 0; y < kSize; ++y) {
-    for (int x = 0; x < kSize; ++x) {
-      const std::optional<test::Hit> hit =
-          FirstHit(kScene, 0.98 * kPlaneSize, test::PixelRay(camera, x, y, kSize, kSize));
+  for (int y = 0; y < kShadowSize; ++y) {
+    for (int x = 0; x < kShadowSize; ++x) {
+      const std::optional<test::Hit> hit = FirstHit(
+          kScene, 0.98 * kShadowPlane, test::PixelRay(camera, x, y, kShadowSize, kShadowSize));
       if (!hit || !Lights(lamp, hit->point)) continue;
       const std::optional<bool> seen = Seen(*hit, lamp);
       if (!seen) continue;
@@ -100,9 +100,9 @@ Comparison Compare(const FloatPicture& visible, const Camera& camera, int light,
 
 // The lamps of a preset with non-zero radiance.
 std::vector<Comparison> CompareLamps(LightPreset preset, const ShadowSettings& shadow) {
-  const character::Character scene = test::MakeSphereOnPlane(kScene, kPlaneSize);
-  const Camera camera = AboveThePlane();
-  FrameRequest request = test::SceneRequest(scene, camera, kSize, kSize);
+  const character::Character scene = test::MakeSphereOnPlane(kScene, kShadowPlane);
+  const Camera camera = ShadowCamera();
+  FrameRequest request = test::SceneRequest(scene, camera, kShadowSize, kShadowSize);
   request.settings.view = View::kShadow;
   request.settings.lights.preset = preset;
   request.settings.shadow = shadow;

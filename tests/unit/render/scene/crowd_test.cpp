@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Several subjects in one picture.
 #include <algorithm>
-#include <cstdlib>
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -9,13 +8,14 @@
 
 #include "render/renderer.h"
 #include "tests/unit/render/character_parts.h"
+#include "tests/unit/render/picture_difference.h"
 #include "tests/unit/render/test_character.h"
 
 namespace furrow::render {
 namespace {
 
-constexpr int kWidth = 240;
-constexpr int kHeight = 120;
+constexpr int kCrowdWidth = 240;
+constexpr int kCrowdHeight = 120;
 constexpr int kNumPeople = 3;
 
 PosedSubject DrawnAs(const test::Subject& subject, const glm::mat4& placement) {
@@ -38,22 +38,6 @@ Camera OverAll() {
   return camera;
 }
 
-int MostChannelDifference(const Image& a, const Image& b, std::size_t pixel) {
-  int most = 0;
-  for (std::size_t i = 3 * pixel; i < 3 * pixel + 3; ++i) {
-    most = std::max(most, std::abs(int{a.rgb[i]} - int{b.rgb[i]}));
-  }
-  return most;
-}
-
-int NumDifferent(const Image& a, const Image& b, int by_more_than) {
-  int count = 0;
-  for (std::size_t pixel = 0; pixel < a.rgb.size() / 3; ++pixel) {
-    count += MostChannelDifference(a, b, pixel) > by_more_than ? 1 : 0;
-  }
-  return count;
-}
-
 // Three faces: stretched on the left; squashed on the right with a bent brow; neutral.
 class Crowd : public testing::Test {
  protected:
@@ -66,8 +50,8 @@ class Crowd : public testing::Test {
     for (test::Subject& subject : people_) subject.Solve();
     for (int i = 0; i < kNumPeople; ++i) drawn_.push_back(DrawnAs(people_[i], Spot(i)));
     request_.camera = OverAll();
-    request_.width = kWidth;
-    request_.height = kHeight;
+    request_.width = kCrowdWidth;
+    request_.height = kCrowdHeight;
     request_.settings.detail.error_pixels = 0.0f;
     // Crowds evaluate their wrinkles in every fragment.
     request_.settings.wrinkle_maps.cache = false;
@@ -92,8 +76,8 @@ class Crowd : public testing::Test {
       const Image alone = Draw(std::span(&subject, 1));
       int covered = 0;
       for (std::size_t pixel = 0; pixel < alone.rgb.size() / 3; ++pixel) {
-        if (MostChannelDifference(alone, empty, pixel) == 0) continue;
-        EXPECT_EQ(MostChannelDifference(composed, empty, pixel), 0) << "the subjects overlap";
+        if (test::DifferenceAt(alone, empty, pixel) == 0) continue;
+        EXPECT_EQ(test::DifferenceAt(composed, empty, pixel), 0) << "the subjects overlap";
         std::copy_n(&alone.rgb[3 * pixel], 3, &composed.rgb[3 * pixel]);
         ++covered;
       }
@@ -101,7 +85,7 @@ class Crowd : public testing::Test {
     }
     EXPECT_GT(most, 100)
         << "nothing is visible";  // the masks of a neutral subject are black on black
-    return NumDifferent(all, composed, 1);
+    return test::NumDifferent(all, composed, 1);
   }
 
   character::Character head_ = test::MakeHead();
@@ -133,7 +117,7 @@ TEST_F(Crowd, EachHasItsOwnFace) {
     subject.wrinkle_weights = people_[2].weights;
     subject.filtered_values = people_[2].driver_values;
   }
-  EXPECT_GT(NumDifferent(Draw(drawn_), Draw(same), 10), 100);
+  EXPECT_GT(test::NumDifferent(Draw(drawn_), Draw(same), 10), 100);
 }
 
 // A single mesh that contains all subjects at rest, where a crowd has one mesh several times.
@@ -175,8 +159,8 @@ TEST_F(Crowd, IsLitLikeOneMeshOfAll) {
     static_cast<PosedSubject&>(request_) = DrawnAs(all, glm::mat4(1.0f));
     request_.others = {};
     const Image expected = test::Expect(renderer->Render(request_));
-    EXPECT_LE(NumDifferent(crowd, expected, 2), 12) << ViewName(view);
-    EXPECT_GT(NumDifferent(first_alone, expected, 2), 1000);
+    EXPECT_LE(test::NumDifferent(crowd, expected, 2), 12) << ViewName(view);
+    EXPECT_GT(test::NumDifferent(first_alone, expected, 2), 1000);
   }
 }
 
@@ -195,7 +179,7 @@ TEST_F(Crowd, DisplacesEachByItsOwnWeights) {
   EXPECT_EQ(DifferentFromEachAlone(), 0);
   const Image raised = Draw(drawn_);
   request_.settings.displacement.enabled = false;
-  EXPECT_GT(NumDifferent(raised, Draw(drawn_), 10), 100);
+  EXPECT_GT(test::NumDifferent(raised, Draw(drawn_), 10), 100);
 }
 
 // Simplified meshes may move outlines by about a pixel and must change little else.
@@ -203,11 +187,11 @@ TEST_F(Crowd, SmallSubjectsLookTheSameWithFewerTriangles) {
   const Image full = Draw(drawn_);
   request_.settings.detail.error_pixels = 0.5f;
   const Image simplified = Draw(drawn_);
-  EXPECT_GT(NumDifferent(full, simplified, 0), 0);
-  EXPECT_LT(NumDifferent(full, simplified, 24), kWidth * kHeight / 100);
+  EXPECT_GT(test::NumDifferent(full, simplified, 0), 0);
+  EXPECT_LT(test::NumDifferent(full, simplified, 24), kCrowdWidth * kCrowdHeight / 100);
   const Image alone = Draw(std::span(drawn_).first(1));
   request_.settings.detail.error_pixels = 0.0f;
-  EXPECT_EQ(NumDifferent(alone, Draw(std::span(drawn_).first(1)), 0), 0);
+  EXPECT_EQ(test::NumDifferent(alone, Draw(std::span(drawn_).first(1)), 0), 0);
 }
 
 // Shadow edges may move by a fraction of a texel, and no surface may shade itself.
@@ -222,12 +206,12 @@ TEST_F(Crowd, SimplifiedHairCastsTheSameShadows) {
   const Image full = Draw(drawn_);
   request_.settings.detail.hair_shadow_texels = 1.0f;
   const Image simplified = Draw(drawn_);
-  EXPECT_GT(NumDifferent(full, simplified, 0), 0);
-  EXPECT_LT(NumDifferent(full, simplified, 24), kWidth * kHeight / 200);
+  EXPECT_GT(test::NumDifferent(full, simplified, 0), 0);
+  EXPECT_LT(test::NumDifferent(full, simplified, 24), kCrowdWidth * kCrowdHeight / 200);
   request_.settings.shadow.normal_offset_mm = 0.0f;  // no offset hides an error
   const Image exact = Draw(drawn_);
   request_.settings.detail.hair_shadow_texels = 0.0f;
-  EXPECT_EQ(NumDifferent(exact, Draw(drawn_), 0), 0);
+  EXPECT_EQ(test::NumDifferent(exact, Draw(drawn_), 0), 0);
 }
 
 TEST_F(Crowd, TheCameraFollowsTheFirst) {
@@ -235,7 +219,7 @@ TEST_F(Crowd, TheCameraFollowsTheFirst) {
   const PosedSubject home = DrawnAs(people_[0], glm::mat4(1.0f));
   const PosedSubject away =
       DrawnAs(people_[0], glm::translate(glm::mat4(1.0f), {3.0f, 1.0f, 2.0f}));
-  EXPECT_EQ(NumDifferent(Draw(std::span(&home, 1)), Draw(std::span(&away, 1)), 4), 0);
+  EXPECT_EQ(test::NumDifferent(Draw(std::span(&home, 1)), Draw(std::span(&away, 1)), 4), 0);
 }
 
 TEST_F(Crowd, TooManyVerticesAreRejected) {

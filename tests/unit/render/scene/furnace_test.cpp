@@ -24,10 +24,10 @@ using Kind = character::Material::Kind;
 using test::FloatPicture;
 using test::SphereOnPlane;
 
-constexpr int kSize = 96;
+constexpr int kFurnaceSize = 96;
 constexpr SphereOnPlane kBall{{0.0, 0.0, 0.0}, 0.06};
 
-struct Look {
+struct Surface {
   Kind kind = Kind::kSkin;
   float albedo = 1.0f;
   float roughness = 0.6f;
@@ -44,19 +44,19 @@ Camera From(const glm::vec3& direction) {
 
 class Furnace {
  public:
-  explicit Furnace(const Look& look) {
+  explicit Furnace(const Surface& surface) {
     ball_.meshes.erase(ball_.meshes.begin());  // the plane
     for (character::Material& material : ball_.materials) {
-      material.kind = look.kind;
-      material.base_colour = glm::vec4(glm::vec3(look.albedo), 1.0f);
-      material.roughness = look.roughness;
+      material.kind = surface.kind;
+      material.base_colour = glm::vec4(glm::vec3(surface.albedo), 1.0f);
+      material.roughness = surface.roughness;
     }
     renderer_ = test::Expect(Renderer::Create(ball_));
     renderer_->SetObserver(&reader_);
   }
 
   [[nodiscard]] FrameRequest Request(const glm::vec3& from) const {
-    FrameRequest request = test::SceneRequest(ball_, From(from), kSize, kSize);
+    FrameRequest request = test::SceneRequest(ball_, From(from), kFurnaceSize, kFurnaceSize);
     Settings& settings = request.settings;
     settings.background = glm::vec3(0.0f);
     settings.lights.preset = LightPreset::kThesis;
@@ -82,11 +82,11 @@ class FurnaceTest : public testing::TestWithParam<Kind> {};
 // Sky only. Every pixel is at most as bright as the larger of its diffuse sky light and the sky in
 // its mirror direction.
 TEST_P(FurnaceTest, NoPixelIsBrighterThanItsSky) {
-  for (const Look& look : {Look{GetParam(), 1.0f, 0.6f},
-                           {GetParam(), 1.0f, 0.3f},
-                           {GetParam(), 0.5f, 0.3f},
-                           {GetParam(), 0.02f, 0.6f}}) {
-    Furnace furnace(look);
+  for (const Surface& surface : {Surface{GetParam(), 1.0f, 0.6f},
+                                 {GetParam(), 1.0f, 0.3f},
+                                 {GetParam(), 0.5f, 0.3f},
+                                 {GetParam(), 0.02f, 0.6f}}) {
+    Furnace furnace(surface);
     FrameRequest request = furnace.Request({0.0f, 0.0f, 1.0f});
     request.settings.lights.intensity = 0.0f;
     request.settings.lights.ambient = 8.0f;
@@ -96,9 +96,9 @@ TEST_P(FurnaceTest, NoPixelIsBrighterThanItsSky) {
     const FloatPicture& drawn = furnace.Draw(request);
     double most = 0.0;
     int pixels = 0;
-    for (int y = 0; y < kSize; ++y) {
-      for (int x = 0; x < kSize; ++x) {
-        const test::Ray ray = test::PixelRay(request.camera, x, y, kSize, kSize);
+    for (int y = 0; y < kFurnaceSize; ++y) {
+      for (int x = 0; x < kFurnaceSize; ++x) {
+        const test::Ray ray = test::PixelRay(request.camera, x, y, kFurnaceSize, kFurnaceSize);
         const auto hit = test::FirstHit(kBall, 0.0, ray);
         if (!hit || glm::dot(hit->normal, ray.direction) > -0.05)
           continue;  // the rim of the
@@ -111,19 +111,19 @@ TEST_P(FurnaceTest, NoPixelIsBrighterThanItsSky) {
       }
     }
     std::printf("under the sky, albedo %.2f, roughness %.1f: at most %.4f of what arrives\n",
-                static_cast<double>(look.albedo), static_cast<double>(look.roughness), most);
+                static_cast<double>(surface.albedo), static_cast<double>(surface.roughness), most);
     EXPECT_GT(pixels, 2000);
-    EXPECT_GT(most, 0.5 * static_cast<double>(look.albedo));
-    EXPECT_LT(most, 1.005) << "albedo " << look.albedo << ", roughness " << look.roughness;
+    EXPECT_GT(most, 0.5 * static_cast<double>(surface.albedo));
+    EXPECT_LT(most, 1.005) << "albedo " << surface.albedo << ", roughness " << surface.roughness;
   }
 }
 
 // The light that a ball reflects under fixed lamps, over all directions: the mean over cameras all
 // around.
-double SentOut(const Look& look, float strength) {
+double SentOut(const Surface& surface, float strength) {
   constexpr int kCameras = 12;
   const double golden_angle = glm::pi<double>() * (3.0 - std::sqrt(5.0));
-  Furnace furnace(look);
+  Furnace furnace(surface);
   double sum = 0.0;
   for (int i = 0; i < kCameras; ++i) {
     const double y = 1.0 - 2.0 * (i + 0.5) / kCameras;

@@ -2,9 +2,7 @@
 // Shapes that change materials, compared with materials that have the changed values.
 #include "render/scene/material_blocks.h"
 
-#include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <memory>
 #include <vector>
 
@@ -12,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "render/renderer.h"
+#include "tests/unit/render/picture_difference.h"
 #include "tests/unit/render/test_character.h"
 
 namespace furrow::render {
@@ -19,8 +18,8 @@ namespace {
 
 using character::Character;
 
-constexpr int kSize = 96;
-enum Shape : std::uint32_t { kBlush, kGlow, kSlide };
+constexpr int kBlockSize = 96;
+enum BlockShape : std::uint32_t { kBlush, kGlow, kSlide };
 
 // A sheet with a picture of bright columns, 8 texels of 32 each, and three shapes that move
 // nothing.
@@ -58,8 +57,8 @@ Character SheetWith(const std::vector<float>& shapes) {
   return sheet;
 }
 
-struct Drawn {
-  explicit Drawn(Character made)
+struct DrawnSheet {
+  explicit DrawnSheet(Character made)
       : character(std::move(made)),
         renderer(test::Expect(Renderer::Create(character))),
         subject(character) {
@@ -68,7 +67,7 @@ struct Drawn {
     request.wrinkle_weights = subject.weights;
     request.filtered_values = subject.driver_values;
     request.camera = *renderer->Preset("face");
-    request.width = request.height = kSize;
+    request.width = request.height = kBlockSize;
   }
   Image Draw(const std::vector<float>& shapes) {
     request.shapes = shapes;
@@ -80,23 +79,13 @@ struct Drawn {
   FrameRequest request;
 };
 
-// The largest difference of two pictures, of 255.
-int Difference(const Image& a, const Image& b) {
-  EXPECT_EQ(a.rgb.size(), b.rgb.size());
-  int most = 0;
-  for (std::size_t i = 0; i < std::min(a.rgb.size(), b.rgb.size()); ++i) {
-    most = std::max(most, std::abs(int{a.rgb[i]} - int{b.rgb[i]}));
-  }
-  return most;
-}
-
 // The mean of a colour channel in the middle quarter of a picture.
 double Mean(const Image& image, std::size_t channel) {
   double sum = 0.0;
   int count = 0;
-  for (int y = kSize / 4; y < 3 * kSize / 4; ++y) {
-    for (int x = kSize / 4; x < 3 * kSize / 4; ++x) {
-      sum += image.rgb[3 * static_cast<std::size_t>(y * kSize + x) + channel];
+  for (int y = kBlockSize / 4; y < 3 * kBlockSize / 4; ++y) {
+    for (int x = kBlockSize / 4; x < 3 * kBlockSize / 4; ++x) {
+      sum += image.rgb[3 * static_cast<std::size_t>(y * kBlockSize + x) + channel];
       ++count;
     }
   }
@@ -112,27 +101,27 @@ struct Way {
 
 class MaterialBlocksTest : public testing::TestWithParam<Way> {
  protected:
-  void Prepare(Drawn* drawn) const {
+  void Prepare(DrawnSheet* drawn) const {
     drawn->request.settings.shading = GetParam().shading;
     drawn->request.settings.anti_aliasing.samples = GetParam().samples;
   }
 };
 
 TEST_P(MaterialBlocksTest, ShapesDrawWhatTheChangedMaterialWould) {
-  Drawn binds(SheetWithBinds());
+  DrawnSheet binds(SheetWithBinds());
   Prepare(&binds);
   for (const std::vector<float>& shapes :
        {std::vector<float>{0, 0, 0}, std::vector<float>{1, 0, 0}, std::vector<float>{0, 1, 0},
         std::vector<float>{0, 0, 1}, std::vector<float>{0.5f, 0.25f, 0.75f}}) {
-    Drawn expected(SheetWith(shapes));
+    DrawnSheet expected(SheetWith(shapes));
     Prepare(&expected);
-    EXPECT_LE(Difference(binds.Draw(shapes), expected.Draw({})), 1)
+    EXPECT_LE(test::LargestDifference(binds.Draw(shapes), expected.Draw({})), 1)
         << shapes[0] << " " << shapes[1] << " " << shapes[2];
   }
 }
 
 TEST_P(MaterialBlocksTest, BlushesAndGlows) {
-  Drawn drawn(SheetWithBinds());
+  DrawnSheet drawn(SheetWithBinds());
   Prepare(&drawn);
   const Image rest = drawn.Draw({0, 0, 0});
   const Image blush = drawn.Draw({1, 0, 0});
@@ -141,14 +130,14 @@ TEST_P(MaterialBlocksTest, BlushesAndGlows) {
   const Image glow = drawn.Draw({0, 1, 0});
   EXPECT_GT(Mean(glow, 1), Mean(rest, 1) + 10.0);
   EXPECT_NEAR(Mean(glow, 0), Mean(rest, 0), 8.0) << "tone mapping mixes a little";
-  EXPECT_EQ(Difference(drawn.Draw({0, 0, 0}), rest), 0) << "and back";
+  EXPECT_EQ(test::LargestDifference(drawn.Draw({0, 0, 0}), rest), 0) << "and back";
 }
 
 // A crowd draws subjects of one mesh together, each with its own look.
 TEST_P(MaterialBlocksTest, EachSubjectHasItsOwnLook) {
   const auto draw = [&](Character made, const std::vector<float>& first,
                         const std::vector<float>& second) {
-    Drawn drawn(std::move(made));
+    DrawnSheet drawn(std::move(made));
     Prepare(&drawn);
     std::vector<PosedSubject> others(2, drawn.request);
     others[0].placement = glm::translate(glm::mat4(1.0f), glm::vec3(-0.9f, 0.0f, -0.5f));
@@ -163,7 +152,7 @@ TEST_P(MaterialBlocksTest, EachSubjectHasItsOwnLook) {
   const Image left = draw(SheetWithBinds(), {1, 0, 0}, {0, 0, 0});
   const Image right = draw(SheetWithBinds(), {0, 0, 0}, {1, 0, 0});
   const Image both = draw(SheetWithBinds(), {1, 0, 0}, {1, 0, 0});
-  EXPECT_GT(Difference(rest, left), 20);
+  EXPECT_GT(test::LargestDifference(rest, left), 20);
   // A pixel changes with the subject that it shows.
   for (std::size_t i = 0; i < rest.rgb.size(); ++i) {
     const int change = int{left.rgb[i]} - int{rest.rgb[i]} + int{right.rgb[i]} - int{rest.rgb[i]};
@@ -183,17 +172,17 @@ TEST(MaterialBlocks, EmissionFollowsItsTexture) {
   sheet.materials[0].emission_texture = sheet.materials[0].base_colour_texture;
   Character dark = sheet;
   dark.materials[0].emission = glm::vec3(0.0f);
-  Drawn with(sheet);
-  Drawn without(dark);
+  DrawnSheet with(sheet);
+  DrawnSheet without(dark);
   const Image glows = with.Draw({});
   const Image rests = without.Draw({});
   // Bright columns glow more than dark ones.
   const auto gain = [&](int x) {
-    const std::size_t i = 3 * static_cast<std::size_t>(kSize / 2 * kSize + x);
+    const std::size_t i = 3 * static_cast<std::size_t>(kBlockSize / 2 * kBlockSize + x);
     return int{glows.rgb[i]} - int{rests.rgb[i]};
   };
-  EXPECT_GT(gain(kSize * 3 / 8), gain(kSize * 5 / 8));
-  EXPECT_GT(gain(kSize * 3 / 8), 10);
+  EXPECT_GT(gain(kBlockSize * 3 / 8), gain(kBlockSize * 5 / 8));
+  EXPECT_GT(gain(kBlockSize * 3 / 8), 10);
 }
 
 TEST(MaterialBlocks, BindsOfWhatDoesNotExistAreRefused) {

@@ -2,7 +2,6 @@
 // Faces moved by morph targets, compared with faces whose vertices or joints were moved instead.
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <functional>
 #include <memory>
 
@@ -12,6 +11,7 @@
 
 #include "render/renderer.h"
 #include "tests/unit/render/character_parts.h"
+#include "tests/unit/render/picture_difference.h"
 #include "tests/unit/render/reference/scenes.h"
 #include "tests/unit/render/test_character.h"
 
@@ -22,9 +22,9 @@ using character::Character;
 using character::MorphTarget;
 using character::Vertex;
 
-constexpr int kSize = 160;
+constexpr int kMorphSize = 160;
 constexpr glm::vec3 kAside(0.03f, 0.0f, 0.0f);
-enum Shape { kShift, kBulge, kTilt, kFarAway };
+enum MorphShape { kShift, kBulge, kTilt, kFarAway };
 
 // A target that gives each vertex its delta of a function; unmoved vertices are left out.
 MorphTarget TargetOf(const character::Mesh& mesh, int shape,
@@ -94,19 +94,6 @@ Character Baked(Character character, const std::vector<float>& shapes) {
   return character;
 }
 
-int NumDifferent(const Image& a, const Image& b, int by_more_than) {
-  EXPECT_EQ(a.rgb.size(), b.rgb.size());
-  int count = 0;
-  for (std::size_t pixel = 0; pixel + 2 < a.rgb.size(); pixel += 3) {
-    int most = 0;
-    for (std::size_t i = pixel; i < pixel + 3; ++i) {
-      most = std::max(most, std::abs(int{a.rgb[i]} - int{b.rgb[i]}));
-    }
-    count += most > by_more_than ? 1 : 0;
-  }
-  return count;
-}
-
 // A renderer with one subject of the character.
 struct Drawn {
   explicit Drawn(Character made)
@@ -119,7 +106,7 @@ struct Drawn {
     request.filtered_values = subject.driver_values;
     request.camera.position = {0.1f, 1.65f, 0.8f};
     request.camera.target = {0.0f, 1.6f, 0.0f};
-    request.width = request.height = kSize;
+    request.width = request.height = kMorphSize;
     request.settings.anti_aliasing.samples = 1;
   }
   Image Draw(const std::vector<float>& shapes = {}) {
@@ -168,8 +155,8 @@ TEST(Morph, PicturesAreThoseOfMovedVertices) {
     look.set(&morphed.request.settings);
     look.set(&baked.request.settings);
     const Image image = morphed.Draw(shapes);
-    EXPECT_LE(NumDifferent(image, baked.Draw(), 3), 6) << look.name;
-    EXPECT_GT(NumDifferent(image, morphed.Draw(), 3), 500) << look.name;
+    EXPECT_LE(test::NumDifferent(image, baked.Draw(), 3), 6) << look.name;
+    EXPECT_GT(test::NumDifferent(image, morphed.Draw(), 3), 500) << look.name;
   }
 }
 
@@ -214,9 +201,9 @@ TEST(Morph, SubjectsOfOneFrameHaveTheirOwnWeights) {
     return test::Expect(head.renderer->Render(head.request));
   };
   const Image image = pair(-1.0f, 1.5f, true);
-  EXPECT_LE(NumDifferent(image, pair(-1.0f, 1.5f, false), 3), 6);
-  EXPECT_GT(NumDifferent(image, pair(1.5f, -1.0f, true), 3), 500);
-  EXPECT_GT(NumDifferent(image, pair(-1.0f, 0.0f, true), 3), 200);
+  EXPECT_LE(test::NumDifferent(image, pair(-1.0f, 1.5f, false), 3), 6);
+  EXPECT_GT(test::NumDifferent(image, pair(1.5f, -1.0f, true), 3), 500);
+  EXPECT_GT(test::NumDifferent(image, pair(-1.0f, 0.0f, true), 3), 200);
 }
 
 // A sphere over a plane: its shadow moves with it although no joint does, and moves back.
@@ -235,7 +222,7 @@ TEST(Morph, ShadowsMove) {
   camera.position = {0.0f, 0.35f, 0.60f};
   camera.target = {0.0f, 0.05f, 0.0f};
   const auto draw = [&](const Character& drawn, const std::vector<std::vector<float>>& frames) {
-    FrameRequest request = test::SceneRequest(drawn, camera, kSize, kSize);
+    FrameRequest request = test::SceneRequest(drawn, camera, kMorphSize, kMorphSize);
     request.settings.shading = Shading::kSkin;
     request.settings.view = View::kShadow;
     const auto renderer = test::Expect(Renderer::Create(drawn));
@@ -248,8 +235,8 @@ TEST(Morph, ShadowsMove) {
   };
   const Image still = draw(character, {{}});
   const Image moved = draw(character, {{}, {1.0f}});
-  EXPECT_GT(NumDifferent(moved, still, 20), 200);
-  EXPECT_LE(NumDifferent(moved, draw(Baked(character, {1.0f}), {{}}), 3), 6);
+  EXPECT_GT(test::NumDifferent(moved, still, 20), 200);
+  EXPECT_LE(test::NumDifferent(moved, draw(Baked(character, {1.0f}), {{}}), 3), 6);
   EXPECT_EQ(draw(character, {{}, {1.0f}, {}}).rgb, still.rgb);
 }
 
@@ -275,10 +262,10 @@ TEST(Morph, DisplacedSurfacesMove) {
     drawn->subject.Solve();
   }
   const Image image = morphed.Draw(shapes);
-  EXPECT_LE(NumDifferent(image, baked.Draw(), 6), 60);
-  EXPECT_GT(NumDifferent(image, morphed.Draw(), 6), 1000);
+  EXPECT_LE(test::NumDifferent(image, baked.Draw(), 6), 60);
+  EXPECT_GT(test::NumDifferent(image, morphed.Draw(), 6), 1000);
   morphed.request.settings.displacement.enabled = false;
-  EXPECT_GT(NumDifferent(image, morphed.Draw(shapes), 6), 100);
+  EXPECT_GT(test::NumDifferent(image, morphed.Draw(shapes), 6), 100);
 }
 
 // The bounds follow the shapes: the face is far outside the picture until its shape moves it in.
@@ -289,8 +276,8 @@ TEST(Morph, ADistantFaceMovesIntoThePicture) {
     head.request.placement = glm::mat4(1.0f);
     const Image here = head.Draw();
     head.request.placement = glm::translate(glm::mat4(1.0f), glm::vec3(-1.0f, 0.0f, 0.0f));
-    EXPECT_GT(NumDifferent(head.Draw(), here, 3), 1000);
-    EXPECT_LE(NumDifferent(head.Draw({0.0f, 0.0f, 0.0f, 1.0f}), here, 3), 6);
+    EXPECT_GT(test::NumDifferent(head.Draw(), here, 3), 1000);
+    EXPECT_LE(test::NumDifferent(head.Draw({0.0f, 0.0f, 0.0f, 1.0f}), here, 3), 6);
   }
 }
 
@@ -322,7 +309,7 @@ TEST(Morph, CrowdsAreMorphedInParts) {
     request.settings.detail.error_pixels = 0.0f;
     return test::Expect(head.renderer->Render(request));
   };
-  EXPECT_LE(NumDifferent(draw(true), draw(false), 3), 60);
+  EXPECT_LE(test::NumDifferent(draw(true), draw(false), 3), 60);
 }
 
 // A plane of 2 m, flat at rest, with a shape that raises a bump in its middle.
@@ -363,9 +350,9 @@ TEST(Morph, SimplifiedFacesMoveAsWholeOnesDo) {
   };
   const Image whole = draw(1.0f, 0.0f);
   const Image simple = draw(1.0f, 0.5f);
-  EXPECT_GT(NumDifferent(whole, draw(0.0f, 0.0f), 24), 400) << "the bump shows";
-  EXPECT_GT(NumDifferent(whole, simple, 0), 0) << "a simplified level is drawn";
-  EXPECT_LT(NumDifferent(whole, simple, 24), 80);
+  EXPECT_GT(test::NumDifferent(whole, draw(0.0f, 0.0f), 24), 400) << "the bump shows";
+  EXPECT_GT(test::NumDifferent(whole, simple, 0), 0) << "a simplified level is drawn";
+  EXPECT_LT(test::NumDifferent(whole, simple, 24), 80);
 }
 
 TEST(Morph, TargetsOutOfRangeAreRejected) {

@@ -18,10 +18,10 @@ using character::Character;
 using character::Vertex;
 
 constexpr float kRise = 0.5f;  // metres
-constexpr float kWidth = 0.4f;
+constexpr float kRidgeWidth = 0.4f;
 
 // The share of joint 1: a smooth ridge along y.
-float Share(float x) { return std::exp(-x * x / (kWidth * kWidth)); }
+float Share(float x) { return std::exp(-x * x / (kRidgeWidth * kRidgeWidth)); }
 
 // A sheet of 2 m with one joint for its sides and one for its middle.
 Character Sheet(character::Material::Kind kind) {
@@ -42,7 +42,7 @@ Character Ridge() {
   Character ridge = Sheet(character::Material::Kind::kSkin);
   for (Vertex& vertex : ridge.meshes[0].vertices) {
     const float x = vertex.position.x;
-    const float slope = -2.0f * x / (kWidth * kWidth) * kRise * Share(x);
+    const float slope = -2.0f * x / (kRidgeWidth * kRidgeWidth) * kRise * Share(x);
     vertex.position.z = kRise * Share(x);
     vertex.normal = glm::normalize(glm::vec3(-slope, 0.0f, 1.0f));
     vertex.tangent = glm::vec4(glm::normalize(glm::vec3(1.0f, 0.0f, slope)), 1.0f);
@@ -70,7 +70,7 @@ Image Normals(const Character& character, float rise, Shading shading = Shading:
 }
 
 // The mean difference of the channels.
-double Difference(const Image& a, const Image& b) {
+double MeanDifference(const Image& a, const Image& b) {
   double sum = 0.0;
   for (std::size_t i = 0; i < a.rgb.size(); ++i) sum += std::abs(int{a.rgb[i]} - int{b.rgb[i]});
   return sum / static_cast<double>(a.rgb.size());
@@ -78,9 +78,9 @@ double Difference(const Image& a, const Image& b) {
 
 TEST(SurfaceNormals, FollowSkinThatBendsWithoutTurning) {
   const Image want = Normals(Ridge(), 0.0f);
-  EXPECT_LT(Difference(Normals(Sheet(character::Material::Kind::kSkin), kRise), want), 0.6);
+  EXPECT_LT(MeanDifference(Normals(Sheet(character::Material::Kind::kSkin), kRise), want), 0.6);
   // Cloth turns with its joints only, and these do not turn.
-  EXPECT_GT(Difference(Normals(Sheet(character::Material::Kind::kCloth), kRise), want), 5.0);
+  EXPECT_GT(MeanDifference(Normals(Sheet(character::Material::Kind::kCloth), kRise), want), 5.0);
 }
 
 TEST(SurfaceNormals, AtRestAreThoseOfTheFile) {
@@ -103,8 +103,9 @@ TEST(SurfaceNormals, IgnoreRigidMotion) {
   const auto skin = test::Expect(Renderer::Create(sheet));
   const Character as_cloth = Sheet(character::Material::Kind::kCloth);
   const auto cloth = test::Expect(Renderer::Create(as_cloth));
-  EXPECT_LT(Difference(test::Expect(skin->Render(request)), test::Expect(cloth->Render(request))),
-            0.05);
+  EXPECT_LT(
+      MeanDifference(test::Expect(skin->Render(request)), test::Expect(cloth->Render(request))),
+      0.05);
 }
 
 }  // namespace

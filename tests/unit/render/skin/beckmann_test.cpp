@@ -3,13 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
 namespace furrow::render {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 // The albedo by plain quadrature over light directions, independent of SpecularAlbedo()'s half
 // vectors.
@@ -22,12 +21,12 @@ double BruteForceAlbedo(double cos_view, double m, double f0, SpecularNorm norm)
     const double cos_light = (i + 0.5) / kCosines;
     const double sin_light = std::sqrt(1.0 - cos_light * cos_light);
     for (int j = 0; j < kAzimuths; ++j) {
-      const double azimuth = kPi * (j + 0.5) / kAzimuths;
+      const double azimuth = std::numbers::pi * (j + 0.5) / kAzimuths;
       const double between = cos_light * cos_view + sin_light * sin_view * std::cos(azimuth);
       sum += KelemenBrdf(cos_light, cos_view, between, m, f0, norm) * cos_light;
     }
   }
-  return sum * 2.0 * kPi / (kCosines * kAzimuths);
+  return sum * 2.0 * std::numbers::pi / (kCosines * kAzimuths);
 }
 
 double Albedo(double cos, double m, double f0) {
@@ -41,9 +40,9 @@ TEST(Beckmann, DistributionIsNormalised) {
     constexpr int kSteps = 20000;
     for (int i = 0; i < kSteps; ++i) {
       const double cos_h = (i + 0.5) / kSteps;
-      sum += BeckmannPh(cos_h, m) * cos_h * 2.0 * kPi / kSteps;
+      sum += BeckmannPh(cos_h, m) * cos_h * 2.0 * std::numbers::pi / kSteps;
     }
-    EXPECT_NEAR(sum, kPi, 1e-3) << m;  // PH does not include the 1/pi
+    EXPECT_NEAR(sum, std::numbers::pi, 1e-3) << m;  // PH does not include the 1/pi
   }
 }
 
@@ -63,9 +62,9 @@ TEST(Beckmann, BrdfIsReciprocal) {
   EXPECT_DOUBLE_EQ(brdf(0.3, 0.9), brdf(0.9, 0.3));
   // At normal incidence: PH(1) F0 / 4 / pi.
   const double face_on = KelemenBrdf(1.0, 1.0, 1.0, 0.3, 0.028, SpecularNorm::kPhysical);
-  EXPECT_NEAR(face_on, 0.028 / 0.09 / 4.0 / kPi, 1e-9);
+  EXPECT_NEAR(face_on, 0.028 / 0.09 / 4.0 / std::numbers::pi, 1e-9);
   const double gems = KelemenBrdf(1.0, 1.0, 1.0, 0.3, 0.028, SpecularNorm::kGems);
-  EXPECT_NEAR(gems / face_on, kPi, 1e-9);
+  EXPECT_NEAR(gems / face_on, std::numbers::pi, 1e-9);
 }
 
 // The published form reflects more light than it receives at grazing angles.

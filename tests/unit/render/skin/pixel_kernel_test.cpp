@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -10,7 +11,6 @@
 namespace furrow::render {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kWindow = 8.0;  // mm to either side of an edge, for errors
 constexpr float kScales[] = {0.3f, 0.5f, 0.8f,  1.0f,  1.5f,  2.4f, 3.0f,
                              5.0f, 8.0f, 12.0f, 16.0f, 24.0f, 40.0f};  // pixels per mm
@@ -193,7 +193,7 @@ TEST(PixelKernel, EdgesInOtherDirectionsAreAsAccurate) {
       double sum = 0.0;
       double plain = 0.0;
       for (int degrees = 0; degrees < 90; degrees += 5) {
-        const double turned = degrees * kPi / 180.0;
+        const double turned = degrees * std::numbers::pi / 180.0;
         sum += Edge(PixelKernel(HumanSkin(), taps, pixels_per_mm), pixels_per_mm, turned)
                    .Rmse(50, 1.0 / pixels_per_mm);
         plain += Edge(MidpointKernel(taps, pixels_per_mm), pixels_per_mm, turned)

@@ -3,13 +3,12 @@
 
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
 namespace furrow::render {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 // Integral of `f` over [low, high] by the midpoint rule.
 double Integrate(const std::function<double(double)>& f, double low, double high, int steps) {
@@ -24,9 +23,11 @@ TEST(SkinProfile, EveryChannelConservesLight) {
     float sum = 0.0f;
     for (const SkinGaussian& gaussian : HumanSkin()) sum += gaussian.weight[channel];
     EXPECT_NEAR(sum, 1.0f, 1e-6f) << channel;
-    const double area =
-        Integrate([&](double r) { return 2.0 * kPi * r * RadialProfile(HumanSkin(), r)[channel]; },
-                  0.0, 20.0, 20000);
+    const double area = Integrate(
+        [&](double r) {
+          return 2.0 * std::numbers::pi * r * RadialProfile(HumanSkin(), r)[channel];
+        },
+        0.0, 20.0, 20000);
     EXPECT_NEAR(area, 1.0, 1e-4) << channel;
   }
 }
@@ -69,8 +70,10 @@ TEST(SkinProfile, ShareWithinIsTheIntegralOfTheProfile) {
   for (const double r : {0.1, 0.5, 2.0}) {
     for (int channel = 0; channel < 3; ++channel) {
       const double share = Integrate(
-          [&](double s) { return 2.0 * kPi * s * RadialProfile(HumanSkin(), s)[channel]; }, 0.0, r,
-          4000);
+          [&](double s) {
+            return 2.0 * std::numbers::pi * s * RadialProfile(HumanSkin(), s)[channel];
+          },
+          0.0, r, 4000);
       EXPECT_NEAR(RadialShare(HumanSkin(), r)[channel], share, 1e-4) << r;
     }
   }
@@ -101,7 +104,8 @@ TEST(Burley, ConservesLightAndItsShareIsItsIntegral) {
   for (const double d : {0.1, 0.5}) {
     for (const double r : {0.2, 1.0, 5.0}) {
       const double share =
-          Integrate([&](double s) { return 2.0 * kPi * s * BurleyProfile(d, s); }, 0.0, r, 20000);
+          Integrate([&](double s) { return 2.0 * std::numbers::pi * s * BurleyProfile(d, s); }, 0.0,
+                    r, 20000);
       EXPECT_NEAR(BurleyShare(d, r), share, 1e-5);
     }
     EXPECT_NEAR(BurleyShare(d, 100.0), 1.0, 1e-9);

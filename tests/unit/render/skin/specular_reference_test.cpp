@@ -3,6 +3,7 @@
 // Szirmay-Kalos on the CPU: a sphere.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -21,7 +22,6 @@ using test::FloatPicture;
 using test::SphereOnPlane;
 
 constexpr int kSize = 160;
-constexpr double kPi = 3.14159265358979323846;
 constexpr SphereOnPlane kScene{{0.0, 0.0, 0.0}, 0.06};
 constexpr double kSecondLobe = 0.3;
 
@@ -34,8 +34,8 @@ glm::dvec3 Reflected(const Lighting& lighting, const glm::dvec3& normal,
     const glm::dvec3 to_light(lamp.direction);
     const double cos_light = glm::dot(normal, to_light);
     const auto lobe = [&](double width) {
-      return kPi * KelemenBrdf(cos_light, glm::dot(normal, to_camera),
-                               glm::dot(to_light, to_camera), width, kSkinF0, norm);
+      return std::numbers::pi * KelemenBrdf(cos_light, glm::dot(normal, to_camera),
+                                            glm::dot(to_light, to_camera), width, kSkinF0, norm);
     };
     const double brdf = glm::mix(lobe(m), lobe(0.5 * m), kSecondLobe);
     sum += glm::dvec3(lamp.radiance) * (brdf * std::max(cos_light, 0.0));

@@ -3,13 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
 namespace furrow::render {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 template <class Tap>
 glm::vec3 Sum(const std::vector<Tap>& taps) {
@@ -64,7 +63,7 @@ TEST(SphereResponse, ConservesLight) {
 TEST(SphereResponse, MatchesASumOverTheSphere) {
   constexpr int kPoints = 400000;
   constexpr double kRadius = 4.0;  // mm
-  const double golden_angle = kPi * (3.0 - std::sqrt(5.0));
+  const double golden_angle = std::numbers::pi * (3.0 - std::sqrt(5.0));
   for (const double cosine : {-0.2, 0.1, 0.8}) {
     const double sine = std::sqrt(1.0 - cosine * cosine);
     glm::dvec3 light(0.0);

@@ -51,7 +51,7 @@ TEST(Shot, AnotherSizeOrAnySettingIsACut) {
   EXPECT_FALSE(ContinuesAfter([](Shot* s) { s->settings.strip.views = {View::kNormal}; }));
 }
 
-FrameRequest Moving(std::uint64_t stream) {
+FrameRequest MovingShot(std::uint64_t stream) {
   FrameRequest request;
   request.settings.shading = Shading::kSkin;
   request.is_moving = true;
@@ -61,16 +61,16 @@ FrameRequest Moving(std::uint64_t stream) {
 }
 
 TEST(IsCompleted, OnlyMovingPicturesOfAStreamWithSkin) {
-  EXPECT_TRUE(IsCompleted(Moving(1), true));
-  EXPECT_FALSE(IsCompleted(Moving(1), false)) << "a GPU";
-  EXPECT_FALSE(IsCompleted(Moving(0), true)) << "no stream";
-  EXPECT_TRUE(CanBeCompleted(Moving(0), true));
-  FrameRequest full = Moving(1);
+  EXPECT_TRUE(IsCompleted(MovingShot(1), true));
+  EXPECT_FALSE(IsCompleted(MovingShot(1), false)) << "a GPU";
+  EXPECT_FALSE(IsCompleted(MovingShot(0), true)) << "no stream";
+  EXPECT_TRUE(CanBeCompleted(MovingShot(0), true));
+  FrameRequest full = MovingShot(1);
   full.scale = 1.0f;
   EXPECT_FALSE(IsCompleted(full, true)) << "at the full size";
   EXPECT_TRUE(CanBeCompleted(full, true));
   const auto changed = [](auto change) {
-    FrameRequest request = Moving(1);
+    FrameRequest request = MovingShot(1);
     change(request);
     EXPECT_EQ(IsCompleted(request, true), CanBeCompleted(request, true));
     return IsCompleted(request, true);

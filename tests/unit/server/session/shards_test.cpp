@@ -16,7 +16,7 @@
 namespace furrow::server {
 namespace {
 
-constexpr int kShards = 3;
+constexpr int kHubShards = 3;
 
 // Collects frames from several threads, by subscription and in order.
 class SharedPeer : public Link {
@@ -52,7 +52,7 @@ class ShardsTest : public HubTest {
     Limits limits;
     limits.packets_per_second = 1e9;
     limits.packet_burst = 1e9;
-    MakeWith(MakeRig(/*filter=*/false), limits, kShards);
+    MakeWith(MakeRig(/*filter=*/false), limits, kHubShards);
   }
   void ConnectIn(int shard, FakePeer* peer, Transport transport = Transport::kTcp) {
     peer->id = hub->AddPeer(transport, "fake", peer, now, shard);
@@ -60,12 +60,13 @@ class ShardsTest : public HubTest {
 };
 
 TEST_F(ShardsTest, PeerIdsAreUniqueAcrossShards) {
-  FakePeer peers[2 * kShards];
+  FakePeer peers[2 * kHubShards];
   std::map<PeerId, int> seen;
-  for (int i = 0; i < 2 * kShards; ++i) {
-    ConnectIn(i % kShards, &peers[i]);
+  for (int i = 0; i < 2 * kHubShards; ++i) {
+    ConnectIn(i % kHubShards, &peers[i]);
     EXPECT_NE(peers[i].id, 0u);
-    EXPECT_EQ(PeerTable::TableOf(peers[i].id, kShards), static_cast<std::size_t>(i % kShards));
+    EXPECT_EQ(PeerTable::TableOf(peers[i].id, kHubShards),
+              static_cast<std::size_t>(i % kHubShards));
     EXPECT_EQ(++seen[peers[i].id], 1);
   }
 }
@@ -119,8 +120,8 @@ TEST_F(ShardsTest, ARemovedSenderIsForgottenInAnyShard) {
 }
 
 TEST_F(ShardsTest, GoodbyesReachAllShards) {
-  FakePeer peers[kShards];
-  for (int shard = 0; shard < kShards; ++shard) ConnectIn(shard, &peers[shard]);
+  FakePeer peers[kHubShards];
+  for (int shard = 0; shard < kHubShards; ++shard) ConnectIn(shard, &peers[shard]);
   hub->Drain(Time{0});
   for (FakePeer& peer : peers) EXPECT_TRUE(peer.Take<protocol::Goodbye>().has_value());
 }
@@ -131,7 +132,7 @@ TEST_F(ShardsTest, HeldPosesOfAnotherShardLeaveBeforeTheRedirect) {
   nodes.places["ada"] = FakeCluster::Here(now + FromSeconds(60.0), 1);
   cluster = &nodes;
   jitter = {{"*", 50.0}};
-  MakeWith(MakeRig(/*filter=*/false), {}, kShards);
+  MakeWith(MakeRig(/*filter=*/false), {}, kHubShards);
   FakePeer sender;
   SharedPeer viewer;
   ConnectIn(1, &sender);
@@ -151,8 +152,8 @@ TEST_F(ShardsTest, HeldPosesOfAnotherShardLeaveBeforeTheRedirect) {
 }
 
 TEST_F(ShardsTest, BufferedMessagesLeaveBeforeALockIsReleased) {
-  CountingSender buffered_senders[kShards];
-  for (int shard = 0; shard < kShards; ++shard)
+  CountingSender buffered_senders[kHubShards];
+  for (int shard = 0; shard < kHubShards; ++shard)
     hub->SetBufferedSender(shard, &buffered_senders[shard]);
   {
     const Hub::ShardLock turn(*hub, 1);
@@ -169,7 +170,7 @@ TEST_F(ShardsTest, BufferedMessagesLeaveBeforeALockIsReleased) {
     const Hub::ExclusiveLock inner(*hub, 1);
   }
   EXPECT_EQ(buffered_senders[0].flushes, 1) << "answers to peers of other shards";
-  for (int shard = 0; shard < kShards; ++shard) hub->SetBufferedSender(shard, nullptr);
+  for (int shard = 0; shard < kHubShards; ++shard) hub->SetBufferedSender(shard, nullptr);
 }
 
 // One socket per shard. Its messages leave when the shard is flushed.
@@ -208,7 +209,7 @@ class Wire {
   Wire() {
     for (Socket& socket : sockets) socket.wire = this;
   }
-  Socket sockets[kShards];
+  Socket sockets[kHubShards];
   std::vector<protocol::MessageKind> left;
 };
 
@@ -218,7 +219,8 @@ TEST_F(ShardsTest, WeightsNeverOvertakeTheirNames) {
   Publish(sender, "ada");
   Send(sender, Pose(0.5f), 1, 1);
   Wire wire;
-  for (int shard = 0; shard < kShards; ++shard) hub->SetBufferedSender(shard, &wire.sockets[shard]);
+  for (int shard = 0; shard < kHubShards; ++shard)
+    hub->SetBufferedSender(shard, &wire.sockets[shard]);
   Wire::End viewer(&wire, 2);
   const PeerId id = hub->AddPeer(Transport::kTcp, "viewer", &viewer, now, 2);
   std::vector<std::uint8_t> bytes;
@@ -234,7 +236,7 @@ TEST_F(ShardsTest, WeightsNeverOvertakeTheirNames) {
   }
   using protocol::MessageKind;
   EXPECT_EQ(wire.left, (std::vector{MessageKind::kSubscribeReply, MessageKind::kWeights}));
-  for (int shard = 0; shard < kShards; ++shard) hub->SetBufferedSender(shard, nullptr);
+  for (int shard = 0; shard < kHubShards; ++shard) hub->SetBufferedSender(shard, nullptr);
 }
 
 TEST_F(ShardsTest, ShardsPublishAtOnceWhileTheSessionChanges) {
@@ -243,7 +245,7 @@ TEST_F(ShardsTest, ShardsPublishAtOnceWhileTheSessionChanges) {
   SharedPeer watcher;
   const PeerId watcher_id = hub->AddPeer(Transport::kTcp, "watcher", &watcher, now, 0);
   std::map<int, std::unique_ptr<FakePeer>> senders;  // by shard; this thread owns shard 0
-  for (int shard = 1; shard < kShards; ++shard) {
+  for (int shard = 1; shard < kHubShards; ++shard) {
     senders[shard] = std::make_unique<FakePeer>();
     ConnectIn(shard, senders[shard].get());
     for (std::uint16_t i = 0; i < kSubjects; ++i) {
@@ -256,7 +258,7 @@ TEST_F(ShardsTest, ShardsPublishAtOnceWhileTheSessionChanges) {
     }
   }
   std::vector<std::jthread> threads;
-  for (int shard = 1; shard < kShards; ++shard) {
+  for (int shard = 1; shard < kHubShards; ++shard) {
     threads.emplace_back([&, shard, id = senders[shard]->id] {
       protocol::Encoder own;
       std::vector<std::uint8_t> batch[kSubjects];
@@ -277,7 +279,7 @@ TEST_F(ShardsTest, ShardsPublishAtOnceWhileTheSessionChanges) {
     hub->RemovePeer(passer_by.id);
   }
   threads.clear();
-  constexpr int kAll = (kShards - 1) * kSubjects;
+  constexpr int kAll = (kHubShards - 1) * kSubjects;
   EXPECT_EQ(Count(Counter::kPosesReceived), std::uint64_t{kAll * kPoses});
   EXPECT_EQ(watcher.sequences.size(), std::size_t{kAll});
   for (const auto& [subscription, sequences] : watcher.sequences) {
@@ -285,7 +287,7 @@ TEST_F(ShardsTest, ShardsPublishAtOnceWhileTheSessionChanges) {
     EXPECT_GE(sequences.size(), kPoses) << subscription;
     EXPECT_EQ(sequences.back(), kPoses - 1) << subscription;
   }
-  for (int shard = 1; shard < kShards; ++shard) EXPECT_GT(watcher.by_shard[shard], 0) << shard;
+  for (int shard = 1; shard < kHubShards; ++shard) EXPECT_GT(watcher.by_shard[shard], 0) << shard;
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ namespace {
 
 constexpr float kQuarter = 1.57079633f;
 
-Skeleton Face() {
+Skeleton FaceSkeleton() {
   std::vector<JointDesc> joints(3);
   joints[0].name = "head";
   // Its children's axes are not the model's.
@@ -49,7 +49,7 @@ std::vector<Transform> Rest(const Skeleton& skeleton) {
 }
 
 TEST(BlendShapePose, AtOneIsTheReferencePose) {
-  const Skeleton skeleton = Face();
+  const Skeleton skeleton = FaceSkeleton();
   const Rig rig = Poses();
   const std::vector<std::string> shapes = {"tongueOut", "JAWOPEN", "browInnerUp"};
   const BlendShapePose pose = BlendShapePose::Create(rig, skeleton, shapes);
@@ -72,7 +72,7 @@ TEST(BlendShapePose, AtOneIsTheReferencePose) {
 }
 
 TEST(BlendShapePose, HalfACoefficientIsHalfTheWay) {
-  const Skeleton skeleton = Face();
+  const Skeleton skeleton = FaceSkeleton();
   const BlendShapePose pose =
       BlendShapePose::Create(Poses(), skeleton, std::vector<std::string>{"jawOpen", "browInnerUp"});
   std::vector<Transform> local = Rest(skeleton);
@@ -83,7 +83,7 @@ TEST(BlendShapePose, HalfACoefficientIsHalfTheWay) {
 
 // Lips that close by more than the jaw opens would pass through each other.
 TEST(BlendShapePose, TheMouthClosesNoFartherThanTheJawOpens) {
-  const Skeleton skeleton = Face();
+  const Skeleton skeleton = FaceSkeleton();
   Rig rig = Poses();
   ReferencePose close{.name = "mouthClose", .joints = {}};
   close.joints.push_back({.joint = "brow_l", .translation = glm::vec3(0.0f, 0.3f, 0.0f)});
@@ -104,7 +104,7 @@ TEST(BlendShapePose, TheMouthClosesNoFartherThanTheJawOpens) {
 }
 
 TEST(BlendShapePose, CoefficientsThatAreNotThereCountAsZero) {
-  const Skeleton skeleton = Face();
+  const Skeleton skeleton = FaceSkeleton();
   const BlendShapePose pose =
       BlendShapePose::Create(Poses(), skeleton, std::vector<std::string>{"x", "jawOpen"});
   std::vector<Transform> local = Rest(skeleton);
@@ -113,7 +113,7 @@ TEST(BlendShapePose, CoefficientsThatAreNotThereCountAsZero) {
 }
 
 TEST(BlendShapePose, NamesWithoutAPoseMoveNothing) {
-  const Skeleton skeleton = Face();
+  const Skeleton skeleton = FaceSkeleton();
   EXPECT_TRUE(BlendShapePose().empty());
   EXPECT_TRUE(
       BlendShapePose::Create(Poses(), skeleton, std::vector<std::string>{"cheekPuff"}).empty());
@@ -122,7 +122,7 @@ TEST(BlendShapePose, NamesWithoutAPoseMoveNothing) {
 }
 
 TEST(BlendShapePose, BadInputChangesNothing) {
-  const Skeleton skeleton = Face();
+  const Skeleton skeleton = FaceSkeleton();
   const BlendShapePose pose =
       BlendShapePose::Create(Poses(), skeleton, std::vector<std::string>{"browInnerUp"});
   std::vector<Transform> local = Rest(skeleton);

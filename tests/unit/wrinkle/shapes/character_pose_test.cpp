@@ -23,7 +23,7 @@ Rig BrowLift() {
   return rig;
 }
 
-const std::vector<std::string> kShapes = {"browOuterUpLeft"};
+const std::vector<std::string> kPoseShapes = {"browOuterUpLeft"};
 
 // Where joint `name` is, by products of 4x4 matrices up its chain: another way than the job's.
 glm::vec3 OriginOf(const Skeleton& skeleton, const std::vector<Transform>& local,
@@ -44,7 +44,7 @@ TEST(CharacterPose, CarriesThePoseOverAndPutsTheBlendShapesUponIt) {
   const Skeleton source = MakeBody(7);
   const Skeleton target = MakeBody(8, 2.0f);
   const Retarget retarget = Retarget::Create(source, target);
-  const BlendShapePose shapes = BlendShapePose::Create(BrowLift(), target, kShapes);
+  const BlendShapePose shapes = BlendShapePose::Create(BrowLift(), target, kPoseShapes);
   CharacterPose drawn(&target);
   for (int round = 0; round < 10; ++round) {
     LocalPose pose;
@@ -64,7 +64,7 @@ TEST(CharacterPose, CarriesThePoseOverAndPutsTheBlendShapesUponIt) {
 TEST(CharacterPose, ForgetsTheBlendShapesOfThePoseBefore) {
   const Skeleton body = MakeBody(2);
   const Retarget retarget = Retarget::Create(body, body);
-  const BlendShapePose shapes = BlendShapePose::Create(BrowLift(), body, kShapes);
+  const BlendShapePose shapes = BlendShapePose::Create(BrowLift(), body, kPoseShapes);
   const LocalPose rest = RestPose(body);
   CharacterPose drawn(&body);
   ASSERT_EQ(drawn.Run({retarget, shapes}, rest.joints, {}), JobStatus::kOk);
@@ -79,7 +79,7 @@ TEST(CharacterPose, GivesTheWeightsOfTheShapes) {
   const Skeleton body = MakeBody(2);
   const Retarget retarget = Retarget::Create(body, body);
   const std::vector<std::string> shapes = {"jawOpen", "BrowOuterUpLeft"};
-  const ShapeProgram program = ShapeProgram::ByName(kShapes, shapes);
+  const ShapeProgram program = ShapeProgram::ByName(kPoseShapes, shapes);
   const LocalPose rest = RestPose(body);
   CharacterPose drawn(&body);
   const std::vector<float> half = {0.5f};
@@ -95,8 +95,8 @@ TEST(CharacterPose, AShapeOfTheNameReplacesTheJoints) {
   const Skeleton body = MakeBody(2);
   const std::vector<std::string> other = {"jawOpen"};
   const std::vector<std::string> same = {"jawOpen", "BrowOuterUpLeft"};
-  EXPECT_FALSE(BlendShapePose::Create(BrowLift(), body, kShapes, other).empty());
-  EXPECT_TRUE(BlendShapePose::Create(BrowLift(), body, kShapes, same).empty());
+  EXPECT_FALSE(BlendShapePose::Create(BrowLift(), body, kPoseShapes, other).empty());
+  EXPECT_TRUE(BlendShapePose::Create(BrowLift(), body, kPoseShapes, same).empty());
 }
 
 TEST(CharacterPose, APoseOfAnotherSkeletonFails) {

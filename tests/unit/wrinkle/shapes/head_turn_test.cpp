@@ -15,7 +15,7 @@
 namespace furrow::wrinkle {
 namespace {
 
-const std::vector<std::string> kStream = {"jawOpen", "HeadYaw", "headpitch", "HeadRoll"};
+const std::vector<std::string> kTurnStream = {"jawOpen", "HeadYaw", "headpitch", "HeadRoll"};
 
 // Where the head points the model's axes after the turn: X to its left, Y up, Z to the front.
 glm::mat3 HeadAxes(const Skeleton& skeleton, const std::vector<Transform>& local) {
@@ -26,7 +26,7 @@ glm::mat3 HeadAxes(const Skeleton& skeleton, const std::vector<Transform>& local
 }
 
 std::vector<Transform> Turned(const Skeleton& skeleton, const std::vector<float>& values) {
-  const HeadTurn turn = HeadTurn::Create(skeleton, {}, kStream);
+  const HeadTurn turn = HeadTurn::Create(skeleton, {}, kTurnStream);
   EXPECT_FALSE(turn.empty());
   std::vector<Transform> local(skeleton.rest_pose().begin(), skeleton.rest_pose().end());
   EXPECT_EQ(turn.Run(values, local), JobStatus::kOk);
@@ -63,9 +63,9 @@ TEST(HeadTurn, TheNeckTakesItsShare) {
 TEST(HeadTurn, RolesNameTheJoints) {
   const Skeleton body = MakeBody();
   JointRoles roles(body.joint_names().size(), JointRole::kNone);
-  EXPECT_TRUE(HeadTurn::Create(body, roles, kStream).empty());
+  EXPECT_TRUE(HeadTurn::Create(body, roles, kTurnStream).empty());
   roles[static_cast<std::size_t>(body.Find("spine"))] = JointRole::kHead;
-  const HeadTurn turn = HeadTurn::Create(body, roles, kStream);
+  const HeadTurn turn = HeadTurn::Create(body, roles, kTurnStream);
   std::vector<Transform> local(body.rest_pose().begin(), body.rest_pose().end());
   ASSERT_EQ(turn.Run(std::vector<float>{0.0f, 0.5f}, local), JobStatus::kOk);
   EXPECT_NE(local[body.Find("spine")].rotation, body.rest_pose()[body.Find("spine")].rotation);
@@ -77,7 +77,7 @@ TEST(HeadTurn, AnglesAreLimitedAndBadInputChangesNothing) {
   EXPECT_TRUE(HeadTurn::Create(body, {}, std::vector<std::string>{"jawOpen"}).empty());
   const glm::mat3 wild = HeadAxes(body, Turned(body, {0.0f, 1e9f}));
   EXPECT_NEAR(wild[2].x, std::sin(1.5f), 1e-4f);
-  const HeadTurn turn = HeadTurn::Create(body, {}, kStream);
+  const HeadTurn turn = HeadTurn::Create(body, {}, kTurnStream);
   std::vector<Transform> local(body.rest_pose().begin(), body.rest_pose().end());
   const float nan = std::numeric_limits<float>::quiet_NaN();
   EXPECT_EQ(turn.Run(std::vector<float>{nan, 0.5f}, local), JobStatus::kNonFinite);

@@ -19,8 +19,8 @@ constexpr float kScale = 0.5f;  // the character is half as large as the stream'
 
 // A head with a ring of joints, and a surface that has a point at each of their places. The
 // stream's model space is turned by 90 degrees about X, as in files with Z up.
-struct Face {
-  explicit Face(std::vector<std::string> names) : shapes(std::move(names)) {
+struct JointFace {
+  explicit JointFace(std::vector<std::string> names) : shapes(std::move(names)) {
     std::vector<ModelJoint> joints = {{"hips", "", {}, {}}, {"head", "hips", {0, 1, 0}, {}}};
     std::mt19937 random(5);
     for (int i = 0; i < kNumPoints; ++i) {
@@ -71,7 +71,7 @@ struct Face {
 };
 
 TEST(JointShapes, FindsTheWeightsThatMovedTheJoints) {
-  const Face face({"a", "b", "c", "d"});
+  const JointFace face({"a", "b", "c", "d"});
   const JointShapes solver = face.Create();
   ASSERT_EQ(solver.num_landmarks(), kNumPoints);
   const std::vector<std::vector<float>> cases = {
@@ -84,7 +84,7 @@ TEST(JointShapes, FindsTheWeightsThatMovedTheJoints) {
 }
 
 TEST(JointShapes, WeightsStayWithinTheirRange) {
-  const Face face({"a", "b"});
+  const JointFace face({"a", "b"});
   const JointShapes solver = face.Create();
   std::vector<float> weights(2);
   const std::vector<float> wild = {3.0f, -2.0f};
@@ -93,7 +93,7 @@ TEST(JointShapes, WeightsStayWithinTheirRange) {
 }
 
 TEST(JointShapes, MotionOfTheHeadMovesNoShape) {
-  const Face face({"a", "b"});
+  const JointFace face({"a", "b"});
   LocalPose pose = RestPose(face.skeleton);
   Turn(face.skeleton, "head", AngleAxis(40.0f, {0, 1, 0}), &pose);
   Move(face.skeleton, "hips", {1, 2, 3}, &pose);
@@ -104,7 +104,7 @@ TEST(JointShapes, MotionOfTheHeadMovesNoShape) {
 }
 
 TEST(JointShapes, MouthCloseIsAtMostJawOpen) {
-  const Face face({"mouthClose", "jawOpen"});
+  const JointFace face({"mouthClose", "jawOpen"});
   std::vector<float> weights(2);
   const std::vector<float> closed = {1.0f, 0.3f};
   ASSERT_EQ(face.Create().Run(face.Pose(closed).joints, weights), JobStatus::kOk);
@@ -114,7 +114,7 @@ TEST(JointShapes, MouthCloseIsAtMostJawOpen) {
 
 // The solution means what ARKit's shapes mean, although the shape itself opens the jaw.
 TEST(JointShapes, AMouthCloseThatContainsTheJawIsSolvedWithoutIt) {
-  Face face({"mouthClose", "jawOpen"});
+  JointFace face({"mouthClose", "jawOpen"});
   face.contains_jaw = true;
   for (auto& point : face.surface.points) {
     auto& deltas = point.deltas;
@@ -129,7 +129,7 @@ TEST(JointShapes, AMouthCloseThatContainsTheJawIsSolvedWithoutIt) {
 }
 
 TEST(JointShapes, FailuresChangeNothing) {
-  const Face face({"a", "b"});
+  const JointFace face({"a", "b"});
   const JointShapes solver = face.Create();
   std::vector<float> weights(2, 9.0f);
   LocalPose pose = RestPose(face.skeleton);
@@ -142,13 +142,13 @@ TEST(JointShapes, FailuresChangeNothing) {
 }
 
 TEST(JointShapes, AMarkForEachJointIsNeeded) {
-  Face face({"a", "b"});
+  JointFace face({"a", "b"});
   face.moved.pop_back();
   EXPECT_TRUE(face.Create().empty());
 }
 
 TEST(JointShapes, LandmarksFarFromTheSurfaceAreIgnored) {
-  Face face({"a", "b"});
+  JointFace face({"a", "b"});
   for (FaceLandmark& landmark : face.landmarks) landmark.on_target.z += 1.0f;
   EXPECT_TRUE(face.Create().empty());
 }

@@ -8,11 +8,11 @@
 namespace furrow::wrinkle {
 namespace {
 
-const std::vector<std::string> kStream = {"jawOpen", "browInnerUp", "tongueOut"};
+const std::vector<std::string> kProgramStream = {"jawOpen", "browInnerUp", "tongueOut"};
 const std::vector<std::string> kFace = {"BrowInnerUp", "cheekPuff", "jawopen"};
 
 TEST(ShapeProgram, ShapesTakeTheCoefficientsOfTheirNames) {
-  const ShapeProgram program = ShapeProgram::ByName(kStream, kFace);
+  const ShapeProgram program = ShapeProgram::ByName(kProgramStream, kFace);
   EXPECT_FALSE(program.empty());
   std::vector<float> weights(3, 9.0f);
   ASSERT_EQ(program.Run(std::vector<float>{0.25f, 0.5f, 1.0f}, weights), JobStatus::kOk);
@@ -20,7 +20,7 @@ TEST(ShapeProgram, ShapesTakeTheCoefficientsOfTheirNames) {
 }
 
 TEST(ShapeProgram, MissingCoefficientsAreZero) {
-  const ShapeProgram program = ShapeProgram::ByName(kStream, kFace);
+  const ShapeProgram program = ShapeProgram::ByName(kProgramStream, kFace);
   std::vector<float> weights(3, 9.0f);
   ASSERT_EQ(program.Run(std::vector<float>{0.25f}, weights), JobStatus::kOk);
   EXPECT_EQ(weights, (std::vector<float>{0.0f, 0.0f, 0.25f}));
@@ -28,11 +28,11 @@ TEST(ShapeProgram, MissingCoefficientsAreZero) {
 
 TEST(ShapeProgram, AStreamWithoutTheFacesNamesMovesNothing) {
   EXPECT_TRUE(ShapeProgram::ByName({}, kFace).empty());
-  EXPECT_TRUE(ShapeProgram::ByName(kStream, {}).empty());
+  EXPECT_TRUE(ShapeProgram::ByName(kProgramStream, {}).empty());
 }
 
 TEST(ShapeProgram, FailuresChangeNothing) {
-  const ShapeProgram program = ShapeProgram::ByName(kStream, kFace);
+  const ShapeProgram program = ShapeProgram::ByName(kProgramStream, kFace);
   std::vector<float> weights(3, 9.0f);
   const float nan = std::numeric_limits<float>::quiet_NaN();
   EXPECT_EQ(program.Run(std::vector<float>{nan}, weights), JobStatus::kNonFinite);

@@ -15,7 +15,7 @@ namespace {
 using ::testing::ElementsAre;
 using Limits = ShapeRule::Limits;
 
-const std::vector<std::string> kShapes = {"happy", "blink", "blinkLeft", "aa", "Oh", "angry"};
+const std::vector<std::string> kRuleShapes = {"happy", "blink", "blinkLeft", "aa", "Oh", "angry"};
 const std::vector<ShapeRule::Group> kGroups = {ShapeRule::kNoGroup, ShapeRule::kBlinks,
                                                ShapeRule::kBlinks,  ShapeRule::kMouths,
                                                ShapeRule::kMouths,  ShapeRule::kNoGroup};
@@ -92,9 +92,9 @@ TEST(ShapeRules, OthersDoNothingHere) {
 }
 
 TEST(ShapeRules, ApplyToEveryPoseOfAProgram) {
-  ShapeProgram program = ShapeProgram::ByName(kShapes, kShapes);
+  ShapeProgram program = ShapeProgram::ByName(kRuleShapes, kRuleShapes);
   program.SetRules({std::vector<ShapeRule>{{.shape = 0, .limits = {Limits::kBlock}}}, kGroups});
-  std::vector<float> weights(kShapes.size());
+  std::vector<float> weights(kRuleShapes.size());
   ASSERT_EQ(program.Run(std::vector<float>{1, 1, 0, 1, 0, 0}, weights), JobStatus::kOk);
   EXPECT_THAT(weights, ElementsAre(1, 0, 0, 1, 0, 0));
 }

@@ -127,7 +127,7 @@ double NextStep(std::mt19937* random) {
   return steps[Pick(random, 7)];
 }
 
-std::shared_ptr<const RigBinding> Bind(const Rig& rig, unsigned frame_seed = 0) {
+std::shared_ptr<const RigBinding> BindSeeded(const Rig& rig, unsigned frame_seed = 0) {
   return BoundRig(rig, MakeBody(frame_seed), kShapes).binding();
 }
 
@@ -137,7 +137,7 @@ FURROW_FOR_INSTRUCTION_SETS(BatchSolverTest);
 TEST_P(BatchSolverTest, EqualsTheOracleOnChanceRigsPosesAndTimes) {
   std::mt19937 random(71);
   for (int round = 0; round < 12; ++round) {
-    Crowd crowd(Bind(RandomRig(&random), static_cast<unsigned>(round % 3)), 37);
+    Crowd crowd(BindSeeded(RandomRig(&random), static_cast<unsigned>(round % 3)), 37);
     BatchSolver batch;
     std::vector<BatchUpdate> updates;
     for (int frame = 0; frame < 25; ++frame) {
@@ -166,7 +166,7 @@ TEST_P(BatchSolverTest, StaysEqualOverAThousandFrames) {
   Rig rig = MakeRig();
   rig.filter.min_cutoff_hz = 0.2f;
   rig.filter.beta = 0.1f;
-  Crowd crowd(Bind(rig, 5), 16);
+  Crowd crowd(BindSeeded(rig, 5), 16);
   BatchSolver batch;
   std::vector<BatchUpdate> updates;
   for (int frame = 0; frame < 1000; ++frame) {
@@ -184,8 +184,8 @@ TEST_P(BatchSolverTest, StaysEqualOverAThousandFrames) {
 
 TEST_P(BatchSolverTest, AnyNumberOfSubjectsAndBindings) {
   std::mt19937 random(73);
-  const auto first = Bind(MakeRig(), 0);
-  const auto second = Bind(RandomRig(&random), 5);
+  const auto first = BindSeeded(MakeRig(), 0);
+  const auto second = BindSeeded(RandomRig(&random), 5);
   for (int count = 1; count <= 40; ++count) {
     Crowd one(first, count);
     Crowd other(second, count);
@@ -204,7 +204,7 @@ TEST_P(BatchSolverTest, AnyNumberOfSubjectsAndBindings) {
 }
 
 TEST_P(BatchSolverTest, ASubjectMayAppearInABatchMoreThanOnce) {
-  const auto binding = Bind(MakeRig(), 5);
+  const auto binding = BindSeeded(MakeRig(), 5);
   std::mt19937 random(74);
   std::vector<LocalPose> poses(5);
   SubjectSolver single(binding);
@@ -224,8 +224,8 @@ TEST_P(BatchSolverTest, ASubjectMayAppearInABatchMoreThanOnce) {
 // of other rigs: all results have the same bits.
 TEST_P(BatchSolverTest, ResultsHaveTheSameBitsAtAnyPlaceInAnyBatch) {
   std::mt19937 random(79);
-  const auto binding = Bind(RandomRig(&random), 5);
-  const auto other = Bind(RandomRig(&random), 0);
+  const auto binding = BindSeeded(RandomRig(&random), 5);
+  const auto other = BindSeeded(RandomRig(&random), 0);
   std::vector<LocalPose> stream(20);
   for (LocalPose& pose : stream) NextPose(binding->skeleton(), &random, &pose);
   LocalPose noise;
@@ -298,7 +298,7 @@ TEST_P(BatchSolverTest, BadUpdatesFailAlone) {
 
 // A pose with intermediate results that overflow is still solved.
 TEST_P(BatchSolverTest, SurvivesDegeneratePoses) {
-  const auto binding = Bind(MakeRig(), 5);
+  const auto binding = BindSeeded(MakeRig(), 5);
   std::mt19937 random(76);
   Crowd crowd(binding, 18);
   std::vector<BatchUpdate> updates;
@@ -341,7 +341,7 @@ TEST_P(BatchSolverTest, SolvesStreamsWithoutJoints) {
 TEST_P(BatchSolverTest, LevelsOfDetailAreAPrefixOfTheDrivers) {
   std::mt19937 random(77);
   const Rig rig = RandomRig(&random);
-  const auto binding = Bind(rig, 5);
+  const auto binding = BindSeeded(rig, 5);
   Crowd crowd(binding, 40);
   BatchSolver batch;
   std::vector<BatchUpdate> updates;
@@ -360,8 +360,8 @@ TEST_P(BatchSolverTest, LevelsOfDetailAreAPrefixOfTheDrivers) {
 TEST_P(BatchSolverTest, DoesNotAllocateOnceItHasSeenASize) {
   Rig rig = MakeRig();
   rig.drivers[0].pose.solve = PoseSolve::kNnls;
-  const auto binding = Bind(rig, 5);
-  const auto small = Bind(MakeRig(), 0);
+  const auto binding = BindSeeded(rig, 5);
+  const auto small = BindSeeded(MakeRig(), 0);
   std::vector<LocalPose> poses(50);
   std::vector<SubjectSolver> solvers;
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -386,7 +386,7 @@ TEST_P(BatchSolverTest, DoesNotAllocateOnceItHasSeenASize) {
 
 // The meaning of a level, on single poses. The batch equals them (above).
 TEST(LevelOfDetail, DriversPastThePrefixFadeAndTheOthersStay) {
-  const auto binding = Bind(MakeRig(), 5);
+  const auto binding = BindSeeded(MakeRig(), 5);
   std::mt19937 random(78);
   LocalPose pose;
   RandomPose(binding->skeleton(), &random, &pose);

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kFrame = 1.0 / 60.0;
 
-std::shared_ptr<const RigBinding> Bind(const Rig& rig) {
+std::shared_ptr<const RigBinding> BindShared(const Rig& rig) {
   return BoundRig(rig, MakeBody(3)).binding();
 }
 
@@ -27,7 +27,7 @@ std::uint32_t IndexOf(std::span<const std::string> names, std::string_view name)
 
 TEST(DriverLevel, NothingNeedsNoDriverAndEverythingAll) {
   const Rig rig = MakeRig();
-  const auto binding = Bind(rig);
+  const auto binding = BindShared(rig);
   EXPECT_EQ(DriversOfWeights(*binding, {}), 0u);
   EXPECT_EQ(DriversOfValues(*binding, {}), 0u);
   std::vector<std::uint32_t> values(binding->driver_value_names().size());
@@ -37,7 +37,7 @@ TEST(DriverLevel, NothingNeedsNoDriverAndEverythingAll) {
 
 TEST(DriverLevel, AValueNeedsTheDriversUpToItsOwn) {
   const Rig rig = MakeRig();
-  const auto binding = Bind(rig);
+  const auto binding = BindShared(rig);
   const auto names = binding->driver_value_names();
   for (std::uint32_t i = 0; i < names.size(); ++i) {
     const std::string driver = names[i].substr(0, names[i].find('.'));
@@ -48,9 +48,9 @@ TEST(DriverLevel, AValueNeedsTheDriversUpToItsOwn) {
 
 TEST(DriverLevel, AWeightNeedsWhatItGivesWayTo) {
   Rig rig = MakeRig();
-  const auto binding = Bind(rig);
+  const auto binding = BindShared(rig);
   rig.regions[0].neighbours.clear();
-  const auto alone = Bind(rig);
+  const auto alone = BindShared(rig);
   const std::uint32_t brow = IndexOf(binding->weight_names(), "brow_l.squash");
   ASSERT_LT(brow, binding->weight_names().size());
   EXPECT_EQ(DriversOfWeights(*alone, {&brow, 1}), 1u);
@@ -63,7 +63,7 @@ TEST(DriverLevel, WeightsThatAreAskedForAreTheSameToTheBit) {
   for (int round = 0; round < 40; ++round) {
     Rig rig = MakeRig();
     std::shuffle(rig.drivers.begin(), rig.drivers.end(), random);
-    const auto binding = Bind(rig);
+    const auto binding = BindShared(rig);
     std::vector<std::uint32_t> asked;
     for (std::uint32_t i = 0; i < binding->weight_names().size(); ++i) {
       if (random() % 4 == 0) asked.push_back(i);
@@ -105,7 +105,7 @@ class LevelChange : public testing::Test {
   }
 
   BatchSolver batch_;
-  const std::shared_ptr<const RigBinding> binding_ = Bind(MakeRig());
+  const std::shared_ptr<const RigBinding> binding_ = BindShared(MakeRig());
   std::vector<LocalPose> poses_ = std::vector<LocalPose>(5);
   SubjectSolver solver_ = [this] {
     SubjectSolver solver(binding_);

@@ -20,13 +20,13 @@ using testing::IsEmpty;
 const std::vector<std::string> kBlendShapes = {"eyeBlinkLeft", "JawOpen"};
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-Result<RigBinding> Bind(const Rig& rig, bool allow_missing = false,
-                        const Skeleton& skeleton = MakeBody(2)) {
+Result<RigBinding> BindRig(const Rig& rig, bool allow_missing = false,
+                           const Skeleton& skeleton = MakeBody(2)) {
   return RigBinding::Create(rig, skeleton, kBlendShapes, {.allow_missing = allow_missing});
 }
 
 TEST(RigBinding, BindsAGoodRig) {
-  const Result<RigBinding> binding = Bind(MakeRig());
+  const Result<RigBinding> binding = BindRig(MakeRig());
   ASSERT_TRUE(binding.ok()) << binding.status().ToString();
   EXPECT_THAT(binding->warnings(), IsEmpty());
   EXPECT_THAT(binding->missing_joints(), IsEmpty());
@@ -59,7 +59,7 @@ class RigFaults : public testing::TestWithParam<Fault> {};
 TEST_P(RigFaults, AreRefusedByNameAndField) {
   Rig rig = MakeRig();
   GetParam().make(&rig);
-  const Status status = Bind(rig).status();
+  const Status status = BindRig(rig).status();
   EXPECT_EQ(status.code(), GetParam().code) << status.ToString();
   EXPECT_THAT(status.ToString(), HasSubstr(GetParam().message));
 }
@@ -297,10 +297,10 @@ TEST(RigBinding, RefusesMoreRegionsThanItCounts) {
     rig.regions.push_back(rig.regions[3]);
     rig.regions.back().name = "r" + std::to_string(rig.regions.size());
   }
-  EXPECT_TRUE(Bind(rig).ok());
+  EXPECT_TRUE(BindRig(rig).ok());
   rig.regions.push_back(rig.regions[3]);
   rig.regions.back().name = "one_more";
-  EXPECT_EQ(Bind(rig).status().code(), StatusCode::kLimit);
+  EXPECT_EQ(BindRig(rig).status().code(), StatusCode::kLimit);
 }
 
 // The unfiltered driver values of a pose.
@@ -339,7 +339,7 @@ TEST(RigBinding, ListsWhatIsMissingOnceWhereThatIsAllowed) {
 TEST(RigBinding, WarnsOfADriverThatMakesNoSenseWhereThingsMayBeMissing) {
   Rig rig = MakeRig();
   DriverNamed(&rig, "knee_l").hinge.parent = "foot_l";
-  const Result<RigBinding> binding = Bind(rig, true);
+  const Result<RigBinding> binding = BindRig(rig, true);
   ASSERT_TRUE(binding.ok());
   EXPECT_THAT(binding->warnings(), ElementsAre(HasSubstr("driver 'knee_l': parent 'foot_l'")));
 }
@@ -347,7 +347,7 @@ TEST(RigBinding, WarnsOfADriverThatMakesNoSenseWhereThingsMayBeMissing) {
 TEST(RigBinding, WarnsOfAReferencePoseThatMovesNothing) {
   Rig rig = MakeRig();
   rig.drivers[0].pose.values[1].reference_pose = "smile";  // moves the cheek, not the brow
-  const Result<RigBinding> binding = Bind(rig);
+  const Result<RigBinding> binding = BindRig(rig);
   ASSERT_TRUE(binding.ok());
   EXPECT_THAT(binding->warnings(), ElementsAre(HasSubstr("value 'squash' stays 0")));
 }
@@ -356,7 +356,7 @@ TEST(RigBinding, WarnsOfAPointThatDoesNotHangFromTheAnchor) {
   Rig rig = MakeRig();
   rig.reference_poses[0].joints.push_back({"hand_l", AngleAxis(10.0f, {1, 1, 0})});
   rig.drivers[0].pose.points.push_back({.joint = "hand_l"});
-  const Result<RigBinding> binding = Bind(rig);
+  const Result<RigBinding> binding = BindRig(rig);
   ASSERT_TRUE(binding.ok());
   EXPECT_THAT(binding->warnings(), ElementsAre(HasSubstr("does not hang from the anchor")));
 }
@@ -364,11 +364,11 @@ TEST(RigBinding, WarnsOfAPointThatDoesNotHangFromTheAnchor) {
 TEST(RigBinding, IgnoresJointsThatAReferencePoseLeavesAtRest) {
   Rig rig = MakeRig();
   rig.reference_poses[0].joints.push_back({.joint = "third_leg"});
-  EXPECT_TRUE(Bind(rig).ok());
+  EXPECT_TRUE(BindRig(rig).ok());
 }
 
 TEST(RigBinding, MatchesBlendShapesWithoutCase) {
-  const Result<RigBinding> binding = Bind(MakeRig());
+  const Result<RigBinding> binding = BindRig(MakeRig());
   ASSERT_TRUE(binding.ok());
   LocalPose pose = RestPose(binding->skeleton());
   pose.blend_shapes = {0.9f, 0.25f};
@@ -391,7 +391,7 @@ TEST(RigBinding, NeedsNoAnchorWherePosesAreNotMeasured) {
   rig.anchor = "skull";
   rig.drivers = {DriverNamed(&rig, "knee_l")};
   rig.regions = {rig.regions[4]};
-  const Status status = Bind(rig).status();
+  const Status status = BindRig(rig).status();
   EXPECT_TRUE(status.ok()) << status.ToString();
 }
 
@@ -401,12 +401,12 @@ TEST(RigBinding, NeedsNoAnchorOfTheRigWhereDriversHaveTheirOwn) {
   std::erase_if(rig.drivers,
                 [](const Driver& driver) { return driver.kind == Driver::Kind::kStrain; });
   for (Driver& driver : rig.drivers) driver.pose.anchor = "head";
-  const Result<RigBinding> binding = Bind(rig);
+  const Result<RigBinding> binding = BindRig(rig);
   ASSERT_TRUE(binding.ok()) << binding.status().ToString();
   // One driver without its own anchor needs the rig's, and rests without it.
   DriverNamed(&rig, "brow_r").pose.anchor.clear();
-  EXPECT_EQ(Bind(rig).status().code(), StatusCode::kNotFound);
-  const Result<RigBinding> partial = Bind(rig, true);
+  EXPECT_EQ(BindRig(rig).status().code(), StatusCode::kNotFound);
+  const Result<RigBinding> partial = BindRig(rig, true);
   ASSERT_TRUE(partial.ok()) << partial.status().ToString();
   EXPECT_THAT(partial->missing_joints(), ElementsAre("skull"));
   LocalPose pose = RestPose(partial->skeleton());

@@ -18,13 +18,13 @@ namespace {
 using glm::mat3;
 using glm::vec3;
 
-constexpr float kWidth = 0.4f, kHeight = 0.1f;    // metres
-constexpr float kFirst = 0.175f, kLast = 0.225f;  // of a band that is pressed along x
-constexpr float kReach = 0.04f;                   // metres
+constexpr float kStrainWidth = 0.4f, kStrainHeight = 0.1f;  // metres
+constexpr float kFirst = 0.175f, kLast = 0.225f;            // of a band that is pressed along x
+constexpr float kReach = 0.04f;                             // metres
 
 class Strain : public testing::Test {
  protected:
-  Strain() : mesh_(toys::Sheet(kWidth, kHeight, 40, 10)) {
+  Strain() : mesh_(toys::Sheet(kStrainWidth, kStrainHeight, 40, 10)) {
     const character::Mesh* const meshes[] = {&mesh_};
     surface_ = std::make_unique<Surface>(meshes);
     fine_ = std::make_unique<FineMesh>(*surface_, 0.007f);
@@ -63,35 +63,36 @@ class Strain : public testing::Test {
   std::vector<vec3> cut_;
 };
 
-const vec3 kX(1, 0, 0), kY(0, 1, 0);
+const vec3 kAcross(1, 0, 0), kUp(0, 1, 0);
 
 TEST_F(Strain, SpreadsLostLengthAlongTheCompression) {
   const std::vector<mat3> lost = Measured(Pressed(0.6f)).lost;
-  const double inside = Mean(lost, kX, kFirst + 0.015f, kLast - 0.015f);
-  const double beside = Mean(lost, kX, kLast + 0.01f, kLast + 0.04f);
+  const double inside = Mean(lost, kAcross, kFirst + 0.015f, kLast - 0.015f);
+  const double beside = Mean(lost, kAcross, kLast + 0.01f, kLast + 0.04f);
   EXPECT_GT(beside, 0.08);
-  EXPECT_NEAR(Mean(lost, kX, kFirst - 0.04f, kFirst - 0.01f), beside, 0.2 * beside);
+  EXPECT_NEAR(Mean(lost, kAcross, kFirst - 0.04f, kFirst - 0.01f), beside, 0.2 * beside);
   EXPECT_GT(inside, 0.6 * beside);
   EXPECT_LT(inside, 0.5);
-  EXPECT_LT(Mean(lost, kY, kLast + 0.01f, kLast + 0.04f), 0.2 * beside);
-  EXPECT_LT(Mean(lost, kX, kLast + 0.13f, kWidth), 0.02 * beside);
+  EXPECT_LT(Mean(lost, kUp, kLast + 0.01f, kLast + 0.04f), 0.2 * beside);
+  EXPECT_LT(Mean(lost, kAcross, kLast + 0.13f, kStrainWidth), 0.02 * beside);
 }
 
 TEST_F(Strain, KeepsTheLostLength) {
   const double whole = 0.6 * static_cast<double>(kLast - kFirst);
   for (const float reach : {0.0f, 0.02f, kReach}) {
     const std::vector<mat3> lost = Measured(Pressed(0.6f), 1.0f, reach).lost;
-    EXPECT_NEAR(static_cast<double>(kWidth) * Mean(lost, kX, 0.0f, kWidth), whole, 0.25 * whole);
+    EXPECT_NEAR(static_cast<double>(kStrainWidth) * Mean(lost, kAcross, 0.0f, kStrainWidth), whole,
+                0.25 * whole);
   }
 }
 
 TEST_F(Strain, TellsPullFromCompression) {
   const ClothStrain pulled = Measured(Pressed(-0.2f));
   const double whole = 0.2 * static_cast<double>(kLast - kFirst);
-  EXPECT_NEAR(static_cast<double>(kWidth) * Mean(pulled.pulled, kX, 0.0f, kWidth), whole,
-              0.25 * whole);
-  EXPECT_NEAR(Mean(pulled.lost, kX, 0.0f, kWidth), 0.0, 3e-3);
-  EXPECT_NEAR(Mean(Measured(Pressed(0.6f)).pulled, kX, 0.0f, kWidth), 0.0, 3e-3);
+  EXPECT_NEAR(static_cast<double>(kStrainWidth) * Mean(pulled.pulled, kAcross, 0.0f, kStrainWidth),
+              whole, 0.25 * whole);
+  EXPECT_NEAR(Mean(pulled.lost, kAcross, 0.0f, kStrainWidth), 0.0, 3e-3);
+  EXPECT_NEAR(Mean(Measured(Pressed(0.6f)).pulled, kAcross, 0.0f, kStrainWidth), 0.0, 3e-3);
 }
 
 TEST_F(Strain, ClothBesideAPullFeedsIt) {
@@ -100,7 +101,7 @@ TEST_F(Strain, ClothBesideAPullFeedsIt) {
     return Mean(MeasureClothStrain(*fine_, cut_, posed, Room(),
                                    {.pressed = kReach, .pulled = 0.01f, .fed = fed, .feeds = feeds})
                     .lost,
-                kX, from, to);
+                kAcross, from, to);
   };
   EXPECT_GT(lost(0.05f, kLast + 0.02f, kLast + 0.06f), 0.01);
   EXPECT_GT(lost(0.05f, kLast + 0.02f, kLast + 0.06f),
@@ -119,10 +120,10 @@ TEST_F(Strain, ClothThatStretchesIsPulledLess) {
   };
   const ClothStrain knitted = measured(0.1f, 0.125f);
   // At the ends of the band, single edges are pulled further.
-  EXPECT_LT(Mean(knitted.pulled, kX, 0.0f, kWidth), 1e-3);
-  EXPECT_LT(Mean(knitted.lost, kX, 0.0f, kWidth), 1e-3);
-  const double woven = Mean(measured(0.3f, 0.0f).pulled, kX, 0.0f, kWidth);
-  const double left = Mean(measured(0.3f, 0.125f).pulled, kX, 0.0f, kWidth);
+  EXPECT_LT(Mean(knitted.pulled, kAcross, 0.0f, kStrainWidth), 1e-3);
+  EXPECT_LT(Mean(knitted.lost, kAcross, 0.0f, kStrainWidth), 1e-3);
+  const double woven = Mean(measured(0.3f, 0.0f).pulled, kAcross, 0.0f, kStrainWidth);
+  const double left = Mean(measured(0.3f, 0.125f).pulled, kAcross, 0.0f, kStrainWidth);
   EXPECT_NEAR(left, woven * (0.3 - 0.125) / 0.3, 0.1 * woven);
 }
 
@@ -152,9 +153,9 @@ TEST_F(Strain, IsZeroWithoutDeformationOrRoom) {
   for (const ClothStrain& strain : {Measured(turned), Measured(Pressed(0.6f), 0.0f)}) {
     ASSERT_EQ(strain.lost.size(), cut_.size());
     ASSERT_EQ(strain.pulled.size(), cut_.size());
-    for (const vec3& along : {kX, kY}) {
-      EXPECT_NEAR(Mean(strain.lost, along, 0.0f, kWidth), 0.0, 3e-3);
-      EXPECT_NEAR(Mean(strain.pulled, along, 0.0f, kWidth), 0.0, 3e-3);
+    for (const vec3& along : {kAcross, kUp}) {
+      EXPECT_NEAR(Mean(strain.lost, along, 0.0f, kStrainWidth), 0.0, 3e-3);
+      EXPECT_NEAR(Mean(strain.pulled, along, 0.0f, kStrainWidth), 0.0, 3e-3);
     }
   }
 }

@@ -16,13 +16,13 @@ namespace {
 
 using glm::vec3;
 
-constexpr float kWidth = 0.6f, kHeight = 0.4f;  // metres
+constexpr float kCreasedWidth = 0.6f, kCreasedHeight = 0.4f;  // metres
 constexpr float kSpacing = 0.04f;
 
 // A sheet in the plane z = 0 whose creases run along y.
 class Creases : public testing::Test {
  protected:
-  Creases() : mesh_(toys::Sheet(kWidth, kHeight, 30, 20)) {
+  Creases() : mesh_(toys::Sheet(kCreasedWidth, kCreasedHeight, 30, 20)) {
     const character::Mesh* const meshes[] = {&mesh_};
     surface_ = std::make_unique<Surface>(meshes);
     fine_ = std::make_unique<FineMesh>(*surface_, 0.007f);
@@ -115,7 +115,7 @@ std::vector<float> CrossingsAt(const std::vector<Crease>& creases, float y) {
 TEST_F(Creases, LieAboutASpacingApartAndVary) {
   const std::vector<Crease> creases = Lay(FieldOf([](const vec3&) { return 0.2f; }));
   double sum = 0.0, squares = 0.0, count = 0.0;
-  for (float y = 0.05f; y < kHeight - 0.05f; y += 0.02f) {
+  for (float y = 0.05f; y < kCreasedHeight - 0.05f; y += 0.02f) {
     const std::vector<float> places = CrossingsAt(creases, y);
     for (std::size_t i = 1; i < places.size(); ++i) {
       const auto gap = static_cast<double>(places[i] - places[i - 1]);

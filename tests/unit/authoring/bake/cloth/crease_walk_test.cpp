@@ -17,12 +17,12 @@ namespace {
 
 using glm::vec3;
 
-constexpr float kWidth = 0.3f, kHeight = 0.2f;  // metres
+constexpr float kWalkWidth = 0.3f, kWalkHeight = 0.2f;  // metres
 
 // A flat sheet, with creases along `direction`.
 class Walks : public testing::Test {
  protected:
-  Walks() : mesh_(toys::Sheet(kWidth, kHeight, 12, 8)) {
+  Walks() : mesh_(toys::Sheet(kWalkWidth, kWalkHeight, 12, 8)) {
     const character::Mesh* const meshes[] = {&mesh_};
     surface_ = std::make_unique<Surface>(meshes);
     fine_ = std::make_unique<FineMesh>(*surface_, 0.01f);
@@ -66,7 +66,7 @@ class Walks : public testing::Test {
 TEST_F(Walks, FollowsTheFieldToTheBorderBothWays) {
   const CreaseField field = Field({1, 0, 0});
   const CreaseWalk walk(*fine_, field, 1);
-  const std::uint32_t middle = Nearest({0.5f * kWidth, 0.5f * kHeight, 0.0f});
+  const std::uint32_t middle = Nearest({0.5f * kWalkWidth, 0.5f * kWalkHeight, 0.0f});
   const vec3 from = fine_->positions()[middle];
   std::optional<CreaseWalk::Spot> spot = walk.StartAt(middle);
   ASSERT_TRUE(spot);
@@ -74,7 +74,7 @@ TEST_F(Walks, FollowsTheFieldToTheBorderBothWays) {
   spot->direction = -spot->direction;
   const End behind = Walk(walk, *spot);
   constexpr float kEdge = 0.014f;  // the last triangle is not crossed
-  EXPECT_NEAR(ahead.place.x, kWidth, kEdge);
+  EXPECT_NEAR(ahead.place.x, kWalkWidth, kEdge);
   EXPECT_NEAR(behind.place.x, 0.0f, kEdge);
   for (const End& end : {ahead, behind}) {
     EXPECT_NEAR(end.place.y, from.y, kEdge);
@@ -91,7 +91,7 @@ TEST_F(Walks, GoesOnWhereTheFieldPointsBack) {
   std::optional<CreaseWalk::Spot> spot = walk.StartAt(Nearest({0.1f, 0.02f, 0.0f}));
   ASSERT_TRUE(spot);
   spot->direction = {0, 1, 0};
-  EXPECT_NEAR(Walk(walk, *spot).place.y, kHeight, 0.014f);
+  EXPECT_NEAR(Walk(walk, *spot).place.y, kWalkHeight, 0.014f);
 }
 
 TEST_F(Walks, BendsNoMoreSharplyThanCloth) {
@@ -114,7 +114,7 @@ TEST_F(Walks, BendsNoMoreSharplyThanCloth) {
 }
 
 TEST_F(Walks, StartsNowhereOnATriangleWithoutArea) {
-  character::Mesh flat = toys::Sheet(kWidth, 0.0f, 3, 1);
+  character::Mesh flat = toys::Sheet(kWalkWidth, 0.0f, 3, 1);
   const character::Mesh* const meshes[] = {&flat};
   const Surface surface(meshes);
   const FineMesh fine(surface, 0.01f);

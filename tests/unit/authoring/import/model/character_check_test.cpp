@@ -18,10 +18,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-rig::SkeletonMaps Maps() {
-  return *rig::SkeletonMaps::Load(std::string(FURROW_SOURCE_DIR) + "/rig/skeleton_maps/vrm.json");
-}
-
 // The reader's notes on a valid file.
 character::SourceNotes GoodNotes() {
   character::SourceNotes notes;
@@ -37,7 +33,7 @@ const Finding* FindFinding(const CharacterReport& report, const std::string& cod
 }
 
 TEST(CharacterCheck, GoodBodyLacksOnlyFaceAndRig) {
-  const CharacterReport report = CheckCharacter(ToyBody(), GoodNotes(), Maps(), false);
+  const CharacterReport report = CheckCharacter(ToyBody(), GoodNotes(), VrmMaps(), false);
   EXPECT_EQ(report.Count(Severity::kError), 0u) << ToText(report);
   EXPECT_EQ(report.Count(Severity::kWarning), 0u) << ToText(report);
   EXPECT_NE(FindFinding(report, "no-rig"), nullptr);
@@ -64,7 +60,7 @@ TEST(CharacterCheck, AFaceOfBlendShapesNeedsNoSkin) {
   AddShapeFace(&face);
   character::SourceNotes notes = GoodNotes();
   for (character::MeshNotes& mesh : notes.meshes) mesh.skinned = false;
-  const CharacterReport report = CheckCharacter(face, notes, Maps(), false);
+  const CharacterReport report = CheckCharacter(face, notes, VrmMaps(), false);
   const Finding* finding = FindFinding(report, "no-skin");
   ASSERT_NE(finding, nullptr);
   EXPECT_EQ(finding->severity, Severity::kNote);
@@ -79,7 +75,7 @@ TEST(CharacterCheck, APartWithoutUvsIsAWarning) {
   character::SourceNotes notes = GoodNotes();
   notes.meshes.push_back(notes.meshes[0]);
   notes.meshes[1].has_uvs = false;
-  const CharacterReport report = CheckCharacter(body, notes, Maps(), false);
+  const CharacterReport report = CheckCharacter(body, notes, VrmMaps(), false);
   EXPECT_EQ(report.Count(Severity::kError), 0u) << ToText(report);
   const Finding* finding = FindFinding(report, "uv-missing");
   ASSERT_NE(finding, nullptr);
@@ -99,7 +95,7 @@ TEST_P(CharacterFaults, AreReported) {
   character::Character body = ToyBody();
   character::SourceNotes notes = GoodNotes();
   GetParam().make(&body, &notes);
-  const CharacterReport report = CheckCharacter(body, notes, Maps(), false);
+  const CharacterReport report = CheckCharacter(body, notes, VrmMaps(), false);
   const Finding* finding = FindFinding(report, GetParam().code);
   ASSERT_NE(finding, nullptr) << ToText(report);
   EXPECT_EQ(finding->severity, GetParam().severity);
@@ -189,7 +185,7 @@ TEST(CharacterCheck, TrianglesThatAShapeOpensStay) {
 TEST(CharacterCheck, JsonContainsTheSameFindings) {
   character::SourceNotes notes = GoodNotes();
   notes.meshes[0].unskinned_vertices = 1;
-  const CharacterReport report = CheckCharacter(ToyBody(), notes, Maps(), false);
+  const CharacterReport report = CheckCharacter(ToyBody(), notes, VrmMaps(), false);
   const auto json = nlohmann::json::parse(ToJson(report));
   EXPECT_EQ(json["counts"]["joints"], 19);
   EXPECT_EQ(json["findings"].size(), report.findings.size());

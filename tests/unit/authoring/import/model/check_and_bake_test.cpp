@@ -35,7 +35,7 @@ constexpr char kRig[] = R"({
   "wrinkle_maps": [{"name": "folds", "surface": "skin"}, {"name": "creases", "surface": "cloth"}]})";
 
 // A body of skin, and a coat that is the same boxes again.
-Character Dressed() {
+Character DressedBody() {
   Character body = ToyBody();
   body.materials.push_back({.name = "coat", .kind = Material::Kind::kCloth});
   body.meshes.push_back(body.meshes[0]);
@@ -52,8 +52,7 @@ CharacterReport Check(const Character& body) {
       .skinned = true, .has_uvs = true, .has_normals = true, .has_tangents = true};
   character::SourceNotes notes;
   notes.meshes.assign(body.meshes.size(), good);
-  const auto maps = rig::SkeletonMaps::Load(FURROW_SOURCE_DIR "/rig/skeleton_maps/vrm.json");
-  return CheckCharacter(body, notes, *maps, true);
+  return CheckCharacter(body, notes, VrmMaps(), true);
 }
 
 // What `furrow bake` does, at the smallest size.
@@ -89,7 +88,7 @@ void FlattenUvs(int mesh, Character* body) {
 class CheckAndBake : public ::testing::TestWithParam<Case> {};
 
 TEST_P(CheckAndBake, Agree) {
-  Character body = Dressed();
+  Character body = DressedBody();
   GetParam().change(&body);
   const CharacterReport report = Check(body);
   const Status baked = BakeAll(body);

@@ -31,10 +31,6 @@ class Folder : public TemporaryFolder {
   }
 };
 
-rig::SkeletonMaps Maps() {
-  return *rig::SkeletonMaps::Load(std::string(FURROW_SOURCE_DIR) + "/rig/skeleton_maps/vrm.json");
-}
-
 // Model-space positions of all vertices with some joints turned. The key is the UV, because
 // importers reorder vertices.
 std::map<std::pair<int, int>, glm::vec3> Posed(const character::Character& character) {
@@ -92,7 +88,7 @@ TEST_P(ForeignFormat, BendsLikeTheOriginal) {
   const character::Character body = ToyBody();
   const Folder folder;
   const auto imported =
-      ImportModel(folder.Write(file, ConvertByAssimp(GlbOf(body), format)), Maps());
+      ImportModel(folder.Write(file, ConvertByAssimp(GlbOf(body), format)), VrmMaps());
   ASSERT_TRUE(imported.ok()) << imported.status().ToString();
   for (const std::string& name : body.skeleton.joint_names()) {
     EXPECT_NE(imported->character.skeleton.Find(name), wrinkle::kNoJoint) << name;
@@ -114,7 +110,7 @@ INSTANTIATE_TEST_SUITE_P(Formats, ForeignFormat,
 
 TEST(ImportModel, RecognisesGlbByContent) {
   const Folder folder;
-  const auto imported = ImportModel(folder.Write("body.fbx", GlbOf(ToyBody())), Maps());
+  const auto imported = ImportModel(folder.Write("body.fbx", GlbOf(ToyBody())), VrmMaps());
   ASSERT_TRUE(imported.ok()) << imported.status().ToString();
   ExpectSamePoses(imported->character, ToyBody());
 }
@@ -127,7 +123,7 @@ TEST_P(Space, IsConverted) {
   const auto& [turn, scale] = GetParam();
   ASSERT_TRUE(MoveToSpace(turn, scale, &body).ok());
   const Folder folder;
-  const auto imported = ImportModel(folder.Write("body.glb", GlbOf(body)), Maps());
+  const auto imported = ImportModel(folder.Write("body.glb", GlbOf(body)), VrmMaps());
   ASSERT_TRUE(imported.ok()) << imported.status().ToString();
   ExpectSamePoses(imported->character, ToyBody());
   EXPECT_FALSE(imported->remarks.empty());
@@ -195,7 +191,7 @@ TEST(ImportModel, TurnsAndScalesShapes) {
   EXPECT_LT(glm::distance(moved.meshes[0].morph_targets[0].deltas[0].position, glm::vec3(0, 0, 5)),
             1e-4f);
   const Folder folder;
-  const auto imported = ImportModel(folder.Write("body.glb", GlbOf(moved)), Maps());
+  const auto imported = ImportModel(folder.Write("body.glb", GlbOf(moved)), VrmMaps());
   ASSERT_TRUE(imported.ok()) << imported.status().ToString();
   ExpectSameShapes(imported->character, body);
 }
@@ -204,7 +200,7 @@ TEST(ImportModel, ReadsShapesOfFbx) {
   const character::Character body = MorphingBody();
   const Folder folder;
   const auto imported =
-      ImportModel(folder.Write("body.fbx", ConvertByAssimp(GlbOf(body), "fbxa")), Maps());
+      ImportModel(folder.Write("body.fbx", ConvertByAssimp(GlbOf(body), "fbxa")), VrmMaps());
   ASSERT_TRUE(imported.ok()) << imported.status().ToString();
   ExpectSameShapes(imported->character, body);
 }
@@ -218,7 +214,7 @@ TEST(ImportModel, NotesAMouthCloseThatContainsTheJaw) {
       {0, {{0, down, {}, {}}, {1, down, {}, {}}, {2, down, {}, {}}, {3, down, {}, {}}}},
       {1, {{0, down, {}, {}}, {1, down, {}, {}}, {2, down, {}, {}}, {3, down, {}, {}}}}};
   const Folder folder;
-  const auto imported = ImportModel(folder.Write("body.glb", GlbOf(body)), Maps());
+  const auto imported = ImportModel(folder.Write("body.glb", GlbOf(body)), VrmMaps());
   ASSERT_TRUE(imported.ok()) << imported.status().ToString();
   EXPECT_THAT(imported->remarks, Contains(HasSubstr("mouthClose opens the jaw itself")));
   const auto again = OpenModel(folder.Write("again.glb", GlbOf(imported->character)));
@@ -231,7 +227,7 @@ TEST(ImportModel, NotesAMouthCloseThatContainsTheJaw) {
 TEST(ImportModel, AcceptsAScale) {
   const Folder folder;
   const auto imported =
-      ImportModel(folder.Write("body.glb", GlbOf(ToyBody())), Maps(), {.scale = 2.0f});
+      ImportModel(folder.Write("body.glb", GlbOf(ToyBody())), VrmMaps(), {.scale = 2.0f});
   ASSERT_TRUE(imported.ok());
   const int head = imported->character.skeleton.Find("head");
   EXPECT_NEAR(imported->character.skeleton.rest_model()[head][3].y, 3.1f, 1e-4f);
@@ -239,7 +235,7 @@ TEST(ImportModel, AcceptsAScale) {
 
 Status StatusOf(const character::Character& character, const ModelOptions& options = {}) {
   const Folder folder;
-  return ImportModel(folder.Write("bad.glb", GlbOf(character)), Maps(), options).status();
+  return ImportModel(folder.Write("bad.glb", GlbOf(character)), VrmMaps(), options).status();
 }
 
 TEST(ImportModel, TrianglesWithoutAreaAreRemoved) {
@@ -247,7 +243,7 @@ TEST(ImportModel, TrianglesWithoutAreaAreRemoved) {
   const std::size_t indices = body.meshes[0].indices.size();
   body.meshes[0].vertices[1].position = body.meshes[0].vertices[0].position;
   const Folder folder;
-  const auto imported = ImportModel(folder.Write("flat.glb", GlbOf(body)), Maps());
+  const auto imported = ImportModel(folder.Write("flat.glb", GlbOf(body)), VrmMaps());
   ASSERT_TRUE(imported.ok()) << imported.status().ToString();
   EXPECT_EQ(imported->character.meshes[0].indices.size(), indices - 3);
   EXPECT_THAT(imported->remarks, Contains(HasSubstr("without area: 1")));
@@ -261,7 +257,8 @@ TEST(ImportModel, UnskinnedVerticesAreAnErrorOrFollowTheirNeighbours) {
   EXPECT_EQ(status.code(), StatusCode::kUnsupported);
   EXPECT_THAT(status.what(), HasSubstr("1 vertex follows no joint"));
   const Folder folder;
-  const auto repaired = ImportModel(folder.Write("bad.glb", GlbOf(body)), Maps(), {.repair = true});
+  const auto repaired =
+      ImportModel(folder.Write("bad.glb", GlbOf(body)), VrmMaps(), {.repair = true});
   ASSERT_TRUE(repaired.ok()) << repaired.status().ToString();
   EXPECT_EQ(repaired->character.meshes[0].vertices[vertex].joints[0],
             repaired->character.skeleton.Find("leftHand"));
@@ -273,7 +270,7 @@ TEST(ImportModel, OverlappingUvsAreAWarning) {
     body.meshes[0].vertices[v].uv = body.meshes[0].vertices[v + 24].uv;
   }
   const Folder folder;
-  const auto imported = ImportModel(folder.Write("body.glb", GlbOf(body)), Maps());
+  const auto imported = ImportModel(folder.Write("body.glb", GlbOf(body)), VrmMaps());
   ASSERT_TRUE(imported.ok());
   EXPECT_THAT(imported->warnings, Contains(HasSubstr("used twice")));
 }
@@ -288,7 +285,7 @@ TEST(ImportModel, APartWithoutUvsStaysFlat) {
   body.meshes[1].material = 1;
   for (character::Vertex& vertex : body.meshes[1].vertices) vertex.uv = {0.5f, 0.5f};
   const Folder folder;
-  const auto imported = ImportModel(folder.Write("body.glb", GlbOf(body)), Maps());
+  const auto imported = ImportModel(folder.Write("body.glb", GlbOf(body)), VrmMaps());
   ASSERT_TRUE(imported.ok()) << imported.status().ToString();
   EXPECT_TRUE(imported->character.materials[0].wrinkles);
   EXPECT_FALSE(imported->character.materials[1].wrinkles);
@@ -306,12 +303,12 @@ TEST(ImportModel, OtherFileTypesGiveOneClearError) {
       {"fbx.glb", fbx},
       {"notes.txt", "hello"}};
   for (const auto& [name, bytes] : files) {
-    const Status status = ImportModel(folder.Write(name, bytes), Maps()).status();
+    const Status status = ImportModel(folder.Write(name, bytes), VrmMaps()).status();
     EXPECT_FALSE(status.ok()) << name;
     EXPECT_THAT(status.where(), HasSubstr(name));
     EXPECT_THAT(status.what(), ::testing::Not(HasSubstr("\n"))) << name;
   }
-  EXPECT_EQ(ImportModel("/no/such.fbx", Maps()).status().code(), StatusCode::kNotFound);
+  EXPECT_EQ(ImportModel("/no/such.fbx", VrmMaps()).status().code(), StatusCode::kNotFound);
 }
 
 // Truncated FBX files of every length return a status and never crash this process.
@@ -328,7 +325,7 @@ TEST(ImportModel, TruncatedFilesReturnAStatus) {
 TEST(ImportModel, KeepsTheRolesOfTheJoints) {
   const Folder folder;
   const fs::path body = folder.Write("body.glb", GlbOf(ToyBody()));
-  const auto imported = ImportModel(body, Maps());
+  const auto imported = ImportModel(body, VrmMaps());
   ASSERT_TRUE(imported.ok()) << imported.status().ToString();
   const wrinkle::Skeleton& skeleton = imported->character.skeleton;
   ASSERT_EQ(imported->character.roles.size(), static_cast<std::size_t>(skeleton.num_joints()));
@@ -341,7 +338,7 @@ TEST(ImportModel, KeepsTheRolesOfTheJoints) {
   character::Character odd = imported->character;
   std::swap(odd.roles[1], odd.roles[2]);
   const fs::path again = folder.Write("again.glb", GlbOf(odd));
-  const rig::SkeletonMaps chosen_map = Maps();
+  const rig::SkeletonMaps chosen_map = VrmMaps();
   const auto one = chosen_map.maps();
   const auto kept = ImportModel(again, rig::SkeletonMaps({one.begin(), one.end()}));
   ASSERT_TRUE(kept.ok()) << kept.status().ToString();

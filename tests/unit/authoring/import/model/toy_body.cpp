@@ -131,6 +131,10 @@ character::Character ToyBody() {
   return body;
 }
 
+rig::SkeletonMaps VrmMaps() {
+  return *rig::SkeletonMaps::Load(FURROW_SOURCE_DIR "/rig/skeleton_maps/vrm.json");
+}
+
 std::string GlbOf(const character::Character& character) {
   const TemporaryFolder folder;
   EXPECT_TRUE(character::SaveCharacterGlb(character, folder / "toy.glb").ok());

@@ -13,7 +13,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr std::int64_t kUnixMs = 1'700'000'000'000;
+constexpr std::int64_t kKeeperUnixMs = 1'700'000'000'000;
 
 // One node and the store as it sees it. The clock of the node and of the system go together.
 class LeaseKeeperTest : public ::testing::Test {
@@ -21,7 +21,9 @@ class LeaseKeeperTest : public ::testing::Test {
   explicit LeaseKeeperTest(bool strict = false) : keeper_("a", 7, strict) {}
 
   void List() { keeper_.OnListing({incarnation_, entries_}, now_); }
-  std::vector<LeaseWrite> Tick() { return keeper_.Tick(now_, kUnixMs + now_ / milliseconds(1)); }
+  std::vector<LeaseWrite> Tick() {
+    return keeper_.Tick(now_, kKeeperUnixMs + now_ / milliseconds(1));
+  }
   void Freeze(Time time) {
     now_ += time;
     keeper_.OnPause(time, now_);
@@ -147,7 +149,7 @@ TEST_F(LeaseKeeperTest, TakesNothingBeforeTheStoreIsKnownForTheTimeOfALease) {
   ASSERT_EQ(writes.size(), 1u);
   EXPECT_EQ(writes[0].expected, 0u);
   EXPECT_EQ(writes[0].lease.node, "a");
-  EXPECT_GE(writes[0].lease.epoch, static_cast<std::uint64_t>(kUnixMs));
+  EXPECT_GE(writes[0].lease.epoch, static_cast<std::uint64_t>(kKeeperUnixMs));
 }
 
 TEST_F(LeaseKeeperTest, ServesOnlyWhatAListingConfirms) {
@@ -189,7 +191,8 @@ TEST_F(LeaseKeeperTest, RenewsInTheSameEpoch) {
 }
 
 TEST_F(LeaseKeeperTest, TakesOverWhatWasNotRenewedAndGoesAboveItsEpoch) {
-  const std::uint64_t ahead = kUnixMs + kMaxEpochAhead;  // the clock of the other node is far ahead
+  const std::uint64_t ahead =
+      kKeeperUnixMs + kMaxEpochAhead;  // the clock of the other node is far ahead
   entries_ = {{"ada", {.node = "b", .run = 1, .epoch = ahead, .deadline_ms = 0}, 5}};
   Settle();
   EXPECT_EQ(keeper_.HolderOf("ada", now_ - milliseconds(1)), "b");
@@ -226,7 +229,7 @@ TEST_F(LeaseKeeperTest, AnAbsurdEpochDoesNotEndPlacement) {
   entries_ = {{"eve", {.node = {}, .run = 0, .epoch = kMaxEpoch, .deadline_ms = 0}, 5}};
   Settle();
   const std::uint64_t epoch = Take();
-  EXPECT_GT(epoch, static_cast<std::uint64_t>(kUnixMs));
+  EXPECT_GT(epoch, static_cast<std::uint64_t>(kKeeperUnixMs));
   EXPECT_LT(epoch, kLeastClock);
   EXPECT_TRUE(Serves());
 }
@@ -331,7 +334,7 @@ TEST_F(LeaseKeeperTest, AfterAFreezeAListingComesBeforeTheNextWrite) {
   EXPECT_TRUE(Tick().empty());
   EXPECT_TRUE(keeper_.needs_listing());
   ++incarnation_;
-  entries_[0].lease = {.node = "b", .run = 8, .epoch = epoch + 1, .deadline_ms = kUnixMs};
+  entries_[0].lease = {.node = "b", .run = 8, .epoch = epoch + 1, .deadline_ms = kKeeperUnixMs};
   List();
   EXPECT_TRUE(Tick().empty());
   EXPECT_EQ(keeper_.HolderOf("ada", now_), "b");
@@ -376,7 +379,8 @@ TEST_F(LeaseKeeperTest, TheAnswerOfAnEmptiedStoreHidesNoRecord) {
   List();
   // The store confirmed it before it was emptied, with a higher revision than the next record has.
   keeper_.OnWritten("ada", writes[0].id, WriteResult::kDone, revision_ + 1, now_);
-  entries_ = {{"ada", {.node = "b", .run = 8, .epoch = epoch + 1, .deadline_ms = kUnixMs}, 1}};
+  entries_ = {
+      {"ada", {.node = "b", .run = 8, .epoch = epoch + 1, .deadline_ms = kKeeperUnixMs}, 1}};
   List();
   EXPECT_EQ(keeper_.HolderOf("ada", now_), "b");
   EXPECT_FALSE(Serves());

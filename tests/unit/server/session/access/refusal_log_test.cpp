@@ -14,7 +14,6 @@
 namespace furrow::server {
 namespace {
 
-using std::chrono::seconds;
 using ::testing::HasSubstr;
 
 class RefusalLogTest : public testing::Test {
@@ -46,16 +45,16 @@ class RefusalLogTest : public testing::Test {
 };
 
 TEST_F(RefusalLogTest, SaysWhoIsRefusedAndWhy) {
-  Note("udp 192.0.2.1", "the token has expired", seconds(1));
+  Note("udp 192.0.2.1", "the token has expired", std::chrono::seconds(1));
   EXPECT_EQ(Take(), "warning refuses udp 192.0.2.1: the token has expired\n");
 }
 
 TEST_F(RefusalLogTest, AFloodLeavesFewLinesAndACount) {
-  for (int i = 0; i < 1000; ++i) Note("udp 192.0.2.1", "forged", seconds(1));
+  for (int i = 0; i < 1000; ++i) Note("udp 192.0.2.1", "forged", std::chrono::seconds(1));
   const std::string flood = Take();
   EXPECT_EQ(names_, 10);  // lines that are left out cost no text
   EXPECT_EQ(std::count(flood.begin(), flood.end(), '\n'), 10);
-  Note("udp 192.0.2.7", "the token has expired", seconds(7));
+  Note("udp 192.0.2.7", "the token has expired", std::chrono::seconds(7));
   EXPECT_THAT(Take(), HasSubstr("192.0.2.7: the token has expired; 990 others"));
 }
 

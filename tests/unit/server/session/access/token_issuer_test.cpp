@@ -13,12 +13,12 @@ namespace {
 namespace secure = protocol::secure;
 using testing::HasSubstr;
 
-constexpr std::uint64_t kUnixNow = 1'000'000;
+constexpr std::uint64_t kIssuerNow = 1'000'000;
 
 class TokenIssuerTest : public testing::Test {
  protected:
   void SetUp() override {
-    key_id = *ring.AddNew(kUnixNow, kUnixNow + 10'000, secure::SystemRandom());
+    key_id = *ring.AddNew(kIssuerNow, kIssuerNow + 10'000, secure::SystemRandom());
     gate.SetKeys(ring);
     own.roles = secure::Roles(Role::kOperate) | Role::kWatch;
     own.subjects = "stage-*, ann";
@@ -34,7 +34,8 @@ class TokenIssuerTest : public testing::Test {
   }
 
   Metrics metrics;
-  TokenGate gate{{.security = Security::kRequired, .name = "a"}, [] { return kUnixNow; }, &metrics};
+  TokenGate gate{
+      {.security = Security::kRequired, .name = "a"}, [] { return kIssuerNow; }, &metrics};
   TokenIssuer issuer{&gate, &metrics};
   secure::KeyRing ring;
   std::uint32_t key_id = 0;
@@ -45,7 +46,7 @@ class TokenIssuerTest : public testing::Test {
 TEST_F(TokenIssuerTest, ANewTokenOpensTheDoorAsItSays) {
   const auto issued = Issue(Role::kWatch, "stage-*");
   ASSERT_TRUE(issued.ok()) << issued.status().ToString();
-  EXPECT_EQ(issued->expires, kUnixNow + 60);
+  EXPECT_EQ(issued->expires, kIssuerNow + 60);
   const auto access = gate.Admit(issued->text, /*shielded=*/true, now);
   ASSERT_TRUE(access.ok()) << access.status().ToString();
   EXPECT_TRUE(access->MayWatch("stage-bob"));
@@ -92,7 +93,7 @@ TEST_F(TokenIssuerTest, ATokenForEveryServerMakesOnesForASingleServer) {
 
 TEST_F(TokenIssuerTest, NoTokenOutlivesItsKey) {
   secure::KeyRing short_lived;
-  key_id = *short_lived.AddNew(kUnixNow, kUnixNow + 30, secure::SystemRandom());
+  key_id = *short_lived.AddNew(kIssuerNow, kIssuerNow + 30, secure::SystemRandom());
   gate.SetKeys(short_lived);
   EXPECT_EQ(Issue(Role::kWatch, {}, 31).status().code(), StatusCode::kUnavailable);
   EXPECT_TRUE(Issue(Role::kWatch, {}, 30).ok());
@@ -102,7 +103,7 @@ TEST_F(TokenIssuerTest, NoTokenOutlivesItsKey) {
 
 // Otherwise whoever holds a token of a leaked key could move to the next key before it is retired.
 TEST_F(TokenIssuerTest, ANewTokenHasTheKeyOfItsMaker) {
-  ASSERT_TRUE(ring.AddNew(kUnixNow + 1, kUnixNow + 20'000, secure::SystemRandom()).ok());
+  ASSERT_TRUE(ring.AddNew(kIssuerNow + 1, kIssuerNow + 20'000, secure::SystemRandom()).ok());
   gate.SetKeys(ring);
   const auto issued = Issue(Role::kWatch);
   ASSERT_TRUE(issued.ok()) << issued.status().ToString();

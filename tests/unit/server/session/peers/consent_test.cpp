@@ -9,64 +9,64 @@
 namespace furrow::server {
 namespace {
 
-constexpr Time kStart = FromSeconds(100);
+constexpr Time kConsentStart = FromSeconds(100);
 
 TEST(Consent, HoldsForTwoSecondsAfterTheChallengeThatWasAnswered) {
   Consent consent;
-  consent.Begin(kStart);
-  EXPECT_TRUE(consent.Holds(kStart + Consent::kPause));
-  EXPECT_FALSE(consent.Holds(kStart + Consent::kPause + FromSeconds(0.001)));
-  consent.Sent(5, kStart + FromSeconds(1));
+  consent.Begin(kConsentStart);
+  EXPECT_TRUE(consent.Holds(kConsentStart + Consent::kPause));
+  EXPECT_FALSE(consent.Holds(kConsentStart + Consent::kPause + FromSeconds(0.001)));
+  consent.Sent(5, kConsentStart + FromSeconds(1));
   // A late answer does not prolong it further than a quick one.
   consent.Answered(5);
-  EXPECT_TRUE(consent.Holds(kStart + FromSeconds(3)));
-  EXPECT_FALSE(consent.Holds(kStart + FromSeconds(3.001)));
+  EXPECT_TRUE(consent.Holds(kConsentStart + FromSeconds(3)));
+  EXPECT_FALSE(consent.Holds(kConsentStart + FromSeconds(3.001)));
 }
 
 TEST(Consent, DoesNotRunOutWhileTheDaemonStandsStill) {
   Consent consent;
-  consent.Begin(kStart);
-  consent.Sent(5, kStart + FromSeconds(1));
+  consent.Begin(kConsentStart);
+  consent.Sent(5, kConsentStart + FromSeconds(1));
   consent.OnStall(FromSeconds(60));
-  EXPECT_TRUE(consent.Holds(kStart + FromSeconds(62)));
-  EXPECT_FALSE(consent.Holds(kStart + FromSeconds(62.001)));
+  EXPECT_TRUE(consent.Holds(kConsentStart + FromSeconds(62)));
+  EXPECT_FALSE(consent.Holds(kConsentStart + FromSeconds(62.001)));
   consent.Answered(5);
-  EXPECT_TRUE(consent.Holds(kStart + FromSeconds(63)));
-  EXPECT_FALSE(consent.Holds(kStart + FromSeconds(63.001)));
+  EXPECT_TRUE(consent.Holds(kConsentStart + FromSeconds(63)));
+  EXPECT_FALSE(consent.Holds(kConsentStart + FromSeconds(63.001)));
 }
 
 TEST(Consent, IsRenewedOnlyByTheNumberOfAChallenge) {
   Consent consent;
-  consent.Begin(kStart);
+  consent.Begin(kConsentStart);
   consent.Answered(0);  // nothing was asked yet
-  consent.Sent(7, kStart + FromSeconds(1));
+  consent.Sent(7, kConsentStart + FromSeconds(1));
   consent.Answered(8);
-  EXPECT_EQ(consent.answered(), kStart);
+  EXPECT_EQ(consent.answered(), kConsentStart);
   consent.Answered(7);
-  EXPECT_EQ(consent.answered(), kStart + FromSeconds(1));
+  EXPECT_EQ(consent.answered(), kConsentStart + FromSeconds(1));
 }
 
 TEST(Consent, AnswersMayComeLateAndOutOfOrder) {
   Consent consent;
-  consent.Begin(kStart);
-  for (int i = 1; i <= 5; ++i) consent.Sent(i, kStart + i * Consent::kInterval);
+  consent.Begin(kConsentStart);
+  for (int i = 1; i <= 5; ++i) consent.Sent(i, kConsentStart + i * Consent::kInterval);
   consent.Answered(3);
   consent.Answered(1);
-  EXPECT_EQ(consent.answered(), kStart + 3 * Consent::kInterval);
+  EXPECT_EQ(consent.answered(), kConsentStart + 3 * Consent::kInterval);
   // Forgotten: newer challenges have taken its place.
-  for (int i = 6; i <= 25; ++i) consent.Sent(i, kStart + i * Consent::kInterval);
+  for (int i = 6; i <= 25; ++i) consent.Sent(i, kConsentStart + i * Consent::kInterval);
   consent.Answered(5);
-  EXPECT_EQ(consent.answered(), kStart + 3 * Consent::kInterval);
+  EXPECT_EQ(consent.answered(), kConsentStart + 3 * Consent::kInterval);
 }
 
 TEST(Consent, ChallengesComeFasterWhenAnswersAreLost) {
   Consent consent;
-  consent.Begin(kStart);
-  EXPECT_TRUE(consent.ChallengeDue(kStart));
-  consent.Sent(1, kStart);
-  EXPECT_FALSE(consent.ChallengeDue(kStart + Consent::kInterval - Time{1}));
-  EXPECT_TRUE(consent.ChallengeDue(kStart + Consent::kInterval));
-  const Time late = kStart + Consent::kOverdue + Time{1};
+  consent.Begin(kConsentStart);
+  EXPECT_TRUE(consent.ChallengeDue(kConsentStart));
+  consent.Sent(1, kConsentStart);
+  EXPECT_FALSE(consent.ChallengeDue(kConsentStart + Consent::kInterval - Time{1}));
+  EXPECT_TRUE(consent.ChallengeDue(kConsentStart + Consent::kInterval));
+  const Time late = kConsentStart + Consent::kOverdue + Time{1};
   consent.Sent(2, late);
   EXPECT_FALSE(consent.ChallengeDue(late + Consent::kUrgentInterval - Time{1}));
   EXPECT_TRUE(consent.ChallengeDue(late + Consent::kUrgentInterval));

@@ -11,7 +11,7 @@
 namespace furrow::server {
 namespace {
 
-constexpr Time kNow = FromSeconds(1000);
+constexpr Time kReceptionNow = FromSeconds(1000);
 
 class ReceptionTest : public testing::Test {
  protected:
@@ -21,7 +21,7 @@ class ReceptionTest : public testing::Test {
   template <class Message>
   bool Say(const Message& message, std::uint64_t session = 77) {
     encoder.Encode({.session = session, .stream = 3, .sequence = 9}, message, sent);
-    const bool admitted = reception.Admits(address, has_peer, sent, kNow);
+    const bool admitted = reception.Admits(address, has_peer, sent, kReceptionNow);
     EXPECT_LE(reception.reply().size(), sent.size()) << "an address that is not proven";
     return admitted;
   }
@@ -80,7 +80,7 @@ TEST_F(ReceptionTest, WhatADaemonSendsIsNotAnswered) {
       (void)Say(protocol::Ping{1});
     }
     ASSERT_FALSE(reception.reply().empty());
-    EXPECT_FALSE(other.Admits(address, false, reception.reply(), kNow));
+    EXPECT_FALSE(other.Admits(address, false, reception.reply(), kReceptionNow));
     EXPECT_TRUE(other.reply().empty());
   }
   (void)Say(protocol::Pong{1, 0});
@@ -133,20 +133,20 @@ TEST_F(ReceptionTest, AFragmentIsAnsweredAsItsMessage) {
   std::vector<std::uint8_t> datagram(protocol::kMaxDatagramBytes);
   ASSERT_GT(protocol::NumDatagrams(message.size()), 1u);
   datagram.resize(protocol::WriteDatagram(message, 1, 1, datagram));
-  EXPECT_FALSE(reception.Admits(address, false, datagram, kNow));
+  EXPECT_FALSE(reception.Admits(address, false, datagram, kReceptionNow));
   EXPECT_EQ(Reply<protocol::ErrorMessage>()->code, protocol::ErrorCode::kUnprovenAddress);
 }
 
 TEST_F(ReceptionTest, ShortAndBrokenMessagesGetNothing) {
   encoder.Encode({.session = 77}, protocol::Hello{"test", 0}, sent);
   for (std::size_t size = protocol::kEnvelopeBytes; size < sent.size(); ++size) {
-    (void)reception.Admits(address, false, std::span(sent).first(size), kNow);
+    (void)reception.Admits(address, false, std::span(sent).first(size), kReceptionNow);
     EXPECT_LE(reception.reply().size(), size);
   }
   std::vector<std::uint8_t> broken = sent;
   for (std::size_t i = protocol::kEnvelopeBytes; i < 60; ++i) {
     broken[i] ^= 0xFF;
-    EXPECT_FALSE(reception.Admits(address, false, broken, kNow)) << i;
+    EXPECT_FALSE(reception.Admits(address, false, broken, kReceptionNow)) << i;
     EXPECT_LE(reception.reply().size(), broken.size());
   }
 }
@@ -162,7 +162,8 @@ TEST_F(StrictReceptionTest, NobodyComesInWithoutAToken) {
   ASSERT_TRUE(error.has_value());
   EXPECT_EQ(error->code, protocol::ErrorCode::kNeedsToken);
   EXPECT_FALSE(error->message.empty());
-  EXPECT_FALSE(Say(protocol::Hello{"test", proof.Token(address, 77, kNow)})) << "proves nothing";
+  EXPECT_FALSE(Say(protocol::Hello{"test", proof.Token(address, 77, kReceptionNow)}))
+      << "proves nothing";
   EXPECT_FALSE(Say(protocol::Ping{1}));
   EXPECT_EQ(Reply<protocol::ErrorMessage>()->code, protocol::ErrorCode::kNeedsToken);
   EXPECT_FALSE(Say(protocol::Welcome{"a daemon", 0}));

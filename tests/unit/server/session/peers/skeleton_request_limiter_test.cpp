@@ -6,24 +6,24 @@
 namespace furrow::server {
 namespace {
 
-constexpr Time kStart = FromSeconds(100);
+constexpr Time kLimiterStart = FromSeconds(100);
 
 TEST(SkeletonRequestLimiter, AllowsEachStreamOncePerInterval) {
   SkeletonRequestLimiter limiter;
-  EXPECT_TRUE(limiter.Allow(1, 1, kStart));
-  EXPECT_FALSE(limiter.Allow(1, 1, kStart));
-  EXPECT_TRUE(limiter.Allow(1, 2, kStart));
-  EXPECT_TRUE(limiter.Allow(2, 1, kStart));
-  EXPECT_TRUE(limiter.Allow(1, 1, kStart + SkeletonRequestLimiter::kInterval));
+  EXPECT_TRUE(limiter.Allow(1, 1, kLimiterStart));
+  EXPECT_FALSE(limiter.Allow(1, 1, kLimiterStart));
+  EXPECT_TRUE(limiter.Allow(1, 2, kLimiterStart));
+  EXPECT_TRUE(limiter.Allow(2, 1, kLimiterStart));
+  EXPECT_TRUE(limiter.Allow(1, 1, kLimiterStart + SkeletonRequestLimiter::kInterval));
 }
 
 TEST(SkeletonRequestLimiter, FurtherStreamsWaitForTheNextInterval) {
   SkeletonRequestLimiter limiter;
   for (std::uint64_t session = 1; session <= SkeletonRequestLimiter::kMaxStreams; ++session) {
-    EXPECT_TRUE(limiter.Allow(session, 1, kStart));
+    EXPECT_TRUE(limiter.Allow(session, 1, kLimiterStart));
   }
-  EXPECT_FALSE(limiter.Allow(9999, 1, kStart));
-  EXPECT_TRUE(limiter.Allow(9999, 1, kStart + SkeletonRequestLimiter::kInterval));
+  EXPECT_FALSE(limiter.Allow(9999, 1, kLimiterStart));
+  EXPECT_TRUE(limiter.Allow(9999, 1, kLimiterStart + SkeletonRequestLimiter::kInterval));
 }
 
 }  // namespace

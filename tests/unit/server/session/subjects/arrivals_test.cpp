@@ -11,8 +11,6 @@
 namespace furrow::server {
 namespace {
 
-using std::chrono::seconds;
-
 class ArrivalsTest : public ::testing::Test {
  protected:
   bool Add(const std::string& subject, std::int64_t captured_us = 0, std::size_t extra = 0,
@@ -30,7 +28,7 @@ class ArrivalsTest : public ::testing::Test {
 
   static constexpr std::uint64_t kPublisher = 5;
   Arrivals arrivals_;
-  Time now_ = seconds(100);
+  Time now_ = std::chrono::seconds(100);
   std::vector<std::uint8_t> bytes_;
 };
 
@@ -124,7 +122,7 @@ TEST_F(ArrivalsTest, WaitingPublishersAreBoundedAndEnd) {
   EXPECT_EQ(arrivals_.waiting().size(), Arrivals::kMaxWaiting);
   arrivals_.StopWaiting("subject 0");
   EXPECT_EQ(arrivals_.waiting().size(), Arrivals::kMaxWaiting - 1);
-  arrivals_.Expire(now_ + seconds(3));
+  arrivals_.Expire(now_ + std::chrono::seconds(3));
   EXPECT_TRUE(arrivals_.waiting().empty());
 }
 

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void Write(const fs::path& file, const std::string& text) {
+void WriteAsset(const fs::path& file, const std::string& text) {
   fs::create_directories(file.parent_path());
   std::ofstream(file, std::ios::binary) << text;
 }
@@ -25,11 +25,11 @@ constexpr const char* kUuid = "79ced554-1d8a-4c14-a6a8-e1de90b09c32";
 
 TEST(AssetLibrary, FindsPartsByUuidThenByName) {
   const TemporaryFolder program, user;
-  Write(program / "clothes/a/a.mhclo",
-        std::string("uuid ") + kUuid + "\nname Red shirt\nverts 0\n");
-  Write(program / "clothes/b/b.mhclo", "uuid 0\nname Blue\nverts 0\nname Wrong\n");
-  Write(user / "clothes/deep/er/c.mhclo", "uuid 1\nname Blue\nverts 0\n");
-  Write(user / "hair/h/h.mhclo", "name Blue\n");
+  WriteAsset(program / "clothes/a/a.mhclo",
+             std::string("uuid ") + kUuid + "\nname Red shirt\nverts 0\n");
+  WriteAsset(program / "clothes/b/b.mhclo", "uuid 0\nname Blue\nverts 0\nname Wrong\n");
+  WriteAsset(user / "clothes/deep/er/c.mhclo", "uuid 1\nname Blue\nverts 0\n");
+  WriteAsset(user / "hair/h/h.mhclo", "name Blue\n");
   AssetLibrary library({program.path(), user.path()});
   const auto find = [&](const char* kind, const char* name, const char* uuid) {
     const auto file = library.FindPart({kind, name, uuid});
@@ -52,10 +52,11 @@ TEST(AssetLibrary, LoadsMaterialsAndTheirPictures) {
   white.pixels.assign(12, 255);
   const Result<std::string> png = character::EncodePng(white);
   ASSERT_TRUE(png.ok());
-  Write(program / "eyes/materials/brown.mhmat", "name brown\ndiffuseTexture brown.png\n");
-  Write(program / "eyes/materials/brown.png", *png);
-  Write(user / "skins/me/me.mhmat", "name me\ndiffuseTexture lfs.png\n");
-  Write(user / "skins/me/lfs.png", "version https://git-lfs.github.com/spec/v1\noid sha256:0\n");
+  WriteAsset(program / "eyes/materials/brown.mhmat", "name brown\ndiffuseTexture brown.png\n");
+  WriteAsset(program / "eyes/materials/brown.png", *png);
+  WriteAsset(user / "skins/me/me.mhmat", "name me\ndiffuseTexture lfs.png\n");
+  WriteAsset(user / "skins/me/lfs.png",
+             "version https://git-lfs.github.com/spec/v1\noid sha256:0\n");
   const AssetLibrary library({program.path(), user.path()});
 
   const auto brown = library.LoadMaterial("../materials/brown.mhmat", program / "eyes/high-poly");
@@ -79,8 +80,8 @@ TEST(AssetLibrary, LoadsMaterialsAndTheirPictures) {
 // A downloaded asset must not read other files of its user.
 TEST(AssetLibrary, PathsStayInTheDataFolders) {
   const TemporaryFolder folder;
-  Write(folder / "secret.mhmat", "name secret\n");
-  Write(folder / "data/hair/h/h.mhclo", "name h\n");
+  WriteAsset(folder / "secret.mhmat", "name secret\n");
+  WriteAsset(folder / "data/hair/h/h.mhclo", "name h\n");
   const AssetLibrary library({folder / "data"});
   for (const std::string& path :
        {std::string("../../../secret.mhmat"), (folder / "secret.mhmat").string(), std::string()}) {
@@ -94,9 +95,9 @@ TEST(AssetLibrary, PathsStayInTheDataFolders) {
 
 TEST(FindDataFolders, SearchesNearTheSave) {
   const TemporaryFolder folder;
-  Write(folder / "program/3dobjs/base.obj", "");
-  Write(folder / "user/models/me.mhm", "");
-  Write(folder / "user/data/clothes/a", "");
+  WriteAsset(folder / "program/3dobjs/base.obj", "");
+  WriteAsset(folder / "user/models/me.mhm", "");
+  WriteAsset(folder / "user/data/clothes/a", "");
   const fs::path save = folder / "user/models/me.mhm";
   EXPECT_EQ(FindDataFolders(save, {}).status().code(), StatusCode::kNotFound);
 
@@ -108,7 +109,7 @@ TEST(FindDataFolders, SearchesNearTheSave) {
   EXPECT_EQ(found->assets[0], given[0]);
   EXPECT_EQ(found->assets[1], folder / "user/data");
 
-  Write(folder / "user/data/3dobjs/base.obj", "");
+  WriteAsset(folder / "user/data/3dobjs/base.obj", "");
   found = FindDataFolders(save, {});
   ASSERT_TRUE(found.ok()) << found.status().ToString();
   EXPECT_TRUE(fs::equivalent(found->base, folder / "user/data"));
