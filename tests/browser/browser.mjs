@@ -22,6 +22,9 @@ export function launch(options = []) {
 /** The size and the touch screen of a phone. */
 export const PHONE = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true, deviceScaleFactor: 2 };
 
+/** Options of a page whose pictures have half as many pixels each way, for tests that draw many and do not look at details. */
+export const COARSE = { deviceScaleFactor: 0.5 };
+
 /**
  * Opens an isolated page. `errors` collects the errors on its console. `prepare` gets the page before it loads anything.
  */

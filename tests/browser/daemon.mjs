@@ -10,7 +10,8 @@ const BIN = process.env.FURROW_BIN;
 export const SHARE = process.env.FURROW_SHARE;
 export const recording = (name) => join(SHARE, 'recordings', `${name}.bvh`);
 
-/** Without a GPU, pictures of skin take several times longer, and most tests are about other things. */
+/** Without a GPU, pictures of skin and large textures take several times longer, and most tests are about other things. */
+const LIGHT = process.env.FURROW_LIGHT_CHARACTER;
 const PLAIN = join(mkdtempSync(join(tmpdir(), 'furrow-browser-')), 'plain.toml');
 writeFileSync(PLAIN, 'shading = "diffuse"\n');
 process.on('exit', () => rmSync(dirname(PLAIN), { recursive: true, force: true }));
@@ -18,10 +19,11 @@ process.on('exit', () => rmSync(dirname(PLAIN), { recursive: true, force: true }
 /** Starts a furrowd. `ports` of a former daemon make it reuse the same addresses. */
 export class Daemon {
   static start(options = [], ports = undefined) {
-    return Daemon.startAsShipped(['--render-settings', PLAIN, ...options], ports);
+    const who = options.some((option) => option === '--character' || option === '--rig') ? [] : ['--character', LIGHT];
+    return Daemon.startAsShipped(['--render-settings', PLAIN, ...who, ...options], ports);
   }
 
-  /** With the look that viewers see first. */
+  /** With the character and the look that viewers see first. */
   static async startAsShipped(options = [], ports = { tcp: 0, udp: 0, http: 0 }) {
     const listen = Object.entries(ports).filter(([name]) => ['tcp', 'udp', 'http'].includes(name))
       .flatMap(([name, port]) => [`--${name}`, String(port)]);

@@ -2,7 +2,7 @@
 // The settings menu: every group changes the picture; undo, compare, presets, text; rejected values are reported.
 import assert from 'node:assert/strict';
 import { before, test } from 'node:test';
-import { changedShare, difference, eventually, keep, openPage, pixels, still } from './browser.mjs';
+import { changedShare, COARSE, difference, eventually, keep, openPage, pixels, still } from './browser.mjs';
 import { browser, daemon } from './played.mjs';
 
 before(() => daemon.hold(2));
@@ -59,7 +59,7 @@ test('each group of settings changes the picture', async () => {
   assert(groups.delete('detail'));
   // A view in which every group has a visible effect: strong light from behind on pronounced folds.
   const page = await openPage(browser, `${daemon.address}#shading=skin&wrinkle_strength=2&translucency.strength=4` +
-    '&lights.turn_degrees=180&bloom.strength=0.8&bloom.threshold=0.1&displacement.enabled=on&displacement.strength=3');
+    '&lights.turn_degrees=180&bloom.strength=0.8&bloom.threshold=0.1&displacement.enabled=on&displacement.strength=3', COARSE);
   await page.selectOption('select[aria-label=Sharpness]', 'fast');
   await page.keyboard.press('Escape');
   await still(page);
@@ -143,7 +143,16 @@ test('a setting for all viewers reaches other pages', async () => {
   const former = await pixels(other);
   await one.getByRole('button', { name: 'As text…' }).click();
   await one.fill('dialog textarea', 'exposure = 3.0\n');
-  await one.getByRole('button', { name: 'Set for all viewers' }).click();
+  const set = one.getByRole('button', { name: 'Set for all viewers' });
+  await set.click();
+  await eventually('the daemon takes the setting', async () => {
+    if (!await set.isVisible()) return true;
+    const refusal = await one.locator('dialog .error').textContent();
+    // The daemon refuses a computer that asks too often, as two pages that have just loaded do.
+    if (/too often/.test(refusal)) await set.click();
+    else assert.equal(refusal, '');
+    return false;
+  });
   await eventually('a brighter picture', async () => difference(former, await pixels(other)) > 10);
   await daemon.patch('api/settings', { exposure: 1 });
   await one.context().close();

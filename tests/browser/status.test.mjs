@@ -103,7 +103,7 @@ test('a paused recording is paused, and its picture not dimmed', async () => {
   assert(!await isDimmed(page));
   await page.selectOption('select[aria-label=Sharpness]', 'sharp');
   const size = await page.locator('.surface').evaluate(({ clientWidth, clientHeight }) =>
-    `${2 * Math.round(clientWidth / 2)} × ${2 * Math.round(clientHeight / 2)}`);
+    `${2 * Math.round(clientWidth * devicePixelRatio / 2)} × ${2 * Math.round(clientHeight * devicePixelRatio / 2)}`);
   await eventually('the size of the picture', async () => await figure(page, 'size') === size);
   await keep(page, 'state-paused');
   await daemon.patch('api/playback', { playing: true });

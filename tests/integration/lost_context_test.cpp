@@ -3,7 +3,6 @@
 #include "tests/unit/render/lost_context.h"
 
 #include <array>
-#include <filesystem>
 #include <future>
 #include <memory>
 #include <string>
@@ -47,10 +46,7 @@ class ShortLived : public render::Renderer {
 class LostContext : public testing::Test {
  protected:
   void SetUp() override {
-    const std::filesystem::path glb =
-        std::filesystem::path(FURROW_BINARY_DIR) / "share" / "furrow" / "default.glb";
-    if (!std::filesystem::exists(glb)) GTEST_SKIP() << "no " << glb << ": build furrow_share";
-    auto loaded = character::LoadCharacter(glb, {}, motion::CachedPoseSource());
+    auto loaded = character::LoadCharacter(FURROW_LIGHT_CHARACTER, {}, motion::CachedPoseSource());
     ASSERT_TRUE(loaded.ok()) << loaded.status().ToString();
     character = *std::move(loaded);
     auto started = server::RenderThread::Start(

@@ -12,7 +12,7 @@
 namespace furrow::testing_net {
 namespace {
 
-// A clip of the default character: the head nods further with every frame. Cameras follow the
+// A clip of the character: the head nods further with every frame. Cameras follow the
 // subject's body, so a turn of the whole body would not be visible.
 motion::Clip NoddingClip(const character::Character& character, int num_frames) {
   motion::Clip clip;
@@ -37,9 +37,7 @@ motion::Clip NoddingClip(const character::Character& character, int num_frames) 
 }  // namespace
 
 void PicturesTest::SetUp() {
-  const std::filesystem::path glb =
-      std::filesystem::path(FURROW_BINARY_DIR) / "share" / "furrow" / "default.glb";
-  if (!std::filesystem::exists(glb)) GTEST_SKIP() << "no " << glb << ": build furrow_share";
+  const std::filesystem::path glb = FURROW_LIGHT_CHARACTER;
   server::Config config;
   config.character = glb;
   config.tcp = config.udp = 0;

@@ -56,7 +56,7 @@ function plain(pose) {
 
 /** The poses of some frames, as the daemon sends them, and the daemon's camera `face`. */
 export async function posesOf(frames) {
-  const daemon = await Daemon.start(['--play', recording('performance')]);
+  const daemon = await Daemon.startAsShipped(['--play', recording('performance')]);
   const client = openWebSocket(`furrow://127.0.0.1:${daemon.ports.http}`, { poses: true });
   try {
     const { cameras } = await daemon.get('api/cameras');
