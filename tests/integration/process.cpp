@@ -110,4 +110,15 @@ std::string FindProgram(const std::string& name) {
   return {};
 }
 
+std::vector<std::string> FurrowdCommand(const std::vector<std::string>& more) {
+  std::vector<std::string> command = {FURROW_BINARY_DIR "/bin/furrowd",
+                                      "--rig",
+                                      FURROW_SOURCE_DIR "/rig/rigs/arkit.json",
+                                      "--no-render",
+                                      "--http",
+                                      "0"};
+  command.insert(command.end(), more.begin(), more.end());
+  return command;
+}
+
 }  // namespace furrow::testing_net

@@ -44,4 +44,8 @@ class Process {
 // The path of a program on PATH; empty if it is not installed.
 [[nodiscard]] std::string FindProgram(const std::string& name);
 
+// furrowd with a rig, without pictures, and with a free port for its web server. `more`: arguments
+// that follow.
+[[nodiscard]] std::vector<std::string> FurrowdCommand(const std::vector<std::string>& more);
+
 }  // namespace furrow::testing_net

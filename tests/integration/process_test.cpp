@@ -24,13 +24,6 @@ using testing::ContainsRegex;
 using testing::HasSubstr;
 
 const char kProgram[] = FURROW_BINARY_DIR "/bin/furrowd";
-const char kRig[] = FURROW_SOURCE_DIR "/rig/rigs/arkit.json";
-
-std::vector<std::string> Command(std::vector<std::string> more = {}) {
-  std::vector<std::string> command = {kProgram, "--rig", kRig, "--no-render", "--http", "0"};
-  command.insert(command.end(), more.begin(), more.end());
-  return command;
-}
 
 // The ports in the ready line; 0 if the line is not one.
 std::pair<int, int> Ports(const std::string& line) {
@@ -43,7 +36,7 @@ std::pair<int, int> Ports(const std::string& line) {
 
 TEST(Furrowd, PrintsItsPortsAndStopsOnSigterm) {
   for (const int signal : {SIGTERM, SIGINT}) {
-    Process daemon(Command({"--tcp", "0", "--udp", "0"}));
+    Process daemon(FurrowdCommand({"--tcp", "0", "--udp", "0"}));
     const auto [tcp, udp] = Ports(daemon.ReadLine().value_or(""));
     ASSERT_NE(tcp, 0);
     TcpClient client(static_cast<std::uint16_t>(tcp));
@@ -56,13 +49,13 @@ TEST(Furrowd, PrintsItsPortsAndStopsOnSigterm) {
 }
 
 TEST(Furrowd, ASecondDaemonOnAPortFailsAndNamesThePort) {
-  Process first(Command({"--tcp", "0", "--udp", "0"}));
+  Process first(FurrowdCommand({"--tcp", "0", "--udp", "0"}));
   const auto [tcp, udp] = Ports(first.ReadLine().value_or(""));
   ASSERT_NE(tcp, 0);
-  Process second(Command({"--tcp", std::to_string(tcp), "--udp", "0"}));
+  Process second(FurrowdCommand({"--tcp", std::to_string(tcp), "--udp", "0"}));
   EXPECT_EQ(second.Wait(), 1);
   EXPECT_THAT(second.ReadErrors(), HasSubstr("port " + std::to_string(tcp)));
-  Process third(Command({"--tcp", "0", "--udp", std::to_string(udp)}));
+  Process third(FurrowdCommand({"--tcp", "0", "--udp", std::to_string(udp)}));
   EXPECT_EQ(third.Wait(), 1);
   EXPECT_THAT(third.ReadErrors(), HasSubstr("port " + std::to_string(udp)));
 }
@@ -88,7 +81,7 @@ TEST(Furrowd, HelpSucceedsAndListsExitCodes) {
 }
 
 TEST(Furrowd, ContinuesWhenTheReaderOfItsLogLeaves) {
-  Process daemon(Command({"--tcp", "0", "--udp", "0"}));
+  Process daemon(FurrowdCommand({"--tcp", "0", "--udp", "0"}));
   daemon.CloseErrors();
   ASSERT_TRUE(daemon.ReadLine().has_value());
   daemon.Signal(SIGTERM);  // the daemon logs it
@@ -96,7 +89,7 @@ TEST(Furrowd, ContinuesWhenTheReaderOfItsLogLeaves) {
 }
 
 TEST(Furrowd, LogsAsJsonWhenAsked) {
-  Process daemon(Command({"--tcp", "0", "--udp", "0", "--log-json"}));
+  Process daemon(FurrowdCommand({"--tcp", "0", "--udp", "0", "--log-json"}));
   ASSERT_TRUE(daemon.ReadLine().has_value());
   daemon.Signal(SIGTERM);
   EXPECT_EQ(daemon.Wait(), 0);
@@ -105,7 +98,7 @@ TEST(Furrowd, LogsAsJsonWhenAsked) {
 
 TEST(Furrowd, SaysWhetherItIsConfined) {
   for (const bool confined : {true, false}) {
-    std::vector<std::string> command = Command({"--tcp", "0", "--udp", "0"});
+    std::vector<std::string> command = FurrowdCommand({"--tcp", "0", "--udp", "0"});
     if (!confined) command.emplace_back("--no-confine");
     Process daemon(command);
     ASSERT_TRUE(daemon.ReadLine().has_value());

@@ -10,12 +10,6 @@
 #include <unistd.h>
 
 namespace furrow::testing_net {
-namespace {
-
-constexpr int kGuardMilliseconds = 60'000;
-
-}  // namespace
-
 int ConnectSocket(int type, std::uint16_t port, const char* from) {
   const int socket = ::socket(AF_INET, type, 0);
   sockaddr_in own{};
@@ -47,7 +41,8 @@ void RawClient::SendRaw(std::span<const std::uint8_t> bytes) {
 
 long RawClient::ReadSome(std::span<std::uint8_t> buffer) {
   pollfd poll_socket{socket_, POLLIN, 0};
-  if (::poll(&poll_socket, 1, kGuardMilliseconds) <= 0) return -1;
+  if (::poll(&poll_socket, 1, static_cast<int>(std::chrono::milliseconds(kGuard).count())) <= 0)
+    return -1;
   return ::recv(socket_, buffer.data(), buffer.size(), 0);
 }
 

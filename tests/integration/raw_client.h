@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -16,14 +17,17 @@
 
 namespace furrow::testing_net {
 
+// How long clients wait for data. It only prevents hanging tests.
+inline constexpr std::chrono::seconds kGuard(60);
+
 // A received message, decoded on demand.
 struct Received {
   std::vector<std::uint8_t> bytes;
   protocol::MessageView view;
 };
 
-// A test client with one blocking socket, based on protocol/ only. Reads block until data arrives;
-// the long timeout only prevents hanging tests.
+// A test client with one blocking socket, based on protocol/ only. Reads block until data arrives,
+// for kGuard at most.
 class RawClient {
  public:
   virtual ~RawClient();

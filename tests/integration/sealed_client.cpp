@@ -22,9 +22,6 @@ namespace {
 namespace secure = protocol::secure;
 using Clock = std::chrono::steady_clock;
 
-// For hanging tests only.
-constexpr auto kSealedGuard = std::chrono::seconds(60);
-
 secure::Now ReadNow() {
   const auto us =
       std::chrono::duration_cast<std::chrono::microseconds>(Clock::now().time_since_epoch());
@@ -76,7 +73,7 @@ SealedClient::SealedClient(std::uint16_t port, const secure::ClientToken& token,
     : RawClient(ConnectSocket(SOCK_DGRAM, port, from)), port_(port), client_(token, {}) {}
 
 bool SealedClient::Introduce() {
-  const auto end = Clock::now() + kSealedGuard;
+  const auto end = Clock::now() + kGuard;
   while (!client_.connected() && refusal_ == secure::Refusal::kNone && Clock::now() < end) {
     (void)Exchange();
   }
@@ -95,7 +92,7 @@ void SealedClient::ConnectAndClose() {
 
 bool SealedClient::Renew(const secure::ClientToken& token) {
   client_.Renew(token);
-  const auto end = Clock::now() + kSealedGuard;
+  const auto end = Clock::now() + kGuard;
   while (!renewed_ && refusal_ == secure::Refusal::kNone && Clock::now() < end) (void)Exchange();
   return renewed_;
 }
@@ -156,7 +153,7 @@ std::optional<Received> SealedClient::TryNext() {
 }
 
 bool SealedClient::Fill() {
-  const auto end = Clock::now() + kSealedGuard;
+  const auto end = Clock::now() + kGuard;
   while (!Exchange()) {
     if (Clock::now() >= end) return false;
   }

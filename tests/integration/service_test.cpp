@@ -23,19 +23,10 @@ using testing::HasSubstr;
 using testing::MatchesRegex;
 using testing::StartsWith;
 
-std::vector<std::string> ServiceCommand(std::vector<std::string> more = {}) {
-  std::vector<std::string> command = {FURROW_BINARY_DIR "/bin/furrowd",
-                                      "--rig",
-                                      FURROW_SOURCE_DIR "/rig/rigs/arkit.json",
-                                      "--no-render",
-                                      "--tcp",
-                                      "0",
-                                      "--udp",
-                                      "0",
-                                      "--http",
-                                      "0"};
-  command.insert(command.end(), more.begin(), more.end());
-  return command;
+std::vector<std::string> ServiceCommand(const std::vector<std::string>& more = {}) {
+  std::vector<std::string> ports = {"--tcp", "0", "--udp", "0"};
+  ports.insert(ports.end(), more.begin(), more.end());
+  return FurrowdCommand(ports);
 }
 
 // A TCP socket that listens on a free port.

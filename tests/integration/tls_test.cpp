@@ -40,7 +40,6 @@ using testing::HasSubstr;
 
 using Context = std::shared_ptr<SSL_CTX>;
 const std::string kHttp = "\x08http/1.1";
-constexpr std::chrono::seconds kTlsGuard(60);  // only prevents hanging tests
 
 Context ContextOf(const ClientTlsFiles& files) {
   auto context = client::MakeTlsContext(files);
@@ -64,7 +63,7 @@ class Tls : public testing::Test {
   // The status of a client of the library that connects to `host`.
   [[nodiscard]] Status Connect(const ClientTlsFiles& files,
                                const std::string& host = "127.0.0.1") const {
-    return client::OpenTransport(TransportKind::kTcp, host, daemon->ready().tcp, kTlsGuard,
+    return client::OpenTransport(TransportKind::kTcp, host, daemon->ready().tcp, kGuard,
                                  {.tls = ContextOf(files)})
         .status();
   }
@@ -323,14 +322,14 @@ class ClientCertificates : public Tls {
   // What the client of the library receives, or why it failed.
   std::string Ping(const ClientTlsFiles& files) {
     auto transport = client::OpenTransport(TransportKind::kTcp, "127.0.0.1", daemon->ready().tcp,
-                                           kTlsGuard, {.tls = ContextOf(files)});
+                                           kGuard, {.tls = ContextOf(files)});
     if (!transport.ok()) return transport.status().what();
     protocol::Encoder encoder;
     std::vector<std::uint8_t> bytes;
     encoder.Encode({.session = 1}, protocol::Ping{1}, bytes);
     (void)(*transport)->Send(bytes);
     std::span<const std::uint8_t> message;
-    const auto status = (*transport)->Receive(message, kTlsGuard);
+    const auto status = (*transport)->Receive(message, kGuard);
     return status == client::IoStatus::kOk ? "pong" : (*transport)->failure();
   }
 
@@ -386,7 +385,7 @@ TEST_F(Tls, TokensMayComeFromOtherComputers) {
   Start({.names = "IP:" + host}, config);
   client::Security security{.token = keys.Token(protocol::secure::Role::kWatch), .tls = trusted};
   auto transport =
-      client::OpenTransport(TransportKind::kTcp, host, daemon->ready().tcp, kTlsGuard, security);
+      client::OpenTransport(TransportKind::kTcp, host, daemon->ready().tcp, kGuard, security);
   ASSERT_TRUE(transport.ok()) << transport.status().ToString();
   protocol::Encoder encoder;
   std::vector<std::uint8_t> bytes;
@@ -395,7 +394,7 @@ TEST_F(Tls, TokensMayComeFromOtherComputers) {
   std::span<const std::uint8_t> message;
   protocol::SubscribeReply reply;
   bool subscribed = false;
-  while (!subscribed && (*transport)->Receive(message, kTlsGuard) == client::IoStatus::kOk) {
+  while (!subscribed && (*transport)->Receive(message, kGuard) == client::IoStatus::kOk) {
     protocol::MessageView view;
     subscribed = protocol::OpenMessage(message, view, protocol::kMaxReplyBytes) ==
                      protocol::DecodeStatus::kOk &&
@@ -406,7 +405,7 @@ TEST_F(Tls, TokensMayComeFromOtherComputers) {
   // Without TLS, the client does not even connect.
   security.tls = nullptr;
   const Status refused =
-      client::OpenTransport(TransportKind::kTcp, host, daemon->ready().tcp, kTlsGuard, security)
+      client::OpenTransport(TransportKind::kTcp, host, daemon->ready().tcp, kGuard, security)
           .status();
   EXPECT_EQ(refused.code(), StatusCode::kInvalidArgument);
   EXPECT_THAT(refused.what(), HasSubstr("unencrypted"));

@@ -12,14 +12,9 @@
 #include <unistd.h>
 
 namespace furrow::testing_net {
-namespace {
-
-constexpr timeval kWebGuard{.tv_sec = 60, .tv_usec = 0};
-
-}  // namespace
-
 WebClient::WebClient(Connected stream) : socket_(stream.socket) {
-  setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &kWebGuard, sizeof kWebGuard);
+  const timeval guard{.tv_sec = kGuard.count(), .tv_usec = 0};
+  setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &guard, sizeof guard);
 }
 
 WebClient::WebClient(std::uint16_t port) : WebClient(Connected{::socket(AF_INET, SOCK_STREAM, 0)}) {

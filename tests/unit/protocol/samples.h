@@ -37,4 +37,13 @@ template <class Message>
   return status == DecodeStatus::kOk ? Decode(view, message) : status;
 }
 
+// What a receiver says of `message` after `change(message)`.
+template <class Message, class Change, class... Options>
+[[nodiscard]] DecodeStatus DecodeChanged(Message message, const Change& change,
+                                         const Options&... options) {
+  change(message);
+  Message out;
+  return OpenAndDecode(Encoded(message, options...), out);
+}
+
 }  // namespace furrow::protocol::test

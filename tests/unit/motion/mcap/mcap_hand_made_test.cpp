@@ -15,14 +15,13 @@
 #include "motion/mcap/compression.h"
 #include "motion/mcap/reader.h"
 #include "tests/temporary_folder.h"
+#include "tests/unit/motion/mcap/text_bytes.h"
 
 namespace furrow::motion::mcap {
 namespace {
 
 namespace fs = std::filesystem;
 using Bytes = std::vector<std::uint8_t>;
-
-Bytes ToBytes(std::string_view text) { return {text.begin(), text.end()}; }
 
 ByteWriter SchemaRecord(std::uint16_t id, std::size_t size) {
   ByteWriter content;
@@ -40,7 +39,7 @@ ByteWriter ChannelRecord(std::uint16_t id) {
 ByteWriter MessageRecord(std::uint64_t time, std::string_view data) {
   ByteWriter content;
   content.Put(std::uint16_t{1}).Put(std::uint32_t{0}).Put(time).Put(time);
-  return content.PutBytes(ToBytes(data));
+  return content.PutBytes(TextBytes(data));
 }
 
 // An lz4 frame of stored 64 KiB blocks. The header checksum comes from the reference program.
@@ -123,7 +122,7 @@ class HandMade {
   Placed AddAttachment(std::string_view data) {
     ByteWriter content;
     content.Put(std::uint64_t{0}).Put(std::uint64_t{0}).PutText("name").PutText("text/plain");
-    content.Put(std::uint64_t{data.size()}).PutBytes(ToBytes(data)).Put(std::uint32_t{0});
+    content.Put(std::uint64_t{data.size()}).PutBytes(TextBytes(data)).Put(std::uint32_t{0});
     return Add(Opcode::kAttachment, content);
   }
   void IndexAttachment(const Placed& attachment) {
@@ -260,7 +259,7 @@ TEST_F(McapHandMadeTest, IgnoresASummaryWithDuplicateRecords) {
       EXPECT_EQ(ReadAll(*reader), (Texts{"a", "b"}));
       EXPECT_EQ(reader->metadata().size(), 1u);
       ASSERT_EQ(reader->attachments().size(), 1u);
-      EXPECT_EQ(reader->ReadAttachment(reader->attachments()[0]).value(), ToBytes("data"));
+      EXPECT_EQ(reader->ReadAttachment(reader->attachments()[0]).value(), TextBytes("data"));
     }
   }
 }
@@ -361,7 +360,7 @@ TEST(McapCompression, DecompressesLz4Frames) {
   std::string text;
   for (int i = 0; i < 12; ++i) text += "furrow ";
   text += "end of it";
-  EXPECT_EQ(Decompress("lz4", packed, text.size()).value(), ToBytes(text));
+  EXPECT_EQ(Decompress("lz4", packed, text.size()).value(), TextBytes(text));
   for (const std::size_t size : {std::size_t{0}, text.size() - 1, text.size() + 1})
     EXPECT_FALSE(Decompress("lz4", packed, size).ok()) << size;
   for (std::size_t size = 0; size < packed.size(); ++size)

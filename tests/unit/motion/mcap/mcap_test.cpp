@@ -19,13 +19,12 @@
 #include "motion/mcap/reader.h"
 #include "motion/mcap/writer.h"
 #include "tests/temporary_folder.h"
+#include "tests/unit/motion/mcap/text_bytes.h"
 
 namespace furrow::motion::mcap {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::vector<std::uint8_t> TextBytes(std::string_view text) { return {text.begin(), text.end()}; }
 
 struct Seen {
   std::string topic;

@@ -11,19 +11,12 @@
 namespace furrow::protocol {
 namespace {
 
+using test::DecodeChanged;
 using test::Encoded;
 using test::MakeState;
 using test::OpenAndDecode;
 
 // Encodes a state after `change`, and decodes it.
-template <class Change>
-DecodeStatus DecodeChangedState(const Change& change) {
-  SubjectState state = MakeState(5, 3);
-  change(state);
-  SubjectState out;
-  return OpenAndDecode(Encoded(state), out);
-}
-
 TEST(ClusterMessages, AStateComesBackToTheBit) {
   const SubjectState sent = MakeState(5, 3);
   SubjectState out = MakeState(2, 1);  // what was there before leaves no trace
@@ -60,7 +53,7 @@ TEST(ClusterMessages, AStateMayHaveNoPosesYet) {
 
 TEST(ClusterMessages, RejectsBadStates) {
   using S = SubjectState;
-  const auto with = [](const auto& change) { return DecodeChangedState(change); };
+  const auto with = [](const auto& change) { return DecodeChanged(MakeState(5, 3), change); };
   EXPECT_EQ(with([](S& s) { s.subject = ""; }), DecodeStatus::kMissingField);
   EXPECT_EQ(with([](S& s) { s.subject = std::string(256, 'a'); }), DecodeStatus::kLimit);
   EXPECT_EQ(with([](S& s) { s.subject = "\x01"; }), DecodeStatus::kBadText);

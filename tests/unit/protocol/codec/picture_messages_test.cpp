@@ -9,6 +9,7 @@
 namespace furrow::protocol {
 namespace {
 
+using test::DecodeChanged;
 using test::Encoded;
 using test::OpenAndDecode;
 
@@ -23,14 +24,6 @@ SubscribePictures ViewersPictures() {
 }
 
 // Encodes a default picture request after `change`, and decodes it.
-template <class Change>
-DecodeStatus DecodeChangedRequest(const Change& change) {
-  SubscribePictures message;
-  change(message);
-  SubscribePictures out;
-  return OpenAndDecode(Encoded(message), out);
-}
-
 TEST(PictureMessages, RequestRoundTrip) {
   SubscribePictures sent;
   sent.subject = "anna";
@@ -61,9 +54,9 @@ TEST(PictureMessages, RequestRoundTrip) {
 
 TEST(PictureMessages, RejectsBadRequest) {
   using S = SubscribePictures;
-  const auto with = [](const auto& change) { return DecodeChangedRequest(change); };
+  const auto with = [](const auto& change) { return DecodeChanged(S(), change); };
   const auto with_camera = [](const auto& change) {
-    return DecodeChangedRequest([&change](S& s) {
+    return DecodeChanged(S(), [&change](S& s) {
       s.has_camera = true;
       change(s);
     });

@@ -17,10 +17,7 @@ using test::OpenAndDecode;
 
 template <class Change>
 DecodeStatus DecodeChangedPose(const Change& change, const PoseEncoding& encoding = {}) {
-  PoseFrame pose = test::MakePose(9, 4, 1);
-  change(pose);
-  PoseFrame out;
-  return OpenAndDecode(Encoded(pose, encoding), out);
+  return test::DecodeChanged(test::MakePose(9, 4, 1), change, encoding);
 }
 
 TEST(PoseMessage, FloatRoundTripIsExact) {

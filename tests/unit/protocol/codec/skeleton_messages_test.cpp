@@ -22,9 +22,7 @@ DecodeStatus Decoded(const SkeletonOffer& offer) {
 
 template <class Change>
 DecodeStatus With(const Change& change) {
-  SkeletonOffer offer = test::MakeOffer(6, 3);
-  change(offer);
-  return Decoded(offer);
+  return test::DecodeChanged(test::MakeOffer(6, 3), change);
 }
 
 TEST(SkeletonMessages, RoundTripIsExact) {

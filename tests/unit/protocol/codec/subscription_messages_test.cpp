@@ -12,18 +12,11 @@
 namespace furrow::protocol {
 namespace {
 
+using test::DecodeChanged;
 using test::Encoded;
 using test::OpenAndDecode;
 
 // Encodes a default message after `change`, and decodes it.
-template <class Message, class Change>
-DecodeStatus DecodeChangedMessage(const Change& change) {
-  Message message;
-  change(message);
-  Message out;
-  return OpenAndDecode(Encoded(message), out);
-}
-
 TEST(SubscriptionMessages, WeightRequestRoundTrip) {
   const SubscribeWeights sent{
       "anna", true, "a*,b?", 60, WeightFormat::kU8, WeightSource::kDriverValues, true};
@@ -44,7 +37,7 @@ TEST(SubscriptionMessages, WeightRequestRoundTrip) {
 
 TEST(SubscriptionMessages, RejectsBadWeightRequest) {
   using S = SubscribeWeights;
-  const auto with = [](const auto& change) { return DecodeChangedMessage<S>(change); };
+  const auto with = [](const auto& change) { return DecodeChanged(S(), change); };
   EXPECT_EQ(with([](S& s) { s.max_rate_hz = -1; }), DecodeStatus::kBadValue);
   EXPECT_EQ(with([](S& s) { s.max_rate_hz = 1001; }), DecodeStatus::kBadValue);
   EXPECT_EQ(with([](S& s) { s.max_rate_hz = NAN; }), DecodeStatus::kNonFinite);
@@ -64,7 +57,7 @@ TEST(SubscriptionMessages, PoseRequestRoundTripAndChecks) {
   EXPECT_TRUE(out.every);
   ASSERT_EQ(OpenAndDecode(Encoded(S{}), out), DecodeStatus::kOk);
   EXPECT_FALSE(out.every);
-  const auto with = [](const auto& change) { return DecodeChangedMessage<S>(change); };
+  const auto with = [](const auto& change) { return DecodeChanged(S(), change); };
   EXPECT_EQ(with([](S& s) { s.max_rate_hz = -1; }), DecodeStatus::kBadValue);
   EXPECT_EQ(with([](S& s) { s.max_rate_hz = NAN; }), DecodeStatus::kNonFinite);
   EXPECT_EQ(with([](S& s) { s.subject = std::string(256, 'a'); }), DecodeStatus::kLimit);

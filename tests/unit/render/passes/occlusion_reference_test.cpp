@@ -21,19 +21,12 @@ using test::SphereOnPlane;
 
 constexpr int kOcclusionSize = 160;
 constexpr double kOcclusionPlane = 0.6;
+const glm::vec3 kOcclusionEye(0.0f, 0.40f, 0.50f);
 // Half of the sphere is above the plane. The camera sees everything that occludes.
 constexpr SphereOnPlane kDome{{0.0, 0.0, 0.0}, 0.08};
 // A sphere that rests on the plane. The camera does not see its overhanging part, which occludes
 // too.
 constexpr SphereOnPlane kBall{{0.0, 0.08, 0.0}, 0.08};
-
-Camera OcclusionCamera() {
-  Camera camera;
-  camera.position = {0.0f, 0.40f, 0.50f};
-  camera.target = {0.0f, 0.05f, 0.0f};
-  camera.fov_y_degrees = 30.0f;
-  return camera;
-}
 
 struct OcclusionError {
   double mean = 0.0;
@@ -50,7 +43,7 @@ OcclusionError ErrorOf(const Image& image, const SphereOnPlane& scene, double ra
   int open = 0;
   const int size = image.width;
   const int step = 3 * size / kOcclusionSize;
-  const Camera camera = OcclusionCamera();
+  const Camera camera = test::SphereCamera(kOcclusionEye);
   // Fades occluders towards the radius like the shaders.
   const auto hides = [radius](double distance) {
     return std::clamp(1.5 - 1.5 * distance * distance / (radius * radius), 0.0, 1.0);
@@ -120,7 +113,8 @@ void PrintTo(const Case& tested, std::ostream* out) { *out << tested.name; }
 class OcclusionReference : public testing::TestWithParam<Case> {
  protected:
   [[nodiscard]] Image Draw(int size, float radius_mm) {
-    FrameRequest request = test::SceneRequest(scene_, OcclusionCamera(), size, size);
+    FrameRequest request =
+        test::SceneRequest(scene_, test::SphereCamera(kOcclusionEye), size, size);
     request.settings.view = View::kOcclusion;
     request.settings.occlusion = GetParam().settings;
     request.settings.occlusion.radius_mm = radius_mm;

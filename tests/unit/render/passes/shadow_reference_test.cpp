@@ -28,14 +28,6 @@ constexpr SphereOnPlane kScene{{0.0, 0.08, 0.0}, 0.08};
 // offset and two texels of the map.
 constexpr double kTolerance = 0.003;
 
-Camera ShadowCamera() {
-  Camera camera;
-  camera.position = {0.0f, 0.35f, 0.60f};
-  camera.target = {0.0f, 0.05f, 0.0f};
-  camera.fov_y_degrees = 30.0f;
-  return camera;
-}
-
 bool SeesLamp(const glm::dvec3& point, const glm::dvec3& normal, const LightSource& lamp) {
   return lamp.kind == LightKind::kDirectional
              ? SeesLight(kScene, point, normal, glm::dvec3(lamp.direction))
@@ -101,7 +93,7 @@ Comparison Compare(const FloatPicture& visible, const Camera& camera, int light,
 // The lamps of a preset with non-zero radiance.
 std::vector<Comparison> CompareLamps(LightPreset preset, const ShadowSettings& shadow) {
   const character::Character scene = test::MakeSphereOnPlane(kScene, kShadowPlane);
-  const Camera camera = ShadowCamera();
+  const Camera camera = test::SphereCamera({0.0f, 0.35f, 0.60f});
   FrameRequest request = test::SceneRequest(scene, camera, kShadowSize, kShadowSize);
   request.settings.view = View::kShadow;
   request.settings.lights.preset = preset;

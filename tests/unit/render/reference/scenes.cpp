@@ -107,6 +107,14 @@ Camera CardCamera(float mm_per_pixel, int height) {
   return camera;
 }
 
+Camera SphereCamera(const glm::vec3& position) {
+  Camera camera;
+  camera.position = position;
+  camera.target = {0.0f, 0.05f, 0.0f};
+  camera.fov_y_degrees = 30.0f;
+  return camera;
+}
+
 Ray PixelRay(const Camera& camera, int x, int y, int width, int height) {
   const glm::dvec3 origin(camera.position);
   const glm::dvec3 forward = glm::normalize(glm::dvec3(camera.target) - origin);

@@ -24,6 +24,9 @@ struct CardHalf {
 // A white sphere over a white plane of `plane_size` metres, both skin, one mesh each.
 [[nodiscard]] character::Character MakeSphereOnPlane(const SphereOnPlane& scene, float plane_size);
 
+// A camera at `position` that looks down at the middle of such a scene.
+[[nodiscard]] Camera SphereCamera(const glm::vec3& position);
+
 // A camera in front of the origin that looks along -Z and shows the plane z = 0 at `mm_per_pixel`
 // in a picture of `height` pixels.
 [[nodiscard]] Camera CardCamera(float mm_per_pixel, int height);
