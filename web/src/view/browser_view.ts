@@ -106,8 +106,8 @@ export class BrowserView {
   /** The GPU may be busier than it was when it was measured. A hidden page and a pose at rest draw nothing, which says nothing. */
   private checkRate(posesHz: number): void {
     const nowS = performance.now() / 1000;
-    const hz = this.rateHz(nowS);
     if (nowS - this.restedAtS <= RATE_WINDOW_S) return;
+    const hz = this.rateHz(nowS);
     const isSlow = document.visibilityState === 'visible' && hz < ENOUGH * Math.min(this.daemonHz, posesHz);
     this.slowS = isSlow ? this.slowS + 1 : 0;
     if (this.slowS >= SLOW_S) this.browserHz = hz;
