@@ -169,7 +169,8 @@ TEST_P(UdpPathTest, ALostPoseDelaysTheNextOneByATimer) {
   EXPECT_EQ(TakeWeights(), 3);
   send({6, 8});
   EXPECT_EQ(Count(Counter::kPosesHeld), 2u);
-  for (int weights_left = 2; weights_left > 0; weights_left -= TakeWeights()) {
+  // On a busy machine the wait has already ended when send() returns.
+  for (int weights_left = 2 - TakeWeights(); weights_left > 0; weights_left -= TakeWeights()) {
     io.restart();
     io.run_one();
   }
