@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """`furrow render`: settings that round-trip, and machines without OpenGL."""
+import os
 import pathlib
 import subprocess
 import tempfile
@@ -53,8 +54,8 @@ class RenderTest(unittest.TestCase):
     def test_without_opengl_the_daemon_still_serves_weights(self):
         result = furrow("render", ANGER, "--out", self.root / "none", env=NO_DRIVER, check=1)
         self.assertIn("no EGL driver", result.stderr.decode())
-        required = subprocess.run([BIN / "furrowd", "--tcp", "0", "--udp", "0", "--require-render"], env=NO_DRIVER,
-                                  capture_output=True, timeout=GUARD)
+        required = subprocess.run([BIN / "furrowd", "--tcp", "0", "--udp", "0", "--require-render"],
+                                  env={**os.environ, **NO_DRIVER}, capture_output=True, timeout=GUARD)
         self.assertEqual(required.returncode, 1, required.stderr.decode())
         with Daemon(env=NO_DRIVER) as daemon:
             self.assertIn("render=off", daemon.ready)
