@@ -9,6 +9,7 @@ import { tokenHeaders } from '../state/token';
 import { h } from '../ui/dom';
 import { Signal } from '../ui/signal';
 import type { Connection } from '../wire/connection';
+import { BrowserRate } from './browser_rate';
 import type { BrowserScene } from './browser_scene';
 import { decide, type DrawDecision } from './draw_choice';
 import { DrawnMoment } from './drawn_moment';
@@ -16,16 +17,8 @@ import type { ShownPicture } from './picture_stats';
 import { pictureSize } from './resolution';
 
 const CHARACTER_URL = 'character.glb';
-/** The first pictures compile shaders and upload textures. */
-const WARM_UP = 3;
-const MEASURED = 8;
-const RATE_WINDOW_S = 2;
-/** Slow seconds after which the measurement counts as wrong. */
-const SLOW_S = 3;
 /** Seconds after a change of shading in which the daemon's rate still counts pictures from before. */
 const SETTLE_S = 3;
-/** Rates are counted, and screens have rates of their own, so this share of a rate counts as the whole. */
-const ENOUGH = 0.8;
 
 function nameOfGpu(): string {
   const gl = document.createElement('canvas').getContext('webgl2');
@@ -53,13 +46,9 @@ export class BrowserView {
   private daemonHz = 0;
   private settleS = 0;
   private read: { at: number; settings: ReadSettings; hasSkin: boolean } | null = null;
-  private browserHz: number | null = null;
-  private measured: number[] = [];
-  private shownAtS: number[] = [];
-  private slowS = 0;
+  private readonly rate = new BrowserRate();
   private readonly moment = new DrawnMoment();
   private lastNumber = -1;
-  private restedAtS = -Infinity;
   private drawn: (ShownPicture & { ageMs: number; atMs: number }) | null = null;
   private isScheduled = false;
 
@@ -77,8 +66,7 @@ export class BrowserView {
 
   /** Pictures per second, of the last two seconds. */
   rateHz(nowS: number): number {
-    this.shownAtS = this.shownAtS.filter((at) => nowS - at <= RATE_WINDOW_S);
-    return this.shownAtS.length / RATE_WINDOW_S;
+    return this.rate.shownHz(nowS);
   }
 
   /** The pose that this browser has drawn; null: none. */
@@ -97,20 +85,11 @@ export class BrowserView {
   /** Called once per second: what the daemon says of the shown subject, and how fast it draws a moving pose. */
   observe(subject: SubjectInfo | undefined, daemonHz: number): void {
     this.hasNeutral = subject?.neutral ?? false;
-    if (this.active.value) this.checkRate(subject?.rate_hz ?? 0);
+    const isVisible = document.visibilityState === 'visible';
+    if (this.active.value) this.rate.check(performance.now() / 1000, Math.min(this.daemonHz, subject?.rate_hz ?? 0), isVisible);
     else if (this.settleS > 0) --this.settleS;
     else this.daemonHz = Math.max(this.daemonHz, daemonHz);
     this.update();
-  }
-
-  /** The GPU may be busier than it was when it was measured. A hidden page and a pose at rest draw nothing, which says nothing. */
-  private checkRate(posesHz: number): void {
-    const nowS = performance.now() / 1000;
-    if (nowS - this.restedAtS <= RATE_WINDOW_S) return;
-    const hz = this.rateHz(nowS);
-    const isSlow = document.visibilityState === 'visible' && hz < ENOUGH * Math.min(this.daemonHz, posesHz);
-    this.slowS = isSlow ? this.slowS + 1 : 0;
-    if (this.slowS >= SLOW_S) this.browserHz = hz;
   }
 
   /** The settings of the picture. Another shading takes another time, here and there, so it is measured again. */
@@ -121,8 +100,7 @@ export class BrowserView {
       const read = readSettings(settings.infos.map(({ name }) => [name, settings.value(name)] as const));
       const hasSkin = read.settings.shading === 'skin' || read.settings.view !== 'final';
       if (this.read !== null && this.read.hasSkin !== hasSkin) {
-        this.browserHz = null;
-        this.measured = [];
+        this.rate.forget();
         this.daemonHz = 0;
         this.settleS = SETTLE_S;
       }
@@ -146,7 +124,7 @@ export class BrowserView {
       hasNeutral: this.hasNeutral,
       character: this.character,
       fits: this.scene === null || !isOne ? null : this.scene.fits(pose, weights),
-      browserHz: this.browserHz,
+      browserHz: this.rate.hz,
       daemonHz: this.daemonHz,
     });
   }
@@ -166,7 +144,7 @@ export class BrowserView {
     else if (this.scene !== null) this.follow();
     const active = step === 'browser';
     if (active === this.active.value) return;
-    this.shownAtS = [];
+    this.rate.restart();
     // Shown with the first picture (draw()), so that the daemon's stays until then.
     if (!active) {
       this.drawn = null;
@@ -212,9 +190,7 @@ export class BrowserView {
     this.character = reason;
     this.scene?.dispose();
     this.scene = null;
-    this.browserHz = null;
-    this.measured = [];
-    this.slowS = 0;
+    this.rate.forget();
     this.element.replaceChildren();
     this.stopFeeds();
     this.update();
@@ -274,29 +250,19 @@ export class BrowserView {
     }
     const endedMs = performance.now();
     if (step === 'measure') {
-      this.note(endedMs - beganMs);
+      if (this.rate.sample(endedMs - beganMs)) this.update();
     } else if (!isSame || pose.number !== this.lastNumber) {
       // The last picture also shows an equal pose that has arrived since.
-      if (isSame) this.restedAtS = endedMs / 1000;
       this.lastNumber = pose.number;
       this.drawn = { sequence: pose.sequence, width, height, isStill: false, drawnPercent: 100, ageMs: pose.ageMs, atMs: endedMs };
-      this.show(endedMs / 1000);
+      this.show(endedMs / 1000, isSame);
       this.onShown();
     }
     this.schedule();
   }
 
-  private note(ms: number): void {
-    this.measured.push(ms);
-    if (this.measured.length < WARM_UP + MEASURED) return;
-    const sorted = this.measured.slice(WARM_UP).sort((a, b) => a - b);
-    this.browserHz = 1000 / Math.max(sorted[MEASURED >> 1]!, 1);
-    this.measured = [];
-    this.update();
-  }
-
-  private show(nowS: number): void {
-    this.shownAtS.push(nowS);
+  private show(nowS: number, isRest: boolean): void {
+    this.rate.shown(nowS, isRest);
     if (this.active.value) return;
     this.element.hidden = false;
     this.active.set(true);
