@@ -82,10 +82,14 @@ bool SealedClient::Introduce() {
   return client_.connected();
 }
 
+void SealedClient::StopClock() { stopped_ = Time(); }
+
+secure::Now SealedClient::Time() const { return stopped_ ? *stopped_ : ReadNow(); }
+
 void SealedClient::ConnectAndClose() {
   while (!client_.connected()) (void)Exchange();
   std::array<std::uint8_t, secure::kMaxPacketBytes> packet;
-  const std::size_t size = client_.Close(ReadNow(), packet);
+  const std::size_t size = client_.Close(Time(), packet);
   ASSERT_GT(size, 0u);
   SendRaw({packet.data(), size});
 }
@@ -104,7 +108,7 @@ void SealedClient::MoveTo(const char* from) {
 
 void SealedClient::Poll() {
   std::array<std::uint8_t, secure::kMaxPacketBytes> packet;
-  while (const std::size_t size = client_.Poll(ReadNow(), packet)) {
+  while (const std::size_t size = client_.Poll(Time(), packet)) {
     SendRaw({packet.data(), size});
   }
 }
@@ -118,7 +122,7 @@ void SealedClient::SendBytes(std::span<const std::uint8_t> message) {
         std::span(packet).subspan(secure::kPacketHeaderBytes, protocol::kMaxDatagramBytes);
     const std::size_t size =
         protocol::WriteDatagram(message, id, index, inner) + secure::kPacketOverheadBytes;
-    ASSERT_EQ(client_.Seal(std::span(packet).first(size), ReadNow()), secure::SealStatus::kOk);
+    ASSERT_EQ(client_.Seal(std::span(packet).first(size), Time()), secure::SealStatus::kOk);
     sent_.emplace_back(packet.begin(), packet.begin() + static_cast<std::ptrdiff_t>(size));
     if (!held_) SendRaw(sent_.back());
   }
@@ -134,7 +138,7 @@ bool SealedClient::Exchange() {
   const ssize_t size = ::recv(socket_, buffer.data(), buffer.size(), 0);
   if (size <= 0) return false;
   const secure::ClientEvent event =
-      client_.OnDatagram(std::span(buffer).first(static_cast<std::size_t>(size)), ReadNow());
+      client_.OnDatagram(std::span(buffer).first(static_cast<std::size_t>(size)), Time());
   if (event.refusal != secure::Refusal::kNone) refusal_ = event.refusal;
   renewed_ = renewed_ || event.renewed;
   if (event.inner.empty()) return false;

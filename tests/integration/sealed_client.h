@@ -56,6 +56,8 @@ class SealedClient : public RawClient {
   // Waits for a session. False: the daemon refuses the token; see refusal().
   bool Introduce() override;
   [[nodiscard]] protocol::secure::Refusal refusal() const { return refusal_; }
+  // From now on, no time passes for this client, so it repeats nothing, however late answers are.
+  void StopClock();
   // Waits for a session and closes it with the first packet.
   void ConnectAndClose();
   // Continues from another address, with the same session.
@@ -81,10 +83,12 @@ class SealedClient : public RawClient {
   bool Fill() override;
   bool Exchange();
   void Poll();
+  [[nodiscard]] protocol::secure::Now Time() const;
 
   std::uint16_t port_;
   protocol::secure::SecureClient client_;
   protocol::secure::Refusal refusal_ = protocol::secure::Refusal::kNone;
+  std::optional<protocol::secure::Now> stopped_;
   bool renewed_ = false;
   bool held_ = false;
   std::vector<std::vector<std::uint8_t>> sent_;

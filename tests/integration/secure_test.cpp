@@ -107,6 +107,7 @@ TEST_F(Secure, RefusesPlainDatagramsWithOneError) {
 TEST_F(Secure, EachInvalidTokenGetsItsReason) {
   const auto refusal = [&](const secure::ClientToken& token) {
     SealedClient client(daemon.ready().udp, token);
+    client.StopClock();  // a repeated handshake would count as refused, too
     EXPECT_FALSE(client.Introduce());
     return client.refusal();
   };
@@ -121,9 +122,8 @@ TEST_F(Secure, EachInvalidTokenGetsItsReason) {
   secure::ClientToken stolen = keys.Token(Role::kWatch);
   stolen.key = keys.Token(Role::kWatch).key;
   EXPECT_EQ(refusal(stolen), Refusal::kForgedHandshake);
-  // A client repeats what is not answered in time.
-  EXPECT_GE(daemon.Count(Counter::kRefusedUnknownKey), 1u);
-  EXPECT_GE(daemon.Count(Counter::kRefusedExpired), 1u);
+  EXPECT_EQ(daemon.Count(Counter::kRefusedUnknownKey), 1u);
+  EXPECT_EQ(daemon.Count(Counter::kRefusedExpired), 1u);
   EXPECT_EQ(daemon.Count(Counter::kHandshakes), 0u);
   SealedClient right(daemon.ready().udp, keys.Token(Role::kWatch, "*", 3600, "stage"));
   EXPECT_TRUE(right.Introduce());
