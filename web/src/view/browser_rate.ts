@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // How fast this browser draws: measured before it draws for the viewer, and watched from then on. Times are in seconds.
+import { dropOld, median, WINDOW_S } from './recent';
 
 /** The first pictures compile shaders and upload textures. */
 export const WARM_UP = 3;
 export const MEASURED = 8;
-export const RATE_WINDOW_S = 2;
 /** Slow seconds after which the measurement counts as wrong. */
 export const SLOW_S = 3;
 /** Rates are counted, and screens have rates of their own, so this share of a rate counts as the whole. */
@@ -14,7 +14,7 @@ export class BrowserRate {
   /** Pictures per second; null: not measured. */
   hz: number | null = null;
   private samplesMs: number[] = [];
-  private shownAtS: number[] = [];
+  private pictures: { atS: number }[] = [];
   private restedAtS = -Infinity;
   private slowS = 0;
 
@@ -22,22 +22,21 @@ export class BrowserRate {
   sample(ms: number): boolean {
     this.samplesMs.push(ms);
     if (this.samplesMs.length < WARM_UP + MEASURED) return false;
-    const sorted = this.samplesMs.slice(WARM_UP).sort((a, b) => a - b);
-    this.hz = 1000 / Math.max(sorted[MEASURED >> 1]!, 1);
+    this.hz = 1000 / Math.max(median(this.samplesMs.slice(WARM_UP)), 1);
     this.samplesMs = [];
     return true;
   }
 
   /** The viewer sees the picture of a new pose. `isRest`: it is the last picture, because the pose equals the last one. */
   shown(nowS: number, isRest: boolean): void {
-    this.shownAtS.push(nowS);
+    this.pictures.push({ atS: nowS });
     if (isRest) this.restedAtS = nowS;
   }
 
   /** Pictures per second, of the last two seconds. */
   shownHz(nowS: number): number {
-    this.shownAtS = this.shownAtS.filter((at) => nowS - at <= RATE_WINDOW_S);
-    return this.shownAtS.length / RATE_WINDOW_S;
+    dropOld(this.pictures, nowS);
+    return this.pictures.length / WINDOW_S;
   }
 
   /**
@@ -46,15 +45,15 @@ export class BrowserRate {
    * which says nothing.
    */
   check(nowS: number, wantedHz: number, isVisible: boolean): void {
-    if (nowS - this.restedAtS <= RATE_WINDOW_S) return;
+    if (nowS - this.restedAtS <= WINDOW_S) return;
     const hz = this.shownHz(nowS);
     this.slowS = isVisible && hz < ENOUGH * wantedHz ? this.slowS + 1 : 0;
     if (this.slowS >= SLOW_S) this.hz = hz;
   }
 
-  /** The viewer sees pictures of the daemon, or those of this browser from now on. */
+  /** Somebody else draws from now on, or this browser again: former pictures count no longer. */
   restart(): void {
-    this.shownAtS = [];
+    this.pictures = [];
   }
 
   /** Another character or shading: it must be measured again. */

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Statistics of the pictures: rate, latency, age and losses.
+import { dropOld, median, WINDOW_S } from './recent';
 
 export interface PictureFacts {
   sequence: number;
@@ -32,7 +33,6 @@ export interface ShownPicture {
   ageMs: number | null;
 }
 
-const WINDOW_S = 2;
 /** After this many pictures in a row without a still, the pose or the camera counts as moving. */
 const MOVES = 3;
 const MOST_SAMPLES = 60;
@@ -146,9 +146,7 @@ export class PictureStats {
 
   /** Median, from the pose's arrival at the daemon to the screen; null: no moving pictures yet. */
   latencyMs(): number | null {
-    if (this.latencies.length === 0) return null;
-    const sorted = [...this.latencies].sort((a, b) => a - b);
-    return sorted[Math.floor(sorted.length / 2)]!;
+    return this.latencies.length === 0 ? null : median(this.latencies);
   }
 
   /** Time since the pose on the screen reached the daemon; null: unknown. */
@@ -165,8 +163,6 @@ export class PictureStats {
   }
 
   private prune(nowS: number): void {
-    for (const list of [this.samples, this.loads]) {
-      while (list.length > 0 && list[0]!.atS < nowS - WINDOW_S) list.shift();
-    }
+    for (const list of [this.samples, this.loads]) dropOld(list, nowS);
   }
 }
