@@ -13,7 +13,7 @@
 
 #include "server/core/network_address.h"
 #include "server/http/request/json_reply.h"
-#include "server/http/request/timecode_json.h"
+#include "server/http/request/stream_json.h"
 #include "server/machine/own_addresses.h"
 
 namespace furrow::server {
@@ -78,31 +78,20 @@ std::string_view InputOf(std::string_view source) {
   return source == "vmc" ? kVmc : std::string_view();
 }
 
-Json SubjectJson(const Subject& subject, std::string_view source, Time now, Time unix_now) {
+Json SubjectJson(const Subject& subject, Hub& hub, Time now, Time unix_now) {
   const StreamDefinition& stream = subject.pipeline->stream();
-  const SubjectStats& stats = subject.stats;
   const bool has_joints = stream.skeleton.num_joints() > 0;
   const bool has_shapes = !stream.blend_shapes.empty();
   const auto none = std::span<const std::string>();
-  return {{"name", subject.name},
-          {"input", InputOf(source)},
-          {"source", source},
-          {"rate_hz", stats.rate_hz(now)},
-          {"poses", stats.poses()},
-          {"lost", stats.lost()},
-          {"late", stats.late()},
-          {"jitter_ms", stats.jitter_seconds(now) * 1e3},
-          {"age_ms", ToSeconds(now - subject.last_pose) * 1e3},
-          {"clock_offset_ms", ClockOffsetMs(subject, now, unix_now)},
-          {"timecode", TimecodeJson(subject.timecode)},
-          {"timecode_rate_hz", TimecodeRateJson(subject.timecode)},
-          {"joints", stream.skeleton.num_joints()},
-          {"blend_shapes", stream.blend_shapes.size()},
-          {"ignored_joints", NamesJson(stream.ignored_joints)},
-          // A tracker of faces lacks no joints, and one of bodies no blend shapes.
-          {"missing_joints", NamesJson(has_joints ? stream.binding->missing_joints() : none)},
-          {"missing_blend_shapes",
-           NamesJson(has_shapes ? stream.binding->missing_blend_shapes() : none)}};
+  Json json = StreamJson(subject, hub, now);
+  json.update({{"input", InputOf(hub.SourceOf(subject))},
+               {"clock_offset_ms", ClockOffsetMs(subject, now, unix_now)},
+               {"ignored_joints", NamesJson(stream.ignored_joints)},
+               // A tracker of faces lacks no joints, and one of bodies no blend shapes.
+               {"missing_joints", NamesJson(has_joints ? stream.binding->missing_joints() : none)},
+               {"missing_blend_shapes",
+                NamesJson(has_shapes ? stream.binding->missing_blend_shapes() : none)}});
+  return json;
 }
 
 }  // namespace
@@ -119,7 +108,7 @@ ApiReply SourcesApi::Show(const ApiRequest& request, Hub& hub, Time now) const {
     if (subjects.size() == kMaxListedSubjects) {
       ++more;
     } else {
-      subjects.push_back(SubjectJson(*subject, hub.SourceOf(*subject), now, parts_.unix_now()));
+      subjects.push_back(SubjectJson(*subject, hub, now, parts_.unix_now()));
     }
   }
   return JsonReply({{"bind", parts_.bind},

@@ -13,7 +13,7 @@
 
 #include "server/http/metrics/metric_families.h"
 #include "server/http/request/json_reply.h"
-#include "server/http/request/timecode_json.h"
+#include "server/http/request/stream_json.h"
 
 namespace furrow::server {
 
@@ -59,25 +59,14 @@ ApiReply StatusApi::Subjects(const ApiRequest& request, Hub& hub, Time now) cons
   for (const auto& subject : hub.subjects().all()) {
     if (!request.access.Concerns(subject->name)) continue;
     const SubjectPipeline& pipeline = *subject->pipeline;
-    const SubjectStats& stats = subject->stats;
-    list.push_back({{"name", subject->name},
-                    {"state", StateOf(*subject)},
-                    {"source", hub.SourceOf(*subject)},
-                    {"skeleton", fmt::format("{:016x}", subject->skeleton_hash)},
-                    {"joints", pipeline.stream().skeleton.num_joints()},
-                    {"blend_shapes", pipeline.stream().blend_shapes.size()},
-                    {"sequence", pipeline.sequence()},
-                    {"rate_hz", stats.rate_hz(now)},
-                    {"poses", stats.poses()},
-                    {"lost", stats.lost()},
-                    {"late", stats.late()},
-                    {"buffer_ms", ToSeconds(subject->hold) * 1e3},
-                    {"jitter_ms", stats.jitter_seconds(now) * 1e3},
-                    {"age_ms", ToSeconds(now - subject->last_pose) * 1e3},
-                    {"moved_ms", MovedMs(*subject, now)},
-                    {"timecode", TimecodeJson(subject->timecode)},
-                    {"timecode_rate_hz", TimecodeRateJson(subject->timecode)},
-                    {"neutral", pipeline.neutral_pose().has_value()}});
+    Json entry = StreamJson(*subject, hub, now);
+    entry.update({{"state", StateOf(*subject)},
+                  {"skeleton", fmt::format("{:016x}", subject->skeleton_hash)},
+                  {"sequence", pipeline.sequence()},
+                  {"buffer_ms", ToSeconds(subject->hold) * 1e3},
+                  {"moved_ms", MovedMs(*subject, now)},
+                  {"neutral", pipeline.neutral_pose().has_value()}});
+    list.push_back(std::move(entry));
   }
   return JsonReply({{"subjects", std::move(list)}});
 }
