@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <exception>
 #include <thread>
 #include <utility>
 
@@ -55,7 +56,13 @@ Connection::Connection(client::Address address, std::string program, client::Sec
     : address_(std::move(address)), program_(std::move(program)), security_(std::move(security)) {}
 
 Connection::~Connection() {
-  // Without these, the daemon would notice after some seconds.
+  try {
+    SayGoodbye();
+  } catch (const std::exception&) {  // without memory, the daemon notices after some seconds
+  }
+}
+
+void Connection::SayGoodbye() {
   if (sender_) sender_->Close();
   while (receiver_ && !receiver_->feeds().empty()) {
     receiver_->Unsubscribe(*receiver_->feeds().front());

@@ -60,6 +60,8 @@ class Connection {
   // The poses of a subject with their skeleton; null, with a status, if there are none.
   const PoseFeed* FindPoses(const char* subject, furrow_status* status);
   std::unique_ptr<client::Transport> OpenTransport() const;
+  // Says goodbye and ends the subscriptions. Throws std::bad_alloc.
+  void SayGoodbye();
   bool Step(std::int64_t now_us, std::chrono::milliseconds wait, bool* done);
   void PollSender(std::int64_t now_us, std::chrono::milliseconds wait, bool* news);
   void SetState(furrow_state state);

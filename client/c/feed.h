@@ -35,7 +35,7 @@ class Feed {
   // The connection is new: the number of the subscription is unknown until the next reply.
   void Forget() {
     subscription_ = 0;
-    if (poses_) poses_->SetSubscription(0);
+    if (poses_) poses_->Forget();
   }
   // The daemon rejected the request, which is to be repeated at `retry_us`.
   void OnError(furrow_status status, std::int64_t retry_us);

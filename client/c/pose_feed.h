@@ -15,7 +15,11 @@ class PoseFeed {
  public:
   // The number of the request that was sent last.
   void SetRequest(std::uint32_t number) { request_number_ = number; }
+  // The daemon has accepted the request.
   void SetSubscription(std::uint16_t subscription);
+  // The connection is new: the number of the subscription is unknown until the next reply. A
+  // rejected request stays due.
+  void Forget() { subscription_ = 0; }
   // Describes the poses that follow.
   void OnSkeleton(const protocol::SkeletonOffer& skeleton);
   // A whole pose. Returns false if it is of another skeleton, or older than the newest pose.

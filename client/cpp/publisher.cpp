@@ -13,6 +13,12 @@
 #include "protocol/messages/limits.h"
 
 namespace furrow::client {
+namespace {
+
+// A flood of messages must not keep Poll() from returning.
+constexpr int kMostAnswers = 256;
+
+}  // namespace
 
 std::uint64_t NewSession() {
   std::random_device random;
@@ -179,7 +185,7 @@ IoStatus Publisher::Poll(std::int64_t now_us, std::chrono::milliseconds wait) {
   }
   std::span<const std::uint8_t> message;
   IoStatus status = transport_->Receive(message, std::max(wait, MovePause()));
-  for (;;) {
+  for (int handled = 1;; ++handled) {
     const bool starts_over = transport_->generation() != generation_;
     if (starts_over) StartOver(now_us);
     if (status == IoStatus::kOk) {
@@ -188,6 +194,7 @@ IoStatus Publisher::Poll(std::int64_t now_us, std::chrono::milliseconds wait) {
     } else if (!starts_over || !moving_since_us_) {
       return status;
     }
+    if (handled == kMostAnswers) return IoStatus::kOk;
     // Reads all waiting answers. A timeout after the first one is not a timeout of this call.
     const IoStatus more = transport_->Receive(message, MovePause());
     if (more == IoStatus::kTimeout && transport_->generation() == generation_) return status;

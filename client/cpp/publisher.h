@@ -50,9 +50,9 @@ class Publisher {
                               const protocol::PoseEncoding& encoding = {},
                               bool repeat_previous = false);
 
-  // Reads answers for up to `wait` and repeats unanswered offers. Call it between poses. On its way
-  // to another server, it waits a few milliseconds for each answer. kOk and kTimeout are both
-  // normal. kNoConnection over UDP means that the port is closed at present.
+  // Reads answers for up to `wait`, 256 at most, and repeats unanswered offers. Call it between
+  // poses. On its way to another server, it waits a few milliseconds for each answer. kOk and
+  // kTimeout are both normal. kNoConnection over UDP means that the port is closed at present.
   IoStatus Poll(std::int64_t now_us, std::chrono::milliseconds wait);
 
   // Sends a goodbye for one stream. The stream stays rejected with the reason `why`.

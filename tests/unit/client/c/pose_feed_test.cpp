@@ -103,6 +103,10 @@ TEST_F(PoseFeedTest, ARejectedRequestIsReportedAndDueAgainOnce) {
   feed_.OnError(FURROW_LIMIT, 600);
   feed_.SetSubscription(3);
   EXPECT_FALSE(feed_.TakeRetry(700)) << "the daemon has accepted it since";
+  feed_.OnError(FURROW_LIMIT, 750);
+  feed_.Forget();
+  EXPECT_EQ(feed_.status(), FURROW_LIMIT);
+  EXPECT_TRUE(feed_.TakeRetry(750)) << "also on another connection";
   feed_.OnError(FURROW_LIMIT, 800);
   feed_.OnSkeleton(skeleton_);
   EXPECT_EQ(feed_.status(), FURROW_NO_DATA);

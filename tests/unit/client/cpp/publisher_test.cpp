@@ -189,6 +189,14 @@ TEST_F(PublisherTest, ChallengesAreAnswered) {
   EXPECT_EQ(pong.time_us, 123456789);
 }
 
+TEST_F(PublisherTest, AFloodDoesNotKeepPollFromReturning) {
+  (void)publisher_.AddSubject(OneJoint(), 0);
+  Prove();
+  for (int i = 0; i < 1000; ++i) far_->Answer({.session = 7}, protocol::Ping{i});
+  EXPECT_EQ(publisher_.Poll(1, milliseconds(0)), IoStatus::kOk);
+  EXPECT_EQ(far_->to_receive.size(), 1000u - 256u);
+}
+
 TEST_F(PublisherTest, ASubjectThatAnotherOneSendsIsOfferedUntilItIsFree) {
   const auto stream = publisher_.AddSubject(OneJoint(), 0);
   Prove();
