@@ -183,7 +183,7 @@ bool RenderMailbox::IsWanted(const RenderJob& job) const {
   if (closed_) return false;
   if (job.prepares) return !HasJob(/*drafts=*/false);
   return std::ranges::any_of(job.tickets, [this](const PictureTicket& ticket) {
-    return taken_.contains(ticket.subscription);
+    return FindTaken(ticket.subscription, ticket.still) != taken_.end();
   });
 }
 
@@ -270,7 +270,7 @@ void RenderMailbox::Wake() {
 std::size_t RenderMailbox::Complete(RenderJob* job) {
   const std::lock_guard lock(mutex_);
   return std::erase_if(job->tickets, [this](const PictureTicket& ticket) {
-    const auto taken = taken_.find(ticket.subscription);
+    const auto taken = FindTaken(ticket.subscription, ticket.still);
     if (taken == taken_.end()) return true;  // withdrawn
     taken_.erase(taken);
     return false;
@@ -301,11 +301,18 @@ bool RenderMailbox::WithdrawStill(std::uint64_t subscription) {
     if (job->tickets.empty()) jobs_.erase(job);
     return true;
   }
-  const auto [begin, end] = taken_.equal_range(subscription);
-  const auto taken = std::find_if(begin, end, [](const auto& entry) { return entry.second; });
-  if (taken == end) return false;
+  const auto taken = FindTaken(subscription, /*still=*/true);
+  if (taken == taken_.end()) return false;
   taken_.erase(taken);
   return true;
+}
+
+RenderMailbox::Taken::const_iterator RenderMailbox::FindTaken(std::uint64_t subscription,
+                                                              bool still) const {
+  const auto [begin, end] = taken_.equal_range(subscription);
+  const auto found =
+      std::find_if(begin, end, [still](const auto& entry) { return entry.second == still; });
+  return found == end ? taken_.end() : found;
 }
 
 std::vector<RenderJob> RenderMailbox::TakeWaiting() {

@@ -125,9 +125,8 @@ class RenderMailbox {
   // Adds a job. Waiting tickets of the same subscriptions for other pictures are removed, and so
   // are jobs without tickets.
   // - kQueued: a new job waits.
-  // - kReplaced: the job replaced one of the same subject and spec and took over its tickets. If
-  // the
-  //   subject has moved, tickets for stills become normal ones.
+  // - kReplaced: the job replaced one of the same subject and spec and took over its tickets.
+  //   If the subject has moved, tickets for stills become normal ones.
   // - kNotWanted: the job has no tickets and there was no job to refresh.
   // - kFull: `capacity` jobs wait, the host has its share of them, or the mailbox is closed. Only
   //   in this case is `job` unchanged.
@@ -168,6 +167,8 @@ class RenderMailbox {
 
  private:
   using Jobs = std::deque<RenderJob>;
+  // The tickets being drawn: their subscriptions, and whether they are stills.
+  using Taken = std::unordered_multimap<std::uint64_t, bool>;
   [[nodiscard]] std::vector<RenderJob> TakeLocked();
   void CloseLocked();
   void DropOlderTickets(const RenderJob& job);
@@ -177,6 +178,7 @@ class RenderMailbox {
   [[nodiscard]] Time ReadyAt(const RenderJob& job) const;
   [[nodiscard]] Time ReadyAt(bool drafts) const;
   [[nodiscard]] Time Now() const { return clock_ == nullptr ? Time(0) : clock_(); }
+  [[nodiscard]] Taken::const_iterator FindTaken(std::uint64_t subscription, bool still) const;
   void WaitForJob(std::unique_lock<std::mutex>* lock, bool drafts);
   void MarkHeld(Time now);
   [[nodiscard]] std::pair<std::size_t, std::size_t> CountWaiting(std::uint64_t host) const;
@@ -186,8 +188,7 @@ class RenderMailbox {
   std::condition_variable changed_;
   Jobs jobs_;
   std::deque<RenderJob> preparations_;
-  // The tickets being drawn: their subscriptions, and whether they are stills.
-  std::unordered_multimap<std::uint64_t, bool> taken_;
+  Taken taken_;
   FairOrder order_;
   WorkBudget budget_;
   Clock clock_ = nullptr;  // null: there is no budget

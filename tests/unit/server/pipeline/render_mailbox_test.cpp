@@ -168,6 +168,19 @@ TEST(RenderMailbox, AStillThatIsBeingDrawnCanBeWithdrawn) {
   EXPECT_TRUE(mailbox.IsWanted(*moving));
 }
 
+TEST(RenderMailbox, AStillThatAnotherPictureReplacedIsNotItsAnswer) {
+  RenderMailbox mailbox(8);
+  mailbox.Put(Still(1, 1, 100));
+  auto still = mailbox.Take(false);
+  // Its viewer changes the view while it is drawn.
+  EXPECT_TRUE(mailbox.WithdrawStill(100));
+  mailbox.Put(Job(1, 2, 100));
+  auto next = mailbox.Take(false);
+  EXPECT_FALSE(mailbox.IsWanted(*still));
+  EXPECT_EQ(mailbox.Complete(&*still), 1u);
+  EXPECT_EQ(mailbox.Complete(&*next), 0u);
+}
+
 TEST(RenderMailbox, PreparationsComeLastAndGiveWay) {
   RenderMailbox mailbox(8);
   RenderJob preparation = Job(0, 7, 0);
