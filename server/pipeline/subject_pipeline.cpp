@@ -80,7 +80,7 @@ bool SubjectPipeline::SetNeutral(std::optional<wrinkle::LocalPose> neutral) {
   }
   neutral_pose_ = std::move(neutral);
   PrepareNeutral();
-  SolveAgain();
+  SolveAgain(solver_.seconds_without_pose());
   return true;
 }
 
@@ -107,14 +107,18 @@ void SubjectPipeline::SetStream(std::shared_ptr<const StreamDefinition> stream) 
   }
   PrepareNeutral();
   // The level starts at all drivers again; Subscribers::OnSubjectReady() lowers it.
+  const double decayed = solver_.seconds_without_pose();
   solver_ = wrinkle::SubjectSolver(stream_->binding);
-  SolveAgain();
+  SolveAgain(decayed);
 }
 
-// The status is not needed: a pose that was refused before is refused again.
-void SubjectPipeline::SolveAgain() {
+// The statuses are not needed: a pose that was refused before is refused again. What has decayed
+// must not come back: the folds of absent performers would flash.
+void SubjectPipeline::SolveAgain(double decayed) {
   solver_.Reset();
-  if (has_pose_) (void)Solve(sequence_, capture_time_us_);
+  if (!has_pose_) return;
+  (void)Solve(sequence_, capture_time_us_);
+  (void)solver_.Decay(decayed);
 }
 
 void SubjectPipeline::SetLevel(std::size_t num_drivers) {

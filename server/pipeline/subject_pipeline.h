@@ -105,7 +105,8 @@ class SubjectPipeline {
                                                              std::int64_t received_us = 0) const;
 
  private:
-  void SolveAgain();
+  // Solves the last pose, and lets its values decay for `decayed` seconds.
+  void SolveAgain(double decayed);
   void SubtractNeutral();
   void PrepareNeutral();
   void ShowFaceFromNeutral(Snapshot* snapshot) const;

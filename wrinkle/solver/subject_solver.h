@@ -51,6 +51,8 @@ class SubjectSolver {
   // Advances time by `dt` seconds without a pose: the values hold and then decay to neutral
   // (Filter::hold_seconds, decay_seconds). Returns kBadTime on failure.
   [[nodiscard]] JobStatus Decay(double dt);
+  // Seconds that Decay() has advanced since the last pose.
+  [[nodiscard]] double seconds_without_pose() const { return filter_context_.since_input; }
   // Restores the state after construction, except for the number of drivers.
   void Reset();
 

@@ -508,6 +508,34 @@ TEST(SubjectPipeline, FoldsAtRestDoNotHoldASubject) {
   EXPECT_TRUE(subject.neutral());
 }
 
+TEST(SubjectPipeline, ANewRigOrNeutralDoesNotBringBackWhatHasDecayed) {
+  const auto solve = [](SubjectPipeline& subject) {
+    ApplyPose(Bend(2.0f), subject.stream(), subject.mutable_pose());
+    ASSERT_EQ(subject.Solve(7, 0), wrinkle::JobStatus::kOk);
+  };
+  const auto definition = Define(/*filter=*/true);
+  SubjectPipeline gone(definition);
+  SubjectPipeline fading(definition);
+  solve(gone);
+  solve(fading);
+  for (int i = 0; i < 600; ++i) ASSERT_EQ(gone.Decay(0.02), wrinkle::JobStatus::kOk);
+  const float fresh = fading.wrinkle_weights()[0];
+  const auto& filter = KneeRig(/*filter=*/true)->filter;
+  const double fades = double{filter.hold_seconds} + 0.3 * double{filter.decay_seconds};
+  ASSERT_EQ(fading.Decay(fades), wrinkle::JobStatus::kOk);
+  const float faded = fading.wrinkle_weights()[0];
+  ASSERT_LT(faded, fresh);
+  ASSERT_GT(faded, 0.0f);
+  for (SubjectPipeline* subject : {&gone, &fading}) {
+    const float before = subject->wrinkle_weights()[0];
+    subject->SetStream(definition);
+    EXPECT_FLOAT_EQ(subject->wrinkle_weights()[0], before);
+    ASSERT_TRUE(subject->SetNeutral(std::nullopt));
+    EXPECT_FLOAT_EQ(subject->wrinkle_weights()[0], before);
+  }
+  EXPECT_TRUE(gone.neutral());
+}
+
 TEST(SubjectPipeline, SnapshotsShowTheDecay) {
   SubjectPipeline subject(Define(/*filter=*/true));
   ApplyPose(Bend(2.0f), subject.stream(), subject.mutable_pose());
