@@ -234,37 +234,41 @@ bool Publishers::TakeNewSkeleton(const std::string& host, Time now) {
 // Makes the stream the owner of the subject `offer.subject`, with a new pipeline.
 Subject* Publishers::Accept(Peer& peer, const StreamKey& key, const protocol::SkeletonOffer& offer,
                             std::shared_ptr<const StreamDefinition> stream, Time now) {
+  Subject* subject = subjects_->Find(offer.subject);
+  // What allocates may fail, so it comes before what changes.
+  auto pipeline = std::make_unique<SubjectPipeline>(std::move(stream));
+  auto shared_offer = ShareOffer(offer);
+  // The neutral pose belongs to the performer, so it survives a change of the sender.
+  if (subject != nullptr && subject->skeleton_hash == offer.skeleton_hash) {
+    pipeline->SetNeutral(subject->pipeline->neutral_pose());
+  }
   // A stream feeds one subject. A new name on the stream ends the old subject.
   if (Subject* former = subjects_->Find(key); former != nullptr && former->name != offer.subject) {
     former->ended = true;
     subjects_->Release(*former);
   }
-  Subject* subject = subjects_->Find(offer.subject);
-  // Before anything changes: what allocates may fail.
-  auto pipeline = std::make_unique<SubjectPipeline>(std::move(stream));
-  auto shared_offer = ShareOffer(offer);
-  if (subject == nullptr) {
-    subject = &subjects_->Add(offer.subject, peer.host, now);
+  const bool is_new = subject == nullptr;
+  if (is_new) {
+    subject = &subjects_->Add(offer.subject, peer.host, std::move(pipeline), now);
     subject->hold = delays_.Of(offer.subject);
     spdlog::info("subject '{}' from {}: {} joints, {} blend shapes", offer.subject, peer.name,
                  offer.joints.size(), offer.blend_shape_names.size());
-  } else if (subject->owner != key) {
+  }
+  const StreamKey former_owner = subject->owner;
+  subjects_->SetOwner(*subject, key);
+  // From here on nothing can fail.
+  if (!is_new) subject->pipeline = std::move(pipeline);
+  if (!is_new && former_owner != key) {
     metrics_->Add(Counter::kSubjectsRestarted);
     spdlog::info("{} has taken over subject '{}'", peer.name, offer.subject);
   }
   // A new stream numbers its poses from anywhere.
-  if (subject->owner != key) subject->window = {};
+  if (former_owner != key) subject->window = {};
   // Subscribers learn this number, and not the session, which is the publisher's secret.
-  if (subject->owner.session != key.session) subject->run = random_();
-  subjects_->SetOwner(*subject, key);
+  if (former_owner.session != key.session) subject->run = random_();
   subject->can_move = HasSecretSession(peer);
   subject->reorders = peer.transport == Transport::kUdp;
   subject->reorders_until = Time{0};
-  const bool has_neutral =
-      subject->pipeline != nullptr && subject->skeleton_hash == offer.skeleton_hash;
-  const auto former = std::exchange(subject->pipeline, std::move(pipeline));
-  // The neutral pose belongs to the performer, so it survives a change of the sender.
-  if (has_neutral) subject->pipeline->SetNeutral(former->neutral_pose());
   peer.publishes = true;
   subject->skeleton_hash = offer.skeleton_hash;
   subject->offer = std::move(shared_offer);

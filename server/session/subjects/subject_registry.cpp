@@ -33,30 +33,37 @@ Subject* SubjectRegistry::First(const Access& access) const {
   return found == subjects_.end() ? nullptr : found->get();
 }
 
-Subject& SubjectRegistry::Add(std::string name, std::string host, Time now) {
-  // Before anything changes: what allocates may fail. A subject has an entry in all three or none.
+Subject& SubjectRegistry::Add(std::string name, std::string host,
+                              std::unique_ptr<SubjectPipeline> pipeline, Time now) {
+  // What allocates may fail, and then a subject must have an entry in none of the three.
   subjects_.reserve(subjects_.size() + 1);
   auto subject = std::make_unique<Subject>();
   subject->id = next_id_++;
   subject->name = std::move(name);
   subject->host = std::move(host);
+  subject->pipeline = std::move(pipeline);
   // A subject that never sends a pose must go idle as any other.
   subject->last_pose = subject->last_update = now;
   // The subject is on the heap, so its address and its name are stable while the list grows.
   Subject& added = *subject;
-  by_name_.emplace(added.name, &added);
-  (void)shares_.Enter(added.host);
-  subjects_.push_back(std::move(subject));
+  const auto entry = by_name_.emplace(added.name, &added).first;
+  try {
+    (void)shares_.Enter(added.host);
+  } catch (...) {
+    by_name_.erase(entry);
+    throw;
+  }
+  subjects_.push_back(std::move(subject));  // has room
   ++version_;
   return added;
 }
 
 void SubjectRegistry::SetOwner(Subject& subject, const StreamKey& key) {
   if (subject.owner == key) return;
+  by_stream_[key] = &subject;  // may fail, so it comes first
   // Session 0 means that no stream feeds the subject: it is new or was released.
   if (subject.owner.session != 0) by_stream_.erase(subject.owner);
   subject.owner = key;
-  by_stream_[key] = &subject;
 }
 
 void SubjectRegistry::Release(Subject& subject) {

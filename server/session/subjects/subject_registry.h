@@ -59,7 +59,7 @@ struct Subject {
   // The owner's offer without the subject name, shared by all subjects with an equal offer.
   std::shared_ptr<const protocol::SkeletonOffer> offer;
   protocol::SequenceWindow window;
-  std::unique_ptr<SubjectPipeline> pipeline;
+  std::unique_ptr<SubjectPipeline> pipeline;  // not null
   // Those that are bound to it, in the order in which they came (SubscriptionTable).
   std::vector<Subscription*> subscriptions;
   Time served_until{Time::max()};    // in a cluster: the end of this node's right to serve it
@@ -103,9 +103,12 @@ class SubjectRegistry {
   void SetMaxSubjects(std::size_t max_subjects) { shares_.SetPlaces(max_subjects); }
   // True if Add() may be called for the host (FairShare).
   [[nodiscard]] bool HasRoomFor(const std::string& host) const { return shares_.HasRoomFor(host); }
-  // Preconditions: there is no subject of this name, and HasRoomFor(host).
-  Subject& Add(std::string name, std::string host, Time now);
-  // Makes `key` the stream that feeds `subject`.
+  // Preconditions: there is no subject of this name, HasRoomFor(host), and `pipeline` is not null.
+  // Without memory, throws std::bad_alloc and changes nothing.
+  Subject& Add(std::string name, std::string host, std::unique_ptr<SubjectPipeline> pipeline,
+               Time now);
+  // Makes `key` the stream that feeds `subject`. Without memory, throws std::bad_alloc and changes
+  // nothing.
   void SetOwner(Subject& subject, const StreamKey& key);
   // Detaches the subject from its stream; the subject stays.
   void Release(Subject& subject);

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Publishing: offers, poses in and out of order, restarts, losses.
 #include <algorithm>
+#include <new>
 #include <random>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/unit/allocation_counter.h"
 #include "tests/unit/server/session/hub_fixture.h"
 
 namespace furrow::server {
@@ -30,6 +32,41 @@ TEST_F(PublishersTest, APoseBecomesWeightsWithItsSequenceAndCaptureTime) {
   EXPECT_EQ(frame->header.capture_time_us, 123456);
   EXPECT_EQ(frame->message.age_us, 0);
   EXPECT_THAT(frame->message.values, ElementsAre(FloatEq(0.25f), FloatEq(1.0f)));
+}
+
+TEST_F(PublishersTest, AnOfferThatLacksMemoryLeavesNoHalfSubject) {
+  bool failed = true;
+  for (std::uint64_t allowed = 0; failed; ++allowed) {
+    SCOPED_TRACE(allowed);
+    Make({});
+    Connect(&sender);
+    Connect(&viewer);
+    std::vector<std::uint8_t> offer;
+    encoder.Encode({sender.session, 1, 0, 0}, Offer("ann"), offer);
+    failed = false;
+    try {
+      const furrow::test::AllocationLimit limit(allowed);
+      hub->OnMessage(sender.id, offer, now);
+    } catch (const std::bad_alloc&) {
+      failed = true;
+    }
+    ASSERT_LT(allowed, 10'000u);
+    for (const auto& subject : hub->subjects().all()) {
+      ASSERT_NE(subject->pipeline, nullptr);
+      ASSERT_EQ(hub->RequireAllDrivers(subject->name), subject.get());
+    }
+    Advance(0.01);
+    hub->Tick(now);
+    // The sender repeats its offer.
+    sender.inbox.clear();
+    Publish(sender, "ann");
+    Watch(viewer, {.subject = "ann"});
+    Send(sender, Pose(0.25f, 1.0f), 1, 5, 123456);
+    const auto frame = viewer.Take<protocol::WeightFrame>();
+    ASSERT_TRUE(frame.has_value());
+    ASSERT_THAT(frame->message.values, ElementsAre(FloatEq(0.25f), FloatEq(1.0f)));
+    viewer.inbox.clear();
+  }
 }
 
 TEST_F(PublishersTest, APartialPoseKeepsTheOtherValues) {
