@@ -58,6 +58,7 @@ Status TakeFolder::Begin(std::uint64_t now_ns) {
   FURROW_RETURN_IF_ERROR(take);
   if (take_ != nullptr) earlier_messages_ += take_->num_messages();
   take_ = *std::move(take);
+  has_new_rig_ = false;
   begun_ns_ = now_ns;
   ++num_files_;
   FURROW_RETURN_IF_ERROR(WriteDeclarations(now_ns));
@@ -91,7 +92,7 @@ Status TakeFolder::RotateIfDue(std::uint64_t now_ns) {
       options_.rotate_bytes > 0 && take_->bytes_written() - begun_bytes_ >= options_.rotate_bytes;
   const bool old =
       options_.rotate_ns > 0 && now_ns > begun_ns_ && now_ns - begun_ns_ >= options_.rotate_ns;
-  if (!large && !old && !take_->is_full()) return {};
+  if (!large && !old && !has_new_rig_ && !take_->is_full()) return {};
   FURROW_RETURN_IF_ERROR(take_->Close());
   return Begin(now_ns);
 }
@@ -130,6 +131,12 @@ Status TakeFolder::WriteDatagram(const DatagramSender& sender, std::uint64_t log
 
 void TakeFolder::Forget(std::string_view subject) {
   if (const auto found = subjects_.find(subject); found != subjects_.end()) subjects_.erase(found);
+}
+
+void TakeFolder::SetRig(std::string_view rig_json) {
+  if (options_.rig_json == rig_json) return;
+  options_.rig_json = rig_json;
+  has_new_rig_ = true;
 }
 
 Status TakeFolder::Resume(std::uint64_t now_ns) {

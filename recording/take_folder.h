@@ -46,6 +46,10 @@ class TakeFolder {
   // Call it when a subject leaves: later files do not begin with its skeleton.
   void Forget(std::string_view subject);
 
+  // The rig of the weights has changed: the next message begins a new file, to which it is
+  // attached.
+  void SetRig(std::string_view rig_json);
+
   // After an error: finishes the failed file as far as possible and begins the next one. Errors:
   // kIo; then no new file is left behind, and the folder stays as it was.
   [[nodiscard]] Status Resume(std::uint64_t now_ns);
@@ -88,6 +92,7 @@ class TakeFolder {
   std::filesystem::path path_;
   std::uint64_t begun_ns_ = 0;
   std::uint64_t begun_bytes_ = 0;  // size of what the file begins with, which rotate_bytes ignores
+  bool has_new_rig_ = false;       // the present file has another one
   int num_files_ = 0;
   std::uint64_t earlier_messages_ = 0;  // in earlier files
   std::map<std::string, SubjectState, std::less<>> subjects_;

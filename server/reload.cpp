@@ -93,6 +93,8 @@ Result<Reload> PrepareReload(const ReloadRequest& request) {
   auto files = draws ? LoadMapsOnly(config, *request.drawn) : LoadFiles(config);
   FURROW_RETURN_IF_ERROR(files);
   reload.files = *std::move(files);
+  // Captures stay in a rig whose file is the same.
+  if (!rig_changes) reload.files->rig = nullptr;
   return reload;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <concepts>
 #include <cstdint>
 #include <map>
@@ -46,6 +47,8 @@ class ByteWriter {
 
   [[nodiscard]] std::size_t size() const { return bytes_.size(); }
   [[nodiscard]] std::span<const std::uint8_t> bytes() const { return bytes_; }
+  // Removes all bytes but the first `size`.
+  void Truncate(std::size_t size) { bytes_.resize(std::min(size, bytes_.size())); }
   void Clear() { bytes_.clear(); }
 
  private:

@@ -90,11 +90,13 @@ Result<std::vector<std::uint8_t>> DecompressLz4(std::span<const std::uint8_t> by
 
 }  // namespace
 
-std::vector<std::uint8_t> CompressZstd(std::span<const std::uint8_t> bytes, int level) {
+std::optional<std::vector<std::uint8_t>> CompressZstd(std::span<const std::uint8_t> bytes,
+                                                      int level) {
   std::vector<std::uint8_t> out(ZSTD_compressBound(bytes.size()));
   const std::size_t written =
       ZSTD_compress(out.data(), out.size(), bytes.data(), bytes.size(), level);
-  out.resize(ZSTD_isError(written) != 0 ? 0 : written);
+  if (ZSTD_isError(written) != 0) return std::nullopt;
+  out.resize(written);
   return out;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -10,9 +11,9 @@
 
 namespace furrow::motion::mcap {
 
-// Compresses bytes to one zstd frame. `level` is in [1, 19].
-[[nodiscard]] std::vector<std::uint8_t> CompressZstd(std::span<const std::uint8_t> bytes,
-                                                     int level);
+// Compresses bytes to one zstd frame. `level` is in [1, 19]. None: zstd has no memory for it.
+[[nodiscard]] std::optional<std::vector<std::uint8_t>> CompressZstd(
+    std::span<const std::uint8_t> bytes, int level);
 
 // Decompresses bytes. `method` is "" (a copy), "zstd" or "lz4" (frames). `size` is the stated size
 // of the result; memory grows with the actual data, so a false size costs little.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <new>
 #include <utility>
 
 #include <fcntl.h>
@@ -129,8 +130,8 @@ Status Writer::Append(std::span<const std::uint8_t> bytes) {
       const int error = written == 0 ? ENOSPC : errno;
       failure_ = {StatusCode::kIo, std::strerror(error), path_.string(),
                   "what was written before stays readable"};
-      // If even this fails, readers stop at the torn record.
-      // A torn record would hide all records after it.
+      // A torn record would hide all records after it, so it is cut off. If that fails, too,
+      // readers stop there.
       if (::ftruncate(file_, static_cast<off_t>(offset_)) == 0)
         ::lseek(file_, static_cast<off_t>(offset_), SEEK_SET);
       return failure_;
@@ -161,6 +162,21 @@ Status Writer::Write(const Message& message) {
   if (message.channel_id == 0 || message.channel_id > channels_.size())
     return {StatusCode::kInvalidArgument,
             "channel " + std::to_string(message.channel_id) + " does not exist"};
+  const std::size_t begin = chunk_.size();
+  try {
+    AppendToChunk(message);
+  } catch (const std::bad_alloc&) {
+    // A torn record would hide all messages of the chunk. What it declares may be declared twice.
+    chunk_.Truncate(begin);
+    declared_.clear();
+    declared_schemas_.clear();
+    throw;
+  }
+  if (chunk_.size() >= options_.chunk_bytes) return FlushChunk();
+  return {};
+}
+
+void Writer::AppendToChunk(const Message& message) {
   DeclareInChunk(channels_[message.channel_id - 1u]);
   const std::uint64_t place = chunk_.size();
   chunk_.Put(static_cast<std::uint8_t>(Opcode::kMessage));
@@ -168,29 +184,27 @@ Status Writer::Write(const Message& message) {
   chunk_.Put(static_cast<std::uint64_t>(22 + message.data.size()));
   chunk_.Put(message.channel_id).Put(message.sequence);
   chunk_.Put(message.log_time).Put(message.publish_time).PutBytes(message.data);
-
-  ChannelIndex& index = index_[message.channel_id - 1u];
+  index_[message.channel_id - 1u].entries.emplace_back(message.log_time, place);
   const bool first = chunk_messages_++ == 0;
   chunk_info_.start_time =
       first ? message.log_time : std::min(chunk_info_.start_time, message.log_time);
   chunk_info_.end_time = std::max(chunk_info_.end_time, message.log_time);
-  index.entries.emplace_back(message.log_time, place);
   ++num_messages_;
-  if (chunk_.size() >= options_.chunk_bytes) return FlushChunk();
-  return {};
 }
 
 Status Writer::FlushChunk() {
   if (!failure_.ok()) return failure_;
   if (chunk_messages_ == 0) return {};
-  const std::vector<std::uint8_t> packed = CompressZstd(chunk_.bytes(), options_.zstd_level);
+  const auto compressed = CompressZstd(chunk_.bytes(), options_.zstd_level);
+  // What cannot be compressed is kept as it is.
+  const std::span<const std::uint8_t> packed = compressed ? *compressed : chunk_.bytes();
+  ChunkInfo info = chunk_info_;
+  info.compression = compressed ? "zstd" : "";
   ByteWriter record;
   record.Put(chunk_info_.start_time).Put(chunk_info_.end_time);
   record.Put(static_cast<std::uint64_t>(chunk_.size())).Put(Crc32(chunk_.bytes()));
-  record.PutText("zstd").Put(static_cast<std::uint64_t>(packed.size())).PutBytes(packed);
+  record.PutText(info.compression).Put(static_cast<std::uint64_t>(packed.size())).PutBytes(packed);
 
-  ChunkInfo info = chunk_info_;
-  info.compression = "zstd";
   info.offset = offset_;
   info.length = record.size() + kRecordHeaderBytes;
   info.compressed_bytes = packed.size();

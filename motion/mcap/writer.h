@@ -47,7 +47,8 @@ class Writer {
                                          const std::map<std::string, std::string>& metadata = {});
 
   // Adds a message to the current chunk. Errors: kInvalidArgument (message.channel_id is not an id
-  // that AddChannel() returned), kIo.
+  // that AddChannel() returned), kIo. Without memory, throws std::bad_alloc, and only this message
+  // is lost.
   [[nodiscard]] Status Write(const Message& message);
   // Finishes the current chunk and passes it to the operating system.
   [[nodiscard]] Status FlushChunk();
@@ -77,6 +78,8 @@ class Writer {
   Writer(int file, std::filesystem::path path, const WriterOptions& options);
   [[nodiscard]] Status Append(std::span<const std::uint8_t> bytes);
   [[nodiscard]] Status AppendRecord(Opcode opcode, const ByteWriter& content);
+  // Without memory, throws std::bad_alloc and leaves a torn record at the end of the chunk.
+  void AppendToChunk(const Message& message);
   void DeclareInChunk(const Channel& channel);
   void CountChunk();
   void BeginChunk();

@@ -13,6 +13,8 @@
 #include "protocol/framing/envelope.h"
 #include "protocol/messages/hash.h"
 #include "protocol/messages/limits.h"
+#include "rig/rig_file.h"
+#include "server/core/within_memory.h"
 #include "server/net/clock.h"
 #include "server/pipeline/wire_adapter.h"
 
@@ -74,11 +76,7 @@ void Recorder::PushEntry(const RecordingBatch::Entry& entry, std::string_view su
                          std::span<const std::uint8_t> payload) {
   // What a later file begins with is needed during a pause, too. A message that is not needed is
   // dropped here, which saves copying; the recording thread drops those that are already queued.
-  const bool is_declaration =
-      entry.event == RecordingBatch::Event::kGone ||
-      (entry.event == RecordingBatch::Event::kMessage &&
-       (entry.kind == TakeKind::kSkeleton || entry.kind == TakeKind::kNames));
-  if ((is_paused() && !is_declaration) || !queue_.Push(entry, subject, payload)) {
+  if ((is_paused() && !entry.is_declaration()) || !queue_.Push(entry, subject, payload)) {
     metrics_->Add(Counter::kRecordingDropped);
   }
 }
@@ -108,6 +106,11 @@ void Recorder::PushEncoded(TakeKind kind, const Subject& subject, const Message&
 
 void Recorder::OnOffer(const Subject& subject, const protocol::SkeletonOffer& offer, Time now) {
   PushEncoded(TakeKind::kSkeleton, subject, offer, now);
+  DeclareNames(subject, now);
+}
+
+void Recorder::DeclareNames(const Subject& subject, Time now) {
+  names_hashes_.erase(subject.id);
   const auto names = subject.pipeline->stream().binding->weight_names();
   // A message cannot list that many names. The poses alone are recorded; solving them with the rig
   // gives the weights.
@@ -116,9 +119,17 @@ void Recorder::OnOffer(const Subject& subject, const protocol::SkeletonOffer& of
   declared.subject = subject.name;
   declared.names.assign(names.begin(), names.end());
   // OnWeights() reads the map on several threads. This is safe, because it changes only here and in
-  // OnSubjectGone(), both under the hub's exclusive lock.
+  // OnSubjectGone(), under the hub's exclusive lock.
   names_hashes_[subject.id] = protocol::NamesHash(names);
   PushEncoded(TakeKind::kNames, subject, declared, now);
+}
+
+void Recorder::OnRig(const wrinkle::Rig& rig, const SubjectRegistry& subjects, Time now) {
+  for (const auto& subject : subjects.all()) DeclareNames(*subject, now);
+  const std::string json = rig::RigToJson(rig);
+  RecordingBatch::Entry entry;
+  entry.event = RecordingBatch::Event::kRig;
+  PushEntry(entry, {}, std::span(reinterpret_cast<const std::uint8_t*>(json.data()), json.size()));
 }
 
 void Recorder::OnPose(const Subject& subject, std::span<const std::uint8_t> payload, Time now) {
@@ -165,6 +176,9 @@ Status Recorder::WriteEntry(const RecordingBatch::Entry& entry, std::string_view
                             std::span<const std::uint8_t> payload) {
   switch (entry.event) {
     case RecordingBatch::Event::kGone: folder_->Forget(subject); break;
+    case RecordingBatch::Event::kRig:
+      folder_->SetRig({reinterpret_cast<const char*>(payload.data()), payload.size()});
+      break;
     case RecordingBatch::Event::kDatagram: {
       recording::DatagramSender sender{};
       std::copy_n(subject.begin(), sender.size(), sender.begin());
@@ -185,7 +199,8 @@ Status Recorder::WriteBatch(const RecordingBatch& batch) {
   const std::uint64_t before = folder_->num_messages();
   batch.ForEach([&](const RecordingBatch::Entry& entry, std::string_view subject,
                     std::span<const std::uint8_t> payload) {
-    Status status = WriteEntry(entry, subject, payload);
+    Status status =
+        OrOutOfMemory(metrics_, "recording", [&] { return WriteEntry(entry, subject, payload); });
     if (status.ok()) return true;
     ++lost;
     if (first.ok()) first = std::move(status);
@@ -225,7 +240,8 @@ bool Recorder::HasRoom() const {
 void Recorder::TryToGoOn(Time now) {
   if (now < next_try_) return;
   next_try_ = now + options_.retry;
-  if (!HasRoom() || !folder_->Resume(LogTime(now)).ok()) return;
+  const auto resume = [&] { return folder_->Resume(LogTime(now)); };
+  if (!HasRoom() || !OrOutOfMemory(metrics_, "recording", resume).ok()) return;
   paused_ = false;
   ReportDropped("while the recording was paused");
   spdlog::info("recording again, in {}", folder_->path().string());
@@ -247,11 +263,13 @@ void Recorder::Write() {
     // Flushing ends an MCAP chunk. Each batch as a chunk would compress badly; none for long would
     // lose more when the daemon is killed.
     if (status.ok() && now - flushed >= kFlushInterval) {
-      status = folder_->Flush();
+      status = OrOutOfMemory(metrics_, "recording", [this] { return folder_->Flush(); });
       flushed = now;
       ReportDropped("the disk is too slow");
     }
-    if (status.ok() && !goes_on) status = folder_->Close();
+    if (status.ok() && !goes_on) {
+      status = OrOutOfMemory(metrics_, "recording", [this] { return folder_->Close(); });
+    }
     if (!status.ok()) Pause(status);
   }
   if (paused_) (void)folder_->Close();  // its error is known

@@ -54,6 +54,7 @@ class Recorder : public RecordingTap {
   void OnPose(const Subject& subject, std::span<const std::uint8_t> payload, Time now) override;
   void OnWeights(const Subject& subject, std::int64_t age_us, Time now) override;
   void OnSubjectGone(const Subject& subject) override;
+  void OnRig(const wrinkle::Rig& rig, const SubjectRegistry& subjects, Time now) override;
   void OnDatagram(const recording::DatagramSender& sender, std::span<const std::uint8_t> bytes,
                   Time now) override;
 
@@ -67,6 +68,8 @@ class Recorder : public RecordingTap {
             Time now);
   void PushEntry(const RecordingBatch::Entry& entry, std::string_view subject,
                  std::span<const std::uint8_t> payload);
+  // What the weights of the subject mean from now on.
+  void DeclareNames(const Subject& subject, Time now);
   [[nodiscard]] std::uint64_t LogTime(Time now) const;
 
   // On the recording thread.

@@ -9,15 +9,6 @@ namespace {
 // This much queued data wakes the recording thread early.
 constexpr std::size_t kWakeBytes = 512 * 1024;
 
-// True for events without which the messages after them cannot be read. They have room of their
-// own.
-bool IsDeclaration(const RecordingBatch::Entry& entry) {
-  return entry.event == RecordingBatch::Event::kGone ||
-         (entry.event == RecordingBatch::Event::kMessage &&
-          (entry.kind == recording::TakeKind::kSkeleton ||
-           entry.kind == recording::TakeKind::kNames));
-}
-
 }  // namespace
 
 void RecordingBatch::Add(Entry entry, std::string_view subject,
@@ -41,7 +32,7 @@ bool RecordingQueue::Push(const RecordingBatch::Entry& entry, std::string_view s
   {
     const std::lock_guard lock(mutex_);
     const std::size_t after = waiting_.bytes() + subject.size() + payload.size();
-    if (stopped_ || after > (IsDeclaration(entry) ? 2 * max_bytes_ : max_bytes_)) return false;
+    if (stopped_ || after > (entry.is_declaration() ? 2 * max_bytes_ : max_bytes_)) return false;
     // Only the event that crosses the threshold wakes the thread, not each one after it.
     wake = waiting_.bytes() < kWakeBytes && after >= kWakeBytes;
     waiting_.Add(entry, subject, payload);

@@ -21,6 +21,7 @@ class RecordingBatch {
     kMessage,   // a message of `kind`
     kDatagram,  // a datagram; `subject` holds the sender's address
     kGone,      // `subject` has left
+    kRig,       // the payload is the rig of the weights that follow, as JSON
   };
   struct Entry {
     Event event = Event::kMessage;
@@ -28,6 +29,13 @@ class RecordingBatch {
     recording::TakeStamp stamp;
     std::size_t subject_bytes = 0;
     std::size_t payload_bytes = 0;
+
+    // True for events without which the messages after them cannot be read.
+    [[nodiscard]] bool is_declaration() const {
+      return event == Event::kGone || event == Event::kRig ||
+             (event == Event::kMessage &&
+              (kind == recording::TakeKind::kSkeleton || kind == recording::TakeKind::kNames));
+    }
   };
 
   // Appends an event with copies of its texts; sets the sizes in `entry`.
@@ -59,8 +67,7 @@ class RecordingBatch {
 // waits for the disk. Does not allocate once both batches have grown. Thread-safe.
 class RecordingQueue {
  public:
-  // Holds `max_bytes` of all events, and another `max_bytes` of skeletons, names and departures,
-  // which are needed to read the rest.
+  // Holds `max_bytes` of all events, and another `max_bytes` of declarations.
   explicit RecordingQueue(std::size_t max_bytes) : max_bytes_(max_bytes) {}
 
   // False: the queue is full or stopped; the event is lost.

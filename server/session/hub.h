@@ -270,8 +270,11 @@ class Hub {
   static constexpr int kMaxAddedPoses = 32;
   [[nodiscard]] int num_added_poses() const { return live_rig_.num_added_poses(); }
   void AddToAddedPoses(int number) { live_rig_.AddToAddedPoses(number); }
-  // How often the rig got captures of subjects that came from other nodes.
-  [[nodiscard]] std::uint64_t num_adoptions() const { return live_rig_.num_adoptions(); }
+  // How often the rig changed other than by SetRig(): by SetRigAndMaps(), which also removes the
+  // captured poses, or by captures of subjects that came from other nodes.
+  [[nodiscard]] std::uint64_t num_rig_replacements() const { return live_rig_.num_replacements(); }
+  // True if the rig is not the one of the daemon's files.
+  [[nodiscard]] bool has_captured_rig() const { return live_rig_.has_captures(); }
   // Replaces the limits. Whatever exceeds them already stays. The rate of messages counts for peers
   // that come from now on; max_udp_peers is not the hub's.
   void SetLimits(const Limits& limits);

@@ -28,19 +28,33 @@ Status LiveRig::Set(std::shared_ptr<const wrinkle::Rig> rig, Time now) {
     bound.push_back(*std::move(definition));
   }
   // From here on nothing can fail.
+  const auto& subjects = parts_.subjects->all();
   for (std::size_t i = 0; i < bound.size(); ++i) {
-    Subject& subject = *parts_.subjects->all()[i];
-    subject.pipeline->SetStream(std::move(bound[i]));
-    parts_.subscribers->OnSubjectReady(subject);
-    Republish(subject, now);
+    subjects[i]->pipeline->SetStream(std::move(bound[i]));
+  }
+  if (parts_.recording != nullptr) {
+    parts_.recording->OnRig(definitions.rig(), *parts_.subjects, now);
+  }
+  for (const auto& subject : subjects) {
+    parts_.subscribers->OnSubjectReady(*subject);
+    Republish(*subject, now);
   }
   return {};
 }
 
 Status LiveRig::SetWithMaps(std::shared_ptr<const wrinkle::Rig> rig, StreamMaps maps, Time now) {
+  const bool is_other = rig != parts_.definitions->shared_rig();
   StreamMaps former = parts_.definitions->SetMaps(std::move(maps));
   Status status = Set(std::move(rig), now);
-  if (!status.ok()) (void)parts_.definitions->SetMaps(std::move(former));
+  if (!status.ok()) {
+    (void)parts_.definitions->SetMaps(std::move(former));
+  } else if (is_other) {
+    own_ = parts_.definitions->shared_rig();
+    ++num_replacements_;
+    // The captured poses have gone with the former rig.
+    num_added_poses_ = 0;
+    for (const auto& subject : parts_.subjects->all()) subject->captures.clear();
+  }
   return status;
 }
 
@@ -69,7 +83,7 @@ void LiveRig::AdoptCaptures(const protocol::SubjectState& state, int most, Time 
   }
   if (status.ok()) {
     num_added_poses_ += added;
-    ++num_adoptions_;
+    ++num_replacements_;
     spdlog::info("took over the captured poses of subject '{}'", state.subject);
   } else {
     spdlog::warn("cannot take over the captured poses of subject '{}': {}", state.subject,

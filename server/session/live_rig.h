@@ -9,6 +9,7 @@
 #include "protocol/messages/cluster_messages.h"
 #include "server/core/time.h"
 #include "server/pipeline/stream_definition.h"
+#include "server/session/recording_tap.h"
 #include "server/session/shards.h"
 #include "server/session/stream_router.h"
 #include "server/session/subjects/subject_registry.h"
@@ -21,15 +22,16 @@ namespace furrow::server {
 // hub's exclusive lock.
 class LiveRig {
  public:
-  // Not null, and outlive this object.
+  // Outlive this object.
   struct Parts {
     StreamDefinitions* definitions = nullptr;
     SubjectRegistry* subjects = nullptr;
     Subscribers* subscribers = nullptr;
     StreamRouter* router = nullptr;
     Shards* shards = nullptr;
+    RecordingTap* recording = nullptr;  // may be null
   };
-  explicit LiveRig(const Parts& parts) : parts_(parts) {}
+  explicit LiveRig(const Parts& parts) : parts_(parts), own_(parts.definitions->shared_rig()) {}
 
   // Those of Hub.
   [[nodiscard]] Status Set(std::shared_ptr<const wrinkle::Rig> rig, Time now);
@@ -38,7 +40,8 @@ class LiveRig {
   void SetNeutral(Subject& subject, std::optional<wrinkle::LocalPose> neutral, Time now);
   [[nodiscard]] int num_added_poses() const { return num_added_poses_; }
   void AddToAddedPoses(int number) { num_added_poses_ += number; }
-  [[nodiscard]] std::uint64_t num_adoptions() const { return num_adoptions_; }
+  [[nodiscard]] std::uint64_t num_replacements() const { return num_replacements_; }
+  [[nodiscard]] bool has_captures() const { return parts_.definitions->shared_rig() != own_; }
 
   // Takes over the poses that another node has captured from the subject: a capture changes the rig
   // of the daemon, on this node as on the one before. The rig has at most `most` added poses then.
@@ -48,8 +51,9 @@ class LiveRig {
   void Republish(Subject& subject, Time now);
 
   const Parts parts_;
+  std::shared_ptr<const wrinkle::Rig> own_;  // without captures
   int num_added_poses_ = 0;
-  std::uint64_t num_adoptions_ = 0;
+  std::uint64_t num_replacements_ = 0;
 };
 
 }  // namespace furrow::server

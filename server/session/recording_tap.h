@@ -12,9 +12,9 @@
 namespace furrow::server {
 
 // The interface of a recorder: receives the skeletons, poses, weights and datagrams that the hub
-// uses. Several network threads call it at once, for different subjects; OnOffer() and
-// OnSubjectGone() are called under the exclusive lock. Implementations must not block, and must not
-// allocate in the long run. Dropped messages are not reported.
+// uses. Several network threads call it at once, for different subjects; OnOffer(),
+// OnSubjectGone() and OnRig() are called under the exclusive lock. Implementations must not block,
+// and must not allocate in the long run. Dropped messages are not reported.
 class RecordingTap {
  public:
   virtual ~RecordingTap() = default;
@@ -28,6 +28,8 @@ class RecordingTap {
   virtual void OnWeights(const Subject& subject, std::int64_t age_us, Time now) = 0;
   // The subject is about to be removed.
   virtual void OnSubjectGone(const Subject& subject) = 0;
+  // The weights of all subjects are those of another rig from now on.
+  virtual void OnRig(const wrinkle::Rig& rig, const SubjectRegistry& subjects, Time now) = 0;
   // A datagram with a valid envelope has arrived. `sender`: IPv6 address (or mapped IPv4) and port,
   // both in network byte order.
   virtual void OnDatagram(const std::array<std::uint8_t, 18>& sender,

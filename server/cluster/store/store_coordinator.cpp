@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
+#include <new>
+#include <thread>
 #include <utility>
 
 #include <spdlog/spdlog.h>
@@ -66,7 +68,7 @@ StoreCoordinator::~StoreCoordinator() {
 
 void StoreCoordinator::Run(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
-    Step(draining_ || now_() < hurries_until_ ? kHurriedStep : kStep);
+    StepWithinMemory(draining_ || now_() < hurries_until_ ? kHurriedStep : kStep);
   }
   // So that other nodes need not wait for the end of the leases.
   {
@@ -76,7 +78,20 @@ void StoreCoordinator::Run(const std::stop_token& stop) {
   }
   leases_.ReleaseAll();
   const Time end = now_() + kFarewell;
-  while (leases_.holds_any() && leases_.reachable() && now_() < end) Step(milliseconds(10));
+  while (leases_.holds_any() && leases_.reachable() && now_() < end) {
+    StepWithinMemory(milliseconds(10));
+  }
+}
+
+// A step that lacks memory is as one whose messages were lost: leases are written again.
+void StoreCoordinator::StepWithinMemory(milliseconds wait) {
+  try {
+    Step(wait);
+  } catch (const std::bad_alloc&) {
+    missed_ = true;
+    spdlog::error("cluster: out of memory in a step; the next one repeats it");
+    std::this_thread::sleep_for(wait);
+  }
 }
 
 void StoreCoordinator::Step(milliseconds wait) {

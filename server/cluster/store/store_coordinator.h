@@ -74,6 +74,7 @@ class StoreCoordinator : public Coordinator {
 
   void Run(const std::stop_token& stop);
   void Step(std::chrono::milliseconds wait);
+  void StepWithinMemory(std::chrono::milliseconds wait);
   void LookAround();
   void TakeRequests();
   void List();

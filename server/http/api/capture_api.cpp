@@ -131,16 +131,10 @@ bool IsPoseName(const std::string& name) {
 Json CaptureApi::History(const Hub& hub) const {
   Json list = Json::array();
   for (const Capture& capture : captures_) {
-    if (capture.adoptions != hub.num_adoptions()) continue;
+    if (capture.replacements != hub.num_rig_replacements()) continue;
     list.push_back({{"pose", capture.pose}, {"subject", capture.subject}});
   }
   return list;
-}
-
-bool CaptureApi::has_changed_rig(const Hub& hub) const {
-  return hub.num_adoptions() > 0 || std::ranges::any_of(captures_, [](const Capture& capture) {
-           return capture.rig != nullptr;
-         });
 }
 
 void CaptureApi::Remember(Capture capture) {
@@ -197,7 +191,7 @@ ApiReply CaptureApi::CaptureNeutral(Hub& hub, Subject& subject, std::optional<Ne
     std::optional<wrinkle::LocalPose> former = pipeline.neutral_pose();
     hub.SetNeutral(subject, neutral, now);
     Remember({kNeutral, subject.name, subject.skeleton_hash, std::move(former), nullptr, false,
-              hub.num_adoptions()});
+              hub.num_rig_replacements()});
   }
   return JsonReply(
       {{"pose", kNeutral},
@@ -233,7 +227,7 @@ ApiReply CaptureApi::CapturePose(Hub& hub, Subject& subject, const std::string& 
   }
   Json changes = ChangesJson(pipeline.stream().binding->weight_names(), before, *after);
   if (!preview) {
-    auto former = std::make_shared<const wrinkle::Rig>(hub.rig());
+    std::shared_ptr<const wrinkle::Rig> former = hub.shared_rig();
     if (Status status = hub.SetRig(std::make_shared<const wrinkle::Rig>(*std::move(changed)), now);
         !status.ok()) {
       return ErrorReply(status);
@@ -242,7 +236,7 @@ ApiReply CaptureApi::CapturePose(Hub& hub, Subject& subject, const std::string& 
     hub.AddToAddedPoses(added ? 1 : 0);
     subject.captures.insert(pose);
     Remember({pose, subject.name, subject.skeleton_hash, std::nullopt, std::move(former), added,
-              hub.num_adoptions()});
+              hub.num_rig_replacements()});
   }
   return JsonReply({{"pose", pose},
                     {"preview", preview},
@@ -264,7 +258,7 @@ void CaptureApi::Forget(const Capture& last, Hub& hub) {
 
 ApiReply CaptureApi::Undo(Hub& hub, Time now) {
   std::erase_if(captures_, [&hub](const Capture& capture) {
-    return capture.adoptions != hub.num_adoptions();
+    return capture.replacements != hub.num_rig_replacements();
   });
   if (captures_.empty()) return ErrorReply(409, "conflict", "", "there is nothing to undo");
   const Capture& last = captures_.back();

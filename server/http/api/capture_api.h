@@ -26,10 +26,9 @@ class CaptureApi {
   [[nodiscard]] ApiReply Undo(Hub& hub, Time now);
 
   // The captures that Undo() can revert, oldest first, as JSON. Those before captures that came
-  // from another node cannot be undone: that would remove the others, too.
+  // from another node cannot be undone: that would remove the others, too. Nor can those before
+  // another rig was read from its file.
   [[nodiscard]] Json History(const Hub& hub) const;
-  // True if a capture in the history, or one that came from another node, has changed the rig.
-  [[nodiscard]] bool has_changed_rig(const Hub& hub) const;
 
  private:
   struct Capture {
@@ -39,7 +38,7 @@ class CaptureApi {
     std::optional<wrinkle::LocalPose> neutral;  // the neutral pose before
     std::shared_ptr<const wrinkle::Rig> rig;    // the rig before; null: a neutral was captured
     bool added = false;                         // the rig had no such reference pose before
-    std::uint64_t adoptions = 0;                // Hub::num_adoptions() at the time
+    std::uint64_t replacements = 0;             // Hub::num_rig_replacements() at the time
   };
 
   // `wanted`: empty for DefaultNeutralPart().

@@ -195,7 +195,7 @@ ApiReply RigApi::ShowRig(const Hub& hub) const {
                     {"drivers", std::move(drivers)},
                     {"reference_poses", std::move(poses)},
                     {"captures", captures_->History(hub)},
-                    {"changed", captures_->has_changed_rig(hub)}});
+                    {"changed", hub.has_captured_rig()}});
 }
 
 ApiReply RigApi::RigFile(const Hub& hub) const {

@@ -88,7 +88,7 @@ class HandMade {
     for (const auto& [time, data] : chunk.messages)
       records.PutRecord(Opcode::kMessage, MessageRecord(time, data));
     const Bytes plain(records.bytes().begin(), records.bytes().end());
-    const Bytes packed = chunk.compression == "zstd"  ? CompressZstd(plain, 1)
+    const Bytes packed = chunk.compression == "zstd"  ? CompressZstd(plain, 1).value()
                          : chunk.compression == "lz4" ? Lz4Frame(plain)
                                                       : plain;
     uncompressed_ = plain.size();
@@ -370,7 +370,7 @@ TEST(McapCompression, DecompressesLz4Frames) {
 // The stated size exceeds any memory. Nothing may be allocated before there is data for it.
 TEST(McapCompression, DoesNotTrustStatedSizes) {
   const Bytes bytes(200'000, 7);
-  const Bytes zstd = CompressZstd(bytes, 3);
+  const Bytes zstd = CompressZstd(bytes, 3).value();
   EXPECT_EQ(Decompress("zstd", zstd, bytes.size()).value(), bytes);
   EXPECT_EQ(Decompress("lz4", Lz4Frame(bytes), bytes.size()).value(), bytes);
   for (const char* method : {"zstd", "lz4", ""}) {

@@ -19,6 +19,7 @@
 #include "motion/mcap/reader.h"
 #include "motion/mcap/writer.h"
 #include "tests/temporary_folder.h"
+#include "tests/unit/allocation_counter.h"
 #include "tests/unit/motion/mcap/text_bytes.h"
 
 namespace furrow::motion::mcap {
@@ -392,6 +393,39 @@ TEST_F(McapTest, RejectsOtherFiles) {
   EXPECT_EQ(Reader::Open(folder_.path()).status().code(), StatusCode::kIo);
 }
 
+TEST_F(McapTest, LackOfMemoryCostsOneMessage) {
+  auto writer = Writer::Create(Path(), {.chunk_bytes = 1 << 20}).value();
+  const std::uint16_t schema = writer->AddSchema("s", "e", {});
+  const std::vector<std::uint8_t> data(3000, 7);
+  std::vector<std::uint64_t> accepted;
+  accepted.reserve(400);
+  for (std::uint64_t i = 0; i < 400; ++i) {
+    const std::uint16_t channel =
+        writer->AddChannel("topic" + std::to_string(i % 40), "none", schema);
+    const Message message{.channel_id = channel, .log_time = i, .publish_time = i, .data = data};
+    const furrow::test::AllocationLimit limit(i % 37);
+    try {
+      ASSERT_TRUE(writer->Write(message).ok());
+    } catch (const std::bad_alloc&) {
+      continue;
+    }
+    accepted.push_back(i);
+  }
+  ASSERT_TRUE(writer->Close().ok());
+  EXPECT_GT(accepted.size(), 200u);
+  EXPECT_LT(accepted.size(), 400u);
+  const auto reader = Reader::Open(Path()).value();
+  std::vector<std::uint64_t> read;
+  const Status status = reader->ForEach({}, [&](const Message& message) {
+    EXPECT_TRUE(std::ranges::equal(message.data, data));
+    read.push_back(message.log_time);
+    return true;
+  });
+  EXPECT_TRUE(status.ok()) << status.ToString();
+  EXPECT_EQ(read, accepted);
+  EXPECT_TRUE(reader->warnings().empty());
+}
+
 TEST_F(McapTest, NeverOverwrites) {
   Spill(Path(), "precious");
   EXPECT_EQ(Writer::Create(Path()).status().code(), StatusCode::kIo);
@@ -400,7 +434,7 @@ TEST_F(McapTest, NeverOverwrites) {
 
 TEST(McapCompression, RejectsUnknownMethodsAndWrongSizes) {
   const std::vector<std::uint8_t> bytes(1000, 7);
-  const auto packed = CompressZstd(bytes, 3);
+  const auto packed = CompressZstd(bytes, 3).value();
   EXPECT_LT(packed.size(), 100u);
   EXPECT_EQ(*Decompress("zstd", packed, 1000), bytes);
   EXPECT_FALSE(Decompress("zstd", packed, 999).ok());

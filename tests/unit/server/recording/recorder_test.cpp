@@ -5,6 +5,7 @@
 #include <csignal>
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -13,6 +14,8 @@
 
 #include "recording/take_poses.h"
 #include "recording/take_summary.h"
+#include "rig/rig_file.h"
+#include "tests/shape_rig.h"
 #include "tests/temporary_folder.h"
 #include "tests/unit/server/session/hub_fixture.h"
 
@@ -98,6 +101,49 @@ TEST_F(RecorderTest, APartialPoseIsRecordedWhole) {
   poses->Get(1, &pose);
   EXPECT_FALSE(pose.partial);
   EXPECT_EQ(pose.blend_shapes, (std::vector<float>{0.5f, 1.0f}));
+}
+
+TEST_F(RecorderTest, AnotherRigBeginsAnotherFile) {
+  Publish(sender_, "ada");
+  Send(sender_, Pose(0.25f, 1.0f), 1, 0, 1'000);
+  const wrinkle::Rig other = test::ShapeRig("other", {"nose"});
+  ASSERT_TRUE(hub->SetRig(std::make_shared<const wrinkle::Rig>(other), now).ok());
+  Advance(1);
+  Send(sender_, Pose(0.25f, 1.0f), 1, 1, 2'000);
+  const std::size_t num_weights = hub->subjects().all()[0]->pipeline->wrinkle_weights().size();
+  recorder_.reset();
+  std::vector<std::size_t> values;  // of the weights of each file
+  std::vector<std::string> rigs;
+  std::set<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder_.path())) files.insert(entry.path());
+  ASSERT_EQ(files.size(), 2u);
+  for (const fs::path& file : files) {
+    const auto take = recording::TakeReader::Open(file);
+    ASSERT_TRUE(take.ok()) << take.status().ToString();
+    const auto rig = (*take)->file().ReadAttachment((*take)->file().attachments().at(0));
+    ASSERT_TRUE(rig.ok()) << rig.status().ToString();
+    rigs.emplace_back(rig->begin(), rig->end());
+    std::uint64_t names = 0;
+    ASSERT_TRUE(
+        (*take)
+            ->ForEach([&](const TakeMessage& message) {
+              protocol::SubscribeReply declared;
+              protocol::WeightFrame frame;
+              if (message.kind == TakeKind::kNames) {
+                EXPECT_EQ(protocol::Decode(message.View(), declared), protocol::DecodeStatus::kOk);
+                names = protocol::NamesHash(declared.names);
+              }
+              if (message.kind == TakeKind::kWeights) {
+                EXPECT_EQ(protocol::Decode(message.View(), frame), protocol::DecodeStatus::kOk);
+                EXPECT_EQ(frame.names_hash, names) << file;
+                values.push_back(frame.values.size());
+              }
+              return true;
+            })
+            .ok());
+  }
+  EXPECT_EQ(rigs, (std::vector<std::string>{"{}", rig::RigToJson(other)}));
+  EXPECT_EQ(values.back(), num_weights);
 }
 
 TEST_F(RecorderTest, TimecodesAreRecordedWithPosesAndWeights) {

@@ -345,7 +345,7 @@ TEST_F(HubMoveTest, ArrivingCapturesAreLimited) {
   const std::size_t before = hub->rig().reference_poses.size();
   Receive(state);
   EXPECT_EQ(hub->rig().reference_poses.size(), before);
-  EXPECT_EQ(hub->num_adoptions(), 0u);
+  EXPECT_EQ(hub->num_rig_replacements(), 0u);
 }
 
 TEST_F(HubMoveTest, ANodeMayRefuseASubject) {

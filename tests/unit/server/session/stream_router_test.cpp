@@ -32,6 +32,7 @@ class WordyTap : public RecordingTap {
   void OnSubjectGone(const Subject& subject) override { Tell("gone", subject, 0); }
   void OnDatagram(const std::array<std::uint8_t, 18>&, std::span<const std::uint8_t>,
                   Time) override {}
+  void OnRig(const wrinkle::Rig&, const SubjectRegistry&, Time) override {}
 
   std::vector<std::string> told;
   std::vector<Bytes> payloads;

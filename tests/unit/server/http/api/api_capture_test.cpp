@@ -96,10 +96,35 @@ TEST_F(ApiCaptureTest, CapturesThatArriveEmptyTheHistory) {
   Make({});
   Connect(&sender);
   hub->OnMessage(sender.id, state, now);
-  EXPECT_EQ(hub->num_adoptions(), 1u);
+  EXPECT_EQ(hub->num_rig_replacements(), 1u);
   EXPECT_EQ(hub->num_added_poses(), 1);
   Ask("/api/capture/undo", Json::object(), 409);
   hub.reset();
+}
+
+// Undo would put back the rig of the former file.
+TEST_F(ApiCaptureTest, ARigFromItsFileEmptiesTheHistory) {
+  Capture("smile");
+  EXPECT_TRUE(hub->has_captured_rig());
+  const auto rig = std::make_shared<const wrinkle::Rig>(MakeRig(/*filter=*/false));
+  ASSERT_TRUE(hub->SetRigAndMaps(rig, {}, now).ok());
+  EXPECT_FALSE(hub->has_captured_rig());
+  EXPECT_EQ(hub->num_added_poses(), 0);
+  EXPECT_TRUE(hub->RequireAllDrivers("ann")->captures.empty());
+  Ask("/api/capture/undo", Json::object(), 409);
+  EXPECT_EQ(hub->shared_rig(), rig);
+  // The same rig with other maps is no other rig.
+  Capture("smile");
+  ASSERT_TRUE(hub->SetRigAndMaps(hub->shared_rig(), {}, now).ok());
+  EXPECT_TRUE(hub->has_captured_rig());
+  EXPECT_TRUE(Undo()["captures"].empty());
+  EXPECT_EQ(hub->shared_rig(), rig);
+}
+
+TEST_F(ApiCaptureTest, TheRigStaysChangedAfterManyCapturesOfNeutrals) {
+  Capture("smile");
+  for (int i = 0; i < 70; ++i) Capture("neutral");
+  EXPECT_TRUE(hub->has_captured_rig());
 }
 
 TEST_F(ApiCaptureTest, UndoIgnoresTheNeutralOfAnotherSkeleton) {

@@ -116,6 +116,7 @@ class BrokenTap : public RecordingTap {
   void OnPose(const Subject&, std::span<const std::uint8_t>, Time) override {}
   void OnWeights(const Subject&, std::int64_t, Time) override {}
   void OnSubjectGone(const Subject&) override {}
+  void OnRig(const wrinkle::Rig&, const SubjectRegistry&, Time) override {}
   void OnDatagram(const std::array<std::uint8_t, 18>&, std::span<const std::uint8_t>,
                   Time) override {
     if (out_of_memory) throw std::bad_alloc();
