@@ -50,7 +50,10 @@ std::string NameFrom(const aiString& name) {
 
 void AssimpMaterials::Run(std::vector<std::string>* remarks) {
   for (unsigned m = 0; m < scene_.mNumMaterials; ++m) {
-    root_["materials"].push_back(Material(*scene_.mMaterials[m]));
+    // Before the list is looked up: a material may add the lists of its textures and images to
+    // root_, which moves all others.
+    GltfJson material = Material(*scene_.mMaterials[m]);
+    root_["materials"].push_back(std::move(material));
   }
   remarks->insert(remarks->end(), remarks_.begin(), remarks_.end());
 }

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <string>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
+#include <vector>
 
 #include <glm/matrix.hpp>
 
@@ -58,7 +60,7 @@ class SceneWriter {
     for (std::size_t i = 0; i < sources_.size(); ++i) {
       const aiNode& node = *sources_[i].node;
       sources_[i].model *= ToGlm(node.mTransformation);
-      source_by_name_.emplace(NameFrom(node.mName), i);
+      sources_by_name_[NameFrom(node.mName)].push_back(i);
       for (unsigned m = 0; m < node.mNumMeshes; ++m) instances_.emplace_back(node.mMeshes[m], i);
       for (unsigned c = 0; c < node.mNumChildren; ++c) {
         if (sources_.size() >= gltf::kMaxNodes) {
@@ -77,15 +79,37 @@ class SceneWriter {
       const aiMesh& mesh = *scene_.mMeshes[m];
       for (unsigned b = 0; b < mesh.mNumBones; ++b) {
         const std::string name = NameFrom(mesh.mBones[b]->mName);
-        const auto source = source_by_name_.find(name);
-        if (source == source_by_name_.end()) {
+        if (!sources_by_name_.contains(name)) {
           return {StatusCode::kSchema, "mesh '" + NameFrom(mesh.mName) + "' names the joint '" +
                                            name + "', which is missing from the file"};
         }
-        sources_[source->second].is_joint = true;
+        joint_by_name_.emplace(name, 0);
       }
     }
+    for (auto& [name, source] : joint_by_name_) {
+      source = JointNamed(name);
+      sources_[source].is_joint = true;
+    }
     return {};
+  }
+
+  // The node that a bone means. FBX files may give a mesh the name of a bone.
+  [[nodiscard]] std::size_t JointNamed(const std::string& name) const {
+    const std::vector<std::size_t>& sources = sources_by_name_.at(name);
+    return *std::ranges::max_element(sources, {},
+                                     [this](std::size_t source) { return JointLikeness(source); });
+  }
+
+  // Joints have no meshes, and joints above or below them.
+  [[nodiscard]] int JointLikeness(std::size_t source) const {
+    const aiNode& node = *sources_[source].node;
+    const auto is_named = [this](const aiNode* other) {
+      return other != nullptr && joint_by_name_.contains(NameFrom(other->mName));
+    };
+    const bool has_joints =
+        is_named(node.mParent) ||
+        std::any_of(node.mChildren, node.mChildren + node.mNumChildren, is_named);
+    return (node.mNumMeshes == 0 ? 2 : 0) + (has_joints ? 1 : 0);
   }
 
   // Writes the joints and the nodes between them. Nodes above all joints (scene, armature, axes,
@@ -180,7 +204,7 @@ class SceneWriter {
   }
 
   [[nodiscard]] std::size_t JointOf(const aiBone& bone) const {
-    return joint_of_source_.at(source_by_name_.at(NameFrom(bone.mName)));
+    return joint_of_source_.at(joint_by_name_.at(NameFrom(bone.mName)));
   }
 
   // The matrix from mesh space to model space in the rest pose, for each joint of the mesh.
@@ -322,9 +346,10 @@ class SceneWriter {
   GltfJson nodes_ = GltfJson::array();
   GltfJson roots_ = GltfJson::array();
   std::vector<SourceNode> sources_;
-  std::unordered_map<std::string, std::size_t> source_by_name_;
-  std::vector<std::pair<unsigned, std::size_t>> instances_;  // mesh, source
-  std::vector<std::size_t> joints_;                          // sources, in the skin's order
+  std::unordered_map<std::string, std::vector<std::size_t>> sources_by_name_;  // parents first
+  std::unordered_map<std::string, std::size_t> joint_by_name_;  // the nodes that bones name
+  std::vector<std::pair<unsigned, std::size_t>> instances_;     // mesh, source
+  std::vector<std::size_t> joints_;                             // sources, in the skin's order
   std::unordered_map<std::size_t, std::size_t> joint_of_source_;
   std::size_t morph_deltas_ = gltf::kMaxMorphDeltas;  // that may still be written
   unsigned left_out_ = 0;                             // blend shapes beyond that

@@ -80,6 +80,11 @@ Result<const aiScene*> ReadScene(std::string_view bytes, const std::string& exte
                   "supported formats: glTF (.glb, .gltf, .vrm), FBX, Collada (.dae) and the other "
                   "formats of assimp");
   }
+  // assimp would make a body of sticks of it.
+  if (purpose == Purpose::kModel && extension == ".bvh") {
+    return Status(StatusCode::kUnsupported, "the file is a recording, not a model", {},
+                  "play it with 'furrow play', or draw it with 'furrow render'");
+  }
   importer->SetIOHandler(new NoFiles);  // which owns it
   const unsigned steps = Configure(purpose, importer);
   const aiScene* scene = ReadByNames(bytes, steps, extension, importer);

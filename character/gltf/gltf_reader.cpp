@@ -41,6 +41,21 @@ void DropMissingPictures(Character* character) {
   }
 }
 
+// Gives meshes without a material that of glTF: white, and as rough as can be (3.9.6).
+void AddDefaultMaterial(Character* character) {
+  const int added = static_cast<int>(character->materials.size());
+  bool is_needed = false;
+  for (Mesh& mesh : character->meshes) {
+    if (mesh.material >= 0) continue;
+    mesh.material = added;
+    is_needed = true;
+  }
+  if (!is_needed) return;
+  Material& material = character->materials.emplace_back();
+  material.name = "default";
+  material.roughness = 1.0f;
+}
+
 // Reads the binds of materials, which may add shapes.
 Status ReadMaterialBinds(gltf::Document* document, std::span<const gltf::Material> materials,
                          const ReadOptions& options, Character* character) {
@@ -92,6 +107,7 @@ Status ReadGltfCharacter(std::string_view bytes, const std::filesystem::path& fo
   FURROW_RETURN_IF_ERROR(ReadMaterialBinds(&*document, *materials, options, character));
   character->shape_rules = MakeShapeRules(gltf::ReadExpressionRules(&*document), character->shapes);
   character->materials = MakeGltfMaterials(*materials);
+  AddDefaultMaterial(character);
   character->pictures = std::move(*pictures);
   character->warnings = document->warnings();
   if (options.lenient || options.pictures == Pictures::kLeaveOut) DropMissingPictures(character);

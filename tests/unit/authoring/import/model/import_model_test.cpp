@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <set>
 #include <string>
 #include <tuple>
 
@@ -107,6 +108,103 @@ INSTANTIATE_TEST_SUITE_P(Formats, ForeignFormat,
                                            std::pair("collada", "body.DAE"),
                                            std::pair("glb2", "other.glb")),
                          [](const auto& format) { return std::string(format.param.first); });
+
+TEST(ImportModel, AMeshMayHaveTheNameOfABone) {
+  const Folder folder;
+  for (const char* bone : {"hips", "head", "leftHand"}) {
+    character::Character body = ToyBody();
+    body.meshes[0].name = bone;
+    const auto imported =
+        ImportModel(folder.Write("body.fbx", ConvertByAssimp(GlbOf(body), "fbxa")), VrmMaps());
+    ASSERT_TRUE(imported.ok()) << imported.status().ToString();
+    ExpectSamePoses(imported->character, ToyBody());
+  }
+}
+
+TEST(ImportModel, RefusesRecordings) {
+  const Folder folder;
+  const char* const bvh =
+      "HIERARCHY\nROOT hips\n{\nOFFSET 0 0 0\nCHANNELS 3 Zrotation Xrotation Yrotation\n"
+      "End Site\n{\nOFFSET 0 1 0\n}\n}\nMOTION\nFrames: 1\nFrame Time: 0.03\n0 0 0\n";
+  const Status status = ImportModel(folder.Write("walk.bvh", bvh), VrmMaps()).status();
+  EXPECT_EQ(status.code(), StatusCode::kUnsupported);
+  EXPECT_THAT(status.ToString(), HasSubstr("a recording, not a model"));
+}
+
+// A Collada file of `count` triangles, each with a material and a picture of its own.
+std::string ColladaParts(int count) {
+  std::string images, effects, materials, geometries, nodes;
+  for (int i = 0; i < count; ++i) {
+    const std::string n = std::to_string(i);
+    images += "<image id='i" + n + "'><init_from>picture" + n + ".png</init_from></image>";
+    effects += "<effect id='e" + n +
+               "'><profile_COMMON><newparam sid='s'><surface type='2D'>"
+               "<init_from>i" +
+               n +
+               "</init_from></surface></newparam><newparam sid='t'><sampler2D>"
+               "<source>s</source></sampler2D></newparam><technique sid='c'><lambert><diffuse>"
+               "<texture texture='t' texcoord='UV'/></diffuse></lambert></technique>"
+               "</profile_COMMON></effect>";
+    materials += "<material id='m" + n + "' name='material" + n + "'><instance_effect url='#e" + n +
+                 "'/></material>";
+    geometries += "<geometry id='g" + n + "' name='part" + n + "'><mesh><source id='p" + n +
+                  "'><float_array id='a" + n +
+                  "' count='9'>0 0 0 1 0 0 0 1 0</float_array>"
+                  "<technique_common><accessor source='#a" +
+                  n +
+                  "' count='3' stride='3'>"
+                  "<param name='X' type='float'/><param name='Y' type='float'/>"
+                  "<param name='Z' type='float'/></accessor></technique_common></source>"
+                  "<vertices id='v" +
+                  n + "'><input semantic='POSITION' source='#p" + n +
+                  "'/></vertices><triangles count='1' material='x'><input semantic='VERTEX' "
+                  "source='#v" +
+                  n + "' offset='0'/><p>0 1 2</p></triangles></mesh></geometry>";
+    nodes += "<node id='n" + n + "' name='node" + n + "'><instance_geometry url='#g" + n +
+             "'><bind_material><technique_common><instance_material symbol='x' target='#m" + n +
+             "'/></technique_common></bind_material></instance_geometry></node>";
+  }
+  return "<?xml version='1.0'?><COLLADA xmlns='http://www.collada.org/2005/11/COLLADASchema' "
+         "version='1.4.1'><asset><up_axis>Y_UP</up_axis></asset><library_images>" +
+         images + "</library_images><library_effects>" + effects +
+         "</library_effects><library_materials>" + materials +
+         "</library_materials><library_geometries>" + geometries +
+         "</library_geometries><library_visual_scenes><visual_scene id='s'>" + nodes +
+         "</visual_scene></library_visual_scenes><scene><instance_visual_scene url='#s'/></scene>"
+         "</COLLADA>";
+}
+
+// The first material adds the lists of textures and images to the document, which moves the others.
+TEST(ImportModel, ReadsAllMaterialsWithTheirPictures) {
+  const Folder folder;
+  for (const int count : {1, 2, 5, 9}) {
+    const auto opened = OpenModel(folder.Write("parts.dae", ColladaParts(count)));
+    ASSERT_TRUE(opened.ok()) << opened.status().ToString();
+    const character::Character& parts = opened->character;
+    ASSERT_EQ(parts.meshes.size(), static_cast<std::size_t>(count));
+    std::set<int> materials;
+    for (const character::Mesh& part : parts.meshes) {
+      ASSERT_LT(part.material, static_cast<int>(parts.materials.size())) << part.name;
+      ASSERT_GE(part.material, 0) << part.name;
+      materials.insert(part.material);
+    }
+    EXPECT_EQ(materials.size(), static_cast<std::size_t>(count));
+  }
+}
+
+// glTF's default material.
+TEST(ImportModel, MeshesWithoutAMaterialGetOne) {
+  character::Character body = ToyBody();
+  body.materials.clear();
+  body.meshes[0].material = -1;
+  const Folder folder;
+  const auto imported = ImportModel(folder.Write("body.glb", GlbOf(body)), VrmMaps());
+  ASSERT_TRUE(imported.ok()) << imported.status().ToString();
+  ASSERT_EQ(imported->character.materials.size(), 1u);
+  EXPECT_EQ(imported->character.meshes[0].material, 0);
+  EXPECT_EQ(imported->character.materials[0].base_colour, glm::vec4(1.0f));
+  EXPECT_EQ(imported->character.materials[0].roughness, 1.0f);
+}
 
 TEST(ImportModel, RecognisesGlbByContent) {
   const Folder folder;
