@@ -69,7 +69,7 @@ Result<fs::path> FindAsset(std::string_view name, const fs::path& folder) {
     tried += (tried.empty() ? "" : ", ") + candidate.string();
   }
   return Status(StatusCode::kNotFound, "no file '" + std::string(name) + "' in " + tried, {},
-                "put it beside the rig or add its folder to FURROW_ASSET_PATH");
+                "put it into that folder, or add its folder to FURROW_ASSET_PATH");
 }
 
 }  // namespace furrow

@@ -119,7 +119,9 @@ Result<std::string> ReadFile(const fs::path& path, std::uint64_t max_bytes) {
   }
   if (error) return Status(StatusCode::kIo, error.message(), path.string());
   if (kind.type() != fs::file_type::regular) {
-    return Status(StatusCode::kIo, "not a regular file", path.string());
+    return Status(StatusCode::kIo,
+                  kind.type() == fs::file_type::directory ? "is a folder" : "not a regular file",
+                  path.string());
   }
   const std::uintmax_t size = fs::file_size(path, error);
   if (error) return Status(StatusCode::kIo, error.message(), path.string());
@@ -137,7 +139,15 @@ Result<std::string> ReadFile(const fs::path& path, std::uint64_t max_bytes) {
   if (static_cast<std::uintmax_t>(stream.gcount()) != size) {
     return Status(StatusCode::kIo, "the file became shorter while it was read", path.string());
   }
+  if (IsGitLfsPointer(bytes)) {
+    return Status(StatusCode::kUnsupported, "the file is a Git LFS pointer, not the file itself",
+                  path.string(), "run 'git lfs pull' in its folder");
+  }
   return bytes;
+}
+
+bool IsGitLfsPointer(std::string_view text) {
+  return text.starts_with("version https://git-lfs.github.com/");
 }
 
 Status WriteFileAtomically(const fs::path& path, std::string_view bytes, Flush flush) {

@@ -17,9 +17,12 @@ inline constexpr std::uint64_t kMaxTextFileBytes = std::uint64_t{256} << 20;
 // Reads a whole regular file.
 //
 // Errors, with the path as `where`: kNotFound, kIo (also for folders and devices), kLimit (larger
-// than `max_bytes`).
+// than `max_bytes`), kUnsupported (what Git LFS leaves in place of a large file).
 [[nodiscard]] Result<std::string> ReadFile(const std::filesystem::path& path,
                                            std::uint64_t max_bytes);
+
+// True if `text` is what Git LFS leaves in place of a large file that was not downloaded.
+[[nodiscard]] bool IsGitLfsPointer(std::string_view text);
 
 // Replaces the content of the file `path` by `bytes` in one step: writes a temporary file beside
 // it, flushes that to disk and renames it. A reader sees the old file or the new one, never a part

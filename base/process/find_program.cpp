@@ -15,7 +15,7 @@ Result<fs::path> FindHelperProgram(const std::string& program, const fs::path& f
   }
   return Status(StatusCode::kNotFound, "the program " + program + " is missing", folder.string(),
                 "build it with 'cmake --build <build folder> --target " + program +
-                    "', or install the complete furrow package");
+                    "', or install the package furrow-tools");
 }
 
 Result<fs::path> FindHelperProgram(const std::string& program) {

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "authoring/import/makehuman/formats/mhtarget.h"
 #include "base/ascii.h"
+#include "base/files.h"
 #include "base/numbers.h"
 #include "base/text.h"
 #include "base/text_cursor.h"

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "authoring/import/makehuman/formats/npy.h"
+#include "base/files.h"
 #include "base/numbers.h"
 #include "base/text.h"
 #include "base/text_cursor.h"
@@ -50,10 +51,6 @@ Status ParseOffset(std::string_view word, const TextCursor& cursor, float* offse
 }
 
 }  // namespace
-
-bool IsGitLfsPointer(std::string_view text) {
-  return text.starts_with("version https://git-lfs.github.com/");
-}
 
 Result<MhTarget> ParseMhTarget(std::string_view text, std::string_view source,
                                std::size_t num_base_vertices) {

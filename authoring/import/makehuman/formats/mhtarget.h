@@ -43,7 +43,5 @@ struct MhTarget {
 // target was parsed for a mesh of as many vertices.
 void ApplyMhTarget(const MhTarget& target, float weight, std::span<glm::vec3> positions);
 
-// True if `text` is what Git LFS leaves in place of a large file that was not downloaded.
-[[nodiscard]] bool IsGitLfsPointer(std::string_view text);
 
 }  // namespace furrow::authoring

@@ -6,7 +6,6 @@
 #include <system_error>
 #include <utility>
 
-#include "authoring/import/makehuman/formats/mhtarget.h"
 #include "base/ascii.h"
 #include "base/files.h"
 #include "base/text.h"
