@@ -38,6 +38,26 @@ std::string_view WithoutNamespace(std::string_view name) {
   return colon == std::string_view::npos ? name : name.substr(colon + 1);
 }
 
+// The start of a name that ends with a counter: "_12" (Sketchfab) or ".001" (Blender). Empty: none.
+std::string_view BeforeCounter(std::string_view name) {
+  const std::size_t digits = name.find_last_not_of("0123456789");
+  if (digits == std::string_view::npos || digits == 0 || digits + 1 == name.size()) return {};
+  const bool is_counter =
+      name[digits] == '_' || (name[digits] == '.' && name.size() - digits - 1 == 3);
+  return is_counter ? name.substr(0, digits) : std::string_view();
+}
+
+// The names without their counters, if all have one; else none.
+std::vector<std::string> WithoutCounters(std::span<const std::string> names) {
+  std::vector<std::string> plain;
+  for (const std::string& name : names) {
+    const std::string_view start = BeforeCounter(name);
+    if (start.empty()) return {};
+    plain.emplace_back(start);
+  }
+  return plain;
+}
+
 // Removes `prefix` from `name`. Both have been folded to one case. Other names are returned
 // unchanged.
 std::string_view WithoutPrefix(std::string_view name, std::string_view prefix) {
@@ -170,15 +190,7 @@ void CountRoles(SkeletonRoles* found) {
   found->num_roles = static_cast<int>(distinct.size());
 }
 
-Result<SkeletonMap> LoadFile(const fs::path& path) {
-  const auto text = ReadFile(path, kMaxTextFileBytes);
-  FURROW_RETURN_IF_ERROR(text);
-  return ParseSkeletonMap(*text, path.string());
-}
-
-}  // namespace
-
-SkeletonRoles ApplySkeletonMap(const SkeletonMap& map, std::span<const std::string> joint_names) {
+SkeletonRoles ApplyToNames(const SkeletonMap& map, std::span<const std::string> joint_names) {
   const Places places = PlacesOf(map);
   // All joints of a skeleton share a prefix, so one prefix is tried on all of them. On a tie, the
   // earlier one wins.
@@ -189,6 +201,22 @@ SkeletonRoles ApplySkeletonMap(const SkeletonMap& map, std::span<const std::stri
     if (found.num_joints > best.num_joints) best = std::move(found);
   }
   return best;
+}
+
+Result<SkeletonMap> LoadFile(const fs::path& path) {
+  const auto text = ReadFile(path, kMaxTextFileBytes);
+  FURROW_RETURN_IF_ERROR(text);
+  return ParseSkeletonMap(*text, path.string());
+}
+
+}  // namespace
+
+SkeletonRoles ApplySkeletonMap(const SkeletonMap& map, std::span<const std::string> joint_names) {
+  SkeletonRoles found = ApplyToNames(map, joint_names);
+  const std::vector<std::string> plain = WithoutCounters(joint_names);
+  if (plain.empty()) return found;
+  SkeletonRoles of_plain = ApplyToNames(map, plain);
+  return of_plain.num_joints > found.num_joints ? of_plain : found;
 }
 
 SkeletonRoles RolesOfPackage(wrinkle::JointRoles roles) {

@@ -235,7 +235,8 @@ wrinkle::Retarget MakeRetarget(const SkeletonMatch& match, const wrinkle::Skelet
 std::string Describe(const SkeletonMatch& match) {
   std::string text = Describe(match.stream);
   if (text.empty() && match.fit.num_joints > 0) {
-    text = "no skeleton map fits; joints are matched by equal names";
+    text =
+        "no skeleton map fits, so joints are matched by equal names (--skeleton-map chooses one)";
   }
   if (match.turn() == wrinkle::RestStance().turn) return text;
   const glm::quat back = glm::conjugate(match.turn());
@@ -262,7 +263,7 @@ std::vector<std::string> WarningsOf(const SkeletonMatch& match) {
   if (match.assumes_axes) warnings.push_back(UnknownAxes());
   if (match.stance && match.stance->is_folded) {
     warnings.emplace_back(
-        "the legs point the same way as the trunk at rest, so the rest pose says nothing about the "
+        "a leg points the same way as the trunk at rest, so the rest pose says nothing about the "
         "body; take a frame in which the performer stands upright as the rest pose, with "
         "--rest-frame");
   }

@@ -363,7 +363,10 @@ ShapeMatch ShapeMatcher::MatchFace(std::span<const std::string> stream,
                                    std::span<const wrinkle::ShapeRule> rules,
                                    bool is_solved) const {
   const FaceLimits limits{.rules = rules, .fade_lids = !is_solved};
-  return MatchTo(stream, shapes, &limits);
+  ShapeMatch match = MatchTo(stream, shapes, &limits);
+  const bool moves = std::ranges::any_of(match.by, [](By how) { return how != By::kNothing; });
+  if (!moves && !shapes.empty()) match.num_strangers = stream.size();
+  return match;
 }
 
 ShapeMeanings ShapeMatcher::MeaningsOf(std::span<const std::string> shapes) const {
@@ -419,6 +422,10 @@ wrinkle::ShapeProgram MatchShapes(const ShapeMatcher& matcher, std::span<const s
 }
 
 std::string Describe(const ShapeMatch& match) {
+  if (match.num_strangers > 0) {
+    return "none of its " + Counted(match.by.size(), "blend shape") + " follows the stream's " +
+           std::to_string(match.num_strangers) + "; 'furrow shape-map propose' writes a map";
+  }
   if (match.num_mapped() == 0) return {};
   std::size_t moved = 0;
   for (const By how : match.by) moved += how == By::kNothing ? 0 : 1;

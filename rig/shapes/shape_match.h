@@ -37,6 +37,7 @@ struct ShapeMatch {
   // a shape that is missing.
   std::vector<std::string> fallbacks;
   std::vector<std::string> unknown;  // names of the stream that its map does not know
+  std::size_t num_strangers = 0;     // blend shapes of the stream, if it moves no target of a face
 
   // The number of targets that are moved otherwise than by their own name.
   [[nodiscard]] int num_mapped() const;

@@ -91,7 +91,7 @@ class FitTest(FolderTest):
         box.write_text(bvh((("box", None, (0, 1, 0)), ("lid", "box", (0, 1, 0)))))
         for result in (furrow("convert", box, self.root / "box.glb", check=DONE),
                        furrow("solve", box, "--rig", RIG, "--allow-missing", check=DONE)):
-            self.assertEqual(lines(result), ["furrow: no skeleton map fits; joints are matched by equal names"])
+            self.assertEqual(lines(result), ["furrow: no skeleton map fits, so joints are matched by equal names (--skeleton-map chooses one)"])
         self.assertIn("joints      no skeleton map fits", furrow("info", box, check=DONE).stdout.decode())
 
     def test_a_bad_fit_is_a_warning_with_the_way_out(self):
@@ -289,7 +289,7 @@ class FoxTest(FolderTest):
         # It plays its own animation by equal names.
         result = furrow("render", self.root / "fox.glb", "--character", package, "--size", "96x96", "--out",
                         self.root / "shots", check=DONE)
-        self.assertEqual(lines(result), ["furrow: no skeleton map fits; joints are matched by equal names"])
+        self.assertEqual(lines(result), ["furrow: no skeleton map fits, so joints are matched by equal names (--skeleton-map chooses one)"])
         shots = [path.read_bytes() for path in sorted((self.root / "shots").iterdir())]
         self.assertEqual(len(shots), len(TIMES))
 

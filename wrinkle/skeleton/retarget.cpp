@@ -157,13 +157,13 @@ std::optional<RestStance> FindRestStance(const Skeleton& skeleton, const JointRo
   const Body body(skeleton, roles);
   const auto turn = TurnOfAxes(body);
   if (!turn) return std::nullopt;
-  glm::vec3 toes(0.0f), legs(0.0f);
+  glm::vec3 toes(0.0f);
   for (const JointRole foot : {JointRole::kLeftFoot, JointRole::kRightFoot}) {
     toes += body.RestSpan(foot, BoneEnd(foot)).value_or(glm::vec3(0.0f));
-    legs += body.RestSpan(JointRole::kHips, foot).value_or(glm::vec3(0.0f));
+    // Each leg by itself: where one points up and the other down, their sum says nothing.
+    const glm::vec3 leg = *turn * body.RestSpan(JointRole::kHips, foot).value_or(glm::vec3(0.0f));
+    if (leg.y > 0.5f * glm::length(leg)) return RestStance{.is_folded = true};
   }
-  const glm::vec3 down = *turn * legs;
-  if (down.y > 0.5f * glm::length(down)) return RestStance{.is_folded = true};
   const glm::vec3 ahead = *turn * toes;
   return RestStance{.turn = *turn, .toes_point_back = ahead.z < -0.5f * glm::length(ahead)};
 }

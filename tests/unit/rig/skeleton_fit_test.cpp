@@ -150,7 +150,9 @@ TEST(SkeletonFit, AMatchNamesTheShareAndUnknownSkeletons) {
   ASSERT_TRUE(matcher.ok()) << matcher.status().ToString();
   const FitBody unknown({{"box", -1, kNone}, {"lid", 0, kNone}});
   const SkeletonMatch none = matcher->Match(unknown.skeleton, wrinkle::Rig(), nullptr);
-  EXPECT_EQ(Describe(none), "no skeleton map fits; joints are matched by equal names");
+  EXPECT_EQ(Describe(none),
+            "no skeleton map fits, so joints are matched by equal names (--skeleton-map chooses "
+            "one)");
   EXPECT_EQ(Describe(matcher->Match(wrinkle::Skeleton(), wrinkle::Rig(), nullptr)), "");
 
   const FitBody trunk({{"Hips", -1, kNone},

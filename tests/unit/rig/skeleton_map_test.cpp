@@ -269,6 +269,12 @@ TEST(SkeletonMaps, RecognisesFilesOfOtherFamilies) {
        "L",
        "R",
        both(arm, leg)},
+      {"poser",
+       {"hip", "abdomen", "chest", "neck", "head"},
+       {"*Collar", "*Shldr", "*ForeArm", "*Hand", "*Thigh", "*Shin", "*Foot", "*Toe"},
+       "l",
+       "r",
+       both(both(arm, leg), {kLeftToes})},
       {"cal3d",
        {"Bip001_Pelvis", "Bip001_Spine", "Bip001_Spine1", "Bip001_Neck", "Bip001_Head"},
        {"Bip001_*_Clavicle", "Bip001_*_UpperArm", "Bip001_*_Forearm", "Bip001_*_Hand",
@@ -358,6 +364,22 @@ TEST(SkeletonMaps, RecognisesMixamoWithAnyPrefix) {
                                                   kLeftShoulder, kLeftUpperArm, kLeftLowerArm,
                                                   kLeftHand, kLeftThumbMetacarpal))
         << prefix;
+  }
+}
+
+TEST(SkeletonMaps, CountersBehindAllNamesDoNotMatter) {
+  const SkeletonMaps maps = Shipped();
+  for (const char* counter : {"_0", "_012", ".001"}) {
+    Names names;
+    for (const char* name : {"Hips", "Spine", "Spine1", "Spine2", "Neck", "Head", "LeftShoulder",
+                             "LeftArm", "LeftForeArm", "LeftHand", "LeftHandThumb1"}) {
+      names.push_back("mixamorig:" + std::string(name) + counter);
+    }
+    const SkeletonRoles found = maps.RolesOf(names);
+    EXPECT_EQ(found.map, "mixamo") << counter;
+    EXPECT_EQ(found.num_joints, 11) << counter;
+    names.back() = "tail";  // one name without a counter: they may be a part of the names
+    EXPECT_EQ(maps.RolesOf(names).num_joints, 0) << counter;
   }
 }
 

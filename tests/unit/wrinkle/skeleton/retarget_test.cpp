@@ -173,6 +173,17 @@ TEST(RestStance, ABodyOnOneLineIsFolded) {
   EXPECT_EQ(stance->turn, glm::quat(1.0f, 0.0f, 0.0f, 0.0f));
 }
 
+// The files of Bandai Namco rest with one leg along the trunk and the other against it.
+TEST(RestStance, ABodyWithOneLegUpIsFolded) {
+  for (const char* leg : {"leftUpperLeg", "rightUpperLeg"}) {
+    Humanoid body = MakeHumanoid();
+    body.Turn(leg, 180.0f, glm::vec3(1.0f, 0.0f, 0.0f));
+    const auto stance = FindRestStance(body.Build(), body.Roles());
+    ASSERT_TRUE(stance.has_value());
+    EXPECT_TRUE(stance->is_folded) << leg;
+  }
+}
+
 TEST(RestStance, ToesTellThatSidesAreExchanged) {
   Humanoid body = MakeHumanoid();
   JointRoles roles = body.Roles();
