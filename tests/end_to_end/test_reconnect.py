@@ -91,6 +91,8 @@ class ReconnectTest(unittest.TestCase):
                     code, words = self.end(player)
                     self.assertEqual(code, 0, words)
                     self.assertRegex(words, r"there was no connection for \d+ of \d+ poses")
+                    self.assertIn(LOST, words)
+                    self.assertIn("connected again", words)
 
     def test_a_subscription_without_wait_waits_after_a_restart(self):
         with Killed("--no-render") as daemon:
@@ -167,8 +169,7 @@ class ReconnectTest(unittest.TestCase):
             with self.subTest(path):
                 with Killed("--no-render") as daemon:
                     host = daemon.udp if path == "--udp" else daemon.tcp
-                    player = self.start("play", PERFORMANCE, "--to", daemon.tcp, "--tcp", "--subject", "ada", "--loop",
-                                        "--once")
+                    player = self.start("play", PERFORMANCE, "--to", host, path, "--subject", "ada", "--loop", "--once")
                     watcher = self.start("watch", host, path, "--subject", "ada", "--wait", "--once")
                     rows_after(Output(watcher.stdout), 5)
                 for process in (player, watcher):

@@ -251,8 +251,10 @@ void AddCharacterImport(CLI::App& group, Action& action) {
                       "Skeleton map of the joint names, by name or file (default: the best match)");
   command->add_flag("--repair", arguments->model.repair,
                     "Bind unskinned vertices like their neighbours");
-  command->add_option("--scale", arguments->model.scale,
-                      "Metres per unit of the model (default: derived from its height)");
+  command
+      ->add_option("--scale", arguments->model.scale,
+                   "Metres per unit of the model (default: derived from its height)")
+      ->check(Within(1e-6, 1e6));
   command->add_option("--clothes", arguments->makehuman.clothes,
                       "MakeHuman's folder: garment in clothes/ (default: the first by name)");
   command->add_option("--data", arguments->data_folders,

@@ -4,10 +4,12 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <iostream>
 #include <memory>
 #include <string>
 
 #include "client/cli/common/exit_code.h"
+#include "client/cli/common/standard_output.h"
 #include "client/cli/common/usage_error.h"
 
 namespace furrow::cli {
@@ -53,6 +55,13 @@ int ParseAndRun(int argc, const char* const* argv,
   return action();
 }
 
+// What the program has printed is its result, so losing it is a failure.
+int WithOutputWritten(int exit_code) {
+  std::cout.flush();
+  const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  return written || exit_code != kDone ? exit_code : StandardOutputFailed();
+}
+
 }  // namespace
 
 int RunProgram(int argc, const char* const* argv,
@@ -61,7 +70,7 @@ int RunProgram(int argc, const char* const* argv,
   // the program with a signal.
   std::signal(SIGPIPE, SIG_IGN);
   try {
-    return ParseAndRun(argc, argv, add_commands);
+    return WithOutputWritten(ParseAndRun(argc, argv, add_commands));
   } catch (const std::exception& error) {
     std::fprintf(stderr, "furrow: %s\n", error.what());
     return kFailed;

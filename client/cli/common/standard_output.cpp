@@ -5,9 +5,20 @@
 #include <cstdio>
 #include <cstring>
 
+#include <poll.h>
+#include <unistd.h>
+
 #include "client/cli/common/exit_code.h"
 
 namespace furrow::cli {
+namespace {
+
+bool ReaderHasLeft() {
+  pollfd output{.fd = STDOUT_FILENO, .events = POLLOUT, .revents = 0};
+  return poll(&output, 1, 0) == 1 && (output.revents & POLLERR) != 0;
+}
+
+}  // namespace
 
 Status WriteStandardOutput(std::span<const std::uint8_t> bytes) {
   if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) == bytes.size() &&
@@ -18,7 +29,7 @@ Status WriteStandardOutput(std::span<const std::uint8_t> bytes) {
 }
 
 int StandardOutputFailed() {
-  if (errno == EPIPE) return kDone;
+  if (errno == EPIPE || ReaderHasLeft()) return kDone;
   return Fail({StatusCode::kIo, std::strerror(errno), "standard output"});
 }
 

@@ -2,6 +2,8 @@
 #include "client/cli/common/usage_error.h"
 
 #include <algorithm>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/text.h"
@@ -25,7 +27,8 @@ const CLI::App& Chosen(const CLI::App& app, std::string* words) {
 Words CommandsOf(const CLI::App& app) {
   Words names;
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
-    names.push_back(command->get_name());
+    // Groups of options are commands without a name.
+    if (!command->get_name().empty()) names.push_back(command->get_name());
   }
   return names;
 }
@@ -36,6 +39,22 @@ Words OptionsOf(const CLI::App& app) {
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
   }
   return names;
+}
+
+// What CLI11 says in the words of its source: "Could not convert: --listen = 99999" and "--to: 1
+// required TEXT missing".
+std::string Plain(const CLI::ParseError& error) {
+  const std::string text = error.what();
+  constexpr std::string_view kConvert = "Could not convert: ";
+  if (const auto at = text.find(" = "); text.starts_with(kConvert) && at != std::string::npos) {
+    return text.substr(kConvert.size(), at - kConvert.size()) + ": " + Quoted(text.substr(at + 3)) +
+           " is not a valid value";
+  }
+  const auto colon = text.find(": 1 required ");
+  if (colon != std::string::npos && text.ends_with(" missing")) {
+    return text.substr(0, colon) + " needs a value";
+  }
+  return text;
 }
 
 }  // namespace
@@ -63,7 +82,7 @@ std::string UsageMessage(const CLI::App& app, const CLI::ParseError& error) {
   if (!commands.empty() && dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
     return "a command is missing ('" + words + " --help' lists the commands)";
   }
-  return error.what() + (" ('" + words + " --help' explains the options)");
+  return Plain(error) + " ('" + words + " --help' explains the options)";
 }
 
 }  // namespace furrow::cli

@@ -62,6 +62,7 @@ void SessionPlayer::Play() {
                         options_.encoding, options_.redundant);
     // A datagram that was sent proves no connection; an answer that Poll() reads does.
     if (sent_as != IoStatus::kOk) Note(sent_as);
+    if (notes_.lost()) ++unsent_;
     progress.Set(sent++ % schedule_.count() + 1);
   }
 }
@@ -88,18 +89,18 @@ void SessionPlayer::Note(IoStatus status) {
   closed_ = closed_ || status == IoStatus::kClosed || status == IoStatus::kMalformed;
   // The daemon may come back, so a closed port does not end the playback.
   if (status == IoStatus::kNoConnection) {
-    ++refused_;
-    reachable_ = false;
+    closed_ = closed_ || options_.once;
+    if (!options_.once) notes_.Lost();
     // Over TCP, the daemon says it in an error.
     refusal_.Show(publisher_.needs_token() ? publisher_.last_error() : publisher_.refusal());
   } else if (status == IoStatus::kOk) {
-    reachable_ = true;
+    notes_.Connected();
   }
 }
 
 int SessionPlayer::Report() const {
   if (closed_) {
-    std::fprintf(stderr, "furrow: the daemon closed the connection\n");
+    std::fprintf(stderr, "furrow: the connection was lost\n");
     return kNoConnection;
   }
   int exit_code = kDone;
@@ -112,10 +113,10 @@ int SessionPlayer::Report() const {
                  tracks_[i].source->subject().c_str(), why.c_str());
     exit_code = kFailed;
   }
-  if (refused_ > 0) {
-    std::fprintf(stderr, "furrow: there was no connection for %" PRId64 " of %s\n",
-                 std::min(refused_, pacing.count()), Counted(pacing.count(), "pose").c_str());
-    if (options_.once || !reachable_) return kNoConnection;
+  if (unsent_ > 0) {
+    std::fprintf(stderr, "furrow: there was no connection for %" PRId64 " of %s\n", unsent_,
+                 Counted(pacing.count(), "pose").c_str());
+    if (notes_.lost()) return kNoConnection;
   }
   std::string poses = Counted(pacing.count(), "pose");
   if (tracks_.size() > 1) poses += " of " + std::to_string(tracks_.size()) + " subjects";

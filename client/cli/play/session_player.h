@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "client/cli/common/connection_notes.h"
 #include "client/cli/common/refusal_note.h"
 #include "client/cli/play/pacing_error.h"
 #include "client/cli/play/play_source.h"
@@ -22,7 +23,7 @@ class SessionPlayer {
   struct Options {
     double speed = 1.0;  // factor of the recorded speed, > 0
     bool loop = false;   // repeat until an interrupt
-    bool once = false;   // a lost connection makes the playback fail, even if it comes back
+    bool once = false;   // a lost connection ends the playback
     protocol::PoseEncoding encoding;
     bool redundant = false;  // repeat the previous pose where there is room
   };
@@ -46,8 +47,8 @@ class SessionPlayer {
   SessionSchedule schedule_;
   Options options_;
   std::vector<PacingError> pacing_;  // per track
-  std::int64_t refused_ = 0;         // number of reports that there is no connection
-  bool reachable_ = true;            // the last report said that there is one
+  std::int64_t unsent_ = 0;          // poses without a connection
+  ConnectionNotes notes_;
   bool closed_ = false;
   RefusalNote refusal_;
 };

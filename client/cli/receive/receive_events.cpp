@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "client/cli/common/connection_notes.h"
 #include "client/cli/common/endpoint.h"
 #include "client/cli/common/exit_code.h"
 #include "client/cli/common/interrupt.h"
@@ -30,36 +31,25 @@ int ReportNoConnection(client::Event::Kind kind, const std::string& why) {
     std::fprintf(stderr, "furrow: no connection: %s\n", why.c_str());
     return kNoConnection;
   }
-  std::fprintf(stderr, "furrow: %s\n",
-               kind == client::Event::Kind::kNoConnection
-                   ? "the port is closed (is furrowd running there?)"
-                   : "no answer (is furrowd running there?)");
+  std::fprintf(
+      stderr, "furrow: %s\n",
+      kind == client::Event::Kind::kNoConnection
+          ? "no connection: the port is closed, or no furrowd listens at it (its TCP port is "
+            "7400 by default, and its UDP port 7401)"
+          : "no answer (is furrowd running there?)");
   return kNoConnection;
+}
+
+// True for the goodbyes of a daemon that ends the connection, and not the subscription alone.
+bool IsLoss(protocol::GoodbyeReason reason) {
+  using protocol::GoodbyeReason;
+  return reason == GoodbyeReason::kDraining || reason == GoodbyeReason::kTimedOut;
 }
 
 int ReportGoodbye(protocol::GoodbyeReason reason) {
   std::fprintf(stderr, "furrow: %s\n", GoodbyeText(reason));
-  return reason == protocol::GoodbyeReason::kTimedOut ? kNoConnection : kDone;
+  return IsLoss(reason) ? kNoConnection : kDone;
 }
-
-// Prints when the connection is lost and when it is back.
-class ConnectionNotes {
- public:
-  void Lost() {
-    if (!std::exchange(lost_, true)) {
-      std::fprintf(stderr, "furrow: the connection was lost; trying again until Ctrl-C\n");
-    }
-  }
-  // Returns true if the connection had been lost.
-  bool Connected() {
-    if (!std::exchange(lost_, false)) return false;
-    std::fprintf(stderr, "furrow: connected again\n");
-    return true;
-  }
-
- private:
-  bool lost_ = false;
-};
 
 // The loop of ReceiveEvents(), with what it remembers between events.
 class Reception {
@@ -133,8 +123,7 @@ class Reception {
     // Each subscription gets its own goodbye; the last one ends the command.
     if (reason == GoodbyeReason::kSubjectGone && ++goodbyes_ != stop_.goodbyes) return std::nullopt;
     // A daemon that shuts down may be restarted, and one that lost this client answers again.
-    const bool lost = reason == GoodbyeReason::kDraining || reason == GoodbyeReason::kTimedOut;
-    if (lost && reconnects_) {
+    if (IsLoss(reason) && reconnects_) {
       notes_.Lost();
       return std::nullopt;
     }

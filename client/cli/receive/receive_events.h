@@ -38,7 +38,7 @@ void AddSubscriptionOptions(CLI::App& command, SubscriptionOptions& options, Req
   command
       .add_option("--frames", options.frames,
                   "Number of " + unit + " to receive (default: until the subject leaves)")
-      ->check(CLI::PositiveNumber);
+      ->check(Within(1, 1e15));
   command.add_flag("--once", options.once, kOnceHelp);
   AddSecurityOptions(command, options.security);
 }
@@ -72,8 +72,8 @@ struct StopConditions {
 // Runs the event loop of `watch`, `frames` and `record`: calls `on_event` for each message until it
 // returns false, `stop` applies, or SIGINT or SIGTERM arrives. Then returns kDone, or kFailed if
 // the daemon reported an error before. Prints the reason of every other end to standard error and
-// returns its exit code: a goodbye (kDone, or kNoConnection if the daemon timed out), an error
-// of the daemon (kFailed), a closed connection or no message within 5 seconds of the start
+// returns its exit code: a goodbye (kDone, or kNoConnection if the daemon shuts down or timed out),
+// an error of the daemon (kFailed), a closed connection or no message within 5 seconds of the start
 // (kNoConnection).
 //
 // If the subscriber's transport reconnects, a loss after the first message does not end the

@@ -2,6 +2,8 @@
 #include "client/cpp/tls/client_tls.h"
 
 #include <array>
+#include <filesystem>
+#include <system_error>
 
 #include <arpa/inet.h>
 #include <openssl/err.h>
@@ -16,10 +18,11 @@ namespace {
 // The file's fault, with the newest reason of OpenSSL.
 Status FileFault(const std::string& file, const std::string& what, const std::string& todo) {
   const char* const reason = ERR_reason_error_string(ERR_peek_last_error());
-  const bool absent = ERR_GET_LIB(ERR_peek_last_error()) == ERR_LIB_SYS;
+  const std::string fault = reason == nullptr ? what : what + ": " + reason;
   ERR_clear_error();
-  return {absent ? StatusCode::kIo : StatusCode::kParse,
-          reason == nullptr ? what : what + ": " + reason, file, todo};
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) return {StatusCode::kNotFound, "no such file", file};
+  return {StatusCode::kParse, fault, file, todo};
 }
 
 // OpenSSL would ask for a passphrase on the terminal.
