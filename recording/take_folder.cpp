@@ -37,6 +37,13 @@ Result<std::unique_ptr<TakeFolder>> TakeFolder::Open(TakeFolderOptions options,
   return folder;
 }
 
+std::unique_ptr<TakeFolder> TakeFolder::Failed(TakeFolderOptions options, Status failure) {
+  std::unique_ptr<TakeFolder> folder(new TakeFolder(std::move(options)));
+  folder->path_ = folder->options_.folder / "";
+  folder->failure_ = std::move(failure);
+  return folder;
+}
+
 // The first free name. A requested name of the first file is returned even if it exists, so that
 // TakeWriter::Create() reports the error.
 std::filesystem::path TakeFolder::NextPath(std::uint64_t now_ns) const {
@@ -141,7 +148,7 @@ void TakeFolder::SetRig(std::string_view rig_json) {
 
 Status TakeFolder::Resume(std::uint64_t now_ns) {
   if (failure_.ok()) return {};
-  (void)take_->Close();  // its error is known
+  if (take_ != nullptr) (void)take_->Close();  // its error is known
   const std::filesystem::path failed = path_;
   const int files = num_files_;
   const std::uint64_t messages = num_messages();
@@ -156,8 +163,17 @@ Status TakeFolder::Resume(std::uint64_t now_ns) {
   if (path_ != failed) std::filesystem::remove(path_, ignored);
   path_ = failed;
   num_files_ = files;
-  earlier_messages_ = messages - take_->num_messages();
+  earlier_messages_ = messages - (take_ == nullptr ? 0 : take_->num_messages());
   return status;
+}
+
+Result<bool> TakeFolder::LeaveLostFile(std::uint64_t now_ns) {
+  if (!failure_.ok() || take_ == nullptr || take_->is_at_its_path()) return false;
+  (void)take_->Close();  // nobody finds it
+  std::error_code error;
+  if (!options_.folder.empty()) std::filesystem::create_directories(options_.folder, error);
+  if (Status status = Begin(now_ns); !status.ok()) return Remember(std::move(status));
+  return true;
 }
 
 Status TakeFolder::Flush() {
@@ -166,7 +182,7 @@ Status TakeFolder::Flush() {
 }
 
 Status TakeFolder::Close() {
-  const Status status = take_->Close();
+  const Status status = take_ == nullptr ? Status() : take_->Close();
   return failure_.ok() ? status : failure_;
 }
 

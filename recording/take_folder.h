@@ -36,6 +36,10 @@ class TakeFolder {
   // Creates the folder and the first file. Errors: kIo (also if `options.name` exists).
   [[nodiscard]] static Result<std::unique_ptr<TakeFolder>> Open(TakeFolderOptions options,
                                                                 std::uint64_t now_ns);
+  // A folder whose first file could not be created because of `failure`: as after that error, until
+  // Resume() creates the file.
+  [[nodiscard]] static std::unique_ptr<TakeFolder> Failed(TakeFolderOptions options,
+                                                          Status failure);
 
   // Writes a message or datagram (see TakeWriter), first into a new file if a rotation is due by
   // size or log time, or if the file is full.
@@ -56,15 +60,20 @@ class TakeFolder {
 
   // Passes all messages to the operating system.
   [[nodiscard]] Status Flush();
+  // Begins the next file if the current one was removed or renamed. Returns true if it was. Errors:
+  // those of Flush().
+  [[nodiscard]] Result<bool> LeaveLostFile(std::uint64_t now_ns);
   // Finishes the current file. Nothing can be written afterwards.
   [[nodiscard]] Status Close();
 
   // The current file.
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   [[nodiscard]] int num_files() const { return num_files_; }
+  // The error that all calls return until Resume().
+  [[nodiscard]] const Status& failure() const { return failure_; }
   // Messages in all files, including those that each file begins with, without repetitions.
   [[nodiscard]] std::uint64_t num_messages() const {
-    return earlier_messages_ + take_->num_messages();
+    return earlier_messages_ + (take_ == nullptr ? 0 : take_->num_messages());
   }
 
  private:
@@ -88,7 +97,7 @@ class TakeFolder {
                                 std::span<const std::uint8_t> payload);
 
   TakeFolderOptions options_;
-  std::unique_ptr<TakeWriter> take_;
+  std::unique_ptr<TakeWriter> take_;  // null: there is no file yet, and `failure_` says why
   std::filesystem::path path_;
   std::uint64_t begun_ns_ = 0;
   std::uint64_t begun_bytes_ = 0;  // size of what the file begins with, which rotate_bytes ignores

@@ -37,6 +37,7 @@ class TakeWriter {
   [[nodiscard]] Status WriteDatagram(const DatagramSender& sender, std::uint64_t log_time_ns,
                                      std::span<const std::uint8_t> bytes);
 
+  [[nodiscard]] bool is_at_its_path() const { return file_->is_at_its_path(); }
   // Finishes the current chunk and passes it to the operating system.
   [[nodiscard]] Status Flush() { return file_->FlushChunk(); }
   // Finishes the file and flushes it to disk.

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/status.h"
@@ -95,7 +96,10 @@ Result<std::unique_ptr<Writer>> Writer::Create(const std::filesystem::path& path
     header.PutText(options.profile).PutText("furrow");
     status = writer->AppendRecord(Opcode::kHeader, header);
   }
-  if (!status.ok()) return status;
+  if (!status.ok()) {
+    ::unlink(path.c_str());  // it is this call's own, and no MCAP file
+    return status;
+  }
   return writer;
 }
 
@@ -103,6 +107,13 @@ Writer::Writer(int file, std::filesystem::path path, const WriterOptions& option
     : file_(file), path_(std::move(path)), options_(options) {}
 
 Writer::~Writer() { ::close(file_); }
+
+bool Writer::is_at_its_path() const {
+  struct stat opened = {};
+  struct stat there = {};
+  return ::fstat(file_, &opened) == 0 && ::stat(path_.c_str(), &there) == 0 &&
+         opened.st_dev == there.st_dev && opened.st_ino == there.st_ino;
+}
 
 std::uint16_t Writer::AddSchema(std::string_view name, std::string_view encoding,
                                 std::span<const std::uint8_t> data) {

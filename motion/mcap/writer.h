@@ -50,6 +50,9 @@ class Writer {
   // that AddChannel() returned), kIo. Without memory, throws std::bad_alloc, and only this message
   // is lost.
   [[nodiscard]] Status Write(const Message& message);
+  // False if the file is not at its path any more: it was removed or renamed, and what is written
+  // is lost or elsewhere.
+  [[nodiscard]] bool is_at_its_path() const;
   // Finishes the current chunk and passes it to the operating system.
   [[nodiscard]] Status FlushChunk();
   // Writes a file into the MCAP file. `time`: log and creation time, ns since the Unix epoch.

@@ -41,15 +41,30 @@ Scratch& ScratchOfThread() {
   return scratch;
 }
 
+// An attempt on a full disk would take the space that others free.
+bool HasRoom(const RecorderOptions& options) {
+  const std::filesystem::path& folder = options.folder.folder;
+  std::error_code error;
+  const auto space = std::filesystem::space(folder.empty() ? "." : folder, error);
+  // An unknown amount of space is no reason to wait: the attempt tells what is wrong.
+  return error || space.available >= options.least_space;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Recorder>> Recorder::Start(RecorderOptions options, Time now,
                                                   Metrics* metrics) {
   const auto began = static_cast<std::uint64_t>((now + options.wall_offset).count());
   auto folder = recording::TakeFolder::Open(options.folder, began);
-  FURROW_RETURN_IF_ERROR(folder);
-  spdlog::info("recording to {}", (*folder)->path().string());
-  return std::unique_ptr<Recorder>(new Recorder(std::move(options), *std::move(folder), metrics));
+  if (folder.ok()) {
+    spdlog::info("recording to {}", (*folder)->path().string());
+    return std::unique_ptr<Recorder>(new Recorder(std::move(options), *std::move(folder), metrics));
+  }
+  // A full disk must not keep the weights away, as it would not later.
+  if (HasRoom(options)) return folder.status();
+  std::unique_ptr<Recorder> recorder(new Recorder(
+      options, recording::TakeFolder::Failed(options.folder, folder.status()), metrics));
+  return recorder;
 }
 
 Recorder::Recorder(RecorderOptions options, std::unique_ptr<recording::TakeFolder> folder,
@@ -58,6 +73,7 @@ Recorder::Recorder(RecorderOptions options, std::unique_ptr<recording::TakeFolde
       metrics_(metrics),
       folder_(std::move(folder)),
       queue_(options_.queue_bytes),
+      paused_(!folder_->failure().ok()),
       // The last member: the thread may use everything above at once.
       thread_([this] { Write(); }) {}
 
@@ -225,23 +241,26 @@ void Recorder::Pause(const Status& status) {
   paused_ = true;
   next_try_ = ReadClock() + options_.retry;
   metrics_->Add(Counter::kRecordingFailures);
-  spdlog::error("recording paused: {}; it goes on in a new file when there is room",
+  spdlog::error("recording paused: {}; it goes on as soon as a new file can be written",
                 status.ToString());
 }
 
-// An attempt on a full disk would take the space that others free.
-bool Recorder::HasRoom() const {
-  const std::filesystem::path folder = folder_->path().parent_path();
-  std::error_code error;
-  const auto space = std::filesystem::space(folder.empty() ? "." : folder, error);
-  return !error && space.available >= options_.least_space;
+Status Recorder::LeaveLostFile(Time now) {
+  const std::string lost = folder_->path().string();
+  const Result<bool> left = folder_->LeaveLostFile(LogTime(now));
+  FURROW_RETURN_IF_ERROR(left);
+  if (*left) {
+    spdlog::error("the recording {} was removed or renamed; it goes on in {}", lost,
+                  folder_->path().string());
+  }
+  return {};
 }
 
 void Recorder::TryToGoOn(Time now) {
   if (now < next_try_) return;
   next_try_ = now + options_.retry;
   const auto resume = [&] { return folder_->Resume(LogTime(now)); };
-  if (!HasRoom() || !OrOutOfMemory(metrics_, "recording", resume).ok()) return;
+  if (!HasRoom(options_) || !OrOutOfMemory(metrics_, "recording", resume).ok()) return;
   paused_ = false;
   ReportDropped("while the recording was paused");
   spdlog::info("recording again, in {}", folder_->path().string());
@@ -251,6 +270,7 @@ void Recorder::Write() {
   RecordingBatch batch;
   Time flushed = ReadClock();
   bool goes_on = true;
+  if (paused_) Pause(folder_->failure());
   while (goes_on) {
     // The queue is emptied during a pause, too, or it would hold its bytes for as long.
     goes_on = queue_.Take(&batch, kWait);
@@ -264,6 +284,9 @@ void Recorder::Write() {
     // lose more when the daemon is killed.
     if (status.ok() && now - flushed >= kFlushInterval) {
       status = OrOutOfMemory(metrics_, "recording", [this] { return folder_->Flush(); });
+      if (status.ok()) {
+        status = OrOutOfMemory(metrics_, "recording", [&] { return LeaveLostFile(now); });
+      }
       flushed = now;
       ReportDropped("the disk is too slow");
     }
@@ -274,7 +297,12 @@ void Recorder::Write() {
   }
   if (paused_) (void)folder_->Close();  // its error is known
   ReportDropped(paused_ ? "the recording was paused" : "the disk is too slow");
-  if (!paused_) spdlog::info("finished recording to {}", folder_->path().string());
+  if (discards_ && folder_->num_messages() == 0) {
+    std::error_code ignored;
+    std::filesystem::remove(folder_->path(), ignored);
+  } else if (!paused_) {
+    spdlog::info("finished recording to {}", folder_->path().string());
+  }
 }
 
 }  // namespace furrow::server

@@ -47,6 +47,9 @@ class Recorder : public RecordingTap {
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
+  // Before the end of a daemon that could not start: leaves no file behind if nothing was recorded.
+  void Discard() { discards_ = true; }
+
   // True after a write error, until the recording goes on. Thread-safe.
   [[nodiscard]] bool is_paused() const { return paused_.load(std::memory_order_relaxed); }
 
@@ -79,7 +82,7 @@ class Recorder : public RecordingTap {
                                   std::span<const std::uint8_t> payload);
   void Pause(const Status& status);
   void TryToGoOn(Time now);
-  [[nodiscard]] bool HasRoom() const;
+  [[nodiscard]] Status LeaveLostFile(Time now);
   void ReportDropped(std::string_view why);
 
   const RecorderOptions options_;
@@ -87,6 +90,7 @@ class Recorder : public RecordingTap {
   std::unique_ptr<recording::TakeFolder> folder_;  // used by the recording thread
   RecordingQueue queue_;
   std::atomic<bool> paused_ = false;
+  std::atomic<bool> discards_ = false;
   Time next_try_{0};  // while paused
   std::uint64_t reported_dropped_ = 0;
 

@@ -113,7 +113,7 @@ ApiReply StatusApi::Ready(const Hub& hub, Time now) const {
   }
   if (parts_.recording_is_paused && parts_.recording_is_paused()) {
     return ErrorReply(503, "unavailable", "",
-                      "the recording is paused until its disk has room; see the log");
+                      "the recording is paused, because its folder cannot be written; see the log");
   }
   if (parts_.cluster != nullptr) {
     if (const std::string fault = parts_.cluster->Fault(now); !fault.empty()) {

@@ -15,6 +15,7 @@
 #include "recording/take_poses.h"
 #include "recording/take_summary.h"
 #include "rig/rig_file.h"
+#include "server/net/clock.h"
 #include "tests/shape_rig.h"
 #include "tests/temporary_folder.h"
 #include "tests/unit/server/session/hub_fixture.h"
@@ -144,6 +145,35 @@ TEST_F(RecorderTest, AnotherRigBeginsAnotherFile) {
   }
   EXPECT_EQ(rigs, (std::vector<std::string>{"{}", rig::RigToJson(other)}));
   EXPECT_EQ(values.back(), num_weights);
+}
+
+TEST_F(RecorderTest, ARemovedFileIsFollowedByAnother) {
+  Publish(sender_, "ada");
+  const auto files = [this] {
+    std::set<fs::path> found;
+    for (const auto& entry : fs::directory_iterator(folder_.path())) found.insert(entry.path());
+    return found;
+  };
+  const fs::path first = *files().begin();
+  fs::rename(first, folder_ / "moved.txt");
+  // The recorder looks at each flush.
+  while (files().size() < 2) std::this_thread::yield();
+  now = ReadClock() + FromSeconds(1);  // the clock of the recording thread
+  Send(sender_, Pose(0.25f, 1.0f), 1, 0, 1'000);
+  recorder_.reset();
+  std::set<fs::path> after = files();
+  after.erase(folder_ / "moved.txt");
+  ASSERT_EQ(after.size(), 1u);
+  const auto poses = recording::TakePoses::Load(
+      *recording::TakeReader::Open(*after.begin()).value(), "ada", nullptr);
+  ASSERT_TRUE(poses.ok()) << poses.status().ToString();
+  EXPECT_EQ(poses->size(), 1u);
+}
+
+TEST_F(RecorderTest, AFailedStartLeavesNoFile) {
+  recorder_->Discard();
+  recorder_.reset();
+  EXPECT_TRUE(fs::is_empty(folder_.path()));
 }
 
 TEST_F(RecorderTest, TimecodesAreRecordedWithPosesAndWeights) {
