@@ -27,6 +27,7 @@
 #include "server/core/network_address.h"
 #include "server/core/within_memory.h"
 #include "server/machine/confine.h"
+#include "server/machine/early_signals.h"
 #include "server/machine/own_addresses.h"
 #include "server/machine/systemd_copy.h"
 #include "server/net/await_tuple.h"
@@ -412,6 +413,8 @@ void Daemon::HandleSignals() {
   signals_.async_wait([this](const asio::error_code& error, int) {
     if (!error) shutdown_->Request();
   });
+  // What came before can be missed no more.
+  if (early_signals::stop()) shutdown_->Request();
   if (!options_.reload) return;
   reload_ = std::make_unique<ReloadLoop>(
       ReloadLoop::Parts{.io = &io_,
@@ -422,6 +425,7 @@ void Daemon::HandleSignals() {
                         .is_draining = [this] { return shutdown_->has_begun(); },
                         .shut_down = [this] { shutdown_->Request(); }});
   reload_->Start();
+  if (early_signals::reload()) std::raise(SIGHUP);
 }
 
 ExitCode Daemon::Serve() {
@@ -462,6 +466,13 @@ void Daemon::EndRendering() {
     spdlog::warn("ends while a picture is drawn or loaded: limits.drain_seconds are over");
     EndProcess();
   });
+}
+
+ExitCode Daemon::Abandon(ExitCode exit_code) {
+  exit_code_ = exit_code;
+  if (recorder_ != nullptr) recorder_->Discard();
+  if (options_.owns_process) rendering_.End(ReadClock(), [this] { EndProcess(); });
+  return exit_code;
 }
 
 // Without freeing memory or waiting for threads.

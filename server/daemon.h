@@ -67,6 +67,9 @@ class Daemon {
   // Until a stop is requested. kBadInput: pictures of the character, which are loaded while it
   // serves, cannot be read.
   ExitCode Serve();
+  // Instead of Serve(), when a call has failed. The renderer may be busy for seconds, or for ever:
+  // a process of its own ends without it.
+  ExitCode Abandon(ExitCode exit_code);
 
  private:
   void MakeHub();

@@ -20,6 +20,7 @@
 #include "server/daemon_files.h"
 #include "server/machine/cache_folder.h"
 #include "server/machine/confine.h"
+#include "server/machine/early_signals.h"
 #include "server/machine/journal.h"
 #include "server/net/clock.h"
 #include "server/run.h"
@@ -78,6 +79,7 @@ int main(int argc, char** argv) {
     const furrow::server::Log log({.level = line.config->log_level});
     return static_cast<int>(furrow::server::Check(*line.config));
   }
+  furrow::server::early_signals::Install();
   // The readers of the log and of the ready line may close their pipes. The daemon continues.
   std::signal(SIGPIPE, SIG_IGN);
   const furrow::Status caches = PrepareCaches(*line.config);

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,6 +22,7 @@
 #include "server/core/metrics.h"
 #include "server/credentials.h"
 #include "server/daemon.h"
+#include "server/machine/early_signals.h"
 #include "server/machine/systemd_copy.h"
 #include "server/net/clock.h"
 #include "server/restart/inheritance.h"
@@ -32,6 +34,44 @@ namespace {
 ExitCode Fail(ExitCode code, const Status& status) {
   spdlog::error("{}", status.ToString());
   return code;
+}
+
+// Why a daemon cannot start.
+struct Failure {
+  ExitCode code = ExitCode::kFailed;
+  Status status;
+};
+
+// Everything between construction and Serve().
+std::optional<Failure> Prepare(Daemon& daemon) {
+  if (Status status = daemon.LoadPlayer(); !status.ok()) {
+    return Failure{ExitCode::kBadInput, status};
+  }
+  if (Status status = daemon.StartRendering(); !status.ok()) {
+    return Failure{ExitCode::kFailed, status};
+  }
+  if (Status status = daemon.LoadCluster(); !status.ok()) {
+    return Failure{
+        status.code() == StatusCode::kUnavailable ? ExitCode::kFailed : ExitCode::kBadInput,
+        status};
+  }
+  daemon.FinishConfinement();
+  if (Status status = daemon.LoadCredentials(); !status.ok()) {
+    return Failure{ExitCode::kBadInput, status};
+  }
+  // After all files that may have a fault, so that a failed start leaves no recording.
+  if (Status status = daemon.StartRecording(); !status.ok()) {
+    return Failure{ExitCode::kFailed, status};
+  }
+  if (Status status = daemon.Listen(); !status.ok()) return Failure{ExitCode::kFailed, status};
+  return std::nullopt;
+}
+
+// True if the daemon was told to stop while it loads its files.
+bool IsEarlyStop(const RunOptions& options) {
+  if (!options.handle_signals || !early_signals::stop()) return false;
+  spdlog::info("stopped before it was ready");
+  return true;
 }
 
 ExitCode LoadAndServe(const Config& asked, const RunOptions& options) {
@@ -48,30 +88,15 @@ ExitCode LoadAndServe(const Config& asked, const RunOptions& options) {
   Result<Assets> assets = LoadAssets(
       config, config.require_render ? character::Pictures::kLoad : character::Pictures::kLeaveOut);
   if (!assets.ok()) return Fail(ExitCode::kBadInput, assets.status());
+  if (IsEarlyStop(options)) return ExitCode::kOk;
   WarnAboutSecurity(config);
   WarnAboutAssets(*assets);
   auto osc_outputs = LoadOscOutputs(config);
   if (!osc_outputs.ok()) return Fail(ExitCode::kBadInput, osc_outputs.status());
   Daemon daemon(config, options, *std::move(assets), *std::move(osc_outputs), &former);
-  if (Status status = daemon.LoadPlayer(); !status.ok()) {
-    return Fail(ExitCode::kBadInput, status);
-  }
-  if (Status status = daemon.StartRendering(); !status.ok()) {
-    return Fail(ExitCode::kFailed, status);
-  }
-  if (Status status = daemon.LoadCluster(); !status.ok()) {
-    return Fail(status.code() == StatusCode::kUnavailable ? ExitCode::kFailed : ExitCode::kBadInput,
-                status);
-  }
-  daemon.FinishConfinement();
-  if (Status status = daemon.LoadCredentials(); !status.ok()) {
-    return Fail(ExitCode::kBadInput, status);
-  }
-  // After all files that may have a fault, so that a failed start leaves no recording.
-  if (Status status = daemon.StartRecording(); !status.ok()) {
-    return Fail(ExitCode::kFailed, status);
-  }
-  if (Status status = daemon.Listen(); !status.ok()) return Fail(ExitCode::kFailed, status);
+  if (const auto failed = Prepare(daemon))
+    return daemon.Abandon(Fail(failed->code, failed->status));
+  if (IsEarlyStop(options)) return daemon.Abandon(ExitCode::kOk);
   return daemon.Serve();
 }
 
@@ -122,24 +147,34 @@ Status CheckAll(const Config& config) {
   return CheckCredentials(config);
 }
 
+// Parts report errors as Status. Only the standard library and the event loop throw: without
+// memory or threads.
+template <class Work>
+Status WithoutExceptions(const Work& work) {
+  try {
+    return work();
+  } catch (const std::exception& error) {
+    return {StatusCode::kInternal, error.what(), "furrowd"};
+  }
+}
+
 }  // namespace
 
 ExitCode Check(const Config& asked) {
   const Config config = WithoutMissingParts(asked);
-  if (const Status status = CheckAll(config); !status.ok()) {
-    return Fail(ExitCode::kBadInput, status);
-  }
+  const Status status = WithoutExceptions([&] { return CheckAll(config); });
+  if (!status.ok()) return Fail(ExitCode::kBadInput, status);
   std::puts("the configuration is valid");
   return ExitCode::kOk;
 }
 
 ExitCode Run(const Config& config, const RunOptions& options) {
-  try {
-    return LoadAndServe(config, options);
-  } catch (const std::exception& error) {  // such as out of memory or threads
-    // Parts report errors as Status. Only the standard library and the event loop throw here.
-    return Fail(ExitCode::kFailed, Status(StatusCode::kInternal, error.what(), "furrowd"));
-  }
+  ExitCode exit_code = ExitCode::kOk;
+  const Status status = WithoutExceptions([&] {
+    exit_code = LoadAndServe(config, options);
+    return Status();
+  });
+  return status.ok() ? exit_code : Fail(ExitCode::kFailed, status);
 }
 
 }  // namespace furrow::server

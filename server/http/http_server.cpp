@@ -22,7 +22,9 @@
 
 #include "base/data_dir.h"
 #include "base/status.h"
+#include "server/core/accept_log.h"
 #include "server/core/network_address.h"
+#include "server/core/within_memory.h"
 #include "server/http/http_session.h"
 #include "server/http/request/web_stream.h"
 #include "server/machine/listen_error.h"
@@ -98,15 +100,18 @@ constexpr std::uintmax_t kMaxCharacterBytes = 4'000'000;
 
 // An installation without the page still has the API, WebSockets and pictures.
 PageFiles PageOrNone(const HttpConfig& config,
-                     const std::function<std::filesystem::path()>& find_character) {
-  Result<PageFiles> page = LoadPage(config);
+                     const std::function<std::filesystem::path()>& find_character,
+                     Metrics* metrics) {
+  Result<PageFiles> page = OrOutOfMemory(metrics, "http.page", [&] { return LoadPage(config); });
   if (!page.ok()) {
     spdlog::warn("serving without a web page: {}", page.status().ToString());
     return {};
   }
   const auto character = find_character ? find_character() : std::filesystem::path();
   if (!character.empty()) {
-    const Status status = page->Add(kCharacterPath, character, kMaxCharacterBytes);
+    const Status status = OrOutOfMemory(metrics, "http.page", [&] {
+      return page->Add(kCharacterPath, character, kMaxCharacterBytes);
+    });
     if (!status.ok()) spdlog::warn("browsers cannot draw the character: {}", status.ToString());
   }
   return *std::move(page);
@@ -143,6 +148,8 @@ struct HttpServer::Impl {
   net::awaitable<void> Serve(tcp::socket socket, std::string host);
   net::awaitable<bool> BeginTls(WebStream* stream, const std::string& host);
   void Run();
+  // Ends the daemon, by an exception of the hub's loop.
+  void EndHub(const std::exception_ptr& error);
 
   WebContext context;  // outlives the loop; its connections use it
   const std::function<std::filesystem::path()> find_character;
@@ -152,6 +159,7 @@ struct HttpServer::Impl {
   Lobby lobby;  // of newcomers that wait for a place
   std::shared_ptr<net::io_context> loop = std::make_shared<net::io_context>(1);
   tcp::acceptor acceptor{*loop};
+  AcceptLog accept_log{"web port", "http.max_connections"};
   HostPort address;
   std::thread thread;
 };
@@ -192,11 +200,13 @@ net::awaitable<void> HttpServer::Impl::Accept() {
     auto socket = co_await acceptor.async_accept(Redirect(error));
     if (error == net::error::operation_aborted) co_return;
     if (error) {  // usually no descriptors are left; try again later
+      accept_log.Failed(error.message());
       net::steady_timer pause(*loop, kAcceptPause);
       beast::error_code ignored;
       co_await pause.async_wait(Redirect(ignored));
       continue;
     }
+    accept_log.Accepted();
     const auto client = socket.remote_endpoint(error);
     try {
       std::string host = error ? std::string() : HostOf(client.address().to_string());
@@ -312,16 +322,22 @@ net::awaitable<bool> HttpServer::Impl::BeginTls(WebStream* stream, const std::st
   co_return true;
 }
 
+void HttpServer::Impl::EndHub(const std::exception_ptr& error) {
+  context.post_to_hub([error](Hub&, Time) { std::rethrow_exception(error); });
+}
+
 // An exception that ends the web loop also ends the hub's loop, so that the daemon does not run on
 // without its web server.
 void HttpServer::Impl::Run() {
   try {
     // Here, because reading and compressing takes a while, and weights need not wait for it.
-    context.page = PageOrNone(context.config, find_character);
+    context.page = PageOrNone(context.config, find_character, context.metrics);
     RunLoop(*loop, context.metrics);
+  } catch (const std::bad_alloc&) {
+    // The hub's loop takes a std::bad_alloc for the failure of one handler.
+    EndHub(std::make_exception_ptr(std::runtime_error("out of memory: the web server has ended")));
   } catch (...) {
-    context.post_to_hub(
-        [error = std::current_exception()](Hub&, Time) { std::rethrow_exception(error); });
+    EndHub(std::current_exception());
   }
 }
 

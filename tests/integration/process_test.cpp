@@ -8,6 +8,7 @@
 #include <iterator>
 #include <regex>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -46,6 +47,37 @@ TEST(Furrowd, PrintsItsPortsAndStopsOnSigterm) {
     EXPECT_EQ(client.Await<protocol::Goodbye>()->reason, protocol::GoodbyeReason::kDraining);
     EXPECT_EQ(daemon.Wait(), 0);
   }
+}
+
+// True if the process handles the signal by itself.
+bool Catches(pid_t process, int signal) {
+  std::ifstream status("/proc/" + std::to_string(process) + "/status");
+  for (std::string line; std::getline(status, line);) {
+    if (!line.starts_with("SigCgt:")) continue;
+    return (std::stoull(line.substr(7), nullptr, 16) >> (signal - 1) & 1) != 0;
+  }
+  return false;
+}
+
+TEST(Furrowd, ASignalWhileItStartsEndsItInOrder) {
+  for (const int signal : {SIGTERM, SIGINT}) {
+    Process daemon(FurrowdCommand({"--tcp", "0", "--udp", "0"}));
+    while (!Catches(daemon.id(), signal)) std::this_thread::yield();
+    daemon.Signal(SIGHUP);  // which must not end it
+    daemon.Signal(signal);
+    EXPECT_EQ(daemon.Wait(), 0);
+  }
+}
+
+TEST(Furrowd, AFailedStartLeavesNoRecording) {
+  const TemporaryFolder folder;
+  Process first(FurrowdCommand({"--tcp", "0", "--udp", "0"}));
+  const auto [tcp, udp] = Ports(first.ReadLine().value_or(""));
+  ASSERT_NE(tcp, 0);
+  Process second(FurrowdCommand(
+      {"--tcp", std::to_string(tcp), "--udp", "0", "--record", folder.path().string()}));
+  EXPECT_EQ(second.Wait(), 1);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
 TEST(Furrowd, ASecondDaemonOnAPortFailsAndNamesThePort) {

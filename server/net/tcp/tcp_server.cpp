@@ -132,10 +132,11 @@ asio::awaitable<void> TcpServer::Accept() {
     if (!acceptor_.is_open() || (leaves_ && error)) co_return;
     if (error) {
       // No descriptors are left, or the peer has gone. The pause keeps the loop from spinning.
-      spdlog::warn("cannot accept a connection: {}", error.message());
+      accept_log_.Failed(error.message());
       co_await Pause(kAcceptPause);
       continue;
     }
+    accept_log_.Accepted();
     const tcp::endpoint client = socket.remote_endpoint(error);
     try {
       const std::string host = error ? std::string() : HostOf(client.address().to_string());

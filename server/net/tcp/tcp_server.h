@@ -13,6 +13,7 @@
 #include <asio/ip/tcp.hpp>
 
 #include "base/status.h"
+#include "server/core/accept_log.h"
 #include "server/core/limits.h"
 #include "server/core/metrics.h"
 #include "server/core/network_address.h"
@@ -97,7 +98,8 @@ class TcpServer {
   const TlsIdentity* const tls_;
   HandshakeBudget handshakes_;
   HandshakePlaces handshake_places_;
-  FairShare shares_;     // of the sessions and handshakes
+  FairShare shares_;  // of the sessions and handshakes
+  AcceptLog accept_log_{"TCP port", "limits.max_connections"};
   bool leaves_ = false;  // newcomers wait in the listening socket for the next daemon
   Lobby lobby_;          // of newcomers that wait for a place
   std::unordered_set<std::shared_ptr<TcpSession>> sessions_;
