@@ -267,6 +267,9 @@ CommandLine ParseCommandLine(std::span<const std::string> args) {
     }
     return Fail(failed ? ExitCode::kUsage : ExitCode::kOk, out.str());
   }
+  if (first.count("--config") > 0 && flags.config_file.empty()) {
+    return Fail(ExitCode::kUsage, "--config: the name of the file is empty\n");
+  }
   if (!flags.config_file.empty()) {
     // Flags override the file: read the file into a fresh config, then parse the flags again.
     config = Config();

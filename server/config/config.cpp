@@ -227,6 +227,17 @@ Status ValidateConfig(const Config& config) {
                     "", "give the name alone, without scheme and port: furrow.example");
     }
   }
+  for (const std::string& origin : config.http.allow_origins) {
+    const std::size_t scheme = origin.find("://");
+    const std::size_t host = scheme == std::string::npos ? scheme : scheme + 3;
+    if (scheme == std::string::npos || scheme == 0 || host == origin.size() ||
+        origin.find_first_of("/ ", host) != std::string::npos) {
+      return Status(StatusCode::kInvalidArgument,
+                    "http.allow_origins: '" + origin + "' is not an origin", "",
+                    "give scheme, host and port alone, as browsers send them, without a slash at "
+                    "the end: https://furrow.example:8443");
+    }
+  }
   if (config.http.max_connections < 1 || config.http.max_connections > 1'000'000) {
     return Invalid("http.max_connections is " + std::to_string(config.http.max_connections) +
                    "; it must be 1 to 1000000");

@@ -103,7 +103,8 @@ Key Path(std::string_view name, std::filesystem::path* target, std::filesystem::
   return {name, [target, folder = std::move(folder)](const toml::node& node) -> std::string {
             const auto value = node.value_exact<std::string>();
             if (!value) return "must be a string";
-            *target = folder / *value;  // an absolute path stays as it is
+            // An absolute path stays as it is, and an empty one is none.
+            *target = value->empty() ? std::filesystem::path() : folder / *value;
             return {};
           }};
 }

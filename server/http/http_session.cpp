@@ -329,6 +329,11 @@ class HttpSession {
     if (!wanted.ok()) {
       co_return co_await WriteReply(stream_, request_, ErrorReply(wanted.status()));
     }
+    if (!access_.Has(Role::kWatch)) {
+      co_return co_await WriteReply(
+          stream_, request_,
+          ErrorReply(403, "forbidden", "", "not permitted to watch; " + access_.Text()));
+    }
     if (beast::websocket::is_upgrade(request_)) {
       co_await ServeWeightSocket(std::move(stream_), context_, std::move(request_),
                                  *std::move(wanted), access_);

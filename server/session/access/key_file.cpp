@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/session/access/key_file.h"
 
+#include <algorithm>
+#include <cstdint>
+#include <ctime>
 #include <utility>
 
 #include <spdlog/spdlog.h>
@@ -12,15 +15,28 @@ namespace furrow::server {
 using protocol::secure::KeyRing;
 using protocol::secure::LoadKeyRing;
 
+namespace {
+
+// An operator may not notice otherwise that nobody can come in.
+void WarnIfNobodyMayEnter(const KeyRing& keys) {
+  const auto now = static_cast<std::uint64_t>(std::time(nullptr));
+  const auto is_valid = [now](const protocol::secure::TokenKey& key) { return key.expires > now; };
+  if (keys.keys().empty()) {
+    spdlog::warn("the key file has no key, so no token is valid");
+  } else if (std::ranges::none_of(keys.keys(), is_valid)) {
+    spdlog::warn("all keys of the key file have expired, so no token is valid");
+  }
+}
+
+}  // namespace
+
 KeyFile::KeyFile(std::filesystem::path path) : path_(std::move(path)), watch_(path_) {}
 
 Result<KeyRing> KeyFile::Load() {
   if (path_.empty()) return KeyRing();
   (void)watch_.Changed();  // before it is read, so that no change is missed
   auto keys = LoadKeyRing(path_);
-  if (keys.ok() && keys->keys().empty()) {
-    spdlog::warn("the key file has no key, so no token is valid");
-  }
+  if (keys.ok()) WarnIfNobodyMayEnter(*keys);
   return keys;
 }
 
@@ -34,6 +50,7 @@ std::optional<KeyRing> KeyFile::ReadIfChanged() {
     return std::nullopt;
   }
   spdlog::info("read {} from {}", Counted(keys->keys().size(), "key"), path_.string());
+  WarnIfNobodyMayEnter(*keys);
   return *std::move(keys);
 }
 

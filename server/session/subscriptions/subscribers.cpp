@@ -89,8 +89,9 @@ void Subscribers::Subscribe(Peer& peer, const protocol::Header& header,
   }
   if (!CheckRequest(peer, header)) return;
   if (!pictures_.can_render()) {
-    return RefuseRequest(peer, header, ErrorCode::kNotRendering,
-                         "this daemon renders no pictures: it has no character or no OpenGL");
+    return RefuseRequest(
+        peer, header, ErrorCode::kNotRendering,
+        "this daemon renders no pictures: they are off, or it has no character or no OpenGL");
   }
   if (pictures_.is_stuck()) {
     return RefuseRequest(peer, header, ErrorCode::kNotRendering,

@@ -35,7 +35,17 @@ TEST_F(Files, ReadsUpToTheLimit) {
   EXPECT_EQ(ReadFile(root_ / "absent", 4).status().code(), StatusCode::kNotFound);
   EXPECT_EQ(ReadFile(root_.path(), 4).status().code(), StatusCode::kIo);
   EXPECT_EQ(ReadFile("/dev/zero", 4).status().code(), StatusCode::kIo);
+  EXPECT_EQ(ReadFile(root_.path(), 4).status().what(), "is a folder");
   EXPECT_EQ(ReadFile(root_ / "absent", 4).status().where(), (root_ / "absent").string());
+}
+
+// It would be read as a file of the wrong format.
+TEST_F(Files, RefusesWhatGitLfsLeavesInPlaceOfAFile) {
+  const std::string pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 9\n";
+  ASSERT_TRUE(WriteFileAtomically(root_ / "take.bvh", pointer).ok());
+  const Status status = ReadFile(root_ / "take.bvh", 1000).status();
+  EXPECT_EQ(status.code(), StatusCode::kUnsupported);
+  EXPECT_NE(status.todo().find("git lfs pull"), std::string::npos);
 }
 
 TEST_F(Files, WritesAllOrNothing) {

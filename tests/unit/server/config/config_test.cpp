@@ -355,6 +355,32 @@ TEST(ParseConfig, RelativeFilesAreRelativeToTheConfig) {
   EXPECT_EQ(config.skeleton_map, "/etc/furrow/my.json");
 }
 
+// An empty path switches something off, and is not the folder of the configuration.
+TEST(ParseConfig, EmptyPathsAreNone) {
+  Config config;
+  ASSERT_TRUE(
+      ParseConfig("[record]\ndir = ''\n[http]\npage = ''\n[tls]\ncertificate = ''\nkey = ''",
+                  "/etc/furrow/furrow.toml", &config)
+          .ok());
+  EXPECT_TRUE(config.record.folder.empty());
+  EXPECT_TRUE(config.http.page.empty());
+  EXPECT_FALSE(config.security.tls.enabled());
+}
+
+TEST(ParseConfig, OriginsAreThoseThatBrowsersSend) {
+  for (const char* origin : {"https://stage.example", "http://localhost:3000", "app://furrow"}) {
+    Config config;
+    config.http.allow_origins = {origin};
+    EXPECT_TRUE(ValidateConfig(config).ok()) << origin;
+  }
+  for (const char* origin :
+       {"https://stage.example/", "stage.example", "https://", "://stage", ""}) {
+    Config config;
+    config.http.allow_origins = {origin};
+    EXPECT_FALSE(ValidateConfig(config).ok()) << origin;
+  }
+}
+
 TEST(ParseConfig, AnErrorLeavesTheConfigUnchanged) {
   struct Case {
     const char* text;

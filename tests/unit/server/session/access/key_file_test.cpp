@@ -69,7 +69,18 @@ TEST_F(KeyFileTest, TriesAFaultyFileUntilItCanBeRead) {
 TEST_F(KeyFileTest, SaysThatThereIsNoKey) {
   ASSERT_TRUE(secure::SaveKeyRing({}, path_).ok());
   EXPECT_TRUE(KeyFile(path_).Load().ok());
-  EXPECT_THAT(log_.text(), HasSubstr("no token is valid"));
+  EXPECT_THAT(log_.text(), HasSubstr("the key file has no key, so no token is valid"));
+}
+
+TEST_F(KeyFileTest, SaysThatAllKeysHaveExpired) {
+  Write();  // in 1970
+  KeyFile file(path_);
+  EXPECT_TRUE(file.Load().ok());
+  EXPECT_THAT(log_.text(), HasSubstr("all keys of the key file have expired"));
+  // While the daemon runs, too.
+  ASSERT_TRUE(secure::SaveKeyRing({}, path_).ok());
+  EXPECT_TRUE(file.ReadIfChanged());
+  EXPECT_THAT(log_.text(), HasSubstr("the key file has no key"));
 }
 
 TEST_F(KeyFileTest, NoFileHasNoKeys) {
