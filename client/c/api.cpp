@@ -300,10 +300,13 @@ furrow_status furrow_get_joint(furrow_connection* connection, const char* subjec
                                furrow_joint* joint) {
   return Guarded(connection, [&](Connection& inner) {
     std::string text;
-    furrow_status status = inner.GetJoint(subject, index, joint, &text);
+    furrow_joint found{};
+    furrow_status status = inner.GetJoint(subject, index, &found, &text);
     if (status == FURROW_OK) status = CopyName(inner, text, name, size);
-    if (status == FURROW_OK && joint != nullptr) joint->name = name;
-    return status;
+    if (status != FURROW_OK || joint == nullptr) return status;
+    *joint = found;
+    joint->name = name;
+    return FURROW_OK;
   });
 }
 

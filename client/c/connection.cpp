@@ -220,7 +220,7 @@ furrow_status Connection::GetJoint(const char* subject, std::uint32_t index, fur
     return Fail(FURROW_NOT_FOUND, "there is no joint " + std::to_string(index));
   }
   *name = poses->skeleton().joints[index].name;
-  if (joint != nullptr) *joint = poses->Joint(index);
+  *joint = poses->Joint(index);
   return FURROW_OK;
 }
 

@@ -21,8 +21,9 @@
  *           that outlive the call, except furrow_status_text() and furrow_version().
  * Text      UTF-8 that ends with a zero byte. Names have at most 255 bytes.
  * Errors    Every function returns a status: 0 and above is normal, below 0 is an error, and then
- *           nothing was changed. furrow_last_error() says what went wrong and what to do. C++
- *           exceptions never leave the library, and callbacks must not throw.
+ *           the connection has not changed; results may have been cleared. Any function may return
+ *           FURROW_OUT_OF_MEMORY and FURROW_INTERNAL. furrow_last_error() says what went wrong and
+ *           what to do. C++ exceptions never leave the library, and callbacks must not throw.
  * Network   Everything that arrives is checked before use and dropped if it is malformed. A daemon
  *           can neither crash the library nor make it allocate without limit.
  * Losses    A connection opens by itself, and again after every loss, with growing pauses of at
@@ -89,12 +90,12 @@ typedef enum furrow_status {
   FURROW_UNAUTHENTICATED = -20, /* the daemon asks for a token, or rejects the given one */
   FURROW_FORBIDDEN = -21,       /* the token does not permit this */
 
-  /* This version never returns the two that are reserved, later versions will. Treat them as
-     errors. */
-  FURROW_WRONG_SERVER_KEY = -22, /* reserved: the daemon does not own the expected key */
   FURROW_TLS_FAILED = -23, /* the daemon's certificate is not trusted, or it does not speak TLS, or
                               it wants a certificate of yours; the library keeps trying */
-  FURROW_REDIRECTED = -24, /* reserved: the subject lives on another daemon, out of reach */
+
+  /* Reserved: this version never returns these two, later versions will. Treat them as errors. */
+  FURROW_WRONG_SERVER_KEY = -22, /* the daemon does not own the expected key */
+  FURROW_REDIRECTED = -24,       /* the subject lives on another daemon, out of reach */
 
   FURROW_STATUS_IS_32_BITS = 0x7fffffff /* never returned */
 } furrow_status;
@@ -275,7 +276,8 @@ typedef struct furrow_frame {
  *
  * Returns FURROW_NO_DATA before the first frame. Errors: FURROW_BUFFER_TOO_SMALL (nothing was
  * copied), FURROW_NOT_FOUND (no such subscription), FURROW_NO_MATCH and FURROW_REJECTED (the daemon
- * rejected the subscription; the library asks again every 2 s).
+ * rejected the subscription; the library asks again every 2 s), FURROW_LIMIT (too many
+ * subscriptions), FURROW_UNAUTHENTICATED, FURROW_FORBIDDEN and FURROW_TLS_FAILED.
  */
 FURROW_API furrow_status furrow_weights(furrow_connection* connection, const char* subject,
                                         float* values, uint32_t capacity, furrow_frame* frame);
@@ -381,7 +383,8 @@ typedef struct furrow_pose {
  * Sends one pose of a stream. All numbers must be finite, and at most 1e6 in magnitude.
  *
  * Errors: FURROW_INVALID_ARGUMENT, FURROW_NOT_FOUND (no such stream), FURROW_NO_CONNECTION (the
- * pose was dropped; go on sending), FURROW_REJECTED (see furrow_stream_status()).
+ * pose was dropped; go on sending), FURROW_REJECTED (see furrow_stream_status()),
+ * FURROW_UNAUTHENTICATED and FURROW_TLS_FAILED (no connection, because of that).
  */
 FURROW_API furrow_status furrow_send_pose(furrow_connection* connection, uint32_t stream,
                                           const furrow_pose* pose);
