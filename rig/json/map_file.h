@@ -9,6 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/json_index.h"
 #include "base/status.h"
 #include "base/text.h"
 
@@ -45,6 +46,12 @@ template <class Json>
     return Status(StatusCode::kLimit, "has more than " + std::to_string(kMaxMapFields) + " fields",
                   std::string(source));
   } catch (const typename Json::exception& error) {
+    // The index explains the fault in plain words, and where it is.
+    const auto index = JsonIndex::Create(text);
+    if (!index.ok()) {
+      return Status(StatusCode::kParse, index.status().what(),
+                    std::string(source) + ":" + index.status().where(), index.status().todo());
+    }
     return Status(StatusCode::kParse, std::string("malformed JSON: ") + error.what(),
                   std::string(source));
   }

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -14,6 +15,7 @@
 
 #include "base/ascii.h"
 #include "base/status.h"
+#include "base/text.h"
 #include "rig/rig_reference_pose.h"
 #include "rig/shapes/rig_shapes.h"
 #include "wrinkle/skeleton/reference_pose.h"
@@ -106,10 +108,20 @@ std::vector<WeightedPose> PosesOf(const wrinkle::Rig& rig, const Term& term) {
 
 Status Unknown(const wrinkle::Rig& rig, std::string_view name) {
   std::string known = "neutral";
-  for (const wrinkle::ReferencePose& pose : rig.reference_poses) known += ", " + pose.name;
+  std::vector<std::string> words = rig::ArkitAndRigShapes(rig);
+  for (const wrinkle::ReferencePose& pose : rig.reference_poses) {
+    known += ", " + pose.name;
+    words.push_back(pose.name);
+  }
+  for (const wrinkle::Region& region : rig.regions) words.push_back(region.name);
+  words.emplace_back("neutral");
+  const std::string what = "the rig has no reference pose '" + std::string(name) +
+                           "', and no wrinkle map of this name that poses feed";
+  if (const std::string meant = DidYouMean(name, words); !meant.empty()) {
+    return {StatusCode::kNotFound, what, {}, meant};
+  }
   return {StatusCode::kNotFound,
-          "the rig has no reference pose '" + std::string(name) +
-              "' and no wrinkle map of this name that poses feed; valid names: " + known +
+          what + "; valid names: " + known +
               ", ARKit's blend shapes (browInnerUp, mouthSmile, ...) and the character's shapes"};
 }
 
