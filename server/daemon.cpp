@@ -445,7 +445,7 @@ ExitCode Daemon::Serve() {
   RunLoop(io_, metrics_);
   // The next daemon waits for the end of this process.
   if (has_left_ && options_.handle_signals) EndProcess();
-  http_.reset();  // both post to io_, so they end first
+  http_.reset();  // its thread posts to io_, so it ends first
   EndUploads();
   EndRendering();
   return exit_code_;
@@ -463,7 +463,7 @@ void Daemon::EndRendering() {
   const auto deadline =
       options_.handle_signals ? std::optional(shutdown_->deadline()) : std::nullopt;
   rendering_.End(deadline, [this] {
-    spdlog::warn("ends while a picture is drawn or loaded: limits.drain_seconds are over");
+    spdlog::warn("exiting before the last picture is complete: limits.drain_seconds are over");
     EndProcess();
   });
 }

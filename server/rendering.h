@@ -44,7 +44,7 @@ class Rendering {
     WorkBudget::Limits budget;                     // in pixels per second
     bool required = false;                         // without a renderer, Start() fails
     Metrics* metrics = nullptr;                    // not null; outlives this object
-    std::function<void(FinishedPicture)> deliver;  // called on the render thread
+    std::function<void(FinishedPicture)> deliver;  // see RenderThread::OnPicture
     Later later;
   };
 

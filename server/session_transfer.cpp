@@ -32,7 +32,7 @@ Status TryToLeave(const TransferParts& parts, std::optional<int> http) {
   state.saved = ReadClock();
   sockets.http = http;
   FURROW_RETURN_IF_ERROR(Leave(state, sockets, parts.manager));
-  spdlog::info("leaves {} to the next daemon", SavedText(state));
+  spdlog::info("handed {} over to the next daemon", SavedText(state));
   return {};
 }
 
@@ -53,7 +53,7 @@ void ResumeSessions(const TransferParts& parts, Inheritance* former) {
     const Time now = ReadClock();
     const Hub::ResumedPeers peers = parts.ports->Resume(*state, former, now);
     parts.hub->Resume(state->subjects, peers, now - state->saved, now);
-    spdlog::info("goes on with {} of the former daemon, after {:.0f} ms", SavedText(*state),
+    spdlog::info("resumed {} of the former daemon after {:.0f} ms", SavedText(*state),
                  ToSeconds(now - state->saved) * 1e3);
   }
   former->CloseRest();

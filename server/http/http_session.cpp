@@ -123,8 +123,8 @@ bool IsRead(const WebRequest& request) {
   return request.method() == http::verb::get || request.method() == http::verb::head;
 }
 
-// The reply for an unknown path. If even "/" is unknown, the page has not been built.
-// Without the query, which may hold a token.
+// The reply for an unknown path. If even "/" is unknown, the page has not been built. It omits the
+// query, which may contain a token.
 ApiReply NotFound(const std::string& path) {
   if (path == "/") {
     return {

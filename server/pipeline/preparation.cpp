@@ -19,7 +19,7 @@ namespace {
 
 // Pixels. Large enough that no pass of a picture, such as a scaled-down bloom, is left out. Mesa's
 // llvmpipe compiles a program once for textures with sides that are powers of two and once for
-// others, so none is one here, halved and quartered neither, as in most pictures.
+// others. In most pictures, no side is one, and neither is its half or its quarter; nor here.
 constexpr int kWidth = 96;
 constexpr int kHeight = 72;
 

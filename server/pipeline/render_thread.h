@@ -60,9 +60,9 @@ class RenderThread : public PictureSource {
   // Weights matter more than pictures where both need the same core.
   static constexpr int kNiceness = 5;
 
-  // Receives finished pictures. Called on the render thread, or on the submitting thread if the
-  // mailbox is full. Must not block. Every ticket of every job is returned, in a picture with bytes
-  // or, after a failure, without.
+  // Receives finished pictures. Called on the render thread, and on the threads of Submit() and
+  // Watch() for jobs that are refused. Must not block. Every ticket of every job is returned, in a
+  // picture with bytes or, after a failure, without.
   using OnPicture = PictureEncoder::Deliver;
 
   using Clock = Time (*)();

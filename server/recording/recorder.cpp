@@ -46,7 +46,7 @@ bool HasRoom(const RecorderOptions& options) {
   const std::filesystem::path& folder = options.folder.folder;
   std::error_code error;
   const auto space = std::filesystem::space(folder.empty() ? "." : folder, error);
-  // An unknown amount of space is no reason to wait: the attempt tells what is wrong.
+  // If the amount of space is unknown, the attempt tells what is wrong.
   return error || space.available >= options.least_space;
 }
 

@@ -52,7 +52,7 @@ protocol::DrainState Shutdown::OnDrainRequest(bool begin) {
 // Moves all subjects, however long that takes, and ends then.
 asio::awaitable<void> Shutdown::MoveAndEnd() {
   if (has_begun_) co_return;
-  spdlog::info("moves its subjects to other nodes");
+  spdlog::info("moving all subjects to other nodes");
   mover_has_started_ = true;
   co_await parts_.mover->Run();
   for (const Time end = ReadClock() + kLastAnswer; !client_knows_all_moved_ && ReadClock() < end;) {

@@ -76,9 +76,9 @@ void Dispatcher::Decode(Shard& shard, Peer& peer, const protocol::MessageView& v
   if (!peer.access.admitted()) CutOff(peer);
 }
 
-// Decodes into the shard's reused structs (Shard::Incoming), which only this thread uses, so poses
-// allocate nothing.
-// The messages that need no exclusive lock.
+// Handles the messages that need no exclusive lock, and takes the lock for the others. Decodes into
+// the shard's reused structs (Shard::Incoming), which only this thread uses, so poses allocate
+// nothing.
 void Dispatcher::DispatchVerified(Shard& shard, Peer& peer, const protocol::MessageView& view,
                                   Time now) {
   const protocol::Header& header = view.header;

@@ -128,7 +128,7 @@ void Hub::EndIfTokenEnded(Peer& peer, Time now) {
   if (!expired && gate_->HasKey(peer.access.key_id())) return;
   metrics_->Add(Counter::kTokensEnded);
   const char* const why = expired ? "the token has expired" : "the key of the token was retired";
-  spdlog::warn("ends the connection of {}: {}", peer.name, why);
+  spdlog::warn("closing the connection of {}: {}", peer.name, why);
   exclusive_context_.messages.SendError(peer, {}, ErrorCode::kNeedsToken, why);
   Permit(peer, Access(), limits_);
   subscribers_.RemovePeer(peer);
@@ -220,8 +220,8 @@ bool Hub::MakeRoom(Transport transport, const std::string& host, bool any_host, 
   shards_.ForEachPeer([&](Peer& peer) {
     if (peer.transport != transport || !HasNoUse(peer, now)) return;
     if (!any_host && peer.host != host) return;
-    // Ids count up: of those that have been without use for equally long, the first to connect.
-    // Those who have shown no token go first.
+    // Those without a token first, then those without use for longest, then those that connected
+    // first: ids count up.
     const auto order = [](const Peer& each) {
       return std::tuple(each.access.admitted(), each.last_used, each.id);
     };
@@ -295,7 +295,7 @@ void Hub::OnStall(Time now, Time length) {
   metrics_->Add(Counter::kStalls);
   // Rare, since it takes as long itself: no limit is needed.
   if (length >= FromSeconds(limits_.loss_seconds)) {
-    spdlog::warn("did not run for {:.1f} s, because this computer was busy or paused it",
+    spdlog::warn("the daemon did not run for {:.1f} s, because this computer was busy or paused it",
                  ToSeconds(length));
   }
   publishers_.OnStall(now);

@@ -86,8 +86,8 @@ class RestartTest(TokenTest):
                         for _ in range(restarts):
                             rows.wait(20)
                             manager.restart()
-                            self.assertIn("leaves 2 peers and 1 subject to the next daemon", manager.logs[-1])
-                            manager.wait_for_log("goes on with 2 peers and 1 subject of the former daemon")
+                            self.assertIn("handed 2 peers and 1 subject over to the next daemon", manager.logs[-1])
+                            manager.wait_for_log("resumed 2 peers and 1 subject of the former daemon")
                         self.assertEqual(player.wait(timeout=GUARD), 0)
                         notes.wait_for(lambda text: "left" in text)
                         self.assertNotIn(LOST, notes.text)
@@ -118,7 +118,7 @@ class RestartTest(TokenTest):
                         damage(manager, how)
                         manager.start()
                         manager.wait_for_log(f"clients must connect again: the sessions of the former daemon {reason}")
-                        self.assertNotIn("goes on with", manager.text())
+                        self.assertNotIn("resumed", manager.text())
                         rows.wait(20)
                 for process in (watcher, player):
                     process.send_signal(signal.SIGINT)
@@ -179,11 +179,11 @@ class RestartTest(TokenTest):
             _, _, rows, _ = self.connect(manager.tcp, lambda _: ("--tcp",), "--loop")
             rows.wait(5)
             self.assertEqual(manager.end(), 0)
-            self.assertIn("leaves 1 peer and 1 subject to the next daemon", manager.logs[-1])
+            self.assertIn("handed 1 peer and 1 subject over to the next daemon", manager.logs[-1])
             self.assertEqual(sorted(name for name, _ in manager.kept),
                              ["kept-connection", "kept-http", "kept-state", "kept-tcp", "kept-udp"])
             manager.start()
-            manager.wait_for_log("goes on with 1 peer and 1 subject of the former daemon")
+            manager.wait_for_log("resumed 1 peer and 1 subject of the former daemon")
             rows.wait(20)
 
     def test_a_token_may_be_valid_for_a_lifetime(self):
@@ -194,7 +194,7 @@ class RestartTest(TokenTest):
                                          "--loop")
             rows.wait(5)
             manager.restart()
-            manager.wait_for_log("goes on with 2 peers and 1 subject of the former daemon")
+            manager.wait_for_log("resumed 2 peers and 1 subject of the former daemon")
             rows.wait(20)
 
     def test_clients_come_back_where_the_configuration_has_changed(self):
@@ -222,7 +222,7 @@ class RestartTest(TokenTest):
 
             wait_for_more(set())
             manager.restart()
-            manager.wait_for_log("goes on with 2 peers and 1 subject of the former daemon")
+            manager.wait_for_log("resumed 2 peers and 1 subject of the former daemon")
             rows.wait(5)  # whether or not the renderer has started
             wait_for_more(set(folder.glob("*.jpg")))
             with urllib.request.urlopen(f"http://127.0.0.1:{manager.ports['http']}/readyz", timeout=GUARD) as ready:
@@ -258,7 +258,7 @@ class RestartTest(TokenTest):
             _, _, rows, notes = self.connect(manager.tcp, lambda _: ("--tcp", "--tls-authority", crt), "--loop")
             rows.wait(20)
             manager.restart()
-            manager.wait_for_log("goes on with 0 peers and 1 subject of the former daemon")
+            manager.wait_for_log("resumed 0 peers and 1 subject of the former daemon")
             rows.wait(20)
             notes.wait_for(lambda text: "connected again" in text)
             print(f"TCP with TLS: at most {rows.largest_gap() * 1e3:.0f} ms without a frame")

@@ -157,7 +157,7 @@ class SecureTest(TokenTest):
             watcher.wait(timeout=GUARD)
         self.assertRegex(daemon.stderr, r"read 1 key from")
         self.assertRegex(daemon.stderr, r"warning ended [12] sessions? over UDP: the keys of their tokens were retired")
-        self.assertRegex(daemon.stderr, r"warning refuses udp 127\.0\.0\.1: the server does not have the key of the token")
+        self.assertRegex(daemon.stderr, r"warning refused udp 127\.0\.0\.1: the server does not have the key of the token")
 
     def test_the_daemon_says_what_is_missing(self):
         for options, code, message in (

@@ -20,7 +20,7 @@ std::optional<std::uint64_t> RefusalLog::Take(Time now) {
 void RefusalLog::Write(std::string_view who, std::string_view why, std::uint64_t left_out) {
   const std::string others =
       left_out > 0 ? "; " + std::to_string(left_out) + " others were refused before" : "";
-  spdlog::warn("refuses {}: {}{}", who, why, others);
+  spdlog::warn("refused {}: {}{}", who, why, others);
 }
 
 }  // namespace furrow::server

@@ -36,7 +36,7 @@ class ViewerFlow {
   // The picture of the last Send() was dropped on its way to the viewer, which never learns its
   // number. As after Fail(), the next one is requested after kRetry.
   void TakeBack();
-  // The request was cancelled before rendering began.
+  // The request was cancelled before its picture was encoded.
   void Withdraw();
   // The viewer has shown this picture and all before it. False: the picture was never sent.
   bool Acknowledge(std::uint32_t number);

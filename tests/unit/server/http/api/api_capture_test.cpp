@@ -113,7 +113,7 @@ TEST_F(ApiCaptureTest, ARigFromItsFileEmptiesTheHistory) {
   EXPECT_TRUE(hub->RequireAllDrivers("ann")->captures.empty());
   Ask("/api/capture/undo", Json::object(), 409);
   EXPECT_EQ(hub->shared_rig(), rig);
-  // The same rig with other maps is no other rig.
+  // Other maps leave the captured poses in place.
   Capture("smile");
   ASSERT_TRUE(hub->SetRigAndMaps(hub->shared_rig(), {}, now).ok());
   EXPECT_TRUE(hub->has_captured_rig());

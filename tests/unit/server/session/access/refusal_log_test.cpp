@@ -46,7 +46,7 @@ class RefusalLogTest : public testing::Test {
 
 TEST_F(RefusalLogTest, SaysWhoIsRefusedAndWhy) {
   Note("udp 192.0.2.1", "the token has expired", std::chrono::seconds(1));
-  EXPECT_EQ(Take(), "warning refuses udp 192.0.2.1: the token has expired\n");
+  EXPECT_EQ(Take(), "warning refused udp 192.0.2.1: the token has expired\n");
 }
 
 TEST_F(RefusalLogTest, AFloodLeavesFewLinesAndACount) {
