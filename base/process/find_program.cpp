@@ -14,8 +14,8 @@ Result<fs::path> FindHelperProgram(const std::string& program, const fs::path& f
     if (access((place / program).c_str(), X_OK) == 0) return place / program;
   }
   return Status(StatusCode::kNotFound, "the program " + program + " is missing", folder.string(),
-                "build it with 'cmake --build <build folder> --target " + program +
-                    "', or install the package furrow-tools");
+                "build it with 'cmake --build <build folder> --target furrow_programs', or "
+                "install the package furrow-tools");
 }
 
 Result<fs::path> FindHelperProgram(const std::string& program) {
