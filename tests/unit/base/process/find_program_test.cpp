@@ -44,7 +44,8 @@ TEST_F(FindHelperProgramTest, AMissingProgramSaysWhatToBuild) {
   const auto missing = FindHelperProgram("furrow-load", folder_.path() / "bin");
   ASSERT_FALSE(missing.ok());
   EXPECT_EQ(missing.status().code(), StatusCode::kNotFound);
-  EXPECT_THAT(missing.status().ToString(), HasSubstr("--target furrow-load"));
+  EXPECT_THAT(missing.status().ToString(), HasSubstr("the program furrow-load is missing"));
+  EXPECT_THAT(missing.status().ToString(), HasSubstr("--target furrow_programs"));
 }
 
 }  // namespace
