@@ -226,8 +226,9 @@ class RemoteRecordTest(FolderTest):
                 furrow("play", PERFORMANCE, "--to", daemon.tcp, "--tcp", "--subject", name, "--speed", 4, check=0)
             self.end(recorder)
             late = furrow("record", daemon.tcp, "--out", self.root / "late.mcap", "--subject", "eve",
-                          "--wait", "--duration", 0.3, check=0)
-        self.assertIn("0 poses", late.stderr.decode())
+                          "--wait", "--duration", 0.3, check=1)
+        self.assertIn("no subject connected; no file was written", late.stderr.decode())
+        self.assertFalse((self.root / "late.mcap").exists())
         takes = sorted(self.root.glob("several*.mcap"))
         self.assertGreater(len(takes), 2)
         self.assertIn(self.root / "several_2.mcap", takes)

@@ -34,8 +34,7 @@ int ReportNoConnection(client::Event::Kind kind, const std::string& why) {
   std::fprintf(
       stderr, "furrow: %s\n",
       kind == client::Event::Kind::kNoConnection
-          ? "no connection: the port is closed, or no furrowd listens at it (its TCP port is "
-            "7400 by default, and its UDP port 7401)"
+          ? "the port is closed, or another program listens at it (is furrowd running there?)"
           : "no answer (is furrowd running there?)");
   return kNoConnection;
 }
