@@ -144,6 +144,7 @@ void TakeFolder::SetRig(std::string_view rig_json) {
   if (options_.rig_json == rig_json) return;
   options_.rig_json = rig_json;
   has_new_rig_ = true;
+  for (auto& [name, state] : subjects_) state.names = {};
 }
 
 Status TakeFolder::Resume(std::uint64_t now_ns) {

@@ -47,11 +47,14 @@ class TakeFolder {
                              std::span<const std::uint8_t> payload);
   [[nodiscard]] Status WriteDatagram(const DatagramSender& sender, std::uint64_t log_time_ns,
                                      std::span<const std::uint8_t> bytes);
+  // After an error that is not of the file, such as lack of memory: as after an error of the file.
+  void Fail(const Status& failure) { (void)Remember(failure); }
   // Call it when a subject leaves: later files do not begin with its skeleton.
   void Forget(std::string_view subject);
 
   // The rig of the weights has changed: the next message begins a new file, to which it is
   // attached.
+  // All names are to be declared again.
   void SetRig(std::string_view rig_json);
 
   // After an error: finishes the failed file as far as possible and begins the next one. Errors:

@@ -523,6 +523,8 @@ void Daemon::EverySecond(StatusLine* status_line) {
   }
   if (RenderThread* const render = rendering_.thread()) render->Watch(now);
   credentials_.ReadIfChanged();
+  // One that another thread was still noting when the event loop took over.
+  if (options_.handle_signals && early_signals::stop()) shutdown_->Request();
   if (reload_) reload_->LookAtTerminal();
   if (!config_.verbose && options_.manager == nullptr) return;
   std::string line;

@@ -87,16 +87,20 @@ ExitCode LoadAndServe(const Config& asked, const RunOptions& options) {
   // Pictures take seconds, and weights need none.
   Result<Assets> assets = LoadAssets(
       config, config.require_render ? character::Pictures::kLoad : character::Pictures::kLeaveOut);
-  if (!assets.ok()) return Fail(ExitCode::kBadInput, assets.status());
+  // Asked first, because the signal may have ended a helper program, and then the file seems
+  // faulty.
   if (IsEarlyStop(options)) return ExitCode::kOk;
+  if (!assets.ok()) return Fail(ExitCode::kBadInput, assets.status());
   WarnAboutSecurity(config);
   WarnAboutAssets(*assets);
   auto osc_outputs = LoadOscOutputs(config);
   if (!osc_outputs.ok()) return Fail(ExitCode::kBadInput, osc_outputs.status());
   Daemon daemon(config, options, *std::move(assets), *std::move(osc_outputs), &former);
-  if (const auto failed = Prepare(daemon))
-    return daemon.Abandon(Fail(failed->code, failed->status));
-  if (IsEarlyStop(options)) return daemon.Abandon(ExitCode::kOk);
+  if (const auto failed = Prepare(daemon)) {
+    return daemon.Abandon(IsEarlyStop(options) ? ExitCode::kOk
+                                               : Fail(failed->code, failed->status));
+  }
+  // Which also stops in order, after a signal that came before.
   return daemon.Serve();
 }
 

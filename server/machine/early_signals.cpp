@@ -1,25 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/machine/early_signals.h"
 
+#include <atomic>
 #include <csignal>
+
+#include <fcntl.h>
+#include <unistd.h>
 
 namespace furrow::server::early_signals {
 namespace {
 
-volatile std::sig_atomic_t stop_noted = 0;
-volatile std::sig_atomic_t reload_noted = 0;
+std::atomic<bool> stop_noted = false;
+std::atomic<bool> reload_noted = false;
+std::atomic<bool> has_terminal = false;
+static_assert(std::atomic<bool>::is_always_lock_free, "the handler may use nothing else");
 
 void Note(int signal) {
-  if (signal == SIGHUP) {
-    reload_noted = 1;
-  } else {
-    stop_noted = 1;
+  if (signal == SIGHUP && !has_terminal) {
+    reload_noted = true;
+  } else if (stop_noted.exchange(true)) {
+    _exit(1);  // asked twice: something hangs
   }
 }
 
 }  // namespace
 
 void Install() {
+  const int terminal = ::open("/dev/tty", O_RDONLY | O_CLOEXEC | O_NOCTTY);
+  has_terminal = terminal >= 0;
+  if (terminal >= 0) ::close(terminal);
   struct sigaction action = {};
   action.sa_handler = &Note;
   action.sa_flags = SA_RESTART;
@@ -27,7 +36,7 @@ void Install() {
   for (const int signal : {SIGTERM, SIGINT, SIGHUP}) sigaction(signal, &action, nullptr);
 }
 
-bool stop() { return stop_noted != 0; }
-bool reload() { return reload_noted != 0; }
+bool stop() { return stop_noted; }
+bool reload() { return reload_noted; }
 
 }  // namespace furrow::server::early_signals

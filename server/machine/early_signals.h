@@ -8,11 +8,12 @@ namespace furrow::server {
 // container, be lost.
 namespace early_signals {
 
-// For the whole process. Call it once, before the first thread.
+// For the whole process. Call it once, before the first thread. The second signal that stops ends
+// the process at once, with exit code 1.
 void Install();
-// True after SIGTERM or SIGINT.
+// True after SIGTERM or SIGINT, or after the SIGHUP of a terminal that closes.
 [[nodiscard]] bool stop();
-// True after SIGHUP.
+// True after SIGHUP without a terminal.
 [[nodiscard]] bool reload();
 
 }  // namespace early_signals

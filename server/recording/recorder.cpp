@@ -43,9 +43,12 @@ Scratch& ScratchOfThread() {
 
 // An attempt on a full disk would take the space that others free.
 bool HasRoom(const RecorderOptions& options) {
-  const std::filesystem::path& folder = options.folder.folder;
+  std::filesystem::path folder = std::filesystem::absolute(options.folder.folder);
   std::error_code error;
-  const auto space = std::filesystem::space(folder.empty() ? "." : folder, error);
+  while (!std::filesystem::exists(folder, error) && folder.has_relative_path()) {
+    folder = folder.parent_path();
+  }
+  const auto space = std::filesystem::space(folder, error);
   // If the amount of space is unknown, the attempt tells what is wrong.
   return error || space.available >= options.least_space;
 }
@@ -141,11 +144,15 @@ void Recorder::DeclareNames(const Subject& subject, Time now) {
 }
 
 void Recorder::OnRig(const wrinkle::Rig& rig, const SubjectRegistry& subjects, Time now) {
-  for (const auto& subject : subjects.all()) DeclareNames(*subject, now);
-  const std::string json = rig::RigToJson(rig);
-  RecordingBatch::Entry entry;
-  entry.event = RecordingBatch::Event::kRig;
-  PushEntry(entry, {}, std::span(reinterpret_cast<const std::uint8_t*>(json.data()), json.size()));
+  const bool has_memory = WithinMemory(metrics_, [&] {
+    const std::string json = rig::RigToJson(rig);
+    RecordingBatch::Entry entry;
+    entry.event = RecordingBatch::Event::kRig;
+    PushEntry(entry, {},
+              std::span(reinterpret_cast<const std::uint8_t*>(json.data()), json.size()));
+    for (const auto& subject : subjects.all()) DeclareNames(*subject, now);
+  });
+  if (!has_memory) metrics_->Add(Counter::kRecordingDropped);
 }
 
 void Recorder::OnPose(const Subject& subject, std::span<const std::uint8_t> payload, Time now) {
@@ -206,6 +213,14 @@ Status Recorder::WriteEntry(const RecordingBatch::Entry& entry, std::string_view
   return {};
 }
 
+// Without memory, the present file may lack a declaration, so the recording goes on in another.
+template <class Work>
+Status Recorder::Guarded(const Work& work) {
+  Status status = OrOutOfMemory(metrics_, "recording", work);
+  if (!status.ok()) folder_->Fail(status);
+  return status;
+}
+
 // Writes the events in order. Returns the first error. The events after it are only passed on, so
 // that the folder knows the subjects when the recording goes on.
 Status Recorder::WriteBatch(const RecordingBatch& batch) {
@@ -215,8 +230,7 @@ Status Recorder::WriteBatch(const RecordingBatch& batch) {
   const std::uint64_t before = folder_->num_messages();
   batch.ForEach([&](const RecordingBatch::Entry& entry, std::string_view subject,
                     std::span<const std::uint8_t> payload) {
-    Status status =
-        OrOutOfMemory(metrics_, "recording", [&] { return WriteEntry(entry, subject, payload); });
+    Status status = Guarded([&] { return WriteEntry(entry, subject, payload); });
     if (status.ok()) return true;
     ++lost;
     if (first.ok()) first = std::move(status);
@@ -260,7 +274,7 @@ void Recorder::TryToGoOn(Time now) {
   if (now < next_try_) return;
   next_try_ = now + options_.retry;
   const auto resume = [&] { return folder_->Resume(LogTime(now)); };
-  if (!HasRoom(options_) || !OrOutOfMemory(metrics_, "recording", resume).ok()) return;
+  if (!HasRoom(options_) || !Guarded(resume).ok()) return;
   paused_ = false;
   ReportDropped("while the recording was paused");
   spdlog::info("recording again, in {}", folder_->path().string());
@@ -283,21 +297,21 @@ void Recorder::Write() {
     // Flushing ends an MCAP chunk. Each batch as a chunk would compress badly; none for long would
     // lose more when the daemon is killed.
     if (status.ok() && now - flushed >= kFlushInterval) {
-      status = OrOutOfMemory(metrics_, "recording", [this] { return folder_->Flush(); });
+      status = Guarded([this] { return folder_->Flush(); });
       if (status.ok()) {
-        status = OrOutOfMemory(metrics_, "recording", [&] { return LeaveLostFile(now); });
+        status = Guarded([&] { return LeaveLostFile(now); });
       }
       flushed = now;
       ReportDropped("the disk is too slow");
     }
     if (status.ok() && !goes_on) {
-      status = OrOutOfMemory(metrics_, "recording", [this] { return folder_->Close(); });
+      status = Guarded([this] { return folder_->Close(); });
     }
     if (!status.ok()) Pause(status);
   }
   if (paused_) (void)folder_->Close();  // its error is known
   ReportDropped(paused_ ? "the recording was paused" : "the disk is too slow");
-  if (discards_ && folder_->num_messages() == 0) {
+  if (discards_ && folder_->num_files() > 0 && folder_->num_messages() == 0) {
     std::error_code ignored;
     std::filesystem::remove(folder_->path(), ignored);
   } else if (!paused_) {

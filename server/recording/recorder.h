@@ -83,6 +83,8 @@ class Recorder : public RecordingTap {
   void Pause(const Status& status);
   void TryToGoOn(Time now);
   [[nodiscard]] Status LeaveLostFile(Time now);
+  template <class Work>
+  [[nodiscard]] Status Guarded(const Work& work);
   void ReportDropped(std::string_view why);
 
   const RecorderOptions options_;

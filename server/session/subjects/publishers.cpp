@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <new>
 #include <string>
 #include <utility>
 
@@ -255,7 +256,12 @@ Subject* Publishers::Accept(Peer& peer, const StreamKey& key, const protocol::Sk
                  offer.joints.size(), offer.blend_shape_names.size());
   }
   const StreamKey former_owner = subject->owner;
-  subjects_->SetOwner(*subject, key);
+  try {
+    subjects_->SetOwner(*subject, key);
+  } catch (const std::bad_alloc&) {
+    if (is_new) subjects_->Remove(subject->id);
+    throw;
+  }
   // From here on nothing can fail.
   if (!is_new) subject->pipeline = std::move(pipeline);
   if (!is_new && former_owner != key) {

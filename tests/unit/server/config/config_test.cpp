@@ -368,7 +368,8 @@ TEST(ParseConfig, EmptyPathsAreNone) {
 }
 
 TEST(ParseConfig, OriginsAreThoseThatBrowsersSend) {
-  for (const char* origin : {"https://stage.example", "http://localhost:3000", "app://furrow"}) {
+  for (const char* origin :
+       {"https://stage.example", "http://localhost:3000", "app://furrow", "null"}) {
     Config config;
     config.http.allow_origins = {origin};
     EXPECT_TRUE(ValidateConfig(config).ok()) << origin;

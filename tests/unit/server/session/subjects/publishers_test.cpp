@@ -53,6 +53,7 @@ TEST_F(PublishersTest, AnOfferThatLacksMemoryLeavesNoHalfSubject) {
     ASSERT_LT(allowed, 10'000u);
     for (const auto& subject : hub->subjects().all()) {
       ASSERT_NE(subject->pipeline, nullptr);
+      ASSERT_NE(subject->offer, nullptr);
       ASSERT_EQ(hub->RequireAllDrivers(subject->name), subject.get());
     }
     Advance(0.01);
