@@ -59,7 +59,7 @@ int ParseAndRun(int argc, const char* const* argv,
 // What the program has printed is its result, so losing it is a failure.
 int WithOutputWritten(int exit_code) {
   std::cout.flush();
-  errno = EIO;  // of a write that has failed before
+  errno = 0;
   const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
   return written || exit_code != kDone ? exit_code : StandardOutputFailed();
 }

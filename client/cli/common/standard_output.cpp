@@ -30,7 +30,9 @@ Status WriteStandardOutput(std::span<const std::uint8_t> bytes) {
 
 int StandardOutputFailed() {
   if (errno == EPIPE || ReaderHasLeft()) return kDone;
-  return Fail({StatusCode::kIo, std::strerror(errno), "standard output"});
+  // An earlier write may have failed, of which nothing but the fact is known.
+  return Fail({StatusCode::kIo, errno == 0 ? "the output is incomplete" : std::strerror(errno),
+               "standard output"});
 }
 
 }  // namespace furrow::cli
