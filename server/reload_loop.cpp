@@ -8,25 +8,14 @@
 #include <utility>
 
 #include <asio/post.hpp>
-#include <fcntl.h>
 #include <spdlog/spdlog.h>
-#include <unistd.h>
 
 #include "server/core/within_memory.h"
+#include "server/machine/terminal.h"
 #include "server/net/await_tuple.h"
 #include "server/net/critical_task.h"
 
 namespace furrow::server {
-namespace {
-
-// True if the process has a controlling terminal, whatever its standard input is.
-bool HasTerminal() {
-  const int terminal = open("/dev/tty", O_RDWR | O_NOCTTY | O_CLOEXEC);
-  if (terminal >= 0) close(terminal);
-  return terminal >= 0;
-}
-
-}  // namespace
 
 ReloadLoop::ReloadLoop(Parts parts)
     : parts_(std::move(parts)), hangups_(*parts_.io), has_terminal_(HasTerminal()) {}

@@ -330,9 +330,7 @@ class HttpSession {
       co_return co_await WriteReply(stream_, request_, ErrorReply(wanted.status()));
     }
     if (!access_.Has(Role::kWatch)) {
-      co_return co_await WriteReply(
-          stream_, request_,
-          ErrorReply(403, "forbidden", "", "not permitted to watch; " + access_.Text()));
+      co_return co_await WriteReply(stream_, request_, NeedsRole("watch", url.path, access_));
     }
     if (beast::websocket::is_upgrade(request_)) {
       co_await ServeWeightSocket(std::move(stream_), context_, std::move(request_),

@@ -4,8 +4,9 @@
 #include <atomic>
 #include <csignal>
 
-#include <fcntl.h>
 #include <unistd.h>
+
+#include "server/machine/terminal.h"
 
 namespace furrow::server::early_signals {
 namespace {
@@ -26,9 +27,7 @@ void Note(int signal) {
 }  // namespace
 
 void Install() {
-  const int terminal = ::open("/dev/tty", O_RDONLY | O_CLOEXEC | O_NOCTTY);
-  has_terminal = terminal >= 0;
-  if (terminal >= 0) ::close(terminal);
+  has_terminal = HasTerminal();
   struct sigaction action = {};
   action.sa_handler = &Note;
   action.sa_flags = SA_RESTART;
