@@ -27,21 +27,24 @@ std::string NameAt(std::uint64_t now_ns) {
 
 Result<std::unique_ptr<TakeFolder>> TakeFolder::Open(TakeFolderOptions options,
                                                      std::uint64_t now_ns) {
-  std::error_code error;
-  if (!options.folder.empty()) std::filesystem::create_directories(options.folder, error);
-  if (error)
-    return Status(StatusCode::kIo, "cannot create the folder: " + error.message(),
-                  options.folder.string());
   std::unique_ptr<TakeFolder> folder(new TakeFolder(std::move(options)));
+  FURROW_RETURN_IF_ERROR(folder->MakeFolder());
   FURROW_RETURN_IF_ERROR(folder->Begin(now_ns));
   return folder;
 }
 
 std::unique_ptr<TakeFolder> TakeFolder::Failed(TakeFolderOptions options, Status failure) {
   std::unique_ptr<TakeFolder> folder(new TakeFolder(std::move(options)));
-  folder->path_ = folder->options_.folder / "";
   folder->failure_ = std::move(failure);
   return folder;
+}
+
+Status TakeFolder::MakeFolder() const {
+  std::error_code error;
+  if (!options_.folder.empty()) std::filesystem::create_directories(options_.folder, error);
+  if (!error) return {};
+  return {StatusCode::kIo, "cannot create the folder: " + error.message(),
+          options_.folder.string()};
 }
 
 // The first free name. A requested name of the first file is returned even if it exists, so that
@@ -171,9 +174,16 @@ Status TakeFolder::Resume(std::uint64_t now_ns) {
 Result<bool> TakeFolder::LeaveLostFile(std::uint64_t now_ns) {
   if (!failure_.ok() || take_ == nullptr || take_->is_at_its_path()) return false;
   (void)take_->Close();  // nobody finds it
-  std::error_code error;
-  if (!options_.folder.empty()) std::filesystem::create_directories(options_.folder, error);
-  if (Status status = Begin(now_ns); !status.ok()) return Remember(std::move(status));
+  Status status = MakeFolder();
+  if (status.ok()) status = Begin(now_ns);
+  if (!status.ok()) return Remember(std::move(status));
+  return true;
+}
+
+bool TakeFolder::RemoveIfEmpty() const {
+  if (num_messages() > 0) return false;
+  std::error_code ignored;
+  if (take_ != nullptr) std::filesystem::remove(path_, ignored);
   return true;
 }
 

@@ -66,6 +66,8 @@ class TakeFolder {
   // Begins the next file if the current one was removed or renamed. Returns true if it was. Errors:
   // those of Flush().
   [[nodiscard]] Result<bool> LeaveLostFile(std::uint64_t now_ns);
+  // Removes the file if nothing was written, and returns true. Call it after Close().
+  bool RemoveIfEmpty() const;
   // Finishes the current file. Nothing can be written afterwards.
   [[nodiscard]] Status Close();
 
@@ -90,6 +92,7 @@ class TakeFolder {
   };
 
   explicit TakeFolder(TakeFolderOptions options) : options_(std::move(options)) {}
+  [[nodiscard]] Status MakeFolder() const;
   [[nodiscard]] Status Begin(std::uint64_t now_ns);
   [[nodiscard]] Status WriteDeclarations(std::uint64_t now_ns);
   [[nodiscard]] std::filesystem::path NextPath(std::uint64_t now_ns) const;

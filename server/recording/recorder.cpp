@@ -61,13 +61,13 @@ Result<std::unique_ptr<Recorder>> Recorder::Start(RecorderOptions options, Time 
   auto folder = recording::TakeFolder::Open(options.folder, began);
   if (folder.ok()) {
     spdlog::info("recording to {}", (*folder)->path().string());
-    return std::unique_ptr<Recorder>(new Recorder(std::move(options), *std::move(folder), metrics));
+  } else if (HasRoom(options)) {
+    return folder.status();
+  } else {
+    // A full disk must not keep the weights away, as it would not later.
+    folder = recording::TakeFolder::Failed(options.folder, folder.status());
   }
-  // A full disk must not keep the weights away, as it would not later.
-  if (HasRoom(options)) return folder.status();
-  std::unique_ptr<Recorder> recorder(new Recorder(
-      options, recording::TakeFolder::Failed(options.folder, folder.status()), metrics));
-  return recorder;
+  return std::unique_ptr<Recorder>(new Recorder(std::move(options), *std::move(folder), metrics));
 }
 
 Recorder::Recorder(RecorderOptions options, std::unique_ptr<recording::TakeFolder> folder,
@@ -311,10 +311,8 @@ void Recorder::Write() {
   }
   if (paused_) (void)folder_->Close();  // its error is known
   ReportDropped(paused_ ? "the recording was paused" : "the disk is too slow");
-  if (discards_ && folder_->num_files() > 0 && folder_->num_messages() == 0) {
-    std::error_code ignored;
-    std::filesystem::remove(folder_->path(), ignored);
-  } else if (!paused_) {
+  const bool is_discarded = discards_ && folder_->RemoveIfEmpty();
+  if (!is_discarded && !paused_) {
     spdlog::info("finished recording to {}", folder_->path().string());
   }
 }

@@ -174,12 +174,8 @@ int Record(RecordOptions options) {
     take.Subscribe(subscriber, subject, options.wait);
   if (options.subjects.empty()) take.SubscribeToAll(subscriber);
   exit_code = RecordInto(take, subscriber, options);
-  const bool is_empty = take.folder() == nullptr || take.folder()->num_messages() == 0;
-  if (!is_empty) {
-    PrintSummary(take, exit_code == kFailed);
-  } else if (take.folder() != nullptr) {
-    std::filesystem::remove(take.folder()->path(), error);
-  }
+  const bool is_empty = take.folder() == nullptr || take.folder()->RemoveIfEmpty();
+  if (!is_empty) PrintSummary(take, exit_code == kFailed);
   if (exit_code == kDone && is_empty) {
     return Fail({StatusCode::kUnavailable, "no subject connected; no file was written",
                  options.host, "start a publisher, or wait longer with --duration"});
