@@ -43,5 +43,4 @@ struct MhTarget {
 // target was parsed for a mesh of as many vertices.
 void ApplyMhTarget(const MhTarget& target, float weight, std::span<glm::vec3> positions);
 
-
 }  // namespace furrow::authoring

@@ -136,9 +136,6 @@ Result<character::Picture> AssetLibrary::LoadMaterialPicture(const FoundMaterial
                                                              const std::string& name) const {
   const Result<fs::path> file = Locate(picture, material.file.parent_path());
   if (!file.ok()) return file.status().At(material.file.string());
-  if (IsGitLfsPointer(StartOf(*file, 64)))
-    return Status(StatusCode::kUnsupported, "the file is a Git LFS pointer, not a picture",
-                  file->string(), "run 'git lfs pull' in the data folder");
   return character::LoadPicture(name, *file);
 }
 

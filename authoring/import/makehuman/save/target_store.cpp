@@ -68,9 +68,6 @@ Status TargetStore::ListFiles() {
 Status TargetStore::OpenArchive(const fs::path& file) {
   Result<std::string> bytes = ReadFile(file, NpzArchive::kMaxBytes);
   FURROW_RETURN_IF_ERROR(bytes);
-  if (IsGitLfsPointer(*bytes))
-    return {StatusCode::kUnsupported, "the file is a Git LFS pointer, not an archive",
-            file.string(), "run 'git lfs pull' in the data folder"};
   Result<NpzArchive> archive = NpzArchive::Open(std::move(*bytes), file.string());
   FURROW_RETURN_IF_ERROR(archive);
   archive_ = std::move(*archive);
