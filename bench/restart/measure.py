@@ -56,7 +56,7 @@ class Stage:
                 times = rows.times[first - 1:]
                 gaps.append(max(b - a for a, b in zip(times, times[1:])) * 1e3)
                 waits.append(next(time for time in times if time > manager.ready_at) - manager.ready_at)
-                kept += "goes on with 2 peers" in manager.text()
+                kept += "resumed 2 peers" in manager.text()
             for process in (watcher, player):
                 process.send_signal(signal.SIGINT)
                 process.communicate(timeout=GUARD)

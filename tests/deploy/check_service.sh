@@ -79,7 +79,7 @@ before=$(systemctl show --property MainPID --value furrowd)
 install /srv/new/furrow*.deb
 now=$(systemctl show --property MainPID --value furrowd)
 [ "$before" != "$now" ] || fail 'the upgrade does not restart the service'
-has_gone_on() { journalctl --no-pager "_PID=$now" | grep -q 'goes on with [2-9] peers and [1-9] subject'; }
+has_gone_on() { journalctl --no-pager "_PID=$now" | grep -q 'resumed [2-9] peers and [1-9] subject'; }
 wait_for has_gone_on
 wait_for has_lines $(($(wc -l </srv/frames) + 60))
 kill $player $watcher
