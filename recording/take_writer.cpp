@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "recording/take_writer.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "base/status.h"
+#include "protocol/messages/hash.h"
 
 namespace furrow::recording {
 
@@ -24,20 +24,19 @@ Result<std::unique_ptr<TakeWriter>> TakeWriter::Create(const std::filesystem::pa
 
 std::uint16_t TakeWriter::SchemaOf(TakeKind kind) {
   if (SchemaName(kind).empty()) return 0;
-  auto [found, is_new] = schemas_.try_emplace(kind, std::uint16_t{0});
-  if (is_new)
-    found->second = file_->AddSchema(SchemaName(kind), kFlatBufferEncoding, BinarySchema(kind));
-  return found->second;
+  std::uint16_t& id = schemas_[static_cast<std::size_t>(kind)];
+  if (id == 0) id = file_->AddSchema(SchemaName(kind), kFlatBufferEncoding, BinarySchema(kind));
+  return id;
 }
 
 std::uint16_t TakeWriter::ChannelOf(TakeKind kind, std::string_view subject,
                                     std::uint64_t session) {
   // A reused key: the look-up per message then does not allocate.
-  std::get<0>(key_).assign(subject);
-  std::get<1>(key_) = session;
-  std::get<2>(key_) = kind;
+  key_.first.assign(subject);
+  key_.second = session;
   const auto found = channels_.find(key_);
-  if (found != channels_.end()) return found->second;
+  const auto index = static_cast<std::size_t>(kind);
+  if (found != channels_.end() && found->second[index] != 0) return found->second[index];
   const bool raw = kind == TakeKind::kDatagram;
   const std::map<std::string, std::string> about{{"subject", std::string(subject)},
                                                  {"session", std::to_string(session)}};
@@ -48,16 +47,19 @@ std::uint16_t TakeWriter::ChannelOf(TakeKind kind, std::string_view subject,
                 std::string>{{"data",
                               "16 bytes of IPv6 address, 2 of port (network order), the datagram"}}
           : about);
-  channels_.emplace(key_, id);
+  ++num_channels_;
+  channels_[key_][index] = id;
   return id;
 }
 
 Status TakeWriter::AttachSkeleton(std::string_view subject, std::uint64_t log_time_ns,
                                   std::span<const std::uint8_t> payload) {
+  protocol::Hasher hasher;
+  hasher.String({reinterpret_cast<const char*>(payload.data()), payload.size()});
+  const std::uint64_t hash = hasher.value();
   const auto known = skeletons_.find(subject);
-  if (known != skeletons_.end() && std::ranges::equal(known->second, payload)) return {};
-  skeletons_.insert_or_assign(std::string(subject),
-                              std::vector<std::uint8_t>(payload.begin(), payload.end()));
+  if (known != skeletons_.end() && known->second == hash) return {};
+  skeletons_.insert_or_assign(std::string(subject), hash);
   return file_->Attach(std::string(subject) + ".skeleton", "application/x-flatbuffers", log_time_ns,
                        payload);
 }
@@ -66,7 +68,7 @@ Status TakeWriter::Write(TakeKind kind, std::string_view subject, const TakeStam
                          std::span<const std::uint8_t> payload) {
   if (is_full()) {
     return {StatusCode::kLimit,
-            "the take has " + std::to_string(channels_.size()) + " channels, the maximum"};
+            "the take has " + std::to_string(num_channels_) + " channels, the maximum"};
   }
   if (kind == TakeKind::kSkeleton) {
     FURROW_RETURN_IF_ERROR(AttachSkeleton(subject, stamp.log_time_ns, payload));

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
 #include <string_view>
-#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "base/status.h"
@@ -47,11 +49,12 @@ class TakeWriter {
   [[nodiscard]] std::uint64_t bytes_written() const { return file_->bytes_written(); }
   [[nodiscard]] std::uint64_t num_messages() const { return file_->num_messages(); }
   // True if no channel can be added: continue in a new file.
-  [[nodiscard]] bool is_full() const { return channels_.size() >= kMaxChannels; }
+  [[nodiscard]] bool is_full() const { return num_channels_ >= kMaxChannels; }
 
  private:
   static constexpr std::size_t kMaxChannels = 60000;
-  using ChannelKey = std::tuple<std::string, std::uint64_t, TakeKind>;
+  using SessionKey = std::pair<std::string, std::uint64_t>;  // subject, session
+  using Ids = std::array<std::uint16_t, kNumTakeKinds>;      // of each kind; 0: none yet
 
   explicit TakeWriter(std::unique_ptr<motion::mcap::Writer> file) : file_(std::move(file)) {}
   [[nodiscard]] std::uint16_t ChannelOf(TakeKind kind, std::string_view subject,
@@ -61,12 +64,12 @@ class TakeWriter {
                                       std::span<const std::uint8_t> payload);
 
   std::unique_ptr<motion::mcap::Writer> file_;
-  std::map<ChannelKey, std::uint16_t> channels_;
-  std::map<TakeKind, std::uint16_t> schemas_;
-  std::map<std::string, std::vector<std::uint8_t>, std::less<>>
-      skeletons_;                       // the last one of each subject
-  ChannelKey key_;                      // reused
-  std::vector<std::uint8_t> datagram_;  // reused
+  std::map<SessionKey, Ids> channels_;
+  std::size_t num_channels_ = 0;
+  Ids schemas_ = {};
+  std::map<std::string, std::uint64_t, std::less<>> skeletons_;  // hash of each subject's last one
+  SessionKey key_;                                               // reused
+  std::vector<std::uint8_t> datagram_;                           // reused
 };
 
 }  // namespace furrow::recording

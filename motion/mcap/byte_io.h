@@ -50,6 +50,8 @@ class ByteWriter {
   // Removes all bytes but the first `size`.
   void Truncate(std::size_t size) { bytes_.resize(std::min(size, bytes_.size())); }
   void Clear() { bytes_.clear(); }
+  // Returns memory that is not in use, for records that are kept.
+  void ShrinkToFit() { bytes_.shrink_to_fit(); }
 
  private:
   std::vector<std::uint8_t> bytes_;

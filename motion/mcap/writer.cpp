@@ -126,8 +126,10 @@ std::uint16_t Writer::AddChannel(std::string_view topic, std::string_view messag
                                  std::uint16_t schema_id,
                                  const std::map<std::string, std::string>& metadata) {
   const auto id = static_cast<std::uint16_t>(channels_.size() + 1);
-  channels_.push_back({id, schema_id, std::string(topic), std::string(message_encoding), metadata});
-  index_.emplace_back();
+  ByteWriter record =
+      ToRecord(Channel{id, schema_id, std::string(topic), std::string(message_encoding), metadata});
+  record.ShrinkToFit();
+  channels_.push_back({std::move(record), schema_id});
   return id;
 }
 
@@ -161,11 +163,12 @@ Status Writer::AppendRecord(Opcode opcode, const ByteWriter& content) {
 }
 
 // Every chunk declares what it uses, so that it is readable without the rest of the file.
-void Writer::DeclareInChunk(const Channel& channel) {
-  if (!declared_.insert(channel.id).second) return;
+void Writer::DeclareInChunk(std::uint16_t channel_id) {
+  if (!declared_.insert(channel_id).second) return;
+  const ChannelInfo& channel = channels_[channel_id - 1u];
   if (channel.schema_id != 0 && declared_schemas_.insert(channel.schema_id).second)
     chunk_.PutRecord(Opcode::kSchema, ToRecord(schemas_[channel.schema_id - 1u]));
-  chunk_.PutRecord(Opcode::kChannel, ToRecord(channel));
+  chunk_.PutRecord(Opcode::kChannel, channel.record);
 }
 
 Status Writer::Write(const Message& message) {
@@ -188,15 +191,15 @@ Status Writer::Write(const Message& message) {
 }
 
 void Writer::AppendToChunk(const Message& message) {
-  DeclareInChunk(channels_[message.channel_id - 1u]);
+  DeclareInChunk(message.channel_id);
   const std::uint64_t place = chunk_.size();
   chunk_.Put(static_cast<std::uint8_t>(Opcode::kMessage));
   // 22 bytes: u16 channel, u32 sequence, two u64 times.
   chunk_.Put(static_cast<std::uint64_t>(22 + message.data.size()));
   chunk_.Put(message.channel_id).Put(message.sequence);
   chunk_.Put(message.log_time).Put(message.publish_time).PutBytes(message.data);
-  index_[message.channel_id - 1u].entries.emplace_back(message.log_time, place);
-  const bool first = chunk_messages_++ == 0;
+  places_.push_back({message.channel_id, message.log_time, place});
+  const bool first = places_.size() == 1;
   chunk_info_.start_time =
       first ? message.log_time : std::min(chunk_info_.start_time, message.log_time);
   chunk_info_.end_time = std::max(chunk_info_.end_time, message.log_time);
@@ -205,7 +208,7 @@ void Writer::AppendToChunk(const Message& message) {
 
 Status Writer::FlushChunk() {
   if (!failure_.ok()) return failure_;
-  if (chunk_messages_ == 0) return {};
+  if (places_.empty()) return {};
   const auto compressed = CompressZstd(chunk_.bytes(), options_.zstd_level);
   // What cannot be compressed is kept as it is.
   const std::span<const std::uint8_t> packed = compressed ? *compressed : chunk_.bytes();
@@ -233,18 +236,17 @@ Status Writer::FlushChunk() {
 
 // Adds the current chunk to the statistics, after it was written to the file.
 void Writer::CountChunk() {
-  for (ChannelIndex& channel : index_) channel.count += channel.entries.size();
+  for (const MessagePlace& place : places_) ++channels_[place.channel_id - 1u].num_messages;
   const bool first = written_messages_ == 0;
   start_time_ = first ? chunk_info_.start_time : std::min(start_time_, chunk_info_.start_time);
   end_time_ = std::max(end_time_, chunk_info_.end_time);
-  written_messages_ += chunk_messages_;
+  written_messages_ += places_.size();
 }
 
 void Writer::BeginChunk() {
-  for (ChannelIndex& channel : index_) channel.entries.clear();
+  places_.clear();
   chunk_.Clear();
   chunk_info_ = {};
-  chunk_messages_ = 0;
   declared_.clear();
   declared_schemas_.clear();
 }
@@ -253,21 +255,25 @@ void Writer::BeginChunk() {
 // which lists those that reached the file.
 ByteWriter Writer::IndexChunk(const ChunkInfo& chunk) {
   const std::uint64_t begin = offset_;
+  std::ranges::stable_sort(places_, {}, &MessagePlace::channel_id);
   ByteWriter offsets;
-  for (const std::uint16_t id : declared_) {
+  for (auto place = places_.begin(); place != places_.end() && failure_.ok();) {
+    const std::uint16_t id = place->channel_id;
     ByteWriter entries;
-    for (const auto& [time, place] : index_[id - 1u].entries) entries.Put(time).Put(place);
+    for (; place != places_.end() && place->channel_id == id; ++place)
+      entries.Put(place->log_time).Put(place->offset);
     ByteWriter record;
     record.Put(id).Put(static_cast<std::uint32_t>(entries.size())).PutBytes(entries.bytes());
     const std::uint64_t offset = offset_;
     if (!AppendRecord(Opcode::kMessageIndex, record).ok()) break;  // failure_ has the reason
     offsets.Put(id).Put(offset);
   }
-  ByteWriter out;
+  ByteWriter out;  // kept until the file ends
   out.Put(chunk.start_time).Put(chunk.end_time).Put(chunk.offset).Put(chunk.length);
   out.Put(static_cast<std::uint32_t>(offsets.size())).PutBytes(offsets.bytes());
   out.Put(offset_ - begin).PutText(chunk.compression);
   out.Put(chunk.compressed_bytes).Put(chunk.uncompressed_bytes);
+  out.ShrinkToFit();
   return out;
 }
 
@@ -308,7 +314,8 @@ Status Writer::Close() {
 
 ByteWriter Writer::Statistics() const {
   ByteWriter counts;
-  for (std::size_t i = 0; i < index_.size(); ++i) counts.Put(channels_[i].id).Put(index_[i].count);
+  for (std::size_t i = 0; i < channels_.size(); ++i)
+    counts.Put(static_cast<std::uint16_t>(i + 1)).Put(channels_[i].num_messages);
   ByteWriter record;
   record.Put(written_messages_).Put(static_cast<std::uint16_t>(schemas_.size()));
   record.Put(static_cast<std::uint32_t>(channels_.size()));
@@ -327,7 +334,7 @@ Status Writer::WriteSummary() {
 
   SummaryBuilder summary(offset_);
   for (const Schema& schema : schemas_) summary.Add(Opcode::kSchema, ToRecord(schema));
-  for (const Channel& channel : channels_) summary.Add(Opcode::kChannel, ToRecord(channel));
+  for (const ChannelInfo& channel : channels_) summary.Add(Opcode::kChannel, channel.record);
   summary.Add(Opcode::kStatistics, Statistics());
   for (const ByteWriter& index : chunk_index_) summary.Add(Opcode::kChunkIndex, index);
   for (const AttachmentInfo& info : attachments_)

@@ -73,9 +73,17 @@ class Writer {
     std::uint64_t offset = 0;
     std::uint64_t length = 0;
   };
-  struct ChannelIndex {
-    std::vector<std::pair<std::uint64_t, std::uint64_t>> entries;  // log time, offset in the chunk
-    std::uint64_t count = 0;                                       // in written chunks
+  // What is kept of a channel until the file ends. A long take of short sessions has many.
+  struct ChannelInfo {
+    ByteWriter record;
+    std::uint16_t schema_id = 0;
+    std::uint64_t num_messages = 0;  // in written chunks
+  };
+  // A message of the current chunk.
+  struct MessagePlace {
+    std::uint16_t channel_id = 0;
+    std::uint64_t log_time = 0;
+    std::uint64_t offset = 0;  // in the chunk
   };
 
   Writer(int file, std::filesystem::path path, const WriterOptions& options);
@@ -83,7 +91,7 @@ class Writer {
   [[nodiscard]] Status AppendRecord(Opcode opcode, const ByteWriter& content);
   // Without memory, throws std::bad_alloc and leaves a torn record at the end of the chunk.
   void AppendToChunk(const Message& message);
-  void DeclareInChunk(const Channel& channel);
+  void DeclareInChunk(std::uint16_t channel_id);
   void CountChunk();
   void BeginChunk();
   [[nodiscard]] ByteWriter IndexChunk(const ChunkInfo& chunk);
@@ -98,12 +106,11 @@ class Writer {
   Status failure_;
   bool closed_ = false;
 
-  std::vector<Schema> schemas_;    // id i + 1
-  std::vector<Channel> channels_;  // id i + 1
-  std::vector<ChannelIndex> index_;
+  std::vector<Schema> schemas_;        // id i + 1
+  std::vector<ChannelInfo> channels_;  // id i + 1
   ByteWriter chunk_;
   ChunkInfo chunk_info_;
-  std::uint64_t chunk_messages_ = 0;
+  std::vector<MessagePlace> places_;  // of the current chunk's messages
   std::set<std::uint16_t> declared_;  // channels of the current chunk
   std::set<std::uint16_t> declared_schemas_;
   std::uint64_t num_messages_ = 0;      // accepted by Write()
