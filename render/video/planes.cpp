@@ -2,9 +2,13 @@
 #include "render/video/planes.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <turbojpeg.h>
 
@@ -12,6 +16,8 @@ namespace furrow::render {
 namespace {
 
 constexpr std::size_t kChannels = 3;
+// 0 becomes 16, and 255 becomes 235.
+constexpr double kLumaCentre = 16.0 * 255.0 / (255.0 - 219.0);
 
 // TurboJPEG rounds the chroma planes up, but encoders want an even luma plane, too.
 Image MakeEven(const Image& image) {
@@ -30,6 +36,16 @@ Image MakeEven(const Image& image) {
     if (even_row > row) std::copy_n(end - kChannels, kChannels, end);
   }
   return even;
+}
+
+// Maps the full range, in which `centre` stays as it is, to `steps` of 255.
+void Squeeze(double centre, double steps, std::vector<std::uint8_t>* plane) {
+  std::array<std::uint8_t, 256> squeezed;
+  for (std::size_t i = 0; i < squeezed.size(); ++i) {
+    const double value = centre + (static_cast<double>(i) - centre) * (steps / 255.0);
+    squeezed[i] = static_cast<std::uint8_t>(std::lround(value));
+  }
+  for (std::uint8_t& value : *plane) value = squeezed[value];
 }
 
 }  // namespace
@@ -56,6 +72,9 @@ Status ToPlanes(const Image& image, Planes* planes) {
                         targets, strides, TJSAMP_420, TJFLAG_FASTDCT) != 0) {
     return {StatusCode::kInternal, tjGetErrorStr2(converter.get()), "TurboJPEG"};
   }
+  Squeeze(kLumaCentre, 219.0, &planes->y);
+  Squeeze(128.0, 224.0, &planes->u);
+  Squeeze(128.0, 224.0, &planes->v);
   return {};
 }
 

@@ -10,8 +10,9 @@
 namespace furrow::render {
 
 // A picture as video encoders take it: brightness at full resolution, colour differences at half of
-// it (4:2:0). BT.601 in full range, as in JPEG, so that both look the same. Rows from the top,
-// without padding.
+// it (4:2:0). BT.601, as in JPEG, in the limited range (Y: 16 to 235, U and V: 16 to 240;
+// video_full_range_flag 0 of ITU-T H.264, annex E), because Firefox takes every video for that.
+// Rows from the top, without padding.
 struct Planes {
   int width = 0;  // pixels, even
   int height = 0;

@@ -42,7 +42,7 @@ using Encoder = std::unique_ptr<ISVCEncoder, Destroy>;
 void SetColours(SSpatialLayerConfig* layer) {
   layer->bVideoSignalTypePresent = true;
   layer->uiVideoFormat = VF_UNDEF;
-  layer->bFullRange = true;
+  layer->bFullRange = false;
   layer->bColorDescriptionPresent = true;
   layer->uiColorPrimaries = CP_BT709;
   layer->uiTransferCharacteristics = TRC_IEC61966_2_1;  // sRGB

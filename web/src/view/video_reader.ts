@@ -84,7 +84,7 @@ export class VideoReader {
       codec,
       optimizeForLatency: true,
       // As in the parameter sets, which decoders in hardware do not always read.
-      colorSpace: { primaries: 'bt709', transfer: 'iec61966-2-1', matrix: 'smpte170m', fullRange: true },
+      colorSpace: { primaries: 'bt709', transfer: 'iec61966-2-1', matrix: 'smpte170m', fullRange: false },
     });
   }
 

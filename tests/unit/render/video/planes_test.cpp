@@ -19,8 +19,8 @@ Image Uniform(int width, int height, std::array<std::uint8_t, 3> colour) {
   return image;
 }
 
-// ITU-R BT.601 in full range (JFIF), from its constants.
-TEST(Planes, ColoursAreThoseOfJpeg) {
+// ITU-R BT.601 from its constants, and the limited range of ITU-T H.264, annex E, at 8 bits.
+TEST(Planes, ColoursAreThoseOfBt601InLimitedRange) {
   for (const std::array<std::uint8_t, 3> colour :
        {std::array<std::uint8_t, 3>{0, 0, 0}, {255, 255, 255}, {255, 0, 0}, {196, 140, 117}}) {
     Planes planes;
@@ -29,9 +29,14 @@ TEST(Planes, ColoursAreThoseOfJpeg) {
     ASSERT_EQ(planes.y.size(), 32u * 16u);
     ASSERT_EQ(planes.u.size(), 16u * 8u);
     ASSERT_EQ(planes.v.size(), 16u * 8u);
-    EXPECT_NEAR(planes.y[100], y, 1.0);
-    EXPECT_NEAR(planes.u[50], std::min(255.0, 128.0 + (colour[2] - y) / 1.772), 1.0);
-    EXPECT_NEAR(planes.v[50], std::min(255.0, 128.0 + (colour[0] - y) / 1.402), 1.0);
+    // Colours of half steps would tint everything alike.
+    if (colour[0] == colour[1] && colour[1] == colour[2]) {
+      EXPECT_EQ(planes.u[50], 128);
+      EXPECT_EQ(planes.v[50], 128);
+    }
+    EXPECT_NEAR(planes.y[100], 16.0 + 219.0 * y / 255.0, 1.0);
+    EXPECT_NEAR(planes.u[50], 128.0 + 224.0 * (colour[2] - y) / 1.772 / 255.0, 1.0);
+    EXPECT_NEAR(planes.v[50], 128.0 + 224.0 * (colour[0] - y) / 1.402 / 255.0, 1.0);
   }
 }
 
@@ -47,10 +52,10 @@ TEST(Planes, OddSizesRepeatTheirEdge) {
   ASSERT_TRUE(ToPlanes(image, &planes).ok());
   EXPECT_EQ(planes.width, 6);
   EXPECT_EQ(planes.height, 4);
-  const std::vector<std::uint8_t> expected = {10,  10,  10,  10,  200, 200,  //
-                                              10,  10,  10,  10,  200, 200,  //
-                                              200, 200, 200, 200, 200, 200,  //
-                                              200, 200, 200, 200, 200, 200};
+  const std::vector<std::uint8_t> expected = {25,  25,  25,  25,  188, 188,  //
+                                              25,  25,  25,  25,  188, 188,  //
+                                              188, 188, 188, 188, 188, 188,  //
+                                              188, 188, 188, 188, 188, 188};
   EXPECT_EQ(planes.y, expected);
 }
 

@@ -153,7 +153,7 @@ TEST_F(VideoCodecTest, TheStreamIsConstrainedBaseline) {
   EXPECT_FALSE(sps.Flag()) << "overscan_info_present_flag";
   ASSERT_TRUE(sps.Flag()) << "video_signal_type_present_flag";
   sps.Bits(3);
-  EXPECT_TRUE(sps.Flag()) << "video_full_range_flag";
+  EXPECT_FALSE(sps.Flag()) << "video_full_range_flag";
   ASSERT_TRUE(sps.Flag()) << "colour_description_present_flag";
   EXPECT_EQ(sps.Bits(8), 1u) << "colour_primaries: BT.709";
   EXPECT_EQ(sps.Bits(8), 13u) << "transfer_characteristics: sRGB";
