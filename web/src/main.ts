@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+import './ui/start';
 import './style/base.css';
 import './style/layout.css';
 import './style/panels.css';

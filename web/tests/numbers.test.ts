@@ -162,36 +162,52 @@ test('a single change at rest is not movement, several in a row are', () => {
     [false, true, true, true, true, true, true, false, true]);
 });
 
+/** Pixels of a picture whose quarter still shows folds. */
+const LARGE = 1920 * 1200;
+
 test('slow pictures reduce the pixels, which return after a while', () => {
   const scale = new AdaptiveScale();
-  for (let s = 0; s < 4; ++s) assert.equal(scale.observe(5, 60, s, 100), s % 2 === 1);
+  for (let s = 0; s < 4; ++s) assert.equal(scale.observe(5, 60, s, 100, LARGE), s % 2 === 1);
   assert.equal(scale.scale, 0.5);
-  assert(!scale.observe(20, 60, 4, 100)); // neither slow nor fast
-  for (let s = 5; s < 9; ++s) assert(!scale.observe(50, 60, s, 100));
-  assert(scale.observe(50, 60, 9, 100));
+  assert(!scale.observe(20, 60, 4, 100, LARGE)); // neither slow nor fast
+  for (let s = 5; s < 9; ++s) assert(!scale.observe(50, 60, s, 100, LARGE));
+  assert(scale.observe(50, 60, 9, 100, LARGE));
   assert.equal(scale.scale, 0.75);
+});
+
+test('pictures stay large enough for folds, unless the daemon draws a few per second only', () => {
+  const pixels = 940 * 507;
+  const scale = new AdaptiveScale();
+  scale.begin(pixels, 130_000);
+  assert.equal(scale.scale, 0.5); // 119,000 pixels
+  for (let s = 0; s < 10; ++s) assert(!scale.observe(12, 30, s, 50, pixels));
+  for (let s = 10; s < 14; ++s) scale.observe(5, 30, s, 50, pixels);
+  assert.equal(scale.scale, 0.25);
+  // Smooth again: back to the folds, without waiting for spare time.
+  for (let s = 14; s < 60; ++s) scale.observe(scale.scale < 0.5 ? 22 : 12, 30, s, 50, pixels);
+  assert.equal(scale.scale, 0.5);
 });
 
 test('one slow second changes nothing', () => {
   const scale = new AdaptiveScale();
-  for (let s = 0; s < 20; ++s) assert(!scale.observe(s % 2 === 0 ? 5 : 50, 60, s, 100));
+  for (let s = 0; s < 20; ++s) assert(!scale.observe(s % 2 === 0 ? 5 : 50, 60, s, 100, LARGE));
   assert.equal(scale.scale, 1);
 });
 
 test('a slow publisher is not the renderer’s fault', () => {
   const scale = new AdaptiveScale();
-  assert(!scale.observe(9.5, 10, 0, 100));
+  assert(!scale.observe(9.5, 10, 0, 100, LARGE));
   assert.equal(scale.scale, 1);
 });
 
 test('a daemon that draws fewer pixels than it sends gets time for it', () => {
   const scale = new AdaptiveScale();
-  for (let s = -5; s < 1; ++s) assert(!scale.observe(15, 60, s, 75)); // it may still go down to a half
-  assert(scale.observe(15, 60, 1, 50));
+  for (let s = -5; s < 1; ++s) assert(!scale.observe(15, 60, s, 75, LARGE)); // it may still go down to a half
+  assert(scale.observe(15, 60, 1, 50, LARGE));
   assert.equal(scale.scale, 0.75);
-  for (let s = 2; s < 20; ++s) assert(!scale.observe(50, 60, s, 69)); // it has no time for more
-  for (let s = 20; s < 24; ++s) assert(!scale.observe(50, 60, s, 75));
-  assert(scale.observe(50, 60, 24, 75));
+  for (let s = 2; s < 20; ++s) assert(!scale.observe(50, 60, s, 69, LARGE)); // it has no time for more
+  for (let s = 20; s < 24; ++s) assert(!scale.observe(50, 60, s, 75, LARGE));
+  assert(scale.observe(50, 60, 24, 75, LARGE));
 });
 
 test('the share that was drawn is that of the picture on the screen', () => {
@@ -204,12 +220,12 @@ test('the share that was drawn is that of the picture on the screen', () => {
 
 test('failed attempts become rarer', () => {
   const scale = new AdaptiveScale();
-  for (const s of [-1, 0]) scale.observe(5, 60, s, 100);
+  for (const s of [-1, 0]) scale.observe(5, 60, s, 100, LARGE);
   let raised = 0;
-  for (let s = 1; raised === 0; ++s) if (scale.observe(50, 60, s, 100)) raised = s;
-  for (const s of [1, 2]) scale.observe(5, 60, raised + s, 100); // the larger size was too slow
+  for (let s = 1; raised === 0; ++s) if (scale.observe(50, 60, s, 100, LARGE)) raised = s;
+  for (const s of [1, 2]) scale.observe(5, 60, raised + s, 100, LARGE); // the larger size was too slow
   let again = 0;
-  for (let s = raised + 3; again === 0; ++s) if (scale.observe(50, 60, s, 100)) again = s;
+  for (let s = raised + 3; again === 0; ++s) if (scale.observe(50, 60, s, 100, LARGE)) again = s;
   assert(again - raised - 3 >= 2 * (raised - 1));
 });
 

@@ -99,13 +99,17 @@ export class Viewer {
   observeRate(posesHz: number, nowS: number): void {
     if (this.drawing.active.value) return;
     if (this.state.sharpness.value !== 'auto' || this.stats.resting || posesHz < 1) return;
-    if (this.scale.observe(this.stats.rateHz(nowS), posesHz, nowS, this.stats.drawnPercent)) this.refresh();
+    if (this.scale.observe(this.stats.rateHz(nowS), posesHz, nowS, this.stats.drawnPercent, this.screenPixels())) this.refresh();
   }
 
   /** Called when it is known how the daemon draws, so that the first picture comes quickly. */
   setRenderer(isSoftware: boolean): void {
+    if (isSoftware) this.scale.begin(this.screenPixels(), SOFTWARE_PIXELS);
+  }
+
+  private screenPixels(): number {
     const { clientWidth, clientHeight } = this.stage.surface;
-    if (isSoftware) this.scale.begin(clientWidth * clientHeight * devicePixelRatio ** 2, SOFTWARE_PIXELS);
+    return clientWidth * clientHeight * devicePixelRatio ** 2;
   }
 
   /** True until the picture shows the last change of the page. */
