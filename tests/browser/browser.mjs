@@ -2,15 +2,20 @@
 // A page in Debian's chromium: opened, watched for errors, looked at.
 import { mkdirSync } from 'node:fs';
 import { join } from 'node:path';
-import { chromium } from 'playwright-core';
+import { chromium, firefox } from 'playwright-core';
 import { PNG } from 'pngjs';
 
 const ARTEFACTS = process.env.FURROW_ARTEFACTS;
 const PATIENCE_MS = 180_000;
 
-/** `options`: further switches of the browser. */
+/** True if the page is opened in Firefox (FURROW_BROWSER=firefox) instead of Chromium. */
+export const IS_FIREFOX = process.env.FURROW_BROWSER === 'firefox';
+
+/** `options`: further switches of Chromium. */
 export function launch(options = []) {
   mkdirSync(ARTEFACTS, { recursive: true });
+  // Debian's Firefox as it is, by the standard protocol (WebDriver BiDi).
+  if (IS_FIREFOX) return firefox.launch({ channel: 'moz-firefox', executablePath: '/usr/bin/firefox-esr', headless: true });
   return chromium.launch({
     executablePath: '/usr/bin/chromium',
     headless: true,

@@ -137,3 +137,25 @@ test('compiled shaders are kept in the cache folder, and furrowd says what it lo
     rmSync(folder, { recursive: true, force: true });
   }
 });
+
+test('a browser without a language shows the page, and one that cannot run it says so', async () => {
+  const daemon = await Daemon.start(['--play', recording('performance')]);
+  try {
+    await daemon.hold(2);
+    const page = await openPage(browser, daemon.address, {}, (opened) => opened.addInitScript(() => {
+      Object.defineProperty(Navigator.prototype, 'language', { get: () => 'C', configurable: true });
+    }));
+    await still(page);
+    assert.deepEqual(page.errors, []);
+    await page.close();
+    const old = await openPage(browser, daemon.address, {}, (opened) => opened.addInitScript(() => {
+      delete window.ResizeObserver;
+    }));
+    await old.getByRole('alert').filter({ hasText: 'This browser cannot run the page: ' }).waitFor();
+    await eventually('the picture', () => old.evaluate(() => document.querySelector('img').naturalWidth > 0));
+    await keep(old, 'cannot-run');
+    await old.close();
+  } finally {
+    await daemon.stop();
+  }
+});

@@ -6,8 +6,9 @@ import { fileURLToPath } from 'node:url';
 import { join } from 'node:path';
 
 const here = fileURLToPath(new URL('.', import.meta.url));
+const browser = process.env.FURROW_BROWSER === 'firefox' ? '/usr/bin/firefox-esr' : '/usr/bin/chromium';
 const needs = {
-  'the browser /usr/bin/chromium': '/usr/bin/chromium',
+  [`the browser ${browser}`]: browser,
   'the packages of tests/browser/package-lock.json': join(here, 'node_modules/playwright-core'),
   'the built page': join(process.env.FURROW_SHARE, 'web/index.html'),
 };
