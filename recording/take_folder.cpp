@@ -156,7 +156,9 @@ Status TakeFolder::Resume(std::uint64_t now_ns) {
   const std::filesystem::path failed = path_;
   const int files = num_files_;
   const std::uint64_t messages = num_messages();
-  Status status = Begin(now_ns);
+  // Somebody may have removed the folder meanwhile, to free space.
+  Status status = MakeFolder();
+  if (status.ok()) status = Begin(now_ns);
   if (status.ok()) status = take_->Flush();
   if (status.ok()) {
     failure_ = {};

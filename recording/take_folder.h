@@ -57,8 +57,9 @@ class TakeFolder {
   // All names are to be declared again.
   void SetRig(std::string_view rig_json);
 
-  // After an error: finishes the failed file as far as possible and begins the next one. Errors:
-  // kIo; then no new file is left behind, and the folder stays as it was.
+  // After an error: finishes the failed file as far as possible and begins the next one, in the
+  // folder, which is created again if it was removed. Errors: kIo; then no new file is left behind,
+  // and this object stays as it was.
   [[nodiscard]] Status Resume(std::uint64_t now_ns);
 
   // Passes all messages to the operating system.

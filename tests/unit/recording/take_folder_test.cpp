@@ -128,5 +128,22 @@ TEST_F(TakeFolderTest, AFullDiskLeavesAReadableFile) {
   EXPECT_GT(summary->subjects.at("ada").poses, 0u);
 }
 
+TEST_F(TakeFolderTest, AFolderThatWasRemovedDuringAPauseIsMadeAgain) {
+  const auto folder = OpenFolder(0, 0);
+  ASSERT_TRUE(folder->Write(TakeKind::kSkeleton, "ada", Stamp(0), Payload(Offer("ada"))).ok());
+  folder->Fail(Status(StatusCode::kIo, "the disk is full"));
+  fs::remove_all(folder_ / "takes");
+  const Status status = folder->Resume(Stamp(1).log_time_ns);
+  ASSERT_TRUE(status.ok()) << status.ToString();
+  ASSERT_TRUE(WritePose(*folder, 1).ok());
+  ASSERT_TRUE(folder->Close().ok());
+  ASSERT_EQ(Takes().size(), 1u);
+  auto take = TakeReader::Open(folder->path());
+  ASSERT_TRUE(take.ok()) << take.status().ToString();
+  const auto summary = Summarise(**take);
+  ASSERT_TRUE(summary.ok());
+  EXPECT_EQ(summary->subjects.at("ada").poses, 1u);
+}
+
 }  // namespace
 }  // namespace furrow::recording
