@@ -236,11 +236,12 @@ class HttpSession {
       return std::nullopt;
     }
     if (IsForAll(url_->path)) return std::nullopt;
-    if (access.ok()) context_->metrics->Add(Counter::kRefusedNoToken);
+    if (!access.ok()) return RefusesToken(access.status().what());
+    context_->metrics->Add(Counter::kRefusedNoToken);
     // 401 asks for a token, and the page then asks its user. Not where it would be disclosed.
-    return access.ok() && !context_->gate->TakesTokens(client_.shielded)
-               ? ErrorReply(403, "forbidden", "", kNoTokenHereText)
-               : NeedsToken(access.ok() ? kNeedsTokenText : access.status().what());
+    return context_->gate->TakesTokens(client_.shielded)
+               ? NeedsToken(kNeedsTokenText)
+               : ErrorReply(403, "forbidden", "", kNoTokenHereText);
   }
 
   // Lets the connection end after the reply, and SkipBody() before that. `most_bytes`: of the body

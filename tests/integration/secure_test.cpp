@@ -341,6 +341,16 @@ TEST_F(Secure, EveryWebDoorIsClosedWithoutAToken) {
     EXPECT_EQ(status(path, "frw1_nonsense"), 401) << path;
   }
   EXPECT_EQ(status("/api/settings", "", "PATCH"), 401);
+  const auto challenge = [&](const std::string& headers) {
+    const auto answer = WebClient(*daemon.ready().http)
+                            .Ask("GET", "/api/status", "", "Host: localhost\r\n" + headers);
+    const std::size_t at = answer.head.find("WWW-Authenticate: ");
+    return at == std::string::npos ? "none"
+                                   : answer.head.substr(at, answer.head.find('\r', at) - at);
+  };
+  EXPECT_EQ(challenge(""), R"(WWW-Authenticate: Bearer realm="furrowd")");
+  EXPECT_EQ(challenge("Authorization: Bearer frw1_nonsense\r\n"),
+            R"(WWW-Authenticate: Bearer realm="furrowd", error="invalid_token")");
   // The reply to a stranger does not wait for the body, and it arrives with the body on the way.
   const std::string large =
       "PATCH /api/settings HTTP/1.1\r\nHost: localhost\r\n"

@@ -140,7 +140,8 @@ class PictureStream : public std::enable_shared_from_this<PictureStream> {
     switch (error.code) {
       case ErrorCode::kUnknownSubject:
         return ErrorReply(404, "not_found", "subject", error.message);
-      case ErrorCode::kNeedsToken: return NeedsToken(error.message);
+      // Strangers do not come this far: the token has expired, or its key was retired.
+      case ErrorCode::kNeedsToken: return RefusesToken(error.message);
       case ErrorCode::kNotPermitted: return ErrorReply(403, "forbidden", "subject", error.message);
       case ErrorCode::kLimit: {
         ApiReply reply = ErrorReply(503, "limit", "", error.message, "try again later");

@@ -34,11 +34,12 @@ struct ApiReply {
   int status = 200;
   std::string type = "application/json";
   std::string body;
-  std::string file_name;  // suggested name for saving; empty: none
-  std::string allow;      // status 405: the allowed methods, "GET, PATCH"
-  std::string location;   // status 307: the URL to ask instead
-  int retry_after = 1;    // status 429 and 503: seconds
-  bool closes = false;    // the connection ends after the reply
+  std::string file_name;   // suggested name for saving; empty: none
+  std::string allow;       // status 405: the allowed methods, "GET, PATCH"
+  std::string location;    // status 307: the URL to ask instead
+  int retry_after = 1;     // status 429 and 503: seconds
+  bool bad_token = false;  // status 401: the request has shown a token, which is refused
+  bool closes = false;     // the connection ends after the reply
 };
 
 // Quotes a text for JSON. Invalid UTF-8 in it becomes replacement characters.

@@ -2,6 +2,7 @@
 #include "server/http/request/reply_writer.h"
 
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -13,6 +14,13 @@ namespace {
 constexpr char kContentPolicy[] =
     "default-src 'self'; img-src 'self' blob: data:; style-src 'self' 'unsafe-inline'; "
     "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors ";
+
+// What a client must show (RFC 9110 section 11.6.1, RFC 6750 section 3). Only a refused token is an
+// error: a request without one has done nothing wrong.
+std::string_view ChallengeOf(const ApiReply& reply) {
+  return reply.bad_token ? R"(Bearer realm="furrowd", error="invalid_token")"
+                         : R"(Bearer realm="furrowd")";
+}
 
 }  // namespace
 
@@ -45,7 +53,9 @@ net::awaitable<bool> WriteReply(WebStream& stream, const WebRequest& request, Ap
     response.set(http::field::content_disposition,
                  "attachment; filename=\"" + reply.file_name + "\"");
   }
-  if (reply.status == 401) response.set(http::field::www_authenticate, "Bearer");
+  if (reply.status == 401) {
+    response.set(http::field::www_authenticate, std::string(ChallengeOf(reply)));
+  }
   if (reply.status == 429 || reply.status == 503) {
     response.set(http::field::retry_after, std::to_string(reply.retry_after));
   }

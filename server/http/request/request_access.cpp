@@ -43,4 +43,10 @@ ApiReply NeedsToken(std::string_view why) {
                     "send the header Authorization: Bearer TOKEN, or ?token=TOKEN");
 }
 
+ApiReply RefusesToken(std::string_view why) {
+  ApiReply reply = NeedsToken(why);
+  reply.bad_token = true;
+  return reply;
+}
+
 }  // namespace furrow::server
