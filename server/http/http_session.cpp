@@ -132,7 +132,8 @@ ApiReply NotFound(const std::string& path) {
         .type = "text/plain; charset=utf-8",
         .body =
             "furrowd is running, but its web page is not installed. Build the target furrow-web.\n"
-            "/mjpeg shows pictures without the page.\n"};
+            "/mjpeg shows pictures without the page.\n",
+        .retry_after = 0};
   }
   return ErrorReply(404, "not_found", "", path + " does not exist");
 }

@@ -303,9 +303,11 @@ TEST_F(Http, ANeutralCanBePreviewedCapturedAndUndone) {
 }
 
 TEST_F(Http, WithoutARendererPicturesAreUnavailable) {
-  EXPECT_EQ(Get("/snapshot.png").status, 503);
-  EXPECT_EQ(Get("/mjpeg").status, 503);
-  EXPECT_EQ(Get("/api/cameras").status, 503);
+  for (const char* path : {"/snapshot.png", "/mjpeg", "/api/cameras"}) {
+    const auto answer = Get(path);
+    EXPECT_EQ(answer.status, 503) << path;
+    EXPECT_EQ(answer.head.find("Retry-After"), std::string::npos) << "it would not help: " << path;
+  }
   for (const auto& [query, field] : {std::pair("width=1", "width"), std::pair("view=x", "view"),
                                      std::pair("camera=x", "camera"), std::pair("fog=1", "fog")}) {
     const auto answer = Get(std::string("/mjpeg?") + query);

@@ -49,9 +49,7 @@ ApiReply SettingsApi::PatchSettings(const ApiRequest& request, Hub& hub, Time no
 }
 
 ApiReply SettingsApi::Cameras() const {
-  if (pictures_ == nullptr) {
-    return ErrorReply(503, "unavailable", "", "this daemon renders no pictures");
-  }
+  if (pictures_ == nullptr) return NotOfferedReply("this daemon renders no pictures");
   Json list = Json::array();
   for (const std::string_view name : render::CameraPresetNames()) {
     const Result<render::Camera> camera = pictures_->Preset(name);

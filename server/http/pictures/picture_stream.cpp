@@ -148,7 +148,7 @@ class PictureStream : public std::enable_shared_from_this<PictureStream> {
         reply.closes = true;  // the place is wanted by somebody else
         return reply;
       }
-      case ErrorCode::kNotRendering:
+      case ErrorCode::kNotRendering: return NotOfferedReply(error.message);
       case ErrorCode::kDraining: return ErrorReply(503, "unavailable", "", error.message);
       default: return ErrorReply(400, "invalid_argument", "", error.message);
     }

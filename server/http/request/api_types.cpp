@@ -46,6 +46,12 @@ ApiReply ErrorReply(const Status& status) {
   return ErrorReply(info.status, info.name, status.where(), status.what(), status.todo());
 }
 
+ApiReply NotOfferedReply(std::string_view message) {
+  ApiReply reply = ErrorReply(503, "unavailable", "", message);
+  reply.retry_after = 0;
+  return reply;
+}
+
 ApiReply NeedsRole(std::string_view role, std::string_view path, const Access& access) {
   return ErrorReply(
       403, "forbidden", "",

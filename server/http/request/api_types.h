@@ -37,7 +37,7 @@ struct ApiReply {
   std::string file_name;   // suggested name for saving; empty: none
   std::string allow;       // status 405: the allowed methods, "GET, PATCH"
   std::string location;    // status 307: the URL to ask instead
-  int retry_after = 1;     // status 429 and 503: seconds
+  int retry_after = 1;     // status 429 and 503: seconds; 0: asking again does not help
   bool bad_token = false;  // status 401: the request has shown a token, which is refused
   bool closes = false;     // the connection ends after the reply
 };
@@ -51,6 +51,8 @@ struct ApiReply {
 [[nodiscard]] ApiReply ErrorReply(int status, std::string_view code, std::string_view field,
                                   std::string_view message, std::string_view hint = {});
 [[nodiscard]] ApiReply ErrorReply(const Status& status);
+// 503 for what this daemon does not do the way it was started, without Retry-After.
+[[nodiscard]] ApiReply NotOfferedReply(std::string_view message);
 // 403 for a request without the role, "direct" or the like.
 [[nodiscard]] ApiReply NeedsRole(std::string_view role, std::string_view path,
                                  const Access& access);

@@ -56,7 +56,7 @@ net::awaitable<bool> WriteReply(WebStream& stream, const WebRequest& request, Ap
   if (reply.status == 401) {
     response.set(http::field::www_authenticate, std::string(ChallengeOf(reply)));
   }
-  if (reply.status == 429 || reply.status == 503) {
+  if ((reply.status == 429 || reply.status == 503) && reply.retry_after > 0) {
     response.set(http::field::retry_after, std::to_string(reply.retry_after));
   }
   if (!reply.location.empty()) response.set(http::field::location, reply.location);
