@@ -306,6 +306,9 @@ class HttpSession {
         co_return co_await WriteReply(stream_, request_, *std::move(reply));
       }
     }
+    if (IsPicture(url->path) && request_.method() == http::verb::head) {
+      co_return co_await AnswerHeadOfPictures(*std::move(url));
+    }
     if (IsPicture(url->path) && IsRead(request_)) {
       co_return co_await ServePictures(&stream_, context_, request_, *url, access_);
     }
@@ -378,6 +381,13 @@ class HttpSession {
     }
     co_return co_await WriteLargeReply(stream_, request_, std::move(reply), context_->waiting,
                                        client_.host);
+  }
+
+  // Nothing is drawn, but the hub's thread knows what else speaks against a picture.
+  net::awaitable<bool> AnswerHeadOfPictures(Url url) {
+    ApiRequest request{"HEAD", std::move(url), {}, access_, client_.shielded};
+    ApiReply reply = co_await AnswerApi(std::move(request));
+    co_return co_await WriteReply(stream_, request_, std::move(reply));
   }
 
   net::awaitable<ApiReply> AnswerApi(ApiRequest request) {

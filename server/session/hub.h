@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "base/status.h"
+#include "protocol/messages/messages.h"
 #include "protocol/mocap/neutral_frame.h"
 #include "render/settings/settings.h"
 #include "rig/skeleton_match.h"
@@ -245,6 +246,13 @@ class Hub {
   [[nodiscard]] const PoseTracer* tracer() const { return tracer_.get(); }
   // The name of the peer that publishes the subject, for people; empty if the peer has left.
   [[nodiscard]] std::string_view SourceOf(const Subject& subject);
+  // Why a request for pictures of a client with this access would be refused; nothing: it would
+  // not, unless the client has too many subscriptions.
+  [[nodiscard]] std::optional<protocol::ErrorMessage> WhyNoPictures(
+      const protocol::SubscribePictures& request, const Access& access) {
+    if (!draining_) return subscribers_.WhyNoPictures(request, access);
+    return protocol::ErrorMessage{protocol::ErrorCode::kDraining, "the daemon is shutting down"};
+  }
   [[nodiscard]] const render::Settings& own_settings() const { return subscribers_.own_settings(); }
   // Replaces the daemon's settings for pictures and sends every changed view again.
   void SetOwnSettings(const render::Settings& settings, Time now) {

@@ -181,16 +181,15 @@ TEST_F(Http, AWrongMethodGetsAllow) {
   EXPECT_EQ(client.Ask("GET", "/healthz").status, 200);  // on the same connection
 }
 
-TEST_F(Http, HeadOfPicturesRendersNothing) {
+TEST_F(Http, HeadOfPicturesSaysThatThereAreNone) {
   WebClient client(port());
-  const auto stream = client.Ask("HEAD", "/mjpeg?width=64");
-  EXPECT_EQ(stream.status, 200);
-  EXPECT_NE(stream.head.find("Content-Type: multipart/x-mixed-replace"), std::string::npos);
+  EXPECT_EQ(client.Ask("HEAD", "/mjpeg?width=64").status, 503);
   const auto picture = client.Ask("HEAD", "/snapshot.png");
-  EXPECT_EQ(picture.status, 200);
-  EXPECT_NE(picture.head.find("Content-Type: image/png"), std::string::npos);
-  EXPECT_EQ(picture.head.find("Content-Length"), std::string::npos);
+  EXPECT_EQ(picture.status, 503);
+  EXPECT_NE(picture.head.find("Content-Type: application/json"), std::string::npos);
+  EXPECT_EQ(picture.head.find("Retry-After"), std::string::npos);
   EXPECT_EQ(client.Ask("HEAD", "/snapshot.png?width=1").status, 400);
+  EXPECT_EQ(client.Ask("GET", "/healthz").status, 200) << "the connection goes on";
   EXPECT_EQ(daemon->Count(Counter::kSubscriptionsRefused), 0u);
 }
 

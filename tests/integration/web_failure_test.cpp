@@ -104,7 +104,7 @@ TEST_F(WebFailure, AFailedPictureStreamLeavesNothingInTheHub) {
   door.RunNext(*hub);
   door.RunNext(*hub);  // removes the peer
   hub->Drain(Time{0});
-  EXPECT_EQ(WebClient(http->port()).Ask("HEAD", "/mjpeg").status, 200);  // others are served
+  EXPECT_EQ(WebClient(http->port()).Ask("HEAD", "/weights").status, 200);  // others are served
 }
 
 TEST_F(WebFailure, LackOfMemoryCostsOneRequest) {
@@ -113,7 +113,7 @@ TEST_F(WebFailure, LackOfMemoryCostsOneRequest) {
   door.RunNext(*hub);  // the answer fails
   EXPECT_EQ(reply.get().status, 503);
   EXPECT_EQ(metrics.Get(server::Counter::kAllocationsFailed), 1u);
-  EXPECT_EQ(client.Ask("HEAD", "/mjpeg").status, 200) << "the connection goes on";
+  EXPECT_EQ(client.Ask("HEAD", "/weights").status, 200) << "the connection goes on";
 }
 
 }  // namespace

@@ -208,6 +208,23 @@ TEST_F(WebPictures, ASnapshotShowsTheCurrentPose) {
   EXPECT_EQ(cameras["cameras"][0]["name"], "face");
 }
 
+TEST_F(WebPictures, HeadAnswersAsGetWithoutDrawing) {
+  SendPose(5);
+  sender->Send(protocol::Ping{1});
+  ASSERT_TRUE(sender->Await<protocol::Pong>().has_value());
+  WebClient client(port());
+  const auto picture = client.Ask("HEAD", "/snapshot.png?subject=ann&width=64");
+  EXPECT_EQ(picture.status, 200);
+  EXPECT_NE(picture.head.find("Content-Type: image/png"), std::string::npos);
+  EXPECT_EQ(picture.head.find("Content-Length"), std::string::npos);
+  EXPECT_EQ(client.Ask("HEAD", "/snapshot.png?subject=nobody").status, 404);
+  EXPECT_EQ(client.Ask("HEAD", "/snapshot.png?shading=nonsense").status, 400);
+  const auto stream = client.Ask("HEAD", "/mjpeg?subject=nobody");
+  EXPECT_EQ(stream.status, 200) << "a stream waits for its subject";
+  EXPECT_NE(stream.head.find("Content-Type: multipart/x-mixed-replace"), std::string::npos);
+  EXPECT_EQ(daemon->Count(server::Counter::kSubscriptionsAccepted), 0u);
+}
+
 constexpr std::string_view kSnapshot =
     "GET /snapshot.png?subject=ann&width=64&height=32&shading=diffuse HTTP/1.1\r\n"
     "Host: localhost\r\n\r\n";

@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "server/http/pictures/picture_replies.h"
+
 namespace furrow::server {
 
 Api::Api(Parts parts)
@@ -106,6 +108,8 @@ Api::Api(Parts parts)
                }},
               {"GET", "/api/cluster", Need::kOperate,
                [this](const ApiRequest&, Hub&, Time now) { return cluster_.Show(now); }},
+              {"HEAD", "/mjpeg", Need::kToken, HeadOfPictures},
+              {"HEAD", "/snapshot.png", Need::kToken, HeadOfPictures},
               {"GET", "/healthz", Need::kNothing,
                [this](const ApiRequest&, Hub&, Time) { return status_.Health(); }},
               {"GET", "/readyz", Need::kNothing,

@@ -30,8 +30,8 @@
 
 namespace furrow::server {
 
-// Answers the JSON routes (docs/HTTP-API.md), /healthz, /readyz and /metrics, by path and method.
-// All functions run on the hub's thread and never wait for I/O or rendering.
+// Answers the JSON routes (docs/HTTP-API.md), /healthz, /readyz, /metrics, and HEAD of pictures, by
+// path and method. All functions run on the hub's thread and never wait for I/O or rendering.
 class Api {
  public:
   // Pointers must outlive the Api.

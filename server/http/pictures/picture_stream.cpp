@@ -13,16 +13,14 @@
 
 #include "protocol/codec/codec.h"
 #include "server/http/pictures/picture_query.h"
+#include "server/http/pictures/picture_replies.h"
 #include "server/http/request/reply_writer.h"
-#include "server/http/request/request_access.h"
 #include "server/http/socket/web_peer.h"
 
 namespace furrow::server {
 namespace {
 
-constexpr char kBoundary[] = "furrow-picture";
-constexpr char kMjpegType[] = "multipart/x-mixed-replace; boundary=furrow-picture";
-constexpr char kSnapshotType[] = "image/png";
+constexpr char kBoundary[] = "furrow-picture";  // as in kMjpegType
 // Small, so that a slow client is at most a picture or two behind.
 constexpr int kSendBufferBytes = 128 * 1024;
 // What a stream that waits may keep of the memory of its last picture.
@@ -131,27 +129,7 @@ class PictureStream : public std::enable_shared_from_this<PictureStream> {
     }
     protocol::ErrorMessage error;
     if (protocol::Decode(view, error) != protocol::DecodeStatus::kOk) return std::nullopt;
-    return Next{false, Refusal(error)};
-  }
-
-  // The HTTP error for an error of the hub.
-  static ApiReply Refusal(const protocol::ErrorMessage& error) {
-    using protocol::ErrorCode;
-    switch (error.code) {
-      case ErrorCode::kUnknownSubject:
-        return ErrorReply(404, "not_found", "subject", error.message);
-      // Strangers do not come this far: the token has expired, or its key was retired.
-      case ErrorCode::kNeedsToken: return RefusesToken(error.message);
-      case ErrorCode::kNotPermitted: return ErrorReply(403, "forbidden", "subject", error.message);
-      case ErrorCode::kLimit: {
-        ApiReply reply = ErrorReply(503, "limit", "", error.message, "try again later");
-        reply.closes = true;  // the place is wanted by somebody else
-        return reply;
-      }
-      case ErrorCode::kNotRendering: return NotOfferedReply(error.message);
-      case ErrorCode::kDraining: return ErrorReply(503, "unavailable", "", error.message);
-      default: return ErrorReply(400, "invalid_argument", "", error.message);
-    }
+    return Next{false, PictureRefusal(error)};
   }
 
   WebStream* stream_;
@@ -241,10 +219,6 @@ net::awaitable<bool> ServePictures(WebStream* stream, WebContext* context,
   Result<protocol::SubscribePictures> wanted = PicturesOf(url);
   if (!wanted.ok()) co_return co_await WriteReply(*stream, request, ErrorReply(wanted.status()));
   const bool once = url.path == "/snapshot.png";
-  if (request.method() == http::verb::head) {  // the query is valid; render nothing
-    ApiReply reply{.type = once ? kSnapshotType : kMjpegType};
-    co_return co_await WriteReply(*stream, request, std::move(reply));
-  }
   wanted->acknowledged = !once;
   wanted->wait = !once;
   if (once) wanted->format = protocol::ImageFormat::kPng;

@@ -61,7 +61,7 @@ net::awaitable<bool> WriteReply(WebStream& stream, const WebRequest& request, Ap
   }
   if (!reply.location.empty()) response.set(http::field::location, reply.location);
   if (!reply.allow.empty()) response.set(http::field::allow, reply.allow);
-  // A HEAD request for a picture renders none, so the length of the body is unknown.
+  // A HEAD request for a picture draws none, so the length of the body is unknown.
   const bool has_no_length = request.method() == http::verb::head && reply.body.empty();
   response.body() = std::move(reply.body);
   if (!has_no_length) response.prepare_payload();

@@ -26,7 +26,8 @@
 
 namespace furrow::server {
 
-// Answers the JSON routes, /metrics, /healthz and /readyz. Called on the hub's thread.
+// Answers the JSON routes, /metrics, /healthz, /readyz, and HEAD of pictures. Called on the hub's
+// thread.
 using AnswerApi = std::function<ApiReply(const ApiRequest& request, Hub& hub, Time now)>;
 
 // Requests over http.requests_per_second are answered after this time: even an answer from memory

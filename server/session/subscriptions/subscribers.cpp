@@ -88,14 +88,8 @@ void Subscribers::Subscribe(Peer& peer, const protocol::Header& header,
                          "pictures are available over TCP and WebSocket only");
   }
   if (!CheckRequest(peer, header)) return;
-  if (!pictures_.can_render()) {
-    return RefuseRequest(
-        peer, header, ErrorCode::kNotRendering,
-        "this daemon renders no pictures: they are off, or it has no character or no OpenGL");
-  }
-  if (pictures_.is_stuck()) {
-    return RefuseRequest(peer, header, ErrorCode::kNotRendering,
-                         pictures_.fault() + ": pictures are off");
+  if (auto why = WhyNotRendering()) {
+    return RefuseRequest(peer, header, why->code, std::move(why->message));
   }
   Result<PictureRequest> pictures = pictures_.MakeRequest(request);
   if (!pictures.ok()) {
@@ -123,6 +117,52 @@ void Subscribers::Subscribe(Peer& peer, const protocol::Header& header,
   subscription->request = PoseRequest();
   subscription->every = request.every && peer.transport != Transport::kUdp;
   Add(peer, header, std::move(subscription));
+}
+
+std::optional<protocol::ErrorMessage> Subscribers::WhyNotRendering() const {
+  if (!pictures_.can_render()) {
+    return protocol::ErrorMessage{
+        ErrorCode::kNotRendering,
+        "this daemon renders no pictures: they are off, or it has no character or no OpenGL"};
+  }
+  if (pictures_.is_stuck()) {
+    return protocol::ErrorMessage{ErrorCode::kNotRendering,
+                                  pictures_.fault() + ": pictures are off"};
+  }
+  return std::nullopt;
+}
+
+// In the order of Subscribe() and Add(), so that the first of several reasons is the same.
+std::optional<protocol::ErrorMessage> Subscribers::WhyNoPictures(
+    const protocol::SubscribePictures& request, const Access& access) {
+  if (auto why = WhyNotRendering()) return why;
+  if (const auto pictures = pictures_.MakeRequest(request); !pictures.ok()) {
+    return protocol::ErrorMessage{ErrorCode::kBadPicture, pictures.status().ToString()};
+  }
+  Subscription subscription;
+  subscription.subject_name = request.subject;
+  if (!MayWatch(subscription, access)) {
+    return protocol::ErrorMessage{ErrorCode::kNotPermitted, WhyForbidden(subscription, access)};
+  }
+  if (FindFor(request.subject, access) != nullptr) return std::nullopt;
+  if (const Place place = places_->Elsewhere(request.subject);
+      place.kind == Place::Kind::kElsewhere) {
+    return protocol::ErrorMessage{ErrorCode::kUnknownSubject,
+                                  ElsewhereText(request.subject, place.node)};
+  }
+  if (request.wait) return std::nullopt;
+  return protocol::ErrorMessage{ErrorCode::kUnknownSubject, NoSubjectText(request.subject, access)};
+}
+
+// An empty name: the oldest subject.
+Subject* Subscribers::FindFor(const std::string& name, const Access& access) const {
+  return name.empty() ? subjects_->First(access) : subjects_->Find(name);
+}
+
+std::string Subscribers::NoSubjectText(const std::string& name, const Access& access) const {
+  const std::string known = subjects_->Names(access);
+  return (name.empty() ? "there is no subject" : "no subject '" + name + "'") +
+         (known.empty() ? "; no subject is connected" : "; connected subjects: " + known);
 }
 
 // The checks that all kinds of request share. False: the request has been answered.
@@ -172,7 +212,7 @@ void Subscribers::Add(Peer& peer, const protocol::Header& header,
     return RefuseRequest(peer, header, ErrorCode::kNotPermitted,
                          WhyForbidden(*subscription, peer.access));
   }
-  Subject* subject = name.empty() ? subjects_->First(peer.access) : subjects_->Find(name);
+  Subject* subject = FindFor(name, peer.access);
   if (subject == nullptr) {
     const Place place = places_->Elsewhere(name);
     if (place.kind == Place::Kind::kElsewhere) {
@@ -181,11 +221,8 @@ void Subscribers::Add(Peer& peer, const protocol::Header& header,
     }
   }
   if (subject == nullptr && !subscription->wait) {
-    const std::string known = subjects_->Names(peer.access);
-    return RefuseRequest(
-        peer, header, ErrorCode::kUnknownSubject,
-        (name.empty() ? "there is no subject" : "no subject '" + name + "'") +
-            (known.empty() ? "; no subject is connected" : "; connected subjects: " + known));
+    return RefuseRequest(peer, header, ErrorCode::kUnknownSubject,
+                         NoSubjectText(name, peer.access));
   }
   // The subscription is in the table before Bind(), because replies carry its id. Bind() erases it
   // again if it must be refused.

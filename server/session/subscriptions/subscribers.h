@@ -14,6 +14,7 @@
 #include "server/core/metrics.h"
 #include "server/pipeline/picture_source.h"
 #include "server/saved/saved_state.h"
+#include "server/session/access/access.h"
 #include "server/session/delivery/publish_context.h"
 #include "server/session/peers/peer.h"
 #include "server/session/subjects/places.h"
@@ -48,6 +49,10 @@ class Subscribers {
                  const protocol::SubscribePictures& request);
   void Subscribe(Peer& peer, const protocol::Header& header,
                  const protocol::SubscribePoses& request);
+  // Why Subscribe() would refuse this request of a client with this access; nothing: it would not,
+  // unless the client has too many subscriptions. Changes nothing.
+  [[nodiscard]] std::optional<protocol::ErrorMessage> WhyNoPictures(
+      const protocol::SubscribePictures& request, const Access& access);
   // Changes the view of the picture subscription `header.stream`. Replies only to an invalid
   // request, with an error.
   void UpdatePictures(Peer& peer, const protocol::Header& header,
@@ -103,6 +108,9 @@ class Subscribers {
 
  private:
   bool CheckRequest(Peer& peer, const protocol::Header& header);
+  [[nodiscard]] std::optional<protocol::ErrorMessage> WhyNotRendering() const;
+  [[nodiscard]] Subject* FindFor(const std::string& name, const Access& access) const;
+  [[nodiscard]] std::string NoSubjectText(const std::string& name, const Access& access) const;
   void ReplyAgain(Subscription& subscription);
   void Add(Peer& peer, const protocol::Header& header, std::unique_ptr<Subscription> subscription);
   bool Bind(Subscription& subscription, Subject& subject);

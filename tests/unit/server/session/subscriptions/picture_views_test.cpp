@@ -584,6 +584,28 @@ TEST_F(PictureViewsTest, WhileTheRendererDoesNotRespondPicturesAreRefused) {
   EXPECT_NE(Watch(viewer, {.subject = "ann"}, 2), 0) << "weights go on";
 }
 
+// What a client learns without subscribing is what its subscription would be told.
+TEST_F(PictureViewsTest, TheReasonAgainstPicturesIsKnownWithoutASubscription) {
+  Publish(sender, "ann");
+  const auto code = [this](const protocol::SubscribePictures& request,
+                           const Access& access = Access::Everything()) {
+    const Hub::ExclusiveLock lock(*hub, 0);
+    const auto why = hub->WhyNoPictures(request, access);
+    return why ? std::optional(why->code) : std::nullopt;
+  };
+  EXPECT_EQ(code({.subject = "ann"}), std::nullopt);
+  EXPECT_EQ(code({}), std::nullopt) << "the oldest subject";
+  EXPECT_EQ(code({.subject = "bob"}), ErrorCode::kUnknownSubject);
+  EXPECT_EQ(code({.subject = "bob", .wait = true}), std::nullopt);
+  EXPECT_EQ(code({.subject = "ann", .view = "nonsense"}), ErrorCode::kBadPicture);
+  EXPECT_EQ(code({.subject = "ann"}, Access()), ErrorCode::kNotPermitted);
+  EXPECT_EQ(hub->num_subscriptions(), 0u);
+  pictures.stuck = true;
+  EXPECT_EQ(code({.subject = "ann"}), ErrorCode::kNotRendering);
+  hub->Drain(now);
+  EXPECT_EQ(code({.subject = "ann"}), ErrorCode::kDraining);
+}
+
 TEST_F(PictureViewsTest, WithoutARendererPicturesAreRefused) {
   Hub::Parts parts;
   parts.rig = std::make_shared<const wrinkle::Rig>(MakeRig(false));
