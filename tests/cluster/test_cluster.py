@@ -44,6 +44,25 @@ class SampleTest(unittest.TestCase):
                 self.assertEqual(node.holder("ada")[0], "a")
 
 
+class CredentialsTest(unittest.TestCase):
+    """A server that refuses the credentials is named as such, and asked again."""
+
+    def test_refused_credentials_are_named_and_tried_again(self):
+        config = (SOURCE / "deploy/nats/nats-server.conf").read_text()
+        nats = NatsServer(config)
+        self.addCleanup(nats.close)
+        with tempfile.NamedTemporaryFile("w") as credentials:
+            credentials.write("furrow:another\n")
+            credentials.flush()
+            with Node("a", "--cluster", nats.url, "--cluster-credentials", credentials.name) as node:
+                wait_until(lambda: "refuses the credentials" in json.dumps(node.get("/readyz")[1]), "the refusal is named")
+                nats.kill()
+                file = pathlib.Path(nats.folder.name, "nats.conf")
+                file.write_text(file.read_text().replace("change-me", "another"))
+                nats.start()
+                wait_until(node.is_ready, "the node is ready")
+
+
 class SecuredTest(unittest.TestCase):
     """Nodes that let nobody in without a token trust each other by their keys."""
 

@@ -38,6 +38,8 @@ constexpr std::int64_t kPingMs = 400;
 constexpr std::int64_t kReconnectMs = 250;
 constexpr std::int64_t kConnectMs = 1000;
 constexpr std::int64_t kRequestMs = 400;
+// Between attempts at a server that refuses the credentials.
+constexpr milliseconds kOpenPause(5000);
 // Reading everything must end before the leases do.
 constexpr milliseconds kListTime(700);
 // How often the stream is compared with what was heard of it: a watcher may die without a word.
@@ -83,6 +85,7 @@ class NatsStore : public Store {
   bool Open(std::string* why) override;
   // The library locks the connection while it tries to connect, so its status cannot be asked.
   bool connected() override { return link_->connected; }
+  bool refuses_credentials() const override { return refuses_ && !link_->connected; }
   void Put(const StorePut& put) override;
   bool Poll(milliseconds wait, std::vector<StoreAnswer>* answers,
             std::vector<StoreRecord>* changes) override;
@@ -91,6 +94,8 @@ class NatsStore : public Store {
             std::string* why) override;
 
  private:
+  void DropConnection();
+  void OpenAgain();
   natsStatus PrepareAnswers();
   void TakeAnswers(Clock::time_point until, std::vector<StoreAnswer>* answers);
   natsStatus PrepareBucket(StreamInfo* info);
@@ -109,10 +114,13 @@ class NatsStore : public Store {
   // Changed by threads of the library, which may call after the connection has been closed.
   struct Link {
     std::atomic<bool> connected = false;
-    std::atomic<bool> closed = false;
+    std::atomic<bool> refused = false;  // the credentials, which closed the connection
+    std::atomic<bool> closed = false;   // changes last: the library calls no more
   };
   std::unique_ptr<Link> link_ = std::make_unique<Link>();
   std::atomic<bool> woken_ = false;
+  bool refuses_ = false;  // the server refused the credentials at the last attempt
+  Clock::time_point opened_{};
   Connection connection_;
   Context context_;
   Bucket bucket_;
@@ -128,7 +136,9 @@ class NatsStore : public Store {
 
 // The call that says that the connection is closed is the last one of the library. If it does not
 // come, a few bytes are left behind for it.
-NatsStore::~NatsStore() {
+NatsStore::~NatsStore() { DropConnection(); }
+
+void NatsStore::DropConnection() {
   watcher_.reset();
   retired_.clear();
   answers_.reset();
@@ -139,9 +149,27 @@ NatsStore::~NatsStore() {
   const auto deadline = Clock::now() + milliseconds(kConnectMs);
   while (!link_->closed && Clock::now() < deadline) nats_Sleep(5);
   if (!link_->closed) (void)link_.release();
+  connection_.reset();
+}
+
+// The library gives a server up that refuses the credentials twice. Its administrator may let them
+// in later.
+void NatsStore::OpenAgain() {
+  const auto now = Clock::now();
+  if (link_->closed) {
+    refuses_ = link_->refused;
+    if (now - opened_ < kOpenPause) return;
+    DropConnection();
+    link_ = std::make_unique<Link>();
+    std::string unused;  // such as a file that cannot be read now; the next attempt may find it
+    if (!Open(&unused)) link_->closed = true;
+  } else if (now - opened_ >= kOpenPause) {
+    refuses_ = false;  // the server is gone, or it would have answered by now
+  }
 }
 
 bool NatsStore::Open(std::string* why) {
+  opened_ = Clock::now();
   natsOptions* raw = nullptr;
   natsStatus status = natsOptions_Create(&raw);
   const Options settings(raw);
@@ -168,8 +196,11 @@ bool NatsStore::Open(std::string* why) {
     const natsConnectionHandler down = [](natsConnection*, void* link) {
       static_cast<Link*>(link)->connected = false;
     };
-    const natsConnectionHandler closed = [](natsConnection*, void* link) {
+    const natsConnectionHandler closed = [](natsConnection* connection, void* link) {
+      const char* text = nullptr;
+      const natsStatus last = natsConnection_GetLastError(connection, &text);
       static_cast<Link*>(link)->connected = false;
+      static_cast<Link*>(link)->refused = last == NATS_CONNECTION_AUTH_FAILED;
       static_cast<Link*>(link)->closed = true;
     };
     set(natsOptions_SetRetryOnFailedConnect(raw, true, up, link_.get()));
@@ -331,6 +362,7 @@ void NatsStore::TakeAnswers(Clock::time_point until, std::vector<StoreAnswer>* a
 
 bool NatsStore::Poll(milliseconds wait, std::vector<StoreAnswer>* answers,
                      std::vector<StoreRecord>* changes) {
+  if (!connected()) OpenAgain();
   if (answers_ == nullptr || !connected()) {
     nats_Sleep(wait.count());
     return false;

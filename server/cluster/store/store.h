@@ -47,6 +47,9 @@ class Store {
   [[nodiscard]] virtual bool Open(std::string* why) = 0;
   // True while there is a connection. It is made again after a loss.
   [[nodiscard]] virtual bool connected() = 0;
+  // True if there is no connection because the store refuses the credentials. It is asked again at
+  // intervals.
+  [[nodiscard]] virtual bool refuses_credentials() const { return false; }
   // Sends a write; its answer arrives by Poll(), or never.
   virtual void Put(const StorePut& put) = 0;
   // Waits up to `wait` for answers and for changed records. Returns false if changes may have been

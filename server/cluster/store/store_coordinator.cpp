@@ -218,7 +218,10 @@ void StoreCoordinator::Publish(Time now) {
     next->fault =
         "another daemon of the cluster has the name '" + self_.name + "'; give each its own --name";
   } else if (!leases_.reachable()) {
-    next->fault = "the store of the cluster cannot be reached";
+    next->fault =
+        store_->refuses_credentials()
+            ? "the store of the cluster refuses the credentials; see --cluster-credentials"
+            : "the store of the cluster cannot be reached";
   } else if (!why_.empty()) {
     next->fault = "the store of the cluster cannot be read: " + why_;
   } else if (!next->may_take) {

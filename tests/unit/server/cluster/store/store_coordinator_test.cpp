@@ -31,6 +31,7 @@ struct World {
   Revision revision = 0;
   std::uint64_t incarnation = 1;
   std::atomic<bool> reachable = true;
+  std::atomic<bool> refuses_credentials = false;
   std::atomic<std::int64_t> now_ns = 1'000'000'000;
   std::atomic<int> wakes = 0;
   std::mutex turns_mutex;
@@ -74,6 +75,7 @@ class FakeStore : public Store {
     return true;
   }
   bool connected() override { return world_->reachable; }
+  bool refuses_credentials() const override { return world_->refuses_credentials; }
   void Put(const StorePut& put) override {
     if (!connected()) return;
     const std::lock_guard lock(world_->mutex);
@@ -185,6 +187,21 @@ TEST_F(StoreCoordinatorTest, AReleasedSubjectMovesAtOnceAndUpwards) {
   a.Release("ada");
   ASSERT_TRUE(Takes(b, "ada"));
   EXPECT_GT(b.Find("ada", world_.Now()).epoch, epoch);
+}
+
+TEST_F(StoreCoordinatorTest, RefusedCredentialsAreNoUnreachableStore) {
+  StoreCoordinator& a = Add("a");
+  ASSERT_TRUE(IsReady(a));
+  const auto says = [&](const char* what) {
+    return Becomes([&] { return a.Fault(world_.Now()).find(what) != std::string::npos; });
+  };
+  world_.reachable = false;
+  EXPECT_TRUE(says("cannot be reached"));
+  world_.refuses_credentials = true;
+  EXPECT_TRUE(says("refuses the credentials"));
+  world_.refuses_credentials = false;
+  world_.reachable = true;
+  EXPECT_TRUE(IsReady(a));
 }
 
 // Viewers wait while a subject moves, so no part of it waits for the next look at the requests.
