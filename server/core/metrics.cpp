@@ -45,6 +45,8 @@ constexpr CounterInfo kCounters[] = {
      "Messages dropped because some of their fragments never arrived, or for lack of memory."},
     {Counter::kConnectionsAccepted, "furrow_connections_accepted_total",
      "TCP connections accepted."},
+    {Counter::kAcceptsFailed, "furrow_accepts_failed_total",
+     "Attempts to accept a TCP or web connection that failed, as without free file descriptors."},
     {Counter::kConnectionsRefused, "furrow_connections_refused_total",
      "Connections refused because of the connection limit."},
     {Counter::kConnectionsMalformed, "furrow_connections_malformed_total",

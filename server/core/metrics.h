@@ -32,6 +32,7 @@ enum class Counter {
   kFragmentsRefused,
   kFragmentsExpired,
   kConnectionsAccepted,
+  kAcceptsFailed,
   kConnectionsRefused,
   kConnectionsMalformed,
   kConnectionsOverrun,

@@ -24,6 +24,7 @@ constexpr std::pair<Counter, std::string_view> kDrops[] = {
     {Counter::kFragmentsMalformed, "malformed fragments"},
     {Counter::kFragmentsRefused, "fragments over the limits"},
     {Counter::kFragmentsExpired, "incomplete fragmented messages"},
+    {Counter::kAcceptsFailed, "failed attempts to accept connections"},
     {Counter::kConnectionsRefused, "connections over the limit"},
     {Counter::kConnectionsMalformed, "malformed connections"},
     {Counter::kConnectionsOverrun, "connections that did not read"},

@@ -159,7 +159,7 @@ struct HttpServer::Impl {
   Lobby lobby;  // of newcomers that wait for a place
   std::shared_ptr<net::io_context> loop = std::make_shared<net::io_context>(1);
   tcp::acceptor acceptor{*loop};
-  AcceptLog accept_log{"web port", "http.max_connections"};
+  AcceptLog accept_log{"web port", "http.max_connections", context.metrics};
   HostPort address;
   std::thread thread;
 };

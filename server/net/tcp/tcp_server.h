@@ -99,7 +99,7 @@ class TcpServer {
   HandshakeBudget handshakes_;
   HandshakePlaces handshake_places_;
   FairShare shares_;  // of the sessions and handshakes
-  AcceptLog accept_log_{"TCP port", "limits.max_connections"};
+  AcceptLog accept_log_{"TCP port", "limits.max_connections", metrics_};
   bool leaves_ = false;  // newcomers wait in the listening socket for the next daemon
   Lobby lobby_;          // of newcomers that wait for a place
   std::unordered_set<std::shared_ptr<TcpSession>> sessions_;
