@@ -200,7 +200,8 @@ constexpr CounterInfo kCounters[] = {
     {Counter::kAllocationsFailed, "furrow_allocations_failed_total",
      "Datagrams and requests dropped for lack of memory."},
     {Counter::kReserveUsed, "furrow_memory_reserve_used_total",
-     "Chunks of 2 MiB of the memory reserve that were released because an allocation failed."},
+     "Chunks of 2 MiB that the daemon released of its memory reserve because an allocation failed. "
+     "The reserve has 12 chunks, and is filled up again once per second."},
     {Counter::kMocapPackets, "furrow_mocap_packets_total", "Packets received on mocap ports."},
     {Counter::kMocapMalformed, "furrow_mocap_malformed_total",
      "Mocap packets that could not be read."},
