@@ -2,9 +2,12 @@
 #include "recording/take_folder.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <ctime>
 #include <system_error>
 #include <utility>
+
+#include <unistd.h>
 
 #include "base/status.h"
 
@@ -24,6 +27,27 @@ std::string NameAt(std::uint64_t now_ns) {
 }
 
 }  // namespace
+
+Status CheckTakeFolder(const std::filesystem::path& folder) {
+  std::error_code error;
+  const std::filesystem::path whole = std::filesystem::absolute(folder, error);
+  // MakeFolder() creates what is missing below the first folder that exists.
+  std::filesystem::path present = whole;
+  while (!std::filesystem::exists(present, error) && present.has_relative_path()) {
+    present = present.parent_path();
+  }
+  std::string why;
+  if (!std::filesystem::is_directory(present, error)) {
+    why = present.string() + " is not a folder";
+  } else if (access(present.c_str(), W_OK | X_OK) != 0) {
+    why = std::generic_category().message(errno);
+    if (present != whole) why = present.string() + ": " + why;
+  }
+  if (why.empty()) return {};
+  const char* const what =
+      present == whole ? "cannot write in the folder: " : "cannot create the folder: ";
+  return {StatusCode::kIo, what + why, folder.string()};
+}
 
 Result<std::unique_ptr<TakeFolder>> TakeFolder::Open(TakeFolderOptions options,
                                                      std::uint64_t now_ns) {

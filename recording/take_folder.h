@@ -22,6 +22,9 @@ struct TakeFolderOptions {
   std::string rig_json;            // attached to every file; may be empty
 };
 
+// Whether this user may record in the folder, which need not exist. Creates nothing. Errors: kIo.
+[[nodiscard]] Status CheckTakeFolder(const std::filesystem::path& folder);
+
 // An open-ended recording: a folder of consecutive takes, each complete in itself.
 //
 // - Files are named by their start time, "take-20260514T093000Z.mcap", or "name.mcap". If the name

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -17,6 +18,7 @@
 
 #include "base/joined.h"
 #include "base/status.h"
+#include "recording/take_folder.h"
 #include "server/assets.h"
 #include "server/cluster/setup/make_coordinator.h"
 #include "server/core/metrics.h"
@@ -140,11 +142,21 @@ Status CheckCredentials(Config config) {
   return Credentials(config, &unused).Load();
 }
 
+// A daemon without its page serves all the same, and warns only after its start.
+void WarnAboutPage(const HttpConfig& http) {
+  const std::filesystem::path index = http.page / "index.html";
+  std::error_code ignored;
+  if (!http.enabled || http.page.empty() || std::filesystem::is_regular_file(index, ignored))
+    return;
+  spdlog::warn("http.page: {} does not exist: there is no web page", index.string());
+}
+
 Status CheckAll(const Config& config) {
   auto assets = LoadAssets(config, character::Pictures::kLeaveOut);
   FURROW_RETURN_IF_ERROR(assets);
   WarnAboutSecurity(config);
   WarnAboutAssets(*assets);
+  WarnAboutPage(config.http);
   FURROW_RETURN_IF_ERROR(LoadOscOutputs(config));
   FURROW_RETURN_IF_ERROR(LoadPlayer(config));
   FURROW_RETURN_IF_ERROR(MakeCoordinator(config, 1));
@@ -168,6 +180,10 @@ ExitCode Check(const Config& asked) {
   const Config config = WithoutMissingParts(asked);
   const Status status = WithoutExceptions([&] { return CheckAll(config); });
   if (!status.ok()) return Fail(ExitCode::kBadInput, status);
+  if (const auto& folder = config.record.folder; !folder.empty()) {
+    const Status writes = recording::CheckTakeFolder(folder).Within("record.dir");
+    if (!writes.ok()) return Fail(ExitCode::kFailed, writes);
+  }
   std::puts("the configuration is valid");
   return ExitCode::kOk;
 }

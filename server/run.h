@@ -16,8 +16,9 @@ namespace furrow::server {
 // for the web server, one for the recorder. Several daemons may run in one process.
 [[nodiscard]] ExitCode Run(const Config& config, const RunOptions& options = {});
 
-// Reads what Run() would read before it serves, except pictures. Logs what is wrong, or prints on
-// stdout that the configuration is valid. Opens no ports and starts no renderer.
+// Reads what Run() would read before it serves, except pictures, and looks whether it may record.
+// Logs what is wrong, or prints on stdout that the configuration is valid. Opens no ports, starts
+// no renderer and writes no files.
 [[nodiscard]] ExitCode Check(const Config& config);
 
 }  // namespace furrow::server

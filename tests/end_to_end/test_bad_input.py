@@ -83,6 +83,16 @@ class BadFileTest(unittest.TestCase):
         self.assertEqual((code, out), (DONE, "the configuration is valid\n"), errors)
         self.assertIn("not checked, because systemd copies them when it starts the service: /run/credentials/no.service/keys", errors)
 
+    def test_the_folders_of_the_configuration_are_checked(self):
+        self.file("takes", "a file, not a folder")
+        code, out, errors = self.check("[record]\ndir = 'takes'\n")
+        self.assertEqual((code, out), (FAILED, ""), errors)
+        self.assertRegex(errors, "record.dir: .*takes: .*is not a folder")
+        code, out, errors = self.check("[record]\ndir = 'new/takes'\n[http]\npage = 'nowhere'\n")
+        self.assertEqual((code, out), (DONE, "the configuration is valid\n"), errors)
+        self.assertRegex(errors, "http.page: .*nowhere/index.html does not exist")
+        self.assertFalse((self.root / "new").exists())
+
     def refuse(self, code, *args, says=()):
         """`furrow ARGS` must exit with `code` and a short message that contains each of `says`."""
         result = furrow(*args)

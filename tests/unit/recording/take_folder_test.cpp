@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <csignal>
+#include <fstream>
 
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include "recording/take_summary.h"
 #include "tests/unit/recording/take_testing.h"
@@ -126,6 +128,24 @@ TEST_F(TakeFolderTest, AFullDiskLeavesAReadableFile) {
   const auto summary = Summarise(**take);
   ASSERT_TRUE(summary.ok());
   EXPECT_GT(summary->subjects.at("ada").poses, 0u);
+}
+
+TEST_F(TakeFolderTest, AFolderIsCheckedWithoutCreatingIt) {
+  EXPECT_TRUE(CheckTakeFolder(folder_.path()).ok());
+  EXPECT_TRUE(CheckTakeFolder(folder_ / "takes" / "today").ok());
+  EXPECT_TRUE(fs::is_empty(folder_.path()));
+  std::ofstream(folder_ / "file") << "in the way";
+  for (const fs::path& wrong : {folder_ / "file", folder_ / "file" / "takes"}) {
+    const Status status = CheckTakeFolder(wrong);
+    EXPECT_EQ(status.code(), StatusCode::kIo);
+    EXPECT_NE(status.what().find("is not a folder"), std::string::npos) << status.ToString();
+    EXPECT_EQ(status.where(), wrong.string());
+  }
+  if (geteuid() == 0) return;  // root may write everywhere
+  fs::create_directory(folder_ / "closed");
+  fs::permissions(folder_ / "closed", fs::perms::owner_read | fs::perms::owner_exec);
+  EXPECT_FALSE(CheckTakeFolder(folder_ / "closed").ok());
+  EXPECT_FALSE(CheckTakeFolder(folder_ / "closed" / "takes").ok());
 }
 
 TEST_F(TakeFolderTest, AFolderThatWasRemovedDuringAPauseIsMadeAgain) {
