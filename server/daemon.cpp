@@ -560,7 +560,8 @@ ReloadRequest Daemon::MakeReloadRequest() {
           },
           .drawn = rendering_.thread() != nullptr ? assets_.character : nullptr,
           .rig_changed = rig_files_.rig_changed(),
-          .maps_changed = rig_files_.maps_changed()};
+          .maps_changed = rig_files_.maps_changed(),
+          .is_confined = !options_.confined.empty()};
 }
 
 // The rig first, because it alone can fail, and then nothing has changed.

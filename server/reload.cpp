@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -41,22 +42,7 @@ std::filesystem::path RigFileOf(const Config& config) {
   return character::RigBeside(config.character);
 }
 
-}  // namespace
-
-RigFiles::RigFiles(const Config& config)
-    : rig_(RigFileOf(config)), skeleton_map_(config.skeleton_map), shape_map_(config.shape_map) {
-  (void)Changed();
-  rig_changed_ = maps_changed_ = false;
-}
-
-bool RigFiles::Changed() {
-  rig_changed_ |= rig_.Changed();
-  maps_changed_ |= skeleton_map_.Changed();
-  maps_changed_ |= shape_map_.Changed();
-  return rig_changed_ || maps_changed_;
-}
-
-Result<Reload> PrepareReload(const ReloadRequest& request) {
+Result<Reload> ReadReload(const ReloadRequest& request) {
   const auto wanted = request.read();
   FURROW_RETURN_IF_ERROR(wanted);
   const bool draws = request.drawn != nullptr;
@@ -96,6 +82,35 @@ Result<Reload> PrepareReload(const ReloadRequest& request) {
   // Captures stay in a rig whose file is the same.
   if (!rig_changes) reload.files->rig = nullptr;
   return reload;
+}
+
+// Landlock refuses files in new folders as if they lacked permissions.
+Status NamingConfinement(const Status& status) {
+  if (status.what().find("Permission denied") == std::string::npos) return status;
+  return {status.code(), status.what(), status.where(),
+          "a confined daemon reads only the folders that it had at its start: restart it if this "
+          "folder is new"};
+}
+
+}  // namespace
+
+RigFiles::RigFiles(const Config& config)
+    : rig_(RigFileOf(config)), skeleton_map_(config.skeleton_map), shape_map_(config.shape_map) {
+  (void)Changed();
+  rig_changed_ = maps_changed_ = false;
+}
+
+bool RigFiles::Changed() {
+  rig_changed_ |= rig_.Changed();
+  maps_changed_ |= skeleton_map_.Changed();
+  maps_changed_ |= shape_map_.Changed();
+  return rig_changed_ || maps_changed_;
+}
+
+Result<Reload> PrepareReload(const ReloadRequest& request) {
+  auto reload = ReadReload(request);
+  if (reload.ok() || !request.is_confined) return reload;
+  return NamingConfinement(reload.status());
 }
 
 }  // namespace furrow::server

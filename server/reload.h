@@ -65,6 +65,7 @@ struct ReloadRequest {
   std::shared_ptr<const character::Character> drawn;
   bool rig_changed = false;   // RigFiles::rig_changed()
   bool maps_changed = false;  // RigFiles::maps_changed()
+  bool is_confined = false;   // the process, by Confine()
 };
 
 // Reads the configuration again, and the files that it names. Changes nothing, and may take a

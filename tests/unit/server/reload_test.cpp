@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/reload.h"
 
+#include <string>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +10,7 @@ namespace furrow::server {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 // A port of which the address waits for a restart, and the senders do not.
 TEST(Reload, WhatWaitsForARestartMayForbidTheRest) {
@@ -27,6 +30,24 @@ TEST(Reload, WhatWaitsForARestartMayForbidTheRest) {
   ASSERT_FALSE(reload.ok()) << "the network could publish without a token";
   EXPECT_THAT(reload.status().ToString(), HasSubstr("could publish there"));
   EXPECT_THAT(reload.status().ToString(), HasSubstr("listen.bind"));
+}
+
+TEST(Reload, AFolderThatAConfinedDaemonDoesNotKnowTakesARestart) {
+  const auto why = [](bool is_confined, const std::string& what) {
+    const auto reload =
+        PrepareReload({.running = {},
+                       .read = [&what]() -> Result<Config> {
+                         return Status(StatusCode::kIo, what, "/srv/new/furrow.keys");
+                       },
+                       .drawn = nullptr,
+                       .is_confined = is_confined});
+    return reload.status().ToString();
+  };
+  const std::string denied = "cannot open the file: Permission denied";
+  EXPECT_THAT(why(true, denied), HasSubstr("/srv/new/furrow.keys: " + denied + " (a confined"));
+  EXPECT_THAT(why(true, denied), HasSubstr("restart it"));
+  EXPECT_THAT(why(false, denied), Not(HasSubstr("confined")));
+  EXPECT_THAT(why(true, "no such file"), Not(HasSubstr("confined")));
 }
 
 }  // namespace
