@@ -55,11 +55,15 @@ void LogStart(const furrow::server::Config& config) {
                furrow::server::ConfigSummary(config));
 }
 
+std::string WithoutLineEnd(std::string text) {
+  while (text.ends_with('\n')) text.pop_back();
+  return text;
+}
+
 furrow::Result<furrow::server::Config> ReadConfigAgain(const std::vector<std::string>& args) {
   furrow::server::CommandLine line = furrow::server::ParseCommandLine(args);
   if (line.config) return *std::move(line.config);
-  while (line.text.ends_with('\n')) line.text.pop_back();
-  return furrow::Status(furrow::StatusCode::kInvalidArgument, line.text);
+  return furrow::Status(furrow::StatusCode::kInvalidArgument, WithoutLineEnd(line.text));
 }
 
 }  // namespace
@@ -71,12 +75,17 @@ int main(int argc, char** argv) {
   if (!line.config) {
     const bool failed = line.exit_code != ExitCode::kOk;
     const bool is_journal = failed && furrow::server::StderrIsJournal();
+    if (failed && line.log_json) {
+      const furrow::server::Log log({.json = true, .journal = is_journal});
+      spdlog::error("{}", WithoutLineEnd(line.text));
+      return static_cast<int>(line.exit_code);
+    }
     const std::string text = is_journal ? furrow::server::AsJournalError(line.text) : line.text;
     std::fputs(text.c_str(), failed ? stderr : stdout);
     return static_cast<int>(line.exit_code);
   }
   if (line.check) {
-    const furrow::server::Log log({.level = line.config->log_level});
+    const furrow::server::Log log({.json = line.config->log_json, .level = line.config->log_level});
     return static_cast<int>(furrow::server::Check(*line.config));
   }
   furrow::server::early_signals::Install();

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -251,6 +252,13 @@ std::vector<std::string> Reversed(std::span<const std::string> args) {
 CommandLine ParseCommandLine(std::span<const std::string> args) {
   Config config;
   Flags flags;
+  // A wrong option before the flag would hide it from the parser.
+  const bool wants_json = std::ranges::find(args, std::string_view("--log-json")) != args.end();
+  const auto fail = [&](ExitCode code, const std::string& text) {
+    CommandLine line = Fail(code, text);
+    line.log_json = wants_json || config.log_json;
+    return line;
+  };
   CLI::App first("Compute wrinkle weights and pictures from live poses.", "furrowd");
   first.footer(kFooter);
   first.set_version_flag("--version", kVersion);
@@ -263,18 +271,18 @@ CommandLine ParseCommandLine(std::span<const std::string> args) {
     // 0.
     const bool failed = first.exit(error, out, out) != 0;
     if (std::string unknown = UnknownWords(first); failed && !unknown.empty()) {
-      return Fail(ExitCode::kUsage, unknown);
+      return fail(ExitCode::kUsage, unknown);
     }
-    return Fail(failed ? ExitCode::kUsage : ExitCode::kOk, out.str());
+    return fail(failed ? ExitCode::kUsage : ExitCode::kOk, out.str());
   }
   if (first.count("--config") > 0 && flags.config_file.empty()) {
-    return Fail(ExitCode::kUsage, "--config: the name of the file is empty\n");
+    return fail(ExitCode::kUsage, "--config: the name of the file is empty\n");
   }
   if (!flags.config_file.empty()) {
     // Flags override the file: read the file into a fresh config, then parse the flags again.
     config = Config();
     if (Status status = LoadConfigFile(flags.config_file, &config); !status.ok()) {
-      return Fail(ExitCode::kBadInput, status.ToString() + "\n");
+      return fail(ExitCode::kBadInput, status.ToString() + "\n");
     }
     config.source = flags.config_file;
     CLI::App second;
@@ -288,24 +296,24 @@ CommandLine ParseCommandLine(std::span<const std::string> args) {
   for (const std::string& text : flags.jitter) {
     const Result<JitterRule> rule = ParseJitterRule(text);
     if (!rule.ok()) {
-      return Fail(ExitCode::kUsage, rule.status().At("--jitter-buffer").ToString() + "\n");
+      return fail(ExitCode::kUsage, rule.status().At("--jitter-buffer").ToString() + "\n");
     }
     config.jitter.push_back(*rule);
   }
   if (!flags.osc_out.empty()) {
     Result<HostPort> destination = ParseHostPort(flags.osc_out);
     if (!destination.ok()) {
-      return Fail(ExitCode::kUsage, destination.status().At("--osc-out").ToString() + "\n");
+      return fail(ExitCode::kUsage, destination.status().At("--osc-out").ToString() + "\n");
     }
     config.osc_out = *std::move(destination);
   }
   if (Status status = ValidateConfig(config); !status.ok()) {
     // The values may come from either. With a file, the error names it.
     const bool by_file = !flags.config_file.empty();
-    return Fail(by_file ? ExitCode::kBadInput : ExitCode::kUsage,
+    return fail(by_file ? ExitCode::kBadInput : ExitCode::kUsage,
                 (by_file ? status.At(flags.config_file) : status).ToString() + "\n");
   }
-  return {config, ExitCode::kOk, {}, flags.check};
+  return {config, ExitCode::kOk, {}, flags.check, config.log_json};
 }
 
 }  // namespace furrow::server

@@ -115,6 +115,8 @@ struct CommandLine {
   ExitCode exit_code = ExitCode::kOk;
   std::string text;
   bool check = false;  // only look for faults, see Check()
+  // Errors are to be logged as JSON, as far as that is known. Use it for `text` without a config.
+  bool log_json = false;
 };
 
 // Parses the command line of furrowd and the file of --config. Flags override the file, and the

@@ -83,6 +83,15 @@ class BadFileTest(unittest.TestCase):
         self.assertEqual((code, out), (DONE, "the configuration is valid\n"), errors)
         self.assertIn("not checked, because systemd copies them when it starts the service: /run/credentials/no.service/keys", errors)
 
+    def test_a_fault_is_an_object_for_log_collectors(self):
+        config = self.file("furrow.toml", "[listen]\ntpc = 1\n")
+        done = subprocess.run([BIN / "furrowd", "--config", config, "--log-json"],
+                              capture_output=True, text=True, timeout=GUARD, check=False)
+        self.assertEqual((done.returncode, done.stdout), (BAD_INPUT, ""), done.stderr)
+        line = json.loads(done.stderr)
+        self.assertEqual(line["level"], "error")
+        self.assertIn("furrow.toml:2: unknown key 'listen.tpc'", line["message"])
+
     def test_the_folders_of_the_configuration_are_checked(self):
         self.file("takes", "a file, not a folder")
         code, out, errors = self.check("[record]\ndir = 'takes'\n")

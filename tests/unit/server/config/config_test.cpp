@@ -249,6 +249,16 @@ TEST(CommandLine, AnErrorInTheFileNamesTheLine) {
   EXPECT_THAT(line.text, HasSubstr("listen.port"));
 }
 
+TEST(CommandLine, ErrorsAreInJsonIfTheFlagOrTheFileAsksForIt) {
+  const ConfigFile faulty("[limits]\nmax_subjects = 0\n[log]\njson = true\n");
+  EXPECT_TRUE(Parse({"--config", faulty.path()}).log_json) << "the file was read as a whole";
+  EXPECT_TRUE(Parse({"--log-json", "--config", "/nowhere/furrow.toml"}).log_json);
+  EXPECT_TRUE(Parse({"--no-such-option", "--log-json"}).log_json);
+  EXPECT_TRUE(Parse({"--log-json"}).log_json);
+  EXPECT_FALSE(Parse({"--config", "/nowhere/furrow.toml"}).log_json);
+  EXPECT_FALSE(Parse({"--no-such-option"}).log_json);
+}
+
 TEST(CommandLine, AMissingFileIsBadInput) {
   const CommandLine line = Parse({"--config", "/nowhere/furrow.toml"});
   EXPECT_EQ(line.exit_code, ExitCode::kBadInput);
