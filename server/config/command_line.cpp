@@ -242,6 +242,15 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
 // Without a config: the program prints the text and ends.
 CommandLine Fail(ExitCode code, const std::string& text) { return {std::nullopt, code, text}; }
 
+// The key of the file that a message of ValidateConfig() is about; empty if a flag may be at fault.
+// Flags for numbers check their ranges themselves.
+std::string_view KeyAtFault(std::string_view what) {
+  const std::string_view name = what.substr(0, what.find_first_of(" :"));
+  if (name == "--threads") return "listen.threads";
+  if (name == "--busy-poll") return "listen.busy_poll_us";
+  return name.starts_with("--") || name == "osc.prefix" ? std::string_view() : name;
+}
+
 // CLI11 parses a vector from its back.
 std::vector<std::string> Reversed(std::span<const std::string> args) {
   return {args.rbegin(), args.rend()};
@@ -308,10 +317,10 @@ CommandLine ParseCommandLine(std::span<const std::string> args) {
     config.osc_out = *std::move(destination);
   }
   if (Status status = ValidateConfig(config); !status.ok()) {
+    if (flags.config_file.empty()) return fail(ExitCode::kUsage, status.ToString() + "\n");
     // The values may come from either. With a file, the error names it.
-    const bool by_file = !flags.config_file.empty();
-    return fail(by_file ? ExitCode::kBadInput : ExitCode::kUsage,
-                (by_file ? status.At(flags.config_file) : status).ToString() + "\n");
+    const std::string place = PlaceOfKey(flags.config_file, KeyAtFault(status.what()));
+    return fail(ExitCode::kBadInput, status.At(place).ToString() + "\n");
   }
   return {config, ExitCode::kOk, {}, flags.check, config.log_json};
 }

@@ -101,11 +101,14 @@ struct Config {
 [[nodiscard]] Status ParseConfig(std::string_view toml, std::string_view source_name,
                                  Config* config);
 
+// Where the file sets a key, "http.port" or the like: "file:line"; "file" if it does not.
+[[nodiscard]] std::string PlaceOfKey(const std::filesystem::path& path, std::string_view key);
+
 // True if programs on other computers can reach the daemon.
 [[nodiscard]] bool ListensToNetwork(const Config& config);
 
 // Checks values and their combination: addresses, ranges, conflicting ports and flags. Errors:
-// kInvalidArgument, naming the flag or the key.
+// kInvalidArgument, naming the flag or the key. A message about one value begins with its name.
 [[nodiscard]] Status ValidateConfig(const Config& config);
 
 // The result of parsing the command line. Without a config: print `text` (help or version if

@@ -4,6 +4,8 @@
 #include <functional>
 #include <iterator>
 #include <span>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -215,6 +217,12 @@ Status LoadConfigFile(const std::filesystem::path& path, Config* config) {
   const Result<std::string> text = ReadFile(path, kMaxConfigBytes);
   FURROW_RETURN_IF_ERROR(text);
   return ParseConfig(*text, path.string(), config);
+}
+
+std::string PlaceOfKey(const std::filesystem::path& path, std::string_view key) {
+  const Result<std::string> text = ReadFile(path, kMaxConfigBytes);
+  const int line = text.ok() ? toml_file::LineOf(*text, key) : 0;
+  return line == 0 ? path.string() : path.string() + ":" + std::to_string(line);
 }
 
 }  // namespace furrow::server

@@ -2,6 +2,7 @@
 #include "server/config/toml_file.h"
 
 #include <algorithm>
+#include <cstddef>
 
 #include "base/text.h"
 
@@ -180,6 +181,21 @@ Status ReadText(std::string_view text, std::string_view source_name,
                   std::string(source_name) + ":" + std::to_string(error.source().begin.line));
   }
   return Reader(source_name).ReadFile(root, tables);
+}
+
+int LineOf(std::string_view text, std::string_view key) {
+  toml::table root;
+  try {
+    root = toml::parse(text);
+  } catch (const toml::parse_error&) {
+    return 0;
+  }
+  const std::size_t dot = key.find('.');
+  const bool is_top_level = dot == std::string_view::npos;
+  const toml::table* table = is_top_level ? &root : root[key.substr(0, dot)].as_table();
+  if (table == nullptr) return 0;
+  const toml::node* node = table->get(is_top_level ? key : key.substr(dot + 1));
+  return node == nullptr ? 0 : static_cast<int>(node->source().begin.line);
 }
 
 std::string ReadTable(const toml::node& node, std::span<const Key> keys) {

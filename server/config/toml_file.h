@@ -50,6 +50,8 @@ using Tables = std::vector<NamedKeys>;
 // Errors: kParse, kSchema; `where` is "file:line".
 [[nodiscard]] Status ReadText(std::string_view text, std::string_view source_name,
                               std::span<const NamedKeys> tables);
+// The line at which the text sets a key, "http.port" or "rig"; 0: it does not.
+[[nodiscard]] int LineOf(std::string_view text, std::string_view key);
 // Reads one table of an array of tables. Returns an error, or an empty string.
 [[nodiscard]] std::string ReadTable(const toml::node& node, std::span<const Key> keys);
 

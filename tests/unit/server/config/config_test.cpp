@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/config/config.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -247,6 +248,26 @@ TEST(CommandLine, AnErrorInTheFileNamesTheLine) {
   EXPECT_EQ(line.exit_code, ExitCode::kBadInput);
   EXPECT_THAT(line.text, HasSubstr(file.path() + ":3"));
   EXPECT_THAT(line.text, HasSubstr("listen.port"));
+}
+
+TEST(CommandLine, AValueOutOfRangeNamesTheLine) {
+  const auto error = [](const char* text) {
+    const ConfigFile file(text);
+    const CommandLine line = Parse({"--config", file.path()});
+    EXPECT_EQ(line.exit_code, ExitCode::kBadInput) << text;
+    // Without the folder.
+    return line.text.substr(std::min(line.text.size(), line.text.rfind(".toml")));
+  };
+  EXPECT_EQ(error("[limits]\n\nmax_subjects = 0\n"),
+            ".toml:3: limits.max_subjects is 0; it must be 1 to 1000000\n");
+  EXPECT_THAT(error("[listen]\nthreads = 99\n"), HasSubstr(".toml:2: --threads is 99"));
+  EXPECT_THAT(error("[listen]\nbusy_poll_us = -1\n"), HasSubstr(".toml:2: --busy-poll is -1"));
+  EXPECT_THAT(error("http = {api_share = 2}\n"), HasSubstr(".toml:1: http.api_share is 2"));
+  EXPECT_THAT(error("[osc]\nallow = ['stage']\n"), HasSubstr(".toml:2: osc.allow: 'stage'"));
+  // Of a value that the file does not set, and of a flag.
+  EXPECT_THAT(error("[limits]\nmax_subscriptions = 20000\n"),
+              HasSubstr(".toml: limits.max_all_subscriptions is 16384"));
+  EXPECT_THAT(error("[listen]\nbind = 'here'\n"), HasSubstr(".toml: --bind: 'here'"));
 }
 
 TEST(CommandLine, ErrorsAreInJsonIfTheFlagOrTheFileAsksForIt) {
