@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "base/text.h"
 #include "gltf/scene/joints.h"
 #include "gltf/scene/skins.h"
 
@@ -35,24 +36,86 @@ void AddMovingTrees(const gltf::NodeForest& forest, const gltf::VrmAnimation& vr
   }
 }
 
-// By preference: VRM's humanoid bones, the joints of skins, and else the trees that move. Ancestors
-// are included, because their transforms move the joints.
-Status ChooseJoints(const gltf::Document& document, const gltf::NodeForest& forest,
-                    const gltf::VrmAnimation& vrm, const gltf::Animation& animation,
+// Per node: true if the animation moves it.
+std::vector<bool> MovingNodes(const gltf::NodeForest& forest, const gltf::Animation& animation) {
+  std::vector<bool> moves(forest.nodes.size(), false);
+  for (const gltf::NodeTrack& track : animation.tracks) {
+    if (track.target == gltf::TrackTarget::kMorphWeights) continue;
+    moves[static_cast<std::size_t>(track.node)] = true;
+  }
+  return moves;
+}
+
+// Per node: true if it belongs to the body of a skin. Such a node is a listed joint or lies below
+// one, or below a moving node where branches with listed joints meet: hips that move no vertex are
+// in no list. `joints`: the listed nodes and their ancestors.
+std::vector<bool> NodesOfBodies(const gltf::NodeForest& forest, const std::vector<bool>& listed,
+                                const std::vector<bool>& moves, const gltf::NodeSet& joints) {
+  std::vector<bool> of_body = listed;
+  for (const int index : forest.order) {
+    const auto i = static_cast<std::size_t>(index);
+    const gltf::Node& node = forest.nodes[i];
+    const bool is_below =
+        node.parent != gltf::kNone && of_body[static_cast<std::size_t>(node.parent)];
+    const auto num_branches = std::count_if(node.children.begin(), node.children.end(),
+                                            [&](int child) { return joints.Has(child); });
+    if (is_below || (moves[i] && num_branches > 1)) of_body[i] = true;
+  }
+  return of_body;
+}
+
+int SizeOf(const gltf::NodeForest& forest, const gltf::NodeSet& nodes) {
+  return static_cast<int>(std::count_if(forest.order.begin(), forest.order.end(),
+                                        [&](int node) { return nodes.Has(node); }));
+}
+
+// Adds nodes of the body that move but that no skin lists, because no vertex follows them: eyes,
+// attachments, twist and helper joints. Cameras and props elsewhere in the scene stay out.
+void AddMovingNodesOfBodies(const gltf::NodeForest& forest, const gltf::Animation& animation,
+                            const std::vector<bool>& listed, gltf::Document* document,
+                            gltf::NodeSet* joints) {
+  const std::vector<bool> moves = MovingNodes(forest, animation);
+  const std::vector<bool> of_body = NodesOfBodies(forest, listed, moves, *joints);
+  std::vector<int> more;
+  for (const int node : forest.order) {
+    const auto i = static_cast<std::size_t>(node);
+    if (moves[i] && of_body[i] && !joints->Has(node)) more.push_back(node);
+  }
+  gltf::NodeSet all = *joints;
+  for (const int node : more) all.AddWithAncestors(node);
+  // The joints of the skins alone may fit.
+  if (SizeOf(forest, all) > wrinkle::kMaxJoints) {
+    document->Warn("animations", "left out " + Counted(more.size(), "moving node") +
+                                     " below the joints of skins, because a skeleton has at most " +
+                                     std::to_string(wrinkle::kMaxJoints) + " joints");
+    return;
+  }
+  for (const int node : more) joints->AddWithAncestors(node);
+}
+
+// By preference: VRM's humanoid bones, the joints of skins with what moves below them, and else the
+// trees that move. Ancestors are included, because their transforms move the joints.
+Status ChooseJoints(const gltf::NodeForest& forest, const gltf::VrmAnimation& vrm,
+                    const gltf::Animation& animation, gltf::Document* document,
                     gltf::NodeSet* joints) {
   if (!vrm.human_bones.empty()) {
     for (const auto& [name, node] : vrm.human_bones) joints->AddWithAncestors(node);
     return {};
   }
-  if (gltf::NumSkins(document) == 0 || vrm.present) {
+  if (gltf::NumSkins(*document) == 0 || vrm.present) {
     AddMovingTrees(forest, vrm, animation, joints);
     return {};
   }
-  for (std::size_t skin = 0; skin < gltf::NumSkins(document); ++skin) {
-    const Result<std::vector<int>> nodes = gltf::ReadSkinJoints(document, skin);
+  std::vector<bool> listed(forest.nodes.size(), false);
+  for (std::size_t skin = 0; skin < gltf::NumSkins(*document); ++skin) {
+    const Result<std::vector<int>> nodes = gltf::ReadSkinJoints(*document, skin);
     FURROW_RETURN_IF_ERROR(nodes);
-    for (const int node : *nodes) joints->AddWithAncestors(node);
+    for (const int node : *nodes) {
+      joints->AddWithAncestors(node);
+      listed[static_cast<std::size_t>(node)] = true;
+    }
   }
+  AddMovingNodesOfBodies(forest, animation, listed, document, joints);
   return {};
 }
 
@@ -62,7 +125,7 @@ Result<GltfSkeleton> BuildGltfSkeleton(gltf::Document* document, const gltf::Nod
                                        const gltf::VrmAnimation& vrm,
                                        const gltf::Animation& animation, float scale) {
   gltf::NodeSet chosen(forest);
-  FURROW_RETURN_IF_ERROR(ChooseJoints(*document, forest, vrm, animation, &chosen));
+  FURROW_RETURN_IF_ERROR(ChooseJoints(forest, vrm, animation, document, &chosen));
   gltf::JointList list = gltf::ListJoints(forest, chosen, vrm.human_bones, document);
   GltfSkeleton result;
   result.joint_of_node.assign(forest.nodes.size(), kNoJoint);

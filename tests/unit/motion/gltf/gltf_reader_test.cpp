@@ -75,6 +75,69 @@ TEST(GltfReader, JointsAreTheSkinsAndTheirAncestors) {
   EXPECT_THAT(Parse(gltf.Glb()).skeleton.joint_names(), ElementsAre("armature", "hip", "knee"));
 }
 
+// The node moves along X, with the times of TwoJoints().
+void Move(int node, HandMadeGltf* gltf) {
+  const int times = gltf->json["animations"][0]["samplers"][0]["input"];
+  gltf->AddChannel(node, "translation", "LINEAR", times,
+                   gltf->AddFloats({0, 0, 0, 3, 0, 0}, "VEC3"));
+}
+
+// No vertex follows eyes and helpers, so no skin lists them.
+TEST(GltfReader, JointsAreAlsoWhatMovesBelowThoseOfSkins) {
+  HandMadeGltf gltf = TwoJoints();
+  gltf.json["nodes"] = {{{"name", "scene"}, {"children", {1, 7}}},
+                        {{"name", "hips"}, {"children", {2, 5}}},
+                        {{"name", "head"}, {"children", {3, 8}}},
+                        {{"name", "socket"}, {"children", {4}}},
+                        {{"name", "eye"}},
+                        {{"name", "leg"}},
+                        {{"name", "unused"}},
+                        {{"name", "camera"}},
+                        {{"name", "hair"}}};
+  gltf.json["skins"] = {{{"joints", {1, 2, 5}}}};
+  Move(4, &gltf);
+  Move(7, &gltf);
+  const Clip clip = Parse(gltf.Glb());
+  EXPECT_THAT(clip.skeleton.joint_names(),
+              ElementsAre("scene", "hips", "head", "socket", "eye", "leg"))
+      << "nothing moves the hair, and the camera is elsewhere";
+  // The scene moves by 2 along X, and the hips turn the eye's 3 to Y.
+  EXPECT_NEAR(ModelPosition(clip, 1, "eye").x, 2.0f, 1e-5f);
+  EXPECT_NEAR(ModelPosition(clip, 1, "eye").y, 3.0f, 1e-5f);
+}
+
+// Hips without vertices of their own are in no skin. Their tail moves with them.
+TEST(GltfReader, HipsThatNoSkinListsHoldTheBodyTogether) {
+  HandMadeGltf gltf = TwoJoints();
+  gltf.json["nodes"] = {{{"name", "armature"}, {"children", {1, 5}}},
+                        {{"name", "hips"}, {"children", {2, 3, 4}}},
+                        {{"name", "leg_l"}},
+                        {{"name", "leg_r"}},
+                        {{"name", "tail"}},
+                        {{"name", "prop"}}};
+  gltf.json["skins"] = {{{"joints", {2, 3}}}};
+  Move(4, &gltf);
+  Move(5, &gltf);
+  EXPECT_THAT(Parse(gltf.Glb()).skeleton.joint_names(),
+              ElementsAre("armature", "hips", "leg_l", "leg_r", "tail"));
+}
+
+TEST(GltfReader, WhatMovesBelowSkinsGivesWayToTheirJoints) {
+  HandMadeGltf gltf = TwoJoints();
+  json children = json::array();
+  gltf.json["nodes"] = {{{"name", "root"}}};
+  for (int i = 1; i <= wrinkle::kMaxJoints; ++i) {
+    gltf.json["nodes"].push_back(json::object());
+    children.push_back(i);
+    Move(i, &gltf);
+  }
+  gltf.json["nodes"][0]["children"] = children;
+  gltf.json["skins"] = {{{"joints", {0}}}};
+  ClipReport report;
+  EXPECT_THAT(Parse(gltf.Glb(), {}, &report).skeleton.joint_names(), ElementsAre("root"));
+  EXPECT_THAT(report.warnings, ElementsAre(HasSubstr("left out 1024 moving nodes below the")));
+}
+
 TEST(GltfReader, NamesNamelessJointsAndRenamesDuplicates) {
   HandMadeGltf gltf = TwoJoints();
   gltf.json["nodes"] = {{{"children", {1}}}, {{"name", "a"}, {"children", {2}}}, {{"name", "a"}}};
