@@ -17,6 +17,9 @@ namespace {
 // legs and trunk that count as opposite: 60 degrees.
 constexpr float kLeastAligned = 0.5f;
 
+// The first bone of a leg lies above the thigh if it is shorter than this share of the next two.
+constexpr float kShortBone = 0.6f;
+
 bool PointAlike(const glm::vec3& a, const glm::vec3& b) {
   return glm::dot(a, b) > kLeastAligned * glm::length(a) * glm::length(b);
 }
@@ -93,8 +96,9 @@ class HierarchyReader {
   };
 
   [[nodiscard]] std::optional<Forks> FindForks() const {
-    const std::optional<Fork> hips = FindFork(0, 3);
+    std::optional<Fork> hips = FindFork(0, 3);
     if (!hips) return std::nullopt;
+    SkipShortBones(&*hips);
     int spine = kNoJoint;
     for (const int child : children_[hips->at]) {
       const bool is_leg = IsLimb(child, *hips);
@@ -103,6 +107,25 @@ class HierarchyReader {
     const std::optional<Fork> chest = spine < 0 ? std::nullopt : FindFork(spine, 3);
     if (!chest) return std::nullopt;
     return Forks{*hips, *chest};
+  }
+
+  // Starts both legs at the thigh, the first of two long bones: some rigs have a bone of the
+  // buttock or of the hip above it.
+  void SkipShortBones(Fork* hips) const {
+    std::vector<int> first = LongestWay(hips->pair.first);
+    std::vector<int> second = LongestWay(hips->pair.second);
+    while (StartsShort(first) && StartsShort(second)) {
+      first.erase(first.begin());
+      second.erase(second.begin());
+    }
+    hips->pair = {first.front(), second.front()};
+  }
+
+  // True if a way down a leg has two bones below its first that are both longer.
+  [[nodiscard]] bool StartsShort(const std::vector<int>& way) const {
+    if (way.size() < 4) return false;
+    const auto length = [&](std::size_t i) { return glm::length(At(way[i + 1]) - At(way[i])); };
+    return length(0) < kShortBone * std::min(length(1), length(2));
   }
 
   // From the start of a limb to its end.

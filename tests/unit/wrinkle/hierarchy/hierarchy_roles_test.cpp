@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "wrinkle/hierarchy/hierarchy_roles.h"
 
+#include <algorithm>
+#include <cstddef>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <glm/geometric.hpp>
@@ -51,6 +55,49 @@ TEST(HierarchyRoles, FindsTheLimbsOfAPerson) {
   EXPECT_EQ(roles[14], kLeftToes);
   EXPECT_EQ(roles[17], kRightFoot);
   EXPECT_TRUE(RolesFromHierarchy(Skeleton()).empty());
+}
+
+// A person with a bone from the hips to each buttock, where the thigh starts.
+std::vector<Place> WithButtocks(std::vector<Place> person, const glm::vec3& left) {
+  for (const char* leg : {"l0", "r0"}) {
+    const auto named = [leg](const Place& place) { return place.name == std::string_view(leg); };
+    const auto thigh = std::ranges::find_if(person, named) - person.begin();
+    const float side = *leg == 'l' ? 1.0f : -1.0f;
+    const int buttock = static_cast<int>(person.size());
+    person.push_back({*leg == 'l' ? "bl" : "br", 0, left * glm::vec3(side, 1, 1)});
+    person[static_cast<std::size_t>(thigh)].parent = buttock;
+  }
+  return person;
+}
+
+JointRole RoleOf(const Skeleton& skeleton, const JointRoles& roles, const char* joint) {
+  const auto index = static_cast<std::size_t>(skeleton.Find(joint));
+  return index < roles.size() ? roles[index] : kNone;
+}
+
+TEST(HierarchyRoles, AShortBoneAboveTheThighIsNoThigh) {
+  // Beside the thigh, behind the hips, and where both buttocks start in one place.
+  for (const glm::vec3& at :
+       {glm::vec3(0.05f, 0.95f, 0), glm::vec3(0.08f, 1, -0.1f), glm::vec3(0, 0.95f, -0.05f)}) {
+    const Skeleton person = Make(WithButtocks(PersonPlaces(), at));
+    const JointRoles roles = RolesFromHierarchy(person);
+    EXPECT_EQ(RoleOf(person, roles, "bl"), kNone);
+    EXPECT_EQ(RoleOf(person, roles, "l0"), kLeftUpperLeg);
+    EXPECT_EQ(RoleOf(person, roles, "l1"), kLeftLowerLeg);
+    EXPECT_EQ(RoleOf(person, roles, "r2"), kRightFoot);
+    EXPECT_EQ(RoleOf(person, roles, "r3"), kRightToes);
+    EXPECT_EQ(RoleOf(person, roles, "a0"), kLeftUpperArm);
+  }
+}
+
+// Half as long as the shin, but not as short as the foot.
+TEST(HierarchyRoles, AShortThighStaysAThigh) {
+  std::vector<Place> places = PersonPlaces();
+  for (const std::size_t thigh : {11u, 15u}) places[thigh].at.y = 0.7f;
+  const Skeleton person = Make(places);
+  const JointRoles roles = RolesFromHierarchy(person);
+  EXPECT_EQ(RoleOf(person, roles, "l0"), kLeftUpperLeg);
+  EXPECT_EQ(RoleOf(person, roles, "r2"), kRightFoot);
 }
 
 // A spine along Z, with legs across it at both ends.
