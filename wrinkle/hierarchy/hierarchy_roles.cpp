@@ -17,6 +17,10 @@ namespace {
 // legs and trunk that count as opposite: 60 degrees.
 constexpr float kLeastAligned = 0.5f;
 
+// The same between legs and trunk if the arms point down like the legs, so that they may be front
+// legs: 37 degrees. A person with hanging arms is straighter.
+constexpr float kLeastUpright = 0.8f;
+
 // The first bone of a leg lies above the thigh if it is shorter than this share of the next two.
 constexpr float kShortBone = 0.6f;
 
@@ -199,14 +203,14 @@ class HierarchyReader {
   }
 
   // The legs of a person point away from the trunk. Those of a fox are across it, and a fox must
-  // not be stood upright.
+  // not be stood upright. Legs count down to their ends, because hind legs are bent at rest.
   [[nodiscard]] bool StandsUpright(const Fork& hips, const Fork& chest) const {
     const glm::vec3 trunk = At(chest.at) - At(hips.at);
-    glm::vec3 down(0.0f);
-    for (const int leg : {hips.pair.first, hips.pair.second}) {
-      down += At(LongestWay(leg)[2]) - At(leg);  // FindFork(): at least three joints
-    }
-    return PointAlike(trunk, -down);
+    const glm::vec3 legs = Reached(hips.pair.first) + Reached(hips.pair.second);
+    const bool like_legs =
+        PointAlike(Reached(chest.pair.first), legs) && PointAlike(Reached(chest.pair.second), legs);
+    const float least = like_legs ? kLeastUpright : kLeastAligned;
+    return -glm::dot(trunk, legs) > least * glm::length(trunk) * glm::length(legs);
   }
 
   // The joints of the neck from the fork of the arms up to the head. Empty if there are none.

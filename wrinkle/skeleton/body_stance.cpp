@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "wrinkle/skeleton/body_stance.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -14,6 +17,9 @@ using enum JointRole;
 
 // Sine of the steepest slope of a foot that counts as flat on the floor at rest.
 constexpr float kSteepFoot = 0.8f;
+
+// The least cosine between directions that count as alike: 60 degrees.
+constexpr float kLeastAlike = 0.5f;
 
 std::size_t Index(JointRole role) { return static_cast<std::size_t>(role); }
 
@@ -40,8 +46,10 @@ glm::vec3 NearestAxis(const glm::vec3& v, int but = -1) {
   return result;
 }
 
-// From the hips to the highest joint of the trunk that exists.
+// Away from the ends of the limbs, or else from the hips to the highest joint of the trunk that
+// exists.
 std::optional<glm::vec3> Up(const Body& body) {
+  if (const auto up = UpOfLimbs(body)) return up;
   for (const JointRole top : {kHead, kNeck, kUpperChest, kChest, kSpine}) {
     if (const auto span = body.RestSpan(kHips, top)) return span;
   }
@@ -198,6 +206,32 @@ std::optional<glm::quat> TurnOfAxes(const Body& body) {
   // Exactly the identity for a body in Furrow's axes, so that nothing changes for it.
   if (*axes == glm::mat3(1.0f)) return glm::quat(1.0f, 0.0f, 0.0f, 0.0f);
   return glm::normalize(glm::quat_cast(glm::transpose(*axes)));
+}
+
+std::optional<glm::vec3> UpOfLimbs(const Body& body) {
+  constexpr std::array kLimbs = {std::pair(kLeftUpperLeg, kLeftToes),
+                                 std::pair(kLeftUpperArm, kLeftHand)};
+  std::array<glm::vec3, 4> limbs{};
+  glm::vec3 down(0.0f);
+  for (std::size_t i = 0; i < limbs.size(); ++i) {
+    const auto& [start, end] = kLimbs[i / 2];
+    const bool left = i % 2 == 0;
+    auto limb = left ? body.RestSpan(start, end) : body.RestSpan(MirrorOf(start), MirrorOf(end));
+    if (!limb && end == kLeftToes) {
+      limb = left ? body.RestSpan(start, kLeftFoot) : body.RestSpan(MirrorOf(start), kRightFoot);
+    }
+    if (!limb) return std::nullopt;
+    limbs[i] = glm::normalize(*limb);
+    down += limbs[i];
+  }
+  const auto is_down = [&](const glm::vec3& direction) {
+    return glm::dot(direction, down) > kLeastAlike * glm::length(direction) * glm::length(down);
+  };
+  if (!std::all_of(limbs.begin(), limbs.end(), is_down)) return std::nullopt;
+  const glm::vec3 trunk = body.RestSpan(kLeftUpperLeg, kLeftUpperArm).value_or(glm::vec3(0.0f)) +
+                          body.RestSpan(kRightUpperLeg, kRightUpperArm).value_or(glm::vec3(0.0f));
+  if (is_down(trunk)) return std::nullopt;
+  return -glm::normalize(down);
 }
 
 std::vector<glm::quat> AlignedStance(const Body& source, const Body& target,

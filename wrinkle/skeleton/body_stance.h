@@ -46,6 +46,11 @@ class Body {
 // for a hand. kNone for the trunk and for the last joint of a limb.
 [[nodiscard]] JointRole BoneEnd(JointRole role);
 
+// The direction away from the ends of all four limbs, if they point the same way at rest and the
+// trunk does not: a body on four legs, whose trunk is level, or a person with hanging arms. A unit
+// vector in model space. nullopt otherwise, and if a limb is unknown.
+[[nodiscard]] std::optional<glm::vec3> UpOfLimbs(const Body& body);
+
 // The turn, in steps of 90 degrees about the model axes, that makes `source` stand upright and face
 // in `target`'s direction. The identity if hips, heads or sides are unknown.
 [[nodiscard]] glm::quat QuarterTurn(const Body& source, const Body& target);

@@ -168,6 +168,10 @@ std::optional<RestStance> FindRestStance(const Skeleton& skeleton, const JointRo
   return RestStance{.turn = *turn, .toes_point_back = ahead.z < -0.5f * glm::length(ahead)};
 }
 
+std::optional<glm::vec3> UpFromLimbs(const Skeleton& skeleton, const JointRoles& roles) {
+  return UpOfLimbs(Body(skeleton, roles));
+}
+
 Retarget Retarget::Create(const Skeleton& source, const Skeleton& target,
                           std::span<const std::pair<std::string, std::string>> aliases) {
   const std::vector<int> match = MatchJoints(source, target, aliases);

@@ -30,11 +30,18 @@ struct RestStance {
   bool is_folded = false;
 };
 
-// Finds the stance from the rest places of joints with roles: up from the hips to the trunk or the
-// head, left from the right leg, arm, shoulder or eye to the left one. A lean or a turn of less
-// than 45 degrees counts as a stance and not as other axes. nullopt: the roles do not tell.
+// Finds the stance from the rest places of joints with roles: up away from the limbs' ends
+// (UpFromLimbs()), or else from the hips to the trunk or the head; left from the right leg, arm,
+// shoulder or eye to the left one. A lean or a turn of less than 45 degrees counts as a stance and
+// not as other axes. nullopt: the roles do not tell.
 [[nodiscard]] std::optional<RestStance> FindRestStance(const Skeleton& skeleton,
                                                        const JointRoles& roles);
+
+// The direction away from the ends of arms and legs, a unit vector in model space, if all of them
+// point the same way at rest and the trunk does not. So a body on four legs is not stood upright.
+// nullopt: they do not, or a limb is unknown.
+[[nodiscard]] std::optional<glm::vec3> UpFromLimbs(const Skeleton& skeleton,
+                                                   const JointRoles& roles);
 
 class BodyRetarget;
 

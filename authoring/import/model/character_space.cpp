@@ -14,6 +14,7 @@
 
 #include "base/status.h"
 #include "character/mesh/move_mesh.h"
+#include "wrinkle/skeleton/retarget.h"
 
 namespace furrow::authoring {
 namespace {
@@ -38,8 +39,10 @@ glm::vec3 Across(const wrinkle::Skeleton& skeleton, const FoundJoints& joints) {
   return sum;
 }
 
-// From the lowest to the highest known joint of the trunk; zero if fewer than two are known.
+// Away from the ends of the limbs, or else from the lowest to the highest known joint of the trunk;
+// zero if fewer than two are known.
 glm::vec3 Up(const wrinkle::Skeleton& skeleton, const FoundJoints& joints) {
+  if (const auto up = wrinkle::UpFromLimbs(skeleton, joints.roles)) return *up;
   constexpr std::array kTrunk = {JointRole::kHips,       JointRole::kSpine, JointRole::kChest,
                                  JointRole::kUpperChest, JointRole::kNeck,  JointRole::kHead};
   int lowest = kNoJoint;

@@ -117,6 +117,43 @@ TEST(HierarchyRoles, AFoxIsNotAPerson) {
   EXPECT_TRUE(RolesFromHierarchy(Make(FoxPlaces())).empty());
 }
 
+// Its hind legs are bent: the hocks are behind the hips.
+std::vector<Place> DogPlaces() {
+  std::vector<Place> dog = FoxPlaces();
+  for (const std::size_t hip : {11u, 14u}) {
+    const float side = dog[hip].at.x;
+    dog[hip + 1].at = {side, 0.3f, -0.3f};
+    dog[hip + 2].at = {side, 0.15f, -0.6f};
+    dog.push_back({hip == 11u ? "hl3" : "hr3", static_cast<int>(hip) + 2, {side, 0, -0.5f}});
+  }
+  return dog;
+}
+
+// Higher at the chest than at the hips.
+std::vector<Place> GiraffePlaces() {
+  std::vector<Place> giraffe = FoxPlaces();
+  for (Place& place : giraffe) {
+    if (place.at.z > -0.4f) place.at.y += place.at.z + 0.4f;
+  }
+  return giraffe;
+}
+
+TEST(HierarchyRoles, BentLegsAndASlopingBackAreNotAPerson) {
+  EXPECT_TRUE(RolesFromHierarchy(Make(DogPlaces())).empty());
+  EXPECT_TRUE(RolesFromHierarchy(Make(GiraffePlaces())).empty());
+}
+
+// Hanging arms do not make front legs of a person's.
+TEST(HierarchyRoles, APersonMayLetTheArmsHang) {
+  std::vector<Place> person = PersonPlaces();
+  for (const std::size_t arm : {5u, 8u}) {
+    for (std::size_t i = 1; i < 3; ++i) {
+      person[arm + i].at = person[arm].at - glm::vec3(0, 0.3f * static_cast<float>(i), 0);
+    }
+  }
+  EXPECT_EQ(RolesFromHierarchy(Make(person)).size(), person.size());
+}
+
 void ExpectUp(const std::vector<Place>& body, const glm::vec3& up, bool is_upright) {
   const auto shape = FindBodyShape(Make(body));
   ASSERT_TRUE(shape.has_value());
@@ -137,6 +174,8 @@ TEST(BodyShape, UpIsAwayFromTheFeet) {
   ExpectUp(ZUp(PersonPlaces()), {0, 0, 1}, true);
   ExpectUp(FoxPlaces(), {0, 1, 0}, false);
   ExpectUp(ZUp(FoxPlaces()), {0, 0, 1}, false);
+  ExpectUp(DogPlaces(), {0, 1, 0}, false);
+  ExpectUp(GiraffePlaces(), {0, 1, 0}, false);
 }
 
 TEST(BodyShape, IsUnknownWithoutTwoPairsOfLimbs) {

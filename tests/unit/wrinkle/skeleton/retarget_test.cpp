@@ -160,6 +160,40 @@ TEST(RestStance, TurnsAnyAxesToFurrows) {
   }
 }
 
+// A body with the roles of a person whose trunk is level and whose arms are front legs.
+Humanoid OnFourLegs() {
+  Humanoid body = MakeHumanoid();
+  body.Turn("spine", 90.0f, glm::vec3(1.0f, 0.0f, 0.0f));
+  body.Turn("leftUpperArm", -90.0f, glm::vec3(0.0f, 0.0f, 1.0f));
+  body.Turn("rightUpperArm", 90.0f, glm::vec3(0.0f, 0.0f, 1.0f));
+  return body;
+}
+
+TEST(RestStance, FourLegsAreNotStoodUpright) {
+  for (const float degrees : {0.0f, 90.0f, 180.0f, 270.0f}) {
+    Humanoid body = OnFourLegs();
+    const glm::quat turn = glm::angleAxis(glm::radians(degrees), glm::vec3(1, 0, 0));
+    body.Transform(turn, 1.0f, glm::vec3(0.0f));
+    const auto stance = FindRestStance(body.Build(), body.Roles());
+    ASSERT_TRUE(stance.has_value());
+    EXPECT_FALSE(stance->is_folded);
+    EXPECT_NEAR(std::abs((stance->turn * turn).w), 1.0f, 1e-4f) << degrees;
+  }
+}
+
+TEST(UpFromLimbs, NeedsFourLimbsThatPointOneWay) {
+  const Humanoid fox = OnFourLegs();
+  const auto up = UpFromLimbs(fox.Build(), fox.Roles());
+  ASSERT_TRUE(up.has_value());
+  EXPECT_GT(up->y, 0.95f);
+  Humanoid tripod = OnFourLegs();
+  tripod.Remove("leftHand");
+  EXPECT_FALSE(UpFromLimbs(tripod.Build(), tripod.Roles()));
+  const Humanoid person = MakeHumanoid();  // in a T-pose
+  EXPECT_FALSE(UpFromLimbs(person.Build(), person.Roles()));
+  EXPECT_FALSE(UpFromLimbs(Skeleton(), {}));
+}
+
 // LaFAN1's files rest with all bones along +X.
 TEST(RestStance, ABodyOnOneLineIsFolded) {
   Humanoid body = MakeHumanoid();
