@@ -13,13 +13,6 @@ namespace {
 
 using wrinkle::JointRole;
 
-constexpr JointRole kEssential[] = {
-    JointRole::kHips,          JointRole::kHead,          JointRole::kLeftUpperArm,
-    JointRole::kLeftLowerArm,  JointRole::kRightUpperArm, JointRole::kRightLowerArm,
-    JointRole::kLeftUpperLeg,  JointRole::kLeftLowerLeg,  JointRole::kRightUpperLeg,
-    JointRole::kRightLowerLeg,
-};
-
 // Below these are fingers, hair and the ends of bones.
 bool EndsBody(JointRole role) {
   const JointRole left = role >= JointRole::kRightEye ? wrinkle::MirrorOf(role) : role;
@@ -78,7 +71,7 @@ SkeletonFit FitOf(const SkeletonRoles& roles, const wrinkle::Skeleton& skeleton)
     ++fit.num_explained;
     if (!wrinkle::IsFinger(role) && !wrinkle::IsOfFace(role)) ++fit.num_of_body;
   }
-  for (const JointRole role : kEssential) {
+  for (const JointRole role : wrinkle::kEssentialRoles) {
     if (std::ranges::find(all, role) == all.end()) fit.missing.push_back(role);
   }
   const bool has_hips = std::ranges::find(all, JointRole::kHips) != all.end();

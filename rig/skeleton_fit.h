@@ -19,7 +19,7 @@ struct SkeletonFit {
   // and feet, and no ends, such as twist joints.
   std::vector<std::string> left_out;
   int num_between = 0;  // of these, joints between joints with roles
-  // Of hips, head, upper and lower arms and legs: the roles that no joint has.
+  // The wrinkle::kEssentialRoles that no joint has.
   std::vector<wrinkle::JointRole> missing;
 };
 

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <filesystem>
+#include <iterator>
 #include <optional>
 #include <set>
 #include <unordered_map>
@@ -190,6 +192,42 @@ void CountRoles(SkeletonRoles* found) {
   found->num_roles = static_cast<int>(distinct.size());
 }
 
+// How many of wrinkle::kEssentialRoles some joint has.
+std::ptrdiff_t NumEssential(const wrinkle::JointRoles& roles) {
+  return std::ranges::count_if(wrinkle::kEssentialRoles, [&](JointRole role) {
+    return std::ranges::find(roles, role) != roles.end();
+  });
+}
+
+// True if a guess gives their named role to at least half of the joints whose names tell a part of
+// a limb. A guess that exchanges the sides does not, nor does one that is a joint off. `named`:
+// empty, or one per joint.
+bool Confirms(const wrinkle::JointRoles& guess, const wrinkle::JointRoles& named) {
+  int num_limbs = 0;
+  int num_same = 0;
+  for (std::size_t j = 0; j < named.size(); ++j) {
+    if (!wrinkle::IsOfLimb(named[j])) continue;
+    ++num_limbs;
+    num_same += guess[j] == named[j] ? 1 : 0;
+  }
+  return 2 * num_same >= num_limbs;
+}
+
+// The roles that the hierarchy tells, and those of fingers and face that the names tell. Empty if
+// the hierarchy tells none.
+SkeletonRoles GuessRoles(const wrinkle::Skeleton& skeleton, const wrinkle::JointRoles& named) {
+  SkeletonRoles guess;
+  guess.roles = wrinkle::RolesFromHierarchy(skeleton);
+  if (guess.roles.empty()) return guess;
+  for (std::size_t j = 0; j < named.size(); ++j) {
+    const bool is_detail = wrinkle::IsFinger(named[j]) || wrinkle::IsOfFace(named[j]);
+    if (is_detail && guess.roles[j] == JointRole::kNone) guess.roles[j] = named[j];
+  }
+  guess.map = kFromHierarchy;
+  CountRoles(&guess);
+  return guess;
+}
+
 SkeletonRoles ApplyToNames(const SkeletonMap& map, std::span<const std::string> joint_names) {
   const Places places = PlacesOf(map);
   // All joints of a skeleton share a prefix, so one prefix is tried on all of them. On a tie, the
@@ -287,12 +325,11 @@ SkeletonRoles SkeletonMaps::Best(std::span<const std::string> joint_names,
 
 SkeletonRoles SkeletonMaps::RolesOrGuess(const wrinkle::Skeleton& skeleton) const {
   SkeletonRoles found = RolesOf(skeleton);
-  if (!found.map.empty() || chosen_ || maps_.empty()) return found;
-  found.roles = wrinkle::RolesFromHierarchy(skeleton);
-  if (found.roles.empty()) return found;
-  found.map = kFromHierarchy;
-  CountRoles(&found);
-  return found;
+  const std::ptrdiff_t num_named = NumEssential(found.roles);
+  if (chosen_ || maps_.empty() || num_named == std::ssize(wrinkle::kEssentialRoles)) return found;
+  SkeletonRoles guess = GuessRoles(skeleton, found.roles);
+  const bool is_better = NumEssential(guess.roles) > num_named;
+  return is_better && Confirms(guess.roles, found.roles) ? guess : found;
 }
 
 std::string ProposeSkeletonMap(std::string_view name, std::span<const std::string> joint_names,

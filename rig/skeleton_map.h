@@ -42,8 +42,8 @@ struct SkeletonMap {
 
 // The roles that a map finds in a skeleton.
 struct SkeletonRoles {
-  // The map's name; kFromHierarchy if no map fits, and the hierarchy tells the roles;
-  // kFromPackage; else empty.
+  // The map's name; kFromHierarchy if the hierarchy tells more roles than any map; kFromPackage;
+  // else empty.
   std::string map;
   wrinkle::JointRoles roles;                // one per joint; empty if `map` is empty
   int num_roles = 0;                        // distinct roles found
@@ -87,8 +87,10 @@ class SkeletonMaps {
   // first name.
   [[nodiscard]] SkeletonRoles RolesOf(const wrinkle::Skeleton& skeleton) const;
   [[nodiscard]] SkeletonRoles RolesOf(std::span<const std::string> joint_names) const;
-  // RolesOf(), or the roles that RolesFromHierarchy() finds if no map fits. Not for a chosen map,
-  // and not without any maps: then joints are matched by equal names.
+  // RolesOf(), or the roles that RolesFromHierarchy() finds, with fingers and face by their names,
+  // if these have more of wrinkle::kEssentialRoles and confirm at least half of the limbs' joints
+  // that the map names. The map's roles hold if it is chosen, and joints are matched by equal names
+  // without any maps.
   [[nodiscard]] SkeletonRoles RolesOrGuess(const wrinkle::Skeleton& skeleton) const;
   // The roles of the joints that a rig names. They need no limbs: a rig of a face has none.
   [[nodiscard]] SkeletonRoles RolesOfRig(std::span<const std::string> joint_names) const;

@@ -256,9 +256,9 @@ std::vector<std::string> WarningsOf(const SkeletonMatch& match) {
   // Guesses do not matter to a rig that finds all joints by their names.
   if (match.stream.map == kFromHierarchy && !match.aliases.empty()) {
     warnings.emplace_back(
-        "no skeleton map knows the joint names, so their roles are guessed from the hierarchy; if "
-        "the body moves wrong, write a map with 'furrow rig propose-map' and choose it with "
-        "--skeleton-map");
+        "no skeleton map knows enough of the joint names, so their roles are guessed from the "
+        "hierarchy; if the body moves wrong, write a map with 'furrow rig propose-map' and choose "
+        "it with --skeleton-map");
   }
   if (match.assumes_axes) warnings.push_back(UnknownAxes());
   if (match.stance && match.stance->is_folded) {

@@ -74,6 +74,14 @@ enum class JointRole : std::uint8_t {
 };
 inline constexpr int kNumJointRoles = 56;  // with kNone
 
+// The roles without which a body moves stiffly: hips, head, upper and lower arms and legs.
+inline constexpr std::array kEssentialRoles = {
+    JointRole::kHips,          JointRole::kHead,          JointRole::kLeftUpperArm,
+    JointRole::kLeftLowerArm,  JointRole::kRightUpperArm, JointRole::kRightLowerArm,
+    JointRole::kLeftUpperLeg,  JointRole::kLeftLowerLeg,  JointRole::kRightUpperLeg,
+    JointRole::kRightLowerLeg,
+};
+
 // One role per joint, in the skeleton's order; empty: unknown.
 using JointRoles = std::vector<JointRole>;
 

@@ -26,10 +26,12 @@ int FoundJoints::Last(JointRole role) const {
 FoundJoints FindJoints(const Skeleton& skeleton, const rig::SkeletonMaps& maps,
                        const wrinkle::JointRoles& stated) {
   const bool holds = !stated.empty() && !maps.is_chosen();
-  rig::SkeletonRoles known = holds ? rig::RolesOfPackage(stated) : maps.RolesOf(skeleton);
+  rig::SkeletonRoles known = holds ? rig::RolesOfPackage(stated) : maps.RolesOrGuess(skeleton);
   FoundJoints found;
-  found.map = std::move(known.map);
-  found.roles = found.map.empty() ? wrinkle::RolesFromHierarchy(skeleton) : std::move(known.roles);
+  if (known.map != rig::kFromHierarchy) found.map = std::move(known.map);
+  // Without any maps, nothing has been guessed yet.
+  found.roles =
+      known.roles.empty() ? wrinkle::RolesFromHierarchy(skeleton) : std::move(known.roles);
   found.roles.resize(static_cast<std::size_t>(skeleton.num_joints()), JointRole::kNone);
   std::vector<bool> seen(wrinkle::kNumJointRoles, false);
   for (const JointRole role : found.roles) {

@@ -23,10 +23,10 @@ struct FoundJoints {
 };
 
 // `stated`: the roles that the model's own package states (Character::roles). They hold unless the
-// user chose a map. Otherwise: determines roles from names that `maps` contain. If no map fits,
-// roles follow from the hierarchy: one fork with two legs and a spine, another with two arms and a
-// neck, and the direction of the toes for the sides. The result from the hierarchy is a guess that
-// a person should check.
+// user chose a map. Otherwise: determines roles from names that `maps` contain. If the hierarchy
+// tells more (SkeletonMaps::RolesOrGuess()), roles follow from it: one fork with two legs and a
+// spine, another with two arms and a neck, and the direction of the toes for the sides. The result
+// from the hierarchy is a guess that a person should check.
 [[nodiscard]] FoundJoints FindJoints(const wrinkle::Skeleton& skeleton,
                                      const rig::SkeletonMaps& maps,
                                      const wrinkle::JointRoles& stated = {});

@@ -310,6 +310,66 @@ TEST_F(SkeletonMatching, AStreamThatNoMapFitsGetsRolesFromItsHierarchy) {
   EXPECT_EQ(ApplySkeletonMap(*map, person.joint_names()).roles, found.roles);
 }
 
+// The joints' names: hips, spine, chest, neck, head; of each side, first the left: arm, elbow,
+// hand, thigh, knee, foot, toes; then both eyes.
+wrinkle::Skeleton PersonCalled(const std::vector<std::string>& names) {
+  std::vector<wrinkle::JointDesc> joints;
+  const auto add = [&](int parent, const glm::vec3& offset) {
+    joints.push_back({names[joints.size()], parent, {offset}, {}});
+    return static_cast<int>(joints.size()) - 1;
+  };
+  const int hips = add(-1, {0, 1, 0});
+  const int spine = add(hips, {0, 0.2f, 0});
+  const int chest = add(spine, {0, 0.2f, 0});
+  const int neck = add(chest, {0, 0.1f, 0});
+  const int head = add(neck, {0, 0.1f, 0});
+  for (const float side : {1.0f, -1.0f}) {
+    const int arm = add(chest, {0.2f * side, 0, 0});
+    const int elbow = add(arm, {0.3f * side, 0, 0});
+    add(elbow, {0.3f * side, 0, 0});
+    const int thigh = add(hips, {0.1f * side, -0.1f, 0});
+    const int knee = add(thigh, {0, -0.4f, 0});
+    const int foot = add(knee, {0, -0.4f, 0});
+    add(foot, {0, -0.1f, 0.15f});
+  }
+  for (const float side : {1.0f, -1.0f}) add(head, {0.03f * side, 0.05f, 0.1f});
+  return *wrinkle::Skeleton::Create(std::move(joints));
+}
+
+// A map knows the trunk and the arms, and nothing of the legs.
+std::vector<std::string> HalfKnown(const std::string& left, const std::string& right) {
+  std::vector<std::string> names = {"hips", "spine", "chest", "neck", "head"};
+  for (const std::string& side : {left, right}) {
+    for (const char* part : {"UpperArm", "LowerArm", "Hand"}) names.push_back(side + part);
+    for (const char* part : {"bein", "knie", "fuss", "zehen"}) names.push_back(part + side);
+  }
+  names.insert(names.end(), {left + "Eye", right + "Eye"});
+  return names;
+}
+
+TEST_F(SkeletonMatching, TheHierarchyWinsIfItTellsMoreThanAMap) {
+  const wrinkle::Skeleton person = PersonCalled(HalfKnown("left", "right"));
+  const SkeletonRoles found = matcher_.RolesOf(person);
+  EXPECT_EQ(found.map, kFromHierarchy);
+  const auto role = [&](const char* joint) {
+    return found.roles.at(static_cast<std::size_t>(person.Find(joint)));
+  };
+  EXPECT_EQ(role("leftUpperArm"), kLeftUpperArm);
+  EXPECT_EQ(role("beinleft"), kLeftUpperLeg);
+  EXPECT_EQ(role("fussright"), kRightFoot);
+  EXPECT_EQ(role("rightEye"), kRightEye) << "the map's, since the hierarchy tells nothing of faces";
+  EXPECT_THAT(Describe(found), HasSubstr("guessed from the hierarchy: 21 roles, 21 of 21 joints"));
+}
+
+TEST_F(SkeletonMatching, AMapWinsIfTheHierarchyContradictsItOrTheUserChoseIt) {
+  const wrinkle::Skeleton exchanged = PersonCalled(HalfKnown("right", "left"));
+  EXPECT_NE(matcher_.RolesOf(exchanged).map, kFromHierarchy);
+  EXPECT_FALSE(matcher_.RolesOf(exchanged).roles.empty());
+  const auto chosen = ShippedMatcher("vrm");
+  ASSERT_TRUE(chosen.ok()) << chosen.status().ToString();
+  EXPECT_EQ(chosen->RolesOf(PersonCalled(HalfKnown("left", "right"))).map, "vrm");
+}
+
 // CMU's names say which joint is which.
 TEST_F(SkeletonMatching, TheHierarchyOfCmuAgreesWithItsNames) {
   const std::filesystem::path take = FURROW_SHARED_DATA "/cmu/01_01.bvh";
