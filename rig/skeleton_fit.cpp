@@ -13,6 +13,10 @@ namespace {
 
 using wrinkle::JointRole;
 
+// The map of VRM's own names. The human bones of a .vrma file have them, whatever their nodes are
+// called.
+constexpr char kVrmMap[] = "vrm";
+
 // Below these are fingers, hair and the ends of bones.
 bool EndsBody(JointRole role) {
   const JointRole left = role >= JointRole::kRightEye ? wrinkle::MirrorOf(role) : role;
@@ -115,6 +119,8 @@ std::vector<std::string> WarningsOf(const SkeletonFit& fit, const SkeletonRoles&
   if (fit.num_explained == 0) {
     return {map + "knows none of the " + std::to_string(fit.num_joints) + " joints" + way_out};
   }
+  // Where all bones have VRM's names, other joints are helpers, which no map could explain.
+  if (roles.map == kVrmMap && fit.missing.empty()) return {};
   const std::string left_out = Counted(fit.left_out.size(), "joint") + " of trunk and limbs (" +
                                FirstNames(fit.left_out) + ")";
   if (!fit.missing.empty() && !fit.left_out.empty()) {

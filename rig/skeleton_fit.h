@@ -35,7 +35,8 @@ struct SkeletonFit {
 //
 // A map fits badly if it explains nothing, if essential roles are missing while joints that could
 // have them are left out, or if the joints that it leaves out between others exceed a quarter of
-// those that it explains. If the recording lacks arms, the map is not at fault.
+// those that it explains. If the recording lacks arms, the map is not at fault. VRM's names say of
+// all other joints that they are helpers.
 [[nodiscard]] std::vector<std::string> WarningsOf(const SkeletonFit& fit,
                                                   const SkeletonRoles& roles);
 

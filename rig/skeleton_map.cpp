@@ -8,7 +8,9 @@
 #include <iterator>
 #include <optional>
 #include <set>
+#include <tuple>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -175,6 +177,19 @@ double Share(const SkeletonRoles& found, const SkeletonMap& map) {
   return static_cast<double>(found.num_roles) / static_cast<double>(map.entries.size());
 }
 
+// How many joints have a name of the map in its own case. VMC's names are VRM's, capitalised.
+int NumSpelledAlike(const SkeletonMap& map, std::span<const std::string> joint_names) {
+  std::unordered_set<std::string_view> known;
+  for (const SkeletonMap::Entry& entry : map.entries) {
+    for (const std::vector<std::string>& place : entry.chain) {
+      for (const std::string& name : place) known.insert(name);
+    }
+  }
+  return static_cast<int>(std::ranges::count_if(joint_names, [&](const std::string& name) {
+    return known.contains(WithoutNamespace(name));
+  }));
+}
+
 bool IsEnough(const SkeletonRoles& found, bool needs_limbs) {
   if (found.num_roles < kMinRoles) return false;
   if (!needs_limbs || std::ranges::any_of(found.roles, wrinkle::IsOfLimb)) return true;
@@ -309,13 +324,14 @@ SkeletonRoles SkeletonMaps::RolesOfRig(std::span<const std::string> joint_names)
 SkeletonRoles SkeletonMaps::Best(std::span<const std::string> joint_names,
                                  std::span<const std::int16_t> parents, bool needs_limbs) const {
   SkeletonRoles best;
-  std::pair<int, double> best_score;
+  std::tuple<int, double, int> best_score;
   for (const SkeletonMap& map : maps_) {
     SkeletonRoles found = ApplySkeletonMap(map, joint_names);
     // A map that the user chose needs no minimum. For shipped maps, a few matches may be
     // coincidence.
     if (!chosen_ && !IsEnough(found, needs_limbs)) continue;
-    const std::pair<int, double> score = {Points(found.roles, parents), Share(found, map)};
+    const std::tuple score(Points(found.roles, parents), Share(found, map),
+                           NumSpelledAlike(map, joint_names));
     if (!best.map.empty() && score <= best_score) continue;
     best = std::move(found);
     best_score = score;

@@ -83,8 +83,8 @@ class SkeletonMaps {
   // unless it explains three quarters of the joints: a trunk alone leaves arms and legs stiff.
   //
   // A joint of the body counts 4, one of fingers or face 1. With a skeleton, a joint without a role
-  // between joints with roles costs 2. In a tie, the map of which more is found wins, and then the
-  // first name.
+  // between joints with roles costs 2. In a tie, the map of which more is found wins, then the one
+  // that spells more names in the same case, and then the first name.
   [[nodiscard]] SkeletonRoles RolesOf(const wrinkle::Skeleton& skeleton) const;
   [[nodiscard]] SkeletonRoles RolesOf(std::span<const std::string> joint_names) const;
   // RolesOf(), or the roles that RolesFromHierarchy() finds, with fingers and face by their names,

@@ -6,6 +6,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "base/ascii.h"
 #include "base/text.h"
 #include "gltf/limits.h"
 
@@ -13,7 +14,7 @@ namespace furrow::gltf {
 namespace {
 
 // Unique names for joints, which skeletons require and glTF does not. Names that VRM gives come
-// first, and no other joint may take them.
+// first, and no other joint may take them, in any case: "Hips" would pass for the hips.
 class JointNames {
  public:
   JointNames(std::span<const std::pair<std::string, int>> names, Document* document)
@@ -21,6 +22,7 @@ class JointNames {
     for (const auto& [name, node] : names) {
       given_.emplace(node, name);
       taken_.insert(name);
+      given_names_.insert(AsciiLower(name));
     }
   }
 
@@ -29,10 +31,13 @@ class JointNames {
     if (given != given_.end()) return given->second;
     const std::string base =
         node.name.empty() ? "node_" + std::to_string(index) : CutText(node.name, kMaxNameBytes);
-    std::string name = base;
     // Starts at the number that the last joint of this name got: many equal names stay linear.
     int& number = next_number_.try_emplace(base, 2).first->second;
+    const bool is_given = given_names_.contains(AsciiLower(base));
+    std::string name = is_given ? base + "_" + std::to_string(number++) : base;
     while (!taken_.insert(name).second) name = base + "_" + std::to_string(number++);
+    // VRM says which joint is meant.
+    if (is_given) return name;
     if (name != base) {
       document_.Warn(
           "nodes[" + std::to_string(index) + "].name",
@@ -48,6 +53,7 @@ class JointNames {
  private:
   Document& document_;
   std::unordered_map<int, std::string> given_;
+  std::unordered_set<std::string> given_names_;  // in lowercase
   std::unordered_set<std::string> taken_;
   std::unordered_map<std::string, int> next_number_;
 };

@@ -49,7 +49,8 @@ struct JointList {
 
 // The nodes of `set` as joints. A node whose parent is not in `set` becomes a root.
 //
-// - `names` overrides the names of some nodes: (name, node), each name unique.
+// - `names` overrides the names of some nodes: (name, node), each name unique. Other nodes with one
+//   of these names, in any case, get a number without a warning.
 // - A node without a name is called "node_<index>". A name that is taken gets "_2", "_3" and so
 //   on, and a warning. A name longer than kMaxNameBytes is cut.
 [[nodiscard]] JointList ListJoints(const NodeForest& forest, const NodeSet& set,

@@ -125,6 +125,28 @@ TEST(SkeletonFit, AStiffSpineIsWarnedOf) {
   EXPECT_THAT(FitBody(parts).Warnings(), IsEmpty());
 }
 
+// In a .vrma file, the human bones have VRM's names, and other joints their own.
+TEST(SkeletonFit, HelpersBetweenTheBonesOfVrmAreNoFault) {
+  std::vector<Part> parts = {{"hips", -1, kHips}};
+  const char* names[] = {"Bone.001", "Bone.002", "Bone.003", "Bone.004", "Bone.005"};
+  for (const char* name : names) {
+    parts.push_back({name, static_cast<int>(parts.size()) - 1, kNone});
+  }
+  const int chest = static_cast<int>(parts.size()) - 1;
+  for (const Part& part : WholeBody()) {
+    if (part.role == kNone || part.role == kHips || part.role == kSpine) continue;
+    parts.push_back({part.name, chest, part.role});
+  }
+  FitBody body(parts);
+  EXPECT_THAT(body.Warnings(), ElementsAre(HasSubstr("move stiffly")));
+  body.roles.map = "vrm";
+  EXPECT_THAT(body.Warnings(), IsEmpty());
+  parts.back().role = parts[parts.size() - 2].role = parts[parts.size() - 3].role = kNone;
+  FitBody lame(parts);
+  lame.roles.map = "vrm";
+  EXPECT_THAT(lame.Warnings(), ElementsAre(HasSubstr("missing: rightUpperLeg, rightLowerLeg")));
+}
+
 TEST(SkeletonFit, AMapThatKnowsNothingIsWarnedOf) {
   std::vector<Part> parts = WholeBody();
   for (Part& part : parts) part.role = kNone;

@@ -337,6 +337,17 @@ TEST(SkeletonMaps, TheMoreSpecificMapWinsATie) {
   EXPECT_EQ(two.RolesOf(Names{"a", "b", "c", "d", "e", "f"}).map, "specific");
 }
 
+// VMC's names are VRM's with capitals, and only their thumbs differ.
+TEST(SkeletonMaps, TheCaseOfTheNamesDecidesATie) {
+  const SkeletonMaps maps = Shipped();
+  Names vrm = {"hips", "spine", "chest", "neck", "head", "leftUpperArm", "leftThumbProximal"};
+  EXPECT_EQ(maps.RolesOf(vrm).map, "vrm");
+  EXPECT_EQ(maps.RolesOf(vrm).roles.back(), kLeftThumbProximal);
+  Names vmc = {"Hips", "Spine", "Chest", "Neck", "Head", "LeftUpperArm", "LeftThumbProximal"};
+  EXPECT_EQ(maps.RolesOf(vmc).map, "vmc");
+  EXPECT_EQ(maps.RolesOf(vmc).roles.back(), kLeftThumbMetacarpal);
+}
+
 // MakeHuman's older rig shares its trunk with other families. Its legs would stay stiff.
 TEST(SkeletonMaps, ATrunkAloneIsNoMatch) {
   const SkeletonMaps maps = Shipped();

@@ -84,8 +84,14 @@ TEST(ListJoints, MakesNamesUnique) {
   EXPECT_THAT(NamesOf(list), ElementsAre("a", "a_2", "a_3", "a_4", "node_4", "hips_2", "hips"));
   EXPECT_EQ(list.num_nameless, 1);
   EXPECT_THAT(scene.document->warnings(),
-              ElementsAre(HasSubstr("nodes[2].name"), HasSubstr("nodes[3].name"),
-                          HasSubstr("nodes[5].name")));
+              ElementsAre(HasSubstr("nodes[2].name"), HasSubstr("nodes[3].name")));
+}
+
+// Maps ignore case, so "Hips" would pass for the node that the file calls the hips.
+TEST(ListJoints, LeavesGivenNamesToTheirNodes) {
+  Scene scene(json::array({{{"name", "Hips"}}, {{"name", "HIPS_2"}}, {{"name", "Bone"}}}));
+  EXPECT_THAT(NamesOf(scene.List({{"hips", 2}})), ElementsAre("Hips_2", "HIPS_2", "hips"));
+  EXPECT_THAT(scene.document->warnings(), ElementsAre());
 }
 
 TEST(ListJoints, CutsLongNamesBetweenCharacters) {

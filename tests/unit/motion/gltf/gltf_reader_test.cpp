@@ -291,6 +291,22 @@ TEST(GltfReader, ReadsVrmAnimation) {
   EXPECT_GT(turned, 0.01f);
 }
 
+// The file's humanoid says which node is which bone, so the nodes' own names do not matter.
+TEST(GltfReader, BonesOfVrmAnimationsMayHaveNamesOfTheirOwn) {
+  HandMadeGltf gltf = TwoJoints();
+  gltf.json["nodes"] = {{{"name", "Hips"}, {"children", {1}}},
+                        {{"name", "Bone.000"}, {"children", {2}}},
+                        {{"name", "spine"}, {"children", {3}}},
+                        {{"name", "Bone.001"}}};
+  json& bones = gltf.json["extensions"]["VRMC_vrm_animation"]["humanoid"]["humanBones"];
+  bones["hips"]["node"] = 1;
+  bones["spine"]["node"] = 3;
+  ClipReport report;
+  EXPECT_THAT(Parse(gltf.Glb(), {}, &report).skeleton.joint_names(),
+              ElementsAre("Hips_2", "hips", "spine_2", "spine"));
+  EXPECT_THAT(report.warnings, ElementsAre());
+}
+
 TEST(GltfReader, RejectsInvalidFiles) {
   using Change = void (*)(json&);
   const std::pair<Change, StatusCode> kCases[] = {
