@@ -363,7 +363,8 @@ TEST(SkeletonMaps, ATrunkAloneIsNoMatch) {
 
 TEST(SkeletonMaps, RecognisesMixamoWithAnyPrefix) {
   const SkeletonMaps maps = Shipped();
-  for (const char* prefix : {"mixamorig:", "mixamorig12:", "mixamorig", "mixamorig_", ""}) {
+  for (const char* prefix : {"mixamorig:", "mixamorig12:", "mixamorig", "mixamorig_", "mixamorig1_",
+                             "mixamorig7", "mixamorig12", "mixamorig12_", ""}) {
     Names names;
     for (const char* name : {"Hips", "Spine", "Spine1", "Spine2", "Neck", "Head", "LeftShoulder",
                              "LeftArm", "LeftForeArm", "LeftHand", "LeftHandThumb1"}) {
