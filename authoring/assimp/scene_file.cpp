@@ -10,6 +10,8 @@
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 
+#include "authoring/assimp/collada_text.h"
+
 namespace furrow::authoring {
 namespace {
 
@@ -87,7 +89,10 @@ Result<const aiScene*> ReadScene(std::string_view bytes, const std::string& exte
   }
   importer->SetIOHandler(new NoFiles);  // which owns it
   const unsigned steps = Configure(purpose, importer);
-  const aiScene* scene = ReadByNames(bytes, steps, extension, importer);
+  const bool is_collada = extension == ".dae";
+  const std::string collada = is_collada ? WithoutBlanksBeforeNumbers(bytes) : std::string();
+  const aiScene* scene =
+      ReadByNames(is_collada ? std::string_view(collada) : bytes, steps, extension, importer);
   if (scene != nullptr && scene->mRootNode != nullptr) return scene;
   const std::string reason = importer->GetErrorString();
   // assimp catches the exception and keeps its text.
