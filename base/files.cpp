@@ -119,9 +119,7 @@ Result<std::string> ReadFile(const fs::path& path, std::uint64_t max_bytes) {
   }
   if (error) return Status(StatusCode::kIo, error.message(), path.string());
   if (kind.type() != fs::file_type::regular) {
-    return Status(StatusCode::kIo,
-                  kind.type() == fs::file_type::directory ? "is a folder" : "not a regular file",
-                  path.string());
+    return NotAFile(path, kind.type() == fs::file_type::directory);
   }
   const std::uintmax_t size = fs::file_size(path, error);
   if (error) return Status(StatusCode::kIo, error.message(), path.string());
@@ -144,6 +142,14 @@ Result<std::string> ReadFile(const fs::path& path, std::uint64_t max_bytes) {
                   path.string(), "run 'git lfs pull' in its folder");
   }
   return bytes;
+}
+
+Status NotAFile(const fs::path& path, bool is_folder) {
+  // Not kIo: the caller named the wrong thing, and the operating system did not fail.
+  if (is_folder) {
+    return {StatusCode::kInvalidArgument, "is a folder", path.string(), "name a file in it"};
+  }
+  return {StatusCode::kInvalidArgument, "not a regular file", path.string()};
 }
 
 bool IsGitLfsPointer(std::string_view text) {

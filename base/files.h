@@ -16,10 +16,14 @@ inline constexpr std::uint64_t kMaxTextFileBytes = std::uint64_t{256} << 20;
 
 // Reads a whole regular file.
 //
-// Errors, with the path as `where`: kNotFound, kIo (also for folders and devices), kLimit (larger
+// Errors, with the path as `where`: kNotFound, kInvalidArgument (NotAFile()), kIo, kLimit (larger
 // than `max_bytes`), kUnsupported (what Git LFS leaves in place of a large file).
 [[nodiscard]] Result<std::string> ReadFile(const std::filesystem::path& path,
                                            std::uint64_t max_bytes);
+
+// The failure to read a folder, a device or a pipe as a file. Code: kInvalidArgument, because it is
+// bad input, which has an exit code of its own.
+[[nodiscard]] Status NotAFile(const std::filesystem::path& path, bool is_folder);
 
 // True if `text` is what Git LFS leaves in place of a large file that was not downloaded.
 [[nodiscard]] bool IsGitLfsPointer(std::string_view text);

@@ -25,8 +25,8 @@ void SplitClipPath(const std::filesystem::path& path, std::filesystem::path* fil
 //
 // `path` may choose an animation of a glTF, FBX or Collada file; see SplitClipPath().
 //
-// Errors: kNotFound, kIo, kParse, kSchema, kLimit, kNonFinite, kUnsupported. `where` is
-// "file:line" or "file: field".
+// Errors: kNotFound, kInvalidArgument (a folder or a device), kIo, kParse, kSchema, kLimit,
+// kNonFinite, kUnsupported. `where` is "file:line" or "file: field".
 [[nodiscard]] Result<Clip> LoadClip(const std::filesystem::path& path,
                                     const LoadOptions& options = {}, ClipReport* report = nullptr);
 

@@ -29,7 +29,8 @@ namespace furrow::motion::mcap {
 //   ReaderLimits::kept_bytes and ::records, are skipped with a warning.
 class Reader {
  public:
-  // Errors: kNotFound, kIo, kParse (not an MCAP file), kLimit.
+  // Errors: kNotFound, kInvalidArgument (a folder or a device), kIo, kParse (not an MCAP file),
+  // kLimit.
   [[nodiscard]] static Result<std::unique_ptr<Reader>> Open(const std::filesystem::path& path,
                                                             const ReaderLimits& limits = {});
   // The same for the bytes of a file, which must outlive the reader. `name`: in messages.

@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/files.h"
 #include "motion/mcap/byte_io.h"
 
 namespace furrow::motion::mcap {
@@ -23,7 +24,7 @@ Result<RecordFile> RecordFile::Open(const std::filesystem::path& path, std::uint
   RecordFile opened(file, path.string(), 0, most_bytes);
   struct stat about = {};
   if (::fstat(file, &about) != 0) return Status(StatusCode::kIo, std::strerror(errno), path);
-  if (!S_ISREG(about.st_mode)) return Status(StatusCode::kIo, "not a regular file", path);
+  if (!S_ISREG(about.st_mode)) return NotAFile(path, S_ISDIR(about.st_mode));
   opened.size_ = static_cast<std::uint64_t>(about.st_size);
   return opened;
 }

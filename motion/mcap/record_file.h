@@ -27,7 +27,7 @@ struct Record {
 // the file and a limit.
 class RecordFile {
  public:
-  // `most_bytes`: the limit of a read. Errors: kNotFound, kIo.
+  // `most_bytes`: the limit of a read. Errors: kNotFound, kInvalidArgument (NotAFile()), kIo.
   [[nodiscard]] static Result<RecordFile> Open(const std::filesystem::path& path,
                                                std::uint64_t most_bytes);
   // The same for bytes that outlive the object. `name`: in messages.

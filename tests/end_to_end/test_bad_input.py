@@ -148,6 +148,16 @@ class BadFileTest(unittest.TestCase):
         self.assertFalse((self.root / "out").exists())
         self.refuse(BAD_INPUT, "convert", self.root / "empty.glb", self.root / "out.bvh", says=["empty.glb"])
 
+    def test_folders_are_bad_input(self):
+        for name in ("folder.bvh", "folder.mcap", "folder.glb", "folder.json"):
+            (self.root / name).mkdir()
+        for args in (("info", self.root / "folder.bvh"), ("info", self.root / "folder.mcap"),
+                     ("rig", "check", self.root / "folder.json"), ("shape-map", "check", self.root / "folder.json"),
+                     ("solve", PERFORMANCE, "--rig", self.root / "folder.json"),
+                     ("character", "check", self.root / "folder.glb")):
+            with self.subTest(args):
+                self.refuse(BAD_INPUT, *args, says=[f"{args[-1]}: is a folder (name a file in it)"])
+
     def test_cyclic_skeleton(self):
         gltf = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
                 "nodes": [{"name": "a", "children": [1]}, {"name": "b", "children": [0]}],

@@ -33,9 +33,10 @@ TEST_F(Files, ReadsUpToTheLimit) {
   EXPECT_EQ(*ReadFile(root_ / "f", 5), "12345");
   EXPECT_EQ(ReadFile(root_ / "f", 4).status().code(), StatusCode::kLimit);
   EXPECT_EQ(ReadFile(root_ / "absent", 4).status().code(), StatusCode::kNotFound);
-  EXPECT_EQ(ReadFile(root_.path(), 4).status().code(), StatusCode::kIo);
-  EXPECT_EQ(ReadFile("/dev/zero", 4).status().code(), StatusCode::kIo);
+  EXPECT_EQ(ReadFile(root_.path(), 4).status().code(), StatusCode::kInvalidArgument);
+  EXPECT_EQ(ReadFile("/dev/zero", 4).status().code(), StatusCode::kInvalidArgument);
   EXPECT_EQ(ReadFile(root_.path(), 4).status().what(), "is a folder");
+  EXPECT_EQ(ReadFile("/dev/zero", 4).status().what(), "not a regular file");
   EXPECT_EQ(ReadFile(root_ / "absent", 4).status().where(), (root_ / "absent").string());
 }
 

@@ -390,7 +390,7 @@ TEST_F(McapTest, RejectsOtherFiles) {
   Spill(Path("empty"), "");
   EXPECT_EQ(Reader::Open(Path("empty")).status().code(), StatusCode::kParse);
   EXPECT_EQ(Reader::Open(Path("none")).status().code(), StatusCode::kNotFound);
-  EXPECT_EQ(Reader::Open(folder_.path()).status().code(), StatusCode::kIo);
+  EXPECT_EQ(Reader::Open(folder_.path()).status().code(), StatusCode::kInvalidArgument);
 }
 
 TEST_F(McapTest, LackOfMemoryCostsOneMessage) {
