@@ -43,7 +43,7 @@ Status TcpTransport::Begin(const std::string& host, std::uint16_t port) {
   asio::error_code error;
   tcp::resolver resolver(context_);
   const auto endpoints = resolver.resolve(host, std::to_string(port), error);
-  if (error) return ConnectionFailed(kind(), host, port, error.message());
+  if (error) return HostNotFound(host);
   const bool in_clear = security_.token && security_.tls == nullptr && !security_.token_in_clear;
   const bool leaves = std::any_of(endpoints.begin(), endpoints.end(), [](const auto& entry) {
     return !IsLoopback(entry.endpoint().address());

@@ -36,6 +36,12 @@ Status ConnectionFailed(TransportKind kind, const std::string& host, std::uint16
                                         std::string(reason)};
 }
 
+Status HostNotFound(const std::string& host) {
+  // The resolver's own words ("Host not found (authoritative)") do not say what to do.
+  return {StatusCode::kUnavailable, "no connection to " + host + ": no host of this name was found",
+          "", "check the name and the network, or use a numeric address"};
+}
+
 std::optional<Elsewhere> ParseElsewhere(std::string_view text) {
   Elsewhere server;
   for (std::uint16_t* port : {&server.udp, &server.tcp}) {

@@ -115,5 +115,7 @@ class Transport {
 // The kUnavailable status of a failed connect: "no connection to host:port over TCP: reason".
 [[nodiscard]] Status ConnectionFailed(TransportKind kind, const std::string& host,
                                       std::uint16_t port, std::string_view reason);
+// The kUnavailable status of a host name that has no address, with what to do.
+[[nodiscard]] Status HostNotFound(const std::string& host);
 
 }  // namespace furrow::client

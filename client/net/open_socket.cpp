@@ -63,7 +63,7 @@ Result<Descriptor> OpenDescriptor(TransportKind kind, const std::string& host, s
   const int unresolved = getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &list);
   const std::unique_ptr<addrinfo, FreeAddresses> addresses(list);
   Descriptor descriptor;
-  if (unresolved != 0) return client::ConnectionFailed(kind, host, port, gai_strerror(unresolved));
+  if (unresolved != 0) return client::HostNotFound(host);
   if (const int failed = ConnectAny(addresses.get(), &descriptor); failed != 0)
     return client::ConnectionFailed(kind, host, port, std::strerror(failed));
   return descriptor;

@@ -251,6 +251,15 @@ class DaemonTest(unittest.TestCase):
                      ("play", PERFORMANCE, "--to", f"127.0.0.1:{port}", "--tcp")):
             self.assertEqual(furrow(*args).returncode, NO_CONNECTION, args)
 
+    def test_unknown_host(self):
+        host = "no-such-host.invalid"
+        for args in (("watch", host), ("watch", host, "--udp"), ("play", PERFORMANCE, "--to", host),
+                     ("frames", host, "--out", "-"), ("record", host, "--out", "none.mcap"), ("drain", host)):
+            result = furrow(*args)
+            self.assertEqual(result.returncode, NO_CONNECTION, (args, result.stderr))
+            self.assertIn(f"furrow: no connection to {host}: no host of this name was found (check the name and the "
+                          "network, or use a numeric address)\n", result.stderr.decode())
+
     def test_garbage_does_not_affect_a_stream(self):
         solved = solve(PERFORMANCE, "--rig", RIG)
         with Daemon("--no-render") as daemon:

@@ -16,6 +16,8 @@ from furrow_testing import GUARD, SHARE, Daemon, commands, finish, furrow, make_
 PERFORMANCE = SHARE / "recordings" / "performance.bvh"
 # Keeps the tests independent of the speed of the machine: only minutes count as late.
 PATIENT = ["--late", "60000", "--drain", "5"]
+UNKNOWN_HOST = ("furrow: no connection to no-such-host.invalid: no host of this name was found (check the name and the "
+                "network, or use a numeric address)\n")
 
 
 class Chaos:
@@ -412,7 +414,7 @@ class LoadTest(unittest.TestCase):
         # The daemon has ended, so the port is closed.
         for command, code, words in (
                 (("load", f"127.0.0.1:{port}", PERFORMANCE), 4, f"127.0.0.1:{port}: no answer (is furrowd"),
-                (("load", "no-such-host.invalid", PERFORMANCE), 4, "no connection"),
+                (("load", "no-such-host.invalid", PERFORMANCE), 4, UNKNOWN_HOST),
                 (("load", "localhost", "/nonexistent.bvh"), 3, "/nonexistent.bvh"),
                 (("load", "[::1", PERFORMANCE), 2, "HOST"),
                 (("load", "localhost", PERFORMANCE, "--loss", "2"), 2, "--loss"),
@@ -423,7 +425,7 @@ class LoadTest(unittest.TestCase):
                 (("load", "localhost", PERFORMANCE, "--pid", "2147483647"), 2, "no such process"),
                 (("chaos", "--listen", "0", "--to", "localhost", "--black-hole", "x"), 2, "START:LENGTH"),
                 (("chaos", "--listen", "0", "--bind", "somewhere", "--to", "localhost"), 2, "numeric"),
-                (("chaos", "--listen", "0", "--to", "no-such-host.invalid"), 4, "no connection")):
+                (("chaos", "--listen", "0", "--to", "no-such-host.invalid"), 4, UNKNOWN_HOST)):
             result = furrow(*command)
             self.assertEqual(result.returncode, code, (command, result.stderr.decode()))
             self.assertIn(words, result.stderr.decode(), command)

@@ -81,8 +81,9 @@ std::unique_ptr<client::Transport> OpenTransport(const client::Address& address,
   auto transport = client::OpenTransport(kind, address.host, port, kTimeout, *security);
   if (!transport.ok()) {
     const bool absent = transport.status().code() == StatusCode::kUnavailable;
+    const bool needs_hint = absent && transport.status().todo().empty();
     std::fprintf(stderr, "furrow: %s%s\n", transport.status().ToString().c_str(),
-                 absent ? " (is furrowd running there?)" : "");
+                 needs_hint ? " (is furrowd running there?)" : "");
     *exit_code = absent ? kNoConnection : kFailed;
     return nullptr;
   }

@@ -59,9 +59,10 @@ int NumSockets(const Workload& workload, const Plan& plan, Path path) {
                     plan.num_subjects());
 }
 
-// Adds the address and a hint to a kUnavailable status.
+// Adds the address and a hint to a kUnavailable status that has neither.
 Status Located(const Status& status, const Target& target, Path path) {
-  if (status.code() != StatusCode::kUnavailable || !status.where().empty()) return status;
+  const bool is_whole = !status.where().empty() || !status.todo().empty();
+  if (status.code() != StatusCode::kUnavailable || is_whole) return status;
   const auto names = [&status](const std::string& address) {
     return status.what().find(address) != std::string::npos;
   };

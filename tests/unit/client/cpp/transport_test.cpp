@@ -67,6 +67,16 @@ std::unique_ptr<Transport> Open(TransportKind kind, std::uint16_t port,
   return transport.ok() ? *std::move(transport) : nullptr;
 }
 
+TEST(OpenTransport, AnUnknownHostIsNamedWithTheWayOut) {
+  for (const TransportKind kind : {TransportKind::kTcp, TransportKind::kUdp}) {
+    const Status status = OpenTransport(kind, "no-such-host.invalid", 7400, kGuard).status();
+    EXPECT_EQ(status.code(), StatusCode::kUnavailable);
+    EXPECT_EQ(status.ToString(),
+              "no connection to no-such-host.invalid: no host of this name was found (check the "
+              "name and the network, or use a numeric address)");
+  }
+}
+
 // A TCP transport and the other end of its connection.
 class TcpTransportTest : public testing::Test {
  protected:
