@@ -233,6 +233,16 @@ class CharacterTest(unittest.TestCase):
             self.assertIn(says, message)
             self.assertFalse((self.root / "none.glb").exists())
 
+    def test_an_output_that_cannot_be_written_ends_an_import_at_once(self):
+        absent = self.root / "absent"
+        for out, code, says in ((self.root / "me.gltf", 2, "me.gltf' does not end with .glb"), (self.root, 2, "does not end with .glb"),
+                                (absent / "me.glb", 1, f"{absent / 'me.glb'}: cannot create a file there")):
+            # Without notes about the model, which come first in an import.
+            message = furrow("character", "import", self.default, "--out", out, check=code).stderr.decode()
+            self.assertEqual(message.count("\n"), 1, message)
+            self.assertIn(says, message)
+        self.assertFalse(absent.exists())
+
     def test_huge_pictures_are_rejected_before_decoding(self):
         def huge(root, binary):
             view = root["bufferViews"][root["images"][0]["bufferView"]]

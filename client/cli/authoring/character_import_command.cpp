@@ -17,6 +17,7 @@
 #include "authoring/import/model/shape_face.h"
 #include "authoring/shapes/arkit_face.h"
 #include "base/ascii.h"
+#include "base/files.h"
 #include "base/status.h"
 #include "base/text.h"
 #include "character/package/package.h"
@@ -213,6 +214,18 @@ Status CheckOptions(const ImportArguments& arguments, bool is_save, bool is_fold
   return {};
 }
 
+// The import takes long, so a package that cannot be written ends it before.
+Status CheckOutput(const std::string& out) {
+  FURROW_RETURN_IF_ERROR(CheckWritable(out));
+  return CheckWritable(character::RigBeside(out));
+}
+
+// A validator of CLI11: an empty text means that the value is valid.
+std::string CheckPackageName(std::string& name) {
+  const bool is_package = std::filesystem::path(name).extension() == ".glb";
+  return is_package ? std::string() : "'" + name + "' does not end with .glb";
+}
+
 int Import(const ImportArguments& arguments) {
   const std::filesystem::path in(arguments.in);
   std::error_code error;
@@ -221,6 +234,7 @@ int Import(const ImportArguments& arguments) {
   if (const Status status = CheckOptions(arguments, is_save, is_folder); !status.ok()) {
     return Fail(status);
   }
+  if (const Status status = CheckOutput(arguments.out); !status.ok()) return Fail(status);
   if (is_folder) return ImportFolder(in, arguments, arguments.makehuman);
   return is_save ? ImportSave(arguments) : ImportFile(arguments);
 }
@@ -242,7 +256,8 @@ void AddCharacterImport(CLI::App& group, Action& action) {
   command
       ->add_option("--out", arguments->out,
                    "Package to write, FILE.glb; FILE.rig.json is written beside it")
-      ->required();
+      ->required()
+      ->check(CLI::Validator(CheckPackageName, ""));
   command->add_option(
       "--rig", arguments->rig,
       "Wrinkle rig for the package, by file or shipped name (default: a rig proposed "
