@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/data_dir.h"
 
+#include <algorithm>
 #include <cstdlib>
-#include <string>
+
+#include "base/joined.h"
+#include "base/text.h"
 
 namespace furrow {
 
@@ -31,6 +34,36 @@ Result<std::filesystem::path> FindDataFile(std::string_view name) {
   if (fs::exists(file, error)) return file;
   return Status(StatusCode::kNotFound, "no such data file", file.string(),
                 "build the target furrow_share, or set FURROW_DATA_DIR to a folder share/furrow");
+}
+
+Result<std::vector<std::filesystem::path>> ListDataFiles(std::string_view folder,
+                                                         std::string_view extension) {
+  const auto shipped = FindDataFile(folder);
+  FURROW_RETURN_IF_ERROR(shipped);
+  std::vector<std::filesystem::path> files;
+  std::error_code error;
+  for (const auto& file : std::filesystem::directory_iterator(*shipped, error)) {
+    if (file.path().extension().string() == extension) files.push_back(file.path());
+  }
+  if (error) return Status(StatusCode::kIo, error.message(), shipped->string());
+  // Directories list files in any order; the first error must not depend on it.
+  std::ranges::sort(files);
+  return files;
+}
+
+Status NotShipped(const std::string& kind, std::string_view folder, std::string_view extension,
+                  const std::string& name) {
+  const auto files = ListDataFiles(folder, extension);
+  if (!files.ok()) return Status(StatusCode::kNotFound, "no such file", name);
+  std::vector<std::string> names;
+  for (const auto& file : *files) {
+    // "default.strokes.json" belongs to the rig "default", "elder.web.glb" to a character.
+    if (!file.stem().has_extension()) names.push_back(file.stem().string());
+  }
+  const std::string meant = DidYouMean(name, names);
+  return Status(StatusCode::kNotFound, "no such file, and no shipped " + kind + " of this name",
+                name,
+                (meant.empty() ? "" : meant + " ") + "shipped " + kind + "s: " + Joined(names));
 }
 
 }  // namespace furrow

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/status.h"
 
@@ -19,5 +21,15 @@ namespace furrow {
 // Searches FURROW_DATA_DIR if it is set, and otherwise share/furrow in InstallPrefix().
 // Error: kNotFound, with the path that was tried.
 [[nodiscard]] Result<std::filesystem::path> FindDataFile(std::string_view name);
+
+// The files of a folder of share/furrow that end with `extension`, in order of their names. "." is
+// share/furrow itself. Errors: kNotFound, kIo.
+[[nodiscard]] Result<std::vector<std::filesystem::path>> ListDataFiles(std::string_view folder,
+                                                                       std::string_view extension);
+
+// The failure to find `name`: names the `kind` ("rig"), the shipped files of ListDataFiles(), and
+// the one that was probably meant. Code: kNotFound.
+[[nodiscard]] Status NotShipped(const std::string& kind, std::string_view folder,
+                                std::string_view extension, const std::string& name);
 
 }  // namespace furrow

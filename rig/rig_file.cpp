@@ -12,7 +12,6 @@
 #include "rig/rig_generated.h"
 #include "rig/rig_reader.h"
 #include "rig/rig_schema_text.h"
-#include "rig/shipped_maps.h"
 
 namespace furrow::rig {
 
@@ -51,7 +50,7 @@ Result<wrinkle::Rig> LoadRig(const std::filesystem::path& path, const wrinkle::P
   const Result<std::string> text = ReadFile(path, JsonIndex::kMaxBytes);
   // FindRigFile() leaves a name that it does not know as it is.
   if (text.status().code() == StatusCode::kNotFound && !path.has_parent_path()) {
-    return NotShipped("rig", "rigs", path.string());
+    return NotShipped("rig", "rigs", ".json", path.string());
   }
   FURROW_RETURN_IF_ERROR(text);
   return ParseRig(*text, path.string(), path.parent_path(), poses, missing);

@@ -13,11 +13,6 @@ namespace furrow::rig {
 // The .json files of a folder of the data, in order of their names. Errors: kNotFound, kIo.
 [[nodiscard]] Result<std::vector<std::filesystem::path>> ListShippedMaps(const std::string& folder);
 
-// The failure to find `name`: names the `kind` ("rig"), the files of `folder`, and the one that was
-// probably meant. Code: kNotFound.
-[[nodiscard]] Status NotShipped(const std::string& kind, const std::string& folder,
-                                const std::string& name);
-
 // The file of a map: `name_or_file` if it is a file or has a slash, else the shipped map of that
 // name in `folder`. Error: kNotFound (no shipped map has this name).
 [[nodiscard]] Result<std::filesystem::path> FindMap(const std::string& folder,

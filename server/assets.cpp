@@ -98,8 +98,10 @@ Result<Assets> LoadAssets(const Config& config, character::Pictures pictures) {
     FURROW_RETURN_IF_ERROR(LoadRigAlone(chosen_rig, poses, &assets));
     return assets;
   }
-  fs::path glb = config.character;
-  if (glb.empty()) {
+  fs::path glb;
+  if (!config.character.empty()) {
+    glb = character::FindCharacterFile(config.character);
+  } else {
     auto shipped = furrow::FindDataFile("default.glb");
     if (!shipped.ok()) {
       return Status(StatusCode::kNotFound, "there is no default character",

@@ -43,16 +43,16 @@ Confinement FilesOf(const Config& config) {
   AppendPaths(FromEnvironment("LIBGL_DRIVERS_PATH").string(), &files.read);
   AppendPaths(FromEnvironment("__EGL_VENDOR_LIBRARY_DIRS").string(), &files.read);
   const TlsFiles& tls = config.security.tls;
+  const fs::path package =
+      config.character.empty() ? fs::path() : character::FindCharacterFile(config.character);
   for (const fs::path& file :
-       {config.source, config.character, config.rig, fs::path(config.skeleton_map),
+       {config.source, package, config.rig, fs::path(config.skeleton_map),
         fs::path(config.shape_map), config.security.keys, config.play, config.render_settings,
         config.http.page, tls.certificate, tls.key, tls.client_authority,
         config.cluster.credentials, config.cluster.authority}) {
     if (!file.empty()) AppendFoldersOf(file, &files.read);
   }
-  if (!config.character.empty()) {
-    AppendFoldersOf(character::RigBeside(config.character), &files.read);
-  }
+  if (!package.empty()) AppendFoldersOf(character::RigBeside(package), &files.read);
   if (!config.http.page.empty()) files.read.push_back(config.http.page);
   for (const OscTargetConfig& target : config.osc.targets) {
     if (!IsShippedOscProfile(target.profile)) AppendFoldersOf(target.profile, &files.read);

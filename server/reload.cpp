@@ -39,7 +39,7 @@ Result<Reload::Files> LoadFiles(const Config& config) {
 // A shipped rig has a name instead, and belongs to the installation.
 std::filesystem::path RigFileOf(const Config& config) {
   if (!config.rig.empty() || config.character.empty()) return config.rig;
-  return character::RigBeside(config.character);
+  return character::RigBeside(character::FindCharacterFile(config.character));
 }
 
 Result<Reload> ReadReload(const ReloadRequest& request) {

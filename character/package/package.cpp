@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/asset_path.h"
+#include "base/data_dir.h"
 #include "base/files.h"
 #include "base/status.h"
 #include "character/gltf/gltf_reader.h"
@@ -86,9 +87,23 @@ Result<Character> ParseCharacter(std::string_view bytes, const fs::path& folder,
 
 fs::path RigBeside(const fs::path& glb) { return fs::path(glb).replace_extension(".rig.json"); }
 
+fs::path FindCharacterFile(const std::string& name_or_file) {
+  std::error_code error;
+  // A slash says that a file is meant, so a misspelt path does not select a shipped character.
+  if (fs::exists(name_or_file, error) || name_or_file.find('/') != std::string::npos) {
+    return name_or_file;
+  }
+  const auto shipped = FindDataFile(name_or_file + (name_or_file.ends_with(".glb") ? "" : ".glb"));
+  return shipped.ok() ? *shipped : fs::path(name_or_file);
+}
+
 Result<Character> LoadCharacter(const fs::path& glb, const fs::path& rig,
                                 const wrinkle::PoseSource& poses, Pictures pictures) {
   const Result<std::string> bytes = ReadFile(glb, gltf::kMaxFileBytes);
+  // FindCharacterFile() leaves a name that it does not know as it is.
+  if (bytes.status().code() == StatusCode::kNotFound && !glb.has_parent_path()) {
+    return NotShipped("character", ".", ".glb", glb.string());
+  }
   FURROW_RETURN_IF_ERROR(bytes);
   Result<Character> character = ParseCharacter(*bytes, glb.parent_path(), {.pictures = pictures});
   if (!character.ok()) return character.status().Within(glb.string());

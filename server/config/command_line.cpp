@@ -90,8 +90,10 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
   app->add_flag("--check", flags->check,
                 "Read the configuration and all files that it names, say what is wrong or that it\n"
                 "is valid, and exit");
-  app->add_option("--character", config->character,
-                  "Render this character (.glb) and use its wrinkle rig");
+  app->add_option(
+      "--character", config->character,
+      "Render this character and use its wrinkle rig: a package (.glb), or the name of\n"
+      "a shipped character (default, elder)");
   app->add_option(
       "--rig", config->rig,
       "Use this wrinkle rig: a JSON file, or the name of a shipped rig (arkit, cmu, ...)");

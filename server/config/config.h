@@ -43,7 +43,7 @@ inline constexpr double kMaxMegapixelsPerSecond = 1e6;
 struct Config {
   std::filesystem::path source;  // the file of --config that was read into this; empty: none
   // If both the character and the rig are empty, the default character is used.
-  std::filesystem::path character;  // .glb
+  std::filesystem::path character;  // a package (.glb), or the name of a shipped character
   std::string skeleton_map;         // name or file; empty: the best match of the shipped maps
   std::string shape_map;            // the same for the names of blend shapes
   // A file or the name of a shipped rig. Without a character: weights only; else replaces its rig.

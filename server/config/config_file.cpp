@@ -46,10 +46,10 @@ Key Destination(std::string_view name, Target* target) {
           }};
 }
 
-// A recording: the name of a shipped one, or a file relative to `folder`, which has a dot or a
-// slash.
-Key Recording(std::string_view name, std::filesystem::path* target,
-              const std::filesystem::path& folder) {
+// A recording or a character: the name of a shipped one, or a file relative to `folder`, which has
+// a dot or a slash.
+Key Shipped(std::string_view name, std::filesystem::path* target,
+            const std::filesystem::path& folder) {
   return {name, [target, folder](const toml::node& node) -> std::string {
             const auto value = node.value_exact<std::string>();
             if (!value) return "must be a string";
@@ -122,9 +122,9 @@ Key OscTargets(std::string_view name, std::vector<OscTargetConfig>* targets,
 // The keys by table. Three functions, because the whole list is long.
 Tables InputTables(Config* config, const std::filesystem::path& folder) {
   return {{"",
-           {Path("character", &config->character, folder),
+           {Shipped("character", &config->character, folder),
             NameOrFile("rig", ".json", &config->rig, folder),
-            Recording("play", &config->play, folder), Text("bvh_positions", &config->bvh_positions),
+            Shipped("play", &config->play, folder), Text("bvh_positions", &config->bvh_positions),
             Text("up_axis", &config->up_axis), Count("rest_frame", &config->rest_frame),
             NameOrFile("skeleton_map", ".json", &config->skeleton_map, folder),
             NameOrFile("shape_map", ".json", &config->shape_map, folder)}},

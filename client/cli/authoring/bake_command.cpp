@@ -201,8 +201,10 @@ void PrintSummary(const BakeArguments& arguments, const BakeJob& job,
                arguments.out.c_str(), seconds, arguments.out.c_str(), NewRig(arguments).c_str());
 }
 
-int Bake(const BakeArguments& arguments) {
+int Bake(BakeArguments arguments) {
   CatchInterrupts();
+  // The rig lies beside the file, and the new rig has its name.
+  arguments.character = character::FindCharacterFile(arguments.character).string();
   auto job = Prepare(arguments);
   if (!job.ok()) return Fail(job.status());
   auto folder = StagedFolder::Create(arguments.out);
@@ -309,7 +311,7 @@ void AddBake(CLI::App& app, Action& action) {
   arguments->options.threads =
       std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 64);
   CLI::App* command = app.add_subcommand("bake", HelpOf("bake"));
-  command->add_option("CHARACTER", arguments->character, "Character package (.glb)")->required();
+  command->add_option("CHARACTER", arguments->character, kCharacterHelp)->required();
   command->add_option(
       "--rig", arguments->rig,
       "Wrinkle rig, by file or shipped name (default: the rig beside the character)");

@@ -46,7 +46,8 @@ Result<bool> AttachOptionalRig(const CheckArguments& arguments, character::Chara
   return true;
 }
 
-int Check(const CheckArguments& arguments) {
+int Check(CheckArguments arguments) {
+  arguments.file = character::FindCharacterFile(arguments.file).string();
   const auto maps = rig::SkeletonMaps::Load(arguments.map);
   if (!maps.ok()) return Fail(maps.status());
   auto opened = authoring::OpenModel(arguments.file);
@@ -76,7 +77,10 @@ void AddCharacterCheck(CLI::App& group, Action& action) {
   auto arguments = std::make_shared<CheckArguments>();
   CLI::App* command = group.add_subcommand(
       "check", "Check a model for use with wrinkles; exit with 0 if it is usable, 3 if not");
-  command->add_option("FILE", arguments->file, "Skinned model: glTF, VRM, FBX, Collada, ...")
+  command
+      ->add_option(
+          "FILE", arguments->file,
+          "Skinned model: glTF, VRM, FBX, Collada, ..., or the name of a shipped character")
       ->required();
   command->add_option("--rig", arguments->rig,
                       "Wrinkle rig of the model, by file or shipped name (default: <FILE>.rig.json "

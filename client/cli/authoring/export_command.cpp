@@ -80,9 +80,8 @@ int Export(const ExportArguments& arguments) {
 void AddExport(CLI::App& app, Action& action) {
   auto arguments = std::make_shared<ExportArguments>();
   CLI::App* command = app.add_subcommand("export", HelpOf("export"));
-  command->add_option(
-      "CHARACTER", arguments->character,
-      "Character package (.glb), or the name of a shipped character (default: default)");
+  command->add_option("CHARACTER", arguments->character,
+                      std::string(kCharacterHelp) + " (default: default)");
   std::map<std::string, Engine> engines;
   for (const authoring::EngineTraits& traits : authoring::Engines()) {
     engines[std::string(traits.name)] = traits.engine;

@@ -11,6 +11,7 @@
 #include "base/files.h"
 #include "base/status.h"
 #include "base/text.h"
+#include "character/package/package.h"
 #include "character/pictures/picture_file.h"
 #include "client/cli/authoring/character_command.h"
 #include "client/cli/common/command.h"
@@ -45,7 +46,7 @@ Result<RigSubject> LoadRigSubject(const std::string& file, const motion::LoadOpt
     FURROW_RETURN_IF_ERROR(clip);
     return RigSubject{.skeleton = std::move(clip->skeleton), .model = {}, .look_at = {}};
   }
-  auto model = authoring::OpenModel(file);
+  auto model = authoring::OpenModel(character::FindCharacterFile(file));
   FURROW_RETURN_IF_ERROR(model);
   wrinkle::Skeleton skeleton = model->character.skeleton;
   return RigSubject{.skeleton = std::move(skeleton),
@@ -169,7 +170,9 @@ void AddProposeRig(CLI::App& group, Action& action) {
   CLI::App* command = group.add_subcommand(
       "propose-rig", "Propose a wrinkle rig for a model or a recording, as a start for editing");
   command
-      ->add_option("FILE", arguments->file, "Model (glTF, FBX, ...) or recording (BVH, MCAP, VRMA)")
+      ->add_option("FILE", arguments->file,
+                   "Model (glTF, FBX, ...), name of a shipped character, or recording (BVH, MCAP, "
+                   "VRMA)")
       ->required();
   command->add_option("--out", arguments->out, "Rig to write, RIG.json")->required();
   AddReadOptions(*command, arguments->read);

@@ -89,7 +89,7 @@ void AddRigPatch(CLI::App& app, Action& action) {
   group->require_subcommand(1);
   auto arguments = std::make_shared<PatchArguments>();
   CLI::App* command = group->add_subcommand("patch", HelpOf("rig patch"));
-  command->add_option("CHARACTER", arguments->character, "Character package (.glb)")->required();
+  command->add_option("CHARACTER", arguments->character, kCharacterHelp)->required();
   command->add_option(
       "--rig", arguments->rig,
       "Wrinkle rig, by file or shipped name (default: the rig beside the character)");

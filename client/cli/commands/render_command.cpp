@@ -286,7 +286,7 @@ void AddRender(CLI::App& app, Action& action) {
   command->add_option("--out", options->out, "Folder for the pictures, created if missing")
       ->required();
   command->add_option("--character", options->character,
-                      "Character package, .glb (default: the default character)");
+                      std::string(kCharacterHelp) + " (default: default)");
   command->add_option("--rig", options->rig,
                       "Wrinkle rig, by file or shipped name (default: the rig of the package)");
   AddSkeletonMap(*command, options->skeleton_map);

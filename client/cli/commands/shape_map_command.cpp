@@ -7,6 +7,7 @@
 
 #include "base/files.h"
 #include "base/text.h"
+#include "character/package/package.h"
 #include "client/cli/commands/commands.h"
 #include "client/cli/common/exit_code.h"
 #include "client/cli/common/inputs.h"
@@ -47,7 +48,7 @@ Result<std::vector<std::string>> MorphTargetNames(const std::filesystem::path& p
 }
 
 Result<std::vector<std::string>> ShapeNamesOf(const std::string& file) {
-  const std::filesystem::path path = file;
+  const std::filesystem::path path = character::FindCharacterFile(file);
   const bool is_gltf =
       path.extension() == ".glb" || path.extension() == ".gltf" || path.extension() == ".vrm";
   if (is_gltf) return MorphTargetNames(path);
@@ -93,7 +94,8 @@ void AddShapeMapCommand(CLI::App& app, Action& action) {
       "propose", "Write a first shape map for the names of a file, to be completed by hand");
   propose
       ->add_option("FILE", options->file,
-                   "Character (.glb, .gltf, .vrm), or a recording with blend shapes")
+                   "Character (.glb, .gltf, .vrm, or a shipped name), or a recording with blend "
+                   "shapes")
       ->required();
   propose->add_option("--out", options->out, "Shape map to write (JSON)")->required();
   propose->callback([options, &action] { action = [options] { return Propose(*options); }; });

@@ -94,7 +94,7 @@ void AddSolve(CLI::App& app, Action& action) {
   command
       ->add_option("--rig", options->rig,
                    "Wrinkle rig: a JSON file, the name of a shipped rig (cmu, arkit, ...), or a "
-                   "character (.glb), whose rig is used")
+                   "character (.glb, or a shipped name), whose rig is used")
       ->required();
   AddSkeletonMap(*command, options->skeleton_map);
   AddShapeMap(*command, options->shape_map);

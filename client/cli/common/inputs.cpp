@@ -188,10 +188,23 @@ void WarnAboutMissing(const wrinkle::RigBinding& binding, const motion::Clip& cl
   if (!clip.blend_shape_names.empty()) warn(binding.missing_blend_shapes(), "blend shape");
 }
 
+fs::path FindPackageArgument(const std::string& argument) {
+  fs::path package = character::FindCharacterFile(argument);
+  if (fs::path(argument).extension() == ".glb") return package;
+  std::error_code error;
+  const bool is_rig = fs::exists(ResolveRigPath(argument), error);
+  return is_rig || package.extension() != ".glb" ? fs::path() : package;
+}
+
+Status CharacterWithoutRig(const std::string& argument) {
+  return {StatusCode::kNotFound, "the character has no wrinkle rig", argument,
+          "write one with 'furrow character propose-rig', or choose a rig file"};
+}
+
 Result<RigInput> LoadRigInput(const std::string& argument, const motion::LoadOptions& read,
                               const std::string& skeleton_map) {
   RigInput input;
-  if (fs::path(argument).extension() != ".glb") {
+  if (FindPackageArgument(argument).empty()) {
     auto rig = LoadRigArgument(argument, read, skeleton_map);
     FURROW_RETURN_IF_ERROR(rig);
     input.rig = *std::move(rig);
@@ -199,10 +212,7 @@ Result<RigInput> LoadRigInput(const std::string& argument, const motion::LoadOpt
   }
   auto character = LoadCharacterArgument(argument, {}, read, skeleton_map);
   FURROW_RETURN_IF_ERROR(character);
-  if (character->rig.drivers.empty()) {
-    return Status(StatusCode::kNotFound, "the character has no wrinkle rig", argument,
-                  "write one with 'furrow character propose-rig', or choose a rig file");
-  }
+  if (character->rig.drivers.empty()) return CharacterWithoutRig(argument);
   input.rig = character->rig;
   input.character = std::make_unique<const character::Character>(*std::move(character));
   return input;
@@ -211,16 +221,13 @@ Result<RigInput> LoadRigInput(const std::string& argument, const motion::LoadOpt
 Result<character::Character> LoadCharacterArgument(const std::string& glb, const std::string& rig,
                                                    const motion::LoadOptions& read,
                                                    const std::string& skeleton_map) {
-  fs::path package = glb;
-  std::error_code error;
+  fs::path package;
   if (glb.empty()) {
     const auto shipped = furrow::FindDataFile("default.glb");
     FURROW_RETURN_IF_ERROR(shipped);
     package = *shipped;
-  } else if (glb.find_first_of("/.") == std::string::npos && !fs::exists(package, error)) {
-    // Neither a path nor a file name: a shipped character. The loader reports a missing file.
-    const auto shipped = furrow::FindDataFile(glb + ".glb");
-    if (shipped.ok()) package = *shipped;
+  } else {
+    package = character::FindCharacterFile(glb);
   }
   const auto poses = RigPoses(read, skeleton_map, package);
   FURROW_RETURN_IF_ERROR(poses);

@@ -19,6 +19,10 @@
 
 namespace furrow::cli {
 
+// Help of an argument that LoadCharacterArgument() reads.
+inline constexpr char kCharacterHelp[] =
+    "Character package (.glb), or the name of a shipped character such as elder";
+
 // Loads a recording: the file `path`, or the shipped one of that name (motion::FindRecording()).
 // "take.mcap#NAME" selects a subject of a take with several subjects, "walk.fbx#NAME" an animation
 // of a file with several. Prints the reader's warnings to standard error. Sets `report`, unless it
@@ -67,8 +71,16 @@ struct RigInput {
   }
 };
 
-// As LoadRigArgument(), and accepts a character package (.glb), whose rig is used and whose shapes
-// then follow a recording's joints as in the daemon. Errors: kNotFound (a package without a rig).
+// The character package that a rig argument names: a .glb file, or a shipped character ("elder").
+// Empty if the argument names a rig, such as "default", which is a shipped character, too.
+[[nodiscard]] std::filesystem::path FindPackageArgument(const std::string& argument);
+
+// The failure to find the rig of a character package. Code: kNotFound.
+[[nodiscard]] Status CharacterWithoutRig(const std::string& argument);
+
+// As LoadRigArgument(), and accepts a character package (FindPackageArgument()), whose rig is used
+// and whose shapes then follow a recording's joints as in the daemon. Errors: those of
+// CharacterWithoutRig().
 [[nodiscard]] Result<RigInput> LoadRigInput(const std::string& argument,
                                             const motion::LoadOptions& read = {},
                                             const std::string& skeleton_map = {});
@@ -115,9 +127,9 @@ void PrintMatchesOf(std::span<const wrinkle::Skeleton> skeletons);
 // gives no warning about blend shapes.
 void WarnAboutMissing(const wrinkle::RigBinding& binding, const motion::Clip& clip);
 
-// Loads a character package. `glb`: its file, or the name of a shipped character ("elder"); empty:
-// the default character. `rig`: a rig that replaces the rig of the package, by path or name of a
-// shipped rig; empty: keep the rig of the package. `read` and `skeleton_map`: see RigPoses().
+// Loads a character package. `glb`: see character::FindCharacterFile(); empty: the default
+// character. `rig`: a rig that replaces the rig of the package, by path or name of a shipped rig;
+// empty: keep the rig of the package. `read` and `skeleton_map`: see RigPoses().
 [[nodiscard]] Result<character::Character> LoadCharacterArgument(
     const std::string& glb, const std::string& rig, const motion::LoadOptions& read = {},
     const std::string& skeleton_map = {});

@@ -93,7 +93,7 @@ void AddSubscriberOptions(CLI::App& command, LoadFlags& options) {
         "Number of extra TCP subscribers that connect and disconnect for half a second each, in "
         "turn");
   command.add_option("--rig", options.input.rig,
-                     "The daemon's wrinkle rig, by file or shipped name, or its character (.glb), "
+                     "The daemon's wrinkle rig or its character (.glb), by file or shipped name, "
                      "to check the weights (default: the default character's rig)");
   AddReadOptions(command, options.input.read);
   AddSkeletonMap(command, options.input.skeleton_map);

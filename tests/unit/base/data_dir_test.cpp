@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/data_dir.h"
 
+#include <cstdlib>
+#include <fstream>
+
 #include <gtest/gtest.h>
+
+#include "tests/temporary_folder.h"
 
 namespace furrow {
 namespace {
@@ -15,6 +20,24 @@ TEST(InstallPrefix, IsAboveTheFoldersOfPrograms) {
 
 TEST(InstallPrefix, IsTheFolderOfThisBuild) {
   EXPECT_TRUE(std::filesystem::equivalent(InstallPrefix(), FURROW_BINARY_DIR));
+}
+
+TEST(NotShipped, ListsWhatShipsAndWhatWasMeant) {
+  const TemporaryFolder folder;
+  for (const char* name : {"elder.glb", "elder.web.glb", "default.glb", "default.rig.json"}) {
+    std::ofstream(folder / name);
+  }
+  setenv("FURROW_DATA_DIR", folder.path().c_str(), 1);
+  const auto files = ListDataFiles(".", ".glb");
+  ASSERT_TRUE(files.ok()) << files.status().ToString();
+  ASSERT_EQ(files->size(), 3u);
+  EXPECT_EQ(files->front().filename(), "default.glb");
+  EXPECT_EQ(ListDataFiles("absent", ".glb").status().code(), StatusCode::kNotFound);
+  EXPECT_EQ(NotShipped("character", ".", ".glb", "eldr").ToString(),
+            "eldr: no such file, and no shipped character of this name (did you mean 'elder'? "
+            "shipped characters: default, elder)");
+  EXPECT_EQ(NotShipped("rig", "absent", ".json", "x").ToString(), "x: no such file");
+  unsetenv("FURROW_DATA_DIR");
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/daemon_files.h"
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
@@ -30,6 +31,20 @@ TEST(DaemonFiles, IncludeWhatALinkLeadsTo) {
   EXPECT_THAT(files.read, Contains(root / "current"));
   EXPECT_THAT(files.read, Contains(root / "releases"));
   EXPECT_THAT(files.read, Not(Contains(root / "other")));
+}
+
+TEST(DaemonFiles, AShippedCharacterLiesInTheData) {
+  const TemporaryFolder folder;
+  const std::filesystem::path root = std::filesystem::canonical(folder.path());
+  for (const char* name : {"share", "releases"}) std::filesystem::create_directory(root / name);
+  std::ofstream(root / "releases" / "elder.glb");
+  std::filesystem::create_symlink(root / "releases" / "elder.glb", root / "share" / "elder.glb");
+  setenv("FURROW_DATA_DIR", (root / "share").c_str(), 1);
+  Config config;
+  config.character = "elder";
+  const Confinement files = FilesOf(config);
+  unsetenv("FURROW_DATA_DIR");
+  EXPECT_THAT(files.read, Contains(root / "releases"));
 }
 
 }  // namespace

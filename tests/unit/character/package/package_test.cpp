@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "character/package/package.h"
 
+#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <limits>
@@ -449,6 +450,23 @@ TEST(Character, NamesTheFile) {
   EXPECT_EQ(status.code(), StatusCode::kParse);
   EXPECT_EQ(status.where(), empty.string() + ": header");
   EXPECT_THAT(status.what(), HasSubstr("empty"));
+}
+
+TEST(Package, FindsShippedCharactersByName) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(SaveCharacterGlb(Square(), folder / "elder.glb").ok());
+  setenv("FURROW_DATA_DIR", folder.path().c_str(), 1);
+  EXPECT_EQ(FindCharacterFile("elder"), folder / "elder.glb");
+  EXPECT_EQ(FindCharacterFile("elder.glb"), folder / "elder.glb");
+  EXPECT_EQ(FindCharacterFile((folder / "elder.glb").string()), folder / "elder.glb");
+  EXPECT_EQ(FindCharacterFile("./elder"), "./elder");
+  EXPECT_EQ(FindCharacterFile("nobody"), "nobody");
+  EXPECT_TRUE(LoadCharacter(FindCharacterFile("elder")).ok());
+  const Status unknown = LoadCharacter(FindCharacterFile("eldr")).status();
+  EXPECT_EQ(unknown.code(), StatusCode::kNotFound);
+  EXPECT_THAT(unknown.ToString(), HasSubstr("did you mean 'elder'? shipped characters: elder"));
+  EXPECT_EQ(LoadCharacter("no/such.glb").status().what(), "no such file");
+  unsetenv("FURROW_DATA_DIR");
 }
 
 }  // namespace

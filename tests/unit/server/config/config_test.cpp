@@ -382,6 +382,10 @@ TEST(ParseConfig, RelativeFilesAreRelativeToTheConfig) {
   EXPECT_EQ(config.play, "walk");  // a shipped recording
   ASSERT_TRUE(ParseConfig("play = 'walk.bvh'", "/etc/furrow/furrow.toml", &config).ok());
   EXPECT_EQ(config.play, "/etc/furrow/walk.bvh");
+  ASSERT_TRUE(ParseConfig("character = 'elder'", "/etc/furrow/furrow.toml", &config).ok());
+  EXPECT_EQ(config.character, "elder");  // a shipped character
+  ASSERT_TRUE(ParseConfig("character = 'me.gltf'", "/etc/furrow/furrow.toml", &config).ok());
+  EXPECT_EQ(config.character, "/etc/furrow/me.gltf");
   ASSERT_TRUE(ParseConfig("skeleton_map = 'my.json'", "/etc/furrow/furrow.toml", &config).ok());
   EXPECT_EQ(config.skeleton_map, "/etc/furrow/my.json");
 }

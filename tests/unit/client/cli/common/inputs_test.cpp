@@ -49,5 +49,20 @@ TEST_F(RigInputs, PosesOfARigKeepTheirOwnRestPose) {
   EXPECT_EQ(rig->reference_poses[0].joints.size(), 1u);
 }
 
+// Rigs and characters ship in different folders, and some have the same name.
+TEST_F(RigInputs, ARigArgumentMayNameACharacter) {
+  std::filesystem::create_directory(folder_ / "rigs");
+  for (const char* name : {"default.glb", "elder.glb", "rigs/default.json"}) {
+    std::ofstream(folder_ / name);
+  }
+  setenv("FURROW_DATA_DIR", folder_.path().c_str(), 1);
+  EXPECT_EQ(FindPackageArgument("elder"), folder_ / "elder.glb");
+  EXPECT_EQ(FindPackageArgument("default.glb"), folder_ / "default.glb");
+  EXPECT_EQ(FindPackageArgument("no/such.glb"), "no/such.glb");
+  EXPECT_EQ(FindPackageArgument("default"), "") << "the rig of this name";
+  EXPECT_EQ(FindPackageArgument("nobody"), "");
+  EXPECT_EQ(FindPackageArgument(rig_), "");
+}
+
 }  // namespace
 }  // namespace furrow::cli
