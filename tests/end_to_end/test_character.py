@@ -61,6 +61,25 @@ class CharacterTest(unittest.TestCase):
         self.assertFalse([f for f in report["findings"] if f["severity"] == "error"])
         self.assertIn("0 errors", furrow("character", "check", self.default, check=0).stdout.decode())
 
+    def test_shipped_characters_have_names(self):
+        for args in (("character", "check", "elder"), ("rig", "check", "elder"), ("rig", "check", "default.glb"),
+                     ("character", "propose-rig", "elder", "--out", self.root / "elder.rig.json"),
+                     ("solve", SHARE / "recordings" / "anger.bvh", "--rig", "elder")):
+            with self.subTest(args):
+                furrow(*args, check=0)
+        for args in (("render", "--pose", "neutral", "--out", self.root / "none", "--character", "eldr"),
+                     ("export", "eldr", "--out", self.root / "none")):
+            said = furrow(*args, check=3).stderr.decode()
+            self.assertIn("eldr: no such file, and no shipped character of this name (did you mean 'elder'? shipped "
+                          "characters: default, elder)", said)
+
+    def test_a_package_is_checked_with_its_rig(self):
+        said = furrow("rig", "check", self.default, check=0).stdout.decode()
+        self.assertIn("wrinkle weights", said)
+        self.assertNotIn("is not a file here", said, "the pictures are in the package")
+        alone = self.changed(lambda *_: None, "alone.glb")
+        self.assertIn("alone.glb: the character has no wrinkle rig", furrow("rig", "check", alone, check=3).stderr.decode())
+
     def test_strict_treats_warnings_as_errors(self):
         def forget_names(root, _):
             for node in root["nodes"][:3]:

@@ -7,12 +7,14 @@
 #include <set>
 
 #include "base/files.h"
+#include "character/package/package.h"
 #include "character/package/rig_report.h"
 #include "client/cli/commands/commands.h"
 #include "client/cli/common/exit_code.h"
 #include "client/cli/common/helper_program.h"
 #include "client/cli/common/inputs.h"
 #include "client/cli/output/explanation_text.h"
+#include "gltf/limits.h"
 #include "motion/clip/clip.h"
 #include "rig/exports/export_profile.h"
 #include "rig/near_names.h"
@@ -33,6 +35,9 @@ struct RigOptions {
   int frame = 0;
   float threshold = 0.01f;
 };
+
+constexpr char kRigHelp[] =
+    "Wrinkle rig: a JSON file, the name of a shipped rig, or a character (.glb, or a shipped name)";
 
 int Explain(const RigOptions& options) {
   const auto input = LoadRigInput(options.rig, options.read, options.skeleton_map);
@@ -88,24 +93,64 @@ Result<std::vector<rig::ExportProfile>> LoadProfiles(const std::vector<std::stri
   return profiles;
 }
 
-int Check(const RigOptions& options) {
+// The names of the pictures in a character package.
+Result<std::vector<std::string>> PicturesIn(const std::filesystem::path& package) {
+  const auto bytes = ReadFile(package, gltf::kMaxFileBytes);
+  FURROW_RETURN_IF_ERROR(bytes);
+  const auto parsed = character::ParseCharacter(*bytes, package.parent_path(),
+                                                {.pictures = character::Pictures::kStandIns});
+  if (!parsed.ok()) return parsed.status().Within(package.string());
+  std::vector<std::string> names;
+  for (const character::Picture& picture : parsed->pictures) names.push_back(picture.name);
+  return names;
+}
+
+// A rig to check.
+struct CheckedRig {
+  wrinkle::Rig rig;
+  std::filesystem::path folder;       // of the rig's pictures
+  std::vector<std::string> embedded;  // names of the pictures in the rig's character
+};
+
+// Loads a rig, or the rig beside a character package. Prints which recordings are missing.
+Result<CheckedRig> LoadCheckedRig(const RigOptions& options) {
+  CheckedRig checked;
+  const std::filesystem::path package = FindPackageArgument(options.rig);
+  std::filesystem::path file = ResolveRigPath(options.rig);
+  if (!package.empty()) {
+    auto pictures = PicturesIn(package);
+    FURROW_RETURN_IF_ERROR(pictures);
+    checked.embedded = *std::move(pictures);
+    file = character::RigBeside(package);
+    std::error_code error;
+    if (!std::filesystem::exists(file, error)) return CharacterWithoutRig(package.string());
+  }
+  const auto poses = RigPoses(options.read, options.skeleton_map, package);
+  FURROW_RETURN_IF_ERROR(poses);
   // The rig that ships for MakeHuman names a recording of MakeHuman, which does not ship. Only
   // binding to a skeleton needs the poses.
   std::set<std::string> missing;
-  const auto poses = RigPoses(options.read, options.skeleton_map);
-  if (!poses.ok()) return Fail(poses.status());
-  const auto rig =
-      rig::LoadRig(ResolveRigPath(options.rig), *poses, options.file.empty() ? &missing : nullptr);
-  if (!rig.ok()) return Fail(rig.status());
-  const auto profiles = LoadProfiles(options.profiles, *rig);
-  if (!profiles.ok()) return Fail(profiles.status());
-  for (const std::string& file : missing) {
-    PrintWarnings({"the recording '" + file +
+  auto rig = rig::LoadRig(file, *poses, options.file.empty() ? &missing : nullptr);
+  FURROW_RETURN_IF_ERROR(rig);
+  for (const std::string& name : missing) {
+    PrintWarnings({"the recording '" + name +
                    "' was not found, so the poses taken from it are not "
                    "checked; put it beside the rig or add its folder to FURROW_ASSET_PATH"});
   }
+  checked.rig = *std::move(rig);
+  checked.folder = file.parent_path();
+  return checked;
+}
+
+int Check(const RigOptions& options) {
+  const auto checked = LoadCheckedRig(options);
+  if (!checked.ok()) return Fail(checked.status());
+  const wrinkle::Rig& rig = checked->rig;
+  const auto profiles = LoadProfiles(options.profiles, rig);
+  if (!profiles.ok()) return Fail(profiles.status());
   character::RigReportOptions report_options;
-  report_options.folder = ResolveRigPath(options.rig).parent_path();
+  report_options.folder = checked->folder;
+  report_options.embedded_pictures = checked->embedded;
   std::optional<motion::Clip> clip;
   rig::RigShapes shapes;
   if (!options.file.empty()) {
@@ -115,22 +160,22 @@ int Check(const RigOptions& options) {
     report_options.skeleton = &clip->skeleton;
     const auto shape_matcher = LoadShapeMatcher(options.shape_map);
     if (!shape_matcher.ok()) return Fail(shape_matcher.status());
-    shapes = MatchBlendShapes(*shape_matcher, *clip, *rig);
+    shapes = MatchBlendShapes(*shape_matcher, *clip, rig);
     report_options.blend_shape_names = shapes.driver_names();
   }
   rig::SkeletonMatch match;
   if (clip) {
     const auto matcher = LoadSkeletonMatcher(options.skeleton_map);
     if (!matcher.ok()) return Fail(matcher.status());
-    match = MatchJoints(*matcher, *clip, *rig);
+    match = MatchJoints(*matcher, *clip, rig);
     report_options.aliases = match.aliases;
     report_options.role_chains = match.role_chains;
     report_options.turn = match.turn();
   }
-  const character::RigReport report = character::ReportOnRig(*rig, report_options);
+  const character::RigReport report = character::ReportOnRig(rig, report_options);
   std::fputs(character::ToText(report).c_str(), stdout);
   for (const rig::ExportProfile& profile : *profiles) {
-    std::fputs(rig::ToText(rig::CoverExports(*rig, profile)).c_str(), stdout);
+    std::fputs(rig::ToText(rig::CoverExports(rig, profile)).c_str(), stdout);
   }
   return report.binding.ok() ? kDone : Fail(report.binding.At(options.rig));
 }
@@ -174,8 +219,7 @@ void AddProposeMap(CLI::App& group, Action& action) {
 void AddCheck(CLI::App& group, Action& action) {
   auto options = std::make_shared<RigOptions>();
   CLI::App* command = group.add_subcommand("check", "Validate a rig and report likely mistakes");
-  command->add_option("RIG", options->rig, "Wrinkle rig: a JSON file, or the name of a shipped rig")
-      ->required();
+  command->add_option("RIG", options->rig, kRigHelp)->required();
   command->add_option(
       "--skeleton", options->file,
       "Recording to check the rig's joints and blend shapes against (default: none)");
@@ -194,10 +238,7 @@ void AddExplain(CLI::App& group, Action& action) {
   auto options = std::make_shared<RigOptions>();
   CLI::App* command =
       group.add_subcommand("explain", "Show which driver and pose made each weight of a frame");
-  command
-      ->add_option("RIG", options->rig,
-                   "Wrinkle rig: a JSON file, the name of a shipped rig, or a character (.glb)")
-      ->required();
+  command->add_option("RIG", options->rig, kRigHelp)->required();
   command
       ->add_option("FILE", options->file,
                    "Recording: BVH, glTF/GLB, VRMA, FBX, Collada, Live Link Face CSV or a take")
