@@ -321,6 +321,14 @@ SkeletonRoles SkeletonMaps::RolesOfRig(std::span<const std::string> joint_names)
   return Best(joint_names, {}, /*needs_limbs=*/false);
 }
 
+int SkeletonMaps::MostRoles(std::span<const std::string> joint_names) const {
+  int most = 0;
+  for (const SkeletonMap& map : maps_) {
+    most = std::max(most, ApplySkeletonMap(map, joint_names).num_roles);
+  }
+  return most;
+}
+
 SkeletonRoles SkeletonMaps::Best(std::span<const std::string> joint_names,
                                  std::span<const std::int16_t> parents, bool needs_limbs) const {
   SkeletonRoles best;

@@ -95,6 +95,9 @@ class SkeletonMaps {
   // The roles of the joints that a rig names. They need no limbs: a rig of a face has none.
   [[nodiscard]] SkeletonRoles RolesOfRig(std::span<const std::string> joint_names) const;
 
+  // The most roles that any map finds, whether it fits or not.
+  [[nodiscard]] int MostRoles(std::span<const std::string> joint_names) const;
+
   [[nodiscard]] std::span<const SkeletonMap> maps() const { return maps_; }
   [[nodiscard]] bool is_chosen() const { return chosen_; }
 

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <set>
 #include <span>
 
 #include "base/status.h"
+#include "base/text.h"
 #include "wrinkle/rig/rig_joints.h"
 
 namespace furrow::rig {
@@ -85,6 +87,26 @@ std::string AxisName(const glm::vec3& direction) {
     if (std::abs(direction[i]) > std::abs(direction[axis])) axis = i;
   }
   return std::string(1, direction[axis] < 0.0f ? '-' : '+') + "XYZ"[axis];
+}
+
+// How joints are matched without roles. A few joints of Furrow's own names need no map, so the
+// text says what is found before it names what no map knows.
+std::string DescribeEqualNames(const SkeletonMatch& match) {
+  const int num_joints = match.fit.num_joints;
+  if (match.num_equal_names > 0) {
+    const std::string share =
+        "joints are matched by equal names: " + std::to_string(match.num_equal_names) + " of " +
+        Counted(static_cast<std::uint64_t>(num_joints), "joint");
+    if (match.num_equal_names == num_joints) return share;
+    return share + "; no skeleton map fits the others (--skeleton-map chooses one)";
+  }
+  std::string roles;
+  if (match.most_roles > 0 && match.most_roles < kMinRoles) {
+    roles = " (the best finds " + Counted(static_cast<std::uint64_t>(match.most_roles), "role") +
+            " of the " + std::to_string(kMinRoles) + " that it needs)";
+  }
+  return "no skeleton map fits" + roles +
+         ", so joints are matched by equal names (--skeleton-map chooses one)";
 }
 
 }  // namespace
@@ -196,6 +218,12 @@ SkeletonMatch SkeletonMatcher::Match(const wrinkle::Skeleton& stream, const wrin
     return stream.Find(name) != wrinkle::kNoJoint;
   };
   match.assumes_axes = !match.stance && std::ranges::any_of(names, has_joint);
+  const auto is_known = [&](const std::string& name) {
+    return joints.contains(name) ||
+           (character != nullptr && character->Find(name) != wrinkle::kNoJoint);
+  };
+  match.num_equal_names = static_cast<int>(std::ranges::count_if(stream.joint_names(), is_known));
+  if (match.stream.map.empty()) match.most_roles = streams_.MostRoles(stream.joint_names());
   if (match.stream.roles.empty()) return match;
 
   const wrinkle::JointRoles own = RolesOfRig(names);
@@ -234,10 +262,7 @@ wrinkle::Retarget MakeRetarget(const SkeletonMatch& match, const wrinkle::Skelet
 
 std::string Describe(const SkeletonMatch& match) {
   std::string text = Describe(match.stream);
-  if (text.empty() && match.fit.num_joints > 0) {
-    text =
-        "no skeleton map fits, so joints are matched by equal names (--skeleton-map chooses one)";
-  }
+  if (text.empty() && match.fit.num_joints > 0) text = DescribeEqualNames(match);
   if (match.turn() == wrinkle::RestStance().turn) return text;
   const glm::quat back = glm::conjugate(match.turn());
   return text + (text.empty() ? "the rest pose faces " : "; the rest pose faces ") +

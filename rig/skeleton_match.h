@@ -23,6 +23,11 @@ struct SkeletonMatch {
   SkeletonRoles stream;
   SkeletonFit fit;          // of the stream's roles
   SkeletonRoles character;  // empty without a character
+  // Joints of the stream that have the name of a joint of the rig or of the character. Names match
+  // without any map.
+  int num_equal_names = 0;
+  // The most roles that any map finds, if none of them fits.
+  int most_roles = 0;
   // For BindOptions::aliases: (the rig's joint, the stream's joint of the same role).
   std::vector<std::pair<std::string, std::string>> aliases;
   // For BindOptions::role_chains: all joints of the stream that do the part of the rig's joint. A

@@ -177,6 +177,18 @@ TEST(SkeletonFit, AMatchNamesTheShareAndUnknownSkeletons) {
             "one)");
   EXPECT_EQ(Describe(matcher->Match(wrinkle::Skeleton(), wrinkle::Rig(), nullptr)), "");
 
+  // Furrow's own names, and too few of them for a map.
+  const FitBody face({{"head", -1, kNone}, {"jaw", 0, kNone}, {"brow_l", 0, kNone}});
+  EXPECT_EQ(Describe(matcher->Match(face.skeleton, wrinkle::Rig(), nullptr)),
+            "no skeleton map fits (the best finds 2 roles of the 6 that it needs), so joints are "
+            "matched by equal names (--skeleton-map chooses one)");
+  EXPECT_EQ(Describe(matcher->Match(face.skeleton, wrinkle::Rig(), &face.skeleton)),
+            "joints are matched by equal names: 3 of 3 joints");
+  const FitBody more({{"head", -1, kNone}, {"jaw", 0, kNone}, {"ear", 0, kNone}});
+  EXPECT_EQ(Describe(matcher->Match(more.skeleton, wrinkle::Rig(), &face.skeleton)),
+            "joints are matched by equal names: 2 of 3 joints; no skeleton map fits the others "
+            "(--skeleton-map chooses one)");
+
   const FitBody trunk({{"Hips", -1, kNone},
                        {"Spine", 0, kNone},
                        {"Spine1", 1, kNone},
