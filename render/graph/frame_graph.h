@@ -89,7 +89,6 @@ class TransientPool {
   void Release(TextureId texture);
   // Call once per frame: destroys the textures that were unused for kKeepFrames frames.
   void EndFrame();
-  [[nodiscard]] int num_textures() const { return static_cast<int>(entries_.size()); }
   [[nodiscard]] std::size_t num_bytes() const { return num_bytes_; }
   [[nodiscard]] std::size_t max_bytes() const { return max_bytes_; }
 

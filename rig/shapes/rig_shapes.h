@@ -46,7 +46,6 @@ class RigShapes {
   [[nodiscard]] std::span<const std::string> pose_names() const { return pose_names_; }
   // The number of coefficients of a pose, the stream's and the extension.
   [[nodiscard]] std::size_t size() const { return driver_names_.size(); }
-  [[nodiscard]] std::size_t num_of_stream() const { return num_of_stream_; }
 
   // Computes the extension of a pose of the stream, whose blend shapes grow to size(). Joints and
   // coefficients that are not finite leave the extension unchanged; the solver refuses them. Does

@@ -135,11 +135,6 @@ glm::vec3 HeadShape::Cast(const glm::vec3& from, const glm::vec3& direction, flo
   return from + direction * std::min(t, length);
 }
 
-glm::vec3 HeadShape::Onto(glm::vec3 p) const {
-  for (int i = 0; i < 4; ++i) p -= Normal(p) * Distance(p);
-  return p;
-}
-
 const HeadShape& DefaultHead() {
   static const HeadShape head;
   return head;

@@ -49,8 +49,6 @@ class HeadShape {
   // `direction`, or the point at `length` centimetres if there is none.
   [[nodiscard]] glm::vec3 Cast(const glm::vec3& from, const glm::vec3& direction,
                                float length) const;
-  // The nearest point of the surface. Precondition: `p` is near the surface.
-  [[nodiscard]] glm::vec3 Onto(glm::vec3 p) const;
 
  private:
   FaceParameters face_;
@@ -60,12 +58,5 @@ class HeadShape {
 
 // The head of the default character, made on the first call. Thread-safe.
 [[nodiscard]] const HeadShape& DefaultHead();
-// Distance(), Normal() and Cast() of DefaultHead().
-[[nodiscard]] inline float HeadDistance(const glm::vec3& p) { return DefaultHead().Distance(p); }
-[[nodiscard]] inline glm::vec3 HeadNormal(const glm::vec3& p) { return DefaultHead().Normal(p); }
-[[nodiscard]] inline glm::vec3 CastOnHead(const glm::vec3& from, const glm::vec3& direction,
-                                          float length) {
-  return DefaultHead().Cast(from, direction, length);
-}
 
 }  // namespace furrow::authoring

@@ -41,8 +41,6 @@ const HelperCommand& Get(std::string_view name) {
 
 }  // namespace
 
-std::span<const HelperCommand> HelperCommands() { return kHelperCommands; }
-
 const char* HelpOf(const std::string& name) { return Get(name).help; }
 
 void AddHelperEntry(CLI::App& parent, const std::string& name) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <span>
 #include <string>
 
 #include "client/cli/common/command.h"
@@ -16,10 +15,7 @@ struct HelperCommand {
   const char* program;  // file name of the executable, which is also its CMake target
 };
 
-// All helper commands, in the order of `furrow --help`.
-[[nodiscard]] std::span<const HelperCommand> HelperCommands();
-
-// The help line of one helper command. Precondition: `name` is in HelperCommands().
+// The help line of one helper command. Precondition: `name` is one.
 [[nodiscard]] const char* HelpOf(const std::string& name);
 
 // Adds an entry for helper command `name` to `parent`, which lists it in --help. `parent` is the

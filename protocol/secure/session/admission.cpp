@@ -52,7 +52,6 @@ AdmissionResult Admission::OnInitiation(ByteView datagram, const PeerAddress& fr
   PublicKey client_key;
   std::copy_n(view.message.begin(), kPublicKeyBytes, client_key.begin());
   if (const auto found = responses_.find(client_key); found != responses_.end()) {
-    ++repeated_;
     result.outcome = AdmissionOutcome::kRepeated;
     SetReply(found->second, result);
     return result;

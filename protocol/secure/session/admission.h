@@ -113,7 +113,6 @@ class Admission {
   }
   [[nodiscard]] std::uint64_t num_retries() const { return retries_; }
   [[nodiscard]] std::uint64_t num_accepted() const { return accepted_; }
-  [[nodiscard]] std::uint64_t num_repeated() const { return repeated_; }
 
  private:
   // A token that passed the checks of its public part.
@@ -152,7 +151,6 @@ class Admission {
   std::array<std::uint64_t, kNumRefusals> refused_{};
   std::uint64_t retries_ = 0;
   std::uint64_t accepted_ = 0;
-  std::uint64_t repeated_ = 0;
 };
 
 }  // namespace furrow::protocol::secure

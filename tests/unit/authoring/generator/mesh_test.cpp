@@ -209,9 +209,9 @@ TEST(GeneratorMesh, NormalsPointOutOfTheHead) {
   int front = 0;
   for (std::size_t i = 0; i < head.info.size(); ++i) {
     const glm::vec3 p = head.info[i].place;
-    if (head.info[i].part != kFacePart || std::abs(HeadDistance(p)) > 0.01f) continue;
+    if (head.info[i].part != kFacePart || std::abs(DefaultHead().Distance(p)) > 0.01f) continue;
     ++front;
-    outward += glm::dot(head.mesh.vertices[i].normal, HeadNormal(p)) > 0.0f;
+    outward += glm::dot(head.mesh.vertices[i].normal, DefaultHead().Normal(p)) > 0.0f;
   }
   ASSERT_GT(front, 2000);
   EXPECT_GT(outward, front * 99 / 100);
