@@ -2,25 +2,17 @@
 #include "server/pipeline/wire_adapter.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <span>
 
-#include "recording/wire_quat.h"
+#include "recording/wire_joints.h"
 
 namespace furrow::server {
 namespace {
 
-glm::vec3 ToVec(const protocol::Vec3& v) { return {v.x, v.y, v.z}; }
-
 // Indices come from the network and address arrays.
 bool IndicesFit(std::span<const std::uint16_t> indices, std::size_t count) {
   return std::ranges::all_of(indices, [count](std::uint16_t index) { return index < count; });
-}
-
-// An empty list of indices means that the values cover all elements in order.
-std::size_t IndexAt(std::span<const std::uint16_t> indices, std::size_t i) {
-  return indices.empty() ? i : indices[i];
 }
 
 protocol::Vec3 ToWire(const glm::vec3& v) { return {v.x, v.y, v.z}; }
@@ -35,21 +27,7 @@ void ListAll(std::size_t count, std::vector<std::uint16_t>* indices) {
 }  // namespace
 
 StreamOffer ToStreamOffer(const protocol::SkeletonOffer& offer) {
-  StreamOffer result;
-  result.joints.reserve(offer.joints.size());
-  for (const protocol::OfferedJoint& joint : offer.joints) {
-    wrinkle::JointDesc desc;
-    desc.name = joint.name;
-    // The codec has checked that each parent comes before its children.
-    desc.parent = joint.parent < 0 ? wrinkle::kNoJoint : joint.parent;
-    desc.rest.translation = ToVec(joint.rest_translation);
-    desc.rest.rotation = recording::ToUnitQuat(joint.rest_rotation);
-    desc.rest.scale = ToVec(joint.rest_scale);
-    if (joint.has_tail) desc.tail = ToVec(joint.tail);
-    result.joints.push_back(std::move(desc));
-  }
-  result.blend_shapes = offer.blend_shape_names;
-  return result;
+  return {.joints = recording::JointsOf(offer), .blend_shapes = offer.blend_shape_names};
 }
 
 bool PoseFits(const protocol::PoseFrame& frame, const StreamDefinition& stream) {
@@ -65,31 +43,9 @@ bool PoseFits(const protocol::PoseFrame& frame, const StreamDefinition& stream) 
 
 void ApplyPose(const protocol::PoseFrame& frame, const StreamDefinition& stream,
                wrinkle::LocalPose* pose) {
-  const std::span<const wrinkle::Transform> rest = stream.skeleton.rest_pose();
-  // A whole pose lists only what differs from rest, so everything else must return to rest.
-  if (!frame.partial) {
-    std::ranges::copy(rest, pose->joints.begin());
-    std::ranges::fill(pose->blend_shapes, 0.0f);
-  }
-  for (std::size_t i = 0; i < frame.rotations.size(); ++i) {
-    const auto joint =
-        static_cast<std::size_t>(stream.joint_of_wire[IndexAt(frame.rotation_joints, i)]);
-    pose->joints[joint].rotation = recording::ToUnitQuat(frame.rotations[i]);
-  }
-  for (std::size_t i = 0; i < frame.translations.size(); ++i) {
-    const auto joint =
-        static_cast<std::size_t>(stream.joint_of_wire[IndexAt(frame.translation_joints, i)]);
-    // The wire carries translations as offsets from rest, which are 0 for most joints.
-    pose->joints[joint].translation = rest[joint].translation + ToVec(frame.translations[i]);
-  }
-  for (std::size_t i = 0; i < frame.scales.size(); ++i) {
-    const auto joint =
-        static_cast<std::size_t>(stream.joint_of_wire[IndexAt(frame.scale_joints, i)]);
-    pose->joints[joint].scale = ToVec(frame.scales[i]);
-  }
-  for (std::size_t i = 0; i < frame.blend_shapes.size(); ++i) {
-    pose->blend_shapes[IndexAt(frame.blend_shape_indices, i)] = frame.blend_shapes[i];
-  }
+  recording::ApplyWirePose(
+      frame, {.rest = stream.skeleton.rest_pose(), .joint_of_wire = stream.joint_of_wire},
+      pose->joints, pose->blend_shapes);
 }
 
 void ToWholePose(const wrinkle::LocalPose& pose, const StreamDefinition& stream,
