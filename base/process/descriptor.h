@@ -10,17 +10,22 @@ namespace furrow {
 // Owns a file descriptor and closes it at the end. Negative: there is none.
 class Descriptor {
  public:
-  explicit Descriptor(int number) : number_(number) {}
-  ~Descriptor() {
-    if (number_ >= 0) close(number_);
+  explicit Descriptor(int number = -1) : number_(number) {}
+  ~Descriptor() { Close(); }
+  Descriptor(Descriptor&& other) noexcept : number_(other.Release()) {}
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    // The destructor of `other` closes the former descriptor.
+    std::swap(number_, other.number_);
+    return *this;
   }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
 
-  [[nodiscard]] int number() const { return number_; }
+  [[nodiscard]] int get() const { return number_; }
   [[nodiscard]] bool ok() const { return number_ >= 0; }
   // The descriptor belongs to the caller then.
-  [[nodiscard]] int Release() { return std::exchange(number_, -1); }
+  [[nodiscard]] int Release() noexcept { return std::exchange(number_, -1); }
+  void Close() {
+    if (ok()) ::close(Release());
+  }
 
  private:
   int number_;

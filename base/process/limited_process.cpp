@@ -19,6 +19,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/process/descriptor.h"
+
 namespace furrow {
 namespace {
 
@@ -45,44 +47,24 @@ Status SystemStatus(const std::string& what, int error) {
   return {StatusCode::kIo, what + ": " + std::generic_category().message(error)};
 }
 
-// Owns a file descriptor above the three standard ones.
-class Descriptor {
- public:
-  Descriptor() = default;
-  // A process whose own standard streams are closed gets their numbers for new files. Then dup2()
-  // in the child would replace one of them by another.
-  explicit Descriptor(int descriptor) : value_(descriptor) {
-    if (descriptor < 0 || descriptor > STDERR_FILENO) return;
-    value_ = fcntl(descriptor, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
-    close(descriptor);
-  }
-  Descriptor(Descriptor&& other) noexcept : value_(std::exchange(other.value_, -1)) {}
-  Descriptor& operator=(Descriptor&& other) noexcept {
-    std::swap(value_, other.value_);
-    return *this;
-  }
-  ~Descriptor() { Close(); }
-
-  [[nodiscard]] int get() const { return value_; }
-  [[nodiscard]] bool ok() const { return value_ >= 0; }
-  void Close() {
-    if (value_ >= 0) close(std::exchange(value_, -1));
-  }
-
- private:
-  int value_ = -1;
-};
+// A process whose own standard streams are closed gets their numbers for new files. Then dup2() in
+// the child would replace one of them by another, so such a file gets a higher number.
+Descriptor AboveStandardStreams(int descriptor) {
+  Descriptor file(descriptor);
+  if (descriptor < 0 || descriptor > STDERR_FILENO) return file;
+  return Descriptor(fcntl(descriptor, F_DUPFD_CLOEXEC, STDERR_FILENO + 1));
+}
 
 // A file that no other process can open: it never has a name, or loses it at once.
 Descriptor NamelessFile() {
   std::error_code ignored;
   const fs::path folder = fs::temp_directory_path(ignored);
   const int file = open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-  if (file >= 0) return Descriptor(file);
+  if (file >= 0) return AboveStandardStreams(file);
   std::string name = (folder / "furrow-XXXXXX").string();  // for file systems without O_TMPFILE
   const int named = mkostemp(name.data(), O_CLOEXEC);
   if (named >= 0) unlink(name.c_str());
-  return Descriptor(named);
+  return AboveStandardStreams(named);
 }
 
 std::string ReadBack(const Descriptor& file, std::size_t offset, std::size_t size) {
@@ -124,8 +106,8 @@ class Child {
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
       return SystemStatus("no socket for the program's input", errno);
     }
-    input_ = Descriptor(ends[0]);
-    const Descriptor child_input(ends[1]);
+    input_ = AboveStandardStreams(ends[0]);
+    const Descriptor child_input = AboveStandardStreams(ends[1]);
     output_ = NamelessFile();
     errors_ = NamelessFile();
     if (!input_.ok() || !child_input.ok() || !output_.ok() || !errors_.ok()) {

@@ -46,14 +46,14 @@ bool ParseAddress(const std::string& host, std::uint16_t port, sockaddr_storage*
 }
 
 // Binds a socket to `port` of `host` (0: any free port) and sets `port` to the actual port.
-Status Bind(const std::string& host, int type, net::Descriptor* bound, std::uint16_t* port) {
+Status Bind(const std::string& host, int type, Descriptor* bound, std::uint16_t* port) {
   sockaddr_storage address;
   socklen_t size = 0;
   const std::string where =
       host + ":" + std::to_string(*port) + (type == SOCK_STREAM ? " (TCP)" : " (UDP)");
   if (!ParseAddress(host, *port, &address, &size))
     return {StatusCode::kInvalidArgument, "not a numeric IP address", where};
-  net::Descriptor made(socket(address.ss_family, type | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  Descriptor made(socket(address.ss_family, type | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   const int on = 1;
   // Not for UDP, where it would let two proxies share a port.
   if (type == SOCK_STREAM) setsockopt(made.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on));
@@ -229,7 +229,7 @@ void Proxy::ForwardDue(std::int64_t now_us) {
 }
 
 void Proxy::Accept() {
-  net::Descriptor client(accept4(tcp_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+  Descriptor client(accept4(tcp_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
   if (client.get() < 0) return;
   const int on = 1;
   setsockopt(client.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));

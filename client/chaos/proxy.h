@@ -10,11 +10,11 @@
 
 #include <sys/socket.h>
 
+#include "base/process/descriptor.h"
 #include "base/status.h"
 #include "client/chaos/link.h"
 #include "client/chaos/report.h"
 #include "client/chaos/tcp_relay.h"
-#include "client/net/descriptor.h"
 #include "client/net/poller.h"
 
 namespace furrow::chaos {
@@ -70,8 +70,8 @@ class Proxy {
   [[nodiscard]] std::int64_t WaitNs(std::int64_t now_us) const;
 
   ProxyOptions options_;
-  net::Descriptor udp_;
-  net::Descriptor tcp_;
+  Descriptor udp_;
+  Descriptor tcp_;
   std::uint16_t udp_port_ = 0;
   std::uint16_t tcp_port_ = 0;
   net::Poller poller_;

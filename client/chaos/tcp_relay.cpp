@@ -17,8 +17,8 @@ constexpr std::int64_t kCheckUs = 1000;
 
 }  // namespace
 
-TcpRelay::TcpRelay(net::Descriptor client, net::Descriptor server, const Faults& up,
-                   const Faults& down, std::uint64_t number, std::int64_t start_us)
+TcpRelay::TcpRelay(Descriptor client, Descriptor server, const Faults& up, const Faults& down,
+                   std::uint64_t number, std::int64_t start_us)
     : client_(std::move(client)),
       server_(std::move(server)),
       up_{.options = up, .random = std::mt19937_64(up.seed + 2 * number), .bytes = {}},

@@ -5,8 +5,8 @@
 #include <random>
 #include <vector>
 
+#include "base/process/descriptor.h"
 #include "client/chaos/link.h"
-#include "client/net/descriptor.h"
 
 namespace furrow::chaos {
 
@@ -28,7 +28,7 @@ class TcpRelay {
   // `client`, `server`: connected sockets. `up`: faults from client to server; `down`: back.
   // `number` makes links with the same seed differ. `start_us`: time 0 of the black holes, on the
   // clock of Pump().
-  TcpRelay(net::Descriptor client, net::Descriptor server, const Faults& up, const Faults& down,
+  TcpRelay(Descriptor client, Descriptor server, const Faults& up, const Faults& down,
            std::uint64_t number, std::int64_t start_us);
 
   // Forwards what is due, without blocking. Returns false when the connection has ended. `now_us`:
@@ -61,8 +61,8 @@ class TcpRelay {
   [[nodiscard]] bool StandsStill(Direction& direction, std::int64_t now_us) const;
   [[nodiscard]] static std::int64_t NextUs(const Direction& direction, std::int64_t now_us);
 
-  net::Descriptor client_;
-  net::Descriptor server_;
+  Descriptor client_;
+  Descriptor server_;
   Direction up_;
   Direction down_;
   std::int64_t start_us_;

@@ -1,26 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/net/descriptor.h"
 
-#include <utility>
-
 #include <netdb.h>
 #include <poll.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 namespace furrow::net {
-
-Descriptor::~Descriptor() {
-  if (value_ >= 0) close(value_);
-}
-
-Descriptor::Descriptor(Descriptor&& other) noexcept : value_(std::exchange(other.value_, -1)) {}
-
-Descriptor& Descriptor::operator=(Descriptor&& other) noexcept {
-  // The destructor of `other` closes the former descriptor.
-  std::swap(value_, other.value_);
-  return *this;
-}
 
 bool WaitFor(int descriptor, short events, std::chrono::milliseconds timeout) {
   pollfd wanted{descriptor, events, 0};

@@ -6,19 +6,6 @@
 
 namespace furrow::net {
 
-// Owns a file descriptor and closes it on destruction. -1 means none.
-class Descriptor {
- public:
-  explicit Descriptor(int value = -1) : value_(value) {}
-  ~Descriptor();
-  Descriptor(Descriptor&& other) noexcept;
-  Descriptor& operator=(Descriptor&& other) noexcept;
-  [[nodiscard]] int get() const { return value_; }
-
- private:
-  int value_;
-};
-
 // Returns the numeric address of a connected socket's peer, or an empty string if the socket is not
 // connected.
 [[nodiscard]] std::string PeerHost(int descriptor);

@@ -10,6 +10,7 @@
 #include <poll.h>
 #include <sys/socket.h>
 
+#include "client/net/descriptor.h"
 #include "client/net/tcp_socket.h"
 #include "client/net/udp_socket.h"
 

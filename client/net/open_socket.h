@@ -5,9 +5,9 @@
 #include <memory>
 #include <string>
 
+#include "base/process/descriptor.h"
 #include "base/status.h"
 #include "client/cpp/tls/security.h"
-#include "client/net/descriptor.h"
 #include "client/net/socket.h"
 
 namespace furrow::net {

@@ -9,7 +9,7 @@
 
 #include <sys/epoll.h>
 
-#include "client/net/descriptor.h"
+#include "base/process/descriptor.h"
 
 namespace furrow::net {
 

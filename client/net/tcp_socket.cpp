@@ -11,6 +11,7 @@
 
 #include "client/cpp/tls/client_tls.h"
 #include "client/net/clock.h"
+#include "client/net/descriptor.h"
 
 namespace furrow::net {
 

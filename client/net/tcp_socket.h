@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "base/process/descriptor.h"
 #include "client/cpp/tls/tls_session.h"
-#include "client/net/descriptor.h"
 #include "client/net/socket.h"
 #include "protocol/framing/tcp_framing.h"
 #include "protocol/messages/limits.h"

@@ -9,6 +9,7 @@
 #include <poll.h>
 
 #include "client/net/clock.h"
+#include "client/net/descriptor.h"
 
 namespace furrow::net {
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <ctime>
 #include <optional>
@@ -10,8 +11,8 @@
 
 #include <sys/socket.h>
 
+#include "base/process/descriptor.h"
 #include "client/net/arrival_clock.h"
-#include "client/net/descriptor.h"
 #include "client/net/socket.h"
 #include "protocol/framing/bundle.h"
 #include "protocol/framing/fragment.h"

@@ -57,19 +57,18 @@ std::uint64_t KnownAccess() {
 }
 
 bool Restrict(const Descriptor& ruleset) {
-  return syscall(SYS_landlock_restrict_self, ruleset.number(), 0) == 0;
+  return syscall(SYS_landlock_restrict_self, ruleset.get(), 0) == 0;
 }
 
 bool Allow(const Descriptor& ruleset, const std::filesystem::path& path, std::uint64_t access) {
   const Descriptor parent(open(path.c_str(), O_PATH | O_CLOEXEC));
   if (!parent.ok()) return errno == ENOENT || errno == EACCES || errno == ENOTDIR;
   struct stat found {};
-  if (fstat(parent.number(), &found) != 0) return false;
+  if (fstat(parent.get(), &found) != 0) return false;
   landlock_path_beneath_attr rule{};
   rule.allowed_access = S_ISDIR(found.st_mode) ? access : access & kOfFiles;
-  rule.parent_fd = parent.number();
-  return syscall(SYS_landlock_add_rule, ruleset.number(), LANDLOCK_RULE_PATH_BENEATH, &rule, 0) ==
-         0;
+  rule.parent_fd = parent.get();
+  return syscall(SYS_landlock_add_rule, ruleset.get(), LANDLOCK_RULE_PATH_BENEATH, &rule, 0) == 0;
 }
 
 // Returns why it was not possible; empty: it was.

@@ -52,8 +52,7 @@ bool Wipe(int file, std::size_t size) {
 Result<int> MakeStateFile(std::span<const std::uint8_t> bytes) {
   Descriptor file(memfd_create("furrow-sessions", MFD_CLOEXEC | MFD_ALLOW_SEALING));
   if (!file.ok()) return Failed("cannot make a file in memory");
-  if (!MoveAll(pwrite, file.number(), bytes) ||
-      fcntl(file.number(), F_ADD_SEALS, kSizeSeals) != 0) {
+  if (!MoveAll(pwrite, file.get(), bytes) || fcntl(file.get(), F_ADD_SEALS, kSizeSeals) != 0) {
     return Failed("cannot write the file in memory");
   }
   return file.Release();

@@ -14,7 +14,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "client/net/descriptor.h"
+#include "base/process/descriptor.h"
 
 namespace furrow::load {
 namespace {
@@ -40,7 +40,7 @@ Status SystemError(const char* what) {
 }  // namespace
 
 Result<EchoServer> EchoServer::Start(std::optional<int> same_cores_as) {
-  net::Descriptor socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  Descriptor socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);

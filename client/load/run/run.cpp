@@ -9,6 +9,7 @@
 #include "client/load/run/senders.h"
 #include "client/load/run/watchers.h"
 #include "client/net/clock.h"
+#include "client/net/descriptor.h"
 #include "client/net/open_socket.h"
 #include "client/net/poller.h"
 #include "protocol/framing/envelope.h"

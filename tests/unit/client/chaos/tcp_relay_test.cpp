@@ -11,7 +11,8 @@
 namespace furrow::chaos {
 namespace {
 
-// A connection through a relay. Data written at one end arrives at the other end at its scheduled time.
+// A connection through a relay. Data written at one end arrives at the other end at its scheduled
+// time.
 class TcpRelayTest : public testing::Test {
  protected:
   void Open(const Faults& up, const Faults& down = {}) {
@@ -19,16 +20,16 @@ class TcpRelayTest : public testing::Test {
     server_ = Pair(&inner_server_);
     stream_.emplace(std::move(inner_client_), std::move(inner_server_), up, down, 0, 0);
   }
-  static net::Descriptor Pair(net::Descriptor* inner) {
+  static Descriptor Pair(Descriptor* inner) {
     int ends[2] = {-1, -1};
     EXPECT_EQ(socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, ends), 0);
-    *inner = net::Descriptor(ends[1]);
-    return net::Descriptor(ends[0]);
+    *inner = Descriptor(ends[1]);
+    return Descriptor(ends[0]);
   }
-  static void Write(const net::Descriptor& to, const std::string& text) {
+  static void Write(const Descriptor& to, const std::string& text) {
     ASSERT_EQ(send(to.get(), text.data(), text.size(), 0), static_cast<ssize_t>(text.size()));
   }
-  static std::string Read(const net::Descriptor& from) {
+  static std::string Read(const Descriptor& from) {
     std::string text(1 << 17, '\0');
     const ssize_t read = recv(from.get(), text.data(), text.size(), 0);
     text.resize(read > 0 ? static_cast<std::size_t>(read) : 0);
@@ -45,7 +46,7 @@ class TcpRelayTest : public testing::Test {
     return pumps;
   }
 
-  net::Descriptor client_, server_, inner_client_, inner_server_;
+  Descriptor client_, server_, inner_client_, inner_server_;
   std::optional<TcpRelay> stream_;
 };
 
@@ -98,7 +99,7 @@ TEST_F(TcpRelayTest, JitterHoldsBytesBackUntilTheyAreDue) {
 
 TEST_F(TcpRelayTest, EndsWhenEitherSideCloses) {
   Open({});
-  server_ = net::Descriptor();
+  server_ = Descriptor();
   EXPECT_FALSE(stream_->Pump(0));
 }
 
