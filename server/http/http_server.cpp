@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/http/http_server.h"
 
-#include <array>
 #include <chrono>
+#include <cstddef>
 #include <exception>
 #include <filesystem>
 #include <functional>
 #include <new>
 #include <optional>
-#include <span>
 #include <stdexcept>
+#include <string>
 #include <thread>
 #include <utility>
 
@@ -17,30 +17,24 @@
 #include <boost/asio/detached.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/post.hpp>
-#include <boost/asio/steady_timer.hpp>
 #include <spdlog/spdlog.h>
 
 #include "base/data_dir.h"
 #include "base/status.h"
-#include "server/core/accept_log.h"
-#include "server/core/network_address.h"
 #include "server/core/within_memory.h"
 #include "server/http/http_session.h"
 #include "server/http/request/web_stream.h"
-#include "server/machine/listen_error.h"
-#include "server/net/clock.h"
+#include "server/http/web_net.h"
+#include "server/net/door/door.h"
+#include "server/net/door/handshake_gate.h"
 #include "server/net/run_loop.h"
 #include "server/session/hub.h"
-#include "server/shares/fair_share.h"
 #include "server/shares/lobby.h"
-#include "server/tls/handshake_places.h"
-#include "server/tls/handshake_watch.h"
 
 namespace furrow::server {
 namespace {
 
 using net::ip::tcp;
-constexpr auto kAcceptPause = std::chrono::milliseconds(100);
 
 // Answers with 429 and closes: the socket goes out of scope. The answer fits into the send buffer
 // of a new socket.
@@ -62,30 +56,15 @@ void Refuse(tcp::socket socket) {
 constexpr Time kGivesWay = kWebCloseDeadline + std::chrono::milliseconds(100);
 static_assert(kGivesWay < Lobby::kPatience);
 
-// Answers a client that speaks plain HTTP where TLS is spoken, and waits until it has closed:
-// closing with unread input would reset the connection and lose the answer.
-net::awaitable<void> RefusePlain(tcp::socket& socket) {
+// Answers a client that speaks plain HTTP where TLS is spoken.
+void RefusePlain(tcp::socket& socket) {
   static constexpr char kAnswer[] =
       "HTTP/1.1 400 Bad Request\r\nConnection: close\r\nContent-Type: text/plain\r\n"
       "Content-Length: 62\r\n\r\n"
       "this port speaks HTTPS only: begin the address with https://.\n";
-  beast::error_code error;
-  socket.send(net::buffer(kAnswer, sizeof(kAnswer) - 1), 0, error);
-  socket.shutdown(tcp::socket::shutdown_send, error);
-  std::array<char, 1024> dropped;
-  while (!error) co_await socket.async_read_some(net::buffer(dropped), Redirect(error));
-}
-
-// Waits for the first bytes, which stay in the socket. Nothing: the client has closed.
-net::awaitable<std::optional<bool>> SpeaksTls(tcp::socket& socket) {
-  beast::error_code error;
-  co_await socket.async_wait(tcp::socket::wait_read, Redirect(error));
-  std::array<std::uint8_t, kTlsPrefixBytes> first;
-  std::size_t size = 0;
-  if (!error) socket.non_blocking(true, error);
-  if (!error) size = socket.receive(net::buffer(first), tcp::socket::message_peek, error);
-  if (error) co_return std::nullopt;
-  co_return LooksLikeTls(std::span(first).first(size));
+  beast::error_code ignored;
+  socket.send(net::buffer(kAnswer, sizeof(kAnswer) - 1), 0, ignored);
+  socket.shutdown(tcp::socket::shutdown_send, ignored);
 }
 
 Result<PageFiles> LoadPage(const HttpConfig& config) {
@@ -140,186 +119,75 @@ struct HttpServer::Impl {
     };
   }
 
-  Status Listen(const std::string& bind, std::uint16_t port);
-  Status Adopt(const ServiceManager::Listener& listener);
-  net::awaitable<void> Accept();
+  [[nodiscard]] Door<WebNet>::Parts DoorParts();
+  [[nodiscard]] HandshakeGate<WebNet>::Parts GateParts();
   void Admit(tcp::socket socket, const std::string& host);
-  net::awaitable<void> WaitForPlace(tcp::socket socket, std::string host, Lobby::Stay stay);
+  void MakeRoom(const std::string& host, bool any_host, RoomRequest* request);
   net::awaitable<void> Serve(tcp::socket socket, std::string host);
-  net::awaitable<bool> BeginTls(WebStream* stream, const std::string& host);
   void Run();
   // Ends the daemon, by an exception of the hub's loop.
   void EndHub(const std::exception_ptr& error);
 
   WebContext context;  // outlives the loop; its connections use it
   const std::function<std::filesystem::path()> find_character;
-  HandshakeBudget handshakes;
-  HandshakePlaces handshake_places;
-  FairShare shares{static_cast<std::size_t>(context.config.max_connections)};
-  Lobby lobby;  // of newcomers that wait for a place
+  HandshakeGate<WebNet> handshakes{GateParts()};
   std::shared_ptr<net::io_context> loop = std::make_shared<net::io_context>(1);
-  tcp::acceptor acceptor{*loop};
-  AcceptLog accept_log{"web port", "http.max_connections", context.metrics};
-  HostPort address;
+  Door<WebNet> door{*loop, DoorParts()};
   std::thread thread;
 };
 
-Status HttpServer::Impl::Listen(const std::string& bind, std::uint16_t wanted) {
-  const tcp::endpoint endpoint(net::ip::make_address(bind), wanted);
-  beast::error_code error;
-  acceptor.open(endpoint.protocol(), error);
-  // Allows a port in TIME_WAIT, so that a restart does not fail. A port with a listener stays an
-  // error.
-  if (!error) acceptor.set_option(tcp::acceptor::reuse_address(true), error);
-  if (!error) acceptor.bind(endpoint, error);
-  if (!error) acceptor.listen(net::socket_base::max_listen_connections, error);
-  if (error) {
-    beast::error_code ignored;
-    // HttpServer::Listen() may call this again with another port.
-    acceptor.close(ignored);
-    return ListenError("TCP", {bind, wanted}, error.value(), "--http (or use --no-http)");
-  }
-  address = {bind, acceptor.local_endpoint().port()};
-  return {};
-}
-
-Status HttpServer::Impl::Adopt(const ServiceManager::Listener& listener) {
-  beast::error_code error;
-  acceptor.assign(listener.is_v6 ? tcp::v6() : tcp::v4(), listener.socket, error);
-  if (error) {
-    return Status(StatusCode::kIo,
-                  "cannot use the socket 'http' of the service manager: " + error.message());
-  }
-  address = {listener.address, acceptor.local_endpoint().port()};
-  return {};
-}
-
-net::awaitable<void> HttpServer::Impl::Accept() {
-  while (acceptor.is_open()) {
-    beast::error_code error;
-    auto socket = co_await acceptor.async_accept(Redirect(error));
-    if (error == net::error::operation_aborted) co_return;
-    if (error) {  // usually no descriptors are left; try again later
-      accept_log.Failed(error.message());
-      net::steady_timer pause(*loop, kAcceptPause);
-      beast::error_code ignored;
-      co_await pause.async_wait(Redirect(ignored));
-      continue;
-    }
-    accept_log.Accepted();
-    const auto client = socket.remote_endpoint(error);
-    try {
-      std::string host = error ? std::string() : HostOf(client.address().to_string());
-      Lobby::Stay stay;
-      if (lobby.HasQueue(host) || !shares.HasRoomFor(host)) stay = lobby.Enter(host, ReadClock());
-      if (stay == nullptr) {
-        Admit(std::move(socket), host);
-      } else {
-        // Detached is safe: neither coroutine lets an exception out, and the context outlives the
-        // loop.
-        net::co_spawn(*loop, WaitForPlace(std::move(socket), std::move(host), std::move(stay)),
-                      net::detached);
-      }
-    } catch (const std::bad_alloc&) {
-      context.metrics->Add(Counter::kAllocationsFailed);  // it costs one connection
-    }
-  }
-}
-
 // Each connection may hold a request of kMaxWebMessageBytes, so their number bounds the memory.
+Door<WebNet>::Parts HttpServer::Impl::DoorParts() {
+  return {.port = "web port",
+          .limit = "http.max_connections",
+          .flag = "--http (or use --no-http)",
+          .listener = "http",
+          .places = static_cast<std::size_t>(context.config.max_connections),
+          .again = kGivesWay,
+          .metrics = context.metrics,
+          .begin = [this](tcp::socket socket,
+                          const std::string& host) { Admit(std::move(socket), host); },
+          .refuse = Refuse,
+          .make_room = [this](const std::string& host, bool any_host, Time,
+                              RoomRequest* request) { MakeRoom(host, any_host, request); }};
+}
+
+// The gate makes no handshakes without a certificate.
+HandshakeGate<WebNet>::Parts HttpServer::Impl::GateParts() {
+  return {.metrics = context.metrics,
+          .context = [this] { return context.tls->for_web(); },
+          .answer_plain = RefusePlain};
+}
+
+// The host has a place for the connection.
 void HttpServer::Impl::Admit(tcp::socket socket, const std::string& host) {
-  if (!shares.Enter(host)) {
-    context.metrics->Add(Counter::kConnectionsRefused);
-    return Refuse(std::move(socket));
-  }
   context.metrics->Add(Counter::kHttpConnections);
-  try {
-    net::co_spawn(*loop, Serve(std::move(socket), host), net::detached);
-  } catch (...) {
-    shares.Leave(host);
-    throw;
-  }
+  // Detached is safe: Serve() lets no exception out, and the context outlives the loop.
+  net::co_spawn(*loop, Serve(std::move(socket), host), net::detached);
 }
 
 // The hub knows which connections are without use, and ends the one that has been so for longest.
-net::awaitable<void> HttpServer::Impl::WaitForPlace(tcp::socket socket, std::string host,
-                                                    Lobby::Stay stay) {
-  try {
-    const auto all_in_use = std::make_shared<bool>(false);
-    const Time begun = ReadClock();
-    Time again = begun;
-    net::steady_timer timer(*loop);
-    while (!*all_in_use && !(lobby.IsFirst(host, stay) && shares.HasRoomFor(host))) {
-      const Time now = ReadClock();
-      if (now - begun >= Lobby::kPatience) break;
-      if (now >= again) {
-        again = now + kGivesWay;
-        context.post_to_hub([host, any_host = shares.held(host) == 0, all_in_use,
-                             post_to_web = context.post_to_web](Hub& hub, Time hub_now) {
-          if (hub.MakeRoom(Transport::kWeb, host, any_host, hub_now)) return;
-          post_to_web([all_in_use] { *all_in_use = true; });
-        });
-      }
-      timer.expires_after(Lobby::kPoll);
-      beast::error_code ignored;
-      co_await timer.async_wait(Redirect(ignored));
-    }
-    Admit(std::move(socket), host);
-  } catch (const std::bad_alloc&) {
-    context.metrics->Add(Counter::kAllocationsFailed);
-  }
+void HttpServer::Impl::MakeRoom(const std::string& host, bool any_host, RoomRequest* request) {
+  context.post_to_hub([host, any_host, refused = request->RefuseLater(),
+                       post_to_web = context.post_to_web](Hub& hub, Time hub_now) {
+    if (hub.MakeRoom(Transport::kWeb, host, any_host, hub_now)) return;
+    post_to_web([refused] { *refused = true; });
+  });
 }
 
-// `host`: of the client, which has a place in `shares`.
+// `host`: of the client, which has a place.
 net::awaitable<void> HttpServer::Impl::Serve(tcp::socket socket, std::string host) {
   ++context.connections;
   try {
     WebStream stream(std::move(socket));
     bool begins = context.tls == nullptr || !context.tls->enabled();
-    if (!begins) begins = co_await BeginTls(&stream, host);
+    if (!begins) begins = co_await handshakes.Pass(stream, host);
     if (begins) co_await ServeConnection(std::move(stream), &context);
   } catch (const std::exception& error) {  // such as out of memory: affects this connection only
     spdlog::error("a web connection failed: {}", error.what());
   }
   --context.connections;
-  shares.Leave(host);
-}
-
-// False: the connection must close.
-net::awaitable<bool> HttpServer::Impl::BeginTls(WebStream* stream, const std::string& host) {
-  const HandshakeWatch<net::steady_timer, tcp::socket> watch(stream->socket());
-  const std::optional<bool> is_tls = co_await SpeaksTls(stream->socket());
-  if (!is_tls) {  // it has closed, or waited too long
-    if (watch.expired()) context.metrics->Add(Counter::kTlsSlow);
-    co_return false;
-  }
-  if (!*is_tls) {
-    context.metrics->Add(Counter::kTlsPlain);
-    co_await RefusePlain(stream->socket());
-    co_return false;
-  }
-  if (!handshakes.Take(host, ReadClock())) {
-    context.metrics->Add(Counter::kTlsBusy);
-    co_return false;
-  }
-  // The watch ends the wait, too.
-  HandshakePlaces::Place place;
-  net::steady_timer timer(*loop);
-  while (!watch.expired() && (place = handshake_places.Enter(host)) == nullptr) {
-    timer.expires_after(HandshakePlaces::kPoll);
-    beast::error_code ignored;
-    co_await timer.async_wait(Redirect(ignored));
-  }
-  const beast::error_code error = co_await stream->Handshake(context.tls->for_web());
-  place.reset();
-  if (error) {
-    context.metrics->Add(watch.expired()
-                             ? Counter::kTlsSlow
-                             : HandshakeFailure(static_cast<unsigned long>(error.value())));
-    co_return false;
-  }
-  context.metrics->Add(Counter::kTlsHandshakes);
-  co_return true;
+  door.FreePlace(host);
 }
 
 void HttpServer::Impl::EndHub(const std::exception_ptr& error) {
@@ -346,20 +214,20 @@ Result<std::unique_ptr<HttpServer>> HttpServer::Listen(Parts parts) {
   const std::optional<std::uint16_t> asked = parts.config.port;
   const std::optional<ServiceManager::Listener> listener = parts.listener;
   auto impl = std::make_unique<Impl>(std::move(parts));
-  Status status = listener ? impl->Adopt(*listener)
-                           : impl->Listen(bind, asked.value_or(HttpConfig::kDefaultPort));
+  Status status = listener ? impl->door.Adopt(*listener)
+                           : impl->door.Open({bind, asked.value_or(HttpConfig::kDefaultPort)});
   // Only the default port may be replaced. A port that the user asked for is an error if it is
   // taken.
   if (!status.ok() && !asked && !listener) {
     spdlog::warn("{}; using any free port", status.what());
-    status = impl->Listen(bind, 0);
+    status = impl->door.Open({bind, 0});
   }
   if (!status.ok()) return status;
   return std::unique_ptr<HttpServer>(new HttpServer(std::move(impl)));
 }
 
 void HttpServer::Start() {
-  net::co_spawn(*impl_->loop, impl_->Accept(), [](const std::exception_ptr& failed) {
+  net::co_spawn(*impl_->loop, impl_->door.Accept(), [](const std::exception_ptr& failed) {
     // Not std::bad_alloc, which RunLoop() takes for the failure of one handler.
     if (failed) throw std::runtime_error("the web server cannot accept connections any more");
   });
@@ -376,9 +244,9 @@ HttpServer::~HttpServer() {
   if (impl_->thread.joinable()) impl_->thread.join();
 }
 
-int HttpServer::listening_socket() const { return impl_->acceptor.native_handle(); }
+int HttpServer::listening_socket() const { return impl_->door.socket(); }
 
-const HostPort& HttpServer::address() const { return impl_->address; }
+const HostPort& HttpServer::address() const { return impl_->door.address(); }
 int HttpServer::connections() const { return impl_->context.connections; }
 int HttpServer::viewers() const { return impl_->context.viewers; }
 
@@ -388,7 +256,7 @@ void HttpServer::Reload(const HttpConfig& config) {
     WebContext& context = impl_->context;
     context.guard = RequestGuard(config);
     context.config.allow_origins = config.allow_origins;  // of pages that may frame /embed
-    impl_->shares.SetPlaces(static_cast<std::size_t>(config.max_connections));
+    impl_->door.SetPlaces(static_cast<std::size_t>(config.max_connections));
     // What hosts have used up is forgotten, so only changes count.
     if (config.api_share != context.config.api_share) {
       context.budget = std::make_shared<RequestBudget>(config.api_share);
@@ -403,11 +271,8 @@ void HttpServer::Reload(const HttpConfig& config) {
 }
 
 void HttpServer::Drain() {
-  // An acceptor is not thread-safe, and Accept() uses it on the web thread.
-  net::post(*impl_->loop, [this] {
-    beast::error_code ignored;
-    impl_->acceptor.close(ignored);
-  });
+  // The door belongs to the web thread.
+  net::post(*impl_->loop, [this] { impl_->door.StopListening(); });
 }
 
 }  // namespace furrow::server

@@ -38,8 +38,8 @@ class HttpServer {
     const Coordinator* cluster = nullptr;  // outlives the server; null: the daemon is alone
     RecordingLoader* loader = nullptr;     // outlives the server; null: nothing can be uploaded
   };
-  // Opens the port. Clients wait until Start(). Errors: kIo, naming the address and the port. A
-  // missing page is only logged; everything else works without it.
+  // Opens the port. Clients wait until Start(). Errors: kUnavailable; the message names the address
+  // and the port. A missing page is only logged; everything else works without it.
   [[nodiscard]] static Result<std::unique_ptr<HttpServer>> Listen(Parts parts);
   // Closes all connections and joins the thread. Call it on the hub's thread or after that has
   // ended.

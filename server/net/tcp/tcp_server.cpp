@@ -2,38 +2,27 @@
 #include "server/net/tcp/tcp_server.h"
 
 #include <algorithm>
-#include <array>
-#include <chrono>
+#include <cstddef>
 #include <exception>
 #include <new>
 #include <optional>
 #include <span>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
 #include <asio/co_spawn.hpp>
-#include <asio/detached.hpp>
-#include <asio/steady_timer.hpp>
-#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include "protocol/framing/tcp_framing.h"
 #include "server/core/network_address.h"
 #include "server/core/within_memory.h"
-#include "server/machine/listen_error.h"
-#include "server/net/await_tuple.h"
-#include "server/net/clock.h"
 #include "server/net/critical_task.h"
-#include "server/net/pause.h"
-#include "server/tls/handshake_watch.h"
 
 namespace furrow::server {
 namespace {
 
 using asio::ip::tcp;
-constexpr auto kAcceptPause = std::chrono::milliseconds(100);
 // For a restart: the most that may wait for one client and for all. Clients that are further behind
 // connect again.
 constexpr std::size_t kMaxSavedBytesOfOne = std::size_t{256} << 10;
@@ -64,146 +53,81 @@ class RefusalLink : public Link {
   tcp::socket* socket_;
 };
 
-// Waits for the first bytes, which stay in the socket. Nothing: the client has closed.
-asio::awaitable<std::optional<bool>> SpeaksTls(StreamSocket& stream) {
-  const auto [failed] = co_await stream.socket().async_wait(tcp::socket::wait_read, kAwaitTuple);
-  std::array<std::uint8_t, kTlsPrefixBytes> first;
-  asio::error_code error = failed;
-  if (!error) stream.socket().non_blocking(true, error);
-  std::size_t size = 0;
-  if (!error) {
-    size = stream.socket().receive(asio::buffer(first), tcp::socket::message_peek, error);
-  }
-  if (error) co_return std::nullopt;
-  co_return LooksLikeTls(std::span(first).first(size));
-}
-
 }  // namespace
 
 TcpServer::TcpServer(asio::io_context& io, const Limits& limits, Hub* hub, Metrics* metrics,
                      WaitingBytes* waiting, const TlsIdentity* tls)
     : io_(io),
-      acceptor_(io),
       limits_(limits),
       hub_(hub),
       metrics_(metrics),
       waiting_(waiting),
       tls_(tls),
-      shares_(static_cast<std::size_t>(limits.max_connections)) {}
+      handshakes_(GateParts()),
+      door_(io, DoorParts()) {}
 
-Status TcpServer::Adopt(const ServiceManager::Listener& listener) {
-  asio::error_code error;
-  acceptor_.assign(listener.is_v6 ? tcp::v6() : tcp::v4(), listener.socket, error);
-  if (!error) return {};
-  return Status(StatusCode::kUnavailable,
-                "cannot use the socket 'tcp' of the service manager: " + error.message());
+Door<AsioNet>::Parts TcpServer::DoorParts() {
+  return {.port = "TCP port",
+          .limit = "limits.max_connections",
+          .flag = "--tcp",
+          .listener = "tcp",
+          .places = static_cast<std::size_t>(limits_.max_connections),
+          .again = Lobby::kAgain,
+          .metrics = metrics_,
+          .begin = [this](tcp::socket socket,
+                          const std::string& host) { Admit(std::move(socket), host); },
+          .refuse =
+              [this](tcp::socket socket) {
+                // A client that speaks TLS only sees that the connection closes.
+                Refuse(socket, protocol::ErrorCode::kLimit,
+                       "this address has its share of the " +
+                           std::to_string(limits_.max_connections) +
+                           " connections; see limits.max_connections");
+              },
+          .make_room =
+              [this](const std::string& host, bool any_host, Time now, RoomRequest* request) {
+                if (!hub_->MakeRoom(Transport::kTcp, host, any_host, now)) request->Refuse();
+              }};
 }
+
+HandshakeGate<AsioNet>::Parts TcpServer::GateParts() {
+  return {.metrics = metrics_,
+          .context = [this] { return tls_->for_messages(); },
+          .answer_plain =
+              [this](tcp::socket& socket) {
+                Refuse(socket, protocol::ErrorCode::kUnsupported,
+                       "this port speaks TLS only: connect with furrow://HOST?tls=1 or --tls");
+              }};
+}
+
+Status TcpServer::Adopt(const ServiceManager::Listener& listener) { return door_.Adopt(listener); }
 
 Status TcpServer::Open(const tcp::endpoint& endpoint) {
-  asio::error_code error;
-  acceptor_.open(endpoint.protocol(), error);
-  // Allows a port in TIME_WAIT. A port with a listener stays an error.
-  if (!error) acceptor_.set_option(tcp::acceptor::reuse_address(true), error);
-  if (!error) acceptor_.bind(endpoint, error);
-  if (!error) acceptor_.listen(tcp::acceptor::max_listen_connections, error);
-  if (!error) return {};
-  return ListenError("TCP", {endpoint.address().to_string(), endpoint.port()}, error.value(),
-                     "--tcp");
-}
-
-HostPort TcpServer::address() const {
-  asio::error_code error;
-  const tcp::endpoint local = acceptor_.local_endpoint(error);
-  return {local.address().to_string(), local.port()};
+  return door_.Open({endpoint.address().to_string(), endpoint.port()});
 }
 
 void TcpServer::SetLimits(const Limits& limits) {
   limits_ = limits;
-  shares_.SetPlaces(static_cast<std::size_t>(limits.max_connections));
+  door_.SetPlaces(static_cast<std::size_t>(limits.max_connections));
 }
 
-void TcpServer::Start() { StartCriticalTask(io_, Accept()); }
+void TcpServer::Start() { StartCriticalTask(io_, door_.Accept()); }
 
-asio::awaitable<void> TcpServer::Accept() {
-  while (acceptor_.is_open() && !leaves_) {
-    // Completes with an error when Drain() closes the acceptor, or Leave() cancels this.
-    auto [error, socket] = co_await acceptor_.async_accept(kAwaitTuple);
-    // A connection that was accepted before has its place, also if the daemon leaves.
-    if (!acceptor_.is_open() || (leaves_ && error)) co_return;
-    if (error) {
-      // No descriptors are left, or the peer has gone. The pause keeps the loop from spinning.
-      accept_log_.Failed(error.message());
-      co_await Pause(kAcceptPause);
-      continue;
-    }
-    accept_log_.Accepted();
-    const tcp::endpoint client = socket.remote_endpoint(error);
-    try {
-      const std::string host = error ? std::string() : HostOf(client.address().to_string());
-      Lobby::Stay stay;
-      if (lobby_.HasQueue(host) || !shares_.HasRoomFor(host)) {
-        stay = lobby_.Enter(host, ReadClock());
-      }
-      if (stay == nullptr) {
-        Admit(std::move(socket), host);
-      } else {
-        // Detached is safe: WaitForPlace() lets no exception out.
-        asio::co_spawn(io_, WaitForPlace(std::move(socket), host, std::move(stay)), asio::detached);
-      }
-    } catch (const std::bad_alloc&) {
-      metrics_->Add(Counter::kAllocationsFailed);  // it costs one connection, not the daemon
-    }
-  }
-}
-
-// Waits until a connection without use has given way to the newcomer.
-asio::awaitable<void> TcpServer::WaitForPlace(tcp::socket socket, std::string host,
-                                              Lobby::Stay stay) {
-  try {
-    const Time begun = ReadClock();
-    Time again = begun;
-    while (acceptor_.is_open() && !(lobby_.IsFirst(host, stay) && shares_.HasRoomFor(host))) {
-      const Time now = ReadClock();
-      if (now - begun >= Lobby::kPatience) break;
-      if (now >= again) {
-        if (!hub_->MakeRoom(Transport::kTcp, host, shares_.held(host) == 0, now)) break;
-        again = now + Lobby::kAgain;
-      }
-      co_await Pause(Lobby::kPoll);
-    }
-    if (acceptor_.is_open()) Admit(std::move(socket), host);
-  } catch (const std::bad_alloc&) {
-    metrics_->Add(Counter::kAllocationsFailed);
-  }
-}
-
-// Begins a session or a handshake, or refuses the connection.
+// Begins a session or a handshake. The host has a place for it.
 void TcpServer::Admit(tcp::socket socket, const std::string& host) {
-  if (!shares_.Enter(host)) {
-    metrics_->Add(Counter::kConnectionsRefused);
-    // A client that speaks TLS only sees that the connection closes.
-    return Refuse(socket, protocol::ErrorCode::kLimit,
-                  "this address has its share of the " + std::to_string(limits_.max_connections) +
-                      " connections; see limits.max_connections");
-  }
-  try {
-    auto stream = std::make_shared<StreamSocket>(std::move(socket));
-    if (!tls_->enabled()) return Begin(std::move(stream), host);
-    asio::co_spawn(
-        io_,
-        [this, stream = std::move(stream), host]() mutable {
-          return BeginWithTls(std::move(stream), host);
-        },
-        [this, host](const std::exception_ptr& failed, bool begun) {
-          if (failed || !begun) shares_.Leave(host);
-        });
-  } catch (const std::bad_alloc&) {
-    shares_.Leave(host);
-    throw;
-  }
+  auto stream = std::make_shared<StreamSocket>(std::move(socket));
+  if (!tls_->enabled()) return Begin(std::move(stream), host);
+  asio::co_spawn(
+      io_,
+      [this, stream = std::move(stream), host]() mutable {
+        return BeginWithTls(std::move(stream), host);
+      },
+      [this, host](const std::exception_ptr& failed, bool begun) {
+        if (failed || !begun) door_.FreePlace(host);
+      });
 }
 
-// The session has the place of the host in `shares_` once it is in `sessions_`.
+// The session has the place of the host once it is in `sessions_`.
 void TcpServer::Begin(std::shared_ptr<StreamSocket> stream, const std::string& host) {
   metrics_->Add(Counter::kConnectionsAccepted);
   const auto session = Add(std::move(stream), host);
@@ -222,16 +146,14 @@ std::shared_ptr<TcpSession> TcpServer::Add(std::shared_ptr<StreamSocket> stream,
       // Runs on this thread, in Close(). The server outlives its sessions: the daemon destroys it
       // after the event loop has ended.
       [this, host](const std::shared_ptr<TcpSession>& closed) {
-        if (sessions_.erase(closed) > 0) shares_.Leave(host);
+        if (sessions_.erase(closed) > 0) door_.FreePlace(host);
       });
   sessions_.insert(session);
   return session;
 }
 
 bool TcpServer::Leave() {
-  leaves_ = true;
-  asio::error_code ignored;
-  acceptor_.cancel(ignored);
+  door_.Leave();
   bool have_left = true;
   for (const auto& session : sessions_) have_left &= session->Leave();
   return have_left;
@@ -279,7 +201,7 @@ void TcpServer::Resume(const SavedConnection& saved, int number, Hub::ResumedPee
   const bool is_stranger = hub_->RequiresToken() && !peer.access;
   if (error || is_stranger || tls_->enabled()) return;
   const std::string host = HostOf(client.address().to_string());
-  if (!shares_.Enter(host)) return;
+  if (!door_.TakePlace(host)) return;
   std::optional<Access> access;
   if (peer.access)
     access = Access::Of(peer.access->grant, peer.access->key_id, peer.access->expires);
@@ -291,51 +213,11 @@ void TcpServer::Resume(const SavedConnection& saved, int number, Hub::ResumedPee
 // Returns whether a session has begun.
 asio::awaitable<bool> TcpServer::BeginWithTls(std::shared_ptr<StreamSocket> stream,
                                               std::string host) {
-  const HandshakeWatch<asio::steady_timer, tcp::socket> watch(stream->socket());
-  const std::optional<bool> is_tls = co_await SpeaksTls(*stream);
-  if (!is_tls) {  // it has closed, or waited too long
-    if (watch.expired()) metrics_->Add(Counter::kTlsSlow);
-    co_return false;
-  }
-  if (!*is_tls) {
-    metrics_->Add(Counter::kTlsPlain);
-    co_await RefusePlain(*stream);
-    co_return false;
-  }
-  if (!handshakes_.Take(host, ReadClock())) {
-    metrics_->Add(Counter::kTlsBusy);
-    co_return false;
-  }
-  // The watch ends the wait, too.
-  HandshakePlaces::Place place;
-  while (!watch.expired() && (place = handshake_places_.Enter(host)) == nullptr) {
-    co_await Pause(HandshakePlaces::kPoll);
-  }
-  const asio::error_code error = co_await stream->Handshake(tls_->for_messages());
-  place.reset();
-  if (error) {
-    metrics_->Add(watch.expired() ? Counter::kTlsSlow
-                                  : HandshakeFailure(static_cast<unsigned long>(error.value())));
-    co_return false;
-  }
+  const bool passed = co_await handshakes_.Pass(*stream, host);
   // While the handshake went on, the daemon may have begun to shut down.
-  if (!acceptor_.is_open()) co_return false;
-  metrics_->Add(Counter::kTlsHandshakes);
+  if (!passed || door_.is_closed()) co_return false;
   Begin(std::move(stream), host);
   co_return true;
-}
-
-// Answers a client that speaks without TLS, and waits until it has closed: closing with unread
-// input would reset the connection and lose the answer. HandshakeWatch limits the time.
-asio::awaitable<void> TcpServer::RefusePlain(StreamSocket& stream) {
-  Refuse(stream.socket(), protocol::ErrorCode::kUnsupported,
-         "this port speaks TLS only: connect with furrow://HOST?tls=1 or --tls");
-  std::array<std::uint8_t, 1024> dropped;
-  asio::error_code error;
-  while (!error) {
-    std::tie(error, std::ignore) =
-        co_await stream.socket().async_read_some(asio::buffer(dropped), kAwaitTuple);
-  }
 }
 
 void TcpServer::Refuse(tcp::socket& socket, protocol::ErrorCode code, const std::string& why) {
@@ -344,8 +226,7 @@ void TcpServer::Refuse(tcp::socket& socket, protocol::ErrorCode code, const std:
 }
 
 void TcpServer::Drain() {
-  asio::error_code error;
-  acceptor_.close(error);
+  door_.Close();
   for (const auto& session : AllSessions()) {
     session->is_saved() ? session->Close() : session->CloseAfterFlush(/*linger=*/false);
   }

@@ -13,20 +13,18 @@
 #include <asio/ip/tcp.hpp>
 
 #include "base/status.h"
-#include "server/core/accept_log.h"
 #include "server/core/limits.h"
 #include "server/core/metrics.h"
 #include "server/core/network_address.h"
 #include "server/machine/service_manager.h"
+#include "server/net/asio_net.h"
+#include "server/net/door/door.h"
+#include "server/net/door/handshake_gate.h"
 #include "server/net/tcp/stream_socket.h"
 #include "server/net/tcp/tcp_session.h"
 #include "server/saved/saved_state.h"
 #include "server/session/hub.h"
-#include "server/shares/fair_share.h"
-#include "server/shares/lobby.h"
 #include "server/shares/waiting_bytes.h"
-#include "server/tls/handshake.h"
-#include "server/tls/handshake_places.h"
 #include "server/tls/tls_identity.h"
 
 namespace furrow::server {
@@ -45,7 +43,7 @@ class TcpServer {
   // Listens at a socket of the service manager instead. Errors: kUnavailable.
   [[nodiscard]] Status Adopt(const ServiceManager::Listener& listener);
   // Where it listens.
-  [[nodiscard]] HostPort address() const;
+  [[nodiscard]] const HostPort& address() const { return door_.address(); }
   // Starts accepting.
   void Start();
 
@@ -60,7 +58,7 @@ class TcpServer {
   [[nodiscard]] std::vector<int> Save(SavedState* state, std::size_t most);
   // All connections go on here: nobody takes those that were saved.
   void Stay();
-  [[nodiscard]] int socket() { return acceptor_.native_handle(); }
+  [[nodiscard]] int socket() { return door_.socket(); }
   // Goes on with a connection of the former daemon. The socket belongs to this object.
   void Resume(const SavedConnection& saved, int socket, Hub::ResumedPeers* peers);
 
@@ -75,10 +73,9 @@ class TcpServer {
   [[nodiscard]] std::size_t num_sessions() const { return sessions_.size(); }
 
  private:
-  asio::awaitable<void> Accept();
+  [[nodiscard]] Door<AsioNet>::Parts DoorParts();
+  [[nodiscard]] HandshakeGate<AsioNet>::Parts GateParts();
   void Admit(asio::ip::tcp::socket socket, const std::string& host);
-  asio::awaitable<void> WaitForPlace(asio::ip::tcp::socket socket, std::string host,
-                                     Lobby::Stay stay);
   void Begin(std::shared_ptr<StreamSocket> stream, const std::string& host);
   // A copy, because Close() erases a session.
   [[nodiscard]] std::vector<std::shared_ptr<TcpSession>> AllSessions() const {
@@ -86,22 +83,16 @@ class TcpServer {
   }
   std::shared_ptr<TcpSession> Add(std::shared_ptr<StreamSocket> stream, const std::string& host);
   asio::awaitable<bool> BeginWithTls(std::shared_ptr<StreamSocket> stream, std::string host);
-  asio::awaitable<void> RefusePlain(StreamSocket& stream);
   void Refuse(asio::ip::tcp::socket& socket, protocol::ErrorCode code, const std::string& why);
 
   asio::io_context& io_;
-  asio::ip::tcp::acceptor acceptor_;
   Limits limits_;
   Hub* const hub_;
   Metrics* const metrics_;
   WaitingBytes* const waiting_;
   const TlsIdentity* const tls_;
-  HandshakeBudget handshakes_;
-  HandshakePlaces handshake_places_;
-  FairShare shares_;  // of the sessions and handshakes
-  AcceptLog accept_log_{"TCP port", "limits.max_connections", metrics_};
-  bool leaves_ = false;  // newcomers wait in the listening socket for the next daemon
-  Lobby lobby_;          // of newcomers that wait for a place
+  HandshakeGate<AsioNet> handshakes_;
+  Door<AsioNet> door_;  // its places are those of the sessions and handshakes
   std::unordered_set<std::shared_ptr<TcpSession>> sessions_;
 };
 
