@@ -312,8 +312,7 @@ Status Daemon::LoadPlayer() {
   return {};
 }
 
-Status Daemon::ListenToWeb() {
-  if (!config_.http.enabled) return {};
+void Daemon::MakeApi() {
   Api::Parts parts;
   parts.session = session_;
   parts.started = ReadClock();
@@ -345,6 +344,20 @@ Status Daemon::ListenToWeb() {
                      Time now) { return ports_->Give(vmc, sender, now); },
       .unix_now = ReadUnixClock};
   api_ = std::make_unique<Api>(std::move(parts));
+}
+
+// Runs on shard 0's thread.
+ApiReply Daemon::AnswerWeb(const ApiRequest& request, Hub& hub, Time now) {
+  // Strangers may ask the probes, and as often as they like, so these stop no other shard.
+  if (IsProbe(request.url.path)) return api_->Answer(request, hub, now);
+  // The other shards wait until the reply is complete, so replies are quick.
+  const Hub::ExclusiveLock lock(hub, 0);
+  return api_->Answer(request, hub, now);
+}
+
+Status Daemon::ListenToWeb() {
+  if (!config_.http.enabled) return {};
+  MakeApi();
   loader_ = std::make_unique<RecordingLoader>(
       RecordingLoader::Parts{.read = ReadOptions(config_),
                              .runs_helpers = options_.confined.empty(),
@@ -364,15 +377,8 @@ Status Daemon::ListenToWeb() {
              // The time is read when the task runs: it may have waited behind other work.
              asio::post(io_, [this, task = std::move(task)] { task(*hub_, ReadClock()); });
            },
-       .answer =
-           [this](const ApiRequest& request, Hub& hub, Time now) {
-             // Runs on shard 0's thread. Strangers may ask the probes, and as often as they like,
-             // so these stop no other shard.
-             if (IsProbe(request.url.path)) return api_->Answer(request, hub, now);
-             // The other shards wait until the reply is complete, so replies are quick.
-             const Hub::ExclusiveLock lock(hub, 0);
-             return api_->Answer(request, hub, now);
-           },
+       .answer = [this](const ApiRequest& request, Hub& hub,
+                        Time now) { return AnswerWeb(request, hub, now); },
        .metrics = metrics_,
        .waiting = &waiting_,
        .gate = &credentials_.gate(),

@@ -17,9 +17,11 @@
 #include "server/core/exit_code.h"
 #include "server/core/metrics.h"
 #include "server/core/status_line.h"
+#include "server/core/time.h"
 #include "server/credentials.h"
 #include "server/http/api/api.h"
 #include "server/http/http_server.h"
+#include "server/http/request/api_types.h"
 #include "server/osc/osc_targets.h"
 #include "server/pipeline/picture_source.h"
 #include "server/playback/playback.h"
@@ -79,6 +81,8 @@ class Daemon {
   void OnRenderer(const Status& loaded);
   Status StartCluster();
   Status StartOsc();
+  void MakeApi();
+  ApiReply AnswerWeb(const ApiRequest& request, Hub& hub, Time now);
   Status ListenToWeb();
   void Announce() const;
   asio::awaitable<void> TickLoop();
