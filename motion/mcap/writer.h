@@ -73,7 +73,7 @@ class Writer {
     std::uint64_t offset = 0;
     std::uint64_t length = 0;
   };
-  // What is kept of a channel until the file ends. A long take of short sessions has many.
+  // A channel, kept until the file ends. A long take of short sessions has many.
   struct ChannelInfo {
     ByteWriter record;
     std::uint16_t schema_id = 0;
