@@ -183,14 +183,15 @@ Status TakeFolder::Resume(std::uint64_t now_ns) {
   // Somebody may have removed the folder meanwhile, to free space.
   Status status = MakeFolder();
   if (status.ok()) status = Begin(now_ns);
-  if (status.ok()) status = take_->Flush();
+  const bool has_begun = status.ok();
+  if (has_begun) status = take_->Flush();
   if (status.ok()) {
     failure_ = {};
     return status;
   }
   // NextPath() chose a free name, so the file is this one's own.
   std::error_code ignored;
-  if (path_ != failed) std::filesystem::remove(path_, ignored);
+  if (has_begun) std::filesystem::remove(path_, ignored);
   path_ = failed;
   num_files_ = files;
   earlier_messages_ = messages - (take_ == nullptr ? 0 : take_->num_messages());

@@ -214,7 +214,7 @@ std::ptrdiff_t NumEssential(const wrinkle::JointRoles& roles) {
   });
 }
 
-// True if a guess gives their named role to at least half of the joints whose names tell a part of
+// True if a guess gives their named role to at least nine of ten joints whose names tell a part of
 // a limb. A guess that exchanges the sides does not, nor does one that is a joint off. `named`:
 // empty, or one per joint.
 bool Confirms(const wrinkle::JointRoles& guess, const wrinkle::JointRoles& named) {
@@ -225,7 +225,7 @@ bool Confirms(const wrinkle::JointRoles& guess, const wrinkle::JointRoles& named
     ++num_limbs;
     num_same += guess[j] == named[j] ? 1 : 0;
   }
-  return 2 * num_same >= num_limbs;
+  return 10 * num_same >= 9 * num_limbs;
 }
 
 // The roles that the hierarchy tells, and those of fingers and face that the names tell. Empty if

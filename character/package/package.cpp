@@ -90,7 +90,9 @@ fs::path RigBeside(const fs::path& glb) { return fs::path(glb).replace_extension
 fs::path FindCharacterFile(const std::string& name_or_file) {
   std::error_code error;
   // A slash says that a file is meant, so a misspelt path does not select a shipped character.
-  if (fs::exists(name_or_file, error) || name_or_file.find('/') != std::string::npos) {
+  if (name_or_file.find('/') != std::string::npos) return name_or_file;
+  // A folder of the name of a shipped character, such as that of an export, does not hide it.
+  if (fs::exists(name_or_file, error) && !fs::is_directory(name_or_file, error)) {
     return name_or_file;
   }
   const auto shipped = FindDataFile(name_or_file + (name_or_file.ends_with(".glb") ? "" : ".glb"));

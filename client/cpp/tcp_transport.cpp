@@ -9,6 +9,7 @@
 #include <asio/ssl/error.hpp>
 #include <asio/write.hpp>
 
+#include "client/cpp/connect_error.h"
 #include "client/cpp/tls/client_tls.h"
 
 namespace furrow::client {
@@ -43,7 +44,7 @@ Status TcpTransport::Begin(const std::string& host, std::uint16_t port) {
   asio::error_code error;
   tcp::resolver resolver(context_);
   const auto endpoints = resolver.resolve(host, std::to_string(port), error);
-  if (error) return HostNotFound(host);
+  if (error) return ConnectError(kind(), host, port, error);
   const bool in_clear = security_.token && security_.tls == nullptr && !security_.token_in_clear;
   const bool leaves = std::any_of(endpoints.begin(), endpoints.end(), [](const auto& entry) {
     return !IsLoopback(entry.endpoint().address());

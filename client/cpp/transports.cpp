@@ -4,8 +4,7 @@
 #include <array>
 #include <vector>
 
-#include <asio/error.hpp>
-
+#include "client/cpp/connect_error.h"
 #include "client/cpp/datagram_socket.h"
 #include "client/cpp/secure_transport.h"
 #include "client/cpp/tcp_transport.h"
@@ -67,14 +66,6 @@ class UdpTransport : public Transport {
   std::uint32_t next_message_id_ = 0;
 };
 
-// The failure of DatagramSocket::Connect().
-Status NotConnected(const std::string& host, std::uint16_t port, const asio::error_code& code) {
-  const bool is_unknown = code.category() == asio::error::get_netdb_category() ||
-                          code.category() == asio::error::get_addrinfo_category();
-  return is_unknown ? HostNotFound(host)
-                    : ConnectionFailed(TransportKind::kUdp, host, port, code.message());
-}
-
 }  // namespace
 
 Result<std::unique_ptr<Transport>> OpenTransport(TransportKind kind, const std::string& host,
@@ -84,7 +75,7 @@ Result<std::unique_ptr<Transport>> OpenTransport(TransportKind kind, const std::
   if (kind == TransportKind::kUdp && security.token) {
     auto transport = std::make_unique<SecureTransport>(*security.token);
     const asio::error_code code = transport->Connect(host, port);
-    if (code) return NotConnected(host, port, code);
+    if (code) return ConnectError(TransportKind::kUdp, host, port, code);
     if (transport->Await(Clock::now() + timeout))
       return std::unique_ptr<Transport>(std::move(transport));
     if (transport->refusal() == protocol::secure::Refusal::kNone) {
@@ -119,7 +110,7 @@ Result<std::unique_ptr<Transport>> BeginTransport(TransportKind kind, const std:
     code = transport->Connect(host, port);
     result = std::move(transport);
   }
-  if (code) return NotConnected(host, port, code);
+  if (code) return ConnectError(TransportKind::kUdp, host, port, code);
   return result;
 }
 

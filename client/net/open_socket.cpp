@@ -64,7 +64,13 @@ Result<Descriptor> OpenDescriptor(TransportKind kind, const std::string& host, s
   const int unresolved = getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &list);
   const std::unique_ptr<addrinfo, FreeAddresses> addresses(list);
   Descriptor descriptor;
-  if (unresolved != 0) return client::HostNotFound(host);
+  if (unresolved == EAI_NONAME || unresolved == EAI_AGAIN || unresolved == EAI_NODATA)
+    return client::HostNotFound(host);
+  if (unresolved != 0) {
+    return client::ConnectionFailed(
+        kind, host, port,
+        unresolved == EAI_SYSTEM ? std::strerror(errno) : gai_strerror(unresolved));
+  }
   if (const int failed = ConnectAny(addresses.get(), &descriptor); failed != 0)
     return client::ConnectionFailed(kind, host, port, std::strerror(failed));
   return descriptor;

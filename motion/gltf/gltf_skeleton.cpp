@@ -81,6 +81,7 @@ void AddMovingNodesOfBodies(const gltf::NodeForest& forest, const gltf::Animatio
     const auto i = static_cast<std::size_t>(node);
     if (moves[i] && of_body[i] && !joints->Has(node)) more.push_back(node);
   }
+  if (more.empty()) return;
   gltf::NodeSet all = *joints;
   for (const int node : more) all.AddWithAncestors(node);
   // The joints of the skins alone may fit.

@@ -257,7 +257,7 @@ ByteWriter Writer::IndexChunk(const ChunkInfo& chunk) {
   const std::uint64_t begin = offset_;
   std::ranges::stable_sort(places_, {}, &MessagePlace::channel_id);
   ByteWriter offsets;
-  for (auto place = places_.begin(); place != places_.end() && failure_.ok();) {
+  for (auto place = places_.begin(); place != places_.end();) {
     const std::uint16_t id = place->channel_id;
     ByteWriter entries;
     for (; place != places_.end() && place->channel_id == id; ++place)

@@ -250,6 +250,7 @@ std::string_view KeyAtFault(std::string_view what) {
   const std::string_view name = what.substr(0, what.find_first_of(" :"));
   if (name == "--threads") return "listen.threads";
   if (name == "--busy-poll") return "listen.busy_poll_us";
+  if (name == "--rest-frame") return "rest_frame";
   return name.starts_with("--") || name == "osc.prefix" ? std::string_view() : name;
 }
 

@@ -148,13 +148,18 @@ test('a browser without a language shows the page, and one that cannot run it sa
     await still(page);
     assert.deepEqual(page.errors, []);
     await page.close();
-    const old = await openPage(browser, daemon.address, {}, (opened) => opened.addInitScript(() => {
-      delete window.ResizeObserver;
-    }));
-    await old.getByRole('alert').filter({ hasText: 'This browser cannot run the page: ' }).waitFor();
-    await eventually('the picture', () => old.evaluate(() => document.querySelector('img').naturalWidth > 0));
-    await keep(old, 'cannot-run');
-    await old.close();
+    for (const prepare of [
+      // Before and after the picture's place has been built, and a script that the browser cannot read.
+      (opened) => opened.addInitScript(() => delete window.ResizeObserver),
+      (opened) => opened.addInitScript(() => delete window.IntersectionObserver),
+      (opened) => opened.route('**/assets/index-*.js', (route) => route.fulfill({ contentType: 'text/javascript', body: 'let let = 1;' })),
+    ]) {
+      const old = await openPage(browser, daemon.address, {}, prepare);
+      await old.getByRole('alert').filter({ hasText: 'This browser cannot run the page: ' }).waitFor();
+      await eventually('the picture', () => old.evaluate(() => document.querySelector('img').naturalWidth > 0));
+      await keep(old, 'cannot-run');
+      await old.close();
+    }
   } finally {
     await daemon.stop();
   }

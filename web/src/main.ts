@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-import './ui/start';
 import './style/base.css';
 import './style/layout.css';
 import './style/panels.css';

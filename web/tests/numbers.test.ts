@@ -178,13 +178,13 @@ test('slow pictures reduce the pixels, which return after a while', () => {
 test('pictures stay large enough for folds, unless the daemon draws a few per second only', () => {
   const pixels = 940 * 507;
   const scale = new AdaptiveScale();
-  scale.begin(pixels, 130_000);
+  for (let s = -10; s < 0; ++s) scale.observe(12, 30, s, 50, pixels);
   assert.equal(scale.scale, 0.5); // 119,000 pixels
   for (let s = 0; s < 10; ++s) assert(!scale.observe(12, 30, s, 50, pixels));
   for (let s = 10; s < 14; ++s) scale.observe(5, 30, s, 50, pixels);
   assert.equal(scale.scale, 0.25);
-  // Smooth again: back to the folds, without waiting for spare time.
-  for (let s = 14; s < 60; ++s) scale.observe(scale.scale < 0.5 ? 22 : 12, 30, s, 50, pixels);
+  // Twice as fast at a quarter: back to the folds.
+  for (let s = 14; s < 60; ++s) scale.observe(scale.scale < 0.5 ? 17 : 12, 30, s, 50, pixels);
   assert.equal(scale.scale, 0.5);
 });
 

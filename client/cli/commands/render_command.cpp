@@ -208,7 +208,7 @@ Status DrawFrames(const RenderOptions& options, const render::Settings& settings
 void WarnWithoutRig(const RenderOptions& options, const character::Character& character) {
   if (!character.rig.regions.empty()) return;
   const std::string glb = options.character.empty() ? "default.glb" : options.character;
-  const std::string beside = character::RigBeside(glb).string();
+  const std::string beside = character::RigBeside(character::FindCharacterFile(glb)).string();
   PrintWarnings({options.rig.empty() ? "the character is drawn without wrinkles: there is no rig " +
                                            beside + "; put it there, or choose one by --rig"
                                      : "the character is drawn without wrinkles: the rig " +

@@ -13,6 +13,11 @@ class TakeWriterTest : public TakeTest {};
 // A daemon that runs for weeks sees many short sessions, and keeps what it knows of each until the
 // file ends: four channels of about 110 bytes, and the session's key.
 TEST_F(TakeWriterTest, ASessionKeepsLessThanAKilobyte) {
+  const std::size_t at_first = mallinfo2().uordblks;
+  const std::vector<char> measured(1 << 16);
+  if (mallinfo2().uordblks - at_first < measured.size() / 2) {
+    GTEST_SKIP() << "this allocator does not count its memory";
+  }
   auto take = TakeWriter::Create(folder_ / "take.mcap", "{}").value();
   const auto offer = Payload(Offer("ada"));
   const auto pose = Payload(Pose(0.5f));
@@ -34,6 +39,7 @@ TEST_F(TakeWriterTest, ASessionKeepsLessThanAKilobyte) {
   for (std::uint64_t session = 1; session <= kSessions; ++session) write_session(kWarmUp + session);
   const std::size_t kept = mallinfo2().uordblks - before;
   EXPECT_LT(kept / kSessions, 1024u);
+  EXPECT_GT(kept / kSessions, 100u) << "the sessions were not written";
   ASSERT_TRUE(take->Close().ok());
 }
 

@@ -54,7 +54,7 @@ export class AdaptiveScale {
       return drawnPercent === 100 || drawnPercent <= LEAST_DRAWN ? this.lower(nowS) : false;
     }
     this.slowSeconds = 0;
-    const isFast = hidesFolds(this.step) ? picturesHz >= Math.min(TOO_SLOW_HZ, 0.8 * posesHz)
+    const isFast = hidesFolds(this.step) ? picturesHz >= Math.min(2 * SLUGGISH_HZ, 0.8 * posesHz)
       : picturesHz >= Math.min(FAST_HZ, 0.9 * posesHz) && drawnPercent >= SPARE_DRAWN;
     if (!isFast || this.step === 0) {
       this.fastSinceS = null;

@@ -262,6 +262,7 @@ TEST(CommandLine, AValueOutOfRangeNamesTheLine) {
             ".toml:3: limits.max_subjects is 0; it must be 1 to 1000000\n");
   EXPECT_THAT(error("[listen]\nthreads = 99\n"), HasSubstr(".toml:2: --threads is 99"));
   EXPECT_THAT(error("[listen]\nbusy_poll_us = -1\n"), HasSubstr(".toml:2: --busy-poll is -1"));
+  EXPECT_THAT(error("rest_frame = -5\n"), HasSubstr(".toml:1: --rest-frame: -5"));
   EXPECT_THAT(error("http = {api_share = 2}\n"), HasSubstr(".toml:1: http.api_share is 2"));
   EXPECT_THAT(error("[osc]\nallow = ['stage']\n"), HasSubstr(".toml:2: osc.allow: 'stage'"));
   // Of a value that the file does not set, and of a flag.
