@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Usage: run.mjs FILE.test.mjs. Runs one test file, or prints SKIPPED and the reason.
+// Usage: run.mjs FILE.test.mjs [PATTERN]. Runs one test file, or its tests whose names match the pattern, or prints SKIPPED
+// and the reason.
 import { spawnSync } from 'node:child_process';
 import { existsSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
@@ -17,4 +18,6 @@ for (const [what, path] of Object.entries(needs)) {
   console.log(`SKIPPED: missing ${what} (deploy/install-deps.sh installs what is needed)`);
   process.exit(0);
 }
-process.exit(spawnSync(process.execPath, ['--test', process.argv[2]], { stdio: 'inherit' }).status ?? 1);
+const [, , file, pattern] = process.argv;
+const only = pattern === undefined ? [] : ['--test-name-pattern', pattern];
+process.exit(spawnSync(process.execPath, ['--test', ...only, file], { stdio: 'inherit' }).status ?? 1);
