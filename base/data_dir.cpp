@@ -36,6 +36,21 @@ Result<std::filesystem::path> FindDataFile(std::string_view name) {
                 "build the target furrow_share, or set FURROW_DATA_DIR to a folder share/furrow");
 }
 
+std::filesystem::path FileOrShipped(const std::string& name_or_file, std::string_view folder,
+                                    std::string_view extension) {
+  std::error_code error;
+  // A slash says that a file is meant, so a misspelt path does not select a shipped one.
+  if (name_or_file.find('/') != std::string::npos) return name_or_file;
+  const std::filesystem::path file = name_or_file;
+  if (std::filesystem::exists(file, error) && !std::filesystem::is_directory(file, error)) {
+    return file;
+  }
+  std::filesystem::path shipped = std::filesystem::path(folder) / name_or_file;
+  if (!name_or_file.ends_with(extension)) shipped += extension;
+  const auto found = FindDataFile(shipped.lexically_normal().string());
+  return found.ok() ? *found : file;
+}
+
 Result<std::vector<std::filesystem::path>> ListDataFiles(std::string_view folder,
                                                          std::string_view extension) {
   const auto shipped = FindDataFile(folder);

@@ -22,6 +22,14 @@ namespace furrow {
 // Error: kNotFound, with the path that was tried.
 [[nodiscard]] Result<std::filesystem::path> FindDataFile(std::string_view name);
 
+// The file that a user names: an existing file, or anything with a slash, as it is; else the
+// shipped file `name` in `folder` ("." is share/furrow itself), with or without `extension`. A name
+// that is neither is returned unchanged, so that the loader reports the error. A folder of the name
+// does not hide the shipped file.
+[[nodiscard]] std::filesystem::path FileOrShipped(const std::string& name_or_file,
+                                                  std::string_view folder,
+                                                  std::string_view extension);
+
 // The files of a folder of share/furrow that end with `extension`, in order of their names. "." is
 // share/furrow itself. Errors: kNotFound, kIo.
 [[nodiscard]] Result<std::vector<std::filesystem::path>> ListDataFiles(std::string_view folder,

@@ -34,14 +34,7 @@ Result<wrinkle::Rig> ParseRig(std::string_view json, std::string_view source_nam
 }
 
 std::filesystem::path FindRigFile(const std::string& name_or_file) {
-  std::error_code error;
-  // A slash says that a file is meant, so a misspelt path does not select a shipped rig.
-  if (std::filesystem::exists(name_or_file, error) || name_or_file.find('/') != std::string::npos) {
-    return name_or_file;
-  }
-  const auto shipped =
-      FindDataFile("rigs/" + name_or_file + (name_or_file.ends_with(".json") ? "" : ".json"));
-  return shipped.ok() ? *shipped : std::filesystem::path(name_or_file);
+  return FileOrShipped(name_or_file, "rigs", ".json");
 }
 
 Result<wrinkle::Rig> LoadRig(const std::filesystem::path& path, const wrinkle::PoseSource& poses,

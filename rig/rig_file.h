@@ -39,9 +39,8 @@ namespace furrow::rig {
                                             const wrinkle::PoseSource& poses = {},
                                             std::set<std::string>* missing = nullptr);
 
-// The file of a rig that a user names: an existing path, else the path of the shipped rig of this
-// name ("cmu" or "cmu.json"). A name that is neither is returned unchanged, so that the loader
-// reports the error.
+// The file of a rig that a user names: a file, or a shipped rig ("cmu" or "cmu.json"). See
+// FileOrShipped().
 [[nodiscard]] std::filesystem::path FindRigFile(const std::string& name_or_file);
 
 // The rig as JSON that ParseRig() reads back unchanged. Reference poses are written as joints.

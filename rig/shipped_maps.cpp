@@ -5,10 +5,6 @@
 
 namespace furrow::rig {
 
-Result<std::vector<std::filesystem::path>> ListShippedMaps(const std::string& folder) {
-  return ListDataFiles(folder, ".json");
-}
-
 Result<std::filesystem::path> FindMap(const std::string& folder, const std::string& name_or_file) {
   std::error_code error;
   // A slash marks a path, so a missing file is not mistaken for the name of a shipped map.

@@ -3,15 +3,11 @@
 
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include "base/status.h"
 
 // Skeleton maps and shape maps are files that ship in folders of Furrow's data.
 namespace furrow::rig {
-
-// The .json files of a folder of the data, in order of their names. Errors: kNotFound, kIo.
-[[nodiscard]] Result<std::vector<std::filesystem::path>> ListShippedMaps(const std::string& folder);
 
 // The file of a map: `name_or_file` if it is a file or has a slash, else the shipped map of that
 // name in `folder`. Error: kNotFound (no shipped map has this name).

@@ -16,6 +16,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/ascii.h"
+#include "base/data_dir.h"
 #include "base/files.h"
 #include "base/status.h"
 #include "rig/shipped_maps.h"
@@ -287,7 +288,7 @@ SkeletonMaps::SkeletonMaps(std::vector<SkeletonMap> maps, bool chosen)
 }
 
 Result<SkeletonMaps> SkeletonMaps::LoadShipped() {
-  const auto files = ListShippedMaps(kFolder);
+  const auto files = ListDataFiles(kFolder, ".json");
   FURROW_RETURN_IF_ERROR(files);
   std::vector<SkeletonMap> maps;
   for (const fs::path& file : *files) {

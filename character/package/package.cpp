@@ -88,15 +88,7 @@ Result<Character> ParseCharacter(std::string_view bytes, const fs::path& folder,
 fs::path RigBeside(const fs::path& glb) { return fs::path(glb).replace_extension(".rig.json"); }
 
 fs::path FindCharacterFile(const std::string& name_or_file) {
-  std::error_code error;
-  // A slash says that a file is meant, so a misspelt path does not select a shipped character.
-  if (name_or_file.find('/') != std::string::npos) return name_or_file;
-  // A folder of the name of a shipped character, such as that of an export, does not hide it.
-  if (fs::exists(name_or_file, error) && !fs::is_directory(name_or_file, error)) {
-    return name_or_file;
-  }
-  const auto shipped = FindDataFile(name_or_file + (name_or_file.ends_with(".glb") ? "" : ".glb"));
-  return shipped.ok() ? *shipped : fs::path(name_or_file);
+  return FileOrShipped(name_or_file, ".", ".glb");
 }
 
 Result<Character> LoadCharacter(const fs::path& glb, const fs::path& rig,

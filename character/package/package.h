@@ -20,9 +20,8 @@ namespace furrow::character {
 // Where the rig of a character lies: "<stem>.rig.json" in the folder of its .glb or .gltf file.
 [[nodiscard]] std::filesystem::path RigBeside(const std::filesystem::path& glb);
 
-// The package that a user names: an existing path, else the path of the shipped character of this
-// name ("elder" or "elder.glb"). A name that is neither is returned unchanged, so that the loader
-// reports the error.
+// The package that a user names: a file, or a shipped character ("elder" or "elder.glb"). See
+// FileOrShipped().
 [[nodiscard]] std::filesystem::path FindCharacterFile(const std::string& name_or_file);
 
 // Reads a .glb or .gltf file and its rig. An empty `rig` means RigBeside(glb); if that does not

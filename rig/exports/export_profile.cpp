@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/data_dir.h"
 #include "base/files.h"
 #include "base/joined.h"
 #include "base/text.h"
@@ -133,7 +134,7 @@ Result<ExportProfile> ReadProfileFile(const std::filesystem::path& file) {
 
 // "arkit, metahuman", for messages; empty if the data is missing.
 std::string ListProfiles() {
-  const auto files = ListShippedMaps(kFolder);
+  const auto files = ListDataFiles(kFolder, ".json");
   if (!files.ok()) return {};
   return Joined(*files, [](const auto& file) { return file.stem().string(); });
 }
@@ -158,7 +159,7 @@ Result<ExportProfile> LoadExportProfile(const std::string& name_or_file) {
 }
 
 Result<std::vector<ExportProfile>> ShippedExportProfiles() {
-  const auto files = ListShippedMaps(kFolder);
+  const auto files = ListDataFiles(kFolder, ".json");
   FURROW_RETURN_IF_ERROR(files);
   std::vector<ExportProfile> profiles;
   for (const auto& file : *files) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "base/data_dir.h"
 #include "base/files.h"
 #include "base/status.h"
 #include "rig/shipped_maps.h"
@@ -31,7 +32,7 @@ int MapFormula::RenamedShape() const {
 }
 
 Result<std::vector<ShapeMap>> LoadShippedShapeMaps() {
-  const auto files = ListShippedMaps(kShapeMapFolder);
+  const auto files = ListDataFiles(kShapeMapFolder, ".json");
   FURROW_RETURN_IF_ERROR(files);
   std::vector<ShapeMap> maps;
   for (const fs::path& file : *files) {

@@ -22,6 +22,25 @@ TEST(InstallPrefix, IsTheFolderOfThisBuild) {
   EXPECT_TRUE(std::filesystem::equivalent(InstallPrefix(), FURROW_BINARY_DIR));
 }
 
+TEST(FileOrShipped, FilesAndSlashesComeFirstAndFoldersHideNothing) {
+  const TemporaryFolder data;
+  const TemporaryFolder here;
+  const std::filesystem::path former = std::filesystem::current_path();
+  setenv("FURROW_DATA_DIR", data.path().c_str(), 1);
+  std::filesystem::current_path(here.path());
+  std::filesystem::create_directory(data / "rigs");
+  for (const char* name : {"rigs/face.json", "rigs/body.json"}) std::ofstream(data / name);
+  std::ofstream(here / "body");
+  std::filesystem::create_directory(here / "face");
+  EXPECT_EQ(FileOrShipped("face", "rigs", ".json"), data / "rigs/face.json");
+  EXPECT_EQ(FileOrShipped("face.json", "rigs", ".json"), data / "rigs/face.json");
+  EXPECT_EQ(FileOrShipped("rigs/face.json", ".", ".json"), "rigs/face.json");
+  EXPECT_EQ(FileOrShipped("body", "rigs", ".json"), "body");
+  EXPECT_EQ(FileOrShipped("nobody", "rigs", ".json"), "nobody");
+  std::filesystem::current_path(former);
+  unsetenv("FURROW_DATA_DIR");
+}
+
 TEST(NotShipped, ListsWhatShipsAndWhatWasMeant) {
   const TemporaryFolder folder;
   for (const char* name : {"elder.glb", "elder.web.glb", "default.glb", "default.rig.json"}) {
