@@ -10,23 +10,18 @@
 
 #include <glm/geometric.hpp>
 
+#include "wrinkle/skeleton/direction.h"
+
 namespace furrow::wrinkle {
 namespace {
 
-// The least cosine between the directions of limbs that count as parallel, and between those of
-// legs and trunk that count as opposite: 60 degrees.
-constexpr float kLeastAligned = 0.5f;
-
-// The same between legs and trunk if the arms point down like the legs, so that they may be front
-// legs: 37 degrees. A person with hanging arms is straighter.
+// The least cosine between the legs and the way down the trunk if the arms point down like the
+// legs, so that they may be front legs: 37 degrees. A person with hanging arms is straighter. Of
+// other bodies, kLeastAlike is enough.
 constexpr float kLeastUpright = 0.8f;
 
 // The first bone of a leg lies above the thigh if it is shorter than this share of the next two.
 constexpr float kShortBone = 0.6f;
-
-bool PointAlike(const glm::vec3& a, const glm::vec3& b) {
-  return glm::dot(a, b) > kLeastAligned * glm::length(a) * glm::length(b);
-}
 
 // Determines roles from the shape of the hierarchy.
 class HierarchyReader {
@@ -209,8 +204,7 @@ class HierarchyReader {
     const glm::vec3 legs = Reached(hips.pair.first) + Reached(hips.pair.second);
     const bool like_legs =
         PointAlike(Reached(chest.pair.first), legs) && PointAlike(Reached(chest.pair.second), legs);
-    const float least = like_legs ? kLeastUpright : kLeastAligned;
-    return -glm::dot(trunk, legs) > least * glm::length(trunk) * glm::length(legs);
+    return PointAlike(trunk, -legs, like_legs ? kLeastUpright : kLeastAlike);
   }
 
   // The joints of the neck from the fork of the arms up to the head. Empty if there are none.

@@ -10,6 +10,8 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 
+#include "wrinkle/skeleton/direction.h"
+
 namespace furrow::wrinkle {
 namespace {
 
@@ -17,9 +19,6 @@ using enum JointRole;
 
 // Sine of the steepest slope of a foot that counts as flat on the floor at rest.
 constexpr float kSteepFoot = 0.8f;
-
-// The least cosine between directions that count as alike: 60 degrees.
-constexpr float kLeastAlike = 0.5f;
 
 std::size_t Index(JointRole role) { return static_cast<std::size_t>(role); }
 
@@ -224,9 +223,7 @@ std::optional<glm::vec3> UpOfLimbs(const Body& body) {
     limbs[i] = glm::normalize(*limb);
     down += limbs[i];
   }
-  const auto is_down = [&](const glm::vec3& direction) {
-    return glm::dot(direction, down) > kLeastAlike * glm::length(direction) * glm::length(down);
-  };
+  const auto is_down = [&](const glm::vec3& direction) { return PointAlike(direction, down); };
   if (!std::all_of(limbs.begin(), limbs.end(), is_down)) return std::nullopt;
   const glm::vec3 trunk = body.RestSpan(kLeftUpperLeg, kLeftUpperArm).value_or(glm::vec3(0.0f)) +
                           body.RestSpan(kRightUpperLeg, kRightUpperArm).value_or(glm::vec3(0.0f));

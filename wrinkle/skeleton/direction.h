@@ -16,6 +16,15 @@ inline constexpr float kLeastLength = 1e-12f;  // shorter vectors have no direct
   return length > kLeastLength ? v / length : glm::vec3(0.0f);
 }
 
+// The least cosine between directions that count as alike: 60 degrees.
+inline constexpr float kLeastAlike = 0.5f;
+
+// True if the cosine between two vectors is above `least`. False if one of them is zero.
+[[nodiscard]] inline bool PointAlike(const glm::vec3& a, const glm::vec3& b,
+                                     float least = kLeastAlike) {
+  return glm::dot(a, b) > least * glm::length(a) * glm::length(b);
+}
+
 // Converts a direction from model axes in the rest pose to the axes of `joint`. kNoJoint: returns
 // the direction unchanged.
 [[nodiscard]] inline glm::vec3 ToJointAxes(const Skeleton& skeleton, int joint,
