@@ -16,8 +16,6 @@ namespace furrow::render {
 namespace {
 
 constexpr std::size_t kChannels = 3;
-// 0 becomes 16, and 255 becomes 235.
-constexpr double kLumaCentre = 16.0 * 255.0 / (255.0 - 219.0);
 
 // TurboJPEG rounds the chroma planes up, but encoders want an even luma plane, too.
 Image MakeEven(const Image& image) {
@@ -38,14 +36,21 @@ Image MakeEven(const Image& image) {
   return even;
 }
 
-// Maps the full range, in which `centre` stays as it is, to `steps` of 255.
-void Squeeze(double centre, double steps, std::vector<std::uint8_t>* plane) {
-  std::array<std::uint8_t, 256> squeezed;
-  for (std::size_t i = 0; i < squeezed.size(); ++i) {
-    const double value = centre + (static_cast<double>(i) - centre) * (steps / 255.0);
-    squeezed[i] = static_cast<std::uint8_t>(std::lround(value));
+// What becomes of each value of the full range.
+using Table = std::array<std::uint8_t, 256>;
+
+// `zero`: what 0 becomes; `steps`: of 255 that remain.
+Table LimitedRange(double zero, double steps) {
+  Table table;
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const double value = zero + static_cast<double>(i) * (steps / 255.0);
+    table[i] = static_cast<std::uint8_t>(std::lround(value));
   }
-  for (std::uint8_t& value : *plane) value = squeezed[value];
+  return table;
+}
+
+void Apply(const Table& table, std::vector<std::uint8_t>* plane) {
+  for (std::uint8_t& value : *plane) value = table[value];
 }
 
 }  // namespace
@@ -72,9 +77,11 @@ Status ToPlanes(const Image& image, Planes* planes) {
                         targets, strides, TJSAMP_420, TJFLAG_FASTDCT) != 0) {
     return {StatusCode::kInternal, tjGetErrorStr2(converter.get()), "TurboJPEG"};
   }
-  Squeeze(kLumaCentre, 219.0, &planes->y);
-  Squeeze(128.0, 224.0, &planes->u);
-  Squeeze(128.0, 224.0, &planes->v);
+  static const Table luma = LimitedRange(16.0, 219.0);
+  static const Table chroma = LimitedRange(128.0 - 128.0 * 224.0 / 255.0, 224.0);  // 128 stays
+  Apply(luma, &planes->y);
+  Apply(chroma, &planes->u);
+  Apply(chroma, &planes->v);
   return {};
 }
 
