@@ -1,23 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// A page in Debian's chromium: opened, watched for errors, looked at.
+// A page in a real browser: opened, watched for errors, looked at.
 import { mkdirSync } from 'node:fs';
 import { join } from 'node:path';
 import { chromium, firefox } from 'playwright-core';
 import { PNG } from 'pngjs';
+import { EXECUTABLE, IS_FIREFOX } from './chosen_browser.mjs';
 
 const ARTEFACTS = process.env.FURROW_ARTEFACTS;
 const PATIENCE_MS = 180_000;
 
-/** True if the page is opened in Firefox (FURROW_BROWSER=firefox) instead of Chromium. */
-export const IS_FIREFOX = process.env.FURROW_BROWSER === 'firefox';
-
 /** `options`: further switches of Chromium. */
 export function launch(options = []) {
   mkdirSync(ARTEFACTS, { recursive: true });
-  // Debian's Firefox as it is, by the standard protocol (WebDriver BiDi).
-  if (IS_FIREFOX) return firefox.launch({ channel: 'moz-firefox', executablePath: '/usr/bin/firefox-esr', headless: true });
+  // Firefox as it is, by the standard protocol (WebDriver BiDi).
+  if (IS_FIREFOX) return firefox.launch({ channel: 'moz-firefox', executablePath: EXECUTABLE, headless: true });
   return chromium.launch({
-    executablePath: '/usr/bin/chromium',
+    executablePath: EXECUTABLE,
     headless: true,
     args: ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
       '--disable-component-update', '--disable-sync', ...options],

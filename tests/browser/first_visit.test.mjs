@@ -147,7 +147,7 @@ test('a browser without a language shows the page, and one that cannot run it sa
     }));
     await still(page);
     assert.deepEqual(page.errors, []);
-    await page.close();
+    await page.context().close();
     for (const prepare of [
       // Before and after the picture's place has been built, and a script that the browser cannot read.
       (opened) => opened.addInitScript(() => delete window.ResizeObserver),
@@ -158,7 +158,7 @@ test('a browser without a language shows the page, and one that cannot run it sa
       await old.getByRole('alert').filter({ hasText: 'This browser cannot run the page: ' }).waitFor();
       await eventually('the picture', () => old.evaluate(() => document.querySelector('img').naturalWidth > 0));
       await keep(old, 'cannot-run');
-      await old.close();
+      await old.context().close();
     }
   } finally {
     await daemon.stop();

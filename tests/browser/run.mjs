@@ -5,11 +5,11 @@ import { spawnSync } from 'node:child_process';
 import { existsSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { join } from 'node:path';
+import { EXECUTABLE } from './chosen_browser.mjs';
 
 const here = fileURLToPath(new URL('.', import.meta.url));
-const browser = process.env.FURROW_BROWSER === 'firefox' ? '/usr/bin/firefox-esr' : '/usr/bin/chromium';
 const needs = {
-  [`the browser ${browser}`]: browser,
+  [`the browser ${EXECUTABLE}`]: EXECUTABLE,
   'the packages of tests/browser/package-lock.json': join(here, 'node_modules/playwright-core'),
   'the built page': join(process.env.FURROW_SHARE, 'web/index.html'),
 };
