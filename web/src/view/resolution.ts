@@ -14,9 +14,8 @@ const SLOW_S = 2;
 const STEPS = [1, 0.75, 0.5, 0.35, 0.25] as const;
 /** Below this, the eye sees single pictures rather than motion. */
 const TOO_SLOW_HZ = 20;
-/** Pictures of fewer pixels hide the folds. They are for machines that are slower than SLUGGISH_HZ otherwise. */
+/** Pictures of fewer pixels hide the folds, and save little: the vertices take as long in any size. */
 const FOLD_PIXELS = 100_000;
-const SLUGGISH_HZ = 8;
 const FAST_HZ = 27;
 /** If a larger size turns out too slow within this time, the next attempt waits longer. */
 const SOON_S = 10;
@@ -45,18 +44,19 @@ export class AdaptiveScale {
    * picture of scale 1. Returns true if the scale changed.
    */
   observe(picturesHz: number, posesHz: number, nowS: number, drawnPercent: number, pixels: number): boolean {
-    const hidesFolds = (step: number): boolean => pixels * (STEPS[step] ?? 0) ** 2 < FOLD_PIXELS;
-    const tooSlowHz = hidesFolds(this.step + 1) ? SLUGGISH_HZ : TOO_SLOW_HZ;
-    if (picturesHz < Math.min(tooSlowHz, 0.8 * posesHz)) {
+    const showsFolds = (step: number): boolean => pixels * (STEPS[step] ?? 0) ** 2 >= FOLD_PIXELS;
+    if (this.step > 0 && !showsFolds(this.step)) { // the window has become smaller
+      --this.step;
+      return true;
+    }
+    if (picturesHz < Math.min(TOO_SLOW_HZ, 0.8 * posesHz)) {
       this.fastSinceS = null;
       if (++this.slowSeconds < SLOW_S) return false;
       // In between, the daemon has something left to do about it.
-      return drawnPercent === 100 || drawnPercent <= LEAST_DRAWN ? this.lower(nowS) : false;
+      return (drawnPercent === 100 || drawnPercent <= LEAST_DRAWN) && showsFolds(this.step + 1) && this.lower(nowS);
     }
     this.slowSeconds = 0;
-    const isFast = hidesFolds(this.step) ? picturesHz >= Math.min(2 * SLUGGISH_HZ, 0.8 * posesHz)
-      : picturesHz >= Math.min(FAST_HZ, 0.9 * posesHz) && drawnPercent >= SPARE_DRAWN;
-    if (!isFast || this.step === 0) {
+    if (picturesHz < Math.min(FAST_HZ, 0.9 * posesHz) || this.step === 0 || drawnPercent < SPARE_DRAWN) {
       this.fastSinceS = null;
       return false;
     }
@@ -70,7 +70,6 @@ export class AdaptiveScale {
 
   private lower(nowS: number): boolean {
     this.slowSeconds = 0;
-    if (this.step === STEPS.length - 1) return false;
     if (nowS - this.raisedAtS < SOON_S) this.patienceS = Math.min(MAX_PATIENCE_S, this.patienceS * 2);
     ++this.step;
     return true;
