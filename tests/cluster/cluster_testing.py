@@ -13,16 +13,10 @@ import time
 import urllib.error
 import urllib.request
 
-from furrow_testing import GUARD, SHARE, Daemon, spawn
+from furrow_testing import GUARD, SHARE, Daemon, free_port, spawn
 
 PERFORMANCE = SHARE / "recordings" / "performance.bvh"
 NATS = shutil.which("nats-server") or shutil.which("nats-server", path="/usr/sbin")
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
 
 
 def wait_until(condition, what):
@@ -54,9 +48,16 @@ class NatsServer:
         self.start()
 
     def start(self):
-        self.process = subprocess.Popen(
-            [NATS, "-a", "127.0.0.1", "-p", str(self.port), *self.args],
-            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        """Returns when the server accepts connections."""
+        log = pathlib.Path(self.folder.name, "nats.log")
+        self.process = subprocess.Popen([NATS, "-a", "127.0.0.1", "-p", str(self.port), "-l", log, *self.args])
+        wait_until(lambda: self.process.poll() is not None or self._accepts(), "the NATS server accepts connections")
+        assert self.process.poll() is None, log.read_text()
+
+    def _accepts(self):
+        with contextlib.suppress(ConnectionRefusedError):
+            socket.create_connection(("127.0.0.1", self.port)).close()
+            return True
 
     def kill(self):
         self.process.kill()
@@ -166,6 +167,20 @@ class Node(Daemon):
 
     def is_ready(self):
         return self.get("/readyz")[0] == 200
+
+    def wait_for_fault(self, words):
+        """Waits until /readyz names a fault in these words."""
+        answer = None
+
+        def says():
+            nonlocal answer
+            answer = json.dumps(self.get("/readyz")[1])
+            return words in answer
+
+        try:
+            wait_until(says, words)
+        except AssertionError:
+            raise AssertionError(f"expected '{words}' from /readyz, which says {answer}; the log: {self.log}") from None
 
     def holder(self, subject):
         """The node that serves the subject, as this node knows it, and its epoch; nothing if none does."""

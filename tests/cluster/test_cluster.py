@@ -55,7 +55,7 @@ class CredentialsTest(unittest.TestCase):
             credentials.write("furrow:another\n")
             credentials.flush()
             with Node("a", "--cluster", nats.url, "--cluster-credentials", credentials.name) as node:
-                wait_until(lambda: "refuses the credentials" in json.dumps(node.get("/readyz")[1]), "the refusal is named")
+                node.wait_for_fault("refuses the credentials")
                 nats.kill()
                 file = pathlib.Path(nats.folder.name, "nats.conf")
                 file.write_text(file.read_text().replace("change-me", "another"))

@@ -22,18 +22,12 @@ import urllib.error
 import urllib.parse
 import urllib.request
 
-from furrow_testing import BIN, GUARD, SOURCE, Daemon, spawn
+from furrow_testing import BIN, GUARD, SOURCE, Daemon, free_port, spawn
 
 PROMETHEUS = shutil.which("prometheus")
 PROMTOOL = shutil.which("promtool")
 DASHBOARD = SOURCE / "deploy" / "grafana" / "furrow.json"
 RULES = SOURCE / "deploy" / "prometheus" / "furrow.rules.yml"
-
-
-def free_port():
-    with socket.socket() as one:
-        one.bind(("127.0.0.1", 0))
-        return one.getsockname()[1]
 
 
 def panels():

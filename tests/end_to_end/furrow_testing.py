@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Shared by the end-to-end tests: running the programs, a daemon on free ports, tables of weights."""
+import contextlib
 import csv
 import io
 import os
 import pathlib
+import random
 import re
 import shlex
 import signal
+import socket
 import subprocess
 import unittest
 import zlib
@@ -24,6 +27,15 @@ def needs_shared(*parts):
     if not path.exists():
         raise unittest.SkipTest(f"{path} is missing")
     return path
+
+
+def free_port(kind=socket.SOCK_STREAM):
+    """A port for a program that cannot choose one itself. The system gives ports below 32,768 to nobody, so none is taken by
+    another test between this call and the start of the program."""
+    while True:
+        with socket.socket(socket.AF_INET, kind) as probe, contextlib.suppress(OSError):
+            probe.bind(("127.0.0.1", random.randrange(20_000, 32_000)))
+            return probe.getsockname()[1]
 
 
 def commands(document):

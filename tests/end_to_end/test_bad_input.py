@@ -13,7 +13,7 @@ import threading
 import time
 import unittest
 
-from furrow_testing import (BIN, GUARD, SHARE, SOURCE, Daemon, Table, finish, furrow, solve, spawn_watch,
+from furrow_testing import (BIN, GUARD, SHARE, SOURCE, Daemon, Table, finish, free_port, furrow, solve, spawn_watch,
                             worst_difference)
 
 PERFORMANCE = SHARE / "recordings" / "performance.bvh"
@@ -243,9 +243,7 @@ class DaemonTest(unittest.TestCase):
                 self.assertIn("nobody", result.stderr.decode())
 
     def test_closed_port(self):
-        with socket.socket() as probe:
-            probe.bind(("127.0.0.1", 0))
-            port = probe.getsockname()[1]
+        port = free_port()
         for args in (("watch", f"127.0.0.1:{port}"), ("watch", f"127.0.0.1:{port}", "--udp"),
                      ("play", PERFORMANCE, "--to", f"127.0.0.1:{port}", "--udp"),
                      ("play", PERFORMANCE, "--to", f"127.0.0.1:{port}", "--tcp")):

@@ -8,7 +8,7 @@ import socket
 import subprocess
 import unittest
 
-from furrow_testing import SOURCE, Daemon, Table, finish, spawn
+from furrow_testing import SOURCE, Daemon, Table, finish, free_port, spawn
 from tracker_packets import livelink_face
 
 ARKIT = SOURCE / "rig" / "rigs" / "arkit.json"
@@ -111,9 +111,7 @@ class ForeignWireTest(unittest.TestCase):
 
     @unittest.skipUnless(shutil.which("oscdump"), "liblo-tools is not installed")
     def test_oscdump_reads_our_osc_output(self):
-        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-            probe.bind(("127.0.0.1", 0))
-            port = probe.getsockname()[1]
+        port = free_port(socket.SOCK_DGRAM)
         dump = subprocess.Popen(["oscdump", "-L", str(port)], stdout=subprocess.PIPE)
         self.addCleanup(dump.stdout.close)
         self.addCleanup(dump.wait)

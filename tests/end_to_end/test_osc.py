@@ -13,23 +13,17 @@ import subprocess
 import tempfile
 import unittest
 
-from furrow_testing import BIN, GUARD, SHARE, Daemon, spawn
+from furrow_testing import BIN, GUARD, SHARE, Daemon, free_port, spawn
 from wire_testing import Api
 
 PERFORMANCE = SHARE / "recordings" / "performance.bvh"
-
-
-def free_port():
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
 
 
 @unittest.skipUnless(shutil.which("oscdump") and shutil.which("stdbuf"), "liblo-tools is not installed")
 class OscTest(unittest.TestCase):
     def dump(self):
         """Starts oscdump. Returns its port and a function that reads a line: address, tags, values."""
-        port = free_port()
+        port = free_port(socket.SOCK_DGRAM)
         process = subprocess.Popen(["stdbuf", "-oL", "oscdump", "-L", str(port)], stdout=subprocess.PIPE, text=True)
         self.addCleanup(process.stdout.close)
         self.addCleanup(process.wait, timeout=GUARD)
@@ -130,7 +124,7 @@ rate_hz = 20
             self.assertEqual((status, json.loads(body)["targets"]), (200, []))
             self.assertEqual(api.bytes("DELETE", "/api/osc", id=target["id"])[0], 404)
             # A target that nobody reads: the error is shown.
-            api.post("/api/osc", {"to": f"127.0.0.1:{free_port()}"})
+            api.post("/api/osc", {"to": f"127.0.0.1:{free_port(socket.SOCK_DGRAM)}"})
             view = api.get("/api/osc")["targets"][0]
             while view["errors"] == 0:
                 view = api.get("/api/osc")["targets"][0]
