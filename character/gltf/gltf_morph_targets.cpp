@@ -120,19 +120,25 @@ Status GltfMorphTargets::Read(const gltf::Mesh& from, const gltf::Primitive& pri
     if (is_stated_.insert(name).second) stated_.push_back(name);
   }
   if (primitive.morph_targets.empty()) return {};
+  const auto where = [&at](std::size_t i) { return at + ".targets[" + std::to_string(i) + "]"; };
+  // All are counted before one is read: a file with too many is refused at once.
+  std::vector<std::vector<Part>> parts(primitive.morph_targets.size());
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    FURROW_RETURN_IF_ERROR(
+        OpenTarget(primitive.morph_targets[i], where(i), base, *mesh, &parts[i]));
+  }
   const float zero = ZeroLength(*mesh);
   const std::vector<bool> used = UsedVertices(*mesh);
   std::vector<Found> found;
-  for (std::size_t i = 0; i < primitive.morph_targets.size(); ++i) {
+  for (std::size_t i = 0; i < parts.size(); ++i) {
     const gltf::MorphTarget& target = primitive.morph_targets[i];
-    const std::string where = at + ".targets[" + std::to_string(i) + "]";
     MorphTarget to;
-    FURROW_RETURN_IF_ERROR(ReadDeltas(target, where, base, *mesh, &to.deltas));
+    FURROW_RETURN_IF_ERROR(ReadDeltas(parts[i], where(i), &to.deltas));
     DropZeroDeltas(used, zero, &to.deltas);
     if (to.deltas.empty()) continue;
     to.deltas.shrink_to_fit();
     if (to.deltas.size() > deltas_) {
-      return {StatusCode::kLimit, "the morph targets move too many vertices", where,
+      return {StatusCode::kLimit, "the morph targets move too many vertices", where(i),
               "reduce the mesh, or the number of its shapes"};
     }
     deltas_ -= to.deltas.size();
@@ -187,56 +193,51 @@ Status GltfMorphTargets::AddMixes(const gltf::Mesh& from, const std::string& at,
   return {};
 }
 
-Status GltfMorphTargets::OpenDeltas(int accessor, const char* name, const std::string& at,
-                                    const Mesh& mesh, std::vector<Accessor>* accessors) {
-  const std::string where = at + "." + name;
-  const Result<Accessor> opened =
-      Accessor::Create(document_, accessor, gltf::ElementType::kVec3, where);
-  FURROW_RETURN_IF_ERROR(opened);
-  if (opened->size() != mesh.vertices.size()) {
-    return {StatusCode::kSchema,
-            std::to_string(opened->size()) + " elements for " +
-                std::to_string(mesh.vertices.size()) + " vertices",
-            where};
-  }
-  if (opened->num_candidates() > elements_) {
-    return {StatusCode::kLimit, "the morph targets have too many vertices together", where,
-            "reduce the mesh, or the number of its shapes"};
-  }
-  elements_ -= opened->num_candidates();
-  accessors->push_back(*opened);
-  return {};
-}
-
-Status GltfMorphTargets::ReadDeltas(const gltf::MorphTarget& target, const std::string& at,
-                                    const Base& base, const Mesh& mesh,
-                                    std::vector<MorphDelta>* deltas) {
-  struct Part {
+Status GltfMorphTargets::OpenTarget(const gltf::MorphTarget& target, const std::string& at,
+                                    const Base& base, const Mesh& mesh, std::vector<Part>* parts) {
+  struct Attribute {
     const char* name;
     int accessor;
     glm::vec3 MorphDelta::*member;
   };
   // Deltas of normals and tangents belong to the file's own, not to computed ones.
-  const std::array<Part, 3> parts = {{
+  const std::array<Attribute, 3> attributes = {{
       {"POSITION", target.position, &MorphDelta::position},
       {"NORMAL", base.has_normals ? target.normal : gltf::kNone, &MorphDelta::normal},
       {"TANGENT", base.has_tangents ? target.tangent : gltf::kNone, &MorphDelta::tangent},
   }};
-  std::vector<Accessor> accessors;
-  std::vector<const Part*> read;
-  for (const Part& part : parts) {
-    if (part.accessor == gltf::kNone) continue;
-    FURROW_RETURN_IF_ERROR(OpenDeltas(part.accessor, part.name, at, mesh, &accessors));
-    read.push_back(&part);
+  for (const Attribute& attribute : attributes) {
+    if (attribute.accessor == gltf::kNone) continue;
+    const std::string where = at + "." + attribute.name;
+    const Result<Accessor> opened =
+        Accessor::Create(document_, attribute.accessor, gltf::ElementType::kVec3, where);
+    FURROW_RETURN_IF_ERROR(opened);
+    if (opened->size() != mesh.vertices.size()) {
+      return {StatusCode::kSchema,
+              std::to_string(opened->size()) + " elements for " +
+                  std::to_string(mesh.vertices.size()) + " vertices",
+              where};
+    }
+    if (opened->num_candidates() > elements_) {
+      return {StatusCode::kLimit, "the morph targets have too many vertices together", where,
+              "reduce the mesh, or the number of its shapes"};
+    }
+    elements_ -= opened->num_candidates();
+    parts->push_back({attribute.name, *opened, attribute.member});
   }
+  return {};
+}
+
+Status GltfMorphTargets::ReadDeltas(const std::vector<Part>& parts, const std::string& at,
+                                    std::vector<MorphDelta>* deltas) {
   std::vector<Cursor> cursors;
-  for (std::size_t i = 0; i < read.size(); ++i) cursors.emplace_back(accessors[i], read[i]->member);
+  for (const Part& part : parts) cursors.emplace_back(part.accessor, part.member);
   while (const std::optional<std::size_t> element = NextElement(cursors)) {
     MorphDelta delta{.vertex = static_cast<std::uint32_t>(*element)};
     for (std::size_t i = 0; i < cursors.size(); ++i) {
       if (!cursors[i].Take(&delta)) {
         return {StatusCode::kNonFinite, "vertex " + std::to_string(*element) + " is not finite",
-                at + "." + read[i]->name};
+                at + "." + parts[i].name};
       }
     }
     // Most elements of a dense target are zero; DropZeroDeltas() needs the others.

@@ -58,12 +58,19 @@ class GltfMorphTargets {
     int index = -1;              // in the file; -1: a mix
     bool lacks_normals = false;  // for ComputeMorphNormals()
   };
+  // An attribute of a target.
+  struct Part {
+    const char* name;
+    gltf::Accessor accessor;
+    glm::vec3 MorphDelta::*member;
+  };
   // Adds the mixes of the mesh, each as a target of its own.
   Status AddMixes(const gltf::Mesh& from, const std::string& at, std::vector<Found>* found);
-  Status ReadDeltas(const gltf::MorphTarget& target, const std::string& at, const Base& base,
-                    const Mesh& mesh, std::vector<MorphDelta>* deltas);
-  Status OpenDeltas(int accessor, const char* name, const std::string& at, const Mesh& mesh,
-                    std::vector<gltf::Accessor>* accessors);
+  // Opens the attributes of a target, and counts their elements.
+  Status OpenTarget(const gltf::MorphTarget& target, const std::string& at, const Base& base,
+                    const Mesh& mesh, std::vector<Part>* parts);
+  static Status ReadDeltas(const std::vector<Part>& parts, const std::string& at,
+                           std::vector<MorphDelta>* deltas);
   // Index in names(), or -1 for a surplus shape.
   int ShapeOf(const std::string& name);
 
