@@ -70,10 +70,6 @@ Status ValidateCluster(const ClusterConfig& cluster, const std::string& name,
         "tls://HOST:PORT",
         "put a user and password into the file of --cluster-credentials");
   }
-  if (!IsNodeName(cluster.bucket)) {
-    return Refuse("cluster.bucket: " + Quoted(cluster.bucket) +
-                  " is not a name of letters, digits, '-' and '_'");
-  }
   return {};
 }
 

@@ -23,7 +23,8 @@ struct ClusterConfig {
   [[nodiscard]] bool enabled() const { return !store.empty() || !nodes.empty(); }
 };
 
-// Checks the values. `name`, `bind`: of the daemon. Errors: kInvalidArgument, with the flag or key.
+// Checks the values that have flags. `name`, `bind`: of the daemon. Errors: kInvalidArgument, with
+// the flag.
 [[nodiscard]] Status ValidateCluster(const ClusterConfig& cluster, const std::string& name,
                                      const std::string& bind);
 

@@ -10,6 +10,7 @@
 
 #include "base/text.h"
 #include "server/config/config.h"
+#include "server/config/settings.h"
 
 namespace furrow::server {
 namespace {
@@ -53,20 +54,20 @@ std::string NumberOfLevel(std::string& text) {
 }
 
 // For numbers: the error names the range.
-CLI::Validator Within(double least, double most, const std::string& what) {
+CLI::Validator Within(const Range& range, const std::string& what) {
   return CLI::Validator(
-      [least, most, what](std::string& text) {
+      [range, what](std::string& text) {
         double number = 0.0;
-        // NaN fails both comparisons.
         const bool is_number = CLI::detail::lexical_cast(text, number);
-        if (is_number && number >= least && number <= most) return std::string();
+        if (is_number && Contains(range, number)) return std::string();
         std::ostringstream fault;
-        fault << "'" << text << "' is not a " << what << " from " << least << " to " << most;
+        fault << "'" << text << "' is not a " << what << " from " << range.least << " to "
+              << range.most;
         return fault.str();
       },
       "");
 }
-CLI::Validator IsPort() { return Within(0, 65535, "port"); }
+CLI::Validator IsPort() { return Within(kPortNumber, "port"); }
 
 // The message about words that furrowd does not know; empty if it knows all.
 std::string UnknownWords(const CLI::App& app) {
@@ -83,8 +84,9 @@ std::string UnknownWords(const CLI::App& app) {
   return UnknownWord("option", word, known, "furrowd") + "\n";
 }
 
-// Declares every flag on `config`. Parsing writes only the flags that are present.
-void Declare(CLI::App* app, Config* config, Flags* flags) {
+// These declare flags on `config`, in the order of the help. Parsing writes only the flags that are
+// present.
+void DeclareFiles(CLI::App* app, Config* config, Flags* flags) {
   app->add_option("--config", flags->config_file,
                   "Read a TOML configuration file; flags override it");
   app->add_flag("--check", flags->check,
@@ -103,6 +105,9 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
   app->add_option("--shape-map", config->shape_map,
                   "Map blend-shape names of streams with this map, by name or file\n"
                   "(default: the best match of the shipped maps)");
+}
+
+void DeclareAccess(CLI::App* app, Config* config) {
   app->add_option("--bind", config->bind,
                   "Listen on this address (default: 127.0.0.1); others need --security required\n"
                   "or --open");
@@ -139,6 +144,9 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
       "--no-confine", [config] { config->security.confine = false; },
       "Keep all privileges and the access to all files (default: give up what the\n"
       "daemon does not need; see docs/SECURITY.md)");
+}
+
+void DeclarePorts(CLI::App* app, Config* config, Flags* flags) {
   app->add_option("--tcp", config->tcp, "TCP port for poses, weights and pictures (default: 7400)")
       ->check(IsPort());
   app->add_option("--udp", config->udp, "UDP port for poses and weights (default: 7401)")
@@ -147,12 +155,12 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
          "--threads", config->threads,
          "Number of threads that receive UDP, 1 to 64; each sender is served by one of them\n"
          "(default: 1)")
-      ->check(Within(1, kMaxThreads, "number of threads"))
+      ->check(Within(kThreadCount, "number of threads"))
       ->type_name("N");
   app->add_option("--busy-poll", config->busy_poll_us,
                   "Look for UDP datagrams for US microseconds after the last ones before a thread\n"
                   "sleeps, which uses a whole core per thread and lowers the latency (default: 0)")
-      ->check(Within(0, kMaxBusyPollUs, "time in microseconds"))
+      ->check(Within(kBusyPollTime, "time in microseconds"))
       ->type_name("US");
   app->add_option(
          "--jitter-buffer", flags->jitter,
@@ -170,6 +178,9 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
       ->type_name("NAME")
       ->allow_extra_args(false);
   app->add_flag("--no-http", flags->no_http, "Disable the web page, WebSocket and HTTP API");
+}
+
+void DeclarePlayback(CLI::App* app, Config* config) {
   app->add_option("--play", config->play,
                   "Play this recording as a subject, with a timeline on the web page: a file, or\n"
                   "the name of a shipped recording (performance, walk, ...)");
@@ -181,8 +192,11 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
   app->add_option("--rest-frame", config->rest_frame,
                   "Frame of the --play recording to take as its rest pose, counted from 0;\n"
                   "the performer stands upright and faces +Z there (default: the file's own)")
-      ->check(Within(0, 1e9, "frame"))
+      ->check(Within({.least = 0, .most = 1e9}, "frame"))
       ->type_name("N");
+}
+
+void DeclareRendering(CLI::App* app, Config* config, Flags* flags) {
   app->add_flag("--no-render", flags->no_render, "Send weights only; do not use OpenGL");
   app->add_flag("--require-render", config->require_render, "Exit with 1 if OpenGL is unavailable");
   app->add_option("--render-device", config->render_device,
@@ -190,6 +204,9 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
   app->add_option("--render-settings", config->render_settings,
                   "Read picture settings from a TOML file, as written by\n"
                   "'furrow render --print-settings'");
+}
+
+void DeclareMocapAndOsc(CLI::App* app, Config* config, Flags* flags) {
   app->add_option("--vmc", config->vmc,
                   "Receive VMC (OSC) on this UDP port, usually 39539 (default: off)")
       ->check(IsPort());
@@ -207,14 +224,20 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
                   "Send all weights as OSC to this HOST:PORT (default: off)");
   app->add_option("--osc-prefix", config->osc_prefix,
                   "First part of the OSC addresses (default: furrow)");
+}
+
+void DeclareRecording(CLI::App* app, Config* config) {
   app->add_option("--record", config->record.folder,
                   "Record all streams to MCAP files in this folder (default: off)");
   app->add_option("--record-rotate-megabytes", config->record.rotate_megabytes,
                   "Start a new file at this size in MB (default: 1024; 0: never)")
-      ->check(Within(0, 1e9, "size"));
+      ->check(Within(kRotation, "size"));
   app->add_option("--record-rotate-seconds", config->record.rotate_seconds,
                   "Start a new file after this time in seconds (default: 3600; 0: never)")
-      ->check(Within(0, 1e9, "time"));
+      ->check(Within(kRotation, "time"));
+}
+
+void DeclareCluster(CLI::App* app, Config* config) {
   app->add_option("--cluster", config->cluster.store,
                   "Share subjects with the daemons that use this NATS server: nats://HOST:PORT or\n"
                   "tls://HOST:PORT; needs --name (default: alone; see docs/CLUSTER.md)")
@@ -233,6 +256,9 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
   app->add_flag("--cluster-strict", config->cluster.strict,
                 "Stop serving after 2 s without the NATS server (default: go on with what is\n"
                 "served, and take nothing new)");
+}
+
+void DeclareLog(CLI::App* app, Config* config) {
   app->add_option("--log-level", config->log_level,
                   "Log these lines and more important ones (default: info)")
       ->transform(CLI::Validator(NumberOfLevel, ""))
@@ -241,18 +267,38 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
   app->add_flag("--log-json", config->log_json, "Write log lines as JSON");
 }
 
+void Declare(CLI::App* app, Config* config, Flags* flags) {
+  DeclareFiles(app, config, flags);
+  DeclareAccess(app, config);
+  DeclarePorts(app, config, flags);
+  DeclarePlayback(app, config);
+  DeclareRendering(app, config, flags);
+  DeclareMocapAndOsc(app, config, flags);
+  DeclareRecording(app, config);
+  DeclareCluster(app, config);
+  DeclareLog(app, config);
+}
+
+// Applies the flags that are more than a value, after the file has been read.
+Status Apply(const Flags& flags, Config* config) {
+  if (flags.no_render) config->render = false;
+  if (flags.no_http) config->http.enabled = false;
+  if (!flags.jitter.empty()) config->jitter.clear();
+  for (const std::string& text : flags.jitter) {
+    const Result<JitterRule> rule = ParseJitterRule(text);
+    if (!rule.ok()) return rule.status().At("--jitter-buffer");
+    config->jitter.push_back(*rule);
+  }
+  if (!flags.osc_out.empty()) {
+    Result<HostPort> destination = ParseHostPort(flags.osc_out);
+    if (!destination.ok()) return destination.status().At("--osc-out");
+    config->osc_out = *std::move(destination);
+  }
+  return {};
+}
+
 // Without a config: the program prints the text and ends.
 CommandLine Fail(ExitCode code, const std::string& text) { return {std::nullopt, code, text}; }
-
-// The key of the file that a message of ValidateConfig() is about; empty if a flag may be at fault.
-// Flags for numbers check their ranges themselves.
-std::string_view KeyAtFault(std::string_view what) {
-  const std::string_view name = what.substr(0, what.find_first_of(" :"));
-  if (name == "--threads") return "listen.threads";
-  if (name == "--busy-poll") return "listen.busy_poll_us";
-  if (name == "--rest-frame") return "rest_frame";
-  return name.starts_with("--") || name == "osc.prefix" ? std::string_view() : name;
-}
 
 // CLI11 parses a vector from its back.
 std::vector<std::string> Reversed(std::span<const std::string> args) {
@@ -302,28 +348,14 @@ CommandLine ParseCommandLine(std::span<const std::string> args) {
     // Does not throw: the first pass has accepted the same arguments.
     second.parse(Reversed(args));
   }
-  if (flags.no_render) config.render = false;
-  if (flags.no_http) config.http.enabled = false;
-  if (!flags.jitter.empty()) config.jitter.clear();
-  for (const std::string& text : flags.jitter) {
-    const Result<JitterRule> rule = ParseJitterRule(text);
-    if (!rule.ok()) {
-      return fail(ExitCode::kUsage, rule.status().At("--jitter-buffer").ToString() + "\n");
-    }
-    config.jitter.push_back(*rule);
+  if (const Status status = Apply(flags, &config); !status.ok()) {
+    return fail(ExitCode::kUsage, status.ToString() + "\n");
   }
-  if (!flags.osc_out.empty()) {
-    Result<HostPort> destination = ParseHostPort(flags.osc_out);
-    if (!destination.ok()) {
-      return fail(ExitCode::kUsage, destination.status().At("--osc-out").ToString() + "\n");
-    }
-    config.osc_out = *std::move(destination);
-  }
-  if (Status status = ValidateConfig(config); !status.ok()) {
-    if (flags.config_file.empty()) return fail(ExitCode::kUsage, status.ToString() + "\n");
+  if (const auto fault = FindFault(config)) {
+    if (flags.config_file.empty()) return fail(ExitCode::kUsage, fault->status.ToString() + "\n");
     // The values may come from either. With a file, the error names it.
-    const std::string place = PlaceOfKey(flags.config_file, KeyAtFault(status.what()));
-    return fail(ExitCode::kBadInput, status.At(place).ToString() + "\n");
+    const std::string place = PlaceOfKey(flags.config_file, fault->key);
+    return fail(ExitCode::kBadInput, fault->status.At(place).ToString() + "\n");
   }
   return {config, ExitCode::kOk, {}, flags.check, config.log_json};
 }

@@ -107,8 +107,17 @@ struct Config {
 // True if programs on other computers can reach the daemon.
 [[nodiscard]] bool ListensToNetwork(const Config& config);
 
-// Checks values and their combination: addresses, ranges, conflicting ports and flags. Errors:
-// kInvalidArgument, naming the flag or the key. A message about one value begins with its name.
+// The first fault of a configuration.
+struct ConfigFault {
+  // The key of the file that has set the value, "listen.threads". Empty if several settings do not
+  // fit together, or if a flag may have set the value.
+  std::string_view key;
+  Status status;  // kInvalidArgument; a message about one value begins with its flag or its key
+};
+
+// Checks values and their combination: addresses, ranges, conflicting ports and flags. Returns the
+// first fault, if any. The result of ValidateConfig() is its status.
+[[nodiscard]] std::optional<ConfigFault> FindFault(const Config& config);
 [[nodiscard]] Status ValidateConfig(const Config& config);
 
 // The result of parsing the command line. Without a config: print `text` (help or version if

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
+#include <cstddef>
 #include <cstdint>
-#include <functional>
-#include <iterator>
-#include <span>
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -14,6 +13,7 @@
 #include "base/files.h"
 #include "base/status.h"
 #include "server/config/config.h"
+#include "server/config/settings.h"
 #include "server/config/toml_file.h"
 
 namespace furrow::server {
@@ -22,16 +22,7 @@ namespace {
 // Far above any real file. --config may name a device or a file of the wrong kind.
 constexpr std::uint64_t kMaxConfigBytes = 1 << 20;
 
-using toml_file::Count;
-using toml_file::Flag;
 using toml_file::Key;
-using toml_file::NameOrFile;
-using toml_file::Number;
-using toml_file::Path;
-using toml_file::Port;
-using toml_file::Tables;
-using toml_file::Text;
-using toml_file::Texts;
 
 // A HOST:PORT with a numeric host.
 template <class Target>
@@ -103,12 +94,13 @@ Key OscTargets(std::string_view name, std::vector<OscTargetConfig>* targets,
             targets->clear();
             for (const toml::node& element : *list) {
               OscTargetConfig target;
-              const Key keys[] = {Destination("to", &target.to),
-                                  NameOrFile("profile", ".toml", &target.profile, folder),
-                                  Text("prefix", &target.prefix),
-                                  Text("subject", &target.subject),
-                                  Text("pattern", &target.pattern),
-                                  Number("rate_hz", &target.rate_hz)};
+              const Key keys[] = {
+                  Destination("to", &target.to),
+                  toml_file::NameOrFile("profile", ".toml", &target.profile, folder),
+                  toml_file::Text("prefix", &target.prefix),
+                  toml_file::Text("subject", &target.subject),
+                  toml_file::Text("pattern", &target.pattern),
+                  toml_file::Number("rate_hz", &target.rate_hz)};
               const std::string number = std::to_string(targets->size() + 1);
               std::string fault = toml_file::ReadTable(element, keys);
               if (fault.empty() && target.to.port == 0) fault = "needs the key 'to'";
@@ -119,83 +111,52 @@ Key OscTargets(std::string_view name, std::vector<OscTargetConfig>* targets,
           }};
 }
 
-// The keys by table. Three functions, because the whole list is long.
-Tables InputTables(Config* config, const std::filesystem::path& folder) {
-  return {{"",
-           {Shipped("character", &config->character, folder),
-            NameOrFile("rig", ".json", &config->rig, folder),
-            Shipped("play", &config->play, folder), Text("bvh_positions", &config->bvh_positions),
-            Text("up_axis", &config->up_axis), Count("rest_frame", &config->rest_frame),
-            NameOrFile("skeleton_map", ".json", &config->skeleton_map, folder),
-            NameOrFile("shape_map", ".json", &config->shape_map, folder)}},
-          {"listen",
-           {Text("bind", &config->bind), Flag("open", &config->open), Port("tcp", &config->tcp),
-            Port("udp", &config->udp), Count("threads", &config->threads),
-            Count("busy_poll_us", &config->busy_poll_us),
-            JitterRules("jitter_buffer", &config->jitter)}},
-          {"security",
-           {Mode("mode", &config->security.mode), Path("keys", &config->security.keys, folder),
-            Text("name", &config->security.name),
-            Flag("tokens_in_clear", &config->security.tokens_in_clear),
-            Flag("confine", &config->security.confine)}},
-          {"tls",
-           {Path("certificate", &config->security.tls.certificate, folder),
-            Path("key", &config->security.tls.key, folder),
-            Path("client_authority", &config->security.tls.client_authority, folder)}},
-          {"mocap",
-           {Port("vmc", &config->vmc), Port("livelink_face", &config->livelink_face),
-            Texts("allow", &config->mocap_allow)}}};
-}
+// Makes the key of one setting, which reads what the type of the field asks for.
+struct KeyMaker {
+  std::string_view name;  // without the table
+  Naming naming;
+  const std::filesystem::path& folder;
 
-Tables OutputTables(Config* config, const std::filesystem::path& folder) {
-  RecordConfig& record = config->record;
-  HttpConfig& http = config->http;
-  ClusterConfig& cluster = config->cluster;
-  return {
-      {"render",
-       {Flag("enabled", &config->render), Flag("required", &config->require_render),
-        Text("device", &config->render_device), Path("settings", &config->render_settings, folder),
-        Count("max_video_encoders", &config->max_video_encoders),
-        Number("max_host_megapixels_per_second", &config->max_host_megapixels_per_second),
-        Number("max_megapixels_per_second", &config->max_megapixels_per_second)}},
-      {"osc",
-       {Destination("out", &config->osc_out), Text("prefix", &config->osc_prefix),
-        OscTargets("target", &config->osc.targets, folder), Texts("allow", &config->osc.allow)}},
-      {"record",
-       {Path("dir", &record.folder, folder), Number("rotate_megabytes", &record.rotate_megabytes),
-        Number("rotate_seconds", &record.rotate_seconds), Flag("datagrams", &record.datagrams)}},
-      {"http",
-       {Flag("enabled", &http.enabled), Port("port", &http.port),
-        Texts("allow_hosts", &http.allow_hosts), Texts("allow_origins", &http.allow_origins),
-        Count("max_connections", &http.max_connections), Path("page", &http.page, folder),
-        Number("api_share", &http.api_share),
-        Count("requests_per_second", &http.requests_per_second),
-        Count("max_upload_megabytes", &http.max_upload_megabytes)}},
-      {"cluster",
-       {Text("store", &cluster.store), Texts("nodes", &cluster.nodes),
-        Text("bucket", &cluster.bucket), Text("advertise", &cluster.advertise),
-        Path("credentials", &cluster.credentials, folder),
-        Path("authority", &cluster.authority, folder), Flag("strict", &cluster.strict)}},
-      {"log",
-       {Level("level", &config->log_level), Flag("verbose", &config->verbose),
-        Flag("json", &config->log_json)}}};
-}
+  Key operator()(bool* field) const { return toml_file::Flag(name, field); }
+  Key operator()(int* field) const { return toml_file::Count(name, field); }
+  Key operator()(double* field) const { return toml_file::Number(name, field); }
+  Key operator()(std::uint16_t* field) const { return toml_file::Port(name, field); }
+  Key operator()(std::optional<std::uint16_t>* field) const { return toml_file::Port(name, field); }
+  Key operator()(std::vector<std::string>* field) const { return toml_file::Texts(name, field); }
+  Key operator()(std::string* field) const {
+    return naming == Naming::kJson ? toml_file::NameOrFile(name, ".json", field, folder)
+                                   : toml_file::Text(name, field);
+  }
+  Key operator()(std::filesystem::path* field) const {
+    switch (naming) {
+      case Naming::kShipped: return Shipped(name, field, folder);
+      case Naming::kJson: return toml_file::NameOrFile(name, ".json", field, folder);
+      case Naming::kPath: break;
+    }
+    return toml_file::Path(name, field, folder);
+  }
+  Key operator()(std::optional<HostPort>* field) const { return Destination(name, field); }
+  Key operator()(std::vector<JitterRule>* field) const { return JitterRules(name, field); }
+  Key operator()(Security* field) const { return Mode(name, field); }
+  Key operator()(LogLevel* field) const { return Level(name, field); }
+  Key operator()(std::vector<OscTargetConfig>* field) const {
+    return OscTargets(name, field, folder);
+  }
+};
 
-Tables LimitTables(Limits* limits) {
-  return {{"limits",
-           {Count("max_connections", &limits->max_connections),
-            Count("max_udp_peers", &limits->max_udp_peers),
-            Count("max_subjects", &limits->max_subjects),
-            Count("max_skeletons", &limits->max_skeletons),
-            Count("max_subscriptions", &limits->max_subscriptions),
-            Count("max_all_subscriptions", &limits->max_all_subscriptions),
-            Number("packets_per_second", &limits->packets_per_second),
-            Number("packet_burst", &limits->packet_burst),
-            Count("max_waiting_megabytes", &limits->max_waiting_megabytes),
-            Count("outbox_messages", &limits->outbox_messages),
-            Number("idle_seconds", &limits->idle_seconds),
-            Number("loss_seconds", &limits->loss_seconds),
-            Number("drain_seconds", &limits->drain_seconds)}}};
+// The settings by table: "listen.tcp" is the key "tcp" of the table "listen".
+toml_file::Tables TablesOf(Config* config, const std::filesystem::path& folder) {
+  toml_file::Tables tables = {{"", {}}};
+  const auto add = [&](const Setting& setting, auto& field) {
+    const std::size_t dot = setting.key.find('.');
+    const bool is_top_level = dot == std::string_view::npos;
+    const std::string_view table = is_top_level ? "" : setting.key.substr(0, dot);
+    const std::string_view name = is_top_level ? setting.key : setting.key.substr(dot + 1);
+    if (tables.back().first != table) tables.push_back({table, {}});
+    tables.back().second.push_back(KeyMaker{name, setting.naming, folder}(&field));
+  };
+  VisitSettings(add, *config);
+  return tables;
 }
 
 }  // namespace
@@ -205,10 +166,7 @@ Status ParseConfig(std::string_view text, std::string_view source_name, Config* 
   Config read = *config;
   // Paths in the file are relative to the file.
   const std::filesystem::path folder = std::filesystem::path(source_name).parent_path();
-  Tables tables = InputTables(&read, folder);
-  std::ranges::move(OutputTables(&read, folder), std::back_inserter(tables));
-  std::ranges::move(LimitTables(&read.limits), std::back_inserter(tables));
-  Status status = toml_file::ReadText(text, source_name, tables);
+  Status status = toml_file::ReadText(text, source_name, TablesOf(&read, folder));
   if (status.ok()) *config = std::move(read);
   return status;
 }
