@@ -74,22 +74,58 @@ bool DrawsTheSame(const character::Character* one, const character::Character& o
                             &wrinkle::Region::name);
 }
 
+// Loads the maps of names and the settings of pictures, which need no character.
+Status LoadMapsAndSettings(const Config& config, Assets* assets) {
+  auto matcher = LoadMatcher(config.skeleton_map);
+  if (!matcher.ok()) return matcher.status().At("--skeleton-map");
+  assets->skeletons = *std::move(matcher);
+  auto shapes = LoadShapeMaps(config.shape_map);
+  if (!shapes.ok()) return shapes.status().At("--shape-map");
+  assets->shape_matcher = *std::move(shapes);
+  assets->settings = DefaultSettings();
+  if (config.render_settings.empty()) return {};
+  return render::LoadSettings(config.render_settings, &assets->settings).At("--render-settings");
+}
+
+// The file of the character that `config` names, or of the default one.
+Result<fs::path> CharacterFileOf(const Config& config) {
+  if (!config.character.empty()) return character::FindCharacterFile(config.character);
+  auto shipped = furrow::FindDataFile("default.glb");
+  if (shipped.ok()) return shipped;
+  return Status(StatusCode::kNotFound, "there is no default character", shipped.status().where(),
+                shipped.status().todo() + ", or use --character or --rig");
+}
+
+// Loads a character into `assets`. `chosen_rig`: replaces its rig; empty: its own.
+Status LoadCharacterOf(const Config& config, const fs::path& glb, const fs::path& chosen_rig,
+                       const wrinkle::PoseSource& poses, character::Pictures pictures,
+                       Assets* assets) {
+  if (pictures == character::Pictures::kLoad) {
+    spdlog::info("loading the character {}", glb.string());
+  }
+  if (!config.render) pictures = character::Pictures::kLeaveOut;
+  assets->lacks_pictures = pictures == character::Pictures::kLeaveOut;
+  auto loaded = character::LoadCharacter(glb, chosen_rig, poses, pictures);
+  FURROW_RETURN_IF_ERROR(loaded);
+  assets->skeletons.SetCharacterRoles(loaded->skeleton, loaded->roles);
+  assets->shapes = ShapesOf(*loaded, config.render);
+  if (!config.render) {
+    assets->rig = std::make_shared<const wrinkle::Rig>(std::move(loaded->rig));
+    return {};
+  }
+  // A copy, because weights go on when the character is gone.
+  assets->rig = std::make_shared<const wrinkle::Rig>(loaded->rig);
+  assets->character = std::make_shared<const character::Character>(*std::move(loaded));
+  if (chosen_rig.empty()) assets->package = glb;
+  return {};
+}
+
 }  // namespace
 
 Result<Assets> LoadAssets(const Config& config, character::Pictures pictures) {
   const fs::path chosen_rig = config.rig.empty() ? fs::path() : rig::FindRigFile(config.rig);
   Assets assets;
-  auto matcher = LoadMatcher(config.skeleton_map);
-  if (!matcher.ok()) return matcher.status().At("--skeleton-map");
-  assets.skeletons = *std::move(matcher);
-  auto shapes = LoadShapeMaps(config.shape_map);
-  if (!shapes.ok()) return shapes.status().At("--shape-map");
-  assets.shape_matcher = *std::move(shapes);
-  assets.settings = DefaultSettings();
-  if (!config.render_settings.empty()) {
-    Status loaded = render::LoadSettings(config.render_settings, &assets.settings);
-    if (!loaded.ok()) return loaded.At("--render-settings");
-  }
+  FURROW_RETURN_IF_ERROR(LoadMapsAndSettings(config, &assets));
   // Rigs name the files and frames of their reference poses; each file is read once.
   const auto warn = [](const std::string& warning) { spdlog::warn("{}", warning); };
   const wrinkle::PoseSource files = motion::CachedPoseSource(ReadOptions(config), warn);
@@ -98,20 +134,10 @@ Result<Assets> LoadAssets(const Config& config, character::Pictures pictures) {
     FURROW_RETURN_IF_ERROR(LoadRigAlone(chosen_rig, poses, &assets));
     return assets;
   }
-  fs::path glb;
-  if (!config.character.empty()) {
-    glb = character::FindCharacterFile(config.character);
-  } else {
-    auto shipped = furrow::FindDataFile("default.glb");
-    if (!shipped.ok()) {
-      return Status(StatusCode::kNotFound, "there is no default character",
-                    shipped.status().where(),
-                    shipped.status().todo() + ", or use --character or --rig");
-    }
-    glb = *std::move(shipped);
-  }
-  const fs::path rig = RigOf(glb, chosen_rig);
-  const auto make_matcher = [maps = assets.skeletons, glb] {
+  const Result<fs::path> glb = CharacterFileOf(config);
+  FURROW_RETURN_IF_ERROR(glb);
+  const fs::path rig = RigOf(*glb, chosen_rig);
+  const auto make_matcher = [maps = assets.skeletons, glb = *glb] {
     rig::SkeletonMatcher with_roles = maps;
     // Loading the character reports faults.
     const auto roles = character::LoadCharacterRoles(glb);
@@ -125,29 +151,13 @@ Result<Assets> LoadAssets(const Config& config, character::Pictures pictures) {
     if (wrinkle::BlendShapesOf(*assets.rig).empty()) {
       // Weights are the same with and without pictures, so they need the roles that the package
       // states for the rig's joints.
-      const auto roles = character::LoadCharacterRoles(glb);
+      const auto roles = character::LoadCharacterRoles(*glb);
       FURROW_RETURN_IF_ERROR(roles);
       assets.skeletons.SetCharacterRoles(*roles);
       return assets;
     }
   }
-  if (pictures == character::Pictures::kLoad) {
-    spdlog::info("loading the character {}", glb.string());
-  }
-  if (!config.render) pictures = character::Pictures::kLeaveOut;
-  assets.lacks_pictures = pictures == character::Pictures::kLeaveOut;
-  auto loaded = character::LoadCharacter(glb, chosen_rig, poses, pictures);
-  FURROW_RETURN_IF_ERROR(loaded);
-  assets.skeletons.SetCharacterRoles(loaded->skeleton, loaded->roles);
-  assets.shapes = ShapesOf(*loaded, config.render);
-  if (!config.render) {
-    assets.rig = std::make_shared<const wrinkle::Rig>(std::move(loaded->rig));
-    return assets;
-  }
-  // A copy, because weights go on when the character is gone.
-  assets.rig = std::make_shared<const wrinkle::Rig>(loaded->rig);
-  assets.character = std::make_shared<const character::Character>(*std::move(loaded));
-  if (chosen_rig.empty()) assets.package = glb;
+  FURROW_RETURN_IF_ERROR(LoadCharacterOf(config, *glb, chosen_rig, poses, pictures, &assets));
   return assets;
 }
 

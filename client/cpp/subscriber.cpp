@@ -245,57 +245,50 @@ bool Subscriber::Handle(std::span<const std::uint8_t> message, Event& event) {
   if (is_frame && IsFenced(view.header.stream)) return false;
   event.header = view.header;
   payload_ = view.payload;
-  DecodeStatus status = DecodeStatus::kOk;
-  switch (view.kind) {
-    case MessageKind::kWeights:
-      status = protocol::Decode(view, weights_);
-      event.kind = Event::Kind::kWeights;
-      if (status == DecodeStatus::kOk) OnFrame(view.header.stream, weights_.names_hash);
-      break;
-    case MessageKind::kSkeletonOffer:
-      status = protocol::Decode(view, skeleton_);
-      event.kind = Event::Kind::kSkeleton;
-      if (status == DecodeStatus::kOk) OnSkeleton(view.header.stream);
-      break;
-    case MessageKind::kPose:
-      status = protocol::Decode(view, pose_);
-      event.kind = Event::Kind::kPose;
-      if (status == DecodeStatus::kOk) OnFrame(view.header.stream, pose_.skeleton_hash);
-      break;
-    case MessageKind::kDropped:
-      status = protocol::Decode(view, dropped_);
-      event.kind = Event::Kind::kDropped;
-      break;
-    case MessageKind::kSubjects:
-      status = protocol::Decode(view, subjects_);
-      event.kind = Event::Kind::kSubjects;
-      break;
-    case MessageKind::kImage:
-      status = protocol::Decode(view, picture_);
-      event.kind = Event::Kind::kPicture;
-      break;
-    case MessageKind::kSubscribeReply:
-      status = protocol::Decode(view, reply_);
-      event.kind = Event::Kind::kReply;
-      if (status == DecodeStatus::kOk && !OnReply(view.header)) return false;
-      break;
-    case MessageKind::kError:
-      status = protocol::Decode(view, error_);
-      event.kind = Event::Kind::kError;
-      if (status == DecodeStatus::kOk && !OnError(view.header)) return false;
-      break;
-    case MessageKind::kGoodbye:
-      status = protocol::Decode(view, goodbye_);
-      event.kind = Event::Kind::kGoodbye;
-      if (status == DecodeStatus::kOk && !OnGoodbye(view.header.stream)) return false;
-      break;
-    case MessageKind::kWelcome: return HandleWelcome(view, event);
-    case MessageKind::kPing: HandlePing(view); return false;
-    default: return false;  // pongs, and messages of a newer protocol
+  if (view.kind == MessageKind::kWelcome) return HandleWelcome(view, event);
+  if (view.kind == MessageKind::kPing) {
+    HandlePing(view);
+    return false;
   }
-  if (status == DecodeStatus::kOk) return true;
+  const std::optional<DecodeStatus> status = Read(view, event.kind);
+  if (!status) return false;
+  if (*status == DecodeStatus::kOk) return TakeIn(view.header, event.kind);
   ++malformed_;
   return false;
+}
+
+// Decodes a message for the caller. Pongs, and messages of a newer protocol, are not for the
+// caller.
+std::optional<DecodeStatus> Subscriber::Read(const protocol::MessageView& view, Event::Kind& kind) {
+  const auto read = [&](Event::Kind event, auto& message) {
+    kind = event;
+    return protocol::Decode(view, message);
+  };
+  switch (view.kind) {
+    case MessageKind::kWeights: return read(Event::Kind::kWeights, weights_);
+    case MessageKind::kSkeletonOffer: return read(Event::Kind::kSkeleton, skeleton_);
+    case MessageKind::kPose: return read(Event::Kind::kPose, pose_);
+    case MessageKind::kDropped: return read(Event::Kind::kDropped, dropped_);
+    case MessageKind::kSubjects: return read(Event::Kind::kSubjects, subjects_);
+    case MessageKind::kImage: return read(Event::Kind::kPicture, picture_);
+    case MessageKind::kSubscribeReply: return read(Event::Kind::kReply, reply_);
+    case MessageKind::kError: return read(Event::Kind::kError, error_);
+    case MessageKind::kGoodbye: return read(Event::Kind::kGoodbye, goodbye_);
+    default: return std::nullopt;
+  }
+}
+
+// What a message that was read means for the requests. Returns whether the caller receives it.
+bool Subscriber::TakeIn(const protocol::Header& header, Event::Kind kind) {
+  switch (kind) {
+    case Event::Kind::kWeights: OnFrame(header.stream, weights_.names_hash); return true;
+    case Event::Kind::kSkeleton: OnSkeleton(header.stream); return true;
+    case Event::Kind::kPose: OnFrame(header.stream, pose_.skeleton_hash); return true;
+    case Event::Kind::kReply: return OnReply(header);
+    case Event::Kind::kError: return OnError(header);
+    case Event::Kind::kGoodbye: return OnGoodbye(header.stream);
+    default: return true;
+  }
 }
 
 bool Subscriber::HandleWelcome(const protocol::MessageView& view, Event& event) {

@@ -127,6 +127,8 @@ class Subscriber {
   [[nodiscard]] Event::Kind OnTimeout(std::int64_t now_us);
   void NoticeRestart(std::uint64_t server_session);
   bool Handle(std::span<const std::uint8_t> message, Event& event);
+  std::optional<protocol::DecodeStatus> Read(const protocol::MessageView& view, Event::Kind& kind);
+  bool TakeIn(const protocol::Header& header, Event::Kind kind);
   bool HandleWelcome(const protocol::MessageView& view, Event& event);
   void HandlePing(const protocol::MessageView& view);
   [[nodiscard]] bool OnReply(const protocol::Header& header);

@@ -149,6 +149,15 @@ Offset<Vector<const wire::PackedQuat*>> WritePackedRotations(
   });
 }
 
+// `range`: the largest offset.
+Offset<Vector<const wire::PackedOffset*>> WritePackedTranslations(
+    flatbuffers::FlatBufferBuilder& builder, const std::vector<Vec3>& translations, float range) {
+  return WriteStructs<wire::PackedOffset>(builder, translations, [range](const Vec3& v) {
+    return wire::PackedOffset(PackOffset(v.x, range), PackOffset(v.y, range),
+                              PackOffset(v.z, range));
+  });
+}
+
 Offset<Vector<std::int16_t>> WritePackedShapes(flatbuffers::FlatBufferBuilder& builder,
                                                const std::vector<float>& values) {
   if (values.empty()) return 0;
@@ -194,11 +203,7 @@ flatbuffers::Offset<wire::Pose> WriteTable(PayloadBuilder& payload, const PoseFr
   float range = 0.0f;
   if (encoding.quantise_translations) {
     range = LargestOffset(message.translations);
-    packed_translations =
-        WriteStructs<wire::PackedOffset>(builder, message.translations, [range](const Vec3& v) {
-          return wire::PackedOffset(PackOffset(v.x, range), PackOffset(v.y, range),
-                                    PackOffset(v.z, range));
-        });
+    packed_translations = WritePackedTranslations(builder, message.translations, range);
   } else {
     translations = WriteStructs<wire::Vec3>(builder, message.translations, to_wire);
   }

@@ -156,6 +156,11 @@ std::vector<SettingEntry> SkinEntries() {
       {"specular.table", "",
        "Look up the Beckmann term in a table, as in GPU Gems 3, instead of computing it",
        SwitchField{FURROW_MEMBER(specular.table)}},
+  };
+}
+
+std::vector<SettingEntry> SurfaceEntries() {
+  return {
       {"wrinkle_maps.blood_flow", "", "Strength of the wrinkle maps' colour",
        NumberField{FURROW_MEMBER(wrinkle_maps.blood_flow), 0.0f, 4.0f}},
       {"wrinkle_maps.cavity", "", "Strength of the wrinkle maps' cavity",
@@ -202,7 +207,8 @@ std::vector<SettingEntry> FinishEntries() {
 
 std::vector<SettingEntry> AllEntries() {
   std::vector<SettingEntry> all;
-  for (const auto& part : {PictureEntries(), LightEntries(), SkinEntries(), FinishEntries()}) {
+  for (const auto& part :
+       {PictureEntries(), LightEntries(), SkinEntries(), SurfaceEntries(), FinishEntries()}) {
     all.insert(all.end(), part.begin(), part.end());
   }
   return all;

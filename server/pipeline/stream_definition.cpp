@@ -2,8 +2,12 @@
 #include "server/pipeline/stream_definition.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <set>
 #include <span>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <spdlog/spdlog.h>
 
@@ -29,6 +33,73 @@ std::string Join(std::span<const std::string> names, std::size_t at_most = 12) {
 // The hash covers the sorted skeleton. Streams with other wire orders need their own joint_of_wire.
 bool SameOrder(const wrinkle::Skeleton& a, const wrinkle::Skeleton& b) {
   return std::ranges::equal(a.source_index(), b.source_index());
+}
+
+// How the names of the stream were matched.
+void LogMatch(const rig::SkeletonMatch& match, const StreamDefinition& stream) {
+  if (const std::string text = rig::Describe(match); !text.empty()) {
+    spdlog::info("{}", text);
+  }
+  for (const std::string& warning : rig::WarningsOf(match)) spdlog::warn("{}", warning);
+  if (const std::string text = stream.shapes.Description(); !text.empty()) {
+    spdlog::info("{}", text);
+  }
+  if (!stream.face_match.empty()) spdlog::info("face: {}", stream.face_match);
+  if (stream.joint_shapes != nullptr) spdlog::info("{}", stream.joint_shapes->Description());
+}
+
+// What the binding warns about, and what the stream lacks.
+void LogFaults(const StreamDefinition& stream) {
+  const auto warnings = stream.binding->warnings();
+  for (std::size_t i = 0; i < std::min(warnings.size(), kMaxWarnings); ++i) {
+    spdlog::warn("{}", warnings[i]);
+  }
+  if (warnings.size() > kMaxWarnings) {
+    spdlog::warn("{} more warnings of this kind; 'furrow rig check --skeleton' lists all",
+                 warnings.size() - kMaxWarnings);
+  }
+  const auto joints = stream.binding->missing_joints();
+  const auto shapes = stream.binding->missing_blend_shapes();
+  // A stream without any joints comes from a face tracker, and one without any blend shapes from a
+  // body tracker; nothing is missing.
+  if (!joints.empty() && stream.skeleton.num_joints() > 0) {
+    spdlog::warn("the stream lacks joints that the rig uses; their drivers stay at rest: {}",
+                 Join(joints));
+  }
+  if (!shapes.empty() && !stream.blend_shapes.empty()) {
+    spdlog::warn("the stream lacks blend shapes that the rig uses; their drivers stay at rest: {}",
+                 Join(shapes));
+  }
+}
+
+struct JointUse {
+  std::vector<std::string> ignored;  // neither drawn, nor read, nor moving a shape
+  bool draws_any = false;            // a joint of the character follows one of the stream
+  bool feeds_any = false;            // the rig reads one
+};
+
+JointUse FindJointUse(const StreamDefinition& stream, const rig::SkeletonMatch& match,
+                      const std::set<std::string>& rig_joints) {
+  JointUse use;
+  const auto unmatched =
+      stream.retarget ? stream.retarget->unmatched_source() : std::span<const std::string>();
+  for (const std::string& name : stream.skeleton.joint_names()) {
+    const bool drawn = stream.retarget && std::ranges::find(unmatched, name) == unmatched.end();
+    const bool read = rig_joints.contains(name) || match.Reads(name);
+    const bool moves =
+        stream.joint_shapes != nullptr && stream.joint_shapes->Moves(stream.skeleton.Find(name));
+    if (!drawn && !read && !moves) use.ignored.push_back(name);
+    use.draws_any |= drawn;
+    use.feeds_any |= read;
+  }
+  return use;
+}
+
+// True if something of the character moves without a joint of its skeleton.
+bool DrawsShapes(const StreamDefinition& stream) {
+  return (stream.blend_shape_pose != nullptr && !stream.blend_shape_pose->empty()) ||
+         (stream.shape_program != nullptr && !stream.shape_program->empty()) ||
+         (stream.head_turn != nullptr && !stream.head_turn->empty());
 }
 
 }  // namespace
@@ -158,69 +229,28 @@ std::shared_ptr<const wrinkle::JointShapes> StreamDefinitions::MatchJointShapes(
 // Once per definition, so that repeated offers do not flood the log. Sets the ignored joints.
 void StreamDefinitions::Report(const rig::SkeletonMatch& match,
                                StreamDefinition* definition) const {
-  const StreamDefinition& stream = *definition;
-  if (const std::string text = rig::Describe(match); !text.empty()) {
-    spdlog::info("{}", text);
-  }
-  for (const std::string& warning : rig::WarningsOf(match)) spdlog::warn("{}", warning);
-  if (const std::string text = stream.shapes.Description(); !text.empty()) {
-    spdlog::info("{}", text);
-  }
-  if (!stream.face_match.empty()) spdlog::info("face: {}", stream.face_match);
-  const bool has_face = stream.joint_shapes != nullptr;
-  if (has_face) spdlog::info("{}", stream.joint_shapes->Description());
-  const auto missing_joints = stream.binding->missing_joints();
-  const auto missing_shapes = stream.binding->missing_blend_shapes();
-  const auto warnings = stream.binding->warnings();
-  for (std::size_t i = 0; i < std::min(warnings.size(), kMaxWarnings); ++i) {
-    spdlog::warn("{}", warnings[i]);
-  }
-  if (warnings.size() > kMaxWarnings) {
-    spdlog::warn("{} more warnings of this kind; 'furrow rig check --skeleton' lists all",
-                 warnings.size() - kMaxWarnings);
-  }
-  // A stream without any joints comes from a face tracker, and one without any blend shapes from a
-  // body tracker; nothing is missing.
-  if (!missing_joints.empty() && stream.skeleton.num_joints() > 0) {
-    spdlog::warn("the stream lacks joints that the rig uses; their drivers stay at rest: {}",
-                 Join(missing_joints));
-  }
-  if (!missing_shapes.empty() && !stream.blend_shapes.empty()) {
-    spdlog::warn("the stream lacks blend shapes that the rig uses; their drivers stay at rest: {}",
-                 Join(missing_shapes));
-  }
-  std::vector<std::string>& ignored = definition->ignored_joints;
-  bool draws_any = false;
-  bool feeds_any = missing_joints.empty() && missing_shapes.empty();
-  const auto unmatched =
-      stream.retarget ? stream.retarget->unmatched_source() : std::span<const std::string>();
-  for (const std::string& name : stream.skeleton.joint_names()) {
-    const bool drawn = stream.retarget && std::ranges::find(unmatched, name) == unmatched.end();
-    const bool read = rig_joints_.contains(name) || match.Reads(name);
-    const bool moves = has_face && stream.joint_shapes->Moves(stream.skeleton.Find(name));
-    if (!drawn && !read && !moves) ignored.push_back(name);
-    draws_any |= drawn;
-    feeds_any |= read;
-  }
-  feeds_any |= stream.shapes.drivers().num_mapped() > 0;
-  feeds_any |= wrinkle::ReadsAny(*rig_, stream.shapes.source_names());
-  if (!ignored.empty()) {
+  LogMatch(match, *definition);
+  LogFaults(*definition);
+  JointUse use = FindJointUse(*definition, match, rig_joints_);
+  if (!use.ignored.empty()) {
     spdlog::info("joints that neither the rig nor the character has are ignored: {}",
-                 Join(ignored));
+                 Join(use.ignored));
   }
-  if (!feeds_any) {
+  const wrinkle::RigBinding& binding = *definition->binding;
+  const bool feeds_any =
+      use.feeds_any || (binding.missing_joints().empty() && binding.missing_blend_shapes().empty());
+  if (!feeds_any && definition->shapes.drivers().num_mapped() == 0 &&
+      !wrinkle::ReadsAny(*rig_, definition->shapes.source_names())) {
     spdlog::warn(
         "the rig uses no joint or blend shape of the stream, so all weights stay at rest; check "
         "--rig");
   }
-  draws_any |= stream.blend_shape_pose != nullptr && !stream.blend_shape_pose->empty();
-  draws_any |= stream.shape_program != nullptr && !stream.shape_program->empty();
-  draws_any |= stream.head_turn != nullptr && !stream.head_turn->empty();
-  if (character_.skeleton != nullptr && !draws_any) {
+  if (character_.skeleton != nullptr && !use.draws_any && !DrawsShapes(*definition)) {
     spdlog::warn(
         "the stream and the character have no joint in common, so pictures show the rest pose; "
         "check --character");
   }
+  definition->ignored_joints = std::move(use.ignored);
 }
 
 }  // namespace furrow::server

@@ -2,9 +2,12 @@
 #include "authoring/bake/surface/fine_mesh.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 #include <unordered_map>
 #include <utility>
+#include <vector>
 
 #include <glm/geometric.hpp>
 
@@ -27,6 +30,60 @@ std::uint32_t CellOf(float coordinate, std::uint32_t side) {
   const float cell = std::clamp(coordinate, 0.0f, 1.0f) * static_cast<float>(side);
   return std::min(static_cast<std::uint32_t>(cell), side - 1);
 }
+
+// A triangle some of whose edges are halved. Corners are 0 to 2; k + 3 is the middle of the edge
+// that begins at corner k.
+struct HalvedTriangle {
+  FineMesh::Triangle whole;
+  // Per edge: the vertex in its middle.
+  std::array<std::uint32_t, 3> half{kNoTriangle, kNoTriangle, kNoTriangle};
+
+  [[nodiscard]] std::uint32_t vertex(std::size_t k) const {
+    return k < 3 ? whole.vertices[k] : half[k - 3];
+  }
+  [[nodiscard]] vec3 place(std::size_t k) const {
+    return k < 3 ? whole.places[k] : 0.5f * (whole.places[k - 3] + whole.places[(k - 2) % 3]);
+  }
+  [[nodiscard]] bool is_halved(std::size_t k) const { return half[k % 3] != kNoTriangle; }
+
+  // Adds its 1 to 4 parts. `positions`: of the vertices.
+  void AddParts(std::span<const vec3> positions, std::vector<FineMesh::Triangle>* parts) const {
+    const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
+      parts->push_back({.vertices = {vertex(a), vertex(b), vertex(c)},
+                        .places = {place(a), place(b), place(c)}});
+    };
+    switch (std::ranges::count_if(half, [](std::uint32_t v) { return v != kNoTriangle; })) {
+      case 0: add(0, 1, 2); break;
+      case 1: {
+        const std::size_t k = is_halved(0) ? 0 : is_halved(1) ? 1 : 2;
+        add(k, k + 3, (k + 2) % 3);
+        add(k + 3, (k + 1) % 3, (k + 2) % 3);
+        break;
+      }
+      case 2: {
+        const std::size_t a = !is_halved(2) ? 0 : !is_halved(0) ? 1 : 2;  // a and a + 1 are halved
+        const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
+        add(a + 3, b, b + 3);
+        // The rest is a quad; its shorter diagonal splits it.
+        const float first = glm::distance(positions[vertex(a)], positions[vertex(b + 3)]);
+        const float second = glm::distance(positions[vertex(a + 3)], positions[vertex(c)]);
+        if (first < second) {
+          add(a, a + 3, b + 3);
+          add(a, b + 3, c);
+        } else {
+          add(a, a + 3, c);
+          add(a + 3, b + 3, c);
+        }
+        break;
+      }
+      default:
+        add(0, 3, 5);
+        add(3, 1, 4);
+        add(5, 4, 2);
+        add(3, 4, 5);
+    }
+  }
+};
 
 }  // namespace
 
@@ -74,53 +131,13 @@ bool FineMesh::SplitOnce(float longest) {
   std::vector<Triangle> parts;
   std::vector<std::uint32_t> bases;
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
-    const Triangle triangle = triangles_[t];
-    std::array<std::uint32_t, 3> half{kNoTriangle, kNoTriangle, kNoTriangle};
-    int count = 0;
+    HalvedTriangle triangle{triangles_[t]};
     const bool has_area = surface_.triangles()[bases_[t]].strain.has_value();
     for (std::size_t k = 0; k < 3 && has_area; ++k) {
-      half[k] = half_of(triangle, bases_[t], k);
-      count += half[k] != kNoTriangle ? 1 : 0;
+      triangle.half[k] = half_of(triangle.whole, bases_[t], k);
     }
-    // A corner is k in {0, 1, 2}; the middle of the edge that begins there is k + 3.
-    const auto vertex = [&](std::size_t k) { return k < 3 ? triangle.vertices[k] : half[k - 3]; };
-    const auto place = [&](std::size_t k) {
-      return k < 3 ? triangle.places[k]
-                   : 0.5f * (triangle.places[k - 3] + triangle.places[(k - 2) % 3]);
-    };
-    const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
-      parts.push_back({.vertices = {vertex(a), vertex(b), vertex(c)},
-                       .places = {place(a), place(b), place(c)}});
-      bases.push_back(bases_[t]);
-    };
-    const auto is_halved = [&](std::size_t k) { return half[k % 3] != kNoTriangle; };
-    if (count == 0) add(0, 1, 2);
-    if (count == 1) {
-      const std::size_t k = is_halved(0) ? 0 : is_halved(1) ? 1 : 2;
-      add(k, k + 3, (k + 2) % 3);
-      add(k + 3, (k + 1) % 3, (k + 2) % 3);
-    }
-    if (count == 2) {
-      const std::size_t k = !is_halved(2) ? 0 : !is_halved(0) ? 1 : 2;  // k and k + 1 are halved
-      const std::size_t a = k, b = (k + 1) % 3, c = (k + 2) % 3;
-      add(a + 3, b, b + 3);
-      // The rest is a quad; its shorter diagonal splits it.
-      const float first = glm::distance(positions_[vertex(a)], positions_[vertex(b + 3)]);
-      const float second = glm::distance(positions_[vertex(a + 3)], positions_[vertex(c)]);
-      if (first < second) {
-        add(a, a + 3, b + 3);
-        add(a, b + 3, c);
-      } else {
-        add(a, a + 3, c);
-        add(a + 3, b + 3, c);
-      }
-    }
-    if (count == 3) {
-      add(0, 3, 5);
-      add(3, 1, 4);
-      add(5, 4, 2);
-      add(3, 4, 5);
-    }
+    triangle.AddParts(positions_, &parts);
+    bases.resize(parts.size(), bases_[t]);
   }
   const bool split = parts.size() > triangles_.size();
   triangles_ = std::move(parts);

@@ -50,6 +50,9 @@ void AddTrafficOptions(CLI::App& command, LoadFlags& options) {
       ->check(Within(0.01, 1e6))
       ->needs(step)
       ->capture_default_str();
+}
+
+void AddTransportOptions(CLI::App& command, LoadFlags& options) {
   auto* udp = command.add_flag("--udp", options.udp, "Use UDP (default without TLS)");
   auto* tcp = command.add_flag("--tcp", options.tcp, "Use TCP")->excludes(udp);
   command.add_flag("--both", options.both, "Use UDP for half of the connections and TCP for half")
@@ -60,6 +63,10 @@ void AddTrafficOptions(CLI::App& command, LoadFlags& options) {
       "--other-port", options.other_port,
       "furrowd's port for the other transport, which PORT does not give (default: 7400 for "
       "TCP, 7401 for UDP)");
+}
+
+// How poses are packed and read.
+void AddPoseOptions(CLI::App& command, LoadFlags& options) {
   auto* quantise = command.add_flag("--quantise", options.quantise,
                                     "Send packed poses, as 'furrow play --quantise' does "
                                     "(default: those that do not fit one datagram)");
@@ -72,8 +79,8 @@ void AddTrafficOptions(CLI::App& command, LoadFlags& options) {
                 "Repeat the previous pose in each datagram where both fit, as 'furrow play "
                 "--redundant' does; implies --quantise")
       ->excludes("--floats")
-      ->excludes(step)  // a repeated pose states its age, not its time
-      ->excludes(tcp);
+      ->excludes("--clock-step")  // a repeated pose states its age, not its time
+      ->excludes("--tcp");
   command.add_option("--scale", options.input.scale, "Metres per unit of the recording's lengths")
       ->check(Within(1e-6, 1e6))
       ->capture_default_str();
@@ -175,6 +182,8 @@ void AddOutputOptions(CLI::App& command, LoadFlags& options) {
 
 void AddLoadFlags(CLI::App& command, LoadFlags& flags) {
   AddTrafficOptions(command, flags);
+  AddTransportOptions(command, flags);
+  AddPoseOptions(command, flags);
   AddSubscriberOptions(command, flags);
   AddComparisonOptions(command, flags);
   AddOutputOptions(command, flags);

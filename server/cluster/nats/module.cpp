@@ -75,6 +75,36 @@ std::size_t BytesOf(const StoreRecord& record) {
   return sizeof(record) + record.key.size() + record.value.size();
 }
 
+// The state of a connection. Changed by threads of the library, which may call after the connection
+// has been closed.
+struct Link {
+  std::atomic<bool> connected = false;
+  std::atomic<bool> refused = false;  // the credentials, which closed the connection
+  std::atomic<bool> closed = false;   // changes last: the library calls no more
+};
+
+// Lets the library report changes of its connection to `link`.
+natsStatus FollowConnection(natsOptions* options, Link* link) {
+  const natsConnectionHandler up = [](natsConnection*, void* of) {
+    static_cast<Link*>(of)->connected = true;
+  };
+  const natsConnectionHandler down = [](natsConnection*, void* of) {
+    static_cast<Link*>(of)->connected = false;
+  };
+  const natsConnectionHandler closed = [](natsConnection* connection, void* of) {
+    const char* text = nullptr;
+    const natsStatus last = natsConnection_GetLastError(connection, &text);
+    static_cast<Link*>(of)->connected = false;
+    static_cast<Link*>(of)->refused = last == NATS_CONNECTION_AUTH_FAILED;
+    static_cast<Link*>(of)->closed = true;
+  };
+  natsStatus status = natsOptions_SetRetryOnFailedConnect(options, true, up, link);
+  if (status == NATS_OK) status = natsOptions_SetReconnectedCB(options, up, link);
+  if (status == NATS_OK) status = natsOptions_SetDisconnectedCB(options, down, link);
+  if (status == NATS_OK) status = natsOptions_SetClosedCB(options, closed, link);
+  return status;
+}
+
 class NatsStore : public Store {
  public:
   explicit NatsStore(const StoreOptions& options)
@@ -111,12 +141,6 @@ class NatsStore : public Store {
   const StoreOptions options_;
   const std::string bucket_name_;
   const std::string stream_;
-  // Changed by threads of the library, which may call after the connection has been closed.
-  struct Link {
-    std::atomic<bool> connected = false;
-    std::atomic<bool> refused = false;  // the credentials, which closed the connection
-    std::atomic<bool> closed = false;   // changes last: the library calls no more
-  };
   std::unique_ptr<Link> link_ = std::make_unique<Link>();
   std::atomic<bool> woken_ = false;
   bool refuses_ = false;  // the server refused the credentials at the last attempt
@@ -190,23 +214,7 @@ bool NatsStore::Open(std::string* why) {
     set(natsOptions_SetSendAsap(raw, true));
     // A server that reads nothing must not hold the thread for ever.
     set(natsOptions_SetWriteDeadline(raw, kRequestMs));
-    const natsConnectionHandler up = [](natsConnection*, void* link) {
-      static_cast<Link*>(link)->connected = true;
-    };
-    const natsConnectionHandler down = [](natsConnection*, void* link) {
-      static_cast<Link*>(link)->connected = false;
-    };
-    const natsConnectionHandler closed = [](natsConnection* connection, void* link) {
-      const char* text = nullptr;
-      const natsStatus last = natsConnection_GetLastError(connection, &text);
-      static_cast<Link*>(link)->connected = false;
-      static_cast<Link*>(link)->refused = last == NATS_CONNECTION_AUTH_FAILED;
-      static_cast<Link*>(link)->closed = true;
-    };
-    set(natsOptions_SetRetryOnFailedConnect(raw, true, up, link_.get()));
-    set(natsOptions_SetReconnectedCB(raw, up, link_.get()));
-    set(natsOptions_SetDisconnectedCB(raw, down, link_.get()));
-    set(natsOptions_SetClosedCB(raw, closed, link_.get()));
+    set(FollowConnection(raw, link_.get()));
     if (!options_.user.empty()) {
       set(natsOptions_SetUserInfo(raw, options_.user.c_str(), options_.password.c_str()));
     }

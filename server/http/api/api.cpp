@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/http/api/api.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "server/http/pictures/picture_replies.h"
@@ -32,91 +34,111 @@ Api::Api(Parts parts)
       cluster_(parts.cluster, &tokens_),
       sources_(std::move(parts.sources)),
       traces_(parts.session),
-      routes_{{"GET", "/api/subjects", Need::kToken,
-               [this](const ApiRequest& request, Hub& hub, Time now) {
-                 return status_.Subjects(request, hub, now);
-               }},
-              {"GET", "/api/status", Need::kToken,
-               [this](const ApiRequest& request, Hub& hub, Time now) {
-                 return status_.ShowStatus(request, hub, now);
-               }},
-              {"GET", "/api/sources", Need::kToken,
-               [this](const ApiRequest& request, Hub& hub, Time now) {
-                 return sources_.Show(request, hub, now);
-               }},
-              {"POST", "/api/sources", Need::kDirect,
-               [this](const ApiRequest& request, Hub& hub, Time now) {
-                 return sources_.Accept(request, hub, now);
-               }},
-              {"GET", "/api/settings", Need::kToken,
-               [this](const ApiRequest&, Hub& hub, Time) { return settings_.Settings(hub); }},
-              {"PATCH", "/api/settings", Need::kDirect,
-               [this](const ApiRequest& request, Hub& hub, Time now) {
-                 return settings_.PatchSettings(request, hub, now);
-               }},
-              {"GET", "/api/settings.toml", Need::kToken,
-               [this](const ApiRequest&, Hub& hub, Time) { return settings_.SettingsFile(hub); }},
-              {"GET", "/api/cameras", Need::kToken,
-               [this](const ApiRequest&, Hub&, Time) { return settings_.Cameras(); }},
-              {"GET", "/api/rig", Need::kToken,
-               [this](const ApiRequest&, Hub& hub, Time) { return rig_.ShowRig(hub); }},
-              {"GET", "/api/rig.json", Need::kToken,
-               [this](const ApiRequest&, Hub& hub, Time) { return rig_.RigFile(hub); }},
-              {"GET", "/api/explain", Need::kWatch,
-               [this](const ApiRequest& request, Hub& hub, Time) {
-                 return rig_.Explain(request, hub);
-               }},
-              {"POST", "/api/capture", Need::kDirect,
-               [this](const ApiRequest& request, Hub& hub, Time now) {
-                 return captures_.PostCapture(request, hub, now);
-               }},
-              {"POST", "/api/capture/undo", Need::kDirect,
-               [this](const ApiRequest&, Hub& hub, Time now) { return captures_.Undo(hub, now); }},
-              {"GET", "/api/playback", Need::kToken,
-               [this](const ApiRequest&, Hub&, Time now) { return playback_.Show(now); }},
-              {"PATCH", "/api/playback", Need::kDirect,
-               [this](const ApiRequest& request, Hub&, Time now) {
-                 return playback_.Patch(request, now);
-               }},
-              {"POST", "/api/playback", Need::kDirect,
-               [this](const ApiRequest& request, Hub& hub, Time now) {
-                 return playback_.Play(request, hub, now);
-               }},
-              {"DELETE", "/api/playback", Need::kDirect,
-               [this](const ApiRequest&, Hub&, Time now) { return playback_.Close(now); }},
-              {"GET", "/api/osc", Need::kOperate,
-               [this](const ApiRequest&, Hub&, Time) { return osc_.List(); }},
-              {"POST", "/api/osc", Need::kOperate,
-               [this](const ApiRequest& request, Hub&, Time) { return osc_.Add(request); }},
-              {"DELETE", "/api/osc", Need::kOperate,
-               [this](const ApiRequest& request, Hub&, Time) { return osc_.Remove(request); }},
-              {"POST", "/api/token", Need::kOperate,
-               [this](const ApiRequest& request, Hub&, Time now) {
-                 return tokens_.Make(request, now);
-               }},
-              {"POST", "/api/trace", Need::kOperate,
-               [this](const ApiRequest& request, Hub& hub, Time) {
-                 return traces_.Request(request, hub);
-               }},
-              {"GET", "/api/trace", Need::kOperate,
-               [this](const ApiRequest& request, Hub& hub, Time now) {
-                 return traces_.Show(request, hub, now);
-               }},
-              {"GET", "/api/place", Need::kToken,
-               [this](const ApiRequest& request, Hub&, Time now) {
-                 return cluster_.FindPlace(request, now);
-               }},
-              {"GET", "/api/cluster", Need::kOperate,
-               [this](const ApiRequest&, Hub&, Time now) { return cluster_.Show(now); }},
-              {"HEAD", "/mjpeg", Need::kToken, HeadOfPictures},
-              {"HEAD", "/snapshot.png", Need::kToken, HeadOfPictures},
-              {"GET", "/healthz", Need::kNothing,
-               [this](const ApiRequest&, Hub&, Time) { return status_.Health(); }},
-              {"GET", "/readyz", Need::kNothing,
-               [this](const ApiRequest&, Hub& hub, Time now) { return status_.Ready(hub, now); }},
-              {"GET", "/metrics", Need::kOperate, [this](const ApiRequest&, Hub& hub, Time now) {
-                 return status_.MetricsText(hub, now);
-               }}} {}
+      routes_(AllRoutes()) {}
+
+std::vector<Api::Route> Api::StatusRoutes() {
+  return {
+      {"GET", "/api/subjects", Need::kToken,
+       [this](const ApiRequest& request, Hub& hub, Time now) {
+         return status_.Subjects(request, hub, now);
+       }},
+      {"GET", "/api/status", Need::kToken,
+       [this](const ApiRequest& request, Hub& hub, Time now) {
+         return status_.ShowStatus(request, hub, now);
+       }},
+      {"GET", "/api/sources", Need::kToken,
+       [this](const ApiRequest& request, Hub& hub, Time now) {
+         return sources_.Show(request, hub, now);
+       }},
+      {"POST", "/api/sources", Need::kDirect,
+       [this](const ApiRequest& request, Hub& hub, Time now) {
+         return sources_.Accept(request, hub, now);
+       }},
+      {"GET", "/healthz", Need::kNothing,
+       [this](const ApiRequest&, Hub&, Time) { return status_.Health(); }},
+      {"GET", "/readyz", Need::kNothing,
+       [this](const ApiRequest&, Hub& hub, Time now) { return status_.Ready(hub, now); }},
+      {"GET", "/metrics", Need::kOperate,
+       [this](const ApiRequest&, Hub& hub, Time now) { return status_.MetricsText(hub, now); }},
+  };
+}
+
+std::vector<Api::Route> Api::LookRoutes() {
+  return {
+      {"GET", "/api/settings", Need::kToken,
+       [this](const ApiRequest&, Hub& hub, Time) { return settings_.Settings(hub); }},
+      {"PATCH", "/api/settings", Need::kDirect,
+       [this](const ApiRequest& request, Hub& hub, Time now) {
+         return settings_.PatchSettings(request, hub, now);
+       }},
+      {"GET", "/api/settings.toml", Need::kToken,
+       [this](const ApiRequest&, Hub& hub, Time) { return settings_.SettingsFile(hub); }},
+      {"GET", "/api/cameras", Need::kToken,
+       [this](const ApiRequest&, Hub&, Time) { return settings_.Cameras(); }},
+      {"GET", "/api/rig", Need::kToken,
+       [this](const ApiRequest&, Hub& hub, Time) { return rig_.ShowRig(hub); }},
+      {"GET", "/api/rig.json", Need::kToken,
+       [this](const ApiRequest&, Hub& hub, Time) { return rig_.RigFile(hub); }},
+      {"GET", "/api/explain", Need::kWatch,
+       [this](const ApiRequest& request, Hub& hub, Time) { return rig_.Explain(request, hub); }},
+      {"POST", "/api/capture", Need::kDirect,
+       [this](const ApiRequest& request, Hub& hub, Time now) {
+         return captures_.PostCapture(request, hub, now);
+       }},
+      {"POST", "/api/capture/undo", Need::kDirect,
+       [this](const ApiRequest&, Hub& hub, Time now) { return captures_.Undo(hub, now); }},
+      {"HEAD", "/mjpeg", Need::kToken, HeadOfPictures},
+      {"HEAD", "/snapshot.png", Need::kToken, HeadOfPictures},
+  };
+}
+
+std::vector<Api::Route> Api::PlaybackRoutes() {
+  return {
+      {"GET", "/api/playback", Need::kToken,
+       [this](const ApiRequest&, Hub&, Time now) { return playback_.Show(now); }},
+      {"PATCH", "/api/playback", Need::kDirect,
+       [this](const ApiRequest& request, Hub&, Time now) { return playback_.Patch(request, now); }},
+      {"POST", "/api/playback", Need::kDirect,
+       [this](const ApiRequest& request, Hub& hub, Time now) {
+         return playback_.Play(request, hub, now);
+       }},
+      {"DELETE", "/api/playback", Need::kDirect,
+       [this](const ApiRequest&, Hub&, Time now) { return playback_.Close(now); }},
+  };
+}
+
+std::vector<Api::Route> Api::OperatorRoutes() {
+  return {
+      {"GET", "/api/osc", Need::kOperate,
+       [this](const ApiRequest&, Hub&, Time) { return osc_.List(); }},
+      {"POST", "/api/osc", Need::kOperate,
+       [this](const ApiRequest& request, Hub&, Time) { return osc_.Add(request); }},
+      {"DELETE", "/api/osc", Need::kOperate,
+       [this](const ApiRequest& request, Hub&, Time) { return osc_.Remove(request); }},
+      {"POST", "/api/token", Need::kOperate,
+       [this](const ApiRequest& request, Hub&, Time now) { return tokens_.Make(request, now); }},
+      {"POST", "/api/trace", Need::kOperate,
+       [this](const ApiRequest& request, Hub& hub, Time) { return traces_.Request(request, hub); }},
+      {"GET", "/api/trace", Need::kOperate,
+       [this](const ApiRequest& request, Hub& hub, Time now) {
+         return traces_.Show(request, hub, now);
+       }},
+      {"GET", "/api/place", Need::kToken,
+       [this](const ApiRequest& request, Hub&, Time now) {
+         return cluster_.FindPlace(request, now);
+       }},
+      {"GET", "/api/cluster", Need::kOperate,
+       [this](const ApiRequest&, Hub&, Time now) { return cluster_.Show(now); }},
+  };
+}
+
+std::vector<Api::Route> Api::AllRoutes() {
+  std::vector<Route> all;
+  for (auto part : {StatusRoutes(), LookRoutes(), PlaybackRoutes(), OperatorRoutes()}) {
+    std::ranges::move(part, std::back_inserter(all));
+  }
+  return all;
+}
 
 bool Api::Permits(Need need, const Access& access) {
   switch (need) {

@@ -73,6 +73,13 @@ class Api {
     std::function<ApiReply(const ApiRequest&, Hub&, Time)> answer;
   };
 
+  // The routes by topic. Their answers use the parts below.
+  [[nodiscard]] std::vector<Route> StatusRoutes();  // what is served, and how well
+  [[nodiscard]] std::vector<Route> LookRoutes();    // pictures and the rig
+  [[nodiscard]] std::vector<Route> PlaybackRoutes();
+  [[nodiscard]] std::vector<Route> OperatorRoutes();  // targets, tokens, traces and the cluster
+  [[nodiscard]] std::vector<Route> AllRoutes();
+
   [[nodiscard]] static bool Permits(Need need, const Access& access);
   [[nodiscard]] ApiReply Forbid(Need need, const ApiRequest& request);
 

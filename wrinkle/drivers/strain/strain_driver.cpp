@@ -96,6 +96,25 @@ struct PatchSpace {
   }
 };
 
+// Adds four points per joint to the chains. Skinning needs each joint's affine motion relative to
+// the base. Four points determine it: the patch's centre, and one point along each axis at the
+// distance of the radius. Points near the patch keep the digits that points near a distant joint
+// would lose.
+void AddPoints(const Found& found, const PatchFrame& frame, BindContext* context,
+               std::vector<int>* points) {
+  const Skeleton& skeleton = context->skeleton();
+  for (const int joint : found.joints) {
+    const glm::mat4 base_to_joint =
+        glm::inverse(skeleton.rest_model()[joint]) * skeleton.rest_model()[found.base];
+    for (int axis = -1; axis < 3; ++axis) {
+      glm::vec3 point = frame.centre;
+      if (axis >= 0) point[axis] += frame.radius;
+      const auto offset = glm::vec3(base_to_joint * glm::vec4(point, 1.0f));
+      points->push_back(context->chains().Add(skeleton, joint, offset, found.base));
+    }
+  }
+}
+
 }  // namespace
 
 Status StrainDriverSet::Bind(const std::string& name, const StrainDriver& strain, int first_value,
@@ -119,19 +138,7 @@ Status StrainDriverSet::Bind(const std::string& name, const StrainDriver& strain
   const PatchFrame frame = FrameOf(places);
   entry.resting = Frame(glm::mat3(frame.radius));
   entry.resting[3] = frame.centre;
-  // Skinning needs each joint's affine motion relative to the base. Four points determine it: the
-  // patch's centre, and one point along each axis at the distance of the radius. Points near the
-  // patch keep the digits that points near a distant joint would lose.
-  for (const int joint : found->joints) {
-    const glm::mat4 base_to_joint =
-        glm::inverse(skeleton.rest_model()[joint]) * skeleton.rest_model()[found->base];
-    for (int axis = -1; axis < 3; ++axis) {
-      glm::vec3 point = frame.centre;
-      if (axis >= 0) point[axis] += frame.radius;
-      const auto offset = glm::vec3(base_to_joint * glm::vec4(point, 1.0f));
-      points_.push_back(context->chains().Add(skeleton, joint, offset, found->base));
-    }
-  }
+  AddPoints(*found, frame, context, &points_);
   entry.first_vertex = static_cast<std::uint32_t>(vertices_.size());
   // BindTriangles() poses the vertices, so it needs their places first.
   BindVertices(strain, found->frames, &entry);
