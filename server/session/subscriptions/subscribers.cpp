@@ -88,22 +88,19 @@ void Subscribers::Subscribe(Peer& peer, const protocol::Header& header,
                          "pictures are available over TCP and WebSocket only");
   }
   if (!CheckRequest(peer, header)) return;
-  if (auto why = WhyNotRendering()) {
+  PictureRequest pictures;
+  if (auto why = MakePictures(request, &pictures)) {
     return RefuseRequest(peer, header, why->code, std::move(why->message));
-  }
-  Result<PictureRequest> pictures = pictures_.MakeRequest(request);
-  if (!pictures.ok()) {
-    return RefuseRequest(peer, header, ErrorCode::kBadPicture, pictures.status().ToString());
   }
   auto subscription = std::make_unique<Subscription>();
   subscription->subject_name = request.subject;
   subscription->wait = request.wait;
   subscription->gate = RateGate(request.max_rate_hz);
-  pictures->view_request = header.sequence;
+  pictures.view_request = header.sequence;
   // A client that never acknowledges must not wait for its own acknowledgements.
-  if (request.acknowledged) pictures->flow.emplace();
-  PictureViews::BeginVideo(*pictures);
-  subscription->request = *std::move(pictures);
+  if (request.acknowledged) pictures.flow.emplace();
+  PictureViews::BeginVideo(pictures);
+  subscription->request = std::move(pictures);
   Add(peer, header, std::move(subscription));
 }
 
@@ -119,7 +116,9 @@ void Subscribers::Subscribe(Peer& peer, const protocol::Header& header,
   Add(peer, header, std::move(subscription));
 }
 
-std::optional<protocol::ErrorMessage> Subscribers::WhyNotRendering() const {
+// Returns why there are no such pictures; nothing: `pictures` is set.
+std::optional<protocol::ErrorMessage> Subscribers::MakePictures(
+    const protocol::SubscribePictures& request, PictureRequest* pictures) {
   if (!pictures_.can_render()) {
     return protocol::ErrorMessage{
         ErrorCode::kNotRendering,
@@ -129,34 +128,42 @@ std::optional<protocol::ErrorMessage> Subscribers::WhyNotRendering() const {
     return protocol::ErrorMessage{ErrorCode::kNotRendering,
                                   pictures_.fault() + ": pictures are off"};
   }
+  Result<PictureRequest> made = pictures_.MakeRequest(request);
+  if (!made.ok()) {
+    return protocol::ErrorMessage{ErrorCode::kBadPicture, made.status().ToString()};
+  }
+  *pictures = *std::move(made);
   return std::nullopt;
 }
 
-// In the order of Subscribe() and Add(), so that the first of several reasons is the same.
 std::optional<protocol::ErrorMessage> Subscribers::WhyNoPictures(
     const protocol::SubscribePictures& request, const Access& access) {
-  if (auto why = WhyNotRendering()) return why;
-  if (const auto pictures = pictures_.MakeRequest(request); !pictures.ok()) {
-    return protocol::ErrorMessage{ErrorCode::kBadPicture, pictures.status().ToString()};
-  }
   Subscription subscription;
   subscription.subject_name = request.subject;
-  if (!MayWatch(subscription, access)) {
-    return protocol::ErrorMessage{ErrorCode::kNotPermitted, WhyForbidden(subscription, access)};
-  }
-  if (FindFor(request.subject, access) != nullptr) return std::nullopt;
-  if (const Place place = places_->Elsewhere(request.subject);
-      place.kind == Place::Kind::kElsewhere) {
-    return protocol::ErrorMessage{ErrorCode::kUnknownSubject,
-                                  ElsewhereText(request.subject, place.node)};
-  }
-  if (request.wait) return std::nullopt;
-  return protocol::ErrorMessage{ErrorCode::kUnknownSubject, NoSubjectText(request.subject, access)};
+  subscription.wait = request.wait;
+  PictureRequest unused;
+  if (auto why = MakePictures(request, &unused)) return why;
+  return FindAim(subscription, access).refusal;
 }
 
-// An empty name: the oldest subject.
-Subject* Subscribers::FindFor(const std::string& name, const Access& access) const {
-  return name.empty() ? subjects_->First(access) : subjects_->Find(name);
+Subscribers::Aim Subscribers::FindAim(const Subscription& subscription,
+                                      const Access& access) const {
+  const auto refuse = [](ErrorCode code, std::string why) {
+    return Aim{.refusal = protocol::ErrorMessage{code, std::move(why)}};
+  };
+  if (!MayWatch(subscription, access)) {
+    return refuse(ErrorCode::kNotPermitted, WhyForbidden(subscription, access));
+  }
+  const std::string& name = subscription.subject_name;
+  Subject* const subject = name.empty() ? subjects_->First(access) : subjects_->Find(name);
+  if (subject != nullptr) return {.subject = subject};
+  if (const Place place = places_->Elsewhere(name); place.kind == Place::Kind::kElsewhere) {
+    Aim aim = refuse(ErrorCode::kUnknownSubject, ElsewhereText(name, place.node));
+    aim.elsewhere = place.node;
+    return aim;
+  }
+  if (subscription.wait) return {};
+  return refuse(ErrorCode::kUnknownSubject, NoSubjectText(name, access));
 }
 
 std::string Subscribers::NoSubjectText(const std::string& name, const Access& access) const {
@@ -206,30 +213,22 @@ void Subscribers::ReplyAgain(Subscription& subscription) {
 
 void Subscribers::Add(Peer& peer, const protocol::Header& header,
                       std::unique_ptr<Subscription> subscription) {
-  const std::string& name = subscription->subject_name;
-  if (!MayWatch(*subscription, peer.access)) {
-    metrics_->Add(Counter::kRefusedWatch);
-    return RefuseRequest(peer, header, ErrorCode::kNotPermitted,
-                         WhyForbidden(*subscription, peer.access));
-  }
-  Subject* subject = FindFor(name, peer.access);
-  if (subject == nullptr) {
-    const Place place = places_->Elsewhere(name);
-    if (place.kind == Place::Kind::kElsewhere) {
-      return messages_->SendElsewhere(peer, header, ErrorCode::kUnknownSubject,
-                                      ElsewhereText(name, place.node), place.node);
+  Aim aim = FindAim(*subscription, peer.access);
+  if (aim.refusal) {
+    const ErrorCode code = aim.refusal->code;
+    std::string& why = aim.refusal->message;
+    if (aim.elsewhere) {
+      return messages_->SendElsewhere(peer, header, code, std::move(why), *aim.elsewhere);
     }
-  }
-  if (subject == nullptr && !subscription->wait) {
-    return RefuseRequest(peer, header, ErrorCode::kUnknownSubject,
-                         NoSubjectText(name, peer.access));
+    if (code == ErrorCode::kNotPermitted) metrics_->Add(Counter::kRefusedWatch);
+    return RefuseRequest(peer, header, code, std::move(why));
   }
   // The subscription is in the table before Bind(), because replies carry its id. Bind() erases it
   // again if it must be refused.
   Subscription& added = table_.Add(peer, header, std::move(subscription));
-  if (subject == nullptr) {
+  if (aim.subject == nullptr) {
     Reply(added, {});
-  } else if (!Bind(added, *subject)) {
+  } else if (!Bind(added, *aim.subject)) {
     return;
   }
   metrics_->Add(Counter::kSubscriptionsAccepted);

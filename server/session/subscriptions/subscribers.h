@@ -108,8 +108,16 @@ class Subscribers {
 
  private:
   bool CheckRequest(Peer& peer, const protocol::Header& header);
-  [[nodiscard]] std::optional<protocol::ErrorMessage> WhyNotRendering() const;
-  [[nodiscard]] Subject* FindFor(const std::string& name, const Access& access) const;
+  // What a new subscription is for.
+  struct Aim {
+    Subject* subject = nullptr;  // null without a refusal: the subscription waits
+    std::optional<protocol::ErrorMessage> refusal;
+    std::optional<NodeAddress> elsewhere;  // with a refusal: the node that serves the subject
+  };
+
+  [[nodiscard]] std::optional<protocol::ErrorMessage> MakePictures(
+      const protocol::SubscribePictures& request, PictureRequest* pictures);
+  [[nodiscard]] Aim FindAim(const Subscription& subscription, const Access& access) const;
   [[nodiscard]] std::string NoSubjectText(const std::string& name, const Access& access) const;
   void ReplyAgain(Subscription& subscription);
   void Add(Peer& peer, const protocol::Header& header, std::unique_ptr<Subscription> subscription);
