@@ -3,13 +3,17 @@
 
 #include <cerrno>
 #include <chrono>
-#include <cstring>
+#include <cstddef>
 #include <utility>
 
-#include <netdb.h>
+#include <asio/error.hpp>
+#include <asio/io_context.hpp>
+#include <asio/ip/tcp.hpp>
+#include <asio/ip/udp.hpp>
 #include <poll.h>
 #include <sys/socket.h>
 
+#include "client/cpp/connect_error.h"
 #include "client/net/descriptor.h"
 #include "client/net/tcp_socket.h"
 #include "client/net/udp_socket.h"
@@ -21,13 +25,9 @@ using client::TransportKind;
 
 constexpr std::chrono::milliseconds kConnectTimeout{3000};
 
-struct FreeAddresses {
-  void operator()(addrinfo* list) const { freeaddrinfo(list); }
-};
-
 // Returns 0 or an error number.
-int Connect(int descriptor, const addrinfo& address) {
-  if (connect(descriptor, address.ai_addr, address.ai_addrlen) == 0) return 0;
+int Connect(int descriptor, const sockaddr* address, std::size_t bytes) {
+  if (connect(descriptor, address, static_cast<socklen_t>(bytes)) == 0) return 0;
   if (errno != EINPROGRESS) return errno;
   // A pending connect has ended when the socket is writable; SO_ERROR tells how (connect(2)).
   if (!WaitFor(descriptor, POLLOUT, kConnectTimeout)) return ETIMEDOUT;
@@ -37,42 +37,40 @@ int Connect(int descriptor, const addrinfo& address) {
   return error;
 }
 
-// Tries every address, IPv4 first. Returns 0, or the error number of the last attempt.
-int ConnectAny(const addrinfo* list, Descriptor* connected) {
-  int error = EADDRNOTAVAIL;
+// Tries every address of the host, IPv4 first. Returns the resolver's error or that of the last
+// attempt.
+template <class Protocol>
+asio::error_code ConnectAny(const std::string& host, std::uint16_t port, Descriptor* connected) {
+  asio::io_context context;
+  typename Protocol::resolver resolver(context);
+  asio::error_code error;
+  const auto found = resolver.resolve(host, std::to_string(port), error);
+  if (error) return error;
+  int failed = EADDRNOTAVAIL;
   for (const int family : {AF_INET, AF_INET6}) {
-    for (const addrinfo* entry = list; entry != nullptr; entry = entry->ai_next) {
-      if (entry->ai_family != family) continue;
+    for (const auto& entry : found) {
+      const typename Protocol::endpoint endpoint = entry.endpoint();
+      const Protocol protocol = endpoint.protocol();
+      if (protocol.family() != family) continue;
       // CLOEXEC: programs that are started later must not inherit the connection.
-      Descriptor made(socket(family, entry->ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
-      error = made.get() < 0 ? errno : Connect(made.get(), *entry);
-      if (error != 0) continue;
+      Descriptor made(socket(family, protocol.type() | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+      failed = made.get() < 0 ? errno : Connect(made.get(), endpoint.data(), endpoint.size());
+      if (failed != 0) continue;
       *connected = std::move(made);
-      return 0;
+      return {};
     }
   }
-  return error;
+  return {failed, asio::error::get_system_category()};
 }
 
 }  // namespace
 
 Result<Descriptor> OpenDescriptor(TransportKind kind, const std::string& host, std::uint16_t port) {
-  const bool tcp = kind == TransportKind::kTcp;
-  addrinfo hints{};
-  hints.ai_socktype = tcp ? SOCK_STREAM : SOCK_DGRAM;
-  addrinfo* list = nullptr;
-  const int unresolved = getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &list);
-  const std::unique_ptr<addrinfo, FreeAddresses> addresses(list);
   Descriptor descriptor;
-  if (unresolved == EAI_NONAME || unresolved == EAI_AGAIN || unresolved == EAI_NODATA)
-    return client::HostNotFound(host);
-  if (unresolved != 0) {
-    return client::ConnectionFailed(
-        kind, host, port,
-        unresolved == EAI_SYSTEM ? std::strerror(errno) : gai_strerror(unresolved));
-  }
-  if (const int failed = ConnectAny(addresses.get(), &descriptor); failed != 0)
-    return client::ConnectionFailed(kind, host, port, std::strerror(failed));
+  const asio::error_code error = kind == TransportKind::kTcp
+                                     ? ConnectAny<asio::ip::tcp>(host, port, &descriptor)
+                                     : ConnectAny<asio::ip::udp>(host, port, &descriptor);
+  if (error) return client::ConnectError(kind, host, port, error);
   return descriptor;
 }
 
