@@ -151,6 +151,21 @@ void WarnAboutPage(const HttpConfig& http) {
   spdlog::warn("http.page: {} does not exist: there is no web page", index.string());
 }
 
+// Root may read and write what the user of the service may not. The command has the user, the
+// folders and the view of the file system of furrowd.service; a user with another name would become
+// the owner of the service's files.
+void WarnAboutRoot(const Config& config) {
+  std::error_code ignored;
+  // As sd_booted(3) asks.
+  const bool has_services = std::filesystem::exists("/run/systemd/system", ignored);
+  if (geteuid() != 0 || !has_services || config.source.empty()) return;
+  spdlog::warn(
+      "checked as root, who may read and write more than the service; to check with its rights: "
+      "systemd-run --pipe --wait --collect -p User=furrowd -p DynamicUser=yes -p "
+      "StateDirectory=furrow -p ProtectHome=yes furrowd --config {} --check",
+      std::filesystem::absolute(config.source, ignored).string());
+}
+
 Status CheckAll(const Config& config) {
   auto assets = LoadAssets(config, character::Pictures::kLeaveOut);
   FURROW_RETURN_IF_ERROR(assets);
@@ -184,6 +199,7 @@ ExitCode Check(const Config& asked) {
     const Status writes = recording::CheckTakeFolder(folder).Within("record.dir");
     if (!writes.ok()) return Fail(ExitCode::kFailed, writes);
   }
+  WarnAboutRoot(config);
   std::puts("the configuration is valid");
   return ExitCode::kOk;
 }
