@@ -15,8 +15,8 @@ import threading
 import unittest
 import urllib.request
 
-from cluster_testing import NATS, NatsServer, Node, Performer, Viewer, Wire, wait_until
-from furrow_testing import GUARD, SOURCE, finish, furrow, reorderings, repetitions, spawn
+from cluster_testing import NATS, NatsServer, Node, Performer, Viewer, Wire
+from furrow_testing import GUARD, SOURCE, finish, furrow, reorderings, repetitions, spawn, wait_until
 
 JS = os.environ.get("FURROW_JS", "")  # the npm packages, built
 NODE = shutil.which("node") or shutil.which("nodejs") if pathlib.Path(JS, "furrow", "dist", "node.js").is_file() else None
@@ -47,20 +47,29 @@ class SampleTest(unittest.TestCase):
 class CredentialsTest(unittest.TestCase):
     """A server that refuses the credentials is named as such, and asked again."""
 
+    def setUp(self):
+        self.nats = NatsServer((SOURCE / "deploy/nats/nats-server.conf").read_text())
+        self.addCleanup(self.nats.close)
+        credentials = self.enterContext(tempfile.NamedTemporaryFile("w"))
+        credentials.write("furrow:another\n")
+        credentials.flush()
+        self.options = "--cluster", self.nats.url, "--cluster-credentials", credentials.name
+
     def test_refused_credentials_are_named_and_tried_again(self):
-        config = (SOURCE / "deploy/nats/nats-server.conf").read_text()
-        nats = NatsServer(config)
-        self.addCleanup(nats.close)
-        with tempfile.NamedTemporaryFile("w") as credentials:
-            credentials.write("furrow:another\n")
-            credentials.flush()
-            with Node("a", "--cluster", nats.url, "--cluster-credentials", credentials.name) as node:
-                node.wait_for_fault("refuses the credentials")
-                nats.kill()
-                file = pathlib.Path(nats.folder.name, "nats.conf")
-                file.write_text(file.read_text().replace("change-me", "another"))
-                nats.start()
-                wait_until(node.is_ready, "the node is ready")
+        with Node("a", *self.options) as node:
+            node.wait_for_fault("refuses the credentials")
+            self.nats.kill()
+            file = pathlib.Path(self.nats.folder.name, "nats.conf")
+            file.write_text(file.read_text().replace("change-me", "another"))
+            self.nats.start()
+            wait_until(node.is_ready, "the node is ready")
+
+    def test_a_server_that_comes_later_may_refuse_them_too(self):
+        self.nats.kill()
+        with Node("a", *self.options) as node:
+            node.wait_for_fault("cannot be reached")
+            self.nats.start()
+            node.wait_for_fault("refuses the credentials")
 
 
 class SecuredTest(unittest.TestCase):

@@ -39,7 +39,7 @@ constexpr std::int64_t kReconnectMs = 250;
 constexpr std::int64_t kConnectMs = 1000;
 constexpr std::int64_t kRequestMs = 400;
 // Between attempts at a server that refuses the credentials.
-constexpr milliseconds kOpenPause(5000);
+constexpr milliseconds kRefusedPause(5000);
 // Reading everything must end before the leases do.
 constexpr milliseconds kListTime(700);
 // How often the stream is compared with what was heard of it: a watcher may die without a word.
@@ -98,8 +98,7 @@ natsStatus FollowConnection(natsOptions* options, Link* link) {
     static_cast<Link*>(of)->refused = last == NATS_CONNECTION_AUTH_FAILED;
     static_cast<Link*>(of)->closed = true;
   };
-  natsStatus status = natsOptions_SetRetryOnFailedConnect(options, true, up, link);
-  if (status == NATS_OK) status = natsOptions_SetReconnectedCB(options, up, link);
+  natsStatus status = natsOptions_SetReconnectedCB(options, up, link);
   if (status == NATS_OK) status = natsOptions_SetDisconnectedCB(options, down, link);
   if (status == NATS_OK) status = natsOptions_SetClosedCB(options, closed, link);
   return status;
@@ -115,7 +114,7 @@ class NatsStore : public Store {
   bool Open(std::string* why) override;
   // The library locks the connection while it tries to connect, so its status cannot be asked.
   bool connected() override { return link_->connected; }
-  bool refuses_credentials() const override { return refuses_ && !link_->connected; }
+  bool refuses_credentials() const override { return link_->refused && !link_->connected; }
   void Put(const StorePut& put) override;
   bool Poll(milliseconds wait, std::vector<StoreAnswer>* answers,
             std::vector<StoreRecord>* changes) override;
@@ -143,8 +142,7 @@ class NatsStore : public Store {
   const std::string stream_;
   std::unique_ptr<Link> link_ = std::make_unique<Link>();
   std::atomic<bool> woken_ = false;
-  bool refuses_ = false;  // the server refused the credentials at the last attempt
-  Clock::time_point opened_{};
+  Clock::time_point opened_{};  // the last attempt
   Connection connection_;
   Context context_;
   Bucket bucket_;
@@ -176,20 +174,17 @@ void NatsStore::DropConnection() {
   connection_.reset();
 }
 
-// The library gives a server up that refuses the credentials twice. Its administrator may let them
-// in later.
+// The library connects again once it was connected. It gives a server up that refuses the
+// credentials twice, whose administrator may let them in later. The first connection is ours to try
+// again: if the library did, it would not say that the credentials were refused.
 void NatsStore::OpenAgain() {
-  const auto now = Clock::now();
-  if (link_->closed) {
-    refuses_ = link_->refused;
-    if (now - opened_ < kOpenPause) return;
-    DropConnection();
-    link_ = std::make_unique<Link>();
-    std::string unused;  // such as a file that cannot be read now; the next attempt may find it
-    if (!Open(&unused)) link_->closed = true;
-  } else if (now - opened_ >= kOpenPause) {
-    refuses_ = false;  // the server is gone, or it would have answered by now
-  }
+  if (!link_->closed) return;
+  const milliseconds pause = link_->refused ? kRefusedPause : milliseconds(kReconnectMs);
+  if (Clock::now() - opened_ < pause) return;
+  DropConnection();
+  link_ = std::make_unique<Link>();
+  std::string unused;  // such as a file that cannot be read now; the next attempt may find it
+  if (!Open(&unused)) link_->closed = true;
 }
 
 bool NatsStore::Open(std::string* why) {
@@ -231,10 +226,17 @@ bool NatsStore::Open(std::string* why) {
     }
   }
   natsConnection* connection = nullptr;
-  if (status == NATS_OK) status = natsConnection_Connect(&connection, raw);
-  connection_.reset(connection);
-  if (status == NATS_OK) link_->connected = true;
-  if (status == NATS_NOT_YET_CONNECTED) status = NATS_OK;
+  if (status == NATS_OK) {
+    link_->connected = true;  // before threads of the library may say otherwise
+    const natsStatus result = natsConnection_Connect(&connection, raw);
+    connection_.reset(connection);
+    if (result != NATS_OK) {
+      link_->connected = false;
+      link_->refused = result == NATS_CONNECTION_AUTH_FAILED;
+      link_->closed = true;
+    }
+    if (result == NATS_INVALID_ARG) status = result;  // which another attempt does not change
+  }
   if (status != NATS_OK) *why = natsStatus_GetText(status);
   return status == NATS_OK;
 }

@@ -43,7 +43,8 @@ class Store {
   Store(const Store&) = delete;
   Store& operator=(const Store&) = delete;
 
-  // Begins to connect and returns at once. False: the options are wrong; `why` says what.
+  // Tries to connect, for about a second at most. If the store does not answer, Poll() tries again.
+  // False: the options are wrong; `why` says what.
   [[nodiscard]] virtual bool Open(std::string* why) = 0;
   // True while there is a connection. It is made again after a loss.
   [[nodiscard]] virtual bool connected() = 0;
