@@ -11,8 +11,8 @@ import sys
 import tempfile
 import time
 
-from cluster_testing import NATS, NatsServer, Node, PERFORMANCE, wait_until
-from furrow_testing import furrow, solve, spawn
+from cluster_testing import NATS, NatsServer, Node, PERFORMANCE
+from furrow_testing import furrow, solve, spawn, wait_until
 from processes import cpu_seconds, resident_kib
 
 SECONDS = 15

@@ -8,8 +8,8 @@ import sys
 import threading
 import time
 
-from cluster_testing import NATS, NatsServer, Node, Performer, Viewer, Wire, wait_until
-from furrow_testing import finish, missing, reorderings, repetitions, spawn
+from cluster_testing import NATS, NatsServer, Node, Performer, Viewer, Wire
+from furrow_testing import finish, missing, reorderings, repetitions, spawn, wait_until
 
 BEFORE = 60  # frames before each failure: a second
 AFTER = 120

@@ -13,22 +13,10 @@ import time
 import urllib.error
 import urllib.request
 
-from furrow_testing import GUARD, SHARE, Daemon, free_port, spawn
+from furrow_testing import GUARD, SHARE, Daemon, free_port, spawn, wait_until
 
 PERFORMANCE = SHARE / "recordings" / "performance.bvh"
 NATS = shutil.which("nats-server") or shutil.which("nats-server", path="/usr/sbin")
-
-
-def wait_until(condition, what):
-    """Calls `condition` until it is true, and returns its value."""
-    deadline = time.monotonic() + GUARD
-    pause = threading.Event()
-    while time.monotonic() < deadline:
-        value = condition()
-        if value:
-            return value
-        pause.wait(0.05)
-    raise AssertionError(f"this never happened: {what}")
 
 
 class NatsServer:

@@ -11,6 +11,8 @@ import shlex
 import signal
 import socket
 import subprocess
+import threading
+import time
 import unittest
 import zlib
 
@@ -129,6 +131,18 @@ def finish(process):
     """Waits for a spawned program and returns its exit code, stdout and stderr."""
     out, err = process.communicate(timeout=GUARD)
     return process.returncode, out, err.decode()
+
+
+def wait_until(condition, what):
+    """Calls `condition` until it is true, and returns its value."""
+    deadline = time.monotonic() + GUARD
+    pause = threading.Event()
+    while time.monotonic() < deadline:
+        value = condition()
+        if value:
+            return value
+        pause.wait(0.05)
+    raise AssertionError(f"this never happened: {what}")
 
 
 def jpeg_size(data):

@@ -4,12 +4,13 @@
 import contextlib
 import pathlib
 import shutil
+import signal
 import subprocess
 import tempfile
 import unittest
 
 from furrow_testing import (SHARE, SOURCE, Daemon, Table, finish, furrow, jpeg_size, needs_shared, png_size, solve,
-                            spawn, spawn_watch, worst_difference)
+                            spawn, spawn_watch, wait_until, worst_difference)
 
 PERFORMANCE = SHARE / "recordings" / "performance.bvh"
 TOLERANCE = 1e-3
@@ -74,7 +75,11 @@ class StreamTest(unittest.TestCase):
             watchers = [spawn("frames", daemon.tcp, "--subject", "ada", "--wait", "--out", jpegs, "--size", "160x120"),
                         spawn("frames", daemon.tcp, "--subject", "ada", "--wait", "--out", pngs, "--size", "96x96",
                               "--format", "png", "--view", "weights", "--camera", "three_quarter")]
-            furrow("play", PERFORMANCE, "--to", daemon.udp, "--subject", "ada", check=0)
+            player = spawn("play", PERFORMANCE, "--to", daemon.udp, "--subject", "ada", "--loop")
+            wait_until(lambda: all(out.exists() and len(list(out.iterdir())) > 3 for out in (jpegs, pngs)),
+                       "pictures of both watchers")
+            player.send_signal(signal.SIGINT)
+            finish(player)
             for watcher in watchers:
                 code, _, err = finish(watcher)
                 self.assertEqual(code, 0, err)
