@@ -31,8 +31,6 @@ class FoldProfile {
   [[nodiscard]] float Amplitude(float compression) const;
 
  private:
-  [[nodiscard]] float SolveAmplitude(float compression) const;
-
   float w2_ = 1.0f;
   float mean_ = 0.0f;
   float scale_ = 1.0f;
