@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <set>
 #include <string>
 #include <vector>
@@ -31,13 +32,29 @@ RoundedPlace PlaceOf(const vec3& p) {
   return {std::lround(p.x * 1e5), std::lround(p.y * 1e5), std::lround(p.z * 1e5)};
 }
 
+// A body with its clothes.
+struct Dressed {
+  explicit Dressed(int level) : shape({.level = level}, skeleton, DefaultHead()) {}
+
+  const wrinkle::Skeleton skeleton = MakeSkeleton();
+  const BodyShape shape;
+  const QuadNet shirt = MakeShirt(shape);
+  const QuadNet trousers = MakeTrousers(shape);
+  const Clothes clothes = MakeClothes(shape);
+};
+
+// Made once per level of detail, because it takes seconds.
+const Dressed& DressedAt(int level) {
+  static std::map<int, std::unique_ptr<const Dressed>> made;
+  std::unique_ptr<const Dressed>& found = made[level];
+  if (found == nullptr) found = std::make_unique<const Dressed>(level);
+  return *found;
+}
+
 class BodyTest : public ::testing::TestWithParam<int> {
  protected:
-  BodyShape Shape(BodyParameters parameters = {}) const {
-    parameters.level = GetParam();
-    return BodyShape(parameters, skeleton_, DefaultHead());
-  }
-  wrinkle::Skeleton skeleton_ = MakeSkeleton();
+  const Dressed& body_ = DressedAt(GetParam());
+  const wrinkle::Skeleton& skeleton_ = body_.skeleton;
 };
 
 // The rims of a surface: the positions of edges that belong to one triangle only, with counts.
@@ -58,9 +75,8 @@ std::map<RoundedPlace, int> Rims(const character::Mesh& mesh) {
 }
 
 TEST_P(BodyTest, ShirtAndSleevesAreOneSurface) {
-  const BodyShape shape = Shape();
   character::Mesh shirt;
-  AppendNet(MakeShirt(shape), &shirt);
+  AppendNet(body_.shirt, &shirt);
   // Trunk and sleeves are open only at the hem and the cuffs. The collar has rims above the
   // neckline.
   for (const auto& [place, count] : Rims(shirt)) {
@@ -74,7 +90,7 @@ TEST_P(BodyTest, ShirtAndSleevesAreOneSurface) {
 
 TEST_P(BodyTest, TrousersAreSewnBetweenTheLegs) {
   character::Mesh trousers;
-  AppendNet(MakeTrousers(Shape()), &trousers);
+  AppendNet(body_.trousers, &trousers);
   for (const auto& [place, count] : Rims(trousers)) {
     const float y = static_cast<float>(place[1]) * 1e-5f;
     EXPECT_TRUE(y < 0.1f || y > 1.0f) << y;
@@ -83,9 +99,8 @@ TEST_P(BodyTest, TrousersAreSewnBetweenTheLegs) {
 
 // Singular values of each triangle's map from cloth to atlas, relative to its scale.
 TEST_P(BodyTest, ClothUnwrapsWithLittleStretch) {
-  const BodyShape shape = Shape();
-  QuadNet net = MakeShirt(shape);
-  Join(MakeTrousers(shape), &net);
+  QuadNet net = body_.shirt;
+  Join(body_.trousers, &net);
   FlattenPanels(&net);
   double area = 0.0, stretched = 0.0;
   for (const std::array<int, 4>& quad : net.quads) {
@@ -113,7 +128,7 @@ TEST_P(BodyTest, ClothUnwrapsWithLittleStretch) {
 }
 
 TEST_P(BodyTest, SeamsStayClosed) {
-  const Clothes clothes = MakeClothes(Shape());
+  const Clothes& clothes = body_.clothes;
   ASSERT_EQ(clothes.vertex_panels.size(), clothes.mesh.vertices.size());
   ASSERT_EQ(clothes.panels.size(), static_cast<std::size_t>(kNumClothPanels));
   std::map<RoundedPlace, const character::Vertex*> first;
@@ -140,8 +155,7 @@ float ShareOf(const Influences& skin, int joint) {
 // Along each edge of the clothes the weight of a joint changes only by a fraction, so that the
 // cloth bends smoothly.
 TEST_P(BodyTest, ClothSkinWeightsAreSmooth) {
-  const BodyShape shape = Shape();
-  for (const QuadNet& net : {MakeShirt(shape), MakeTrousers(shape)}) {
+  for (const QuadNet& net : {body_.shirt, body_.trousers}) {
     const std::vector<std::vector<int>> neighbours = Neighbours(net);
     float steepest = 0.0f;
     for (std::size_t i = 0; i < net.points.size(); ++i) {
@@ -158,10 +172,8 @@ TEST_P(BodyTest, ClothSkinWeightsAreSmooth) {
 
 // At least eight rings of edges lie within 10 cm of each elbow and knee.
 TEST_P(BodyTest, LimbsHaveEdgeRingsAtTheirBends) {
-  const BodyShape shape = Shape();
-  const Clothes clothes = MakeClothes(shape);
   std::set<long> elbow, knee;
-  for (const character::Vertex& vertex : clothes.mesh.vertices) {
+  for (const character::Vertex& vertex : body_.clothes.mesh.vertices) {
     const vec3& p = vertex.position;
     if (std::abs(p.x - 0.455f) < 0.1f) elbow.insert(std::lround(p.x * 500.0f));
     if (std::abs(p.y - 0.495f) < 0.1f && std::abs(p.x) < 0.2f)
@@ -217,21 +229,19 @@ TEST_P(BodyTest, HandsAreOpenOnlyAtTheWrist) {
 INSTANTIATE_TEST_SUITE_P(Levels, BodyTest, ::testing::Values(0, 1));
 
 TEST(GeneratorBody, BaseLevelHasAboutEightThousandTriangles) {
-  const wrinkle::Skeleton skeleton = MakeSkeleton();
-  const BodyShape shape({.level = 0}, skeleton, DefaultHead());
+  const Dressed& body = DressedAt(0);
   character::Mesh hands;
-  AddHands(shape, &hands);
-  const std::size_t indices = MakeClothes(shape).mesh.indices.size() +
-                              MakeLeather(shape).indices.size() + hands.indices.size();
+  AddHands(body.shape, &hands);
+  const std::size_t indices = body.clothes.mesh.indices.size() +
+                              MakeLeather(body.shape).indices.size() + hands.indices.size();
   EXPECT_GT(indices / 3, 7000u);
   EXPECT_LT(indices / 3, 10000u);
 }
 
 TEST(GeneratorBody, ParametersChangeTheBody) {
-  const wrinkle::Skeleton skeleton = MakeSkeleton();
-  const BodyShape man({.level = 0}, skeleton, DefaultHead());
-  const BodyShape other({.waist = 1.1f, .hips = 1.12f, .bust = 0.03f, .level = 0}, skeleton,
-                        DefaultHead());
+  const BodyShape& man = DressedAt(0).shape;
+  const BodyShape other({.waist = 1.1f, .hips = 1.12f, .bust = 0.03f, .level = 0},
+                        DressedAt(0).skeleton, DefaultHead());
   const auto front = [](const BodyShape& shape, float y) {
     return CastOut([&](const vec3& p) { return shape.Shirt(p); }, {0, y, 0}, {0, 0, 1}, 0.4f).z;
   };
@@ -241,9 +251,7 @@ TEST(GeneratorBody, ParametersChangeTheBody) {
 
 // The two sides of a bend have separate masks, and each mask is full somewhere.
 TEST(GeneratorBody, MasksDistinguishInnerFromOuter) {
-  const wrinkle::Skeleton skeleton = MakeSkeleton();
-  const BodyShape shape({.level = 0}, skeleton, DefaultHead());
-  const auto masks = PaintClothMasks(MakeClothes(shape), 256);
+  const auto masks = PaintClothMasks(DressedAt(0).clothes, 256);
   for (std::size_t i = 0; i < masks.size(); ++i) {
     const character::Picture& mask = masks[i];
     ASSERT_EQ(mask.name, kClothMaskNames[i]);
