@@ -62,9 +62,10 @@ constexpr CounterInfo kCounters[] = {
     {Counter::kTlsPlain, "furrow_tls_plain_total",
      "Connections refused because the client does not speak TLS."},
     {Counter::kTlsSlow, "furrow_tls_slow_total",
-     "Connections refused because the TLS handshake took too long."},
+     "Connections refused because the TLS handshake took too long, or others waited for it."},
     {Counter::kTlsBusy, "furrow_tls_busy_total",
-     "Connections refused because a host, or all hosts, began too many TLS handshakes."},
+     "Connections refused because a host, or all hosts, began too many TLS handshakes, or waited "
+     "too long for their turn."},
     {Counter::kTlsOldVersion, "furrow_tls_old_version_total",
      "TLS handshakes refused because the client does not know TLS 1.3."},
     {Counter::kTlsWrongProtocol, "furrow_tls_wrong_protocol_total",

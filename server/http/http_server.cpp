@@ -23,8 +23,8 @@
 #include "base/status.h"
 #include "server/core/within_memory.h"
 #include "server/http/http_session.h"
-#include "server/http/request/web_stream.h"
-#include "server/http/web_net.h"
+#include "server/http/stream/web_net.h"
+#include "server/http/stream/web_stream.h"
 #include "server/net/door/door.h"
 #include "server/net/door/handshake_gate.h"
 #include "server/net/run_loop.h"
@@ -123,15 +123,19 @@ struct HttpServer::Impl {
   [[nodiscard]] HandshakeGate<WebNet>::Parts GateParts();
   void Admit(tcp::socket socket, const std::string& host);
   void MakeRoom(const std::string& host, bool any_host, RoomRequest* request);
-  net::awaitable<void> Serve(tcp::socket socket, std::string host);
+  void Begin(tcp::socket socket, const std::string& host, HandshakeGate<WebNet>::Place place);
+  void End(const std::string& host);
+  [[nodiscard]] bool IsOpenFor(const WebStream& stream) const;
+  net::awaitable<void> Serve(tcp::socket socket, std::string host,
+                             HandshakeGate<WebNet>::Place place);
   void Run();
   // Ends the daemon, by an exception of the hub's loop.
   void EndHub(const std::exception_ptr& error);
 
   WebContext context;  // outlives the loop; its connections use it
   const std::function<std::filesystem::path()> find_character;
-  HandshakeGate<WebNet> handshakes{GateParts()};
   std::shared_ptr<net::io_context> loop = std::make_shared<net::io_context>(1);
+  HandshakeGate<WebNet> handshakes{*loop, GateParts()};
   Door<WebNet> door{*loop, DoorParts()};
   std::thread thread;
 };
@@ -154,16 +158,43 @@ Door<WebNet>::Parts HttpServer::Impl::DoorParts() {
 
 // The gate makes no handshakes without a certificate.
 HandshakeGate<WebNet>::Parts HttpServer::Impl::GateParts() {
-  return {.metrics = context.metrics,
-          .context = [this] { return context.tls->for_web(); },
-          .answer_plain = RefusePlain};
+  return {
+      .metrics = context.metrics,
+      .places = context.tls != nullptr ? &context.tls->places() : nullptr,
+      .context = [this] { return context.tls->for_web(); },
+      .answer_plain = RefusePlain,
+      .begin =
+          [this](tcp::socket socket, const std::string& host, HandshakeGate<WebNet>::Place place) {
+            Begin(std::move(socket), host, std::move(place));
+          },
+      .ended = [this](const std::string& host) { End(host); }};
 }
 
 // The host has a place for the connection.
 void HttpServer::Impl::Admit(tcp::socket socket, const std::string& host) {
   context.metrics->Add(Counter::kHttpConnections);
+  const bool speaks_tls = context.tls != nullptr && context.tls->enabled();
+  speaks_tls ? handshakes.Enter(std::move(socket), host) : Begin(std::move(socket), host, nullptr);
+  ++context.connections;  // after what may throw
+}
+
+// `place`: the connection begins with a handshake; null: it does not.
+void HttpServer::Impl::Begin(tcp::socket socket, const std::string& host,
+                             HandshakeGate<WebNet>::Place place) {
   // Detached is safe: Serve() lets no exception out, and the context outlives the loop.
-  net::co_spawn(*loop, Serve(std::move(socket), host), net::detached);
+  net::co_spawn(*loop, Serve(std::move(socket), host, std::move(place)), net::detached);
+}
+
+// A connection that Admit() has let in has ended.
+void HttpServer::Impl::End(const std::string& host) {
+  --context.connections;
+  door.FreePlace(host);
+}
+
+// The client of a new connection over TLS need not show who it is, or has done so.
+bool HttpServer::Impl::IsOpenFor(const WebStream& stream) const {
+  const bool needs_token = context.gate != nullptr && context.gate->required();
+  return !needs_token && (!context.tls->asks_clients() || stream.has_client_certificate());
 }
 
 // The hub knows which connections are without use, and ends the one that has been so for longest.
@@ -175,19 +206,21 @@ void HttpServer::Impl::MakeRoom(const std::string& host, bool any_host, RoomRequ
   });
 }
 
-// `host`: of the client, which has a place.
-net::awaitable<void> HttpServer::Impl::Serve(tcp::socket socket, std::string host) {
-  ++context.connections;
+// `host`: of the client, which has a place. `place`: for its handshake; null: it makes none.
+net::awaitable<void> HttpServer::Impl::Serve(tcp::socket socket, std::string host,
+                                             HandshakeGate<WebNet>::Place place) {
   try {
     WebStream stream(std::move(socket));
-    bool begins = context.tls == nullptr || !context.tls->enabled();
-    if (!begins) begins = co_await handshakes.Pass(stream, host);
+    bool begins = place == nullptr;
+    if (!begins) {
+      begins = co_await handshakes.Pass(stream, std::move(place));
+      if (begins && IsOpenFor(stream)) stream.Admit();
+    }
     if (begins) co_await ServeConnection(std::move(stream), &context);
   } catch (const std::exception& error) {  // such as out of memory: affects this connection only
     spdlog::error("a web connection failed: {}", error.what());
   }
-  --context.connections;
-  door.FreePlace(host);
+  End(host);
 }
 
 void HttpServer::Impl::EndHub(const std::exception_ptr& error) {

@@ -197,7 +197,8 @@ class HttpSession {
     if (!error) {
       if (skips_body) SkipBodyLater(kMaxWebMessageBytes);
       request_ = parser.release();
-      if (skips_body) request_.keep_alive(false);
+      if (!access_.admitted()) buffer_.shrink_to_fit();  // strangers make the daemon hold little
+      if (skips_body || stream_.MustMakeRoom()) request_.keep_alive(false);
       context_->metrics->Add(Counter::kHttpRequests);
       co_return true;
     }
@@ -234,6 +235,7 @@ class HttpSession {
     Result<Access> access = AccessOf(request, context_->gate, client_.shielded, &*url_);
     if (access.ok() && access->admitted()) {
       access_ = *std::move(access);
+      stream_.Admit();
       return std::nullopt;
     }
     if (IsForAll(url_->path)) return std::nullopt;
@@ -254,7 +256,7 @@ class HttpSession {
   // Reads the body of a refused request away. Closing with unread input would reset the connection,
   // and the client might not get the reply.
   net::awaitable<void> SkipBody() {
-    std::array<char, 16384> unused;
+    std::array<char, 4096> unused;
     stream_.expires_after(access_.admitted() ? Time(kWebDeadline) : kSkipTime);
     beast::error_code error;
     unread_bytes_ -= std::min<std::uint64_t>(unread_bytes_, buffer_.size());

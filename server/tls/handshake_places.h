@@ -2,33 +2,83 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <memory>
+#include <mutex>
+#include <set>
 #include <string>
-
-#include "server/core/time.h"
-#include "server/shares/fair_share.h"
+#include <utility>
 
 namespace furrow::server {
 
-// Bounds the handshakes that are under way at the same time: each holds about 40 KiB before the
-// client has shown who it is. A host gets another place only while it holds fewer than are free.
-// Not thread-safe.
+// Bounds the TLS connections of strangers: clients whose handshake goes on, or that must still show
+// who they are. Each makes OpenSSL hold 44 KiB or less, so each host has one place, for all ports
+// together, and the others of the host wait as bare sockets (BareSockets). Thread-safe.
 class HandshakePlaces {
  public:
-  static constexpr std::size_t kPlaces = 64;
-  // How often those ask again who have found no place. A handshake takes a few milliseconds.
-  static constexpr auto kPoll = std::chrono::milliseconds(5);
+  // Of all hosts. A place takes at most 64 KiB with all that belongs to it, so all take 16 MiB.
+  static constexpr std::size_t kPlaces = 256;
 
-  // A place, which is given back with the last copy. It may outlive this object.
-  using Place = std::shared_ptr<void>;
-  // Null: no place is free for the host.
-  [[nodiscard]] Place Enter(const std::string& host) {
-    if (!shares_->Enter(host)) return nullptr;
-    return {shares_.get(), [shares = shares_, host](void*) { shares->Leave(host); }};
+ private:
+  struct Shared {
+    std::mutex mutex;
+    std::set<std::string> held;          // hosts with a place
+    std::map<std::string, int> waiting;  // hosts without one, by host; none is 0
+  };
+
+ public:
+  // A place of a host, until it is destroyed. It may outlive the HandshakePlaces.
+  class Place {
+   public:
+    Place(std::shared_ptr<Shared> shared, std::string host)
+        : shared_(std::move(shared)), host_(std::move(host)) {}
+    ~Place() {
+      const std::lock_guard lock(shared_->mutex);
+      shared_->held.erase(host_);
+    }
+    Place(const Place&) = delete;
+    Place& operator=(const Place&) = delete;
+
+    // Somebody waits until the place is free: a client of the host, or any one if all places are
+    // taken.
+    [[nodiscard]] bool IsWanted() const {
+      const std::lock_guard lock(shared_->mutex);
+      if (shared_->waiting.empty()) return false;
+      return shared_->held.size() >= kPlaces || shared_->waiting.contains(host_);
+    }
+
+   private:
+    const std::shared_ptr<Shared> shared_;
+    const std::string host_;
+  };
+
+  // Null: the host has a place, or none is left.
+  [[nodiscard]] std::unique_ptr<Place> Enter(const std::string& host) const {
+    const std::lock_guard lock(shared_->mutex);
+    if (shared_->held.size() >= kPlaces || shared_->held.contains(host)) return nullptr;
+    auto place = std::make_unique<Place>(shared_, host);
+    shared_->held.insert(host);
+    return place;
+  }
+
+  // A client of the host waits for a place as long as the result lives.
+  using Waiting = std::shared_ptr<void>;
+  [[nodiscard]] Waiting Wait(const std::string& host) const {
+    {
+      const std::lock_guard lock(shared_->mutex);
+      ++shared_->waiting[host];
+    }
+    return {shared_.get(), [shared = shared_, host](void*) { StopWaiting(*shared, host); }};
   }
 
  private:
-  std::shared_ptr<FairShare> shares_ = std::make_shared<FairShare>(kPlaces);
+  static void StopWaiting(Shared& shared, const std::string& host) {
+    const std::lock_guard lock(shared.mutex);
+    const auto count = shared.waiting.find(host);
+    if (--count->second == 0) shared.waiting.erase(count);
+  }
+
+  const std::shared_ptr<Shared> shared_ = std::make_shared<Shared>();
 };
 
 }  // namespace furrow::server

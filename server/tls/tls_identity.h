@@ -6,6 +6,7 @@
 
 #include "base/status.h"
 #include "server/core/file_watch.h"
+#include "server/tls/handshake_places.h"
 #include "server/tls/tls_context.h"
 #include "server/tls/tls_files.h"
 
@@ -40,6 +41,8 @@ class TlsIdentity {
   // The present contexts, with which new connections begin. Only if enabled().
   [[nodiscard]] TlsContext for_messages() const;
   [[nodiscard]] TlsContext for_web() const;
+  // The places for the handshakes of all ports.
+  [[nodiscard]] const HandshakePlaces& places() const { return places_; }
 
  private:
   [[nodiscard]] bool FilesChanged();
@@ -52,6 +55,7 @@ class TlsIdentity {
   bool changed_ = false;  // and not read yet
   mutable std::mutex mutex_;
   TlsContexts contexts_;  // guarded by mutex_
+  const HandshakePlaces places_;
 };
 
 }  // namespace furrow::server

@@ -70,7 +70,7 @@ CONFINED = [
     (r"assimp/", {"authoring/assimp"}),
     (r"sodium(\.h|/)", {"protocol/secure/crypto"}),
     (r"nats/", {"server/cluster/nats"}),
-    (r"openssl/", {"server/tls", "server/net/tcp", "server/http/request", "client/cpp"}),
+    (r"openssl/", {"server/tls", "client/cpp"}),
     (r"(zstd|lz4frame)\.h", {"motion/mcap"}),
 ]
 

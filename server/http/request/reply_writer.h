@@ -9,8 +9,8 @@
 #include <boost/beast/http/write.hpp>
 
 #include "server/http/request/api_types.h"
-#include "server/http/request/beast.h"
-#include "server/http/request/web_stream.h"
+#include "server/http/stream/beast.h"
+#include "server/http/stream/web_stream.h"
 #include "server/shares/waiting_bytes.h"
 
 namespace furrow::server {

@@ -5,8 +5,8 @@
 
 #include "base/status.h"
 #include "server/http/request/api_types.h"
-#include "server/http/request/beast.h"
 #include "server/http/request/url.h"
+#include "server/http/stream/beast.h"
 #include "server/session/access/token_gate.h"
 
 namespace furrow::server {

@@ -12,10 +12,10 @@
 #include "server/core/metrics.h"
 #include "server/core/time.h"
 #include "server/http/request/api_types.h"
-#include "server/http/request/beast.h"
 #include "server/http/request/url.h"
 #include "server/http/request/web_context.h"
-#include "server/http/request/web_stream.h"
+#include "server/http/stream/beast.h"
+#include "server/http/stream/web_stream.h"
 #include "server/playback/recording_loader.h"
 #include "server/playback/uploaded_file.h"
 

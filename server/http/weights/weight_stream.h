@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "server/http/request/beast.h"
 #include "server/http/request/web_context.h"
-#include "server/http/request/web_stream.h"
+#include "server/http/stream/beast.h"
+#include "server/http/stream/web_stream.h"
 #include "server/http/weights/weight_query.h"
 
 namespace furrow::server {

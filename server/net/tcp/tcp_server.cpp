@@ -63,7 +63,7 @@ TcpServer::TcpServer(asio::io_context& io, const Limits& limits, Hub* hub, Metri
       metrics_(metrics),
       waiting_(waiting),
       tls_(tls),
-      handshakes_(GateParts()),
+      handshakes_(io, GateParts()),
       door_(io, DoorParts()) {}
 
 Door<AsioNet>::Parts TcpServer::DoorParts() {
@@ -91,13 +91,20 @@ Door<AsioNet>::Parts TcpServer::DoorParts() {
 }
 
 HandshakeGate<AsioNet>::Parts TcpServer::GateParts() {
-  return {.metrics = metrics_,
-          .context = [this] { return tls_->for_messages(); },
-          .answer_plain =
-              [this](tcp::socket& socket) {
-                Refuse(socket, protocol::ErrorCode::kUnsupported,
-                       "this port speaks TLS only: connect with furrow://HOST?tls=1 or --tls");
-              }};
+  return {
+      .metrics = metrics_,
+      .places = &tls_->places(),
+      .context = [this] { return tls_->for_messages(); },
+      .answer_plain =
+          [this](tcp::socket& socket) {
+            Refuse(socket, protocol::ErrorCode::kUnsupported,
+                   "this port speaks TLS only: connect with furrow://HOST?tls=1 or --tls");
+          },
+      .begin =
+          [this](tcp::socket socket, const std::string& host, HandshakeGate<AsioNet>::Place place) {
+            BeginHandshake(std::move(socket), host, std::move(place));
+          },
+      .ended = [this](const std::string& host) { door_.FreePlace(host); }};
 }
 
 Status TcpServer::Adopt(const ServiceManager::Listener& listener) { return door_.Adopt(listener); }
@@ -113,18 +120,19 @@ void TcpServer::SetLimits(const Limits& limits) {
 
 void TcpServer::Start() { StartCriticalTask(io_, door_.Accept()); }
 
-// Begins a session or a handshake. The host has a place for it.
+// Begins a session, perhaps after a handshake. The host has a place for it.
 void TcpServer::Admit(tcp::socket socket, const std::string& host) {
+  if (tls_->enabled()) return handshakes_.Enter(std::move(socket), host);
+  Begin(std::make_shared<StreamSocket>(std::move(socket)), host);
+}
+
+void TcpServer::BeginHandshake(tcp::socket socket, const std::string& host,
+                               HandshakeGate<AsioNet>::Place place) {
   auto stream = std::make_shared<StreamSocket>(std::move(socket));
-  if (!tls_->enabled()) return Begin(std::move(stream), host);
-  asio::co_spawn(
-      io_,
-      [this, stream = std::move(stream), host]() mutable {
-        return BeginWithTls(std::move(stream), host);
-      },
-      [this, host](const std::exception_ptr& failed, bool begun) {
-        if (failed || !begun) door_.FreePlace(host);
-      });
+  asio::co_spawn(io_, BeginWithTls(std::move(stream), host, std::move(place)),
+                 [this, host](const std::exception_ptr& failed, bool begun) {
+                   if (failed || !begun) door_.FreePlace(host);
+                 });
 }
 
 // The session has the place of the host once it is in `sessions_`.
@@ -212,10 +220,12 @@ void TcpServer::Resume(const SavedConnection& saved, int number, Hub::ResumedPee
 
 // Returns whether a session has begun.
 asio::awaitable<bool> TcpServer::BeginWithTls(std::shared_ptr<StreamSocket> stream,
-                                              std::string host) {
-  const bool passed = co_await handshakes_.Pass(*stream, host);
+                                              std::string host,
+                                              HandshakeGate<AsioNet>::Place place) {
+  const bool passed = co_await handshakes_.Pass(*stream, std::move(place));
   // While the handshake went on, the daemon may have begun to shut down.
   if (!passed || door_.is_closed()) co_return false;
+  if (!hub_->RequiresToken()) stream->Admit();
   Begin(std::move(stream), host);
   co_return true;
 }
@@ -227,6 +237,7 @@ void TcpServer::Refuse(tcp::socket& socket, protocol::ErrorCode code, const std:
 
 void TcpServer::Drain() {
   door_.Close();
+  handshakes_.Close();
   for (const auto& session : AllSessions()) {
     session->is_saved() ? session->Close() : session->CloseAfterFlush(/*linger=*/false);
   }

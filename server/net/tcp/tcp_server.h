@@ -82,7 +82,10 @@ class TcpServer {
     return {sessions_.begin(), sessions_.end()};
   }
   std::shared_ptr<TcpSession> Add(std::shared_ptr<StreamSocket> stream, const std::string& host);
-  asio::awaitable<bool> BeginWithTls(std::shared_ptr<StreamSocket> stream, std::string host);
+  void BeginHandshake(asio::ip::tcp::socket socket, const std::string& host,
+                      HandshakeGate<AsioNet>::Place place);
+  asio::awaitable<bool> BeginWithTls(std::shared_ptr<StreamSocket> stream, std::string host,
+                                     HandshakeGate<AsioNet>::Place place);
   void Refuse(asio::ip::tcp::socket& socket, protocol::ErrorCode code, const std::string& why);
 
   asio::io_context& io_;

@@ -327,6 +327,7 @@ int TcpSession::SendFrame(std::uint64_t key, std::span<const std::uint8_t> messa
 // Called while this session reads a message.
 void TcpSession::OnAdmitted() {
   is_admitted_ = true;
+  stream_->Admit();
   frames_.SetMaxFrameBytes(protocol::kMaxRequestBytes);
 }
 

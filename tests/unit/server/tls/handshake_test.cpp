@@ -2,7 +2,9 @@
 #include "server/tls/handshake.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -76,23 +78,56 @@ TEST(HandshakeBudget, TwoHostsDoNotShutOutAThirdOne) {
   EXPECT_EQ(taken, HandshakeBudget::kReservePerHost);
 }
 
-TEST(HandshakePlaces, AHostLeavesPlacesToOthersAndGivesItsOwnBack) {
-  HandshakePlaces places;
-  std::vector<HandshakePlaces::Place> held;
-  while (HandshakePlaces::Place place = places.Enter("192.0.2.1")) held.push_back(place);
-  EXPECT_EQ(held.size(), HandshakePlaces::kPlaces / 2);
+TEST(HandshakePlaces, AHostHasOne) {
+  const HandshakePlaces places;
+  auto one = places.Enter("192.0.2.1");
+  ASSERT_NE(one, nullptr);
+  EXPECT_EQ(places.Enter("192.0.2.1"), nullptr);
   EXPECT_NE(places.Enter("192.0.2.2"), nullptr);
+  one.reset();
+  EXPECT_NE(places.Enter("192.0.2.1"), nullptr) << "the place came back";
+}
+
+TEST(HandshakePlaces, APlaceIsWantedByThoseOfItsHost) {
+  const HandshakePlaces places;
+  const auto place = places.Enter("192.0.2.1");
+  const auto other = places.Enter("192.0.2.2");
+  EXPECT_FALSE(place->IsWanted());
+  auto first = places.Wait("192.0.2.1");
+  auto second = places.Wait("192.0.2.1");
+  EXPECT_TRUE(place->IsWanted());
+  EXPECT_FALSE(other->IsWanted());
+  first.reset();
+  EXPECT_TRUE(place->IsWanted());
+  second.reset();
+  EXPECT_FALSE(place->IsWanted());
+}
+
+TEST(HandshakePlaces, EveryPlaceIsWantedWhenNoneIsLeft) {
+  const HandshakePlaces places;
+  std::vector<std::unique_ptr<HandshakePlaces::Place>> held;
+  for (std::size_t i = 0; i < HandshakePlaces::kPlaces; ++i) {
+    held.push_back(places.Enter(std::to_string(i)));
+    ASSERT_NE(held.back(), nullptr);
+  }
+  EXPECT_EQ(places.Enter("192.0.2.1"), nullptr);
+  const auto waiting = places.Wait("192.0.2.1");
+  EXPECT_TRUE(held.front()->IsWanted());
   held.pop_back();
-  EXPECT_NE(places.Enter("192.0.2.1"), nullptr) << "a place came back";
+  EXPECT_FALSE(held.front()->IsWanted());
+  EXPECT_NE(places.Enter("192.0.2.1"), nullptr);
 }
 
 TEST(HandshakePlaces, APlaceMayOutliveThem) {
-  HandshakePlaces::Place place;
+  std::unique_ptr<HandshakePlaces::Place> place;
+  HandshakePlaces::Waiting waiting;
   {
-    HandshakePlaces places;
+    const HandshakePlaces places;
     place = places.Enter("192.0.2.1");
+    waiting = places.Wait("192.0.2.1");
   }
-  place.reset();  // must not touch what has gone
+  waiting.reset();  // must not touch what has gone
+  EXPECT_FALSE(place->IsWanted());
 }
 
 }  // namespace

@@ -3,11 +3,12 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <exception>
 #include <list>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <asio/awaitable.hpp>
@@ -29,12 +30,10 @@ namespace {
 
 using asio::ip::tcp;
 
-constexpr std::array<std::uint8_t, 5> kHello{22, 3, 1, 2, 0};  // the head of a ClientHello
-
 // A connection with a handshake that the test ends.
 struct Connection {
-  explicit Connection(asio::io_context& loop)
-      : client(loop), server(loop), end(loop, asio::steady_timer::time_point::max()) {}
+  Connection(asio::io_context& loop, tcp::socket accepted)
+      : server(std::move(accepted)), end(loop, asio::steady_timer::time_point::max()) {}
 
   tcp::socket& socket() { return server; }
   asio::awaitable<asio::error_code> Handshake(TlsContext) {
@@ -43,128 +42,222 @@ struct Connection {
     co_await end.async_wait(AsioNet::Redirect(ignored));
     co_return result;
   }
+  void Hold(std::shared_ptr<Stranger> held) { stranger = std::move(held); }
 
-  tcp::socket client;
   tcp::socket server;
   asio::steady_timer end;  // of the handshake, when it is cancelled
   asio::error_code result;
   bool begins = false;
   std::optional<bool> passed;
+  std::shared_ptr<Stranger> stranger;
 };
 
 class HandshakeGateTest : public testing::Test {
  protected:
-  // A connection at the gate.
-  Connection& Come() {
-    Connection& connection = connections.emplace_back(loop);
-    connection.client.connect(acceptor.local_endpoint());
-    acceptor.accept(connection.server);
-    asio::co_spawn(loop, gate.Pass(connection, host),
-                   [&connection](const std::exception_ptr& failed, bool passed) {
-                     EXPECT_TRUE(failed == nullptr);
-                     connection.passed = passed;
-                   });
-    return connection;
+  const std::string kHello{"\x16\x03\x01\x00\x02\x01\x02", 7};  // a whole record
+
+  HandshakeGate<AsioNet>::Parts Parts() {
+    return {.metrics = &metrics,
+            .places = &places,
+            .context =
+                [this] {
+                  ++contexts;
+                  return TlsContext();
+                },
+            .answer_plain =
+                [this](tcp::socket& socket) {
+                  ++plain_answers;
+                  asio::error_code ignored;
+                  socket.shutdown(tcp::socket::shutdown_send, ignored);
+                },
+            .begin =
+                [this](tcp::socket socket, const std::string& host,
+                       HandshakeGate<AsioNet>::Place place) {
+                  if (lacks_memory) throw std::bad_alloc();
+                  Connection& connection = connections.emplace_back(loop, std::move(socket));
+                  asio::co_spawn(loop, gate.Pass(connection, std::move(place)),
+                                 [&connection](const std::exception_ptr& failed, bool passed) {
+                                   EXPECT_TRUE(failed == nullptr);
+                                   connection.passed = passed;
+                                 });
+                  hosts.push_back(host);
+                },
+            .ended = [this](const std::string& host) { ended.push_back(host); }};
   }
-  Connection& ComeWithHello() {
-    Connection& connection = Come();
-    asio::write(connection.client, asio::buffer(kHello));
-    return connection;
+  // A client that comes to the gate and sends these bytes.
+  tcp::socket& Come(const std::string& host, const std::string& bytes) {
+    tcp::socket& client = clients.emplace_back(loop);
+    client.connect(acceptor.local_endpoint());
+    gate.Enter(acceptor.accept(), host);
+    asio::write(client, asio::buffer(bytes));
+    return client;
   }
-  [[nodiscard]] bool RunUntilItPassed(const Connection& connection) {
-    return RunUntil(loop, [&connection] { return connection.passed.has_value(); });
+  tcp::socket& ComeWithHello(const std::string& host = "a") { return Come(host, kHello); }
+  // The handshake that begins next.
+  Connection* AwaitBegin() {
+    const std::size_t number = connections.size() + 1;
+    const bool begun =
+        RunUntil(loop, [&] { return connections.size() == number && connections.back().begins; });
+    EXPECT_TRUE(begun);
+    return begun ? &connections.back() : nullptr;
+  }
+  // Lets the gate look a few times.
+  void RunALittle() {
+    for (int looks = 0; looks < 5; ++looks) loop.run_one_for(HandshakeGate<AsioNet>::kPoll);
+  }
+  // Ends the handshake. The place stays with the connection if it passes.
+  void End(Connection* connection) {
+    connection->end.cancel();
+    ASSERT_TRUE(RunUntil(loop, [&] { return connection->passed.has_value(); }));
   }
 
-  const std::string host = "127.0.0.1";
   Metrics metrics;
+  HandshakePlaces places;
   int plain_answers = 0;
   int contexts = 0;
-  HandshakeGate<AsioNet> gate{
-      HandshakeGate<AsioNet>::Parts{.metrics = &metrics,
-                                    .context =
-                                        [this] {
-                                          ++contexts;
-                                          return TlsContext();
-                                        },
-                                    .answer_plain =
-                                        [this](tcp::socket& socket) {
-                                          ++plain_answers;
-                                          asio::error_code ignored;
-                                          socket.shutdown(tcp::socket::shutdown_send, ignored);
-                                        }}};
+  bool lacks_memory = false;
+  std::vector<std::string> hosts;  // of handshakes that have begun
+  std::vector<std::string> ended;
   asio::io_context loop{1};
+  HandshakeGate<AsioNet> gate{loop, Parts()};
   tcp::acceptor acceptor{loop, tcp::endpoint(asio::ip::address_v4::loopback(), 0)};
+  std::list<tcp::socket> clients;
   std::list<Connection> connections;
 };
 
 TEST_F(HandshakeGateTest, AHandshakePasses) {
-  Connection& connection = ComeWithHello();
-  ASSERT_TRUE(RunUntil(loop, [&] { return connection.begins; }));
+  ComeWithHello();
+  Connection* const connection = AwaitBegin();
+  ASSERT_NE(connection, nullptr);
   EXPECT_EQ(contexts, 1);
   // The handshake reads what the gate has looked at.
-  std::array<std::uint8_t, kHello.size()> read{};
-  EXPECT_EQ(connection.server.available(), kHello.size());
-  EXPECT_EQ(connection.server.read_some(asio::buffer(read)), kHello.size());
-  EXPECT_EQ(read, kHello);
-  connection.end.cancel();
-  ASSERT_TRUE(RunUntilItPassed(connection));
-  EXPECT_TRUE(*connection.passed);
+  std::array<char, 7> read{};
+  EXPECT_EQ(connection->server.read_some(asio::buffer(read)), read.size());
+  EXPECT_EQ(std::string(read.data(), read.size()), kHello);
+  End(connection);
+  EXPECT_TRUE(*connection->passed);
   EXPECT_EQ(metrics.Get(Counter::kTlsHandshakes), 1u);
+  EXPECT_EQ(hosts, std::vector<std::string>{"a"});
+  EXPECT_TRUE(ended.empty());
 }
 
 TEST_F(HandshakeGateTest, AFailureIsCounted) {
-  Connection& connection = ComeWithHello();
-  connection.result = asio::error::eof;
-  ASSERT_TRUE(RunUntil(loop, [&] { return connection.begins; }));
-  connection.end.cancel();
-  ASSERT_TRUE(RunUntilItPassed(connection));
-  EXPECT_FALSE(*connection.passed);
+  ComeWithHello();
+  Connection* const connection = AwaitBegin();
+  ASSERT_NE(connection, nullptr);
+  connection->result = asio::error::eof;
+  End(connection);
+  EXPECT_FALSE(*connection->passed);
   EXPECT_EQ(metrics.Get(Counter::kTlsFailed), 1u);
   EXPECT_EQ(metrics.Get(Counter::kTlsHandshakes), 0u);
   EXPECT_EQ(metrics.Get(Counter::kTlsSlow), 0u);
+  EXPECT_NE(places.Enter("a"), nullptr) << "the place is free";
 }
 
 TEST_F(HandshakeGateTest, APlainClientGetsOneAnswerAndTimeToReadIt) {
-  Connection& connection = Come();
-  asio::write(connection.client, asio::buffer("GET / HTTP/1.1\r\n\r\n", 18));
+  tcp::socket& client = Come("a", "GET / HTTP/1.1\r\n\r\n");
   ASSERT_TRUE(RunUntil(loop, [this] { return plain_answers == 1; }));
-  EXPECT_FALSE(connection.passed.has_value()) << "it waits until the client closes";
+  RunALittle();
+  EXPECT_TRUE(ended.empty()) << "it waits until the client closes";
   asio::error_code error;
   char byte = 0;
-  connection.client.read_some(asio::buffer(&byte, 1), error);
+  client.read_some(asio::buffer(&byte, 1), error);
   EXPECT_EQ(error, asio::error::eof);
-  connection.client.close();
-  ASSERT_TRUE(RunUntilItPassed(connection));
-  EXPECT_FALSE(*connection.passed);
-  EXPECT_FALSE(connection.begins);
+  client.close();
+  ASSERT_TRUE(RunUntil(loop, [this] { return ended.size() == 1; }));
+  EXPECT_TRUE(connections.empty());
+  EXPECT_EQ(plain_answers, 1);
   EXPECT_EQ(metrics.Get(Counter::kTlsPlain), 1u);
 }
 
 TEST_F(HandshakeGateTest, AClientThatClosesAtOnceIsNoFailure) {
-  Connection& connection = Come();
-  connection.client.close();
-  ASSERT_TRUE(RunUntilItPassed(connection));
-  EXPECT_FALSE(*connection.passed);
-  EXPECT_FALSE(connection.begins);
+  Come("a", "").close();
+  ASSERT_TRUE(RunUntil(loop, [this] { return ended.size() == 1; }));
+  EXPECT_TRUE(connections.empty());
   EXPECT_EQ(plain_answers, 0);
   for (const Counter counter : {Counter::kTlsPlain, Counter::kTlsSlow, Counter::kTlsFailed}) {
     EXPECT_EQ(metrics.Get(counter), 0u);
   }
 }
 
-TEST_F(HandshakeGateTest, HandshakesWaitForAPlace) {
-  constexpr std::size_t kMost = HandshakePlaces::kPlaces / 2;  // of one host
-  std::vector<Connection*> under_way;
-  for (std::size_t i = 0; i < kMost; ++i) under_way.push_back(&ComeWithHello());
-  for (const Connection* each : under_way) {
-    ASSERT_TRUE(RunUntil(loop, [each] { return each->begins; }));
+TEST_F(HandshakeGateTest, HandshakesOfAHostBeginOneAfterTheOther) {
+  ComeWithHello();
+  Connection* const first = AwaitBegin();
+  ASSERT_NE(first, nullptr);
+  ComeWithHello();
+  RunALittle();
+  EXPECT_EQ(connections.size(), 1u);
+  // Another host need not wait.
+  ComeWithHello("b");
+  ASSERT_NE(AwaitBegin(), nullptr);
+  EXPECT_EQ(hosts.back(), "b");
+  // A stranger keeps its place until it has shown who it is.
+  End(first);
+  ASSERT_NE(first->stranger, nullptr);
+  RunALittle();
+  EXPECT_EQ(connections.size(), 2u);
+  EXPECT_TRUE(first->stranger->IsWanted());
+  first->stranger.reset();  // Admit()
+  ASSERT_NE(AwaitBegin(), nullptr);
+  EXPECT_EQ(hosts.back(), "a");
+}
+
+TEST_F(HandshakeGateTest, SilentClientsAndHalfMessagesKeepNobodyWaiting) {
+  for (int i = 0; i < 20; ++i) {
+    Come("a", "");
+    Come("a", kHello.substr(0, 4));
   }
-  Connection& last = ComeWithHello();
-  for (int polls = 0; polls < 3; ++polls) loop.run_one_for(HandshakePlaces::kPoll);
-  EXPECT_FALSE(last.begins);
-  under_way.front()->end.cancel();
-  ASSERT_TRUE(RunUntilItPassed(*under_way.front()));
-  EXPECT_TRUE(RunUntil(loop, [&last] { return last.begins; }));
+  ComeWithHello();
+  EXPECT_NE(AwaitBegin(), nullptr);
+}
+
+// A stranger that does not answer gives way to others of its host after StrangerPatience::kSilence.
+TEST_F(HandshakeGateTest, AStalledHandshakeGivesWayIfOthersWait) {
+  ComeWithHello();
+  Connection* const stalled = AwaitBegin();
+  ASSERT_NE(stalled, nullptr);
+  ComeWithHello();
+  ASSERT_TRUE(RunUntil(loop, [&] { return !stalled->server.is_open(); }));
+  stalled->result = asio::error::operation_aborted;
+  End(stalled);
+  EXPECT_FALSE(*stalled->passed);
+  EXPECT_EQ(metrics.Get(Counter::kTlsSlow), 1u);
+  EXPECT_NE(AwaitBegin(), nullptr);
+}
+
+TEST_F(HandshakeGateTest, AStrangerThatShowsNothingGivesWayIfOthersWait) {
+  ComeWithHello();
+  Connection* const stranger = AwaitBegin();
+  ASSERT_NE(stranger, nullptr);
+  End(stranger);
+  ComeWithHello();
+  ASSERT_TRUE(RunUntil(loop, [&] { return !stranger->server.is_open(); }));
+  EXPECT_EQ(metrics.Get(Counter::kConnectionsGaveWay), 1u);
+  EXPECT_EQ(metrics.Get(Counter::kTlsSlow), 0u);
+  stranger->stranger.reset();
+  EXPECT_NE(AwaitBegin(), nullptr);
+}
+
+TEST_F(HandshakeGateTest, AHostHasABudget) {
+  for (std::uint32_t i = 0; i <= HandshakeBudget::kPerHost; ++i) {
+    ComeWithHello();
+    ASSERT_TRUE(RunUntil(loop, [&] { return connections.size() == i + 1 || !ended.empty(); }));
+    if (!ended.empty()) break;
+    End(&connections.back());
+    connections.back().stranger.reset();
+  }
+  // On a slow machine the budget fills up meanwhile.
+  EXPECT_EQ(metrics.Get(Counter::kTlsBusy), ended.size());
+}
+
+TEST_F(HandshakeGateTest, LackOfMemoryEndsOneConnection) {
+  lacks_memory = true;
+  ComeWithHello();
+  ASSERT_TRUE(RunUntil(loop, [this] { return ended.size() == 1; }));
+  EXPECT_EQ(metrics.Get(Counter::kAllocationsFailed), 1u);
+  lacks_memory = false;
+  ComeWithHello();
+  EXPECT_NE(AwaitBegin(), nullptr);
 }
 
 }  // namespace

@@ -3,18 +3,16 @@
 
 #include <memory>
 
-#include "server/tls/handshake.h"
-
 namespace furrow::server {
 
-// Closes a socket at kHandshakeDeadline, unless the watch has ended before. For the sockets and
-// timers of both Asios: standalone and Boost. The socket must outlive the watch.
+// Closes a socket at a point in time, unless the watch has ended before. For the sockets and timers
+// of both Asios: standalone and Boost. The socket must outlive the watch.
 template <class Timer, class Socket>
-class HandshakeWatch {
+class SocketWatch {
  public:
-  explicit HandshakeWatch(Socket& socket)
+  SocketWatch(Socket& socket, typename Timer::time_point expires_at)
       : shared_(std::make_shared<Shared>(&socket)), timer_(socket.get_executor()) {
-    timer_.expires_after(kHandshakeDeadline);
+    timer_.expires_at(expires_at);
     timer_.async_wait([shared = shared_](const auto& cancelled) {
       if (cancelled || shared->socket == nullptr) return;
       shared->expired = true;
@@ -23,9 +21,9 @@ class HandshakeWatch {
     });
   }
   // The timer cancels itself, but may have queued its call already.
-  ~HandshakeWatch() { shared_->socket = nullptr; }
-  HandshakeWatch(const HandshakeWatch&) = delete;
-  HandshakeWatch& operator=(const HandshakeWatch&) = delete;
+  ~SocketWatch() { shared_->socket = nullptr; }
+  SocketWatch(const SocketWatch&) = delete;
+  SocketWatch& operator=(const SocketWatch&) = delete;
 
   [[nodiscard]] bool expired() const { return shared_->expired; }
 

@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/http/request/web_stream.h"
+#include "server/http/stream/web_stream.h"
 
 #include <array>
 #include <cstdint>
-
-#include <boost/asio/ssl/context.hpp>
-#include <openssl/ssl.h>
 
 #include "server/session/peers/peer_label.h"
 
 namespace furrow::server {
 
 bool WebStream::has_client_certificate() const {
-  return is_tls() && SSL_get0_peer_certificate(layers_->upper()->native_handle()) != nullptr;
+  return is_tls() && layers_->upper()->has_client_certificate();
 }
 
 bool WebStream::HasEnded() {
@@ -29,28 +26,25 @@ bool WebStream::HasEnded() {
 }
 
 net::awaitable<beast::error_code> WebStream::Handshake(TlsContext context) {
-  // Boost 1.74 takes no SSL object. Its context frees what it is given, so it gets a reference.
-  SSL_CTX_up_ref(context.get());
-  net::ssl::context own(context.get());
-  layers_->AddUpper(own);
+  layers_->AddUpper(context.get());  // takes a reference
   beast::error_code error;
-  co_await layers_->upper()->async_handshake(net::ssl::stream_base::server, Redirect(error));
+  co_await layers_->upper()->async_handshake(Redirect(error));
   co_return error;
+}
+
+void WebStream::Admit() {
+  if (stranger_ == nullptr) return;
+  layers_->upper()->SetTrusting();
+  stranger_.reset();
 }
 
 net::awaitable<void> WebStream::EndSending() {
   beast::error_code ignored;
   if (is_tls()) {
     expires_after(kWebDeadline);
-    co_await TlsThatEnds().async_shutdown(Redirect(ignored));
+    co_await layers_->upper()->async_end(/*awaits_client=*/false, Redirect(ignored));
   }
   socket().shutdown(net::ip::tcp::socket::shutdown_send, ignored);
-}
-
-// As if the client had ended already, so that OpenSSL does not wait for it.
-WebStream::Tls& WebStream::TlsThatEnds() {
-  SSL_set_shutdown(layers_->upper()->native_handle(), SSL_RECEIVED_SHUTDOWN);
-  return *layers_->upper();
 }
 
 PeerLabel LabelOfClient(const WebStream& stream, const std::string& kind) {

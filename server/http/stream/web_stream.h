@@ -6,18 +6,20 @@
 
 #include <boost/beast/core/role.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
-#include <boost/beast/ssl/ssl_stream.hpp>
 #include <boost/beast/websocket/teardown.hpp>
 
 #include "base/layered_stream.h"
-#include "server/http/request/beast.h"
+#include "server/http/stream/beast.h"
+#include "server/http/stream/web_net.h"
+#include "server/net/door/stranger_watch.h"
+#include "server/net/tls_stream.h"
 #include "server/session/peers/peer.h"
 #include "server/tls/tls_context.h"
 
 namespace furrow::server {
 
-// A web connection with or without TLS: Beast's tcp_stream, with its timeouts, and perhaps its
-// ssl_stream on top. Beast's reads, writes and WebSockets take one as they take a tcp_stream.
+// A web connection with or without TLS: Beast's tcp_stream, with its timeouts, or TLS over the
+// socket of one. Beast's reads, writes and WebSockets take one as they take a tcp_stream.
 class WebStream {
  public:
   using executor_type = beast::tcp_stream::executor_type;
@@ -38,14 +40,24 @@ class WebStream {
   // What can be read is the end of the connection: no data, or the alert by which TLS ends.
   [[nodiscard]] bool HasEnded();
 
-  // The deadline of reads and writes; see beast::tcp_stream.
+  // The deadline of reads and writes that begin from now on; see beast::tcp_stream.
   void expires_after(std::chrono::steady_clock::duration time) {
+    if (is_tls()) return layers_->upper()->expires_at(std::chrono::steady_clock::now() + time);
     layers_->lower().expires_after(time);
   }
-  void expires_never() { layers_->lower().expires_never(); }
+  void expires_never() {
+    if (is_tls()) return layers_->upper()->expires_at(std::chrono::steady_clock::time_point::max());
+    layers_->lower().expires_never();
+  }
 
   // Begins TLS as the server. From then on, reads and writes are encrypted.
   [[nodiscard]] net::awaitable<beast::error_code> Handshake(TlsContext context);
+  // Over TLS: holds the place of a stranger until Admit().
+  void Hold(std::shared_ptr<Stranger> stranger) { stranger_ = std::move(stranger); }
+  // The client has shown who it is, or need not do so.
+  void Admit();
+  // The client is a stranger, and others wait for its place: end the connection soon.
+  [[nodiscard]] bool MustMakeRoom() const { return stranger_ != nullptr && stranger_->IsWanted(); }
   // Tells the client that nothing follows. Does not wait for it to say the same.
   [[nodiscard]] net::awaitable<void> EndSending();
 
@@ -59,14 +71,16 @@ class WebStream {
   }
 
  private:
-  using Tls = beast::ssl_stream<beast::tcp_stream&>;
-  Tls& TlsThatEnds();
+  struct Tls : TlsStream<WebNet> {
+    Tls(beast::tcp_stream& lower, SSL_CTX* context) : TlsStream(lower.socket(), context) {}
+  };
 
   friend void beast_close_socket(WebStream& stream);
   template <class Handler>
   friend void async_teardown(beast::role_type role, WebStream& stream, Handler&& handler);
 
   std::unique_ptr<LayeredStream<beast::tcp_stream, Tls>> layers_;
+  std::shared_ptr<Stranger> stranger_;  // watches the socket
 };
 
 // The client of a connection, as a peer of the hub. `kind`: of connection, for people.
@@ -77,7 +91,7 @@ void beast_close_socket(WebStream& stream);
 template <class Handler>
 void async_teardown(beast::role_type role, WebStream& stream, Handler&& handler) {
   if (stream.is_tls()) {
-    stream.TlsThatEnds().async_shutdown(std::forward<Handler>(handler));
+    stream.layers_->upper()->async_end(/*awaits_client=*/false, std::forward<Handler>(handler));
   } else {
     beast::async_teardown(role, stream.layers_->lower(), std::forward<Handler>(handler));
   }
