@@ -121,6 +121,7 @@ struct HttpServer::Impl {
 
   [[nodiscard]] Door<WebNet>::Parts DoorParts();
   [[nodiscard]] HandshakeGate<WebNet>::Parts GateParts();
+  [[nodiscard]] bool speaks_tls() const { return context.tls != nullptr && context.tls->enabled(); }
   void Admit(tcp::socket socket, const std::string& host);
   void MakeRoom(const std::string& host, bool any_host, RoomRequest* request);
   void Begin(tcp::socket socket, const std::string& host, HandshakeGate<WebNet>::Place place);
@@ -147,6 +148,7 @@ Door<WebNet>::Parts HttpServer::Impl::DoorParts() {
           .flag = "--http (or use --no-http)",
           .listener = "http",
           .places = static_cast<std::size_t>(context.config.max_connections),
+          .newcomers = speaks_tls() ? Lobby::kFewPlaces : Lobby::kPlaces,
           .again = kGivesWay,
           .metrics = context.metrics,
           .begin = [this](tcp::socket socket,
@@ -173,8 +175,8 @@ HandshakeGate<WebNet>::Parts HttpServer::Impl::GateParts() {
 // The host has a place for the connection.
 void HttpServer::Impl::Admit(tcp::socket socket, const std::string& host) {
   context.metrics->Add(Counter::kHttpConnections);
-  const bool speaks_tls = context.tls != nullptr && context.tls->enabled();
-  speaks_tls ? handshakes.Enter(std::move(socket), host) : Begin(std::move(socket), host, nullptr);
+  speaks_tls() ? handshakes.Enter(std::move(socket), host)
+               : Begin(std::move(socket), host, nullptr);
   ++context.connections;  // after what may throw
 }
 

@@ -26,12 +26,20 @@ class Lobby {
   static constexpr Time kAgain = std::chrono::milliseconds(100);
   static constexpr int kPlaces = 32;
   static constexpr double kPerSecond = 200.0;
+  // Of one host, where strangers may hold little memory. A stay takes about 2 kB in all.
+  static constexpr int kFewPlaces = 3;
+
+  // `most_of_host`: newcomers of one host.
+  explicit Lobby(int most_of_host = kPlaces) : most_of_host_(most_of_host) {}
 
   // A newcomer's stay, which ends with the last copy. It may outlive the lobby.
   using Stay = std::shared_ptr<void>;
   // The newcomer joins the queue of its host. Null: refuse it.
   [[nodiscard]] Stay Enter(std::string host, Time now) {
-    if (queue_->size() >= kPlaces || !rate_.Take(now)) return nullptr;
+    if (queue_->size() >= kPlaces || std::ranges::count(*queue_, host) >= most_of_host_ ||
+        !rate_.Take(now)) {
+      return nullptr;
+    }
     queue_->push_back(std::move(host));
     const auto place = std::prev(queue_->end());
     return {&*place, [queue = queue_, place](void*) { queue->erase(place); }};
@@ -47,6 +55,7 @@ class Lobby {
   }
 
  private:
+  const int most_of_host_;
   TokenBucket rate_{kPerSecond, kPlaces};
   std::shared_ptr<std::list<std::string>> queue_ = std::make_shared<std::list<std::string>>();
 };

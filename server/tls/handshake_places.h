@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <new>
 #include <set>
 #include <string>
 #include <utility>
@@ -56,19 +57,24 @@ class HandshakePlaces {
   [[nodiscard]] std::unique_ptr<Place> Enter(const std::string& host) const {
     const std::lock_guard lock(shared_->mutex);
     if (shared_->held.size() >= kPlaces || shared_->held.contains(host)) return nullptr;
-    auto place = std::make_unique<Place>(shared_, host);
-    shared_->held.insert(host);
-    return place;
+    const auto held = shared_->held.insert(host).first;
+    try {
+      return std::make_unique<Place>(shared_, host);
+    } catch (const std::bad_alloc&) {
+      shared_->held.erase(held);
+      throw;
+    }
   }
 
   // A client of the host waits for a place as long as the result lives.
   using Waiting = std::shared_ptr<void>;
-  [[nodiscard]] Waiting Wait(const std::string& host) const {
+  [[nodiscard]] Waiting Wait(std::string host) const {
     {
       const std::lock_guard lock(shared_->mutex);
       ++shared_->waiting[host];
     }
-    return {shared_.get(), [shared = shared_, host](void*) { StopWaiting(*shared, host); }};
+    return {shared_.get(),
+            [shared = shared_, host = std::move(host)](void*) { StopWaiting(*shared, host); }};
   }
 
  private:

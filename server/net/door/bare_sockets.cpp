@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <iterator>
 #include <new>
 #include <span>
@@ -18,6 +19,11 @@
 
 namespace furrow::server {
 namespace {
+
+std::uint32_t Milliseconds(Time time) {
+  return static_cast<std::uint32_t>(
+      std::chrono::duration_cast<std::chrono::milliseconds>(time).count());
+}
 
 void SetLowWater(int socket, int bytes) {
   setsockopt(socket, SOL_SOCKET, SO_RCVLOWAT, &bytes, sizeof(bytes));
@@ -41,7 +47,7 @@ void BareSockets::Add(const std::string& host, int socket, Time now) {
   const auto known = hosts_.try_emplace(host).first;
   try {
     known->second.arrivals.push_back(
-        {.came = now, .socket = socket, .low_water = 1, .stage = Stage::kSilent});
+        {.came = Milliseconds(now), .socket = socket, .low_water = 1, .stage = Stage::kSilent});
   } catch (const std::bad_alloc&) {
     if (known->second.arrivals.empty()) hosts_.erase(known);
     throw;
@@ -60,7 +66,8 @@ std::vector<BareSockets::Event> BareSockets::Look(Time now) {
   auto ready = watched.begin();
   for (auto& [name, host] : hosts_) {
     for (Arrival& each : host.arrivals) {
-      const bool is_late = now - each.came >= kHandshakeDeadline;
+      const bool is_late =
+          std::chrono::milliseconds(Milliseconds(now) - each.came) >= kHandshakeDeadline;
       Kind kind = each.stage == Stage::kReady ? Kind::kBusy : Kind::kSlow;
       const bool is_judged = (ready++)->revents != 0 && Judge(&each, &kind);
       if (!is_judged && !is_late) continue;
@@ -102,7 +109,7 @@ bool BareSockets::Judge(Arrival* arrival, Kind* kind) {
     *kind = Kind::kGone;
     return true;
   }
-  const auto size = static_cast<int>(RecordBytes(seen));
+  const auto size = static_cast<std::uint16_t>(RecordBytes(seen));
   int arrived = 0;
   ioctl(arrival->socket, FIONREAD, &arrived);
   if (arrived >= size) {

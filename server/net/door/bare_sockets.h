@@ -12,7 +12,7 @@
 namespace furrow::server {
 
 // The connections of a port that speaks TLS, until their handshakes begin: bare sockets, which take
-// 24 bytes each. What a client has sent stays in the kernel. So a client that is silent, or sends
+// 12 bytes each. What a client has sent stays in the kernel. So a client that is silent, or sends
 // half of its first message, costs the daemon next to nothing.
 class BareSockets {
  public:
@@ -53,10 +53,11 @@ class BareSockets {
 
  private:
   enum class Stage : std::uint8_t { kSilent, kReady, kAnswered };
+  // Small, because a host may have many. Its milliseconds may wrap around.
   struct Arrival {
-    Time came;
+    std::uint32_t came;
     int socket;
-    int low_water;  // SO_RCVLOWAT
+    std::uint16_t low_water;  // SO_RCVLOWAT
     Stage stage;
   };
   struct Host {

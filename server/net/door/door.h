@@ -36,11 +36,12 @@ class Door {
   using Task = typename Net::template Awaitable<void>;
 
   struct Parts {
-    std::string port;        // in the log, such as "TCP port"
-    std::string limit;       // the key of the configuration that bounds the connections
-    std::string flag;        // sets the port, such as "--tcp"
-    std::string listener;    // the name of the socket at the service manager
-    std::size_t places = 0;  // of connections
+    std::string port;                // in the log, such as "TCP port"
+    std::string limit;               // the key of the configuration that bounds the connections
+    std::string flag;                // sets the port, such as "--tcp"
+    std::string listener;            // the name of the socket at the service manager
+    std::size_t places = 0;          // of connections
+    int newcomers = Lobby::kPlaces;  // of one host that may wait for a place
     // The time after which another connection must give way to the same newcomer.
     Time again = Lobby::kAgain;
     Metrics* metrics = nullptr;  // not null; outlives the door
@@ -60,6 +61,7 @@ class Door {
         acceptor_(loop),
         parts_(std::move(parts)),
         shares_(parts_.places),
+        lobby_(parts_.newcomers),
         accept_log_(parts_.port, parts_.limit, parts_.metrics) {}
   Door(const Door&) = delete;
   Door& operator=(const Door&) = delete;

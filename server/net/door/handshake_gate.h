@@ -94,6 +94,7 @@ class HandshakeGate {
         BeginThoseWithAPlace(now);
       } catch (const std::bad_alloc&) {
         parts_.metrics->Add(Counter::kAllocationsFailed);
+        waiting_.clear();  // nobody must give way to those who have gone
       }
       is_looking_ = false;
       if (!sockets_.empty()) LookLater();

@@ -72,6 +72,7 @@ Door<AsioNet>::Parts TcpServer::DoorParts() {
           .flag = "--tcp",
           .listener = "tcp",
           .places = static_cast<std::size_t>(limits_.max_connections),
+          .newcomers = tls_->enabled() ? Lobby::kFewPlaces : Lobby::kPlaces,
           .again = Lobby::kAgain,
           .metrics = metrics_,
           .begin = [this](tcp::socket socket,

@@ -46,6 +46,19 @@ TEST(Lobby, NewcomersOfAHostQueue) {
   EXPECT_TRUE(lobby.IsFirst("a", second));
 }
 
+TEST(Lobby, AHostMayHaveFewPlaces) {
+  Lobby lobby(Lobby::kFewPlaces);
+  std::vector<Lobby::Stay> stays;
+  for (int i = 0; i < Lobby::kFewPlaces; ++i) {
+    stays.push_back(lobby.Enter("a", FromSeconds(100)));
+    ASSERT_NE(stays.back(), nullptr);
+  }
+  EXPECT_EQ(lobby.Enter("a", FromSeconds(100)), nullptr);
+  EXPECT_NE(lobby.Enter("b", FromSeconds(100)), nullptr);
+  stays.pop_back();
+  EXPECT_NE(lobby.Enter("a", FromSeconds(100)), nullptr);
+}
+
 TEST(Lobby, TheQueueEndsWithTheLastStay) {
   Lobby lobby;
   Lobby::Stay stay = lobby.Enter("a", FromSeconds(100));
