@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -56,6 +57,8 @@ struct ReadOptions {
   Pictures pictures = Pictures::kLoad;
   SourceNotes* notes = nullptr;               // receives the notes, unless null; the caller owns it
   const gltf::DracoDecoder* draco = nullptr;  // null: files that require Draco are refused
+  // True for the name of an eye; then a rigid eyeball outside all skins gets a joint. Empty: false.
+  std::function<bool(const std::string&)> is_eye_name;
 };
 
 }  // namespace furrow::character

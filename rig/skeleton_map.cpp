@@ -330,6 +330,13 @@ int SkeletonMaps::MostRoles(std::span<const std::string> joint_names) const {
   return most;
 }
 
+bool SkeletonMaps::KnowEye(const std::string& joint_name) const {
+  return std::ranges::any_of(maps_, [&](const SkeletonMap& map) {
+    const JointRole role = ApplySkeletonMap(map, std::span(&joint_name, 1)).roles.front();
+    return role == JointRole::kLeftEye || role == JointRole::kRightEye;
+  });
+}
+
 SkeletonRoles SkeletonMaps::Best(std::span<const std::string> joint_names,
                                  std::span<const std::int16_t> parents, bool needs_limbs) const {
   SkeletonRoles best;

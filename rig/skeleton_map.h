@@ -98,6 +98,9 @@ class SkeletonMaps {
   // The most roles that any map finds, whether it fits or not.
   [[nodiscard]] int MostRoles(std::span<const std::string> joint_names) const;
 
+  // True if any map gives a joint of this name the role of an eye, whether the map fits or not.
+  [[nodiscard]] bool KnowEye(const std::string& joint_name) const;
+
   [[nodiscard]] std::span<const SkeletonMap> maps() const { return maps_; }
   [[nodiscard]] bool is_chosen() const { return chosen_; }
 

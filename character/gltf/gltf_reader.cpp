@@ -86,7 +86,7 @@ Status ReadGltfCharacter(std::string_view bytes, const std::filesystem::path& fo
   FURROW_RETURN_IF_ERROR(document);
   const Result<gltf::NodeForest> forest = gltf::ReadNodes(&*document);
   FURROW_RETURN_IF_ERROR(forest);
-  Result<GltfSkeleton> skeleton = ReadGltfSkeleton(&*document, *forest);
+  Result<GltfSkeleton> skeleton = ReadGltfSkeleton(&*document, *forest, options);
   FURROW_RETURN_IF_ERROR(skeleton);
   const Result<std::vector<gltf::Material>> materials = gltf::ReadMaterials(&*document);
   FURROW_RETURN_IF_ERROR(materials);

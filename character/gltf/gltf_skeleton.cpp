@@ -13,9 +13,9 @@
 #include <glm/matrix.hpp>
 
 #include "base/text.h"
+#include "character/gltf/gltf_joint_choice.h"
 #include "gltf/scene/joints.h"
 #include "gltf/scene/skins.h"
-#include "gltf/scene/vrm_humanoid.h"
 
 namespace furrow::character {
 namespace {
@@ -46,54 +46,20 @@ Result<wrinkle::JointRole> RoleOf(const gltf::Joint& joint) {
                 "roles have the names of VRM's bones: hips, leftUpperArm, ...");
 }
 
-// The nodes that become joints.
-struct ChosenJoints {
-  std::vector<std::vector<int>> of_skins;  // nodes
-  gltf::JointList list;
-};
-
-// The human bones of a VRM avatar, unless Furrow has written roles. Names that VRM may add are no
-// roles.
-void TakeRolesOfVrm(gltf::Document* document, gltf::JointList* list) {
-  const auto has_role = [](const gltf::Joint& joint) { return !joint.role.empty(); };
-  if (std::ranges::any_of(list->joints, has_role)) return;
-  for (auto& [name, node] : gltf::ReadVrmHumanoid(document)) {
-    const int joint = list->joint_of_node[static_cast<std::size_t>(node)];
-    if (joint == gltf::kNone || !wrinkle::ParseJointRole(name)) continue;
-    list->joints[static_cast<std::size_t>(joint)].role = std::move(name);
-  }
-}
-
-// Without skins, every node is a joint that meshes may follow.
-Result<ChosenJoints> ChooseJoints(gltf::Document* document, const gltf::NodeForest& forest) {
-  if (forest.nodes.empty()) return Status(StatusCode::kSchema, "the file has no nodes", "nodes");
-  ChosenJoints chosen;
-  gltf::NodeSet nodes(forest);
-  const std::size_t num_skins = gltf::NumSkins(*document);
-  if (num_skins == 0) nodes.AddAll();
-  for (std::size_t skin = 0; skin < num_skins; ++skin) {
-    Result<std::vector<int>> joints = gltf::ReadSkinJoints(*document, skin);
-    FURROW_RETURN_IF_ERROR(joints);
-    for (const int node : *joints) nodes.AddWithAncestors(node);
-    chosen.of_skins.push_back(std::move(*joints));
-  }
-  chosen.list = gltf::ListJoints(forest, nodes, {}, document);
-  TakeRolesOfVrm(document, &chosen.list);
-  return chosen;
-}
-
 class SkeletonReader {
  public:
-  SkeletonReader(gltf::Document* document, const gltf::NodeForest& forest)
-      : document_(*document), forest_(forest) {}
+  SkeletonReader(gltf::Document* document, const gltf::NodeForest& forest,
+                 const ReadOptions& options)
+      : document_(*document), forest_(forest), options_(options) {}
 
   Result<GltfSkeleton> Run() {
-    Result<ChosenJoints> chosen = ChooseJoints(&document_, forest_);
+    Result<GltfJointChoice> chosen = ChooseGltfJoints(&document_, forest_, options_.is_eye_name);
     FURROW_RETURN_IF_ERROR(chosen);
     result_.skin_joints = std::move(chosen->of_skins);  // MapNodes() turns nodes into joints
     FURROW_RETURN_IF_ERROR(BuildSkeleton(chosen->list));
     MapNodes();
     FURROW_RETURN_IF_ERROR(ReadInverseBindMatrices());
+    MoveNodesToBindPose();
     return std::move(result_);
   }
 
@@ -238,8 +204,23 @@ class SkeletonReader {
     }
   }
 
+  // Rigid meshes rest where their nodes do. If the joint that they follow is bound in another pose,
+  // they must be stated in that pose, like the vertices of skins.
+  void MoveNodesToBindPose() {
+    for (std::size_t node = 0; node < forest_.nodes.size(); ++node) {
+      if (forest_.nodes[node].mesh == gltf::kNone) continue;
+      const auto joint = static_cast<std::size_t>(result_.joint_of_node[node]);
+      const glm::mat4 to_rest =
+          result_.skeleton.rest_model()[joint] * result_.inverse_bind_matrices[joint];
+      if (AreNear(glm::mat4(1.0f), to_rest)) continue;  // keeps the bits of the file
+      const glm::mat4 to_bind = glm::inverse(to_rest);
+      if (IsFinite(to_bind)) result_.node_model[node] = to_bind * result_.node_model[node];
+    }
+  }
+
   gltf::Document& document_;
   const gltf::NodeForest& forest_;
+  const ReadOptions& options_;
   std::vector<int> joint_at_;     // per node: its own joint, or kNoJoint
   std::vector<glm::mat4> binds_;  // per joint: the inverse of the matrix made from its rest pose
   std::vector<std::vector<glm::mat4>> stated_;  // per skin and joint: the file's matrices
@@ -248,12 +229,13 @@ class SkeletonReader {
 
 }  // namespace
 
-Result<GltfSkeleton> ReadGltfSkeleton(gltf::Document* document, const gltf::NodeForest& forest) {
-  return SkeletonReader(document, forest).Run();
+Result<GltfSkeleton> ReadGltfSkeleton(gltf::Document* document, const gltf::NodeForest& forest,
+                                      const ReadOptions& options) {
+  return SkeletonReader(document, forest, options).Run();
 }
 
 Result<NamedRoles> ReadGltfRoles(gltf::Document* document, const gltf::NodeForest& forest) {
-  Result<ChosenJoints> chosen = ChooseJoints(document, forest);
+  Result<GltfJointChoice> chosen = ChooseGltfJoints(document, forest, {});
   FURROW_RETURN_IF_ERROR(chosen);
   NamedRoles roles;
   for (gltf::Joint& joint : chosen->list.joints) {

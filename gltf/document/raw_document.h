@@ -49,6 +49,7 @@ struct RawDocument : BufferViews {
   std::vector<ImageSource> images;               // of kCharacter
   std::vector<MorphTargetSource> morph_targets;  // one per mesh
   std::size_t num_meshes = 0;
+  std::vector<int> moving_nodes;      // that any animation moves: ascending, each below kMaxNodes
   std::vector<std::string> warnings;  // "field: what"
 };
 

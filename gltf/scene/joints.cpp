@@ -84,6 +84,25 @@ void NodeSet::AddTree(int node) {
   }
 }
 
+std::vector<bool> FindRigidParts(const NodeForest& forest, const NodeSet& set) {
+  std::vector<bool> is_part(forest.nodes.size(), false);
+  for (auto node = forest.order.rbegin(); node != forest.order.rend(); ++node) {
+    const Node& from = forest.nodes[static_cast<std::size_t>(*node)];
+    const bool has_rigid_mesh = from.mesh != kNone && from.skin == kNone;
+    const bool leads_to_one = std::ranges::any_of(
+        from.children, [&](int child) { return is_part[static_cast<std::size_t>(child)]; });
+    is_part[static_cast<std::size_t>(*node)] = has_rigid_mesh || leads_to_one;
+  }
+  // A parent comes before its children, so its answer is final.
+  for (const int node : forest.order) {
+    const int parent = forest.nodes[static_cast<std::size_t>(node)].parent;
+    const bool is_below =
+        parent != kNone && (set.Has(parent) || is_part[static_cast<std::size_t>(parent)]);
+    if (set.Has(node) || !is_below) is_part[static_cast<std::size_t>(node)] = false;
+  }
+  return is_part;
+}
+
 JointList ListJoints(const NodeForest& forest, const NodeSet& set,
                      std::span<const std::pair<std::string, int>> names, Document* document) {
   JointList list;

@@ -47,6 +47,11 @@ struct JointList {
   int num_nameless = 0;            // nodes without a name
 };
 
+// Per node: true if it lies outside of `set` and below a node of it, and leads to a rigid mesh: one
+// without a skin, on the node or below it. Eyeballs, teeth and props are such parts. A part follows
+// the nearest joint above unless it is a joint itself.
+[[nodiscard]] std::vector<bool> FindRigidParts(const NodeForest& forest, const NodeSet& set);
+
 // The nodes of `set` as joints. A node whose parent is not in `set` becomes a root.
 //
 // - `names` overrides the names of some nodes: (name, node), each name unique. Other nodes with one

@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gltf/scene/meshes.h"
 
+#include <cmath>
+#include <cstddef>
+#include <limits>
 #include <span>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
 
+#include <glm/common.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/vec4.hpp>
 #include <tiny_gltf.h>
 
 #include "base/ascii.h"
@@ -103,6 +109,35 @@ std::vector<std::string> MeshNames(const tinygltf::Model& model) {
   return names;
 }
 
+// Grows `bounds` by one primitive. Returns false if the primitive states no usable bounds.
+bool Grow(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
+          const glm::mat4& placement, Bounds* bounds) {
+  const auto position = primitive.attributes.find("POSITION");
+  if (position == primitive.attributes.end() || position->second < 0 ||
+      static_cast<std::size_t>(position->second) >= model.accessors.size()) {
+    return false;
+  }
+  const tinygltf::Accessor& accessor = model.accessors[static_cast<std::size_t>(position->second)];
+  if (accessor.normalized || accessor.minValues.size() != 3 || accessor.maxValues.size() != 3) {
+    return false;
+  }
+  for (int corner = 0; corner < 8; ++corner) {
+    glm::vec4 place(1.0f);
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::vector<double>& side =
+          (corner >> axis & 1) == 0 ? accessor.minValues : accessor.maxValues;
+      place[axis] = static_cast<float>(side[static_cast<std::size_t>(axis)]);
+    }
+    const glm::vec3 placed(placement * place);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!std::isfinite(placed[axis])) return false;
+    }
+    bounds->low = glm::min(bounds->low, placed);
+    bounds->high = glm::max(bounds->high, placed);
+  }
+  return true;
+}
+
 }  // namespace
 
 Result<std::vector<Mesh>> ReadMeshes(Document* document) {
@@ -128,6 +163,32 @@ Result<std::vector<Mesh>> ReadMeshes(Document* document) {
   FURROW_RETURN_IF_ERROR(expressions);
   AddMixes(*expressions, &meshes);
   return meshes;
+}
+
+std::optional<Bounds> BoundsOfPart(const Document& document, const NodeForest& forest, int node) {
+  const tinygltf::Model& model = document.model();
+  Bounds bounds{glm::vec3(std::numeric_limits<float>::max()),
+                glm::vec3(std::numeric_limits<float>::lowest())};
+  std::vector<std::pair<int, glm::mat4>> open = {{node, glm::mat4(1.0f)}};
+  bool has_any = false;
+  while (!open.empty()) {
+    const auto [index, placement] = open.back();
+    open.pop_back();
+    const Node& from = forest.nodes[static_cast<std::size_t>(index)];
+    const bool is_rigid = from.mesh != kNone && from.skin == kNone;
+    if (is_rigid && static_cast<std::size_t>(from.mesh) < model.meshes.size()) {
+      for (const auto& primitive : model.meshes[static_cast<std::size_t>(from.mesh)].primitives) {
+        if (!Grow(model, primitive, placement, &bounds)) return std::nullopt;
+        has_any = true;
+      }
+    }
+    for (const int child : from.children) {
+      const Node& below = forest.nodes[static_cast<std::size_t>(child)];
+      open.emplace_back(child, placement * ToMatrix(below.local));
+    }
+  }
+  if (!has_any) return std::nullopt;
+  return bounds;
 }
 
 }  // namespace furrow::gltf

@@ -3,9 +3,12 @@
 
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include <glm/vec3.hpp>
 
 #include "base/status.h"
 #include "gltf/document/document.h"
@@ -62,5 +65,16 @@ struct Mesh {
 //
 // Errors: kSchema (a material that does not exist); those of ReadVrmExpressions().
 [[nodiscard]] Result<std::vector<Mesh>> ReadMeshes(Document* document);
+
+struct Bounds {
+  glm::vec3 low;
+  glm::vec3 high;
+};
+
+// The bounds of the meshes without a skin on a node and below it, in the node's space at rest, of a
+// document with Contents::kCharacter. They follow from the bounds that the file states for each
+// mesh. nullopt if a mesh states none, or states them as normalised integers.
+[[nodiscard]] std::optional<Bounds> BoundsOfPart(const Document& document, const NodeForest& forest,
+                                                 int node);
 
 }  // namespace furrow::gltf

@@ -69,17 +69,19 @@ int SizeOf(const gltf::NodeForest& forest, const gltf::NodeSet& nodes) {
                                         [&](int node) { return nodes.Has(node); }));
 }
 
-// Adds nodes of the body that move but that no skin lists, because no vertex follows them: eyes,
-// attachments, twist and helper joints. Cameras and props elsewhere in the scene stay out.
+// Adds nodes that move but that no skin lists, because no vertex follows them: nodes of the body
+// (eyes, attachments, twist and helper joints), and those that move rigid meshes, which the import
+// of avatars takes for joints, too. Cameras and props elsewhere in the scene stay out.
 void AddMovingNodesOfBodies(const gltf::NodeForest& forest, const gltf::Animation& animation,
                             const std::vector<bool>& listed, gltf::Document* document,
                             gltf::NodeSet* joints) {
   const std::vector<bool> moves = MovingNodes(forest, animation);
   const std::vector<bool> of_body = NodesOfBodies(forest, listed, moves, *joints);
+  const std::vector<bool> is_rigid_part = gltf::FindRigidParts(forest, *joints);
   std::vector<int> more;
   for (const int node : forest.order) {
     const auto i = static_cast<std::size_t>(node);
-    if (moves[i] && of_body[i] && !joints->Has(node)) more.push_back(node);
+    if (moves[i] && (of_body[i] || is_rigid_part[i]) && !joints->Has(node)) more.push_back(node);
   }
   if (more.empty()) return;
   gltf::NodeSet all = *joints;

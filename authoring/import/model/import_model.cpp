@@ -29,9 +29,14 @@ bool IsGltf(std::string_view bytes, const std::string& extension) {
 }
 
 // Reads a model from its bytes. `where` of an error is a field.
-Status Parse(std::string_view bytes, const fs::path& path, OpenedModel* model) {
+Status Parse(std::string_view bytes, const fs::path& path, const rig::SkeletonMaps& maps,
+             OpenedModel* model) {
   const gltf::DracoDecoder draco = DracoInHelper();
-  const character::ReadOptions options{.lenient = true, .notes = &model->notes, .draco = &draco};
+  const character::ReadOptions options{
+      .lenient = true,
+      .notes = &model->notes,
+      .draco = &draco,
+      .is_eye_name = [&maps](const std::string& name) { return maps.KnowEye(name); }};
   const std::string extension = Extension(path);
   std::string converted;
   if (!IsGltf(bytes, extension)) {
@@ -103,11 +108,11 @@ void BindUnskinned(OpenedModel* model) {
 
 }  // namespace
 
-Result<OpenedModel> OpenModel(const fs::path& path) {
+Result<OpenedModel> OpenModel(const fs::path& path, const rig::SkeletonMaps& maps) {
   const Result<std::string> bytes = ReadFile(path, gltf::kMaxFileBytes);
   FURROW_RETURN_IF_ERROR(bytes);
   OpenedModel model;
-  if (Status status = Parse(*bytes, path, &model); !status.ok())
+  if (Status status = Parse(*bytes, path, maps, &model); !status.ok())
     return status.Within(path.string());
   if (model.character.name.empty()) model.character.name = path.stem().string();
   return model;
@@ -115,7 +120,7 @@ Result<OpenedModel> OpenModel(const fs::path& path) {
 
 Result<ImportedModel> ImportModel(const fs::path& path, const rig::SkeletonMaps& maps,
                                   const ModelOptions& options) {
-  Result<OpenedModel> opened = OpenModel(path);
+  Result<OpenedModel> opened = OpenModel(path, maps);
   FURROW_RETURN_IF_ERROR(opened);
   DropDegenerates(&*opened);
   if (options.repair) BindUnskinned(&*opened);

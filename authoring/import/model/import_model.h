@@ -24,11 +24,13 @@ struct OpenedModel {
 
 // Opens any skinned model and accepts faults that CheckCharacter() can report. Reads glTF 2.0
 // (.glb, .gltf, .vrm, or detected by its first bytes), and other formats with assimp. Only the file
-// and the pictures that it names are read.
+// and the pictures that it names are read. Eyeballs outside the skin of a glTF file get joints if
+// `maps` know their names.
 //
 // Errors (`where` starts with the path): kNotFound, kIo, kLimit, kParse, kSchema, kNonFinite,
 // kCyclic, kUnsupported (unknown extension).
-[[nodiscard]] Result<OpenedModel> OpenModel(const std::filesystem::path& path);
+[[nodiscard]] Result<OpenedModel> OpenModel(const std::filesystem::path& path,
+                                            const rig::SkeletonMaps& maps = {});
 
 // The options of ImportModel().
 struct ModelOptions {

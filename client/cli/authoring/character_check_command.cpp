@@ -50,7 +50,7 @@ int Check(CheckArguments arguments) {
   arguments.file = character::FindCharacterFile(arguments.file).string();
   const auto maps = rig::SkeletonMaps::Load(arguments.map);
   if (!maps.ok()) return Fail(maps.status());
-  auto opened = authoring::OpenModel(arguments.file);
+  auto opened = authoring::OpenModel(arguments.file, *maps);
   if (!opened.ok()) return Fail(opened.status());
   const auto rig_given = AttachOptionalRig(arguments, &opened->character);
   if (!rig_given.ok()) return Fail(rig_given.status());

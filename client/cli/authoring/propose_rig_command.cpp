@@ -38,15 +38,18 @@ struct RigSubject {
 };
 
 // Loads the skeleton of a recording, recognised by its extension, or a model.
-Result<RigSubject> LoadRigSubject(const std::string& file, const motion::LoadOptions& read) {
+Result<RigSubject> LoadRigSubject(const ProposeArguments& arguments) {
+  const std::string& file = arguments.file;
   const std::filesystem::path extension = std::filesystem::path(file).extension();
   if (extension == ".bvh" || extension == ".mcap" || extension == ".vrma" ||
       extension == ".mhpose") {
-    auto clip = LoadClipArgument(file, read);
+    auto clip = LoadClipArgument(file, arguments.read);
     FURROW_RETURN_IF_ERROR(clip);
     return RigSubject{.skeleton = std::move(clip->skeleton), .model = {}, .look_at = {}};
   }
-  auto model = authoring::OpenModel(character::FindCharacterFile(file));
+  const auto maps = rig::SkeletonMaps::Load(arguments.map);
+  FURROW_RETURN_IF_ERROR(maps);
+  auto model = authoring::OpenModel(character::FindCharacterFile(file), *maps);
   FURROW_RETURN_IF_ERROR(model);
   wrinkle::Skeleton skeleton = model->character.skeleton;
   return RigSubject{.skeleton = std::move(skeleton),
@@ -112,7 +115,7 @@ Result<std::string> OfferMap(const std::string& file, const wrinkle::Skeleton& s
 }
 
 int Propose(const ProposeArguments& arguments) {
-  auto subject = LoadRigSubject(arguments.file, arguments.read);
+  auto subject = LoadRigSubject(arguments);
   if (!subject.ok()) return Fail(subject.status());
   const wrinkle::Skeleton skeleton = subject->skeleton;
   auto proposal = ProposeFor(arguments, std::move(*subject));

@@ -395,6 +395,16 @@ TEST(SkeletonMaps, CountersBehindAllNamesDoNotMatter) {
   }
 }
 
+TEST(SkeletonMaps, KnowsEyesOfAnyFamily) {
+  const SkeletonMaps maps = Shipped();
+  for (const char* name : {"LeftEye", "mixamorig:RightEye", "eye.L", "eye_r"}) {
+    EXPECT_TRUE(maps.KnowEye(name)) << name;
+  }
+  for (const char* name : {"Head", "Eyebrow.L", "Eyes", "sword", ""}) {
+    EXPECT_FALSE(maps.KnowEye(name)) << name;
+  }
+}
+
 TEST(SkeletonMaps, LoadsByNameByFileOrAll) {
   setenv("FURROW_DATA_DIR", (std::string(FURROW_SOURCE_DIR) + "/rig").c_str(), 1);
   EXPECT_GE(SkeletonMaps::Load("").value().maps().size(), 11u);

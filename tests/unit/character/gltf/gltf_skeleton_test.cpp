@@ -102,6 +102,22 @@ TEST(GltfSkeleton, HiddenScalesMoveToTheVertices) {
             1e-6f);
 }
 
+// A hat on the chest, which the skin binds 1 m above its rest pose.
+TEST(GltfSkeleton, RigidMeshesRestAtTheirNodes) {
+  gltf::HandMadeGltf gltf = TwoSkins({{Down(1), Down(3)}});
+  gltf.json["meshes"].push_back(gltf.json["meshes"][0]);
+  gltf.json["nodes"][1]["children"] = {3};
+  gltf.json["nodes"].push_back({{"mesh", 1}, {"translation", {0, 0, 5}}});
+  const auto character = ParseCharacter(gltf.Glb(), ".");
+  ASSERT_TRUE(character.ok()) << character.status().ToString();
+  const Vertex& vertex = character->meshes[1].vertices[1];
+  ASSERT_EQ(vertex.joints[0], 1);
+  const glm::mat4 skin = character->skeleton.rest_model()[1] * character->inverse_bind_matrices[1];
+  EXPECT_LT(glm::distance(glm::vec3(skin * glm::vec4(vertex.position, 1)), glm::vec3(1, 2, 5)),
+            1e-5f);
+  EXPECT_LT(glm::distance(vertex.position, glm::vec3(1, 3, 5)), 1e-5f);
+}
+
 // Bound in another pose than at rest: at rest, it is exact.
 TEST(GltfSkeleton, ConflictingPosesMeetAtRest) {
   const std::vector<std::vector<glm::mat4>> binds = {{Down(1), Down(2)}, {Down(1), Down(2.5f)}};

@@ -63,6 +63,24 @@ TEST(NodeSet, AddsAncestorsAndTrees) {
   EXPECT_FALSE(tree.Has(4));
 }
 
+TEST(FindRigidParts, LeadToMeshesBelowTheSet) {
+  Scene scene(json::array({{{"name", "root"}, {"children", {1, 2, 5}}},
+                           {{"name", "joint"}},
+                           {{"name", "eye"}, {"children", {3, 4}}},
+                           {{"name", "ball"}},
+                           {{"name", "empty"}},
+                           {{"name", "skinned"}},
+                           {{"name", "elsewhere"}, {"children", {7}}},
+                           {{"name", "prop"}}}));
+  for (const int node : {1, 3, 5, 7}) scene.forest.nodes[static_cast<std::size_t>(node)].mesh = 0;
+  scene.forest.nodes[5].skin = 0;
+  NodeSet set(scene.forest);
+  set.AddWithAncestors(1);
+  EXPECT_THAT(FindRigidParts(scene.forest, set),
+              ElementsAre(false, false, true, true, false, false, false, false))
+      << "eye and ball";
+}
+
 TEST(ListJoints, KeepsTheFilesOrder) {
   Scene scene(json::array({{{"name", "leaf"}}, {{"name", "root"}, {"children", {0}}}}));
   const JointList list = scene.List();

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gltf/scene/meshes.h"
 
+#include <optional>
+#include <string>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -92,6 +95,56 @@ TEST(Meshes, LimitTheNumberOfTargets) {
     many.json["meshes"].push_back(mesh);
   }
   EXPECT_EQ(MeshesOf(many).status.code(), StatusCode::kLimit);
+}
+
+// An eye with its ball, which is scaled and moved, and with a skinned mesh.
+HandMadeGltf Eye() {
+  HandMadeGltf gltf;
+  const int position = gltf.AddFloats({0, 0, 0, 1, 0, 0, 0, 2, 3}, "VEC3");
+  gltf.json["accessors"][0]["min"] = {0, 0, 0};
+  gltf.json["accessors"][0]["max"] = {1, 2, 3};
+  gltf.json["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", position}}}}}}}};
+  gltf.json["skins"] = {{{"joints", {0}}}};
+  gltf.json["nodes"] = {
+      {{"translation", {50, 0, 0}}, {"children", {1, 2}}},
+      {{"mesh", 0}, {"translation", {0, 10, 0}}, {"scale", {-2, 1, 1}}},
+      {{"mesh", 0}, {"skin", 0}, {"translation", {0, -99, 0}}},
+  };
+  return gltf;
+}
+
+std::optional<Bounds> BoundsIn(const HandMadeGltf& gltf, int node) {
+  const std::string bytes = gltf.Glb();
+  auto document = Document::Open(bytes, {});
+  EXPECT_TRUE(document.ok()) << document.status().ToString();
+  if (!document.ok()) return std::nullopt;
+  const auto forest = ReadNodes(&*document);
+  EXPECT_TRUE(forest.ok()) << forest.status().ToString();
+  return forest.ok() ? BoundsOfPart(*document, *forest, node) : std::nullopt;
+}
+
+TEST(PartBounds, AreThoseOfRigidMeshesInTheNodesSpace) {
+  const auto bounds = BoundsIn(Eye(), 0);
+  ASSERT_TRUE(bounds);
+  EXPECT_EQ(bounds->low, glm::vec3(-2, 10, 0));
+  EXPECT_EQ(bounds->high, glm::vec3(0, 12, 3));
+  EXPECT_EQ(BoundsIn(Eye(), 1)->high, glm::vec3(1, 2, 3)) << "its own transform does not count";
+  EXPECT_FALSE(BoundsIn(Eye(), 2)) << "the mesh has a skin";
+}
+
+TEST(PartBounds, NeedBoundsInTheFile) {
+  HandMadeGltf without = Eye();
+  without.json["accessors"][0].erase("min");
+  EXPECT_FALSE(BoundsIn(without, 0));
+  HandMadeGltf normalised = Eye();
+  normalised.json["accessors"][0]["normalized"] = true;
+  EXPECT_FALSE(BoundsIn(normalised, 0));
+  HandMadeGltf huge = Eye();
+  huge.json["accessors"][0]["max"] = {1e300, 1, 1};
+  EXPECT_FALSE(BoundsIn(huge, 0));
+  HandMadeGltf missing = Eye();
+  missing.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 7;
+  EXPECT_FALSE(BoundsIn(missing, 0));
 }
 
 }  // namespace

@@ -106,6 +106,23 @@ TEST(GltfReader, JointsAreAlsoWhatMovesBelowThoseOfSkins) {
   EXPECT_NEAR(ModelPosition(clip, 1, "eye").y, 3.0f, 1e-5f);
 }
 
+// The import of avatars takes the nodes of moving rigid meshes for joints, too.
+TEST(GltfReader, JointsAreAlsoWhatMovesRigidMeshes) {
+  HandMadeGltf gltf = TwoJoints();
+  gltf.json["nodes"] = {{{"name", "scene"}, {"children", {1, 3, 5}}},
+                        {{"name", "hips"}, {"children", {2}}},
+                        {{"name", "head"}},
+                        {{"name", "sword"}, {"children", {4}}},
+                        {{"name", "blade"}, {"mesh", 0}},
+                        {{"name", "camera"}},
+                        {{"name", "car"}, {"mesh", 0}}};
+  gltf.json["meshes"] = {{{"primitives", json::array()}}};
+  gltf.json["skins"] = {{{"joints", {1, 2}}}};
+  for (const int node : {3, 5, 6}) Move(node, &gltf);
+  EXPECT_THAT(Parse(gltf.Glb()).skeleton.joint_names(),
+              ElementsAre("scene", "hips", "head", "sword"));
+}
+
 // Hips without vertices of their own are in no skin. Their tail moves with them.
 TEST(GltfReader, HipsThatNoSkinListsHoldTheBodyTogether) {
   HandMadeGltf gltf = TwoJoints();
