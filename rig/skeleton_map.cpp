@@ -52,13 +52,15 @@ std::string_view BeforeCounter(std::string_view name) {
   return is_counter ? name.substr(0, digits) : std::string_view();
 }
 
-// The names without their counters, if all have one; else none.
+// The names without their counters, if all have one; else none. Sketchfab adds a root and nodes
+// above it, without counters.
 std::vector<std::string> WithoutCounters(std::span<const std::string> names) {
+  const bool is_of_sketchfab = std::ranges::find(names, "_rootJoint") != names.end();
   std::vector<std::string> plain;
   for (const std::string& name : names) {
     const std::string_view start = BeforeCounter(name);
-    if (start.empty()) return {};
-    plain.emplace_back(start);
+    if (start.empty() && !is_of_sketchfab) return {};
+    plain.emplace_back(start.empty() ? name : start);
   }
   return plain;
 }

@@ -269,6 +269,29 @@ TEST(SkeletonMaps, RecognisesFilesOfOtherFamilies) {
        "L",
        "R",
        both(arm, leg)},
+      {"quaternius",
+       {"Bone", "Body", "Hips", "Abdomen", "Torso", "Neck", "Head"},
+       {"Shoulder.*", "UpperArm.*", "LowerArm.*", "Palm2.*", "UpperLeg.*", "LowerLeg.*", "Foot.*",
+        "PoleTarget.*"},
+       "L",
+       "R",
+       both(arm, leg)},
+      {"quaternius",
+       {"Rig", "root", "hips", "spine", "chest", "head"},
+       {"upperarm.*", "lowerarm.*", "wrist.*", "upperleg.*", "lowerleg.*", "foot.*", "toes.*",
+        "hand.*", "handslot.*", "kneeIK.*", "IK-foot.*", "handIK.*"},
+       "l",
+       "r",
+       {kLeftUpperArm, kLeftLowerArm, kLeftHand, kLeftUpperLeg, kLeftLowerLeg, kLeftFoot,
+        kLeftToes}},
+      {"rigify",
+       {"DEF-spine", "DEF-spine.001", "DEF-spine.002", "DEF-spine.003", "DEF-spine.004",
+        "DEF-spine.006"},
+       {"DEF-shoulder.*", "DEF-upper_arm.*", "DEF-forearm.*", "DEF-hand.*", "DEF-thigh.*",
+        "DEF-shin.*", "DEF-foot.*", "DEF-toe.*", "DEF-pelvis.*"},
+       "L",
+       "R",
+       both(both(arm, leg), {kLeftToes})},
       {"poser",
        {"hip", "abdomen", "chest", "neck", "head"},
        {"*Collar", "*Shldr", "*ForeArm", "*Hand", "*Thigh", "*Shin", "*Foot", "*Toe"},
@@ -393,6 +416,17 @@ TEST(SkeletonMaps, CountersBehindAllNamesDoNotMatter) {
     names.back() = "tail";  // one name without a counter: they may be a part of the names
     EXPECT_EQ(maps.RolesOf(names).num_joints, 0) << counter;
   }
+}
+
+// Of a published file.
+TEST(SkeletonMaps, CountersOfSketchfabDoNotMatter) {
+  Names names = {"Sketchfab_model", "RootNode", "Object_2", "_rootJoint", "Bip001_Pelvis_05"};
+  for (const char* joint : {"L_Thigh", "R_Thigh", "L_Calf", "R_Calf", "L_UpperArm", "R_UpperArm"}) {
+    names.push_back("Bip001_" + std::string(joint) + "_0" + std::to_string(names.size()));
+  }
+  const SkeletonRoles found = Shipped().RolesOf(names);
+  EXPECT_EQ(found.map, "cal3d");
+  EXPECT_EQ(found.num_joints, 7);
 }
 
 TEST(SkeletonMaps, KnowsEyesOfAnyFamily) {
