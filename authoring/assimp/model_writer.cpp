@@ -33,6 +33,7 @@ class SceneWriter {
   Result<std::string> Run(std::vector<std::string>* remarks) {
     FURROW_RETURN_IF_ERROR(CollectNodes());
     FURROW_RETURN_IF_ERROR(FindJoints());
+    AddMovingParts();
     WriteNodes();
     AddSkin();
     FURROW_RETURN_IF_ERROR(AddMeshes());
@@ -73,7 +74,7 @@ class SceneWriter {
     return {};
   }
 
-  // Finds the joints: every node that a bone names.
+  // Finds the joints of skins: every node that a bone names.
   Status FindJoints() {
     for (unsigned m = 0; m < scene_.mNumMeshes; ++m) {
       const aiMesh& mesh = *scene_.mMeshes[m];
@@ -91,6 +92,38 @@ class SceneWriter {
       sources_[source].is_joint = true;
     }
     return {};
+  }
+
+  // Nodes below joints that the file's animations move, and that lead to a rigid mesh, are joints,
+  // too: eyeballs, teeth, props. Otherwise the mesh would follow the joint above.
+  void AddMovingParts() {
+    std::unordered_set<std::string> moving;
+    for (unsigned a = 0; a < scene_.mNumAnimations; ++a) {
+      const aiAnimation& animation = *scene_.mAnimations[a];
+      for (unsigned c = 0; c < animation.mNumChannels; ++c) {
+        moving.insert(NameFrom(animation.mChannels[c]->mNodeName));
+      }
+    }
+    std::vector<bool> leads(sources_.size(), false);  // to a rigid mesh
+    for (std::size_t i = sources_.size(); i-- > 0;) {
+      const aiNode& node = *sources_[i].node;
+      const bool has_rigid_mesh =
+          std::any_of(node.mMeshes, node.mMeshes + node.mNumMeshes,
+                      [this](unsigned mesh) { return scene_.mMeshes[mesh]->mNumBones == 0; });
+      leads[i] = leads[i] || has_rigid_mesh;
+      if (leads[i] && sources_[i].parent >= 0) {
+        leads[static_cast<std::size_t>(sources_[i].parent)] = true;
+      }
+    }
+    std::vector<bool> below(sources_.size(), false);  // a joint; parents come first
+    for (std::size_t i = 1; i < sources_.size(); ++i) {
+      const auto parent = static_cast<std::size_t>(sources_[i].parent);
+      below[i] = below[parent] || sources_[parent].is_joint;
+      const std::string name = NameFrom(sources_[i].node->mName);
+      // Animations tell nodes apart by their names alone.
+      const bool moves = moving.contains(name) && sources_by_name_.at(name).size() == 1;
+      if (below[i] && leads[i] && moves) sources_[i].is_joint = true;
+    }
   }
 
   // The node that a bone means. FBX files may give a mesh the name of a bone.
@@ -361,7 +394,8 @@ class SceneWriter {
 Result<std::string> WriteModel(const aiScene& scene, std::vector<std::string>* remarks) {
   Result<std::string> glb = SceneWriter(scene).Run(remarks);
   if (glb.ok() && scene.mNumAnimations > 0) {
-    remarks->emplace_back("its animations are not imported");
+    remarks->emplace_back(
+        "the file's animations are not imported; 'furrow play' plays the file itself");
   }
   return glb;
 }

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "authoring/import/model/import_model.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -15,6 +18,7 @@
 
 #include "tests/temporary_folder.h"
 #include "tests/unit/authoring/import/model/toy_body.h"
+#include "tests/unit/gltf/gltf_testing.h"
 #include "wrinkle/skeleton/pose_frame.h"
 
 namespace furrow::authoring {
@@ -108,6 +112,57 @@ INSTANTIATE_TEST_SUITE_P(Formats, ForeignFormat,
                                            std::pair("collada", "body.DAE"),
                                            std::pair("glb2", "other.glb")),
                          [](const auto& format) { return std::string(format.param.first); });
+
+// The toy body with two rigid meshes below its head: a "ball" that an animation turns, and a "hat".
+std::string BodyWithRigidParts() {
+  const std::string body = GlbOf(ToyBody());
+  std::uint32_t length = 0;
+  std::memcpy(&length, body.data() + 12, sizeof length);
+  gltf::HandMadeGltf gltf;
+  gltf.json = nlohmann::json::parse(body.substr(20, length));
+  gltf.binary = body.substr(20 + length + 8);
+  nlohmann::json rigid = gltf.json["meshes"][0];
+  for (const char* attribute : {"JOINTS_0", "WEIGHTS_0"}) {
+    rigid["primitives"][0]["attributes"].erase(attribute);
+  }
+  auto& nodes = gltf.json["nodes"];
+  const auto head = static_cast<std::size_t>(ToyBody().skeleton.Find("head"));
+  for (const char* name : {"ball", "hat"}) {
+    rigid["name"] = std::string("mesh of ") + name;
+    nodes[head]["children"].push_back(nodes.size());
+    nodes.push_back({{"name", name}, {"mesh", gltf.json["meshes"].size()}});
+    gltf.json["meshes"].push_back(rigid);
+  }
+  gltf.json["animations"] = {{{"name", "take"}, {"channels", nlohmann::json::array()}}};
+  const float h = 0.70710678f;
+  gltf.AddChannel(static_cast<int>(nodes.size()) - 2, "rotation", "LINEAR",
+                  gltf.AddFloats({0, 1}, "SCALAR"),
+                  gltf.AddFloats({0, 0, 0, 1, 0, 0, h, h}, "VEC4"));
+  return gltf.Glb();
+}
+
+// assimp cannot write animations as Collada.
+TEST(ImportModel, MovingRigidPartsAreJoints) {
+  const Folder folder;
+  for (const auto& [format, file] : {std::pair("fbxa", "body.fbx"), std::pair("glb2", "b.glb")}) {
+    const auto imported =
+        ImportModel(folder.Write(file, ConvertByAssimp(BodyWithRigidParts(), format)), VrmMaps());
+    ASSERT_TRUE(imported.ok()) << imported.status().ToString();
+    const character::Character& body = imported->character;
+    const int ball = body.skeleton.Find("ball");
+    ASSERT_NE(ball, wrinkle::kNoJoint) << format;
+    EXPECT_EQ(body.skeleton.Find("hat"), wrinkle::kNoJoint) << format;
+    std::set<int> followed;  // by meshes that follow one joint
+    for (const character::Mesh& mesh : body.meshes) {
+      const auto& vertices = mesh.vertices;
+      const bool is_rigid = std::ranges::all_of(vertices, [&](const character::Vertex& v) {
+        return v.skin_weights[0] == 1.0f && v.joints[0] == vertices[0].joints[0];
+      });
+      if (is_rigid) followed.insert(vertices[0].joints[0]);
+    }
+    EXPECT_EQ(followed, (std::set<int>{body.skeleton.Find("head"), ball})) << format;
+  }
+}
 
 TEST(ImportModel, AMeshMayHaveTheNameOfABone) {
   const Folder folder;
