@@ -2,6 +2,7 @@
 #include "authoring/assimp/scene_file.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <new>
 #include <optional>
 #include <unordered_set>
@@ -118,8 +119,9 @@ wrinkle::Transform SpaceOf(const aiScene& scene, std::vector<std::string>* remar
                                   : Metadata<float>(scene, "UnitScaleFactor").value_or(100.0f);
   if (centimetres > 1e-6f && centimetres < 1e6f && centimetres != 100.0f) {
     space.scale = glm::vec3(0.01f * centimetres);
-    remarks->push_back("the file's unit is " + std::to_string(centimetres) +
-                       " cm; converted to metres");
+    char unit[32];
+    std::snprintf(unit, sizeof unit, "%.6g", static_cast<double>(centimetres));
+    remarks->push_back("the file's unit is " + std::string(unit) + " cm; converted to metres");
   }
   return space;
 }

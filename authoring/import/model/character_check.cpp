@@ -38,6 +38,14 @@ std::string Number(float value) {
   return text;
 }
 
+const char* NameOf(ModelKind kind) {
+  switch (kind) {
+    case ModelKind::kBody: return "the body";
+    case ModelKind::kHead: return "the head";
+    default: return "the model";
+  }
+}
+
 glm::vec3 DeltaOf(const character::MorphTarget& target, std::uint32_t vertex) {
   const auto found = std::lower_bound(
       target.deltas.begin(), target.deltas.end(), vertex,
@@ -139,6 +147,7 @@ class Checker {
     if (!notes_.meshes.empty() && !HasUvs()) {
       FindMissingUvs({}, "there are no UVs, which wrinkle maps require", false);
     }
+    CheckTangents();
     if (!notes_.idle_shapes.empty()) CheckIdleShapes();
   }
 
@@ -187,10 +196,18 @@ class Checker {
            Count(notes.truncated_vertices, "vertex has", "vertices have") +
                " more than four joints; the strongest four are used");
     }
-    if (!notes.has_tangents && notes.has_uvs) {
-      Find(Severity::kNote, "tangents-missing", where,
-           "there are no tangents; they are computed from the UVs");
-    }
+  }
+
+  // One line, because most exporters leave the tangents of all meshes out.
+  void CheckTangents() {
+    const auto lacks = [](const character::MeshNotes& mesh) {
+      return mesh.has_uvs && !mesh.has_tangents;
+    };
+    const auto count = std::ranges::count_if(notes_.meshes, lacks);
+    if (count == 0) return;
+    Find(Severity::kNote, "tangents-missing", {},
+         Count(static_cast<std::size_t>(count), "mesh has", "meshes have") +
+             " no tangents; they are computed from the UVs");
   }
 
   [[nodiscard]] bool HasUvs() const {
@@ -252,7 +269,7 @@ class Checker {
     if (uvs.outside_triangles > 0) {
       Find(Severity::kNote, "uv-outside", where,
            Count(uvs.outside_triangles, "triangle lies", "triangles lie") +
-               " outside the unit square of the UVs and wraps around");
+               " outside the unit square of the UVs; the pictures repeat there");
     }
   }
 
@@ -271,7 +288,7 @@ class Checker {
     }
     if (space.scale != 1.0f) {
       Find(Severity::kWarning, "units", {},
-           std::string("a ") + (space.is_body ? "body " : "head ") + Number(space.height) +
+           std::string(NameOf(space.kind)) + " is " + Number(space.height) +
                " m high, so the unit is probably " + Number(space.scale) + " m",
            "the import scales it to " + Number(space.height * space.scale) +
                " m (override with --scale); depths of folds are in metres");

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <span>
 #include <vector>
@@ -71,12 +72,36 @@ std::string AxisName(const glm::vec3& v) {
   return std::string(1, v[axis] < 0.0f ? '-' : '+') + "XYZ"[axis];
 }
 
+ModelKind FindModelKind(const wrinkle::Skeleton& skeleton, const FoundJoints& joints) {
+  constexpr int kFewJoints = 8;  // a body has more
+  const auto has = [&](std::initializer_list<JointRole> roles) {
+    return std::ranges::any_of(roles,
+                               [&](JointRole role) { return joints.First(role) != kNoJoint; });
+  };
+  if (has({JointRole::kLeftUpperLeg, JointRole::kRightUpperLeg})) return ModelKind::kBody;
+  if (has({JointRole::kHips, JointRole::kLeftUpperArm, JointRole::kRightUpperArm,
+           JointRole::kLeftHand, JointRole::kRightHand})) {
+    return ModelKind::kUnknown;
+  }
+  const bool is_head = has({JointRole::kNeck, JointRole::kHead, JointRole::kJaw,
+                            JointRole::kLeftEye, JointRole::kRightEye});
+  return is_head || skeleton.num_joints() < kFewJoints ? ModelKind::kHead : ModelKind::kUnknown;
+}
+
 // The unit that brings `height` nearest to that of a person. 1 if the height is plausible already.
-float UsualScale(float height, bool is_body) {
-  const float usual = is_body ? 1.7f : 0.3f;
-  if (height > usual / 3.5f && height < usual * 3.0f) return 1.0f;
-  constexpr std::array kUnits = {0.001f, 0.01f, 0.0254f, 0.1f, 0.3048f, 10.0f, 100.0f};
-  return *std::min_element(kUnits.begin(), kUnits.end(), [&](float a, float b) {
+float UsualScale(float height, ModelKind kind) {
+  constexpr float kOfHead = 0.3f;
+  constexpr float kOfBody = 1.7f;
+  const float least = (kind == ModelKind::kBody ? kOfBody : kOfHead) / 3.5f;
+  const float most = (kind == ModelKind::kHead ? kOfHead : kOfBody) * 3.0f;
+  if (height > least && height < most) return 1.0f;
+  const float usual = kind == ModelKind::kBody   ? kOfBody
+                      : kind == ModelKind::kHead ? kOfHead
+                                                 : std::sqrt(kOfHead * kOfBody);
+  constexpr std::array kUnits = {0.001f, 0.01f, 0.1f, 10.0f, 100.0f, 0.0254f, 0.3048f};
+  // If head and body are both possible, inches and feet fit too many heights.
+  const auto end = kind == ModelKind::kUnknown ? kUnits.end() - 2 : kUnits.end();
+  return *std::min_element(kUnits.begin(), end, [&](float a, float b) {
     return std::abs(std::log(height * a / usual)) < std::abs(std::log(height * b / usual));
   });
 }
@@ -155,8 +180,7 @@ Status ReplaceSkeleton(const glm::mat3& turn, float scale, character::Character*
 CharacterSpace FindCharacterSpace(const character::Character& character,
                                   const FoundJoints& joints) {
   CharacterSpace space;
-  space.is_body = joints.First(JointRole::kLeftUpperLeg) != kNoJoint ||
-                  joints.First(JointRole::kRightUpperLeg) != kNoJoint;
+  space.kind = FindModelKind(character.skeleton, joints);
   glm::vec3 up(0.0f, 1.0f, 0.0f);
   const glm::vec3 trunk = Up(character.skeleton, joints);
   const glm::vec3 across = Across(character.skeleton, joints);
@@ -184,7 +208,7 @@ CharacterSpace FindCharacterSpace(const character::Character& character,
     }
   }
   space.height = std::max(high - low, 0.0f);
-  if (space.height > 0.0f) space.scale = UsualScale(space.height, space.is_body);
+  if (space.height > 0.0f) space.scale = UsualScale(space.height, space.kind);
   return space;
 }
 

@@ -11,14 +11,21 @@
 
 namespace furrow::authoring {
 
+// What a model is of a person, which tells the height that is expected.
+enum class ModelKind {
+  kBody,     // has legs: about 1.7 m
+  kHead,     // has joints of a head but no hips and arms, or only a few joints: about 0.3 m
+  kUnknown,  // a head or a body
+};
+
 // The orientation and size of a character in its file, and the conversion to metres, +Y up, facing
 // +Z.
 struct CharacterSpace {
   glm::mat3 rotation{1.0f};  // quarter turns about axes; identity: the orientation is right
   float scale = 1.0f;   // factor of a common unit (0.01, 0.0254, 10, ...); 1: the size is plausible
   float height = 0.0f;  // of the mesh along its own up direction, in the file's unit
-  bool is_body = false;  // has legs: a height of about 1.7 m is expected, otherwise about 0.3 m
-  std::string axes;      // "up +Z, facing -Y", as in the file; empty: unknown
+  ModelKind kind = ModelKind::kUnknown;
+  std::string axes;  // "up +Z, facing -Y", as in the file; empty: unknown
 };
 
 // Determines the space from the joints (head above hips, left beside right) and the extent of the
