@@ -8,6 +8,7 @@
 #include "base/joined.h"
 #include "base/text.h"
 #include "client/cli/commands/commands.h"
+#include "client/cli/common/command.h"
 #include "client/cli/common/exit_code.h"
 #include "client/cli/common/inputs.h"
 #include "motion/clip/clip.h"
@@ -22,9 +23,11 @@ using recording::TakeReader;
 
 // Lists the animations of a file, of which "FILE#NAME" or "FILE#INDEX" chooses one.
 void PrintAnimations(const std::vector<motion::AnimationInfo>& animations) {
-  for (std::size_t i = 0; i < animations.size(); ++i)
-    std::printf("  animation   %zu: %s, %.3f s\n", i, animations[i].name.c_str(),
+  for (std::size_t i = 0; i < animations.size(); ++i) {
+    const std::string& name = animations[i].name;
+    std::printf("  animation   %zu: %s, %.3f s\n", i, name.empty() ? "(no name)" : name.c_str(),
                 animations[i].seconds);
+  }
 }
 
 // What the names of the blend shapes mean, as the shipped shape maps know them.
@@ -42,7 +45,7 @@ void PrintVocabulary(const std::vector<std::string>& names) {
               Counted(names.size(), "blend shape").c_str());
 }
 
-int DescribeClip(const std::string& path, const motion::LoadOptions& read) {
+int DescribeClip(const std::string& path, const motion::LoadOptions& read, const std::string& map) {
   motion::ClipReport report;
   const auto clip = LoadClipArgument(path, read, &report);
   if (!clip.ok()) return Fail(clip.status());
@@ -58,7 +61,7 @@ int DescribeClip(const std::string& path, const motion::LoadOptions& read) {
               Counted(clip->blend_shape_names.size(), "blend shape").c_str());
   PrintVocabulary(clip->blend_shape_names);
   if (clip->skeleton.num_joints() > 0) {
-    const auto matcher = LoadSkeletonMatcher({});
+    const auto matcher = LoadSkeletonMatcher(map);
     if (!matcher.ok()) return Fail(matcher.status());
     // Without a rig, the match has the roles and the axes alone.
     const rig::SkeletonMatch match = matcher->Match(clip->skeleton, wrinkle::Rig(), nullptr);
@@ -155,6 +158,7 @@ int DescribeTake(const std::string& path) {
 void AddInfo(CLI::App& app, Action& action) {
   auto path = std::make_shared<std::string>();
   auto read = std::make_shared<motion::LoadOptions>();
+  auto map = std::make_shared<std::string>();
   CLI::App* command = app.add_subcommand(
       "info", "Describe a recording: subjects, rates, gaps, duration and completeness");
   command
@@ -162,9 +166,10 @@ void AddInfo(CLI::App& app, Action& action) {
                    "Recording: .bvh, .glb, .gltf, .vrma, .fbx, .dae, .csv, .mhpose or .mcap")
       ->required();
   AddReadOptions(*command, *read);
-  command->callback([path, read, &action] {
-    action = [path, read] {
-      return recording::IsTakePath(*path) ? DescribeTake(*path) : DescribeClip(*path, *read);
+  AddSkeletonMap(*command, *map);
+  command->callback([path, read, map, &action] {
+    action = [path, read, map] {
+      return recording::IsTakePath(*path) ? DescribeTake(*path) : DescribeClip(*path, *read, *map);
     };
   });
 }
