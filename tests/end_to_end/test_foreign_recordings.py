@@ -137,6 +137,12 @@ class ForeignRecordings(unittest.TestCase):
         message = furrow("info", f"{file}#run", check=BAD_INPUT).stderr.decode()
         self.assertIn("two.fbx: the file has no animation 'run' (animations: 0 'walk', 1 'mixamo.com')", message)
 
+    def test_info_takes_a_skeleton_map(self):
+        file = self.write("walk.fbx", to_binary(mixamo_like().nodes()))
+        for name in ("mixamo", "cmu"):
+            output = furrow("info", file, "--skeleton-map", name, check=DONE).stdout.decode()
+            self.assertIn(f"skeleton map '{name}'", output)
+
     def test_blend_shapes(self):
         file = self.write("face.fbx", to_binary(mixamo_like().nodes()))
         shapes = self.converted(file).blend_shapes()
