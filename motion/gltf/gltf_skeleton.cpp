@@ -46,20 +46,40 @@ std::vector<bool> MovingNodes(const gltf::NodeForest& forest, const gltf::Animat
   return moves;
 }
 
+// Per node: the most nodes in a row, from this one down, that all move.
+std::vector<int> MovingChains(const gltf::NodeForest& forest, const std::vector<bool>& moves) {
+  std::vector<int> chains(forest.nodes.size(), 0);
+  for (auto node = forest.order.rbegin(); node != forest.order.rend(); ++node) {
+    const auto i = static_cast<std::size_t>(*node);
+    if (!moves[i]) continue;
+    int longest = 0;
+    for (const int child : forest.nodes[i].children) {
+      longest = std::max(longest, chains[static_cast<std::size_t>(child)]);
+    }
+    chains[i] = 1 + longest;
+  }
+  return chains;
+}
+
 // Per node: true if it belongs to the body of a skin. Such a node is a listed joint or lies below
-// one, or below a moving node where branches with listed joints meet: hips that move no vertex are
-// in no list. `joints`: the listed nodes and their ancestors.
+// one, or below a moving node where branches of the body meet: hips that move no vertex are in no
+// list. A branch leads to listed joints or is a limb: the skin of a head lists no leg. `joints`:
+// the listed nodes and their ancestors.
 std::vector<bool> NodesOfBodies(const gltf::NodeForest& forest, const std::vector<bool>& listed,
                                 const std::vector<bool>& moves, const gltf::NodeSet& joints) {
+  constexpr int kLimb = 3;  // moving nodes in a row; cameras and props have fewer
+  const std::vector<int> chains = MovingChains(forest, moves);
   std::vector<bool> of_body = listed;
   for (const int index : forest.order) {
     const auto i = static_cast<std::size_t>(index);
     const gltf::Node& node = forest.nodes[i];
     const bool is_below =
         node.parent != gltf::kNone && of_body[static_cast<std::size_t>(node.parent)];
-    const auto num_branches = std::count_if(node.children.begin(), node.children.end(),
-                                            [&](int child) { return joints.Has(child); });
-    if (is_below || (moves[i] && num_branches > 1)) of_body[i] = true;
+    const auto num_branches = std::ranges::count_if(node.children, [&](int child) {
+      return joints.Has(child) || chains[static_cast<std::size_t>(child)] >= kLimb;
+    });
+    const bool is_junction = joints.Has(index) && moves[i] && num_branches > 1;
+    if (is_below || is_junction) of_body[i] = true;
   }
   return of_body;
 }

@@ -139,6 +139,23 @@ TEST(GltfReader, HipsThatNoSkinListsHoldTheBodyTogether) {
               ElementsAre("armature", "hips", "leg_l", "leg_r", "tail"));
 }
 
+// The skin of a head alone. A limb has at least three moving nodes in a row.
+TEST(GltfReader, LimbsOfABodyWithoutASkinComeAlong) {
+  HandMadeGltf gltf = TwoJoints();
+  gltf.json["nodes"] = {{{"name", "hips"}, {"children", {1, 2, 5}}},
+                        {{"name", "head"}},
+                        {{"name", "thigh"}, {"children", {3}}},
+                        {{"name", "shin"}, {"children", {4}}},
+                        {{"name", "foot"}},
+                        {{"name", "tail"}}};
+  gltf.json["skins"] = {{{"joints", {1}}}};
+  for (const int node : {2, 3, 5}) Move(node, &gltf);
+  EXPECT_THAT(Parse(gltf.Glb()).skeleton.joint_names(), ElementsAre("hips", "head"));
+  Move(4, &gltf);
+  EXPECT_THAT(Parse(gltf.Glb()).skeleton.joint_names(),
+              ElementsAre("hips", "head", "thigh", "shin", "foot", "tail"));
+}
+
 TEST(GltfReader, WhatMovesBelowSkinsGivesWayToTheirJoints) {
   HandMadeGltf gltf = TwoJoints();
   json children = json::array();
