@@ -285,7 +285,8 @@ TEST_F(StoreCoordinatorTest, SubjectsThatAreHandedOverAreSpread) {
 TEST_F(StoreCoordinatorTest, ANodeExpectsNoMoreSubjectsThanItHasRoomFor) {
   StoreCoordinator& a = Add("a", 2);
   ASSERT_TRUE(IsReady(a));
-  // At once, so the leases are not there yet.
+  // The clock stands, so the leases are not there yet.
+  const std::lock_guard standing(world_.turns_mutex);
   EXPECT_EQ(a.Expect("s1", world_.Now()).kind, Place::Kind::kPending);
   EXPECT_EQ(a.Expect("s2", world_.Now()).kind, Place::Kind::kPending);
   EXPECT_EQ(a.Expect("s2", world_.Now()).kind, Place::Kind::kPending) << "again";
