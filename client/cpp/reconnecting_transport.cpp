@@ -13,8 +13,6 @@
 namespace furrow::client {
 namespace {
 
-// A TCP attempt that takes longer has failed.
-constexpr std::int64_t kConnectTimeoutUs = 3'000'000;
 // A message that arrives this long after opening proves that the connection works. An earlier one
 // may be a refusal.
 constexpr std::int64_t kProvenUs = 1'000'000;
@@ -182,7 +180,9 @@ IoStatus ReconnectingTransport::Receive(std::span<const std::uint8_t>& message,
       tls_failed_ = false;
       return status;
     case IoStatus::kTimeout:
-      if (!up_ && now_us_() - opened_us_ > kConnectTimeoutUs) return OnFailure(now_us_());
+      if (!up_ && now_us_() - opened_us_ > inner_->connect_timeout().count()) {
+        return OnFailure(now_us_());
+      }
       return status;
     default: return OnFailure(now_us_());
   }

@@ -74,6 +74,9 @@ void TcpTransport::OnConnected(const asio::error_code& error) {
 
 void TcpTransport::OnHandshake(const asio::error_code& error) {
   if (!error) return Finish({});
+  // A peer that objects to something sends an alert, which is an error of OpenSSL.
+  handshake_cut_ = TlsCode(error) == 0;
+  if (handshake_cut_) return Finish(HandshakeCut(host_, port_, /*is_closed=*/true));
   FailTls("no connection to " + AddressText(host_, port_) +
           " over TLS: " + TlsFailureText(stream_.upper()->native_handle(), TlsCode(error)));
 }
@@ -95,14 +98,25 @@ void TcpTransport::Fail(const std::string& reason) {
 
 Status TcpTransport::Await(Clock::time_point deadline) {
   if (!AwaitConnect(deadline)) {
-    tls_failed_ = shakes_hands();
+    const bool shakes = shakes_hands();
     Close();
-    Fail(tls_failed_ ? kSlowHandshakeText : asio::error_code(asio::error::timed_out).message());
+    handshake_cut_ = false;  // this end has closed it
+    if (shakes) {
+      Finish(HandshakeCut(host_, port_, /*is_closed=*/false));
+    } else {
+      Fail(asio::error_code(asio::error::timed_out).message());
+    }
   }
   return *result_;
 }
 
-std::string TcpTransport::failure() const { return shakes_hands() ? kSlowHandshakeText : failure_; }
+std::string TcpTransport::failure() const {
+  return shakes_hands() ? HandshakeCut(host_, port_, /*is_closed=*/false).what() : failure_;
+}
+
+std::chrono::microseconds TcpTransport::connect_timeout() const {
+  return shakes_hands() ? kTlsConnectTimeout : Transport::connect_timeout();
+}
 
 IoStatus TcpTransport::Send(std::span<const std::uint8_t> message) {
   if (message.size() > protocol::kMaxRequestBytes) return IoStatus::kTooLarge;

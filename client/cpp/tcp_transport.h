@@ -32,14 +32,18 @@ class TcpTransport : public Transport {
   // Begins to connect, and with TLS to shake hands. Errors: kUnavailable (the name does not
   // resolve), kInvalidArgument (the token would travel in clear to another computer).
   [[nodiscard]] Status Begin(const std::string& host, std::uint16_t port);
-  // Waits until the connection is complete. Errors: kUnavailable, and kInvalidArgument for what
-  // time does not mend, such as a certificate of another host.
+  // Waits until the connection is complete. Errors: kUnavailable (also if the daemon closes the
+  // connection during the handshake), and kInvalidArgument for what time does not mend, such as a
+  // certificate of another host.
   [[nodiscard]] Status Await(Clock::time_point deadline);
+  // True if the daemon has closed the connection during the handshake, so it may be busy.
+  [[nodiscard]] bool handshake_cut() const { return handshake_cut_; }
 
   [[nodiscard]] bool connected() const override { return result_ && result_->ok(); }
-  // Both also count a handshake that is not complete: who asks has given up waiting for it.
+  // Also counts a handshake that is not complete, because the caller has given up waiting for it.
   [[nodiscard]] std::string failure() const override;
-  [[nodiscard]] bool tls_failed() const override { return tls_failed_ || shakes_hands(); }
+  [[nodiscard]] bool tls_failed() const override { return tls_failed_; }
+  [[nodiscard]] std::chrono::microseconds connect_timeout() const override;
 
   [[nodiscard]] IoStatus Send(std::span<const std::uint8_t> message) override;
   [[nodiscard]] IoStatus Receive(std::span<const std::uint8_t>& message,
@@ -73,6 +77,7 @@ class TcpTransport : public Transport {
   std::optional<Status> result_;  // of the connect; nothing: not known yet
   std::string failure_;
   bool tls_failed_ = false;
+  bool handshake_cut_ = false;
   // One read is always pending, so a timeout never loses data.
   bool read_pending_ = false;
   bool read_done_ = false;

@@ -36,6 +36,16 @@ Status ConnectionFailed(TransportKind kind, const std::string& host, std::uint16
                                         std::string(reason)};
 }
 
+Status HandshakeCut(const std::string& host, std::uint16_t port, bool is_closed) {
+  const std::string what = is_closed
+                               ? "the daemon closed the connection during the TLS handshake: it"
+                               : "the TLS handshake took too long: the daemon";
+  return {StatusCode::kUnavailable,
+          "no connection to " + AddressText(host, port) + " over TLS: " + what +
+              " is busy with other clients of this address, or does not speak TLS at this port",
+          "", "try again later, or leave out tls=1 and --tls"};
+}
+
 Status HostNotFound(const std::string& host) {
   // The resolver's own words ("Host not found (authoritative)") do not say what to do.
   return {StatusCode::kUnavailable, "no connection to " + host + ": no host of this name was found",

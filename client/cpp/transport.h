@@ -67,6 +67,11 @@ class Transport {
 
   // True once messages can be sent.
   [[nodiscard]] virtual bool connected() const { return true; }
+  // An attempt to connect that takes longer, counted from its start, has failed. May grow while the
+  // attempt makes progress.
+  [[nodiscard]] virtual std::chrono::microseconds connect_timeout() const {
+    return std::chrono::seconds(3);
+  }
   // The system's reason of the last failed attempt to connect; empty if none failed.
   [[nodiscard]] virtual std::string failure() const { return {}; }
 
@@ -76,7 +81,8 @@ class Transport {
   }
 
   // True if the newest attempt to connect, or the connection itself, failed in TLS: the certificate
-  // is not trusted, or the daemon does not speak TLS or wants a certificate of the client.
+  // is not trusted, or the daemon does not speak TLS or wants a certificate of the client. False if
+  // the daemon only closed the connection during the handshake, because it may be busy.
   [[nodiscard]] virtual bool tls_failed() const { return false; }
 
   // True for transports that connect again after a loss (client/cpp/reconnecting_transport.h).
@@ -115,6 +121,9 @@ class Transport {
 // The kUnavailable status of a failed connect: "no connection to host:port over TCP: reason".
 [[nodiscard]] Status ConnectionFailed(TransportKind kind, const std::string& host,
                                       std::uint16_t port, std::string_view reason);
+// The kUnavailable status of a TLS handshake that the daemon ended without an alert (`is_closed`),
+// or that took too long. A busy daemon does both, so another attempt may succeed.
+[[nodiscard]] Status HandshakeCut(const std::string& host, std::uint16_t port, bool is_closed);
 // The kUnavailable status of a host name that has no address, with what to do.
 [[nodiscard]] Status HostNotFound(const std::string& host);
 

@@ -2,8 +2,12 @@
 #include "client/cpp/transports.h"
 
 #include <array>
+#include <random>
+#include <thread>
 #include <vector>
 
+#include "client/cpp/backoff.h"
+#include "client/cpp/clock.h"
 #include "client/cpp/connect_error.h"
 #include "client/cpp/datagram_socket.h"
 #include "client/cpp/secure_transport.h"
@@ -66,6 +70,24 @@ class UdpTransport : public Transport {
   std::uint32_t next_message_id_ = 0;
 };
 
+// Tries again, until the time is over, while the daemon closes the connection during the handshake.
+Result<std::unique_ptr<Transport>> OpenTcp(const std::string& host, std::uint16_t port,
+                                           std::chrono::milliseconds timeout,
+                                           const Security& security) {
+  const auto deadline = Clock::now() + timeout;
+  Backoff backoff(std::random_device{}(), {});
+  for (;;) {
+    auto transport = std::make_unique<TcpTransport>(timeout, security);
+    FURROW_RETURN_IF_ERROR(transport->Begin(host, port));
+    Status status = transport->Await(deadline);
+    if (status.ok()) return std::unique_ptr<Transport>(std::move(transport));
+    backoff.Failed(SteadyMicroseconds());
+    const std::chrono::microseconds pause(backoff.Wait(SteadyMicroseconds()));
+    if (!transport->handshake_cut() || Clock::now() + pause >= deadline) return status;
+    std::this_thread::sleep_for(pause);
+  }
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Transport>> OpenTransport(TransportKind kind, const std::string& host,
@@ -84,10 +106,7 @@ Result<std::unique_ptr<Transport>> OpenTransport(TransportKind kind, const std::
     return Status(StatusCode::kInvalidArgument, transport->failure(), AddressText(host, port));
   }
   if (kind == TransportKind::kUdp) return BeginTransport(kind, host, port, timeout);
-  auto transport = std::make_unique<TcpTransport>(timeout, security);
-  FURROW_RETURN_IF_ERROR(transport->Begin(host, port));
-  FURROW_RETURN_IF_ERROR(transport->Await(Clock::now() + timeout));
-  return std::unique_ptr<Transport>(std::move(transport));
+  return OpenTcp(host, port, timeout, security);
 }
 
 Result<std::unique_ptr<Transport>> BeginTransport(TransportKind kind, const std::string& host,

@@ -16,7 +16,9 @@ namespace furrow::client {
 // each later Send() to a slow peer. UDP has no handshake: Receive() reports a missing server.
 //
 // With a token over UDP, waits for the secure session that it begins; with TLS over TCP, for the
-// handshake.
+// handshake. A daemon that is busy may close the connection
+// during the handshake; until `timeout` has passed, the function tries again. kTlsConnectTimeout is
+// long enough.
 //
 // Errors: kUnavailable (the name does not resolve, or the peer does not accept the connection),
 // kInvalidArgument (the daemon refuses the token, its certificate is not trusted, or the token

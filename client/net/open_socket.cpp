@@ -83,13 +83,8 @@ Result<std::unique_ptr<Socket>> OpenSocket(TransportKind kind, const std::string
   if (kind == TransportKind::kTcp) {
     auto socket = std::make_unique<TcpSocket>(*std::move(descriptor));
     if (security.tls != nullptr) {
-      const std::string why =
-          socket->StartTls(security.tls.get(), certificate_host.empty() ? host : certificate_host,
-                           std::chrono::steady_clock::now() + kConnectTimeout);
-      if (!why.empty()) {
-        return Status(StatusCode::kInvalidArgument,
-                      "no connection to " + client::AddressText(host, port) + " over TLS: " + why);
-      }
+      FURROW_RETURN_IF_ERROR(socket->StartTls(
+          security.tls.get(), certificate_host.empty() ? host : certificate_host, host, port));
     }
     if (token != nullptr) (void)socket->Send(client::TokenGreeting(*token));
     return std::unique_ptr<Socket>(std::move(socket));

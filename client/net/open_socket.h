@@ -21,11 +21,11 @@ namespace furrow::net {
                                                 std::uint16_t port);
 
 // Connects a TcpSocket or a UdpSocket. `security`: the token is shown to the daemon, over UDP in a
-// session that begins within 3 seconds, and so does TLS over TCP. `certificate_host`: whom the
-// daemon's certificate must be for; empty: `host`.
+// session that begins within 3 seconds. TLS over TCP begins within client::kTlsConnectTimeout.
+// `certificate_host`: the name or address in the daemon's certificate; empty: `host`.
 //
-// Errors: those of OpenDescriptor(); kInvalidArgument (the daemon refuses the token, or TLS
-// failed).
+// Errors: those of OpenDescriptor(); kUnavailable (also if the daemon closes the connection during
+// the handshake); kInvalidArgument (the daemon refuses the token, or TLS failed).
 [[nodiscard]] Result<std::unique_ptr<Socket>> OpenSocket(client::TransportKind kind,
                                                          const std::string& host,
                                                          std::uint16_t port,

@@ -30,26 +30,28 @@ TcpSocket::TcpSocket(Descriptor descriptor)
   setsockopt(descriptor_.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
 }
 
-std::string TcpSocket::StartTls(SSL_CTX* context, const std::string& host,
-                                std::chrono::steady_clock::time_point deadline) {
-  tls_ = std::make_unique<client::TlsSession>(context, host);
+Status TcpSocket::StartTls(SSL_CTX* context, const std::string& certificate_host,
+                           const std::string& host, std::uint16_t port) {
+  const auto deadline = std::chrono::steady_clock::now() + client::kTlsConnectTimeout;
+  tls_ = std::make_unique<client::TlsSession>(context, certificate_host);
   for (;;) {
     const client::TlsSession::Progress progress = tls_->Handshake();
     // Also after a failure: the alert tells the peer.
     tls_->TakeOutgoing(&sealed_);
     const bool is_closed = SendAll(sealed_) != IoStatus::kOk;
-    if (progress == client::TlsSession::Progress::kFailed) return tls_->failure();
+    if (progress == client::TlsSession::Progress::kFailed) {
+      return {StatusCode::kInvalidArgument, "no connection to " + client::AddressText(host, port) +
+                                                " over TLS: " + tls_->failure()};
+    }
     if (progress == client::TlsSession::Progress::kDone) return {};
     const auto left =
         std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
     if (left.count() <= 0 || !WaitFor(descriptor_.get(), POLLIN, left)) {
-      return client::kSlowHandshakeText;
+      return client::HandshakeCut(host, port, /*is_closed=*/false);
     }
     const ssize_t received = recv(descriptor_.get(), buffer_.data(), buffer_.size(), 0);
     if (received < 0 && (errno == EAGAIN || errno == EINTR)) continue;
-    if (received <= 0 || is_closed) {
-      return "it closed the connection during the TLS handshake (does it speak TLS at this port?)";
-    }
+    if (received <= 0 || is_closed) return client::HandshakeCut(host, port, /*is_closed=*/true);
     tls_->Feed(std::span(buffer_).first(static_cast<std::size_t>(received)));
   }
 }

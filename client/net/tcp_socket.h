@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/process/descriptor.h"
+#include "base/status.h"
 #include "client/cpp/tls/tls_session.h"
 #include "client/net/socket.h"
 #include "protocol/framing/tcp_framing.h"
@@ -20,10 +21,12 @@ namespace furrow::net {
 class TcpSocket : public Socket {
  public:
   explicit TcpSocket(Descriptor descriptor);
-  // Speaks TLS from now on, and waits until `deadline` for the end of the handshake. Returns why it
-  // failed, as part of a sentence; empty: done. Call it before the first message.
-  [[nodiscard]] std::string StartTls(SSL_CTX* context, const std::string& host,
-                                     std::chrono::steady_clock::time_point deadline);
+  // Speaks TLS from now on, and waits up to client::kTlsConnectTimeout for the end of the
+  // handshake. Call it before the first message. `certificate_host`: the name or address that the
+  // certificate must be for; `host` and `port` are for messages. Errors: kUnavailable
+  // (client::HandshakeCut()), kInvalidArgument (TLS failed).
+  [[nodiscard]] Status StartTls(SSL_CTX* context, const std::string& certificate_host,
+                                const std::string& host, std::uint16_t port);
 
   [[nodiscard]] client::IoStatus Send(std::span<const std::uint8_t> message) override;
   [[nodiscard]] client::IoStatus Receive(std::span<const std::uint8_t>& message,

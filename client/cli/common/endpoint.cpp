@@ -7,6 +7,7 @@
 
 #include "client/cli/common/exit_code.h"
 #include "client/cpp/reconnecting_transport.h"
+#include "client/cpp/tls/client_tls.h"
 #include "client/cpp/transports.h"
 
 namespace furrow::cli {
@@ -68,6 +69,7 @@ std::unique_ptr<client::Transport> OpenTransport(const client::Address& address,
                                                  int* exit_code) {
   const std::uint16_t port = address.PortFor(kind);
   constexpr std::chrono::milliseconds kTimeout(3000);
+  const auto connect_timeout = address.tls ? client::kTlsConnectTimeout : kTimeout;
   if (address.tls && kind == client::TransportKind::kUdp) {
     std::fprintf(stderr, "furrow: --udp: TLS needs TCP (over UDP, a token encrypts)\n");
     *exit_code = kUsage;
@@ -78,7 +80,7 @@ std::unique_ptr<client::Transport> OpenTransport(const client::Address& address,
     *exit_code = Fail(security.status());
     return nullptr;
   }
-  auto transport = client::OpenTransport(kind, address.host, port, kTimeout, *security);
+  auto transport = client::OpenTransport(kind, address.host, port, connect_timeout, *security);
   if (!transport.ok()) {
     const bool absent = transport.status().code() == StatusCode::kUnavailable;
     const bool needs_hint = absent && transport.status().todo().empty();

@@ -124,10 +124,7 @@ std::string TlsFailureText(const SSL* ssl, unsigned long code) {
   if (const long result = SSL_get_verify_result(ssl); result != X509_V_OK) {
     return CertificateFault(result);
   }
-  if (ERR_GET_LIB(code) != ERR_LIB_SSL) {
-    return "it closed the connection during the TLS handshake (does it speak TLS at this port?)";
-  }
-  switch (ERR_GET_REASON(code)) {
+  switch (ERR_GET_LIB(code) == ERR_LIB_SSL ? ERR_GET_REASON(code) : 0) {
     case SSL_R_WRONG_VERSION_NUMBER:
     case SSL_R_PACKET_LENGTH_TOO_LONG:
       return "it does not speak TLS (leave out tls=1 and --tls, or start furrowd with "

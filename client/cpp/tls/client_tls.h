@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <string>
 
@@ -29,12 +30,12 @@ struct ClientTlsFiles {
 // The caller owns the result; null: out of memory.
 [[nodiscard]] SSL* NewTlsClient(SSL_CTX* context, const std::string& host);
 
-// Why a handshake has not ended in time.
-inline constexpr char kSlowHandshakeText[] =
-    "the TLS handshake took too long (does it speak TLS at this port?)";
+// The time for a connect with its handshake. A daemon gives a client 5 s to find its turn among the
+// clients of its host, and then closes the connection.
+inline constexpr std::chrono::milliseconds kTlsConnectTimeout{7000};
 
-// Why a connection failed, and what to do, as part of a sentence: "its certificate has expired
-// (...)". `code`: of OpenSSL, or 0 if the connection ended.
+// Why TLS failed, and what to do, as part of a sentence: "its certificate has expired (...)".
+// `code`: of OpenSSL.
 [[nodiscard]] std::string TlsFailureText(const SSL* ssl, unsigned long code);
 
 }  // namespace furrow::client

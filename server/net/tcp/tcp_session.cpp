@@ -48,6 +48,12 @@ PeerLabel NameOf(StreamSocket& stream) {
   return label;
 }
 
+// True for the head of a ClientHello (RFC 8446 section 5.1). Its length in Furrow's framing may be
+// a permitted one, but the message of a frame begins with another byte.
+bool BeginsTls(std::span<const std::uint8_t> bytes) {
+  return bytes.size() > 5 && bytes[0] == 22 && bytes[1] == 3 && bytes[5] == 1;
+}
+
 }  // namespace
 
 TcpSession::TcpSession(std::shared_ptr<StreamSocket> stream, const Limits& limits, Hub* hub,
@@ -110,6 +116,7 @@ asio::awaitable<void> TcpSession::Perform(Task task) {
 }
 
 PeerId TcpSession::Resume(const SavedConnection& saved, std::optional<Access> access) {
+  is_new_ = false;
   if (access || !hub_->RequiresToken()) OnAdmitted();
   std::span<const std::uint8_t> input = saved.input;
   std::span<const std::uint8_t> frame;
@@ -179,6 +186,11 @@ asio::awaitable<void> TcpSession::Read() {
 }
 
 bool TcpSession::OnBytes(std::span<const std::uint8_t> bytes, Time now) {
+  // Without an answer, both sides would wait.
+  if (std::exchange(is_new_, false) && BeginsTls(bytes)) {
+    hub_->OnBadFrame(peer_);
+    return false;
+  }
   std::span<const std::uint8_t> frame;
   while (!bytes.empty() && state_ == State::kOpen) {
     switch (frames_.Push(bytes, frame)) {

@@ -109,6 +109,7 @@ class TcpSession : public Link, public std::enable_shared_from_this<TcpSession> 
   std::vector<std::uint8_t> unsent_;  // left over, before what is queued
   bool owes_frames_ = false;          // out_ may hold kKeepAll frames
   bool is_admitted_ = false;          // OnAdmitted() was called
+  bool is_new_ = true;                // nothing has arrived yet
   bool leaves_ = false;
   bool is_saved_ = false;
   unsigned running_ = 0;  // tasks

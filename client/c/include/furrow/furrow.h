@@ -91,7 +91,8 @@ typedef enum furrow_status {
   FURROW_FORBIDDEN = -21,       /* the token does not permit this */
 
   FURROW_TLS_FAILED = -23, /* the daemon's certificate is not trusted, or it does not speak TLS, or
-                              it wants a certificate of yours; the library keeps trying */
+                              it wants a certificate of yours; the library keeps trying. A busy
+                              daemon that closes the connection is FURROW_NO_DATA */
 
   /* Reserved: this version never returns these two, later versions will. Treat them as errors. */
   FURROW_WRONG_SERVER_KEY = -22, /* the daemon does not own the expected key */

@@ -107,6 +107,31 @@ test('a daemon that speaks no TLS', async () => {
   server.close();
 });
 
+test('a daemon that closes during the handshake may be busy', async () => {
+  const server = createPlainServer((socket) => {
+    socket.on('error', () => {});
+    socket.once('data', () => (isReset ? socket.resetAndDestroy() : socket.destroy()));
+  });
+  let isReset = false;
+  server.listen(0, '127.0.0.1');
+  await once(server, 'listening');
+  const { port } = server.address() as AddressInfo;
+  for (isReset of [false, true]) {
+    for (const opener of [tcpSocket, nodeWebSocket]) {
+      const why = await outcome(opener('127.0.0.1', port, security('tls=1')));
+      assert.match(why, /closed the connection during the TLS handshake: it is busy/);
+    }
+  }
+  server.close();
+});
+
+test('an attempt with TLS has the time of a daemon that is busy', () => {
+  for (const opener of [tcpSocket, nodeWebSocket]) {
+    assert.ok(opener('a', 1, security('tls=1')).connectMs! > 5000);
+    assert.equal(opener('a', 1).connectMs, undefined);
+  }
+});
+
 const own = Object.values(networkInterfaces()).flat().find((each) => each?.family === 'IPv4' && !each.internal)?.address;
 
 test('a token does not travel unencrypted to another address', { skip: own === undefined && 'no such address' }, async () => {

@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cstring>
+#include <string>
+#include <thread>
 #include <utility>
+#include <vector>
 
 #include <arpa/inet.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "client/cpp/tcp_transport.h"
+#include "client/cpp/tls/client_tls.h"
 #include "client/cpp/transports.h"
 #include "protocol/codec/codec.h"
 #include "protocol/framing/bundle.h"
@@ -19,6 +26,7 @@ namespace furrow::client {
 namespace {
 
 using std::chrono::milliseconds;
+using testing::HasSubstr;
 constexpr milliseconds kGuard{10'000};  // only a failing test takes this long
 
 // A plain system socket as the peer, on a free loopback port.
@@ -169,6 +177,97 @@ TEST(TcpAddressTest, AClosedPortIsAnErrorThatNamesTheAddress) {
   EXPECT_EQ(transport.status().code(), StatusCode::kUnavailable);
   const std::string error = transport.status().what();
   EXPECT_NE(error.find("127.0.0.1:" + std::to_string(port)), std::string::npos) << error;
+}
+
+// A peer at a TCP port that is addressed with TLS.
+class TlsHandshakeTest : public testing::Test {
+ protected:
+  ~TlsHandshakeTest() override {
+    if (thread_.joinable()) thread_.join();
+  }
+  // Accepts connections, reads the first bytes of each, and ends it after the answer: the next of
+  // `answers`.
+  void Answer(std::vector<std::string> answers) {
+    thread_ = std::thread([this, answers = std::move(answers)] {
+      for (const std::string& answer : answers) {
+        const int peer = ::accept(listener_.fd(), nullptr, nullptr);
+        std::array<char, 4096> hello{};
+        EXPECT_GT(::recv(peer, hello.data(), hello.size(), 0), 0);
+        EXPECT_EQ(::send(peer, answer.data(), answer.size(), MSG_NOSIGNAL),
+                  static_cast<ssize_t>(answer.size()));
+        ::close(peer);
+      }
+    });
+  }
+  [[nodiscard]] Status Connect(milliseconds timeout) const {
+    return OpenTransport(TransportKind::kTcp, "127.0.0.1", listener_.port(), timeout,
+                         {.token = {}, .tls = *MakeTlsContext({})})
+        .status();
+  }
+
+  Socket listener_{SOCK_STREAM};
+  std::thread thread_;
+};
+
+const std::string kPlainAnswer = "HTTP/1.1 400 Bad Request\r\n\r\n";
+
+TEST_F(TlsHandshakeTest, AnAnswerWithoutTlsIsFinal) {
+  Answer({kPlainAnswer});
+  const Status status = Connect(kGuard);
+  EXPECT_EQ(status.code(), StatusCode::kInvalidArgument);
+  EXPECT_THAT(status.what(), HasSubstr("it does not speak TLS"));
+}
+
+// A daemon closes handshakes while other clients of the host have their turn.
+TEST_F(TlsHandshakeTest, AConnectionThatIsClosedIsTriedAgain) {
+  Answer({"", "", kPlainAnswer});
+  EXPECT_EQ(Connect(kGuard).code(), StatusCode::kInvalidArgument) << "the last answer";
+}
+
+TEST_F(TlsHandshakeTest, AConnectionThatIsClosedMayBeBusy) {
+  Answer({""});
+  TcpTransport transport(kGuard, {.token = {}, .tls = *MakeTlsContext({})});
+  ASSERT_TRUE(transport.Begin("127.0.0.1", listener_.port()).ok());
+  const Status status = transport.Await(TcpTransport::Clock::now() + kGuard);
+  EXPECT_EQ(status.code(), StatusCode::kUnavailable);
+  EXPECT_THAT(status.what(), HasSubstr("the daemon closed the connection during the TLS handshake: "
+                                       "it is busy with other clients of this address, or does not "
+                                       "speak TLS at this port"));
+  EXPECT_TRUE(transport.handshake_cut());
+}
+
+TEST_F(TlsHandshakeTest, ASilentDaemonMayBeBusy) {
+  const Status status = Connect(milliseconds(20));
+  EXPECT_EQ(status.code(), StatusCode::kUnavailable);
+  EXPECT_THAT(status.what(), HasSubstr("the TLS handshake took too long: the daemon is busy"));
+}
+
+// What a ReconnectingTransport sees, which tries again after every end.
+TEST_F(TlsHandshakeTest, AnAttemptEndsWithoutAFailureOfTls) {
+  Answer({""});
+  auto transport = BeginTransport(TransportKind::kTcp, "127.0.0.1", listener_.port(), kGuard,
+                                  {.token = {}, .tls = *MakeTlsContext({})});
+  ASSERT_TRUE(transport.ok());
+  EXPECT_EQ((*transport)->connect_timeout(), std::chrono::seconds(3));
+  std::span<const std::uint8_t> received;
+  EXPECT_EQ((*transport)->Receive(received, kGuard), IoStatus::kNoConnection);
+  EXPECT_FALSE((*transport)->tls_failed());
+  EXPECT_THAT((*transport)->failure(), HasSubstr("it is busy with other clients"));
+}
+
+TEST_F(TlsHandshakeTest, AHandshakeMayTakeLongerThanAConnect) {
+  auto transport = BeginTransport(TransportKind::kTcp, "127.0.0.1", listener_.port(), kGuard,
+                                  {.token = {}, .tls = *MakeTlsContext({})});
+  ASSERT_TRUE(transport.ok());
+  std::span<const std::uint8_t> received;
+  const auto deadline = std::chrono::steady_clock::now() + kGuard;
+  while ((*transport)->connect_timeout() != kTlsConnectTimeout &&
+         std::chrono::steady_clock::now() < deadline) {
+    EXPECT_EQ((*transport)->Receive(received, milliseconds(1)), IoStatus::kTimeout);
+  }
+  EXPECT_GT((*transport)->connect_timeout(), std::chrono::seconds(5)) << "of the daemon";
+  EXPECT_FALSE((*transport)->tls_failed());
+  EXPECT_THAT((*transport)->failure(), HasSubstr("the TLS handshake took too long"));
 }
 
 TEST(TcpAddressTest, AnIpv6AddressIsWrittenInBrackets) {

@@ -299,7 +299,7 @@ export class Connection {
     this.schedule();
     const nowMs = this.environment.nowMs();
     if (!this.isUp) {
-      if (nowMs - this.openedMs > CONNECT_MS) this.lost('the daemon does not answer');
+      if (nowMs - this.openedMs > (this.servers.opener.connectMs ?? CONNECT_MS)) this.lost('the daemon does not answer');
       return;
     }
     const silentMs = nowMs - this.heardMs;

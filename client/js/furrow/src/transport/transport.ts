@@ -16,6 +16,12 @@ export interface TransportEvents {
 /** A connection with more unsent bytes is given up, because its peer does not read. All requests of a client are fewer. */
 export const MAX_UNSENT_BYTES = 1 << 22;
 
+/**
+ * The time for a connect with a TLS handshake. A daemon gives a client 5 seconds to find its turn among the clients of
+ * its host, and then closes the connection.
+ */
+export const TLS_CONNECT_MS = 7000;
+
 /** One connection that carries whole messages. It opens at once and never opens again. */
 export interface Transport {
   /** Sends a message, or drops it if there is no connection. */
@@ -44,6 +50,8 @@ export interface TransportOpener {
    * this client from forged ones (protocol/STANDARD.md section 4).
    */
   makeSession?(): bigint;
+  /** An attempt that takes longer has failed, milliseconds. Absent: 3 seconds. */
+  connectMs?: number;
   /** The text of the connect token that each Hello shows; absent or empty: none. */
   access?: string;
   /**

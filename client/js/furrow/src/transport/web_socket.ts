@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The browser's WebSocket.
 import { webAddress } from '../link/servers.js';
-import { MAX_UNSENT_BYTES, type Transport, type TransportEvents, type TransportOpener } from './transport.js';
+import { MAX_UNSENT_BYTES, TLS_CONNECT_MS, type Transport, type TransportEvents, type TransportOpener } from './transport.js';
 
 export const WEB_SOCKET_PROTOCOL = 'furrow.1';
 
@@ -17,6 +17,7 @@ export function offeredProtocols(token: string): string[] {
 export function browserSocket(url: string, token: () => string = () => ''): TransportOpener {
   return {
     kind: 'ws',
+    ...(url.startsWith('wss:') ? { connectMs: TLS_CONNECT_MS } : {}),
     open: (events) => openSocket(url, token(), events),
     elsewhere: (server) => {
       const web = webAddress(server);

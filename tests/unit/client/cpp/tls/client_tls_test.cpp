@@ -75,7 +75,7 @@ TEST_F(ClientTls, FailuresSayWhatToDo) {
   const auto text = [&](int reason) {
     return TlsFailureText(ssl.get(), ERR_PACK(ERR_LIB_SSL, 0, reason));
   };
-  EXPECT_THAT(TlsFailureText(ssl.get(), 0), HasSubstr("does it speak TLS at this port?"));
+  EXPECT_THAT(TlsFailureText(ssl.get(), ERR_PACK(ERR_LIB_ASN1, 0, 1)), HasSubstr("TLS failed: "));
   EXPECT_THAT(text(SSL_R_WRONG_VERSION_NUMBER), HasSubstr("start furrowd with --tls-certificate"));
   EXPECT_THAT(text(SSL_R_TLSV13_ALERT_CERTIFICATE_REQUIRED), HasSubstr("tls-certificate=FILE"));
   EXPECT_THAT(text(SSL_R_BAD_EXTENSION), HasSubstr("TLS failed: bad extension"));

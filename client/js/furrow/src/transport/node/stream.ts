@@ -64,29 +64,39 @@ const FAILURES: Record<string, string> = {
   ERR_SSL_TLSV13_ALERT_CERTIFICATE_REQUIRED: 'it asks for a certificate of the client (give it with tls-certificate=FILE and tls-key=FILE)',
 };
 
-/** Why a connection failed, as a sentence. */
-export function failureText(error: NodeJS.ErrnoException): string {
+const HANDSHAKE_CUT = 'the daemon closed the connection during the TLS handshake: it is busy with other clients of this ' +
+  'address, or does not speak TLS at this port';
+
+/** Why a connection failed, as a sentence. `isInHandshake`: of TLS. */
+function failureText(error: NodeJS.ErrnoException, isInHandshake: boolean): string {
+  if (isInHandshake && (error.code === 'ECONNRESET' || error.code === 'EPIPE')) return HANDSHAKE_CUT;
   return FAILURES[error.code ?? ''] ?? error.message;
 }
 
 /**
- * Begins to connect. `protocol`: of TLS (ALPN). Calls `onOpen` when bytes can be sent, or `onRefused` with a sentence if
- * the token would travel unencrypted to another computer.
+ * Begins to connect. `protocol`: of TLS (ALPN). Calls `onOpen` when bytes can be sent. Calls `onFailed` with a sentence
+ * if the connection fails, then or later, or if the token would travel unencrypted to another computer.
  */
 export function connectStream(host: string, port: number, security: StreamSecurity, protocol: string,
-  onOpen: () => void, onRefused: (why: string) => void): Socket {
+  onOpen: () => void, onFailed: (why: string) => void): Socket {
   if (security.tls !== null) {
     // A server name is a name, never an address (RFC 6066 section 3).
     const name = isIP(host) === 0 ? { servername: host } : {};
     const socket = connectTls({ host, port, ...name, ...security.tls, minVersion: 'TLSv1.3', ALPNProtocols: [protocol] });
+    let isInHandshake = true;
     socket.setNoDelay(true);
-    socket.on('secureConnect', onOpen);
+    socket.on('secureConnect', () => {
+      isInHandshake = false;
+      onOpen();
+    });
+    socket.on('error', (error) => onFailed(failureText(error, isInHandshake)));
     return socket;
   }
   const socket = createConnection({ host, port, noDelay: true });
+  socket.on('error', (error) => onFailed(failureText(error, false)));
   socket.on('connect', () => {
     if (security.token === '' || security.tokenInClear || isLoopback(socket.remoteAddress)) onOpen();
-    else onRefused(`the token would travel to ${host} unencrypted (use UDP or tls=1; token-in-clear=1 sends it anyway)`);
+    else onFailed(`the token would travel to ${host} unencrypted (use UDP or tls=1; token-in-clear=1 sends it anyway)`);
   });
   return socket;
 }

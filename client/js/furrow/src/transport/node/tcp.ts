@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // TCP: each message follows its length (protocol/STANDARD.md section 1).
 import { ENVELOPE_BYTES, MAX_REPLY_BYTES } from '../../wire/envelope.js';
-import { MAX_UNSENT_BYTES, type Transport, type TransportEvents, type TransportOpener } from '../transport.js';
+import { MAX_UNSENT_BYTES, TLS_CONNECT_MS, type Transport, type TransportEvents, type TransportOpener } from '../transport.js';
 import { ByteQueue } from './byte_queue.js';
-import { connectStream, failureText, mayShowTokenElsewhere, NO_SECURITY, type StreamSecurity } from './stream.js';
+import { connectStream, mayShowTokenElsewhere, NO_SECURITY, type StreamSecurity } from './stream.js';
 
 export function tcpSocket(host: string, port: number, security = NO_SECURITY): TransportOpener {
   const opener: TransportOpener = {
     kind: 'tcp', access: security.token, open: (events) => openTcp(host, port, security, events),
   };
+  if (security.tls !== null) opener.connectMs = TLS_CONNECT_MS;
   if (mayShowTokenElsewhere(security)) opener.elsewhere = (server) => tcpSocket(server.host, server.tcp, security);
   return opener;
 }
@@ -42,9 +43,6 @@ function openTcp(host: string, port: number, security: StreamSecurity, events: T
       if (frame === null) return;
       events.onMessage(frame.subarray(4));
     }
-  });
-  socket.on('error', (error) => {
-    why = failureText(error);
   });
   socket.on('close', () => {
     if (!isClosed) events.onClose(why);

@@ -5,10 +5,10 @@ import { createHash, randomBytes } from 'node:crypto';
 import type { Socket } from 'node:net';
 import { webAddress } from '../../link/servers.js';
 import { MAX_REPLY_BYTES } from '../../wire/envelope.js';
-import { MAX_UNSENT_BYTES, type Transport, type TransportEvents, type TransportOpener } from '../transport.js';
+import { MAX_UNSENT_BYTES, TLS_CONNECT_MS, type Transport, type TransportEvents, type TransportOpener } from '../transport.js';
 import { offeredProtocols } from '../web_socket.js';
 import { ByteQueue } from './byte_queue.js';
-import { connectStream, failureText, mayShowTokenElsewhere, NO_SECURITY, type StreamSecurity } from './stream.js';
+import { connectStream, mayShowTokenElsewhere, NO_SECURITY, type StreamSecurity } from './stream.js';
 
 const GUID = '258EAFA5-E914-47DA-95CA-C5AB0DC85B11';
 const MAX_HEAD_BYTES = 8192;
@@ -19,6 +19,7 @@ const MAX_PARTS = 4096;
 
 export function nodeWebSocket(host: string, port: number, security = NO_SECURITY, path = '/ws'): TransportOpener {
   const opener: TransportOpener = { kind: 'ws', open: (events) => new NodeWebSocket(host, port, security, path, events) };
+  if (security.tls !== null) opener.connectMs = TLS_CONNECT_MS;
   if (!mayShowTokenElsewhere(security)) return opener;
   opener.elsewhere = (server) => {
     const reaches = webAddress(server) !== null && server.isWebTls === (security.tls !== null);
@@ -45,9 +46,6 @@ class NodeWebSocket implements Transport {
       `Sec-WebSocket-Key: ${this.key}\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Protocol: ${offeredProtocols(security.token).join(', ')}\r\n\r\n`);
     this.socket = connectStream(host, port, security, 'http/1.1', ask, (why) => this.giveUp(why));
     this.socket.on('data', (chunk) => this.received(chunk));
-    this.socket.on('error', (error) => {
-      this.why = failureText(error);
-    });
     this.socket.on('close', () => {
       if (!this.isClosed) events.onClose(this.why);
     });
