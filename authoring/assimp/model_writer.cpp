@@ -2,6 +2,7 @@
 #include "authoring/assimp/model_writer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <unordered_map>
@@ -9,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 
 #include "authoring/assimp/assimp_materials.h"
@@ -20,6 +23,7 @@
 #include "gltf/scene/transform.h"
 #include "gltf/write/builder.h"
 #include "gltf/write/scene_json.h"
+#include "wrinkle/skeleton/skeleton.h"
 #include "wrinkle/skeleton/transform.h"
 
 namespace furrow::authoring {
@@ -97,33 +101,101 @@ class SceneWriter {
   // Nodes below joints that the file's animations move, and that lead to a rigid mesh, are joints,
   // too: eyeballs, teeth, props. Otherwise the mesh would follow the joint above.
   void AddMovingParts() {
-    std::unordered_set<std::string> moving;
+    std::vector<bool> joints, rigid;
+    for (const SourceNode& source : sources_) {
+      joints.push_back(source.is_joint);
+      rigid.push_back(HasRigidMesh(*source.node));
+    }
+    const std::vector<bool> below = BelowMarked(joints);
+    const std::vector<bool> leads = WithThoseAbove(rigid);
+    std::vector<bool> all = joints;
+    for (const std::size_t i : MovingSources()) all[i] = joints[i] || (below[i] && leads[i]);
+    if (all == joints) return;
+    // The joints that bones name may fit.
+    if (NumKept(all) > wrinkle::kMaxJoints) {
+      remarks_.push_back(
+          "some rigid parts do not move by themselves, because a skeleton has at most " +
+          std::to_string(wrinkle::kMaxJoints) + " joints");
+      return;
+    }
+    for (std::size_t i = 0; i < sources_.size(); ++i) sources_[i].is_joint = all[i];
+  }
+
+  [[nodiscard]] bool HasRigidMesh(const aiNode& node) const {
+    return std::any_of(node.mMeshes, node.mMeshes + node.mNumMeshes,
+                       [this](unsigned mesh) { return scene_.mMeshes[mesh]->mNumBones == 0; });
+  }
+
+  // The nodes that an animation moves out of their rest. Exporters of FBX bake a channel for every
+  // node, whether it moves or not.
+  [[nodiscard]] std::vector<std::size_t> MovingSources() const {
+    std::vector<std::size_t> moving;
     for (unsigned a = 0; a < scene_.mNumAnimations; ++a) {
       const aiAnimation& animation = *scene_.mAnimations[a];
       for (unsigned c = 0; c < animation.mNumChannels; ++c) {
-        moving.insert(NameFrom(animation.mChannels[c]->mNodeName));
+        const aiNodeAnim& channel = *animation.mChannels[c];
+        const auto found = sources_by_name_.find(NameFrom(channel.mNodeName));
+        // Animations tell nodes apart by their names alone.
+        if (found == sources_by_name_.end() || found->second.size() != 1) continue;
+        const std::size_t source = found->second[0];
+        if (LeavesRest(channel, ToGlm(sources_[source].node->mTransformation))) {
+          moving.push_back(source);
+        }
       }
     }
-    std::vector<bool> leads(sources_.size(), false);  // to a rigid mesh
-    for (std::size_t i = sources_.size(); i-- > 0;) {
-      const aiNode& node = *sources_[i].node;
-      const bool has_rigid_mesh =
-          std::any_of(node.mMeshes, node.mMeshes + node.mNumMeshes,
-                      [this](unsigned mesh) { return scene_.mMeshes[mesh]->mNumBones == 0; });
-      leads[i] = leads[i] || has_rigid_mesh;
-      if (leads[i] && sources_[i].parent >= 0) {
-        leads[static_cast<std::size_t>(sources_[i].parent)] = true;
-      }
-    }
-    std::vector<bool> below(sources_.size(), false);  // a joint; parents come first
-    for (std::size_t i = 1; i < sources_.size(); ++i) {
+    return moving;
+  }
+
+  // True if a key differs from the node's own transform by more than exporters round.
+  static bool LeavesRest(const aiNodeAnim& channel, const glm::mat4& local) {
+    constexpr float kSmall = 1e-4f;
+    const gltf::Transform rest = InvertibleTransform(local);
+    const auto differs = [](const glm::vec3& rest_value) {
+      return [rest_value](const aiVectorKey& key) {
+        const float size = std::max(1.0f, glm::length(rest_value));
+        return !(glm::distance(ToGlm(key.mValue), rest_value) <= kSmall * size);
+      };
+    };
+    const auto turns = [&rest](const aiQuatKey& key) {
+      const aiQuaternion& q = key.mValue;
+      // The cosine of half of the angle between the two: 0.16 degrees.
+      return !(std::abs(glm::dot(glm::quat(q.w, q.x, q.y, q.z), rest.rotation)) >= 1.0f - 1e-6f);
+    };
+    return std::any_of(channel.mPositionKeys, channel.mPositionKeys + channel.mNumPositionKeys,
+                       differs(rest.translation)) ||
+           std::any_of(channel.mRotationKeys, channel.mRotationKeys + channel.mNumRotationKeys,
+                       turns) ||
+           std::any_of(channel.mScalingKeys, channel.mScalingKeys + channel.mNumScalingKeys,
+                       differs(rest.scale));
+  }
+
+  // Per node: true if a node above it is marked.
+  [[nodiscard]] std::vector<bool> BelowMarked(const std::vector<bool>& marked) const {
+    std::vector<bool> below(sources_.size(), false);
+    for (std::size_t i = 1; i < sources_.size(); ++i) {  // parents come first
       const auto parent = static_cast<std::size_t>(sources_[i].parent);
-      below[i] = below[parent] || sources_[parent].is_joint;
-      const std::string name = NameFrom(sources_[i].node->mName);
-      // Animations tell nodes apart by their names alone.
-      const bool moves = moving.contains(name) && sources_by_name_.at(name).size() == 1;
-      if (below[i] && leads[i] && moves) sources_[i].is_joint = true;
+      below[i] = below[parent] || marked[parent];
     }
+    return below;
+  }
+
+  // Marks the nodes above marked ones, too.
+  [[nodiscard]] std::vector<bool> WithThoseAbove(std::vector<bool> marked) const {
+    for (std::size_t i = sources_.size(); i-- > 1;) {
+      if (marked[i]) marked[static_cast<std::size_t>(sources_[i].parent)] = true;
+    }
+    return marked;
+  }
+
+  // How many nodes WriteNodes() would keep, which the reader takes for joints.
+  [[nodiscard]] int NumKept(const std::vector<bool>& joints) const {
+    const std::vector<bool> below = BelowMarked(joints);
+    const std::vector<bool> leads = WithThoseAbove(joints);
+    int kept = 0;
+    for (std::size_t i = 0; i < sources_.size(); ++i) {
+      kept += joints[i] || (below[i] && leads[i]) ? 1 : 0;
+    }
+    return kept;
   }
 
   // The node that a bone means. FBX files may give a mesh the name of a bone.

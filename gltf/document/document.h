@@ -45,8 +45,8 @@ class Document {
   [[nodiscard]] std::size_t NumMorphTargets(int mesh) const;
   // Their names: `extras.targetNames`, else "<mesh>.<index>". Names may repeat.
   [[nodiscard]] std::vector<std::string> MorphTargetNames(int mesh) const;
-  // The nodes that any animation of the file moves, turns or scales, in ascending order. A node may
-  // be beyond the nodes of the file.
+  // The nodes that any animation of the file moves, turns or scales, in ascending order; see
+  // ListMovingNodes(). A node may be beyond the nodes of the file.
   [[nodiscard]] std::span<const int> moving_nodes() const { return raw_.moving_nodes; }
   // The name of the first scene; may be empty.
   [[nodiscard]] std::string SceneName() const;

@@ -13,6 +13,7 @@
 #include "gltf/container/uri.h"
 #include "gltf/document/draco_primitives.h"
 #include "gltf/document/meshopt_view.h"
+#include "gltf/document/moving_nodes.h"
 #include "gltf/limits.h"
 
 namespace furrow::gltf {
@@ -107,7 +108,7 @@ class RawReader {
     }
     result_.num_meshes = Array(json_, "meshes").size();
     FURROW_RETURN_IF_ERROR(ReadMorphTargets());
-    ListMovingNodes();
+    result_.moving_nodes = ListMovingNodes(json_, result_.views);
     if (options_.contents == Contents::kCharacter) {
       FURROW_RETURN_IF_ERROR(ReadImages());
       UseTextureExtensions();
@@ -352,24 +353,6 @@ class RawReader {
       result_.morph_targets.push_back(std::move(source));
     }
     return {};
-  }
-
-  // Characters need no keys of animations, so faults in animations do no harm.
-  void ListMovingNodes() {
-    std::vector<int>& nodes = result_.moving_nodes;
-    for (const Json& animation : Array(json_, "animations")) {
-      for (const Json& channel : Array(animation, "channels")) {
-        const Json* target = Find(channel, "target");
-        if (target == nullptr) continue;
-        const std::string path = Text(*target, "path");
-        std::uint64_t node = kMaxNodes;
-        const bool moves = path == "translation" || path == "rotation" || path == "scale";
-        if (!moves || !ReadUnsigned(*target, "node", kMaxNodes, &node)) continue;
-        if (node < kMaxNodes) nodes.push_back(static_cast<int>(node));
-      }
-    }
-    std::ranges::sort(nodes);
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   }
 
   // Of VRM's extensions, characters need the human bones, the expressions, look-at and MToon's
