@@ -142,7 +142,7 @@ class NatsStore : public Store {
   const std::string stream_;
   std::unique_ptr<Link> link_ = std::make_unique<Link>();
   std::atomic<bool> woken_ = false;
-  Clock::time_point opened_{};  // the last attempt
+  Clock::time_point tried_{};  // the end of the last attempt
   Connection connection_;
   Context context_;
   Bucket bucket_;
@@ -174,13 +174,13 @@ void NatsStore::DropConnection() {
   connection_.reset();
 }
 
-// The library connects again once it was connected. It gives a server up that refuses the
-// credentials twice, whose administrator may let them in later. The first connection is ours to try
-// again: if the library did, it would not say that the credentials were refused.
+// The library connects again once it was connected. It gives up after two refusals. The
+// administrator may accept the credentials later, so this function tries again. It also repeats the
+// first connection: if the library did, it would not say that the credentials were refused.
 void NatsStore::OpenAgain() {
   if (!link_->closed) return;
   const milliseconds pause = link_->refused ? kRefusedPause : milliseconds(kReconnectMs);
-  if (Clock::now() - opened_ < pause) return;
+  if (Clock::now() - tried_ < pause) return;
   DropConnection();
   link_ = std::make_unique<Link>();
   std::string unused;  // such as a file that cannot be read now; the next attempt may find it
@@ -188,7 +188,6 @@ void NatsStore::OpenAgain() {
 }
 
 bool NatsStore::Open(std::string* why) {
-  opened_ = Clock::now();
   natsOptions* raw = nullptr;
   natsStatus status = natsOptions_Create(&raw);
   const Options settings(raw);
@@ -237,6 +236,8 @@ bool NatsStore::Open(std::string* why) {
     }
     if (result == NATS_INVALID_ARG) status = result;  // which another attempt does not change
   }
+  // The pause follows the attempt, which may take longer than the pause.
+  tried_ = Clock::now();
   if (status != NATS_OK) *why = natsStatus_GetText(status);
   return status == NATS_OK;
 }

@@ -43,8 +43,9 @@ class Store {
   Store(const Store&) = delete;
   Store& operator=(const Store&) = delete;
 
-  // Tries to connect, for about a second at most. If the store does not answer, Poll() tries again.
-  // False: the options are wrong; `why` says what.
+  // Tries to connect, for 2 seconds at most besides the look-up of the host's name: the system
+  // decides how long that takes. If the store does not answer, Poll() tries again. False: the
+  // options are wrong; `why` says what.
   [[nodiscard]] virtual bool Open(std::string* why) = 0;
   // True while there is a connection. It is made again after a loss.
   [[nodiscard]] virtual bool connected() = 0;
@@ -53,7 +54,8 @@ class Store {
   [[nodiscard]] virtual bool refuses_credentials() const { return false; }
   // Sends a write; its answer arrives by Poll(), or never.
   virtual void Put(const StorePut& put) = 0;
-  // Waits up to `wait` for answers and for changed records. Returns false if changes may have been
+  // Waits up to `wait` for answers and for changed records. Without a connection, one attempt to
+  // connect may come first, which takes as long as Open(). Returns false if changes may have been
   // missed, so that List() is needed.
   [[nodiscard]] virtual bool Poll(std::chrono::milliseconds wait, std::vector<StoreAnswer>* answers,
                                   std::vector<StoreRecord>* changes) = 0;

@@ -35,7 +35,8 @@ class StoreCoordinator : public Coordinator {
     std::function<std::int64_t()> unix_ms;  // the system's clock
   };
   explicit StoreCoordinator(Parts parts);
-  // Gives all leases back, for at most kFarewell.
+  // Waits for the present call of the store, such as one attempt to connect (Store::Poll()). Then
+  // gives all leases back, for at most kFarewell.
   ~StoreCoordinator() override;
   static constexpr Time kFarewell = std::chrono::seconds(2);
 
