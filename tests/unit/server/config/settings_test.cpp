@@ -57,6 +57,26 @@ TEST(Settings, TheDefaultsAreInTheirRanges) {
       config);
 }
 
+// Messages state both ends of the range. Without one, an integer is never out of it, but NaN is.
+TEST(Settings, RangesHaveBothEnds) {
+  const Config config;
+  int numbers = 0;
+  VisitSettings(
+      [&](const Setting& setting, const auto& value) {
+        using Value = std::remove_cvref_t<decltype(value)>;
+        if constexpr (std::is_same_v<Value, int> || std::is_same_v<Value, double>) {
+          const Range& range = setting.range;
+          const bool has_none = std::isinf(range.least) && std::isinf(range.most);
+          if (std::is_same_v<Value, int> && has_none) return;  // such as rest_frame
+          ++numbers;
+          EXPECT_TRUE(std::isfinite(range.least)) << setting.key;
+          EXPECT_TRUE(std::isfinite(range.most)) << setting.key;
+        }
+      },
+      config);
+  EXPECT_GT(numbers, 10);
+}
+
 TEST(Settings, RangesHaveTheirEndsUnlessTheyExcludeThem) {
   EXPECT_TRUE(Contains(kPortNumber, 0));
   EXPECT_TRUE(Contains(kPortNumber, 65'535));
