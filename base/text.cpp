@@ -87,6 +87,23 @@ std::string Quoted(std::string_view text) {
   return quoted + (text.size() > kShown ? "...'" : "'");
 }
 
+std::string ShellWord(std::string_view text) {
+  constexpr std::string_view kPlain =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+=:,./@%";
+  if (!text.empty() && text.find_first_not_of(kPlain) == std::string_view::npos) {
+    return std::string(text);
+  }
+  std::string word = "'";
+  for (const char c : text) {
+    if (c == '\'') {
+      word += "'\\''";  // nothing escapes a quote within quotes
+    } else {
+      word += c;
+    }
+  }
+  return word + "'";
+}
+
 std::string Where(std::string_view source, std::size_t line) {
   return std::string(source) + ":" + std::to_string(line);
 }

@@ -15,6 +15,9 @@ namespace furrow {
 // every byte that is not printable ASCII.
 [[nodiscard]] std::string Quoted(std::string_view text);
 
+// A text as one word of a shell's command line, in single quotes unless that changes nothing.
+[[nodiscard]] std::string ShellWord(std::string_view text);
+
 // A UTF-8 text, cut to at most `most` bytes between two characters.
 [[nodiscard]] std::string CutText(const std::string& text, std::size_t most);
 

@@ -18,6 +18,7 @@
 
 #include "base/joined.h"
 #include "base/status.h"
+#include "base/text.h"
 #include "recording/take_folder.h"
 #include "server/assets.h"
 #include "server/cluster/setup/make_coordinator.h"
@@ -160,10 +161,10 @@ void WarnAboutRoot(const Config& config) {
   const bool has_services = std::filesystem::exists("/run/systemd/system", ignored);
   if (geteuid() != 0 || !has_services || config.source.empty()) return;
   spdlog::warn(
-      "checked as root, who may read and write more than the service; to check with its rights: "
-      "systemd-run --pipe --wait --collect -p User=furrowd -p DynamicUser=yes -p "
+      "checked as root, which may read and write more than the service; to check with its rights, "
+      "run: systemd-run --pipe --wait --collect -p User=furrowd -p DynamicUser=yes -p "
       "StateDirectory=furrow -p ProtectHome=yes furrowd --config {} --check",
-      std::filesystem::absolute(config.source, ignored).string());
+      ShellWord(std::filesystem::absolute(config.source, ignored).string()));
 }
 
 Status CheckAll(const Config& config) {

@@ -19,12 +19,13 @@ struct GltfOptions {
 
 // Reads one animation of a glTF file, binary or JSON.
 //
-// - Joints: the joints of all skins and their ancestors; also the nodes that the animation moves
-//   below a skin's joint, or below a moving ancestor where two such branches or limbs meet, or that
-//   lead to a mesh without a skin and lie below a joint or an ancestor. Without a skin: all nodes
-//   of the trees in which a node moves. VRMA: the human bones, under VRM's names ("hips",
-//   "leftUpperArm"), and their ancestors. gltf::ListJoints() names the others and makes names
-//   unique.
+// - Joints: the joints of all skins and their ancestors, and nodes that the animation moves:
+//     - nodes below a joint of a skin;
+//     - nodes below a moving ancestor of joints, if branches with joints or limbs meet there;
+//     - nodes that lead to a mesh without a skin and lie below a joint or below an ancestor of one.
+//   Without a skin: all nodes of the trees in which a node moves. VRMA: the human bones, under
+//   VRM's names ("hips", "leftUpperArm"), and their ancestors. gltf::ListJoints() names the others
+//   and makes names unique.
 // - A joint's tail is its node's extra "furrow_tail" ([x, y, z], local), which ClipToGlb() writes.
 // - Blend shapes: the animated morph weights, named by the mesh's extra "targetNames", else
 //   "<mesh>.<index>". If several meshes share a name, the first counts. VRMA: the expressions, with

@@ -10,6 +10,13 @@
 namespace furrow {
 namespace {
 
+TEST(ShellWord, QuotesWhatAShellWouldSplit) {
+  EXPECT_EQ(ShellWord("/etc/furrow/furrow.toml"), "/etc/furrow/furrow.toml");
+  EXPECT_EQ(ShellWord("/my show/a.toml"), "'/my show/a.toml'");
+  EXPECT_EQ(ShellWord("$it's"), "'$it'\\''s'");
+  EXPECT_EQ(ShellWord(""), "''");
+}
+
 TEST(Quoted, ShowsPrintableAsciiOnly) {
   EXPECT_EQ(Quoted("jaw"), "'jaw'");
   EXPECT_EQ(Quoted(""), "''");
