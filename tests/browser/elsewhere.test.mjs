@@ -8,16 +8,31 @@ import { Daemon, furrow, recording } from './daemon.mjs';
 
 let browser;
 
-/** Ports that nobody uses, among those that the system gives to nobody. */
+/** Listens until the end of this process; null: the port is taken. */
+function listen(port) {
+  return new Promise((resolve) => {
+    const server = createServer().on('error', () => resolve(null));
+    server.listen(port, '127.0.0.1', () => resolve(server.unref()));
+  });
+}
+
+/**
+ * Ports that nobody uses, among those that the system gives to nobody. Other tests leave them alone, because this
+ * process holds the ports 12,000 below (as free_port() in tests/end_to_end/furrow_testing.py does).
+ */
 async function freePorts(count) {
   const ports = new Set();
   while (ports.size < count) {
     const port = 20_000 + Math.floor(12_000 * Math.random());
-    const isFree = await new Promise((resolve) => {
-      const server = createServer().on('error', () => resolve(false));
-      server.listen(port, '127.0.0.1', () => server.close(() => resolve(true)));
-    });
-    if (isFree) ports.add(port);
+    const guard = await listen(port - 12_000);
+    if (guard === null) continue;
+    const probe = await listen(port);
+    if (probe === null) {
+      guard.close();
+      continue;
+    }
+    await new Promise((resolve) => probe.close(resolve));
+    ports.add(port);
   }
   return [...ports];
 }

@@ -32,12 +32,16 @@ def needs_shared(*parts):
 
 
 def free_port(kind=socket.SOCK_STREAM):
-    """A port for a program that cannot choose one itself. The system gives ports below 32,768 to nobody, so none is taken by
-    another test between this call and the start of the program."""
+    """A port for a program that cannot choose one itself. The system gives ports below 32,768 to nobody. Other tests leave it
+    alone until this process ends, because it holds the port 12,000 below (as tests/browser/elsewhere.test.mjs does)."""
     while True:
-        with socket.socket(socket.AF_INET, kind) as probe, contextlib.suppress(OSError):
-            probe.bind(("127.0.0.1", random.randrange(20_000, 32_000)))
-            return probe.getsockname()[1]
+        port = random.randrange(20_000, 32_000)
+        with (contextlib.suppress(OSError), socket.socket() as guard,
+              socket.socket(socket.AF_INET, kind) as probe):
+            guard.bind(("127.0.0.1", port - 12_000))
+            probe.bind(("127.0.0.1", port))
+            guard.detach()  # stays open
+            return port
 
 
 def commands(document):
