@@ -115,6 +115,33 @@ TEST_F(ReconnectingTransportTest, AnAttemptThatBlockedIsRepeatedMuchLater) {
   EXPECT_LE(attempts, 3) << "a fifth of the time at most";
 }
 
+// A connection whose handshake does not end.
+class ShakingTransport : public Transport {
+ public:
+  ShakingTransport() : Transport(TransportKind::kTcp) {}
+  IoStatus Send(std::span<const std::uint8_t>) override { return IoStatus::kNoConnection; }
+  IoStatus Receive(std::span<const std::uint8_t>&, std::chrono::milliseconds) override {
+    return IoStatus::kTimeout;
+  }
+  [[nodiscard]] bool connected() const override { return false; }
+  [[nodiscard]] std::chrono::microseconds connect_timeout() const override {
+    return std::chrono::seconds(7);
+  }
+};
+
+TEST_F(ReconnectingTransportTest, AnAttemptHasTheTimeThatItNeeds) {
+  std::int64_t now_us = 0;
+  ReconnectingTransport transport(
+      TransportKind::kTcp,
+      [] { return Result<std::unique_ptr<Transport>>(std::make_unique<ShakingTransport>()); },
+      [&] { return now_us; }, Backoff(3, {}));
+  EXPECT_EQ(Receive(transport), IoStatus::kTimeout);
+  now_us += 7'000'000;
+  EXPECT_EQ(Receive(transport), IoStatus::kTimeout);
+  now_us += 1;
+  EXPECT_EQ(Receive(transport), IoStatus::kNoConnection);
+}
+
 TEST_F(ReconnectingTransportTest, AClosedTcpConnectionIsOpenedAgain) {
   ReconnectingTransport transport = Make(TransportKind::kTcp);
   EXPECT_EQ(Receive(transport), IoStatus::kTimeout);
