@@ -2,6 +2,7 @@
 #include "server/credentials.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <utility>
 
 #include "server/net/clock.h"
@@ -16,7 +17,9 @@ Credentials::Credentials(const Config& config, Metrics* metrics)
       secure_(&gate_, &UnixSeconds, std::min(config.limits.max_udp_peers, 0xFFFF), config.threads,
               metrics),
       keys_file_(config.security.keys),
-      tls_(config.security.tls) {}
+      tls_(config.security.tls) {
+  SetLimits(config.limits);
+}
 
 Status Credentials::Load() {
   auto keys = keys_file_.Load();
@@ -24,6 +27,10 @@ Status Credentials::Load() {
   SetKeys(*std::move(keys));
   if (Status status = tls_.Load(); !status.ok()) return status.Within("tls");
   return {};
+}
+
+void Credentials::SetLimits(const Limits& limits) {
+  tls_.places().SetPlacesOfHost(static_cast<std::size_t>(limits.max_strangers_per_host));
 }
 
 void Credentials::SetKeys(protocol::secure::KeyRing keys) {
@@ -39,6 +46,7 @@ void Credentials::ReadIfChanged() {
 void Credentials::TakeOver(Reload* reload) {
   keys_file_ = std::move(reload->keys_file);
   SetKeys(std::move(reload->keys));
+  SetLimits(reload->plan.config.limits);
   if (!reload->tls) return;
   tls_.Replace(reload->plan.config.security.tls, std::move(reload->tls_watches),
                *std::move(reload->tls));

@@ -33,6 +33,7 @@ class Credentials {
   [[nodiscard]] const TlsIdentity& tls() const { return tls_; }
 
  private:
+  void SetLimits(const Limits& limits);
   void SetKeys(protocol::secure::KeyRing keys);
 
   TokenGate gate_;

@@ -41,6 +41,8 @@ inline constexpr Range kShare{
     .least = 0, .most = 1, .excludes_least = true, .words = "more than 0 and at most 1"};
 // A peer's subscription ids are 16 bits and not 0.
 inline constexpr Range kSubscriptionCount{.least = 1, .most = 65'535};
+// Not more than HandshakePlaces::kPlaces.
+inline constexpr Range kStrangerCount{.least = 1, .most = 256};
 // One host alone gets half, in which the largest picture must fit twice: while a snapshot is sent.
 inline constexpr Range kWaitingMegabytes{.least = 72, .most = 1'000'000};
 
@@ -155,6 +157,7 @@ void VisitLimits(const Visit& visit, AllLimits&... l) {
   live("limits.max_connections", kSomeCount, l.max_connections...);
   visit({.key = "limits.max_udp_peers", .range = kSomeCount}, l.max_udp_peers...);
   live("limits.max_subjects", kSomeCount, l.max_subjects...);
+  live("limits.max_strangers_per_host", kStrangerCount, l.max_strangers_per_host...);
   live("limits.max_skeletons", kSomeCount, l.max_skeletons...);
   live("limits.max_subscriptions", kSubscriptionCount, l.max_subscriptions...);
   live("limits.max_all_subscriptions", kSomeCount, l.max_all_subscriptions...);

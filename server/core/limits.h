@@ -10,9 +10,11 @@ namespace furrow::server {
 // unless its comment names something smaller.
 struct Limits {
   // Shared between hosts (FairShare): one host alone gets half.
-  int max_connections = 512;   // TCP connections
-  int max_udp_peers = 8192;    // proven UDP addresses, over all threads
-  int max_subjects = 2048;     // subjects published at a time
+  int max_connections = 512;  // TCP connections
+  int max_udp_peers = 8192;   // proven UDP addresses, over all threads
+  int max_subjects = 2048;    // subjects published at a time
+  // Over TLS: clients of one host that have not shown who they are, in [1, 256].
+  int max_strangers_per_host = 1;
   int max_skeletons = 256;     // bound skeletons kept for reuse
   int max_subscriptions = 64;  // per peer, at most 65,535
   // Shared between hosts, at least max_subscriptions.

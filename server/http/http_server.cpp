@@ -26,6 +26,7 @@
 #include "server/http/stream/web_net.h"
 #include "server/http/stream/web_stream.h"
 #include "server/net/door/door.h"
+#include "server/net/door/end_notice.h"
 #include "server/net/door/handshake_gate.h"
 #include "server/net/run_loop.h"
 #include "server/session/hub.h"
@@ -139,6 +140,8 @@ struct HttpServer::Impl {
   HandshakeGate<WebNet> handshakes{*loop, GateParts()};
   Door<WebNet> door{*loop, DoorParts()};
   std::thread thread;
+  // The loop destroys coroutines that have not ended, after what they would use.
+  const std::shared_ptr<void> owner = std::make_shared<char>();
 };
 
 // Each connection may hold a request of kMaxWebMessageBytes, so their number bounds the memory.
@@ -211,6 +214,7 @@ void HttpServer::Impl::MakeRoom(const std::string& host, bool any_host, RoomRequ
 // `host`: of the client, which has a place. `place`: for its handshake; null: it makes none.
 net::awaitable<void> HttpServer::Impl::Serve(tcp::socket socket, std::string host,
                                              HandshakeGate<WebNet>::Place place) {
+  const EndNotice notice(owner, [this, &host] { End(host); });
   try {
     WebStream stream(std::move(socket));
     bool begins = place == nullptr;
@@ -222,7 +226,6 @@ net::awaitable<void> HttpServer::Impl::Serve(tcp::socket socket, std::string hos
   } catch (const std::exception& error) {  // such as out of memory: affects this connection only
     spdlog::error("a web connection failed: {}", error.what());
   }
-  End(host);
 }
 
 void HttpServer::Impl::EndHub(const std::exception_ptr& error) {

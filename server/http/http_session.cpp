@@ -178,6 +178,7 @@ class HttpSession {
     is_upload_ = false;
     body_bytes_.reset();
     if (!error) {
+      stream_.NoteRequest();
       Admit(parser.get());
       has_body = !parser.is_done();
       is_upload_ = !refusal_ && IsUpload(parser.get(), *url_);

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "server/net/socket_watch.h"
+#include "server/tls/handshake.h"
 #include "server/tls/tls_connection.h"
 
 namespace furrow::server {
@@ -22,9 +23,9 @@ namespace furrow::server {
 // (AsyncStream). Unlike asio::ssl::stream, it has no buffers: while it waits, it holds what OpenSSL
 // holds. `Net`: see Door.
 //
-// One read, one write, and one handshake or end may be pending at a time. Handlers are never called
-// by the function that begins an operation. Operations end when the socket closes. The socket and
-// the stream must outlive their operations.
+// One read, one write, and one handshake or end may be pending at a time. Starting an operation
+// never calls its handler directly. Operations end when the socket closes. The socket and the
+// stream must outlive their operations.
 template <class Net>
 class TlsStream {
  public:
@@ -48,10 +49,12 @@ class TlsStream {
   void SetTrusting() { tls_.SetTrusting(Number()); }
   [[nodiscard]] bool has_client_certificate() const { return tls_.has_client_certificate(); }
 
+  // Fails after kMostHandshakeTime at the latest, also if nobody watches the socket.
   template <class Token>
   auto async_handshake(Token&& token) {
     return Start<void(Error)>([this] { return tls_.Handshake(Number()); },
-                              std::forward<Token>(token));
+                              std::forward<Token>(token),
+                              std::min(expires_at_, Clock::now() + kMostHandshakeTime));
   }
   // See TlsConnection::End().
   template <class Token>
@@ -80,6 +83,8 @@ class TlsStream {
   using Progress = TlsConnection::Progress;
   // See Progress::kNeedsTime.
   static constexpr auto kPause = std::chrono::milliseconds(20);
+  // A second more than StrangerWatch gives, which counts why a handshake failed.
+  static constexpr auto kMostHandshakeTime = kHandshakeDeadline + std::chrono::seconds(1);
 
   // Calls `step` until it needs nothing more.
   template <class Step, bool kHasSize>
@@ -145,9 +150,13 @@ class TlsStream {
 
   template <class Signature, class Step, class Token>
   auto Start(Step step, Token&& token) {
+    return Start<Signature>(std::move(step), std::forward<Token>(token), expires_at_);
+  }
+  template <class Signature, class Step, class Token>
+  auto Start(Step step, Token&& token, Clock::time_point expires_at) {
     constexpr bool kHasSize = std::is_same_v<Signature, void(Error, std::size_t)>;
     return Net::template Compose<Signature>(
-        Operation<Step, kHasSize>{this, std::move(step), expires_at_}, std::forward<Token>(token),
+        Operation<Step, kHasSize>{this, std::move(step), expires_at}, std::forward<Token>(token),
         socket_);
   }
 

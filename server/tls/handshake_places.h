@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <new>
-#include <set>
 #include <string>
 #include <utility>
 
 namespace furrow::server {
 
 // Bounds the TLS connections of strangers: clients whose handshake goes on, or that must still show
-// who they are. Each makes OpenSSL hold 44 KiB or less, so each host has one place, for all ports
-// together, and the others of the host wait as bare sockets (BareSockets). Thread-safe.
+// who they are. Each makes OpenSSL hold 44 KiB or less, so each host has one place or a few, for
+// all ports together, and the others of the host wait as bare sockets (BareSockets). Thread-safe.
 class HandshakePlaces {
  public:
   // Of all hosts. A place takes at most 64 KiB with all that belongs to it, so all take 16 MiB.
@@ -23,8 +23,16 @@ class HandshakePlaces {
  private:
   struct Shared {
     std::mutex mutex;
-    std::set<std::string> held;          // hosts with a place
-    std::map<std::string, int> waiting;  // hosts without one, by host; none is 0
+    std::size_t places_of_host = 1;
+    std::size_t places = 0;                   // that are held
+    std::map<std::string, std::size_t> held;  // by host; none is 0
+    std::map<std::string, int> waiting;       // for a place, by host; none is 0
+
+    [[nodiscard]] bool HasRoomFor(const std::string& host) const {
+      const auto known = held.find(host);
+      return known == held.end() || known->second < places_of_host;
+    }
+    [[nodiscard]] bool is_full() const { return places >= kPlaces; }
   };
 
  public:
@@ -35,17 +43,21 @@ class HandshakePlaces {
         : shared_(std::move(shared)), host_(std::move(host)) {}
     ~Place() {
       const std::lock_guard lock(shared_->mutex);
-      shared_->held.erase(host_);
+      --shared_->places;
+      const auto count = shared_->held.find(host_);
+      if (--count->second == 0) shared_->held.erase(count);
     }
     Place(const Place&) = delete;
     Place& operator=(const Place&) = delete;
 
-    // Somebody waits until the place is free: a client of the host, or any one if all places are
-    // taken.
+    // A client waits until the place is free: one of the host, or, if all places are taken, one of
+    // another host that may have a place more.
     [[nodiscard]] bool IsWanted() const {
       const std::lock_guard lock(shared_->mutex);
-      if (shared_->waiting.empty()) return false;
-      return shared_->held.size() >= kPlaces || shared_->waiting.contains(host_);
+      if (shared_->waiting.contains(host_)) return true;
+      return shared_->is_full() && std::ranges::any_of(shared_->waiting, [this](const auto& each) {
+               return shared_->HasRoomFor(each.first);
+             });
     }
 
    private:
@@ -53,15 +65,24 @@ class HandshakePlaces {
     const std::string host_;
   };
 
-  // Null: the host has a place, or none is left.
+  // Changes the number of places of each host. Those that are held stay held.
+  void SetPlacesOfHost(std::size_t places) {
+    const std::lock_guard lock(shared_->mutex);
+    shared_->places_of_host = places;
+  }
+
+  // Null: the host has its places, or none is left.
   [[nodiscard]] std::unique_ptr<Place> Enter(const std::string& host) const {
     const std::lock_guard lock(shared_->mutex);
-    if (shared_->held.size() >= kPlaces || shared_->held.contains(host)) return nullptr;
-    const auto held = shared_->held.insert(host).first;
+    if (shared_->is_full() || !shared_->HasRoomFor(host)) return nullptr;
+    const auto count = shared_->held.try_emplace(host, 0).first;
     try {
-      return std::make_unique<Place>(shared_, host);
+      auto place = std::make_unique<Place>(shared_, host);
+      ++count->second;
+      ++shared_->places;
+      return place;
     } catch (const std::bad_alloc&) {
-      shared_->held.erase(held);
+      if (count->second == 0) shared_->held.erase(count);
       throw;
     }
   }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cerrno>
 #include <new>
+#include <utility>
 
 #include <openssl/bio.h>
 #include <openssl/err.h>
@@ -21,6 +22,10 @@ namespace {
 // The most that a record for a stranger contains: OpenSSL allocates this much for writing, and
 // keeps it while the client does not read. A handshake sends 1 to 4 kB.
 constexpr long kStrangerRecordBytes = 2 * 1024;
+
+// A record that is larger than the socket's buffer never arrives as a whole. OpenSSL reads what has
+// arrived after this many looks without anything new.
+constexpr int kMostSameLooks = 5;
 
 }  // namespace
 
@@ -85,15 +90,26 @@ struct TlsConnection::Io {
     const std::size_t size = RecordBytes(std::span(head).first(got < 0 ? 0 : got));
     int arrived = 0;
     if (got > 0) ioctl(tls.socket_, FIONREAD, &arrived);
-    if (static_cast<std::size_t>(arrived) >= size || (got > 0 && HasEnded(tls.socket_))) {
+    if (static_cast<std::size_t>(arrived) >= size ||
+        (got > 0 && (HasEnded(tls.socket_) || FillsSocket(tls, arrived)))) {
       SetLowWater(tls, 1);
+      tls.same_looks_ = 0;
       tls.record_bytes_ = std::max<std::size_t>(size, 1);
       return true;
     }
     tls.waits_for_record_ = true;
     // Without input, any byte may wake the reader: the header says what to wait for.
-    if (got > 0) tls.is_stuck_ = !SetLowWater(tls, static_cast<int>(size));
+    if (got > 0) {
+      tls.is_stuck_ = !SetLowWater(tls, static_cast<int>(size)) && IsReadable(tls.socket_);
+    }
     return false;
+  }
+
+  // The socket has woken its reader for less than its low-water mark, and nothing more arrives.
+  static bool FillsSocket(TlsConnection& tls, int arrived) {
+    const bool is_same = arrived == std::exchange(tls.arrived_, arrived);
+    tls.same_looks_ = is_same && IsReadable(tls.socket_) ? tls.same_looks_ + 1 : 0;
+    return tls.same_looks_ >= kMostSameLooks;
   }
 
   // The kernel wakes the reader when this much has arrived. False: that was so before.
@@ -102,6 +118,11 @@ struct TlsConnection::Io {
     tls.low_water_ = bytes;
     setsockopt(tls.socket_, SOL_SOCKET, SO_RCVLOWAT, &bytes, sizeof(bytes));
     return true;
+  }
+
+  static bool IsReadable(int socket) {
+    pollfd watched{socket, POLLIN, 0};
+    return poll(&watched, 1, 0) > 0;
   }
 
   // No more bytes can arrive.
@@ -189,6 +210,8 @@ TlsConnection::Outcome TlsConnection::Write(int socket, std::span<const std::uin
   Outcome outcome =
       Judge(SSL_write_ex(ssl_.get(), bytes.data(), std::min(bytes.size(), kRecordBytes), &size));
   outcome.size = size;
+  write_waits_ = outcome.progress == Progress::kNeedsOutput;
+  if (!write_waits_ && std::exchange(raises_later_, false)) RaiseRecordSize();
   return outcome;
 }
 
@@ -206,9 +229,15 @@ void TlsConnection::SetTrusting(int socket) {
   is_wary_ = false;
   socket_ = socket;
   Io::SetLowWater(*this, 1);
+  SSL_set_read_ahead(ssl_.get(), 1);  // a header and its record with one call
+  // OpenSSL writes on with a buffer of the former size.
+  raises_later_ = write_waits_;
+  if (!raises_later_) RaiseRecordSize();
+}
+
+void TlsConnection::RaiseRecordSize() {
   SSL_set_max_send_fragment(ssl_.get(), kRecordBytes);
   SSL_set_split_send_fragment(ssl_.get(), kRecordBytes);  // lowered together with the other one
-  SSL_set_read_ahead(ssl_.get(), 1);                      // a header and its record with one call
 }
 
 bool TlsConnection::has_client_certificate() const {

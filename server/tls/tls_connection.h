@@ -48,14 +48,15 @@ class TlsConnection {
   [[nodiscard]] Outcome Handshake(int socket);
   // `bytes`: not empty, as of Write().
   [[nodiscard]] Outcome Read(int socket, std::span<std::uint8_t> bytes);
-  // Writes the beginning of the bytes, at most kRecordBytes, as one record.
+  // Writes the beginning of the bytes, at most kRecordBytes, as one record. A stranger gets smaller
+  // ones.
   [[nodiscard]] Outcome Write(int socket, std::span<const std::uint8_t> bytes);
   // Tells the client that nothing follows. `awaits_client`: done when the client has said the same.
   [[nodiscard]] Outcome End(int socket, bool awaits_client);
   static constexpr std::size_t kRecordBytes = 16 * 1024;
 
-  // Call it when the client has shown who it is. From then on, OpenSSL may hold parts of records of
-  // full size, and needs fewer system calls.
+  // Call it when the client has shown who it is. From then on, or from the end of a write that
+  // waits for output, OpenSSL may hold parts of records of full size, and needs fewer system calls.
   void SetTrusting(int socket);
   // True if the client has shown a certificate, which is then valid.
   [[nodiscard]] bool has_client_certificate() const;
@@ -65,6 +66,7 @@ class TlsConnection {
 
   [[nodiscard]] Outcome Judge(int result);
   void Begin(int socket);
+  void RaiseRecordSize();
 
   // Of the call that goes on.
   int socket_ = -1;
@@ -74,7 +76,12 @@ class TlsConnection {
   bool is_stuck_ = false;          // ... although the socket has woken its reader
 
   bool is_wary_ = true;
-  int low_water_ = 1;             // SO_RCVLOWAT of the socket
+  bool write_waits_ = false;   // for output
+  bool raises_later_ = false;  // the size of records, after that write
+  int low_water_ = 1;          // SO_RCVLOWAT of the socket
+  // The last looks at a record that is not whole: its bytes, and how often these have not changed.
+  int arrived_ = 0;
+  int same_looks_ = 0;
   std::size_t record_bytes_ = 0;  // left of a record that OpenSSL reads
   struct Free {
     void operator()(SSL* ssl) const;

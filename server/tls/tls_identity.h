@@ -41,8 +41,9 @@ class TlsIdentity {
   // The present contexts, with which new connections begin. Only if enabled().
   [[nodiscard]] TlsContext for_messages() const;
   [[nodiscard]] TlsContext for_web() const;
-  // The places for the handshakes of all ports.
+  // The places for the strangers of all ports. Thread-safe.
   [[nodiscard]] const HandshakePlaces& places() const { return places_; }
+  [[nodiscard]] HandshakePlaces& places() { return places_; }
 
  private:
   [[nodiscard]] bool FilesChanged();
@@ -55,7 +56,7 @@ class TlsIdentity {
   bool changed_ = false;  // and not read yet
   mutable std::mutex mutex_;
   TlsContexts contexts_;  // guarded by mutex_
-  const HandshakePlaces places_;
+  HandshakePlaces places_;
 };
 
 }  // namespace furrow::server

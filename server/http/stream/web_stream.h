@@ -58,6 +58,10 @@ class WebStream {
   void Admit();
   // The client is a stranger, and others wait for its place: end the connection soon.
   [[nodiscard]] bool MustMakeRoom() const { return stranger_ != nullptr && stranger_->IsWanted(); }
+  // A whole request of the client has arrived.
+  void NoteRequest() {
+    if (stranger_ != nullptr) stranger_->NoteRequest();
+  }
   // Tells the client that nothing follows. Does not wait for it to say the same.
   [[nodiscard]] net::awaitable<void> EndSending();
 

@@ -123,15 +123,21 @@ bool BareSockets::Judge(Arrival* arrival, Kind* kind) {
 
 std::vector<std::string> BareSockets::HostsThatWait() const {
   std::vector<std::string> names;
-  for (const auto& [name, host] : hosts_) {
-    const bool waits = std::ranges::any_of(
-        host.arrivals, [](const Arrival& each) { return each.stage == Stage::kReady; });
-    if (waits) names.push_back(name);
-  }
+  const auto add = [&names](auto first, auto end) {
+    for (; first != end; ++first) {
+      const bool waits = std::ranges::any_of(
+          first->second.arrivals, [](const Arrival& each) { return each.stage == Stage::kReady; });
+      if (waits) names.push_back(first->first);
+    }
+  };
+  const auto next = hosts_.upper_bound(last_host_);
+  add(next, hosts_.end());
+  add(hosts_.begin(), next);
   return names;
 }
 
 int BareSockets::Take(const std::string& host) {
+  last_host_ = host;
   const auto found = hosts_.find(host);
   std::vector<Arrival>& arrivals = found->second.arrivals;
   const auto is_ready = [](const Arrival& each) { return each.stage == Stage::kReady; };
@@ -148,12 +154,5 @@ int BareSockets::Take(const std::string& host) {
 }
 
 void BareSockets::CloseSocket(int socket) { close(socket); }
-
-void BareSockets::Close() {
-  for (const auto& [name, host] : hosts_) {
-    for (const Arrival& each : host.arrivals) close(each.socket);
-  }
-  hosts_.clear();
-}
 
 }  // namespace furrow::server

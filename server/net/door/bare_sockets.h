@@ -41,15 +41,29 @@ class BareSockets {
   // Closes a socket of Look().
   void Remove(const std::string& host, int socket);
 
-  // The hosts with a client whose first message has arrived as a whole.
+  // The hosts with a client whose first message has arrived as a whole. The host of the last Take()
+  // is the last one, and the order of the others stays, so each gets its turn.
   [[nodiscard]] std::vector<std::string> HostsThatWait() const;
-  // Gives the caller the socket of such a client: in turn the one that came first and the one that
-  // came last, so that a host's crowd keeps nobody waiting for long. Precondition: there is one.
+  // Gives the caller the socket of such a client: alternately the oldest and the newest, so that a
+  // new client need not wait behind a long queue. Precondition: there is one.
   [[nodiscard]] int Take(const std::string& host);
 
   static void CloseSocket(int socket);
   // Closes all sockets.
-  void Close();
+  void Close() {
+    Close([](const std::string&) {});
+  }
+  // The same, and calls `closed` with the host of each.
+  template <class Closed>
+  void Close(const Closed& closed) {
+    for (const auto& [name, host] : hosts_) {
+      for (const Arrival& each : host.arrivals) {
+        CloseSocket(each.socket);
+        closed(name);
+      }
+    }
+    hosts_.clear();
+  }
 
  private:
   enum class Stage : std::uint8_t { kSilent, kReady, kAnswered };
@@ -68,6 +82,7 @@ class BareSockets {
   static bool Judge(Arrival* arrival, Kind* kind);
 
   std::map<std::string, Host> hosts_;  // none is empty
+  std::string last_host_;              // of Take()
 };
 
 }  // namespace furrow::server

@@ -159,9 +159,11 @@ class Door {
     Error error;
     const auto client = socket.remote_endpoint(error);
     std::string host = error ? std::string() : HostOf(client.address().to_string());
-    Lobby::Stay stay;
-    if (lobby_.HasQueue(host) || !shares_.HasRoomFor(host)) stay = lobby_.Enter(host, ReadClock());
-    if (stay == nullptr) return Admit(std::move(socket), host);
+    const bool must_wait = lobby_.HasQueue(host) || !shares_.HasRoomFor(host);
+    if (!must_wait) return Admit(std::move(socket), host);
+    // Not Admit() if the lobby is full: the place that is free belongs to the queue.
+    Lobby::Stay stay = lobby_.Enter(host, ReadClock());
+    if (stay == nullptr) return Refuse(std::move(socket));
     // WaitForPlace() lets no std::bad_alloc out, which would be lost.
     Net::Spawn(loop_, WaitForPlace(std::move(socket), std::move(host), std::move(stay)));
   }
@@ -193,16 +195,18 @@ class Door {
 
   // Begins the connection, or refuses it.
   void Admit(Socket socket, const std::string& host) {
-    if (!shares_.Enter(host)) {
-      parts_.metrics->Add(Counter::kConnectionsRefused);
-      return parts_.refuse(std::move(socket));
-    }
+    if (!shares_.Enter(host)) return Refuse(std::move(socket));
     try {
       parts_.begin(std::move(socket), host);
     } catch (const std::bad_alloc&) {
       shares_.Leave(host);
       throw;
     }
+  }
+
+  void Refuse(Socket socket) {
+    parts_.metrics->Add(Counter::kConnectionsRefused);
+    parts_.refuse(std::move(socket));
   }
 
   typename Net::Loop& loop_;

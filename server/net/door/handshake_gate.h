@@ -21,8 +21,9 @@
 namespace furrow::server {
 
 // Begins TLS on connections of a port that speaks nothing else: within kHandshakeDeadline, within
-// the budget of each host, and for one stranger of a host at a time. The others wait as bare
-// sockets. Counts what fails, by reason. `Net`: see Door. Belongs to the thread of its connections.
+// the budget of each host, and for as many strangers of a host at a time as HandshakePlaces allows.
+// The others wait as bare sockets. Counts what fails, by reason. `Net`: see Door. Belongs to the
+// thread of its connections.
 template <class Net>
 class HandshakeGate {
  public:
@@ -39,6 +40,8 @@ class HandshakeGate {
     std::function<void(Socket socket, const std::string& host, Place place)> begin;
     // A connection of the host has ended without begin(), or because begin() lacked memory.
     std::function<void(const std::string& host)> ended;
+    std::function<Time()> clock = &ReadClock;  // the present time
+    HandshakeBudget budget;
   };
   // `loop`: outlives the gate.
   HandshakeGate(typename Net::Loop& loop, Parts parts)
@@ -51,7 +54,7 @@ class HandshakeGate {
   void Enter(Socket socket, const std::string& host) {
     if (!is_looking_) LookLater();
     Error error;
-    sockets_.Add(host, socket.native_handle(), ReadClock());
+    sockets_.Add(host, socket.native_handle(), parts_.clock());
     socket.release(error);
   }
   // Closes all that wait, without calls of ended().
@@ -62,7 +65,7 @@ class HandshakeGate {
   template <class Stream>
   [[nodiscard]] typename Net::template Awaitable<bool> Pass(Stream& stream, Place place) {
     const auto watch = std::make_shared<StrangerWatch<Timer, Socket>>(
-        stream.socket(), std::move(place), parts_.metrics);
+        stream.socket(), std::move(place), parts_.metrics, parts_.clock);
     const Error error = co_await stream.Handshake(parts_.context());
     if (error) {
       parts_.metrics->Add(watch->expired()
@@ -89,7 +92,7 @@ class HandshakeGate {
     timer_.async_wait([this](const Error& cancelled) {
       if (cancelled) return;
       try {
-        const Time now = ReadClock();
+        const Time now = parts_.clock();
         LookAtSockets(now);
         BeginThoseWithAPlace(now);
       } catch (const std::bad_alloc&) {
@@ -97,9 +100,20 @@ class HandshakeGate {
         waiting_.clear();  // nobody must give way to those who have gone
       }
       is_looking_ = false;
-      if (!sockets_.empty()) LookLater();
+      if (!sockets_.empty()) LookLaterOrEnd();
     });
     is_looking_ = true;
+  }
+
+  // Nobody would look at the sockets if LookLater() failed.
+  void LookLaterOrEnd() {
+    try {
+      LookLater();
+    } catch (const std::bad_alloc&) {
+      parts_.metrics->Add(Counter::kAllocationsFailed);
+      waiting_.clear();
+      sockets_.Close(parts_.ended);
+    }
   }
 
   void LookAtSockets(Time now) {
@@ -156,7 +170,7 @@ class HandshakeGate {
     try {
       Error error;
       socket.assign(Net::Tcp::v4(), number, error);
-      begins = !error && budget_.Take(host, now);
+      begins = !error && parts_.budget.Take(host, now);
       if (begins) return parts_.begin(std::move(socket), host, std::move(place));
       if (!error) parts_.metrics->Add(Counter::kTlsBusy);
     } catch (const std::bad_alloc&) {
@@ -168,8 +182,7 @@ class HandshakeGate {
 
   typename Net::Loop& loop_;
   Timer timer_;
-  const Parts parts_;
-  HandshakeBudget budget_;
+  Parts parts_;
   BareSockets sockets_;
   std::map<std::string, HandshakePlaces::Waiting> waiting_;  // by host
   bool is_looking_ = false;                                  // LookLater() goes on

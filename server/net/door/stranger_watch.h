@@ -2,13 +2,14 @@
 #pragma once
 
 #include <chrono>
-#include <cstdint>
+#include <functional>
 #include <memory>
+#include <new>
 #include <utility>
 
 #include "server/core/metrics.h"
 #include "server/net/clock.h"
-#include "server/net/door/received_bytes.h"
+#include "server/net/door/tcp_progress.h"
 #include "server/tls/handshake.h"
 #include "server/tls/handshake_places.h"
 #include "server/tls/stranger_patience.h"
@@ -21,6 +22,8 @@ class Stranger {
   virtual ~Stranger() = default;
   // Others wait for the place; see HandshakePlaces.
   [[nodiscard]] virtual bool IsWanted() const = 0;
+  // A whole request has arrived, and the client has time to receive the reply.
+  virtual void NoteRequest() = 0;
 };
 
 // Closes the socket of a stranger whose handshake takes longer than kHandshakeDeadline, or that
@@ -29,9 +32,13 @@ class Stranger {
 template <class Timer, class Socket>
 class StrangerWatch : public Stranger {
  public:
+  using Clock = std::function<Time()>;
+
   // `metrics`: not null; outlives the watch; counts strangers that give way after the handshake.
-  StrangerWatch(Socket& socket, std::unique_ptr<HandshakePlaces::Place> place, Metrics* metrics)
-      : shared_(std::make_shared<Shared>(socket, std::move(place), metrics)) {
+  // `clock`: the present time.
+  StrangerWatch(Socket& socket, std::unique_ptr<HandshakePlaces::Place> place, Metrics* metrics,
+                Clock clock = &ReadClock)
+      : shared_(std::make_shared<Shared>(socket, std::move(place), metrics, std::move(clock))) {
     shared_->Wait(shared_);
   }
   ~StrangerWatch() override { shared_->End(); }
@@ -41,8 +48,9 @@ class StrangerWatch : public Stranger {
   // The handshake is over, and its deadline does not count any more.
   void EndHandshake() {
     shared_->in_handshake = false;
-    shared_->patience.Restart(ReadClock());
+    NoteRequest();
   }
+  void NoteRequest() override { shared_->patience.Restart(shared_->clock()); }
   // The watch has closed the socket.
   [[nodiscard]] bool expired() const { return shared_->expired; }
   [[nodiscard]] bool IsWanted() const override { return shared_->place->IsWanted(); }
@@ -51,8 +59,10 @@ class StrangerWatch : public Stranger {
   static constexpr auto kInterval = std::chrono::milliseconds(50);
 
   struct Shared {
-    Shared(Socket& watched, std::unique_ptr<HandshakePlaces::Place> held, Metrics* counts)
-        : socket(&watched),
+    Shared(Socket& watched, std::unique_ptr<HandshakePlaces::Place> held, Metrics* counts,
+           Clock time)
+        : clock(std::move(time)),
+          socket(&watched),
           place(std::move(held)),
           metrics(counts),
           timer(watched.get_executor()) {}
@@ -62,7 +72,11 @@ class StrangerWatch : public Stranger {
       timer.expires_after(kInterval);
       timer.async_wait([self](const auto& cancelled) {
         if (cancelled || self->socket == nullptr) return;
-        if (!self->IsOver(ReadClock())) return self->Wait(self);
+        try {
+          if (!self->IsOver(self->clock())) return self->Wait(self);
+        } catch (const std::bad_alloc&) {  // a stranger that nobody watches must not stay
+          self->metrics->Add(Counter::kAllocationsFailed);
+        }
         self->expired = true;
         if (!self->in_handshake) self->metrics->Add(Counter::kConnectionsGaveWay);
         auto ignored = cancelled;
@@ -71,9 +85,8 @@ class StrangerWatch : public Stranger {
     }
     [[nodiscard]] bool IsOver(Time now) {
       if (!socket->is_open()) return false;
-      const bool is_wanted = place->IsWanted();
-      const std::uint64_t received = is_wanted ? ReceivedByPeer(socket->native_handle()) : 0;
-      if (patience.IsOver(now, received, is_wanted)) return true;
+      const StrangerPatience::Client client = ReadTcpProgress(socket->native_handle());
+      if (patience.IsOver(now, client, place->IsWanted())) return true;
       return in_handshake && now - begun >= kHandshakeDeadline;
     }
     void End() {
@@ -82,11 +95,12 @@ class StrangerWatch : public Stranger {
       timer.cancel();
     }
 
+    const Clock clock;
     Socket* socket;  // null after the end of the watch
     std::unique_ptr<HandshakePlaces::Place> place;
     Metrics* const metrics;
     Timer timer;
-    const Time begun = ReadClock();
+    const Time begun = clock();
     StrangerPatience patience{begun};
     bool in_handshake = true;
     bool expired = false;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <exception>
 #include <new>
 #include <optional>
 #include <span>
@@ -12,12 +11,14 @@
 #include <vector>
 
 #include <asio/co_spawn.hpp>
+#include <asio/detached.hpp>
 #include <unistd.h>
 
 #include "protocol/framing/tcp_framing.h"
 #include "server/core/network_address.h"
 #include "server/core/within_memory.h"
 #include "server/net/critical_task.h"
+#include "server/net/door/end_notice.h"
 
 namespace furrow::server {
 namespace {
@@ -130,10 +131,7 @@ void TcpServer::Admit(tcp::socket socket, const std::string& host) {
 void TcpServer::BeginHandshake(tcp::socket socket, const std::string& host,
                                HandshakeGate<AsioNet>::Place place) {
   auto stream = std::make_shared<StreamSocket>(std::move(socket));
-  asio::co_spawn(io_, BeginWithTls(std::move(stream), host, std::move(place)),
-                 [this, host](const std::exception_ptr& failed, bool begun) {
-                   if (failed || !begun) door_.FreePlace(host);
-                 });
+  asio::co_spawn(io_, BeginWithTls(std::move(stream), host, std::move(place)), asio::detached);
 }
 
 // The session has the place of the host once it is in `sessions_`.
@@ -219,16 +217,17 @@ void TcpServer::Resume(const SavedConnection& saved, int number, Hub::ResumedPee
   if (id != 0) peers->try_emplace(peer.id, Hub::ResumedPeer{id, &peer});
 }
 
-// Returns whether a session has begun.
-asio::awaitable<bool> TcpServer::BeginWithTls(std::shared_ptr<StreamSocket> stream,
+// Frees the place of the host unless a session has begun.
+asio::awaitable<void> TcpServer::BeginWithTls(std::shared_ptr<StreamSocket> stream,
                                               std::string host,
                                               HandshakeGate<AsioNet>::Place place) {
+  EndNotice notice(alive_, [this, &host] { door_.FreePlace(host); });
   const bool passed = co_await handshakes_.Pass(*stream, std::move(place));
   // While the handshake went on, the daemon may have begun to shut down.
-  if (!passed || door_.is_closed()) co_return false;
+  if (!passed || door_.is_closed()) co_return;
   if (!hub_->RequiresToken()) stream->Admit();
   Begin(std::move(stream), host);
-  co_return true;
+  notice.Cancel();
 }
 
 void TcpServer::Refuse(tcp::socket& socket, protocol::ErrorCode code, const std::string& why) {

@@ -84,7 +84,7 @@ class TcpServer {
   std::shared_ptr<TcpSession> Add(std::shared_ptr<StreamSocket> stream, const std::string& host);
   void BeginHandshake(asio::ip::tcp::socket socket, const std::string& host,
                       HandshakeGate<AsioNet>::Place place);
-  asio::awaitable<bool> BeginWithTls(std::shared_ptr<StreamSocket> stream, std::string host,
+  asio::awaitable<void> BeginWithTls(std::shared_ptr<StreamSocket> stream, std::string host,
                                      HandshakeGate<AsioNet>::Place place);
   void Refuse(asio::ip::tcp::socket& socket, protocol::ErrorCode code, const std::string& why);
 
@@ -97,6 +97,8 @@ class TcpServer {
   HandshakeGate<AsioNet> handshakes_;
   Door<AsioNet> door_;  // its places are those of the sessions and handshakes
   std::unordered_set<std::shared_ptr<TcpSession>> sessions_;
+  // The loop may destroy coroutines later.
+  const std::shared_ptr<void> alive_ = std::make_shared<char>();
 };
 
 }  // namespace furrow::server

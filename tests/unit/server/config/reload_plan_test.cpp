@@ -50,6 +50,7 @@ TEST(PlanReload, EveryLimitButOneChanges) {
   wanted.limits = {.max_connections = 1,
                    .max_udp_peers = 2,
                    .max_subjects = 3,
+                   .max_strangers_per_host = 14,
                    .max_skeletons = 4,
                    .max_subscriptions = 5,
                    .max_all_subscriptions = 12,

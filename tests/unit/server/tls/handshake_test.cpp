@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -88,6 +89,37 @@ TEST(HandshakePlaces, AHostHasOne) {
   EXPECT_NE(places.Enter("192.0.2.1"), nullptr) << "the place came back";
 }
 
+TEST(HandshakePlaces, AHostMayHaveMore) {
+  HandshakePlaces places;
+  places.SetPlacesOfHost(3);
+  std::vector<std::unique_ptr<HandshakePlaces::Place>> held;
+  for (int i = 0; i < 3; ++i) {
+    held.push_back(places.Enter("192.0.2.1"));
+    ASSERT_NE(held.back(), nullptr);
+  }
+  EXPECT_EQ(places.Enter("192.0.2.1"), nullptr);
+  EXPECT_NE(places.Enter("192.0.2.2"), nullptr);
+  const auto waiting = places.Wait("192.0.2.1");
+  for (const auto& place : held) EXPECT_TRUE(place->IsWanted());
+  places.SetPlacesOfHost(1);
+  held.pop_back();
+  held.pop_back();
+  EXPECT_EQ(places.Enter("192.0.2.1"), nullptr) << "one is held yet";
+  held.pop_back();
+  EXPECT_NE(places.Enter("192.0.2.1"), nullptr);
+}
+
+TEST(HandshakePlaces, AllPlacesHaveALimitWithManyPerHost) {
+  HandshakePlaces places;
+  places.SetPlacesOfHost(HandshakePlaces::kPlaces);
+  std::vector<std::unique_ptr<HandshakePlaces::Place>> held;
+  while (auto place = places.Enter("192.0.2.1")) held.push_back(std::move(place));
+  EXPECT_EQ(held.size(), HandshakePlaces::kPlaces);
+  EXPECT_EQ(places.Enter("192.0.2.2"), nullptr);
+  const auto waiting = places.Wait("192.0.2.2");
+  EXPECT_TRUE(held.front()->IsWanted());
+}
+
 TEST(HandshakePlaces, APlaceIsWantedByThoseOfItsHost) {
   const HandshakePlaces places;
   const auto place = places.Enter("192.0.2.1");
@@ -111,6 +143,11 @@ TEST(HandshakePlaces, EveryPlaceIsWantedWhenNoneIsLeft) {
     ASSERT_NE(held.back(), nullptr);
   }
   EXPECT_EQ(places.Enter("192.0.2.1"), nullptr);
+  {
+    const auto waiting = places.Wait("1");
+    EXPECT_TRUE(held[1]->IsWanted());
+    EXPECT_FALSE(held[2]->IsWanted()) << "the place would be of no use to a host that has its own";
+  }
   const auto waiting = places.Wait("192.0.2.1");
   EXPECT_TRUE(held.front()->IsWanted());
   held.pop_back();

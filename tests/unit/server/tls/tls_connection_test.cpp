@@ -52,8 +52,10 @@ using Progress = TlsConnection::Progress;
 
 // Both ends of a TCP connection: a socket of another kind knows no low-water mark.
 struct Sockets {
-  Sockets() {
+  // `room`: for what the server has not read; 0: the default of the kernel.
+  explicit Sockets(int room = 0) {
     const int acceptor = socket(AF_INET, SOCK_STREAM, 0);
+    if (room > 0) setsockopt(acceptor, SOL_SOCKET, SO_RCVBUF, &room, sizeof(room));
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
@@ -112,9 +114,9 @@ class TlsConnectionTest : public testing::Test {
   }
   void Hello() { EXPECT_FALSE(client->Handshake()); }
   // Without a connection.
-  void StartAnew() {
+  void StartAnew(int room = 0) {
     tls.reset();
-    sockets = std::make_unique<Sockets>();
+    sockets = std::make_unique<Sockets>(room);
     client = std::make_unique<TlsPeer>();
   }
 
@@ -170,7 +172,9 @@ TEST_F(TlsConnectionTest, AStrangerMakesOpenSslHoldLittle) {
   sockets->Send(record.substr(0, record.size() - 1));
   count([&] { EXPECT_EQ(Read(), Progress::kNeedsInput); });
   EXPECT_EQ(own, idle) << "half a record";
-  count([&] { EXPECT_EQ(Read(), Progress::kNeedsTime); });
+  for (int looks = 0; looks < 20; ++looks) {
+    count([&] { EXPECT_EQ(Read(), Progress::kNeedsInput); });
+  }
   EXPECT_EQ(own, idle) << "the same, woken for nothing";
 }
 
@@ -198,6 +202,61 @@ TEST_F(TlsConnectionTest, ATrustedClientHasItsBuffers) {
   EXPECT_EQ(left, 0);
   sockets->Send(record.substr(10));
   EXPECT_EQ(tls->Read(sockets->server, bytes).size, 5u);
+}
+
+// OpenSSL goes on with the buffer of the record that waits.
+TEST_F(TlsConnectionTest, AWriteThatWaitsEndsWithItsSize) {
+  Shake();
+  const std::vector<std::uint8_t> page(100'000, 'p');
+  std::size_t written = 0;
+  const auto write = [&] {
+    const auto outcome = tls->Write(sockets->server, page);
+    written += outcome.size;
+    return outcome;
+  };
+  while (write().progress == Progress::kDone) {
+  }
+  tls->SetTrusting(sockets->server);
+  std::size_t heard = 0;
+  TlsConnection::Outcome outcome{.progress = Progress::kNeedsOutput};
+  while (outcome.progress == Progress::kNeedsOutput) {
+    client->Hear(sockets->Receive());
+    heard += client->Heard().size();
+    outcome = write();
+  }
+  EXPECT_EQ(outcome.progress, Progress::kDone);
+  EXPECT_LT(outcome.size, TlsConnection::kRecordBytes);
+  outcome = write();
+  EXPECT_EQ(outcome.size, TlsConnection::kRecordBytes) << "records of full size from now on";
+  while (heard < written) {
+    client->Hear(sockets->Receive());
+    const std::string text = client->Heard();
+    EXPECT_EQ(text, std::string(text.size(), 'p'));
+    heard += text.size();
+  }
+  EXPECT_EQ(heard, written);
+}
+
+// The socket's buffer is smaller than a record, which never arrives as a whole.
+TEST_F(TlsConnectionTest, ALargeRecordPassesASmallSocket) {
+  StartAnew(/*room=*/4096);
+  tls = std::make_unique<TlsConnection>(context.get());
+  Shake();
+  client->Say(std::string(16'000, 'a'));
+  std::string record = client->Outgoing();
+  std::size_t size = 0;
+  int looks = 0;
+  while (size == 0) {
+    const ssize_t sent = send(sockets->client, record.data(), record.size(), MSG_DONTWAIT);
+    if (sent > 0) record.erase(0, static_cast<std::size_t>(sent));
+    const auto outcome = tls->Read(sockets->server, bytes);
+    ASSERT_TRUE(outcome.progress == Progress::kDone || outcome.progress == Progress::kNeedsInput ||
+                outcome.progress == Progress::kNeedsTime);
+    if (outcome.progress == Progress::kNeedsTime) ++looks;
+    size = outcome.size;
+  }
+  EXPECT_EQ(size, bytes.size());
+  EXPECT_GT(looks, 0) << "the buffer is smaller than the record";
 }
 
 // The number of a closed socket may belong to another connection.

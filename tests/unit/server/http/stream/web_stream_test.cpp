@@ -31,6 +31,8 @@ using net::ip::tcp;
 class HeldStranger : public Stranger {
  public:
   [[nodiscard]] bool IsWanted() const override { return true; }
+  void NoteRequest() override { ++requests; }
+  int requests = 0;
 };
 
 class WebStreamTest : public testing::Test {
@@ -149,7 +151,12 @@ TEST_F(WebStreamTest, AStrangerIsHeldUntilItIsAdmitted) {
   EXPECT_FALSE(stream->MustMakeRoom());
   auto stranger = std::make_shared<HeldStranger>();
   const std::weak_ptr<Stranger> held = stranger;
+  HeldStranger& watch = *stranger;
+  stream->NoteRequest();
   stream->Hold(std::move(stranger));
+  EXPECT_EQ(watch.requests, 0);
+  stream->NoteRequest();
+  EXPECT_EQ(watch.requests, 1);
   EXPECT_TRUE(stream->MustMakeRoom());
   stream->Admit();
   EXPECT_TRUE(held.expired());

@@ -151,6 +151,37 @@ TEST_F(BareSocketsTest, TheFirstAndTheLastOfAHostComeInTurn) {
   EXPECT_TRUE(sockets.empty());
 }
 
+// As when a place becomes free from time to time: no host is always the last one.
+TEST_F(BareSocketsTest, HostsHaveTheirTurn) {
+  for (int i = 0; i < 2; ++i) {
+    for (const char* host : {"a", "b", "c"}) Come(host, kHello);
+  }
+  while (sockets.HostsThatWait().size() < 3) (void)sockets.Look(kNow);
+  (void)sockets.Look(kNow);
+  std::string turns;
+  while (!sockets.HostsThatWait().empty()) {
+    turns += sockets.HostsThatWait().front();
+    BareSockets::CloseSocket(sockets.Take(sockets.HostsThatWait().front()));
+  }
+  EXPECT_EQ(turns, "abcabc");
+}
+
+TEST_F(BareSocketsTest, ClosingTellsTheHosts) {
+  Come("b", "");
+  Come("a", kHello);
+  Come("b", kHello);
+  std::string closed;
+  sockets.Close([&closed](const std::string& host) { closed += host; });
+  EXPECT_EQ(closed, "abb");
+  EXPECT_TRUE(sockets.empty());
+  for (tcp::socket& client : clients) {
+    asio::error_code error;
+    char byte = 0;
+    client.read_some(asio::buffer(&byte, 1), error);
+    EXPECT_TRUE(error);
+  }
+}
+
 TEST_F(BareSocketsTest, LackOfMemoryLeavesTheSocketWithTheCaller) {
   const test::AllocationLimit limit(0);
   EXPECT_THROW(sockets.Add("a", -1, kNow), std::bad_alloc);

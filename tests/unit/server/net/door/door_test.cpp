@@ -34,19 +34,20 @@ const char* const kHost = "127.0.0.1";
 class DoorTest : public testing::Test {
  protected:
   // One host gets half of the places, rounded up.
-  void Open(std::size_t places) {
-    door = MakeDoor(places);
+  void Open(std::size_t places, int newcomers = Lobby::kPlaces) {
+    door = MakeDoor(places, newcomers);
     const Status status = door->Open({kHost, 0});
     ASSERT_TRUE(status.ok()) << status.ToString();
     asio::co_spawn(loop, door->Accept(), asio::detached);
   }
-  std::unique_ptr<Door<AsioNet>> MakeDoor(std::size_t places) {
+  std::unique_ptr<Door<AsioNet>> MakeDoor(std::size_t places, int newcomers = Lobby::kPlaces) {
     Door<AsioNet>::Parts parts;
     parts.port = "test port";
     parts.limit = "test.limit";
     parts.flag = "--test";
     parts.listener = "test";
     parts.places = places;
+    parts.newcomers = newcomers;
     parts.metrics = &metrics;
     parts.begin = [this](tcp::socket socket, const std::string& host) {
       if (lacks_memory) throw std::bad_alloc();
@@ -69,8 +70,8 @@ class DoorTest : public testing::Test {
     return client;
   }
   // One connection has the only place of the host, and another one waits for it.
-  void OpenWithANewcomer() {
-    Open(2);
+  void OpenWithANewcomer(int newcomers = Lobby::kPlaces) {
+    Open(2, newcomers);
     clients.push_back(Connect());
     ASSERT_TRUE(RunUntil(loop, [this] { return begun.size() == 1; }));
     clients.push_back(Connect());
@@ -123,6 +124,18 @@ TEST_F(DoorTest, ANewcomerGetsThePlaceThatWasMade) {
   EXPECT_FALSE(door->TakePlace(kHost)) << "the newcomer has it";
   EXPECT_EQ(refused, 0);
   EXPECT_EQ(metrics.Get(Counter::kConnectionsRefused), 0u);
+}
+
+// The lobby is full, and a place becomes free: it is not for one that comes later.
+TEST_F(DoorTest, NobodyOvertakesTheQueue) {
+  OpenWithANewcomer(/*newcomers=*/1);
+  loop.poll();  // nothing is left of the newcomer but its timer
+  clients.push_back(Connect());
+  door->FreePlace(kHost);
+  ASSERT_TRUE(RunUntil(loop, [this] { return begun.size() == 2; }));
+  EXPECT_EQ(begun.back().remote_endpoint(), clients[1].local_endpoint());
+  EXPECT_EQ(refused, 1);
+  EXPECT_EQ(metrics.Get(Counter::kConnectionsRefused), 1u);
 }
 
 TEST_F(DoorTest, ANewcomerIsRefusedIfAllConnectionsAreInUse) {

@@ -2,6 +2,7 @@
 #include "server/net/door/handshake_gate.h"
 
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <exception>
 #include <list>
@@ -20,9 +21,12 @@
 #include <asio/steady_timer.hpp>
 #include <asio/write.hpp>
 #include <gtest/gtest.h>
+#include <linux/sockios.h>
+#include <sys/ioctl.h>
 
 #include "server/net/asio_net.h"
 #include "server/tls/handshake_places.h"
+#include "server/tls/stranger_patience.h"
 #include "tests/unit/server/net/door/run_until.h"
 
 namespace furrow::server {
@@ -82,14 +86,21 @@ class HandshakeGateTest : public testing::Test {
                                  });
                   hosts.push_back(host);
                 },
-            .ended = [this](const std::string& host) { ended.push_back(host); }};
+            .ended = [this](const std::string& host) { ended.push_back(host); },
+            .clock = [this] { return now; },
+            .budget = {}};
   }
-  // A client that comes to the gate and sends these bytes.
+  // A client that comes to the gate and sends these bytes, which have then arrived.
   tcp::socket& Come(const std::string& host, const std::string& bytes) {
+    return Come(&gate, host, bytes);
+  }
+  tcp::socket& Come(HandshakeGate<AsioNet>* to, const std::string& host, const std::string& bytes) {
     tcp::socket& client = clients.emplace_back(loop);
     client.connect(acceptor.local_endpoint());
-    gate.Enter(acceptor.accept(), host);
+    to->Enter(acceptor.accept(), host);
     asio::write(client, asio::buffer(bytes));
+    int waiting = 1;  // bytes that have not arrived
+    while (waiting > 0) ioctl(client.native_handle(), SIOCOUTQ, &waiting);
     return client;
   }
   tcp::socket& ComeWithHello(const std::string& host = "a") { return Come(host, kHello); }
@@ -101,9 +112,12 @@ class HandshakeGateTest : public testing::Test {
     EXPECT_TRUE(begun);
     return begun ? &connections.back() : nullptr;
   }
-  // Lets the gate look a few times.
-  void RunALittle() {
-    for (int looks = 0; looks < 5; ++looks) loop.run_one_for(HandshakeGate<AsioNet>::kPoll);
+  // Lets the gate look: its timer expires before this one.
+  void LetTheGateLook() {
+    bool is_over = false;
+    asio::steady_timer timer(loop, 2 * HandshakeGate<AsioNet>::kPoll);
+    timer.async_wait([&](const asio::error_code&) { is_over = true; });
+    ASSERT_TRUE(RunUntil(loop, [&] { return is_over; }));
   }
   // Ends the handshake. The place stays with the connection if it passes.
   void End(Connection* connection) {
@@ -113,6 +127,7 @@ class HandshakeGateTest : public testing::Test {
 
   Metrics metrics;
   HandshakePlaces places;
+  Time now = std::chrono::seconds(100);
   int plain_answers = 0;
   int contexts = 0;
   bool lacks_memory = false;
@@ -157,7 +172,7 @@ TEST_F(HandshakeGateTest, AFailureIsCounted) {
 TEST_F(HandshakeGateTest, APlainClientGetsOneAnswerAndTimeToReadIt) {
   tcp::socket& client = Come("a", "GET / HTTP/1.1\r\n\r\n");
   ASSERT_TRUE(RunUntil(loop, [this] { return plain_answers == 1; }));
-  RunALittle();
+  LetTheGateLook();
   EXPECT_TRUE(ended.empty()) << "it waits until the client closes";
   asio::error_code error;
   char byte = 0;
@@ -185,7 +200,7 @@ TEST_F(HandshakeGateTest, HandshakesOfAHostBeginOneAfterTheOther) {
   Connection* const first = AwaitBegin();
   ASSERT_NE(first, nullptr);
   ComeWithHello();
-  RunALittle();
+  LetTheGateLook();
   EXPECT_EQ(connections.size(), 1u);
   // Another host need not wait.
   ComeWithHello("b");
@@ -194,7 +209,7 @@ TEST_F(HandshakeGateTest, HandshakesOfAHostBeginOneAfterTheOther) {
   // A stranger keeps its place until it has shown who it is.
   End(first);
   ASSERT_NE(first->stranger, nullptr);
-  RunALittle();
+  LetTheGateLook();
   EXPECT_EQ(connections.size(), 2u);
   EXPECT_TRUE(first->stranger->IsWanted());
   first->stranger.reset();  // Admit()
@@ -211,12 +226,16 @@ TEST_F(HandshakeGateTest, SilentClientsAndHalfMessagesKeepNobodyWaiting) {
   EXPECT_NE(AwaitBegin(), nullptr);
 }
 
-// A stranger that does not answer gives way to others of its host after StrangerPatience::kSilence.
+// A stranger that does not answer gives way to others of its host. The time that it has depends on
+// the round trip.
 TEST_F(HandshakeGateTest, AStalledHandshakeGivesWayIfOthersWait) {
   ComeWithHello();
   Connection* const stalled = AwaitBegin();
   ASSERT_NE(stalled, nullptr);
   ComeWithHello();
+  LetTheGateLook();
+  EXPECT_TRUE(stalled->server.is_open());
+  now += StrangerPatience::kMostSilence;
   ASSERT_TRUE(RunUntil(loop, [&] { return !stalled->server.is_open(); }));
   stalled->result = asio::error::operation_aborted;
   End(stalled);
@@ -231,6 +250,9 @@ TEST_F(HandshakeGateTest, AStrangerThatShowsNothingGivesWayIfOthersWait) {
   ASSERT_NE(stranger, nullptr);
   End(stranger);
   ComeWithHello();
+  LetTheGateLook();
+  EXPECT_TRUE(stranger->server.is_open());
+  now += StrangerPatience::kMostSilence;
   ASSERT_TRUE(RunUntil(loop, [&] { return !stranger->server.is_open(); }));
   EXPECT_EQ(metrics.Get(Counter::kConnectionsGaveWay), 1u);
   EXPECT_EQ(metrics.Get(Counter::kTlsSlow), 0u);
@@ -238,16 +260,51 @@ TEST_F(HandshakeGateTest, AStrangerThatShowsNothingGivesWayIfOthersWait) {
   EXPECT_NE(AwaitBegin(), nullptr);
 }
 
-TEST_F(HandshakeGateTest, AHostHasABudget) {
-  for (std::uint32_t i = 0; i <= HandshakeBudget::kPerHost; ++i) {
-    ComeWithHello();
-    ASSERT_TRUE(RunUntil(loop, [&] { return connections.size() == i + 1 || !ended.empty(); }));
-    if (!ended.empty()) break;
-    End(&connections.back());
-    connections.back().stranger.reset();
+TEST_F(HandshakeGateTest, AHostHasSeveralPlacesIfTheyAreAllowed) {
+  places.SetPlacesOfHost(2);
+  for (int i = 0; i < 3; ++i) ComeWithHello();
+  ASSERT_TRUE(RunUntil(loop, [this] { return connections.size() == 2; }));
+  LetTheGateLook();
+  EXPECT_EQ(connections.size(), 2u);
+}
+
+// All places are taken, and one after the other becomes free.
+TEST_F(HandshakeGateTest, WaitingHostsHaveTheirTurn) {
+  std::vector<HandshakeGate<AsioNet>::Place> held;
+  for (std::size_t i = 0; i < HandshakePlaces::kPlaces; ++i) {
+    held.push_back(places.Enter("other " + std::to_string(i)));
   }
-  // On a slow machine the budget fills up meanwhile.
-  EXPECT_EQ(metrics.Get(Counter::kTlsBusy), ended.size());
+  for (int i = 0; i < 2; ++i) {
+    for (const char* host : {"a", "b", "c"}) ComeWithHello(host);
+  }
+  LetTheGateLook();
+  EXPECT_TRUE(connections.empty());
+  EXPECT_TRUE(held[1]->IsWanted());
+  held.pop_back();
+  for (int i = 0; i < 6; ++i) {
+    Connection* const next = AwaitBegin();
+    ASSERT_NE(next, nullptr);
+    LetTheGateLook();
+    EXPECT_EQ(connections.size(), static_cast<std::size_t>(i) + 1);
+    End(next);
+    next->stranger.reset();
+  }
+  EXPECT_EQ(hosts, (std::vector<std::string>{"a", "b", "c", "a", "b", "c"}));
+}
+
+TEST_F(HandshakeGateTest, AHostHasABudget) {
+  HandshakeGate<AsioNet>::Parts parts = Parts();
+  while (parts.budget.Take("192.0.2.1", now)) {
+  }
+  HandshakeGate<AsioNet> drained(loop, std::move(parts));
+  Come(&drained, "192.0.2.1", kHello);
+  ASSERT_TRUE(RunUntil(loop, [this] { return !ended.empty(); }));
+  EXPECT_EQ(ended, std::vector<std::string>{"192.0.2.1"});
+  EXPECT_EQ(metrics.Get(Counter::kTlsBusy), 1u);
+  EXPECT_TRUE(connections.empty());
+  Come(&drained, "192.0.2.2", kHello);
+  EXPECT_NE(AwaitBegin(), nullptr) << "another host has its own";
+  EXPECT_EQ(hosts, std::vector<std::string>{"192.0.2.2"});
 }
 
 TEST_F(HandshakeGateTest, LackOfMemoryEndsOneConnection) {
