@@ -206,12 +206,12 @@ TlsConnection::Outcome TlsConnection::Read(int socket, std::span<std::uint8_t> b
 
 TlsConnection::Outcome TlsConnection::Write(int socket, std::span<const std::uint8_t> bytes) {
   Begin(socket);
+  const std::size_t most = std::min(bytes.size(), kRecordBytes);
   std::size_t size = 0;
-  Outcome outcome =
-      Judge(SSL_write_ex(ssl_.get(), bytes.data(), std::min(bytes.size(), kRecordBytes), &size));
+  Outcome outcome = Judge(SSL_write_ex(ssl_.get(), bytes.data(), most, &size));
   outcome.size = size;
-  write_waits_ = outcome.progress == Progress::kNeedsOutput;
-  if (!write_waits_ && std::exchange(raises_later_, false)) RaiseRecordSize();
+  has_write_buffer_ = size < most;
+  if (!has_write_buffer_ && std::exchange(raises_later_, false)) RaiseRecordSize();
   return outcome;
 }
 
@@ -230,8 +230,8 @@ void TlsConnection::SetTrusting(int socket) {
   socket_ = socket;
   Io::SetLowWater(*this, 1);
   SSL_set_read_ahead(ssl_.get(), 1);  // a header and its record with one call
-  // OpenSSL writes on with a buffer of the former size.
-  raises_later_ = write_waits_;
+  // OpenSSL fails if a record exceeds the buffer that it has made for the former size.
+  raises_later_ = has_write_buffer_;
   if (!raises_later_) RaiseRecordSize();
 }
 

@@ -76,9 +76,9 @@ class TlsConnection {
   bool is_stuck_ = false;          // ... although the socket has woken its reader
 
   bool is_wary_ = true;
-  bool write_waits_ = false;   // for output
-  bool raises_later_ = false;  // the size of records, after that write
-  int low_water_ = 1;          // SO_RCVLOWAT of the socket
+  bool has_write_buffer_ = false;  // OpenSSL: until a record has taken all bytes of a Write()
+  bool raises_later_ = false;      // the size of records, when that is so
+  int low_water_ = 1;              // SO_RCVLOWAT of the socket
   // The last looks at a record that is not whole: its bytes, and how often these have not changed.
   int arrived_ = 0;
   int same_looks_ = 0;

@@ -204,37 +204,52 @@ TEST_F(TlsConnectionTest, ATrustedClientHasItsBuffers) {
   EXPECT_EQ(tls->Read(sockets->server, bytes).size, 5u);
 }
 
-// OpenSSL goes on with the buffer of the record that waits.
-TEST_F(TlsConnectionTest, AWriteThatWaitsEndsWithItsSize) {
-  Shake();
-  const std::vector<std::uint8_t> page(100'000, 'p');
-  std::size_t written = 0;
-  const auto write = [&] {
-    const auto outcome = tls->Write(sockets->server, page);
-    written += outcome.size;
-    return outcome;
-  };
-  while (write().progress == Progress::kDone) {
+// OpenSSL keeps its buffer for small records until the write is over. A larger record would fail.
+TEST_F(TlsConnectionTest, RecordsGrowAfterTheWriteThatGoesOn) {
+  for (const bool is_waiting : {false, true}) {
+    StartAnew();
+    tls = std::make_unique<TlsConnection>(context.get());
+    Shake();
+    const std::vector<std::uint8_t> page(10'000'000, 'p');
+    std::size_t written = 0;
+    std::size_t heard = 0;
+    const auto hear = [&] {
+      client->Hear(sockets->Receive());
+      const std::string text = client->Heard();
+      EXPECT_EQ(text, std::string(text.size(), 'p'));
+      heard += text.size();
+    };
+    // Writes up to this byte.
+    const auto write = [&](std::size_t end) {
+      const auto outcome = tls->Write(sockets->server, std::span(page).first(end - written));
+      EXPECT_TRUE(outcome.progress == Progress::kDone ||
+                  outcome.progress == Progress::kNeedsOutput);
+      written += outcome.size;
+      return outcome;
+    };
+    std::size_t end = TlsConnection::kRecordBytes;
+    if (is_waiting) {
+      end = page.size();
+      while (write(end).progress == Progress::kDone) {
+      }
+      end = written + TlsConnection::kRecordBytes;  // the same bytes again, and no more
+    } else {
+      EXPECT_EQ(write(end).progress, Progress::kDone);
+    }
+    ASSERT_LT(written, end);
+    tls->SetTrusting(sockets->server);
+    while (written < end) {
+      const auto outcome = write(end);
+      ASSERT_LT(outcome.size, TlsConnection::kRecordBytes);
+      ASSERT_TRUE(outcome.size > 0 || outcome.progress == Progress::kNeedsOutput);
+      if (outcome.size == 0) hear();
+    }
+    while (heard < written) hear();
+    EXPECT_EQ(write(end + TlsConnection::kRecordBytes).size, TlsConnection::kRecordBytes)
+        << "records of full size from now on";
+    while (heard < written) hear();
+    EXPECT_EQ(heard, written);
   }
-  tls->SetTrusting(sockets->server);
-  std::size_t heard = 0;
-  TlsConnection::Outcome outcome{.progress = Progress::kNeedsOutput};
-  while (outcome.progress == Progress::kNeedsOutput) {
-    client->Hear(sockets->Receive());
-    heard += client->Heard().size();
-    outcome = write();
-  }
-  EXPECT_EQ(outcome.progress, Progress::kDone);
-  EXPECT_LT(outcome.size, TlsConnection::kRecordBytes);
-  outcome = write();
-  EXPECT_EQ(outcome.size, TlsConnection::kRecordBytes) << "records of full size from now on";
-  while (heard < written) {
-    client->Hear(sockets->Receive());
-    const std::string text = client->Heard();
-    EXPECT_EQ(text, std::string(text.size(), 'p'));
-    heard += text.size();
-  }
-  EXPECT_EQ(heard, written);
 }
 
 // The socket's buffer is smaller than a record, which never arrives as a whole.
