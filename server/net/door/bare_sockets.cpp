@@ -71,7 +71,7 @@ std::vector<BareSockets::Event> BareSockets::Look(Time now) {
       Kind kind = each.stage == Stage::kReady ? Kind::kBusy : Kind::kSlow;
       const bool is_judged = (ready++)->revents != 0 && Judge(&each, &kind);
       if (!is_judged && !is_late) continue;
-      // The end of a plain client is no event that counts.
+      // The end of a plain client does not count as slow.
       if (each.stage == Stage::kAnswered && kind == Kind::kSlow) kind = Kind::kGone;
       events.push_back({name, each.socket, kind});
     }

@@ -357,7 +357,7 @@ TEST_F(TlsStreamTest, RecordsStayInTheKernelUntilTheyAreWhole) {
   EXPECT_EQ(trusted.size, 2u);
 }
 
-// Such a socket always wakes its reader, as a TCP socket does when the kernel lacks memory.
+// A Unix socket always wakes its reader, as a TCP socket does when the kernel lacks memory.
 TEST_F(TlsStreamTest, AReaderThatIsWokenForNothingWaitsForAMoment) {
   std::array<int, 2> pair{};
   ASSERT_EQ(socketpair(AF_UNIX, SOCK_STREAM, 0, pair.data()), 0);
