@@ -41,8 +41,8 @@ class BareSockets {
   // Closes a socket of Look().
   void Remove(const std::string& host, int socket);
 
-  // The hosts with a client whose first message has arrived as a whole. The host of the last Take()
-  // is the last one, and the order of the others stays, so each gets its turn.
+  // The hosts with a client whose first message has arrived as a whole. The list begins after the
+  // host of the last Take(), so that each host gets its turn.
   [[nodiscard]] std::vector<std::string> HostsThatWait() const;
   // Gives the caller the socket of such a client: alternately the oldest and the newest, so that a
   // new client need not wait behind a long queue. Precondition: there is one.

@@ -20,10 +20,10 @@
 
 namespace furrow::server {
 
-// Begins TLS on connections of a port that speaks nothing else: within kHandshakeDeadline, within
-// the budget of each host, and for as many strangers of a host at a time as HandshakePlaces allows.
-// The others wait as bare sockets. Counts what fails, by reason. `Net`: see Door. Belongs to the
-// thread of its connections.
+// Begins TLS on connections of a port that speaks nothing else. Each handshake has the time
+// kHandshakeDeadline and counts against the budget of its host. A connection waits as a bare socket
+// (BareSockets) until its host has a place for a stranger. Failures are counted by reason. `Net`:
+// see Door. Belongs to the thread of its connections.
 template <class Net>
 class HandshakeGate {
  public:
