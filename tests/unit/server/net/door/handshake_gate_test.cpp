@@ -56,6 +56,19 @@ struct Connection {
   std::shared_ptr<Stranger> stranger;
 };
 
+// Its timers may lack memory.
+struct PoorNet : AsioNet {
+  struct Timer : asio::steady_timer {
+    using asio::steady_timer::basic_waitable_timer;
+    template <class Handler>
+    void async_wait(Handler handler) {
+      if (lacks_memory) throw std::bad_alloc();
+      asio::steady_timer::async_wait(std::move(handler));
+    }
+    static inline bool lacks_memory = false;
+  };
+};
+
 class HandshakeGateTest : public testing::Test {
  protected:
   const std::string kHello{"\x16\x03\x01\x00\x02\x01\x02", 7};  // a whole record
@@ -94,7 +107,8 @@ class HandshakeGateTest : public testing::Test {
   tcp::socket& Come(const std::string& host, const std::string& bytes) {
     return Come(&gate, host, bytes);
   }
-  tcp::socket& Come(HandshakeGate<AsioNet>* to, const std::string& host, const std::string& bytes) {
+  template <class Gate>
+  tcp::socket& Come(Gate* to, const std::string& host, const std::string& bytes) {
     tcp::socket& client = clients.emplace_back(loop);
     client.connect(acceptor.local_endpoint());
     to->Enter(acceptor.accept(), host);
@@ -315,6 +329,32 @@ TEST_F(HandshakeGateTest, LackOfMemoryEndsOneConnection) {
   lacks_memory = false;
   ComeWithHello();
   EXPECT_NE(AwaitBegin(), nullptr);
+}
+
+// Nobody would look at the sockets any more.
+TEST_F(HandshakeGateTest, LackOfMemoryForTheTimerEndsThoseThatWait) {
+  HandshakeGate<PoorNet>::Parts parts;
+  parts.metrics = &metrics;
+  parts.places = &places;
+  parts.begin = [this](tcp::socket, const std::string& host, HandshakeGate<PoorNet>::Place) {
+    hosts.push_back(host);
+  };
+  parts.ended = [this](const std::string& host) { ended.push_back(host); };
+  HandshakeGate<PoorNet> poor(loop, std::move(parts));
+  tcp::socket& client = Come(&poor, "a", "");
+  Come(&poor, "b", kHello.substr(0, 4));
+  PoorNet::Timer::lacks_memory = true;
+  const bool have_ended = RunUntil(loop, [this] { return ended.size() == 2; });
+  PoorNet::Timer::lacks_memory = false;
+  ASSERT_TRUE(have_ended);
+  EXPECT_EQ(metrics.Get(Counter::kAllocationsFailed), 1u);
+  asio::error_code error;
+  char byte = 0;
+  client.read_some(asio::buffer(&byte, 1), error);
+  EXPECT_EQ(error, asio::error::eof);
+  Come(&poor, "c", kHello);
+  ASSERT_TRUE(RunUntil(loop, [this] { return !hosts.empty(); }));
+  EXPECT_EQ(hosts, std::vector<std::string>{"c"});
 }
 
 }  // namespace
