@@ -16,9 +16,12 @@
 
 #include "server/tls/handshake.h"
 #include "server/tls/record_head.h"
+#include "server/tls/stranger_patience.h"
 
 namespace furrow::server {
 namespace {
+
+static_assert(BareSockets::kPlaceDeadline > StrangerPatience::kMostPatience);
 
 std::uint32_t Milliseconds(Time time) {
   return static_cast<std::uint32_t>(
@@ -66,8 +69,8 @@ std::vector<BareSockets::Event> BareSockets::Look(Time now) {
   auto ready = watched.begin();
   for (auto& [name, host] : hosts_) {
     for (Arrival& each : host.arrivals) {
-      const bool is_late =
-          std::chrono::milliseconds(Milliseconds(now) - each.came) >= kHandshakeDeadline;
+      const Time deadline = each.stage == Stage::kReady ? kPlaceDeadline : kHandshakeDeadline;
+      const bool is_late = std::chrono::milliseconds(Milliseconds(now) - each.came) >= deadline;
       Kind kind = each.stage == Stage::kReady ? Kind::kBusy : Kind::kSlow;
       const bool is_judged = (ready++)->revents != 0 && Judge(&each, &kind);
       if (!is_judged && !is_late) continue;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -21,6 +22,9 @@ class BareSockets {
   BareSockets(const BareSockets&) = delete;
   BareSockets& operator=(const BareSockets&) = delete;
 
+  // Longer than a stranger may keep the place that others wait for (StrangerPatience).
+  static constexpr Time kPlaceDeadline = std::chrono::seconds(12);
+
   // Takes over a socket, unless it throws std::bad_alloc.
   void Add(const std::string& host, int socket, Time now);
   [[nodiscard]] bool empty() const { return hosts_.empty(); }
@@ -29,7 +33,7 @@ class BareSockets {
     kPlain,  // it does not speak TLS: answer it; once it has closed, it is kGone
     kGone,   // it has closed: remove it, as after all that follows
     kSlow,   // it has not spoken within kHandshakeDeadline
-    kBusy,   // it has not found a place within that time
+    kBusy,   // it has spoken, but has not found a place within kPlaceDeadline
   };
   struct Event {
     std::string host;
