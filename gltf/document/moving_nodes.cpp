@@ -34,7 +34,7 @@ const Json& At(const Json& list, std::uint64_t index) {
   return list.is_array() && index < list.size() ? list[static_cast<std::size_t>(index)] : kNull;
 }
 
-// Nothing: `value` is no unsigned integer.
+// Nothing if `value` is not an unsigned integer.
 std::optional<std::uint64_t> Unsigned(const Json& value) {
   if (!value.is_number_unsigned()) return std::nullopt;
   return value.get<std::uint64_t>();
