@@ -3,7 +3,6 @@
 
 #include "base/status.h"
 #include "server/http/pictures/picture_query.h"
-#include "server/http/request/request_access.h"
 
 namespace furrow::server {
 

@@ -67,4 +67,15 @@ ApiReply MethodReply(std::string_view method, std::string_view path, std::string
   return reply;
 }
 
+ApiReply NeedsToken(std::string_view why) {
+  return ErrorReply(401, "needs_token", "", why,
+                    "send the header Authorization: Bearer TOKEN, or ?token=TOKEN");
+}
+
+ApiReply RefusesToken(std::string_view why) {
+  ApiReply reply = NeedsToken(why);
+  reply.bad_token = true;
+  return reply;
+}
+
 }  // namespace furrow::server

@@ -60,4 +60,8 @@ struct ApiReply {
 [[nodiscard]] ApiReply MethodReply(std::string_view method, std::string_view path,
                                    std::string allow);
 
+// 401 for a request that shows no token, and for one that shows a token that is refused.
+[[nodiscard]] ApiReply NeedsToken(std::string_view why);
+[[nodiscard]] ApiReply RefusesToken(std::string_view why);
+
 }  // namespace furrow::server

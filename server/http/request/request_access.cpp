@@ -38,15 +38,4 @@ Result<Access> AccessOf(const WebRequest& request, const TokenGate* gate, bool s
   return gate->Admit(token, shielded, ReadClock());
 }
 
-ApiReply NeedsToken(std::string_view why) {
-  return ErrorReply(401, "needs_token", "", why,
-                    "send the header Authorization: Bearer TOKEN, or ?token=TOKEN");
-}
-
-ApiReply RefusesToken(std::string_view why) {
-  ApiReply reply = NeedsToken(why);
-  reply.bad_token = true;
-  return reply;
-}
-
 }  // namespace furrow::server

@@ -22,8 +22,4 @@ namespace furrow::server {
 [[nodiscard]] Result<Access> AccessOf(const WebRequest& request, const TokenGate* gate,
                                       bool shielded, Url* url);
 
-// 401 for a request that shows no token, and for one that shows a token that is refused.
-[[nodiscard]] ApiReply NeedsToken(std::string_view why);
-[[nodiscard]] ApiReply RefusesToken(std::string_view why);
-
 }  // namespace furrow::server
